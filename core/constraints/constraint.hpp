@@ -1,0 +1,45 @@
+// Constraint kinds. A kind is evaluated in blocks: one virtual call for all constraints of the kind in a structure.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/model/structure.hpp"
+
+namespace unfurl {
+
+// All constraints of one kind. Every row is scaled to metres. Phi(q) = 0, G = dPhi/dq, curvature = Hess Phi.
+// q: node coordinates of the solved nodes [3 n]; coordinate index of node i, axis k is 3 i + k.
+class ConstraintBlock {
+ public:
+  virtual ~ConstraintBlock() = default;
+  virtual int rows() const = 0;
+  virtual bool linear() const = 0;             // G constant in q and t: may be eliminated exactly
+  virtual std::string name(int row) const = 0;
+  virtual double length(int row) const = 0;    // the length to which this row's error is relative [m]
+  // Coordinates that row depends on, in the order used by jacobian and curvature.
+  virtual std::vector<int> stencil(int row) const = 0;
+
+  virtual void value(const double* q, double* phi) const = 0;
+  // Entries of all rows one after the other, each in the order of its stencil.
+  virtual void jacobian(const double* q, double* g) const = 0;
+  // f += scale * G(q)^T lambda, without forming G.
+  virtual void add_force(const double* q, const double* lambda, double scale, double* f) const = 0;
+  // phi_dd[row] = v^T Hess Phi_row v.
+  virtual void bias(const double* q, const double* v, double* phi_dd) const = 0;
+  // For each row a dense k x k matrix lambda_row * Hess Phi_row, column by column, k the length of its stencil.
+  virtual void curvature(const double* q, const double* lambda, double* hess) const = 0;
+};
+
+struct ConstraintKind {
+  std::string_view kind;
+  std::string_view help;
+  // The block of all constraints of this kind in the structure; nullptr where it has none.
+  std::unique_ptr<ConstraintBlock> (*make)(const Structure&);
+};
+std::span<const ConstraintKind> constraint_kinds();
+
+}  // namespace unfurl

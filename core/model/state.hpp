@@ -1,0 +1,28 @@
+#pragma once
+
+#include "core/math/types.hpp"
+
+namespace unfurl {
+
+// A point of a trajectory in the coordinates that are solved for (System says how they map to nodes).
+struct State {
+  double t = 0.0;   // [s]
+  VectorXd z;       // solved coordinates [m]
+  VectorXd w;       // their rates [m/s]
+  VectorXd lambda;  // multipliers of the kept constraints [N]; warm start of the next step
+};
+
+enum class StepStatus { converged, stalled, diverged, not_finite };
+
+// What one step did. A Newton iteration that fails is data, not an exception.
+struct StepReport {
+  StepStatus status = StepStatus::converged;
+  int newton_iterations = 0;
+  int factorisations = 0;
+  int right_hand_sides = 0;       // linear solves
+  double residual = 0.0;          // last momentum residual, relative
+  double constraint_norm = 0.0;   // max |Phi| at the step's end, rows in metres
+  bool ok() const { return status == StepStatus::converged; }
+};
+
+}  // namespace unfurl

@@ -1,0 +1,115 @@
+// A structure as plain data: what is solved (nodes, rods, constraints, loads) and what is shown (copies of those).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/math/types.hpp"
+
+namespace unfurl {
+
+struct Node {
+  std::string name;
+  Vec3 position = Vec3::Zero();  // at t = 0 [m]
+  Vec3 velocity = Vec3::Zero();  // at t = 0 [m/s]
+  double mass = 0.0;             // lumped mass, added to the rods' share [kg]
+};
+
+// A uniform rigid rod between two nodes; mass 0 makes it a pure distance constraint.
+struct Rod {
+  std::string name;
+  int a = 0, b = 0;          // node indices
+  double mass = 0.0;         // [kg]
+  double length = 0.0;       // [m]; the distance of its nodes at t = 0
+  std::string group;         // "chord", "post", "rod", ...: what colours and groups of rod forces go by
+  double radius = 0.0;       // for drawing [m]
+  double multiplicity = 1.0; // how many equal rods of the whole structure this one stands for (sector models)
+};
+
+// One constraint of a kind in the constraint table (constraints/constraint.hpp says how each kind reads the fields).
+struct Constraint {
+  std::string kind;            // "plane", "fixed", "relation", ...
+  std::string name;            // for messages: "plane of B0"
+  std::vector<int> nodes;      // node indices
+  std::vector<Vec3> vectors;   // directions or coefficients
+  double value = 0.0;          // offset or length [m]
+};
+
+// A constant force on a node.
+struct Load {
+  int node = 0;
+  Vec3 force = Vec3::Zero();  // [N]
+  bool shown = true;          // drawn as an arrow
+};
+
+// sum_i coefficient_i . x_{node_i} + offset: a linear measure of the configuration.
+struct LinearForm {
+  std::vector<int> nodes;
+  std::vector<Vec3> coefficients;
+  double offset = 0.0;
+
+  bool empty() const { return nodes.empty(); }
+  // q: all node coordinates [3 n].
+  double operator()(const ConstVec& q) const;
+  // The part without the offset; of velocities it is the rate.
+  double rate(const ConstVec& v) const;
+};
+
+// How far the structure has unfolded. The fold angle is atan2(fold_sine, fold_cosine); it is 0 when fully deployed.
+// A structure that has no such measure leaves both empty: no deployed event, no fold angle.
+struct Deployment {
+  LinearForm fold_sine;    // [-]
+  LinearForm fold_cosine;  // [-]
+  double initial_fold_angle = 0.0;  // [rad]; the deployed fraction is (cos fold - cos initial) / (1 - cos initial)
+
+  bool empty() const { return fold_sine.empty(); }
+  double fold_angle(const ConstVec& q) const;                     // [rad]
+  double fold_rate(const ConstVec& q, const ConstVec& v) const;   // [rad/s]
+  double fraction(const ConstVec& q) const;                       // 0 folded, 1 deployed
+};
+
+// A node of the whole structure: map * (position of the solved node `source`) + offset.
+struct NodeCopy {
+  std::string name;
+  int source = 0;
+  Mat3 map = Mat3::Identity();
+  Vec3 offset = Vec3::Zero();
+};
+
+// A rod of the whole structure between two NodeCopies; `source` is the solved rod that carries its force.
+struct RodCopy {
+  std::string name;
+  int a = 0, b = 0;
+  int source = 0;
+};
+
+// A load of the whole structure, for arrows.
+struct LoadCopy {
+  int node = 0;  // index of a NodeCopy
+  Vec3 force = Vec3::Zero();
+};
+
+struct Structure {
+  std::string kind;  // the family's name
+  // What is solved.
+  std::vector<Node> nodes;
+  std::vector<Rod> rods;
+  std::vector<Constraint> constraints;
+  std::vector<Load> loads;
+  Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]
+  bool lumped_mass = false;     // true: half of a rod's mass at each node instead of the consistent matrix
+  Deployment deployment;
+  // What is shown and exported: the whole structure (equal to the solved one unless a sector model replicates it).
+  std::vector<NodeCopy> node_copies;
+  std::vector<RodCopy> rod_copies;
+  std::vector<LoadCopy> load_copies;
+};
+
+// Fill the copies with the solved nodes, rods and loads themselves.
+void show_as_solved(Structure& structure);
+
+// Coordinates or velocities of the whole structure [3 N] from those of the solved nodes [3 n]; velocities take no offset.
+VectorXd whole_positions(const Structure& structure, const ConstVec& q);
+VectorXd whole_velocities(const Structure& structure, const ConstVec& v);
+
+}  // namespace unfurl

@@ -1,0 +1,76 @@
+// The equations of motion of a structure as an index-3 DAE (paper eq. 13-14), in the coordinates that are solved for:
+//
+//     M z'' + G(z)^T lambda = F(t, z, z'),   Phi(z) = 0
+//
+// Node coordinates are q = q_0 + B z. With elimination, B spans the null space of the linear constraints, which then
+// hold exactly and leave the equations; without it, B = I. A System is immutable; evaluation needs a Workspace.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/constraints/constraint.hpp"
+#include "core/math/linear_elimination.hpp"
+#include "core/math/types.hpp"
+#include "core/model/state.hpp"
+#include "core/model/structure.hpp"
+
+namespace unfurl {
+
+class System {
+ public:
+  System(const Structure& structure, bool eliminate_linear);
+  ~System();
+  System(System&&) noexcept;
+
+  Index coordinates() const;         // 3 n, of all solved nodes
+  Index solved_coordinates() const;  // size of z
+  Index constraints() const;         // m, rows of Phi: those that are kept
+  Index linear_constraints() const;  // how many rows were eliminated or could be
+  bool eliminated() const;
+
+  // Node coordinates and velocities from the solved ones, and back (exact where q fulfils the linear constraints).
+  void expand(const ConstVec& z, MutVec q) const;
+  void expand_rate(const ConstVec& w, MutVec v) const;
+  VectorXd reduce(const ConstVec& q) const;
+  VectorXd reduce_rate(const ConstVec& v) const;
+  void reduce_force(const ConstVec& f, MutVec r) const;  // r = B^T f
+
+  const SparseRows& mass() const;       // of z, symmetric positive definite, constant [kg]
+  const SparseRows& node_mass() const;  // of q [kg]
+
+  // In node coordinates (fast kernels; callers expand first).
+  void add_applied_force(double t, const ConstVec& q, const ConstVec& v, double scale, MutVec f) const;  // f += scale F
+  void constraint(const ConstVec& q, MutVec phi) const;                                                // [m]
+  void add_constraint_force(const ConstVec& q, const ConstVec& lambda, double scale, MutVec f) const;  // f += scale G^T lambda
+  void constraint_bias(const ConstVec& q, const ConstVec& v, MutVec phi_dd) const;  // v^T Hess Phi v [m/s^2]
+
+  // Jacobian with respect to z [m x size of z]; `pattern` allocates it once, `jacobian` only writes values.
+  SparseRows jacobian_pattern() const;
+  void jacobian(const ConstVec& q, SparseRows& G) const;
+  // K += scale * sum_k lambda_k Hess Phi_k with respect to z (Newton fallback; allocates).
+  SparseRows curvature(const ConstVec& q, const ConstVec& lambda) const;
+
+  double kinetic_energy(const ConstVec& w) const;                    // [J]
+  double potential_energy(const ConstVec& q) const;                  // gravity [J]
+  double load_work(const ConstVec& q) const;                         // of the constant loads since q = 0 [J]
+
+  const VectorXd& constraint_lengths() const;                        // [m] per kept row
+  const std::vector<std::string>& constraint_names() const;          // per kept row
+  // Kept row of each rod; -1 where it is none.
+  const std::vector<int>& rod_rows() const;
+
+  // Every constraint of the structure, eliminated ones included (for check and diagnostics).
+  Index all_constraints() const;
+  void all_constraint_values(const ConstVec& q, MutVec phi) const;   // [m]
+  MatrixXd all_jacobian(const ConstVec& q) const;                    // dense, for analysis
+  std::vector<std::string> all_names() const;
+  VectorXd all_lengths() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<const Data> data_;
+};
+
+}  // namespace unfurl

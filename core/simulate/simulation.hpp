@@ -1,0 +1,43 @@
+// The one time loop: drives an integrator from a model's start to its end, with events, progress and cancel.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/integrators/solver_options.hpp"
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+
+enum class RunStatus { completed, deployed, stopped, failed };  // stopped: cancelled by the user
+std::string_view to_string(RunStatus status);
+
+struct Event {
+  std::string name;  // "deployed", ...
+  double t = 0.0;    // [s]
+};
+
+struct SimulationHooks {
+  std::function<void(double fraction)> progress;  // of end_time, 0..1; called at most about 20 times a second
+  std::function<bool()> cancelled;                // asked before every step
+};
+
+struct Simulation {
+  Trajectory trajectory;
+  RunStatus status = RunStatus::completed;
+  std::string message;        // why it stopped or failed; empty otherwise
+  std::vector<Event> events;
+  SolverOptions options;
+  long steps = 0;
+  long newton_iterations = 0;
+  long factorisations = 0;
+  double cpu_s = 0.0;         // CPU time of the stepping loop
+};
+
+// Throws std::invalid_argument on an unknown method; everything that goes wrong while stepping is in the result.
+Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
+                    const SimulationHooks& hooks = {});
+
+}  // namespace unfurl

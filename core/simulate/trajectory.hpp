@@ -1,0 +1,52 @@
+// The only input of everything downstream: diagnostics, figures, frames, exports.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/model/state.hpp"
+#include "core/model/structure.hpp"
+#include "core/model/system.hpp"
+
+namespace unfurl {
+
+// A structure with its equations; immutable, shared by everything that looks at a run.
+struct Model {
+  Structure structure;
+  System system;
+};
+
+// Append-only states and reports with dense output.
+class Trajectory {
+ public:
+  explicit Trajectory(std::shared_ptr<const Model> model);
+
+  void append(State state, StepReport report);
+  void pop_back();
+
+  const Model& model() const { return *model_; }
+  const Structure& structure() const { return model_->structure; }
+  std::size_t size() const { return states_.size(); }
+  bool empty() const { return states_.empty(); }
+  const State& state(std::size_t i) const { return states_[i]; }
+  const StepReport& report(std::size_t i) const { return reports_[i]; }  // of the step that ended in state i
+  double time(std::size_t i) const { return states_[i].t; }
+  double start_time() const { return states_.front().t; }
+  double end_time() const { return states_.back().t; }
+
+  // Solved node coordinates and velocities [3 n] at state i.
+  VectorXd node_positions(std::size_t i) const;
+  VectorXd node_velocities(std::size_t i) const;
+  // The whole structure's [3 N] at state i, or at any time inside (cubic Hermite between states).
+  VectorXd positions(std::size_t i) const;
+  VectorXd velocities(std::size_t i) const;
+  VectorXd positions_at(double t) const;
+
+ private:
+  std::shared_ptr<const Model> model_;
+  std::vector<State> states_;
+  std::vector<StepReport> reports_;
+};
+
+}  // namespace unfurl
