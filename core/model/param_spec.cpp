@@ -164,20 +164,32 @@ std::string range_text(const ParamSpec& spec) {
   return with_unit(interval.empty() ? "any number" : interval, spec.unit);
 }
 
-std::string range_error(const ParamSpec& spec, const ParamValue& value) {
-  if (acceptable(spec, value)) return "";
-  const std::string range = range_text(spec), got = "; got " + value_text(value);
-  const bool interval = !interval_text(spec).empty();
-  const bool bracket = interval && (range.front() == '[' || range.front() == '(');
+std::string wanted_text(const ParamSpec& spec) {
+  const std::string range = range_text(spec);
   switch (spec.kind) {
     case ParamKind::integer:
-      return (interval ? "must be a whole number " + std::string(bracket ? "in " : "") : "must be ") + range +
-             got;
-    case ParamKind::real:
-      return (bracket ? "must be in " : "must be ") + range + got;
+    case ParamKind::real: {
+      const std::string noun = spec.kind == ParamKind::integer ? "a whole number" : "a number";
+      if (interval_text(spec).empty()) return with_unit(noun, spec.unit);
+      return noun + (range.front() == '[' || range.front() == '(' ? " in " : " ") + range;
+    }
+    case ParamKind::vector:
+      return "a list of " + range;
     default:
-      return "must be " + range + got;
+      return range;
   }
+}
+
+std::string range_error(const ParamSpec& spec, const ParamValue& value) {
+  if (acceptable(spec, value)) return "";
+  const bool number = std::holds_alternative<double>(value) || std::holds_alternative<long>(value);
+  // A number out of its range needs no reminder that a number is wanted.
+  if (spec.kind == ParamKind::real && number && !interval_text(spec).empty()) {
+    const std::string range = range_text(spec);
+    return (range.front() == '[' || range.front() == '(' ? "must be in " : "must be ") + range + "; got " +
+           value_text(value);
+  }
+  return "must be " + wanted_text(spec) + "; got " + value_text(value);
 }
 
 ParamSet::ParamSet(const std::vector<ParamSpec>& specs) {

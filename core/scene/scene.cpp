@@ -4,23 +4,6 @@
 
 namespace unfurl {
 
-namespace {
-
-std::string problem_text(const SceneProblem& problem) {
-  std::string text = problem.where.file;
-  if (problem.where.line > 0)
-    text += ":" + std::to_string(problem.where.line) + ":" + std::to_string(problem.where.column);
-  if (!problem.key.empty())
-    text += (text.empty() ? "" : (problem.where.file == "--set" ? " " : ": ")) + problem.key;
-  return text.empty() ? problem.message : text + ": " + problem.message;
-}
-
-}  // namespace
-
-SceneError::SceneError(std::vector<SceneProblem> problems) : problems_(std::move(problems)) {
-  for (const auto& problem : problems_) text_ += (text_.empty() ? "" : "\n") + problem_text(problem);
-}
-
 const std::vector<ParamSpec>& render_params() {
   static const std::vector<ParamSpec> params = [] {
     const RenderOptions fallback;
