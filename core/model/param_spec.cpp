@@ -170,7 +170,8 @@ std::string wanted_text(const ParamSpec& spec) {
     case ParamKind::integer:
     case ParamKind::real: {
       const std::string noun = spec.kind == ParamKind::integer ? "a whole number" : "a number";
-      if (interval_text(spec).empty()) return with_unit(noun, spec.unit);
+      if (interval_text(spec).empty())
+        return with_unit(spec.kind == ParamKind::integer ? "a whole number" : "a finite number", spec.unit);
       return noun + (range.front() == '[' || range.front() == '(' ? " in " : " ") + range;
     }
     case ParamKind::vector:
