@@ -1,0 +1,28 @@
+#pragma once
+
+#include "core/math/saddle_solver.hpp"
+#include "core/model/system.hpp"
+
+namespace unfurl {
+
+// Accelerations and multipliers from the equations of motion with the constraints differentiated twice (index 1):
+//
+//     [ M  G^T ] [w']     [ F(t, q, v)       ]
+//     [ G   0  ] [lambda] [ -v^T Hess Phi v  ]
+//
+// Multipliers that are not unique come with least scaled norm. One evaluation is one factorisation.
+class Index1 {
+ public:
+  explicit Index1(const System& system);
+  // False where the factorisation broke down or the result is not finite.
+  bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda);
+
+ private:
+  const System& system_;
+  SparseRows G_;
+  std::vector<double> scratch_;
+  SaddleSolver saddle_;
+  VectorXd q_, v_, f_, force_, bias_;
+};
+
+}  // namespace unfurl
