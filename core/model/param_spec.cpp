@@ -143,6 +143,10 @@ ParamSpec vector_param(std::string_view name, std::string_view unit, std::vector
   return spec;
 }
 
+ParamSpec text_param(std::string_view name, std::string_view fallback, std::string_view help) {
+  return named(name, "", ParamKind::text, std::string(fallback), help);
+}
+
 std::string range_text(const ParamSpec& spec) {
   const std::string interval = interval_text(spec);
   switch (spec.kind) {

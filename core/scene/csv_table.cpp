@@ -91,15 +91,15 @@ std::vector<const CsvColumn*> read_header(const Record& record, const std::strin
   std::vector<const CsvColumn*> found;
   for (const auto& cell : record.cells) {
     const CsvColumn* column = find_column(cell, columns);
-    if (!column) notes.add(where, "", "unknown column " + quoted(cell) + did_you_mean(cell, names));
+    if (!column) notes.add(where, "", "unknown column " + in_quotes(cell) + did_you_mean(cell, names));
     for (const auto* earlier : found)
-      if (column && earlier == column) notes.add(where, "", "column " + quoted(cell) + " appears twice");
+      if (column && earlier == column) notes.add(where, "", "column " + in_quotes(cell) + " appears twice");
     found.push_back(column);
   }
   for (const auto& column : columns) {
     bool present = !column.required;
     for (const auto* given : found) present = present || given == &column;
-    if (!present) notes.add(where, "", "column " + quoted(column.name) + " is missing");
+    if (!present) notes.add(where, "", "column " + in_quotes(column.name) + " is missing");
   }
   return found;
 }
@@ -113,7 +113,7 @@ void read_number(const std::string& cell, const CsvColumn& column, CsvRow& row, 
   double x = 0.0;
   const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
   if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x))
-    notes.add(row.where, std::string(column.name), "must be a finite number; got " + quoted(cell));
+    notes.add(row.where, std::string(column.name), "must be a finite number; got " + in_quotes(cell));
   else
     row.numbers[std::string(column.name)] = x;
 }

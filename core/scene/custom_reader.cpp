@@ -166,10 +166,9 @@ void note_problems(const CustomSpec& spec, std::size_t before, const TableReader
 const std::vector<ParamSpec>& custom_params() {
   static const std::vector<ParamSpec> params = [] {
     ParamSpec nodes =
-        choice_param("nodes_file", "", {}, "CSV file beside the scene: name,x,y,z[,vx,vy,vz,mass,fixed]");
+        text_param("nodes_file", "", "CSV file beside the scene: name,x,y,z[,vx,vy,vz,mass,fixed]");
     ParamSpec rods =
-        choice_param("rods_file", "", {}, "CSV file beside the scene: a,b[,name,mass,density,area,group]");
-    nodes.kind = rods.kind = ParamKind::text;
+        text_param("rods_file", "", "CSV file beside the scene: a,b[,name,mass,density,area,group]");
     return std::vector<ParamSpec>{
         choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"), nodes, rods};
   }();
@@ -178,8 +177,7 @@ const std::vector<ParamSpec>& custom_params() {
 
 const std::vector<ParamSpec>& custom_node_params() {
   static const std::vector<ParamSpec> params = [] {
-    ParamSpec name = choice_param("name", "", {}, "what rods, constraints and loads call the node");
-    name.kind = ParamKind::text;
+    ParamSpec name = text_param("name", "", "what rods, constraints and loads call the node");
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     ParamSpec position = vector_param("position", "m", {unknown, unknown, unknown}, "at t = 0");
     name.required = position.required = true;
@@ -195,9 +193,8 @@ const std::vector<ParamSpec>& custom_node_params() {
 const std::vector<ParamSpec>& custom_rod_params() {
   static const std::vector<ParamSpec> params = [] {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    ParamSpec name = choice_param("name", "", {}, "\"A-B\" from its nodes by default");
-    ParamSpec group = choice_param("group", "rod", {}, "what colours and groups of rod forces go by");
-    name.kind = group.kind = ParamKind::text;
+    ParamSpec name = text_param("name", "", "\"A-B\" from its nodes by default");
+    ParamSpec group = text_param("group", "rod", "what colours and groups of rod forces go by");
     return std::vector<ParamSpec>{
         name, real_param("mass", "kg", 0.0, 0.0, infinity, "0: a pure distance constraint"),
         real_param("density", "kg/m^3", 0.0, 0.0, infinity, "in place of mass, with area"),

@@ -39,7 +39,7 @@ void add_nodes(const CustomSpec& spec, Structure& structure) {
     const int index = static_cast<int>(structure.nodes.size());
     structure.nodes.push_back({entry.name, entry.position, entry.velocity, entry.mass});
     if (entry.fixed)
-      structure.constraints.push_back(constraint_on("fixed", {}, index, structure.nodes.back()));
+      structure.constraints.push_back(constraint_on("fixed", Vec3::Zero(), index, structure.nodes.back()));
   }
 }
 

@@ -45,7 +45,7 @@ class Checker {
         add("nodes", i, "name", "a node needs a name");
       } else if (const auto [first, is_new] = index_.try_emplace(node.name, i); !is_new) {
         add("nodes", i, "name",
-            "there is already a node " + quoted(node.name) + ", entry " + std::to_string(first->second));
+            "there is already a node " + in_quotes(node.name) + ", entry " + std::to_string(first->second));
       }
       if (!node.position.allFinite()) add("nodes", i, "position", "must be finite");
       if (!node.velocity.allFinite()) add("nodes", i, "velocity", "must be finite");
@@ -62,7 +62,7 @@ class Checker {
       const std::string name = rod_name(rod);
       if (const auto [first, is_new] = seen.try_emplace(name, i); !is_new)
         add("rods", i, "name",
-            "there is already a rod " + quoted(name) + ", entry " + std::to_string(first->second) +
+            "there is already a rod " + in_quotes(name) + ", entry " + std::to_string(first->second) +
                 "; give this one a name of its own");
     }
   }
@@ -75,12 +75,12 @@ class Checker {
     bool known = true;
     for (const auto& name : rod.nodes) {
       if (index_.contains(name)) continue;
-      add("rods", i, "nodes", "there is no node " + quoted(name) + hint(name));
+      add("rods", i, "nodes", "there is no node " + in_quotes(name) + hint(name));
       known = false;
     }
     if (!known) return false;
     if (rod.nodes[0] == rod.nodes[1]) {
-      add("rods", i, "nodes", "a rod from " + quoted(rod.nodes[0]) + " to itself");
+      add("rods", i, "nodes", "a rod from " + in_quotes(rod.nodes[0]) + " to itself");
       return false;
     }
     if (!spec_.nodes[index_.at(rod.nodes[0])].position.allFinite() ||
@@ -91,7 +91,7 @@ class Checker {
             .stableNorm();
     if (length == 0.0)
       add("rods", i, "nodes",
-          "zero length: " + quoted(rod.nodes[0]) + " and " + quoted(rod.nodes[1]) +
+          "zero length: " + in_quotes(rod.nodes[0]) + " and " + in_quotes(rod.nodes[1]) +
               " have the same position");
     else if (!(length * length > 0.0) || !std::isfinite(length * length))
       add("rods", i, "nodes", "the square of its length is outside the range of double precision");
@@ -117,14 +117,15 @@ class Checker {
       }
       if (!kind)
         add("constraints", i, "kind",
-            "there is no constraint kind " + quoted(constraint.kind) + did_you_mean(constraint.kind, kinds));
+            "there is no constraint kind " + in_quotes(constraint.kind) +
+                did_you_mean(constraint.kind, kinds));
       else if (!kind->direction.empty() &&
                !(constraint.normal.stableNorm() > 0.0 && constraint.normal.allFinite()))
         add("constraints", i, std::string(kind->direction), "must not be zero");
       if (constraint.nodes.empty()) add("constraints", i, "nodes", "names no node");
       for (const auto& pattern : constraint.nodes)
         if (!index_.contains(pattern) && matching_names(pattern, names_).empty())
-          add("constraints", i, "nodes", "no node matches " + quoted(pattern) + hint(pattern));
+          add("constraints", i, "nodes", "no node matches " + in_quotes(pattern) + hint(pattern));
     }
   }
 
@@ -145,7 +146,7 @@ class Checker {
     for (std::size_t i = 0; i < has_mass.size() && !full(); ++i)
       if (!has_mass[i])
         add("nodes", i, "mass",
-            quoted(spec_.nodes[i].name) +
+            in_quotes(spec_.nodes[i].name) +
                 " has no mass: give it some, attach a rod that has mass, or fix it");
   }
 
