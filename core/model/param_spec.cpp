@@ -15,7 +15,10 @@ std::string number_text(double x) {
   if (std::isnan(x)) return "nan";
   if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
   std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr;
+  const bool countable = x == std::floor(x) && std::abs(x) < 1e7;  // 100000 rather than 1e+05
+  const auto end = countable
+                       ? std::to_chars(buffer.data(), buffer.data() + buffer.size(), static_cast<long>(x)).ptr
+                       : std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr;
   return {buffer.data(), end};
 }
 

@@ -135,29 +135,22 @@ SourceLocation nearest_location(const std::string& entry, const std::string& key
   return table.where();
 }
 
-// "structure.nodes[3]" of "structure.nodes[3].mass"; empty for a key outside the entries.
-std::string entry_of(const std::string& key) {
-  const std::size_t bracket = key.find(']');
-  return bracket == std::string::npos ? "" : key.substr(0, bracket + 1);
-}
-
-// What is wrong with the list as a whole. Entries in which something is wrong already (problems from `before`
-// on) are left alone; where a whole list is missing, everything that refers to it would be reported, so
+// What is wrong with the list as a whole. A key in which something is wrong already (problems from `before`
+// on) is not reported twice; where a whole list could not be read, everything that refers to it would be, so
 // nothing is.
 void note_problems(const CustomSpec& spec, std::size_t before, const TableReader& table, SceneNotes& notes) {
   std::set<std::string> known;
   for (std::size_t i = before; i < notes.problems.size(); ++i) {
-    const std::string entry = entry_of(notes.problems[i].key);
-    if (entry.empty()) return;
-    known.insert(entry);
+    if (notes.problems[i].key.find('[') == std::string::npos) return;
+    known.insert(notes.problems[i].key);
   }
   for (const auto& problem : check_custom(spec)) {
     const std::string entry = problem.index < 0
                                   ? "structure." + problem.table
                                   : entry_key(problem.table, static_cast<std::size_t>(problem.index));
-    if (known.contains(entry)) continue;
-    notes.add(nearest_location(entry, problem.key, table, notes),
-              problem.key.empty() ? entry : entry + "." + problem.key, problem.message);
+    const std::string key = problem.key.empty() ? entry : entry + "." + problem.key;
+    if (!known.contains(key))
+      notes.add(nearest_location(entry, problem.key, table, notes), key, problem.message);
   }
 }
 

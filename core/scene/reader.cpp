@@ -1,7 +1,10 @@
 #include "core/scene/reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <tuple>
 
 #include "core/model/nearest_name.hpp"
 #include "core/scene/custom_reader.hpp"
@@ -107,6 +110,18 @@ void read_title(TableReader& root, Scene& scene) {
   scene.title = root.read({text_param("title", scene.name, "")}).text("title");
 }
 
+// Overrides first, then each file from its top to its end.
+void sort_problems(std::vector<SceneProblem>& problems) {
+  std::map<std::string, int> rank{{"--set", 0}};
+  for (const auto& problem : problems) rank.try_emplace(problem.where.file, static_cast<int>(rank.size()));
+  std::stable_sort(problems.begin(), problems.end(), [&](const SceneProblem& a, const SceneProblem& b) {
+    const auto order = [&](const SourceLocation& where) {
+      return std::tuple(rank.at(where.file), where.line, where.column);
+    };
+    return order(a.where) < order(b.where);
+  });
+}
+
 }  // namespace
 
 Scene read_scene_text(std::string_view text, const std::string& name,
@@ -124,7 +139,10 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   read_solver(root, tree, scene, notes);
   read_render(root, tree, scene, notes);
   root.finish();
-  if (!notes.problems.empty()) throw SceneError(std::move(notes.problems));
+  if (!notes.problems.empty()) {
+    sort_problems(notes.problems);
+    throw SceneError(std::move(notes.problems));
+  }
   scene.locations = std::move(notes.locations);
   return scene;
 }
