@@ -1,5 +1,6 @@
 #include "core/constraints/linear_rows.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace unfurl {

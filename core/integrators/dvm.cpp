@@ -156,7 +156,10 @@ void Dvm::correct(StepReport& report) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::Map<RowMajor> f(rhs_f_.data(), n, columns), g(rhs_g_.data(), m, columns);
   f.noalias() = -eq_.h * (eq_.momentum * c_.C_inverse.transpose());
-  g = -eq_.phi;
+  for (Index r = 0; r < m; ++r) {
+    const double noise = eq_.constraint_noise(r);
+    for (Index j = 0; j < columns; ++j) g(r, j) = std::abs(eq_.phi(r, j)) > noise ? -eq_.phi(r, j) : 0.0;
+  }
   saddle_.apply(rhs_f_.data(), rhs_g_.data(), static_cast<int>(columns));
   report.right_hand_sides += static_cast<int>(columns);
   eq_.dX += f;

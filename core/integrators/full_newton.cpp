@@ -55,7 +55,7 @@ Columns newton_matrix(const StageEquations& eq, const VectorXd& scale) {
   }
   for (auto& e : entries) e = {e.row(), e.col(), e.value() * scale[e.row()] * scale[e.col()]};
   for (Index i = stages * n; i < stages * (n + m); ++i)
-    entries.emplace_back(static_cast<int>(i), static_cast<int>(i), -SaddleSolver::regularisation);
+    entries.emplace_back(static_cast<int>(i), static_cast<int>(i), -SaddleSolver::standard_regularisation);
   Columns A(stages * (n + m), stages * (n + m));
   A.setFromTriplets(entries.begin(), entries.end());
   return A;

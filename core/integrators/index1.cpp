@@ -2,10 +2,11 @@
 
 namespace unfurl {
 
-Index1::Index1(const System& system)
+Index1::Index1(const System& system, bool clean_multipliers)
     : system_(system),
       G_(system.jacobian_pattern()),
-      saddle_(system.mass(), G_),
+      saddle_(system.mass(), G_, 1, clean_multipliers ? 1e-7 : SaddleSolver::standard_regularisation),
+      refinements_(clean_multipliers ? 40 : 8),
       q_(system.coordinates()),
       v_(system.coordinates()),
       f_(system.coordinates()),
@@ -22,7 +23,7 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   system_.reduce_force(f_, force_);
   system_.constraint_bias(q_, v_, bias_);
   bias_ = -bias_;
-  saddle_.solve(force_, bias_, acceleration, lambda);
+  saddle_.solve(force_, bias_, acceleration, lambda, refinements_);
   return acceleration.allFinite() && lambda.allFinite();
 }
 

@@ -13,7 +13,9 @@ namespace unfurl {
 // Multipliers that are not unique come with least scaled norm. One evaluation is one factorisation.
 class Index1 {
  public:
-  explicit Index1(const System& system);
+  // clean_multipliers: for reporting forces rather than for stepping; slower, with round-off in redundant multipliers
+  // held at 1e-9 of their size instead of 1e-6.
+  explicit Index1(const System& system, bool clean_multipliers = false);
   // False where the factorisation broke down or the result is not finite.
   bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda);
 
@@ -22,6 +24,7 @@ class Index1 {
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
+  int refinements_;
   VectorXd q_, v_, f_, force_, bias_;
 };
 

@@ -1,7 +1,5 @@
 #include "core/integrators/stage_equations.hpp"
 
-#include <limits>
-
 namespace unfurl {
 
 StageEquations::StageEquations(const System& sys, const GalerkinCoefficients& coefficients, bool ends)
@@ -77,16 +75,14 @@ void StageEquations::evaluate() {
 // Momentum: compared with the sizes of the terms that cancel in it. Constraints: with the larger of a row's length
 // and the coordinates, whose rounding moves a row by that much.
 void StageEquations::measure() {
-  constexpr double ulp = std::numeric_limits<double>::epsilon();
   double size = force_scale_ + p0.lpNorm<Eigen::Infinity>();
   size = std::max(size, MdX_.lpNorm<Eigen::Infinity>() * c.C.lpNorm<Eigen::Infinity>() / std::abs(h));
   momentum_level_ = size > 0 ? momentum.lpNorm<Eigen::Infinity>() / (4 * ulp * size) : 0.0;
-  const double reach = Q.lpNorm<Eigen::Infinity>();
+  reach_ = Q.lpNorm<Eigen::Infinity>();
   constraint_level_ = 0;
-  const VectorXd& length = system.constraint_lengths();
   for (Index j = 0; j < phi.cols(); ++j)
     for (Index r = 0; r < phi.rows(); ++r)
-      constraint_level_ = std::max(constraint_level_, std::abs(phi(r, j)) / (2 * ulp * std::max(length[r], reach)));
+      constraint_level_ = std::max(constraint_level_, std::abs(phi(r, j)) / constraint_noise(r));
   if (!momentum.allFinite() || !phi.allFinite())
     momentum_level_ = constraint_level_ = std::numeric_limits<double>::infinity();
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "core/integrators/galerkin.hpp"
@@ -24,6 +26,10 @@ class StageEquations {
   double constraint_level() const { return constraint_level_; }
   double level() const { return std::max(momentum_level_, constraint_level_); }
 
+  // What rounding the coordinates leaves of row r of Phi [m]. A residual below it carries no information; in redundant
+  // rows it would be answered with multipliers of size (residual / regularisation).
+  double constraint_noise(Index r) const { return 2 * ulp * std::max(system.constraint_lengths()[r], reach_); }
+
   double multiplier_weight(int k) const;  // b_k, or 1/2 for the ends variant; k = 0..s-1
   ConstVec node(int k) const { return Q.col(k); }  // node coordinates at node k
 
@@ -36,13 +42,14 @@ class StageEquations {
   MatrixXd Q;  // [3 nodes x s]
 
  private:
+  static constexpr double ulp = std::numeric_limits<double>::epsilon();
   void add_forces(int k, MutVec f);
   void measure();
 
   MatrixXd MdX_, force_;           // M dX_j; node forces at the quadrature times or (constant) one column
   VectorXd z_, f_, q_tau_, v_tau_;
   double momentum_level_ = 0, constraint_level_ = 0;
-  double force_scale_ = 0;
+  double force_scale_ = 0, reach_ = 0;
 };
 
 }  // namespace unfurl

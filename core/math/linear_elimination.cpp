@@ -49,7 +49,7 @@ LinearElimination eliminate(const SparseRows& A, const ConstVec& b, double toler
     Row row;
     double rhs = b[r];
     for (SparseRows::InnerIterator it(A, r); it; ++it)
-      if (it.value() != 0.0) row[it.col()] += it.value();
+      if (it.value() != 0.0) row[static_cast<int>(it.col())] += it.value();
     const double size = largest(row);
     substitute(row, rhs, pivots, pivot_of);
     std::erase_if(row, [&](const auto& e) { return std::abs(e.second) <= tolerance * size; });

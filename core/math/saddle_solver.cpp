@@ -48,7 +48,7 @@ std::vector<int> elimination_order(const SparseRows& upper, const SparseRows& G)
 
 }  // namespace
 
-SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns)
+SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns, double regularisation)
     : n_(M.rows()), m_(G.rows()), M_(M), G_(G), column_scale_(M.rows()), row_scale_(VectorXd::Ones(G.rows())) {
   for (Index i = 0; i < n_; ++i) column_scale_[i] = 1.0 / std::sqrt(M.coeff(i, i));
   M_ = column_scale_.asDiagonal() * M * column_scale_.asDiagonal();

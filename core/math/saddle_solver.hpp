@@ -23,7 +23,9 @@ class SaddleSolver {
  public:
   // M: constant, symmetric, positive diagonal. G: its pattern (values are not used). max_columns: right-hand sides
   // that one call to solve may bring.
-  SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns = 1);
+  // A larger regularisation suppresses round-off in multipliers that are not unique (it is 1e-16 / e) and needs more
+  // refinements for directions of small singular values.
+  SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns = 1, double regularisation = standard_regularisation);
 
   // Numeric factorisation with the values of G (same pattern). False where it broke down.
   bool factorise(const SparseRows& G);
@@ -37,7 +39,7 @@ class SaddleSolver {
   double solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y, int max_refinements = 8) const;
 
   Index factor_nonzeros() const { return ldlt_.factor_nonzeros(); }
-  static constexpr double regularisation = 1e-10;  // e, in the scaled unknowns
+  static constexpr double standard_regularisation = 1e-10;  // e, in the scaled unknowns
 
  private:
   Index n_ = 0, m_ = 0;

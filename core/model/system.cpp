@@ -141,7 +141,7 @@ void System::Data::build_jacobian_map() {
   for (const ConstraintBlock* block : kept)
     for (int r = 0; r < block->rows(); ++r, ++row)
       for (int c : block->stencil(r)) {
-        for (SparseRows::InnerIterator it(B, c); it; ++it) terms.push_back({row, it.col(), source, it.value()});
+        for (SparseRows::InnerIterator it(B, c); it; ++it) terms.push_back({row, static_cast<int>(it.col()), source, it.value()});
         ++source;
       }
   std::stable_sort(terms.begin(), terms.end(), [](const Term& a, const Term& b) {

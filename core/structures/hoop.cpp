@@ -1,5 +1,6 @@
 #include "core/structures/hoop.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace unfurl {
