@@ -6,6 +6,7 @@
 #include "app/exit_code.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/reader.hpp"
+#include "render/gl/graphics_error.hpp"
 
 namespace unfurl {
 
@@ -24,6 +25,9 @@ int report_failure(std::ostream& out) {
   } catch (const FileError& error) {
     out << "unfurl: " << error.what() << "\n";
     return exit_file_error;
+  } catch (const GraphicsError& error) {
+    out << "unfurl: " << error.what() << "\n";
+    return exit_no_graphics;
   } catch (const std::bad_alloc&) {
     out << "unfurl: out of memory\n";
   } catch (const std::exception& error) {
