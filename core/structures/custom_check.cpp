@@ -133,7 +133,7 @@ class Checker {
   void check_masses() {
     std::vector<bool> has_mass(spec_.nodes.size());
     for (std::size_t i = 0; i < spec_.nodes.size(); ++i)
-      has_mass[i] = spec_.nodes[i].mass > 0.0 || spec_.nodes[i].fixed;
+      has_mass[i] = spec_.nodes[i].mass != 0.0 || spec_.nodes[i].fixed || spec_.nodes[i].name.empty();
     for (const auto& rod : spec_.rods)
       if (rod.mass != 0.0)
         for (const auto& name : rod.nodes)
