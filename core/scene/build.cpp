@@ -22,13 +22,17 @@ SourceLocation location_of(const Scene& scene, const std::string& key) {
   return {structure == scene.locations.end() ? scene.name : structure->second.file, 0, 0};
 }
 
+[[noreturn]] void refuse(const Scene& scene, const StructureError& error) {
+  const std::string key = error.key.empty() ? "structure" : "structure." + error.key;
+  throw SceneError({{location_of(scene, key), key, error.message}});
+}
+
 Structure bare_structure(const Scene& scene) {
   try {
     if (const Family* family = find_family(scene.kind)) return family->build(scene.structure);
     return build_custom(scene.custom);
   } catch (const StructureError& error) {
-    const std::string key = "structure." + error.key;
-    throw SceneError({{location_of(scene, key), key, error.message}});
+    refuse(scene, error);
   }
 }
 
@@ -87,8 +91,12 @@ Structure build_structure(const Scene& scene) {
 
 std::shared_ptr<const Model> build_model(const Scene& scene) {
   Structure structure = build_structure(scene);
-  System system(structure, scene.solver.eliminate_linear);
-  return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+  try {
+    System system(structure, scene.solver.eliminate_linear);
+    return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+  } catch (const StructureError& error) {
+    refuse(scene, error);
+  }
 }
 
 }  // namespace unfurl

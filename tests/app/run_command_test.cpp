@@ -37,8 +37,8 @@ TEST_CASE("run writes the data and nothing else") {
   for (const auto& entry : fs::directory_iterator(dir / "out"))
     names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
-  CHECK(names == std::vector<std::string>{"rod_forces.csv", "scene.toml", "series.csv", "summary.json",
-                                          "trajectory.csv"});
+  CHECK(names == std::vector<std::string>{".unfurl", "rod_forces.csv", "scene.toml", "series.csv",
+                                          "summary.json", "trajectory.csv"});
   CHECK(file_text(dir / "out/series.csv").starts_with("t_s,kinetic_energy_J,"));
   CHECK(file_text(dir / "out/trajectory.csv").starts_with("t_s,B0.x_m,B0.y_m,B0.z_m,B0.vx_m_s,"));
 }
@@ -77,6 +77,7 @@ TEST_CASE("a directory with results of our own is used again, one with other fil
             ": is not empty and holds no earlier results; use --force to write into it\n");
   CHECK(run_program(other + std::vector<std::string>{"--force"}).code == 0);
   CHECK(file_text(dir / "mine/thesis.txt") == "precious");
+  CHECK_FALSE(fs::exists(dir / "mine/.unfurl"));  // force is asked for again as long as there is no summary
 }
 
 TEST_CASE("an output directory that cannot be used is found before the work") {
