@@ -80,7 +80,7 @@ TEST_CASE("what only the equations of motion can tell is located as well") {
     REQUIRE(error.problems().size() == 1);
     CHECK(error.problems()[0].key == "structure.nodes[2].mass");
     CHECK(error.problems()[0].where.file == find_scene("double_pendulum"));
-    CHECK(error.problems()[0].where.line == 16);  // the entry [[structure.nodes]] of the tip
+    CHECK(error.problems()[0].where.line == 17);  // the entry [[structure.nodes]] of the tip
     CHECK(error.problems()[0].message.find("tip") != std::string::npos);
   }
 }
