@@ -21,32 +21,40 @@ struct ParamSpec {
   ParamValue fallback;  // the default; its alternative matches `kind`
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  bool min_open = false;                   // true: the value must be greater than min, not equal to it
-  bool max_open = false;                   // true: the value must be smaller than max
-  std::vector<std::string_view> choices;   // for ParamKind::choice
-  std::size_t length = 0;                  // for ParamKind::vector: how many numbers
-  std::string_view help;                   // one line
-  bool required = false;                   // true: there is no default, a scene must give it
+  bool min_open = false;                  // true: the value must be greater than min, not equal to it
+  bool max_open = false;                  // true: the value must be smaller than max
+  std::vector<std::string_view> choices;  // for ParamKind::choice
+  std::size_t length = 0;                 // for ParamKind::vector: how many numbers
+  std::string_view help;                  // one line
+  bool required = false;                  // true: there is no default, a scene must give it
 };
 
 // Shorthand for the common shapes, so that a table of parameters reads like a table.
 ParamSpec real_param(std::string_view name, std::string_view unit, double fallback, double min, double max,
                      std::string_view help);
-ParamSpec positive_param(std::string_view name, std::string_view unit, double fallback, std::string_view help);
+ParamSpec positive_param(std::string_view name, std::string_view unit, double fallback,
+                         std::string_view help);
 ParamSpec integer_param(std::string_view name, long fallback, long min, long max, std::string_view help);
-ParamSpec choice_param(std::string_view name, std::string_view fallback, std::vector<std::string_view> choices,
-                       std::string_view help);
+ParamSpec choice_param(std::string_view name, std::string_view fallback,
+                       std::vector<std::string_view> choices, std::string_view help);
 ParamSpec boolean_param(std::string_view name, bool fallback, std::string_view help);
 ParamSpec vector_param(std::string_view name, std::string_view unit, std::vector<double> fallback,
                        std::string_view help);
 
+ParamSpec text_param(std::string_view name, std::string_view fallback, std::string_view help);
+
 // "[0.1, 8]", "> 0", "one of a, b": the allowed range in words, for help and error messages.
 std::string range_text(const ParamSpec& spec);
+
+// What a value must be, in words that follow "must be": "a number > 0 m", "a whole number in [2, 8]", "a list
+// of 3 numbers".
+std::string wanted_text(const ParamSpec& spec);
 
 // Empty when `value` is of the spec's kind and inside its range; else the reason ("must be > 0 m; got -3").
 std::string range_error(const ParamSpec& spec, const ParamValue& value);
 
-// Checked values by name. Asking for a name that was never set is a programming error and throws std::logic_error.
+// Checked values by name. Asking for a name that was never set is a programming error and throws
+// std::logic_error.
 class ParamSet {
  public:
   ParamSet() = default;

@@ -3,7 +3,7 @@
 //     M z'' + G(z)^T lambda = F(t, z, z'),   Phi(z) = 0
 //
 // Node coordinates are q = q_0 + B z. With elimination, B spans the null space of the linear constraints, which then
-// hold exactly and leave the equations; without it, B = I. A System is immutable; evaluation needs a Workspace.
+// hold exactly and leave the equations; without it, B = I. A System is immutable and may be shared by threads.
 #pragma once
 
 #include <memory>
@@ -42,14 +42,16 @@ class System {
 
   // In node coordinates (fast kernels; callers expand first).
   void add_applied_force(double t, const ConstVec& q, const ConstVec& v, double scale, MutVec f) const;  // f += scale F
+  bool constant_forces() const;  // true: F does not depend on t, q, v
   void constraint(const ConstVec& q, MutVec phi) const;                                                // [m]
   void add_constraint_force(const ConstVec& q, const ConstVec& lambda, double scale, MutVec f) const;  // f += scale G^T lambda
   void constraint_bias(const ConstVec& q, const ConstVec& v, MutVec phi_dd) const;  // v^T Hess Phi v [m/s^2]
 
   // Jacobian with respect to z [m x size of z]; `pattern` allocates it once, `jacobian` only writes values.
+  // `scratch` is grown once.
   SparseRows jacobian_pattern() const;
-  void jacobian(const ConstVec& q, SparseRows& G) const;
-  // K += scale * sum_k lambda_k Hess Phi_k with respect to z (Newton fallback; allocates).
+  void jacobian(const ConstVec& q, SparseRows& G, std::vector<double>& scratch) const;
+  // sum_k lambda_k Hess Phi_k with respect to z (for a full Newton matrix; allocates).
   SparseRows curvature(const ConstVec& q, const ConstVec& lambda) const;
 
   double kinetic_energy(const ConstVec& w) const;                    // [J]
@@ -64,7 +66,7 @@ class System {
   // Every constraint of the structure, eliminated ones included (for check and diagnostics).
   Index all_constraints() const;
   void all_constraint_values(const ConstVec& q, MutVec phi) const;   // [m]
-  MatrixXd all_jacobian(const ConstVec& q) const;                    // dense, for analysis
+  SparseRows all_jacobian(const ConstVec& q) const;                  // of the node coordinates
   std::vector<std::string> all_names() const;
   VectorXd all_lengths() const;
 

@@ -27,9 +27,10 @@ struct SimulationHooks {
 struct Simulation {
   Trajectory trajectory;
   RunStatus status = RunStatus::completed;
-  std::string message;        // why it stopped or failed; empty otherwise
-  std::vector<Event> events;
-  SolverOptions options;
+  std::string message = {};   // why it stopped or failed; empty otherwise
+  std::vector<std::string> warnings = {};
+  std::vector<Event> events = {};
+  SolverOptions options = {};
   long steps = 0;
   long newton_iterations = 0;
   long factorisations = 0;

@@ -7,6 +7,7 @@
 
 #include "core/model/param_spec.hpp"
 #include "core/model/structure.hpp"
+#include "core/model/structure_error.hpp"
 
 namespace unfurl {
 
@@ -21,12 +22,5 @@ struct Family {
 // Every family with parameters of its own; `custom` is built from a list (custom.hpp) and is not among them.
 std::span<const Family> families();
 const Family* find_family(std::string_view kind);
-
-// An impossible structure. `key` names the parameter or member at fault, e.g. "fold_angle" or "rods[3].nodes".
-struct StructureError : std::exception {
-  StructureError(std::string key_, std::string message_) : key(std::move(key_)), message(std::move(message_)) {}
-  const char* what() const noexcept override { return message.c_str(); }
-  std::string key, message;
-};
 
 }  // namespace unfurl

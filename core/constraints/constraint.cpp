@@ -1,0 +1,21 @@
+#include "core/constraints/constraint.hpp"
+
+#include <array>
+
+#include "core/constraints/linear_rows.hpp"
+#include "core/constraints/rod_length.hpp"
+
+namespace unfurl {
+
+std::span<const ConstraintKind> constraint_kinds() {
+  static const std::array kinds{
+      ConstraintKind{"plane", "a node stays in a plane; normal = its direction", plane_block},
+      ConstraintKind{"line", "a node stays on a line; normal = its direction", line_block},
+      ConstraintKind{"fixed", "a node stays where it is", fixed_block},
+      ConstraintKind{"relation", "a linear relation between nodes (mirror, equality)", relation_block},
+      ConstraintKind{"rod", "the length of a rod; its multiplier is the axial force", rod_length_block},
+  };
+  return kinds;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,120 @@
+#include "core/constraints/linear_rows.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace unfurl {
+namespace {
+
+struct Row {
+  std::string name;
+  std::vector<int> coordinates;
+  std::vector<double> coefficients;
+  double value;
+  double length;
+};
+
+class LinearRows final : public ConstraintBlock {
+ public:
+  explicit LinearRows(std::vector<Row> rows) : rows_(std::move(rows)) {}
+  int rows() const override { return static_cast<int>(rows_.size()); }
+  bool linear() const override { return true; }
+  std::string name(int row) const override { return rows_[static_cast<std::size_t>(row)].name; }
+  double length(int row) const override { return rows_[static_cast<std::size_t>(row)].length; }
+  std::vector<int> stencil(int row) const override { return rows_[static_cast<std::size_t>(row)].coordinates; }
+
+  void value(const double* q, double* phi) const override {
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      double sum = -rows_[r].value;
+      for (std::size_t i = 0; i < rows_[r].coordinates.size(); ++i)
+        sum += rows_[r].coefficients[i] * q[rows_[r].coordinates[i]];
+      phi[r] = sum;
+    }
+  }
+  void jacobian(const double*, double* g) const override {
+    for (const Row& row : rows_) g = std::copy(row.coefficients.begin(), row.coefficients.end(), g);
+  }
+  void add_force(const double*, const double* lambda, double scale, double* f) const override {
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      for (std::size_t i = 0; i < rows_[r].coordinates.size(); ++i)
+        f[rows_[r].coordinates[i]] += scale * lambda[r] * rows_[r].coefficients[i];
+  }
+  void bias(const double*, const double*, double* phi_dd) const override { std::fill_n(phi_dd, rows_.size(), 0.0); }
+  void curvature(const double*, const double*, double* hess) const override {
+    for (const Row& row : rows_) hess = std::fill_n(hess, row.coordinates.size() * row.coordinates.size(), 0.0);
+  }
+
+ private:
+  std::vector<Row> rows_;
+};
+
+// The length that a linear row's error is compared with: the mean rod length, a metre where there are no rods.
+double reference_length(const Structure& structure) {
+  double sum = 0;
+  for (const Rod& rod : structure.rods) sum += rod.length;
+  return structure.rods.empty() ? 1.0 : sum / static_cast<double>(structure.rods.size());
+}
+
+void append(Row& row, int node, const Vec3& direction) {
+  for (int k = 0; k < 3; ++k) {
+    if (direction[k] == 0.0) continue;
+    row.coordinates.push_back(3 * node + k);
+    row.coefficients.push_back(direction[k]);
+  }
+}
+
+template <class MakeRows>
+std::unique_ptr<ConstraintBlock> block_of(const Structure& structure, std::string_view kind, MakeRows make_rows) {
+  std::vector<Row> rows;
+  const double length = reference_length(structure);
+  for (const Constraint& c : structure.constraints)
+    if (c.kind == kind) make_rows(c, length, rows);
+  if (rows.empty()) return nullptr;
+  return std::make_unique<LinearRows>(std::move(rows));
+}
+
+// One row that holds x . direction at its value at t = 0.
+Row held(const Structure& structure, const Constraint& c, const Vec3& direction, double length, const char* suffix) {
+  Row row{c.name + suffix, {}, {}, direction.dot(structure.nodes[static_cast<std::size_t>(c.nodes[0])].position), length};
+  append(row, c.nodes[0], direction);
+  return row;
+}
+
+}  // namespace
+
+std::unique_ptr<ConstraintBlock> plane_block(const Structure& structure) {
+  return block_of(structure, "plane", [](const Constraint& c, double length, std::vector<Row>& rows) {
+    Row row{c.name, {}, {}, c.value, length};
+    append(row, c.nodes[0], c.vectors[0]);
+    rows.push_back(std::move(row));
+  });
+}
+
+std::unique_ptr<ConstraintBlock> line_block(const Structure& structure) {
+  return block_of(structure, "line", [&](const Constraint& c, double length, std::vector<Row>& rows) {
+    const Vec3 along = c.vectors[0].normalized();
+    Index axis;
+    along.cwiseAbs().minCoeff(&axis);
+    const Vec3 first = along.cross(Vec3::Unit(axis)).normalized();
+    rows.push_back(held(structure, c, first, length, " (first direction)"));
+    rows.push_back(held(structure, c, along.cross(first), length, " (second direction)"));
+  });
+}
+
+std::unique_ptr<ConstraintBlock> fixed_block(const Structure& structure) {
+  return block_of(structure, "fixed", [&](const Constraint& c, double length, std::vector<Row>& rows) {
+    rows.push_back(held(structure, c, Vec3::UnitX(), length, " x"));
+    rows.push_back(held(structure, c, Vec3::UnitY(), length, " y"));
+    rows.push_back(held(structure, c, Vec3::UnitZ(), length, " z"));
+  });
+}
+
+std::unique_ptr<ConstraintBlock> relation_block(const Structure& structure) {
+  return block_of(structure, "relation", [](const Constraint& c, double length, std::vector<Row>& rows) {
+    Row row{c.name, {}, {}, c.value, length};
+    for (std::size_t i = 0; i < c.nodes.size(); ++i) append(row, c.nodes[i], c.vectors[i]);
+    rows.push_back(std::move(row));
+  });
+}
+
+}  // namespace unfurl

@@ -1,0 +1,90 @@
+#include "core/constraints/rod_length.hpp"
+
+namespace unfurl {
+namespace {
+
+class RodLength final : public ConstraintBlock {
+ public:
+  explicit RodLength(const Structure& structure) {
+    for (const Rod& rod : structure.rods) {
+      a_.push_back(3 * rod.a);
+      b_.push_back(3 * rod.b);
+      length_.push_back(rod.length);
+      name_.push_back("rod " + rod.name);
+    }
+  }
+  int rows() const override { return static_cast<int>(a_.size()); }
+  bool linear() const override { return false; }
+  std::string name(int row) const override { return name_[static_cast<std::size_t>(row)]; }
+  double length(int row) const override { return length_[static_cast<std::size_t>(row)]; }
+  std::vector<int> stencil(int row) const override {
+    const int a = a_[static_cast<std::size_t>(row)], b = b_[static_cast<std::size_t>(row)];
+    return {a, a + 1, a + 2, b, b + 1, b + 2};
+  }
+
+  void value(const double* q, double* phi) const override {
+    for (std::size_t r = 0; r < a_.size(); ++r) {
+      const double* xa = q + a_[r];
+      const double* xb = q + b_[r];
+      const double dx = xb[0] - xa[0], dy = xb[1] - xa[1], dz = xb[2] - xa[2], l = length_[r];
+      phi[r] = (dx * dx + dy * dy + dz * dz - l * l) / (2.0 * l);
+    }
+  }
+
+  void jacobian(const double* q, double* g) const override {
+    for (std::size_t r = 0; r < a_.size(); ++r, g += 6) {
+      const double inverse = 1.0 / length_[r];
+      for (int k = 0; k < 3; ++k) {
+        const double d = (q[b_[r] + k] - q[a_[r] + k]) * inverse;
+        g[k] = -d;
+        g[k + 3] = d;
+      }
+    }
+  }
+
+  void add_force(const double* q, const double* lambda, double scale, double* f) const override {
+    for (std::size_t r = 0; r < a_.size(); ++r) {
+      const double c = scale * lambda[r] / length_[r];
+      for (int k = 0; k < 3; ++k) {
+        const double d = c * (q[b_[r] + k] - q[a_[r] + k]);
+        f[a_[r] + k] -= d;
+        f[b_[r] + k] += d;
+      }
+    }
+  }
+
+  void bias(const double*, const double* v, double* phi_dd) const override {
+    for (std::size_t r = 0; r < a_.size(); ++r) {
+      double square = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double d = v[b_[r] + k] - v[a_[r] + k];
+        square += d * d;
+      }
+      phi_dd[r] = square / length_[r];
+    }
+  }
+
+  void curvature(const double*, const double* lambda, double* hess) const override {
+    for (std::size_t r = 0; r < a_.size(); ++r, hess += 36) {
+      const double c = lambda[r] / length_[r];
+      std::fill(hess, hess + 36, 0.0);
+      for (int k = 0; k < 3; ++k) {
+        hess[7 * k] = hess[7 * (k + 3)] = c;
+        hess[k * 6 + k + 3] = hess[(k + 3) * 6 + k] = -c;
+      }
+    }
+  }
+
+ private:
+  std::vector<int> a_, b_;  // first coordinate of each end
+  std::vector<double> length_;
+  std::vector<std::string> name_;
+};
+
+}  // namespace
+
+std::unique_ptr<ConstraintBlock> rod_length_block(const Structure& structure) {
+  return structure.rods.empty() ? nullptr : std::make_unique<RodLength>(structure);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,33 @@
+#include "core/forces/constant_forces.hpp"
+
+namespace unfurl {
+namespace {
+
+class ConstantForce final : public ForceBlock {
+ public:
+  explicit ConstantForce(VectorXd force) : force_(std::move(force)) {}
+  bool constant() const override { return true; }
+  void add(double, const double*, const double*, double scale, double* f) const override {
+    Eigen::Map<VectorXd>(f, force_.size()) += scale * force_;
+  }
+
+ private:
+  VectorXd force_;
+};
+
+}  // namespace
+
+std::unique_ptr<ForceBlock> nodal_load_block(const Structure& structure, const SparseRows&) {
+  if (structure.loads.empty()) return nullptr;
+  VectorXd force = VectorXd::Zero(3 * static_cast<Index>(structure.nodes.size()));
+  for (const Load& load : structure.loads) force.segment<3>(3 * load.node) += load.force;
+  return std::make_unique<ConstantForce>(std::move(force));
+}
+
+std::unique_ptr<ForceBlock> gravity_block(const Structure& structure, const SparseRows& node_mass) {
+  if (structure.gravity.isZero(0.0)) return nullptr;
+  const auto n = static_cast<Index>(structure.nodes.size());
+  return std::make_unique<ConstantForce>(node_mass * structure.gravity.replicate(n, 1));
+}
+
+}  // namespace unfurl

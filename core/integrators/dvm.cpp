@@ -1,0 +1,230 @@
+#include "core/integrators/dvm.hpp"
+
+#include "core/integrators/full_newton.hpp"
+#include "core/integrators/stage_equations.hpp"
+#include "core/math/saddle_solver.hpp"
+
+namespace unfurl {
+namespace {
+
+// level(): 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
+constexpr double wanted = 1.0, accepted = 30.0;
+constexpr int max_frozen_iterations = 30;
+
+class Dvm final : public Integrator {
+ public:
+  Dvm(const System& system, const SolverOptions& options)
+      : system_(system),
+        c_(options.nodes, options.stages),
+        eq_(system, c_, options.constraints_at == "ends"),
+        G_(system.jacobian_pattern()),
+        saddle_(system.mass(), G_, c_.s - 1) {
+    const Index n = system.solved_coordinates(), m = system.constraints();
+    rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
+    rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
+    for (VectorXd* v : {&p1_, &w1_, &pose_z_, &z1_}) v->setZero(n);
+    for (VectorXd* v : {&mu_, &zero_}) v->setZero(m);
+    pose_.setZero(system.coordinates());
+    if (eq_.at_ends) analyse_mass();
+    restart();
+  }
+
+  StepReport step(State& state, double h) override {
+    StepReport report;
+    eq_.start(state.t, state.z, state.w, h);
+    predict(state, h);
+    if (!frozen_) freeze(eq_.node(0), report);
+    iterate(state, h, report);
+    if (report.ok()) finish(state, h, report);
+    if (!report.ok()) restart();
+    return report;
+  }
+
+  void restart() override {
+    have_history_ = false;
+    frozen_ = false;
+    lambdas_known_ = 0;
+  }
+
+ private:
+  void analyse_mass();
+  void predict(const State& state, double h);
+  void freeze(const ConstVec& q, StepReport& report);
+  void iterate(const State& state, double h, StepReport& report);
+  bool frozen_iterations(StepReport& report);
+  void correct(StepReport& report);
+  void correct_at_ends(StepReport& report);
+  void finish(State& state, double h, StepReport& report);
+
+  const System& system_;
+  GalerkinCoefficients c_;
+  StageEquations eq_;
+  SparseRows G_;
+  std::vector<double> scratch_;
+  SaddleSolver saddle_;
+  SparseLdlt mass_factor_;  // ends variant only
+  std::vector<double> rhs_f_, rhs_g_;
+  VectorXd p1_, w1_, mu_, zero_, pose_, pose_z_, z1_;
+  MatrixXd previous_, prolong_;
+  double previous_h_ = 0;
+  bool have_history_ = false;
+  bool frozen_ = false;  // saddle_ holds a factorisation near the present pose
+  int lambdas_known_ = 0;
+};
+
+void Dvm::analyse_mass() {
+  const SparseRows& M = system_.mass();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int r = 0; r < M.outerSize(); ++r)
+    for (SparseRows::InnerIterator it(M, r); it; ++it)
+      if (it.col() >= r) entries.emplace_back(r, it.col(), it.value());
+  SparseRows upper(M.rows(), M.cols());
+  upper.setFromTriplets(entries.begin(), entries.end());
+  mass_factor_.analyse(upper, minimum_degree_order(upper));
+  mass_factor_.factorise(upper.valuePtr());
+}
+
+// Prolong the last step's polynomial; at a start, fly on with the present velocity. Multipliers start from the last
+// step's end, which is solved afresh every step: prolonging stage multipliers would amplify their round-off in
+// directions where they are not unique.
+void Dvm::predict(const State& state, double h) {
+  if (have_history_) {
+    const double ratio = h / previous_h_;
+    if (std::abs(ratio - 1.0) < 1e-12)
+      eq_.dX.noalias() = previous_ * c_.extrapolation.transpose();
+    else {
+      c_.extrapolate(ratio, prolong_);
+      eq_.dX.noalias() = previous_ * prolong_.transpose();
+    }
+  } else {
+    for (int j = 0; j + 1 < c_.s; ++j) eq_.dX.col(j) = (h * c_.basis.nodes()[j + 1]) * state.w;
+  }
+  eq_.lambda.setZero();
+  if (state.lambda.size() == eq_.lambda.rows())
+    for (int k = 0; k < (eq_.at_ends ? 1 : c_.s - 1); ++k) eq_.lambda.col(k) = state.lambda;
+}
+
+void Dvm::freeze(const ConstVec& q, StepReport& report) {
+  system_.jacobian(q, G_, scratch_);
+  frozen_ = saddle_.factorise(G_);
+  ++report.factorisations;
+}
+
+void Dvm::iterate(const State& state, double h, StepReport& report) {
+  if (frozen_iterations(report)) return;
+  predict(state, h);  // once more, with G frozen in the middle of the step
+  eq_.evaluate();
+  freeze(eq_.node(c_.s / 2), report);
+  if (frozen_iterations(report)) return;
+  if (!eq_.at_ends) {
+    predict(state, h);
+    report.status = full_newton(eq_, wanted, accepted, report);
+    frozen_ = false;
+  }
+}
+
+// Residuals are computed from the equations themselves every time; the frozen matrix only steers.
+bool Dvm::frozen_iterations(StepReport& report) {
+  double best = std::numeric_limits<double>::infinity();
+  int without_gain = 0;
+  for (int it = 0; it <= max_frozen_iterations; ++it) {
+    eq_.evaluate();
+    const double level = eq_.level();
+    report.residual = level;
+    if (level <= wanted) return report.status = StepStatus::converged, true;
+    if (level < 0.5 * best) {
+      best = level;
+      without_gain = 0;
+    } else if (++without_gain >= 2 || level > 1e3 * best) {
+      if (level <= accepted) return report.status = StepStatus::converged, true;
+      break;
+    }
+    if (it == max_frozen_iterations) break;
+    ++report.newton_iterations;
+    if (eq_.at_ends)
+      correct_at_ends(report);
+    else
+      correct(report);
+  }
+  report.status = std::isfinite(eq_.level()) ? StepStatus::stalled : StepStatus::not_finite;
+  return false;
+}
+
+// M dX_j + G^T Y_j = -h (C^-1 r)_j,  G dX_j = -Phi_j,  then  b_k dlambda_k = -(C Y)_k / h^2.
+void Dvm::correct(StepReport& report) {
+  const Index columns = c_.s - 1, n = eq_.dX.rows(), m = eq_.lambda.rows();
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::Map<RowMajor> f(rhs_f_.data(), n, columns), g(rhs_g_.data(), m, columns);
+  f.noalias() = -eq_.h * (eq_.momentum * c_.C_inverse.transpose());
+  for (Index r = 0; r < m; ++r) {
+    const double noise = eq_.constraint_noise(r);
+    for (Index j = 0; j < columns; ++j) g(r, j) = std::abs(eq_.phi(r, j)) > noise ? -eq_.phi(r, j) : 0.0;
+  }
+  saddle_.apply(rhs_f_.data(), rhs_g_.data(), static_cast<int>(columns));
+  report.right_hand_sides += static_cast<int>(columns);
+  eq_.dX += f;
+  for (Index k = 0; k < columns; ++k)
+    for (Index j = 0; j < columns; ++j)
+      eq_.lambda.col(k) -= (c_.C(k, j) / (eq_.h * eq_.h * c_.b[k])) * g.col(j);
+}
+
+// One multiplier: Y_j = (C^-1)_j1 / (C^-1)_s1 y with y that of the last node; the other nodes follow from M alone.
+void Dvm::correct_at_ends(StepReport& report) {
+  const Index last = c_.s - 2, n = eq_.dX.rows();
+  const double h = eq_.h;
+  const auto column = [&](Index j) -> VectorXd { return -h * (eq_.momentum * c_.C_inverse.row(j).transpose()); };
+  Eigen::Map<VectorXd> f(rhs_f_.data(), n), y(rhs_g_.data(), eq_.lambda.rows());
+  f = column(last);
+  y = -eq_.phi.col(last);
+  saddle_.apply(rhs_f_.data(), rhs_g_.data(), 1);
+  eq_.dX.col(last) += f;
+  const VectorXd pull = G_.transpose() * y;
+  for (Index j = 0; j < last; ++j) {
+    VectorXd r = column(j) - (c_.C_inverse(j, 0) / c_.C_inverse(last, 0)) * pull;
+    mass_factor_.solve(r.data(), 1);
+    eq_.dX.col(j) += r;
+  }
+  report.right_hand_sides += static_cast<int>(c_.s - 1);
+  eq_.lambda.col(0) -= y / (0.5 * h * h * c_.C_inverse(last, 0));
+}
+
+// p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; 0] at the end pose, mu = h b_s lambda_s.
+// The factorisation is the one that the next step starts with.
+void Dvm::finish(State& state, double h, StepReport& report) {
+  eq_.end_momentum(p1_);
+  freeze(eq_.node(c_.s - 1), report);
+  saddle_.solve(p1_, zero_, w1_, mu_);
+  report.right_hand_sides += 1;
+  if (!frozen_ || !w1_.allFinite()) {
+    report.status = StepStatus::not_finite;
+    return;
+  }
+  report.constraint_norm = zero_.size() ? eq_.phi.col(c_.s - 2).lpNorm<Eigen::Infinity>() : 0.0;
+  previous_ = eq_.dX;
+  previous_h_ = h;
+  have_history_ = true;
+  state.t += h;
+  state.z += eq_.dX.col(c_.s - 2);
+  state.w = w1_;
+  state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
+}
+
+}  // namespace
+
+Claims dvm_claims(const SolverOptions& options) {
+  Claims claims{.symplectic = true, .symmetric = true, .implicit = true, .holds_positions = true, .holds_velocities = true};
+  const int s = options.stages;
+  if (options.constraints_at == "ends")
+    claims.order = 2;
+  else if (options.nodes == "lobatto")
+    claims.order = 2 * s - 2;
+  else
+    claims.order = 2 * (s / 2);  // symmetric interpolatory quadrature with s points: degree s - 1, one more for odd s
+  return claims;
+}
+
+std::unique_ptr<Integrator> make_dvm(const System& system, const SolverOptions& options) {
+  return std::make_unique<Dvm>(system, options);
+}
+
+}  // namespace unfurl

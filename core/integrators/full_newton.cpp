@@ -1,0 +1,124 @@
+#include "core/integrators/full_newton.hpp"
+
+#include <Eigen/SparseLU>
+#include <limits>
+
+#include "core/math/saddle_solver.hpp"
+
+namespace unfurl {
+namespace {
+
+using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+void add_block(Entries& entries, const SparseRows& A, Index row, Index column, double scale, bool transposed) {
+  for (int r = 0; r < A.outerSize(); ++r)
+    for (SparseRows::InnerIterator it(A, r); it; ++it) {
+      const Index i = transposed ? it.col() : r, j = transposed ? r : it.col();
+      entries.emplace_back(static_cast<int>(row + i), static_cast<int>(column + j), scale * it.value());
+    }
+}
+
+// Rows and columns are scaled as in SaddleSolver: coordinates by 1/sqrt(M_ii), multipliers so that G has unit rows.
+struct Scales {
+  VectorXd coordinate, multiplier;
+};
+
+Scales scales_of(const StageEquations& eq, const SparseRows& G) {
+  Scales s{VectorXd(eq.dX.rows()), VectorXd(eq.lambda.rows())};
+  for (Index i = 0; i < s.coordinate.size(); ++i) s.coordinate[i] = 1.0 / std::sqrt(eq.system.mass().coeff(i, i));
+  for (int r = 0; r < G.outerSize(); ++r) {
+    double square = 0;
+    for (SparseRows::InnerIterator it(G, r); it; ++it) square += std::pow(it.value() * s.coordinate[it.col()], 2);
+    s.multiplier[r] = square > 0 ? 1.0 / std::sqrt(square) : 1.0;
+  }
+  return s;
+}
+
+Columns newton_matrix(const StageEquations& eq, const VectorXd& scale) {
+  const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
+  Entries entries;
+  SparseRows G = eq.system.jacobian_pattern();
+  std::vector<double> scratch;
+  for (Index k = 0; k < stages; ++k) {
+    eq.system.jacobian(eq.Q.col(k), G, scratch);
+    for (Index j = 0; j < stages; ++j) {
+      add_block(entries, eq.system.mass(), k * n, j * n, eq.c.C(k, j), false);
+      add_block(entries, G, k * n, stages * n + j * m, eq.c.C(k, j), true);
+    }
+    if (k > 0) {
+      const SparseRows H = eq.system.curvature(eq.Q.col(k), eq.lambda.col(k));
+      add_block(entries, H, k * n, (k - 1) * n, -eq.h * eq.h * eq.c.b[k], false);
+    }
+    eq.system.jacobian(eq.Q.col(k + 1), G, scratch);
+    add_block(entries, G, stages * n + k * m, k * n, 1.0, false);
+  }
+  for (auto& e : entries) e = {e.row(), e.col(), e.value() * scale[e.row()] * scale[e.col()]};
+  for (Index i = stages * n; i < stages * (n + m); ++i)
+    entries.emplace_back(static_cast<int>(i), static_cast<int>(i), -SaddleSolver::standard_regularisation);
+  Columns A(stages * (n + m), stages * (n + m));
+  A.setFromTriplets(entries.begin(), entries.end());
+  return A;
+}
+
+VectorXd right_hand_side(const StageEquations& eq) {
+  const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
+  VectorXd b(stages * (n + m));
+  for (Index k = 0; k < stages; ++k) {
+    b.segment(k * n, n) = -eq.h * eq.momentum.col(k);
+    b.segment(stages * n + k * m, m) = -eq.phi.col(k);
+  }
+  return b;
+}
+
+void apply(StageEquations& eq, const VectorXd& x) {
+  const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
+  for (Index j = 0; j < stages; ++j) {
+    eq.dX.col(j) += x.segment(j * n, n);
+    for (Index k = 0; k < stages; ++k)
+      eq.lambda.col(k) -= (eq.c.C(k, j) / (eq.h * eq.h * eq.c.b[k])) * x.segment(stages * n + j * m, m);
+  }
+}
+
+}  // namespace
+
+StepStatus full_newton(StageEquations& eq, double wanted, double accepted, StepReport& report) {
+  constexpr int max_iterations = 15;
+  const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
+  SparseRows G = eq.system.jacobian_pattern();
+  std::vector<double> scratch;
+  eq.system.jacobian(eq.Q.col(0), G, scratch);
+  const Scales s = scales_of(eq, G);
+  VectorXd scale(stages * (n + m));
+  for (Index k = 0; k < stages; ++k) {
+    scale.segment(k * n, n) = s.coordinate;
+    scale.segment(stages * n + k * m, m) = s.multiplier;
+  }
+  double best = std::numeric_limits<double>::infinity();
+  int without_gain = 0;
+  Eigen::SparseLU<Columns> lu;
+  for (int it = 0; it <= max_iterations; ++it) {
+    eq.evaluate();
+    const double level = eq.level();
+    report.residual = level;
+    if (level <= wanted) return StepStatus::converged;
+    if (!std::isfinite(level)) return StepStatus::not_finite;
+    if (level < 0.5 * best) {
+      best = level;
+      without_gain = 0;
+    } else if (++without_gain >= 3) {
+      return level <= accepted ? StepStatus::converged : StepStatus::stalled;
+    }
+    if (it == max_iterations) break;
+    ++report.newton_iterations;
+    ++report.factorisations;
+    lu.compute(newton_matrix(eq, scale));
+    if (lu.info() != Eigen::Success) return StepStatus::diverged;
+    const VectorXd x = lu.solve(scale.cwiseProduct(right_hand_side(eq)));
+    apply(eq, scale.cwiseProduct(x));
+    report.right_hand_sides += static_cast<int>(stages);
+  }
+  return StepStatus::stalled;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,37 @@
+#include "core/integrators/galerkin.hpp"
+
+#include <Eigen/LU>
+
+#include "core/math/quadrature.hpp"
+
+namespace unfurl {
+
+GalerkinCoefficients::GalerkinCoefficients(std::string_view family, int stages)
+    : s(stages), basis(interpolation_nodes(family, stages)) {
+  // s points integrate l_k' l_i' (degree 2 s - 4) and l_k (degree s - 1) exactly.
+  const Quadrature gauss = gauss_legendre(s);
+  tau = gauss.nodes;
+  weight = gauss.weights;
+  value.resize(s, s);
+  slope.resize(s, s);
+  for (int j = 0; j < s; ++j) {
+    value.col(j) = basis.values(tau[j]);
+    slope.col(j) = basis.derivatives(tau[j]);
+  }
+  b = value * weight;
+  K = slope * weight.asDiagonal() * slope.transpose();
+  C = K.topRightCorner(s - 1, s - 1);
+  C_inverse = C.inverse();
+  extrapolate(1.0, extrapolation);
+}
+
+void GalerkinCoefficients::extrapolate(double ratio, MatrixXd& out) const {
+  out.resize(s - 1, s - 1);
+  for (int i = 0; i + 1 < s; ++i) {
+    const VectorXd l = basis.values(1.0 + basis.nodes()[i + 1] * ratio);
+    out.row(i) = l.tail(s - 1).transpose();
+    out(i, s - 2) -= 1.0;
+  }
+}
+
+}  // namespace unfurl

@@ -1,0 +1,30 @@
+#include "core/integrators/index1.hpp"
+
+namespace unfurl {
+
+Index1::Index1(const System& system, bool clean_multipliers)
+    : system_(system),
+      G_(system.jacobian_pattern()),
+      saddle_(system.mass(), G_, 1, clean_multipliers ? 1e-7 : SaddleSolver::standard_regularisation),
+      refinements_(clean_multipliers ? 40 : 8),
+      q_(system.coordinates()),
+      v_(system.coordinates()),
+      f_(system.coordinates()),
+      force_(system.solved_coordinates()),
+      bias_(system.constraints()) {}
+
+bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda) {
+  system_.expand(z, q_);
+  system_.expand_rate(w, v_);
+  system_.jacobian(q_, G_, scratch_);
+  if (!saddle_.factorise(G_)) return false;
+  f_.setZero();
+  system_.add_applied_force(t, q_, v_, 1.0, f_);
+  system_.reduce_force(f_, force_);
+  system_.constraint_bias(q_, v_, bias_);
+  bias_ = -bias_;
+  saddle_.solve(force_, bias_, acceleration, lambda, refinements_);
+  return acceleration.allFinite() && lambda.allFinite();
+}
+
+}  // namespace unfurl

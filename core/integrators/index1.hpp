@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/math/saddle_solver.hpp"
+#include "core/model/system.hpp"
+
+namespace unfurl {
+
+// Accelerations and multipliers from the equations of motion with the constraints differentiated twice (index 1):
+//
+//     [ M  G^T ] [w']     [ F(t, q, v)       ]
+//     [ G   0  ] [lambda] [ -v^T Hess Phi v  ]
+//
+// Multipliers that are not unique come with least scaled norm. One evaluation is one factorisation.
+class Index1 {
+ public:
+  // clean_multipliers: for reporting forces rather than for stepping; slower, with round-off in redundant multipliers
+  // held at 1e-9 of their size instead of 1e-6.
+  explicit Index1(const System& system, bool clean_multipliers = false);
+  // False where the factorisation broke down or the result is not finite.
+  bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda);
+
+ private:
+  const System& system_;
+  SparseRows G_;
+  std::vector<double> scratch_;
+  SaddleSolver saddle_;
+  int refinements_;
+  VectorXd q_, v_, f_, force_, bias_;
+};
+
+}  // namespace unfurl

@@ -1,0 +1,44 @@
+// One step of a method. Integrators know nothing of structures or scenes: they see a System and a State.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "core/integrators/solver_options.hpp"
+#include "core/model/state.hpp"
+#include "core/model/system.hpp"
+
+namespace unfurl {
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  // Advance `state` by h [s]. Where the report is not ok, `state` is unchanged.
+  virtual StepReport step(State& state, double h) = 0;
+  // Forget what was learnt from earlier steps (predictors): the next state does not follow the last one.
+  virtual void restart() = 0;
+};
+
+// What a method claims about itself; the conformance test checks every claim of every row.
+struct Claims {
+  int order = 0;                 // of the position error for these options
+  bool symplectic = false;
+  bool symmetric = false;        // a step back with -h undoes a step
+  bool implicit = false;
+  bool holds_positions = false;  // |Phi| at round-off after every step
+  bool holds_velocities = false; // |G v| at round-off after every step
+};
+
+struct Method {
+  std::string_view name;
+  std::string_view help;
+  Claims (*claims)(const SolverOptions&);
+  // `system` must outlive the integrator. Workspaces are allocated here, once.
+  std::unique_ptr<Integrator> (*make)(const System& system, const SolverOptions& options);
+};
+
+std::span<const Method> methods();
+const Method* find_method(std::string_view name);
+
+}  // namespace unfurl

@@ -1,0 +1,49 @@
+#include "core/integrators/solver_options.hpp"
+
+#include "core/integrators/integrator.hpp"
+
+namespace unfurl {
+
+namespace {
+
+std::vector<std::string_view> method_names() {
+  std::vector<std::string_view> names;
+  for (const auto& method : methods()) names.push_back(method.name);
+  return names;
+}
+
+}  // namespace
+
+const std::vector<ParamSpec>& solver_params() {
+  static const SolverOptions fallback;
+  static const std::vector<ParamSpec> params = {
+      choice_param("method", fallback.method, method_names(), "integrator; `unfurl list methods`"),
+      integer_param("stages", fallback.stages, 2, 8, "s, the interpolation nodes on a step (dvm)"),
+      choice_param("nodes", fallback.nodes, {"lobatto", "equidistant", "chebyshev"},
+                   "where the interpolation nodes lie on a step (dvm)"),
+      choice_param("constraints_at", fallback.constraints_at, {"nodes", "ends"},
+                   "constraints hold at every interpolation node, or at step ends only (dvm)"),
+      positive_param("step", "s", fallback.step, "time step h"),
+      positive_param("end_time", "s", fallback.end_time, "the run ends here at the latest"),
+      choice_param("at_deployed", fallback.at_deployed, {"stop", "pass"},
+                   "what happens when the structure is fully deployed"),
+      boolean_param("eliminate_linear", fallback.eliminate_linear,
+                    "solve in coordinates that fulfil the linear constraints exactly; changes no result"),
+  };
+  return params;
+}
+
+SolverOptions solver_options(const ParamSet& values) {
+  SolverOptions options;
+  options.method = values.text("method");
+  options.stages = static_cast<int>(values.integer("stages"));
+  options.nodes = values.text("nodes");
+  options.constraints_at = values.text("constraints_at");
+  options.step = values.real("step");
+  options.end_time = values.real("end_time");
+  options.at_deployed = values.text("at_deployed");
+  options.eliminate_linear = values.boolean("eliminate_linear");
+  return options;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,149 @@
+#include "core/math/sparse_ldlt.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace unfurl {
+
+// Elimination tree and row patterns of L (Liu 1990; the up-looking method of Davis 2006, "Direct Methods", ch. 4).
+void SparseLdlt::analyse(const SparseRows& upper, const std::vector<int>& order) {
+  n_ = upper.rows();
+  const auto n = static_cast<std::size_t>(n_);
+  order_ = order;
+  std::vector<int> position(n);
+  for (std::size_t k = 0; k < n; ++k) position[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+
+  std::vector<std::vector<std::pair<int, int>>> columns(n);  // permuted upper triangle: (row, source)
+  int source = 0;
+  for (int r = 0; r < upper.outerSize(); ++r)
+    for (SparseRows::InnerIterator it(upper, r); it; ++it, ++source) {
+      const int a = position[static_cast<std::size_t>(r)], b = position[static_cast<std::size_t>(it.col())];
+      columns[static_cast<std::size_t>(std::max(a, b))].emplace_back(std::min(a, b), source);
+    }
+  entry_start_.assign(1, 0);
+  entry_row_.clear();
+  entry_source_.clear();
+  for (auto& column : columns) {
+    std::sort(column.begin(), column.end());
+    for (const auto& [row, from] : column) {
+      entry_row_.push_back(row);
+      entry_source_.push_back(from);
+    }
+    entry_start_.push_back(static_cast<int>(entry_row_.size()));
+  }
+
+  std::vector<int> parent(n, -1), mark(n, -1), count(n, 0), stack;
+  reach_start_.assign(1, 0);
+  reach_.clear();
+  for (int k = 0; k < n_; ++k) {
+    const auto uk = static_cast<std::size_t>(k);
+    mark[uk] = k;
+    stack.clear();
+    for (int e = entry_start_[uk]; e < entry_start_[uk + 1]; ++e) {
+      for (int i = entry_row_[static_cast<std::size_t>(e)]; mark[static_cast<std::size_t>(i)] != k;
+           i = parent[static_cast<std::size_t>(i)]) {
+        const auto ui = static_cast<std::size_t>(i);
+        if (parent[ui] == -1) parent[ui] = k;
+        mark[ui] = k;
+        ++count[ui];
+        stack.push_back(i);
+      }
+    }
+    std::sort(stack.begin(), stack.end());  // ascending is a topological order of the tree
+    reach_.insert(reach_.end(), stack.begin(), stack.end());
+    reach_start_.push_back(static_cast<int>(reach_.size()));
+  }
+  column_start_.assign(n + 1, 0);
+  for (std::size_t k = 0; k < n; ++k) column_start_[k + 1] = column_start_[k] + count[k];
+  const auto nonzeros = static_cast<std::size_t>(column_start_[n]);
+  row_index_.assign(nonzeros, 0);
+  l_.assign(nonzeros, 0.0);
+  pivot_.assign(n, 0.0);
+  inverse_pivot_.assign(n, 0.0);
+  work_.assign(n, 0.0);
+  fill_.assign(column_start_.begin(), column_start_.end() - 1);
+  for (int k = 0; k < n_; ++k)
+    for (int r = reach_start_[static_cast<std::size_t>(k)]; r < reach_start_[static_cast<std::size_t>(k) + 1]; ++r)
+      row_index_[static_cast<std::size_t>(fill_[static_cast<std::size_t>(reach_[static_cast<std::size_t>(r)])]++)] = k;
+  permuted_.assign(8 * n, 0.0);
+}
+
+bool SparseLdlt::factorise(const double* values) {
+  const int n = static_cast<int>(n_);
+  std::copy(column_start_.begin(), column_start_.end() - 1, fill_.begin());
+  double* const y = work_.data();
+  double* const l = l_.data();
+  const int* const rows = row_index_.data();
+  int* const fill = fill_.data();
+  for (int k = 0; k < n; ++k) {
+    const auto uk = static_cast<std::size_t>(k);
+    for (int e = entry_start_[uk]; e < entry_start_[uk + 1]; ++e) {
+      const auto ue = static_cast<std::size_t>(e);
+      y[entry_row_[ue]] += values[entry_source_[ue]];
+    }
+    double d = y[k];
+    y[k] = 0.0;
+    for (int r = reach_start_[uk]; r < reach_start_[uk + 1]; ++r) {
+      const int i = reach_[static_cast<std::size_t>(r)];
+      const double yi = y[i];
+      y[i] = 0.0;
+      const int end = fill[i];
+      for (int p = column_start_[static_cast<std::size_t>(i)]; p < end; ++p) y[rows[p]] -= l[p] * yi;
+      const double lki = yi * inverse_pivot_[static_cast<std::size_t>(i)];
+      d -= lki * yi;
+      l[end] = lki;
+      ++fill[i];
+    }
+    if (d == 0.0 || !std::isfinite(d)) {
+      std::fill(work_.begin(), work_.end(), 0.0);
+      return false;
+    }
+    pivot_[uk] = d;
+    inverse_pivot_[uk] = 1.0 / d;
+  }
+  return true;
+}
+
+int SparseLdlt::negative_pivots() const {
+  return static_cast<int>(std::count_if(pivot_.begin(), pivot_.end(), [](double d) { return d < 0; }));
+}
+
+template <int R>
+void SparseLdlt::solve_fixed(double* x) const {
+  const int n = static_cast<int>(n_);
+  double* const b = permuted_.data();
+  for (int k = 0; k < n; ++k)
+    for (int c = 0; c < R; ++c) b[k * R + c] = x[order_[static_cast<std::size_t>(k)] * R + c];
+  const double* const l = l_.data();
+  const int* const rows = row_index_.data();
+  for (int j = 0; j < n; ++j) {
+    double bj[R];
+    for (int c = 0; c < R; ++c) bj[c] = b[j * R + c];
+    for (int p = column_start_[static_cast<std::size_t>(j)]; p < column_start_[static_cast<std::size_t>(j) + 1]; ++p)
+      for (int c = 0; c < R; ++c) b[rows[p] * R + c] -= l[p] * bj[c];
+  }
+  for (int j = n - 1; j >= 0; --j) {
+    double bj[R];
+    for (int c = 0; c < R; ++c) bj[c] = b[j * R + c] * inverse_pivot_[static_cast<std::size_t>(j)];
+    for (int p = column_start_[static_cast<std::size_t>(j)]; p < column_start_[static_cast<std::size_t>(j) + 1]; ++p)
+      for (int c = 0; c < R; ++c) bj[c] -= l[p] * b[rows[p] * R + c];
+    for (int c = 0; c < R; ++c) b[j * R + c] = bj[c];
+  }
+  for (int k = 0; k < n; ++k)
+    for (int c = 0; c < R; ++c) x[order_[static_cast<std::size_t>(k)] * R + c] = b[k * R + c];
+}
+
+void SparseLdlt::solve(double* x, int columns) const {
+  switch (columns) {
+    case 1: return solve_fixed<1>(x);
+    case 2: return solve_fixed<2>(x);
+    case 3: return solve_fixed<3>(x);
+    case 4: return solve_fixed<4>(x);
+    case 5: return solve_fixed<5>(x);
+    case 6: return solve_fixed<6>(x);
+    case 7: return solve_fixed<7>(x);
+    default: eigen_assert(columns == 8); return solve_fixed<8>(x);
+  }
+}
+
+}  // namespace unfurl

@@ -1,0 +1,342 @@
+#include "core/model/system.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/forces/force.hpp"
+#include "core/model/mass_matrix.hpp"
+#include "core/model/structure_error.hpp"
+
+namespace unfurl {
+namespace {
+
+using Blocks = std::vector<const ConstraintBlock*>;
+
+int total_rows(const Blocks& blocks) {
+  return std::accumulate(blocks.begin(), blocks.end(), 0, [](int sum, const auto* b) { return sum + b->rows(); });
+}
+
+std::size_t jacobian_entries(const Blocks& blocks) {
+  std::size_t count = 0;
+  for (const ConstraintBlock* block : blocks)
+    for (int r = 0; r < block->rows(); ++r) count += block->stencil(r).size();
+  return count;
+}
+
+// Jacobian of `blocks` in node coordinates at q.
+SparseRows node_jacobian(const Blocks& blocks, const double* q, Index n) {
+  std::vector<Eigen::Triplet<double>> entries;
+  int row = 0;
+  for (const ConstraintBlock* block : blocks) {
+    std::vector<double> values(jacobian_entries({block}));
+    block->jacobian(q, values.data());
+    std::size_t e = 0;
+    for (int r = 0; r < block->rows(); ++r, ++row)
+      for (int c : block->stencil(r)) entries.emplace_back(row, c, values[e++]);
+  }
+  SparseRows G(row, n);
+  G.setFromTriplets(entries.begin(), entries.end());
+  return G;
+}
+
+}  // namespace
+
+struct System::Data {
+  std::vector<std::unique_ptr<ConstraintBlock>> owned;
+  Blocks all, kept, linear;
+  std::vector<std::unique_ptr<ForceBlock>> forces;  // those that depend on t, q or v
+  VectorXd constant_force;                          // the sum of the others [N]
+  VectorXd loads, gravity_force;                    // its parts, for energies
+  SparseRows node_mass, mass, B;
+  VectorXd q0, start;
+  std::vector<int> free_coordinates;
+  bool eliminated = false;
+  Index coordinates = 0, rows = 0, linear_rows = 0;
+  VectorXd lengths;
+  std::vector<std::string> names;
+  std::vector<int> rod_rows;
+  // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e, start_{e+1}).
+  SparseRows pattern;
+  std::vector<int> sum_start, sum_source;
+  std::vector<double> sum_coefficient;
+  std::vector<std::size_t> block_entries;  // entries of the node Jacobian of each kept block
+  std::size_t entries = 0;
+
+  void build_blocks(const Structure& structure);
+  void build_coordinates(bool eliminate_linear);
+  void build_forces(const Structure& structure);
+  void build_jacobian_map();
+  void check_mass(const Structure& structure) const;
+};
+
+void System::Data::build_blocks(const Structure& structure) {
+  for (const ConstraintKind& kind : constraint_kinds()) {
+    auto block = kind.make(structure);
+    if (!block) continue;
+    all.push_back(block.get());
+    if (block->linear()) linear.push_back(block.get());
+    owned.push_back(std::move(block));
+  }
+  linear_rows = total_rows(linear);
+}
+
+void System::Data::build_coordinates(bool eliminate_linear) {
+  eliminated = eliminate_linear && linear_rows > 0;
+  for (const ConstraintBlock* block : all)
+    if (!(eliminated && block->linear())) kept.push_back(block);
+  if (eliminated) {
+    const VectorXd zero = VectorXd::Zero(coordinates);
+    VectorXd phi(linear_rows);
+    Index at = 0;
+    for (const ConstraintBlock* block : linear) {
+      block->value(zero.data(), phi.data() + at);
+      at += block->rows();
+    }
+    LinearElimination e = eliminate(node_jacobian(linear, zero.data(), coordinates), -phi);
+    B = std::move(e.B);
+    q0 = std::move(e.q0);
+    free_coordinates = std::move(e.free_coordinates);
+  } else {
+    B.resize(coordinates, coordinates);
+    B.setIdentity();
+    q0 = VectorXd::Zero(coordinates);
+    free_coordinates.resize(static_cast<std::size_t>(coordinates));
+    std::iota(free_coordinates.begin(), free_coordinates.end(), 0);
+  }
+  B.makeCompressed();
+  rows = total_rows(kept);
+  lengths.resize(rows);
+  Index row = 0;
+  for (const ConstraintBlock* block : kept)
+    for (int r = 0; r < block->rows(); ++r, ++row) {
+      names.push_back(block->name(r));
+      lengths[row] = block->length(r);
+    }
+  mass = SparseRows(B.transpose() * node_mass) * B;
+  mass.makeCompressed();
+}
+
+void System::Data::build_forces(const Structure& structure) {
+  constant_force = loads = gravity_force = VectorXd::Zero(coordinates);
+  for (const ForceKind& kind : force_kinds()) {
+    auto block = kind.make(structure, node_mass);
+    if (!block) continue;
+    if (block->constant())
+      block->add(0.0, start.data(), start.data(), 1.0, constant_force.data());
+    else
+      forces.push_back(std::move(block));
+  }
+  for (const Load& load : structure.loads) loads.segment<3>(3 * load.node) += load.force;
+  gravity_force = node_mass * structure.gravity.replicate(coordinates / 3, 1);
+}
+
+// G_z = G B, entry by entry, so that evaluating it is one pass over precomputed sums.
+void System::Data::build_jacobian_map() {
+  struct Term {
+    int row, column, source;
+    double coefficient;
+  };
+  std::vector<Term> terms;
+  int row = 0, source = 0;
+  for (const ConstraintBlock* block : kept)
+    for (int r = 0; r < block->rows(); ++r, ++row)
+      for (int c : block->stencil(r)) {
+        for (SparseRows::InnerIterator it(B, c); it; ++it) terms.push_back({row, static_cast<int>(it.col()), source, it.value()});
+        ++source;
+      }
+  std::stable_sort(terms.begin(), terms.end(), [](const Term& a, const Term& b) {
+    return a.row != b.row ? a.row < b.row : a.column < b.column;
+  });
+  std::vector<Eigen::Triplet<double>> places;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (i == 0 || terms[i].row != terms[i - 1].row || terms[i].column != terms[i - 1].column) {
+      places.emplace_back(terms[i].row, terms[i].column, 0.0);
+      sum_start.push_back(static_cast<int>(i));
+    }
+    sum_source.push_back(terms[i].source);
+    sum_coefficient.push_back(terms[i].coefficient);
+  }
+  sum_start.push_back(static_cast<int>(terms.size()));
+  pattern.resize(rows, B.cols());
+  pattern.setFromTriplets(places.begin(), places.end());
+  pattern.makeCompressed();
+  entries = static_cast<std::size_t>(source);
+  for (const ConstraintBlock* block : kept) block_entries.push_back(jacobian_entries({block}));
+}
+
+// A coordinate without inertia has no equation of motion.
+void System::Data::check_mass(const Structure& structure) const {
+  for (Index i = 0; i < mass.rows(); ++i)
+    if (!(mass.coeff(i, i) > 0)) {
+      const auto node = static_cast<std::size_t>(free_coordinates[static_cast<std::size_t>(i)] / 3);
+      throw StructureError("nodes[" + std::to_string(node) + "].mass",
+                           "node " + structure.nodes[node].name +
+                               " can move but has no mass: give it a mass, or a mass to a rod that ends there");
+    }
+}
+
+System::System(const Structure& structure, bool eliminate_linear) {
+  auto data = std::make_unique<Data>();
+  data->coordinates = 3 * static_cast<Index>(structure.nodes.size());
+  data->start.resize(data->coordinates);
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    data->start.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  data->node_mass = node_mass_matrix(structure);
+  data->build_blocks(structure);
+  data->build_coordinates(eliminate_linear);
+  data->check_mass(structure);
+  data->build_forces(structure);
+  data->build_jacobian_map();
+  data->rod_rows.assign(structure.rods.size(), -1);
+  for (std::size_t i = 0; i < structure.rods.size(); ++i)  // rods are the last kept block
+    data->rod_rows[i] = static_cast<int>(data->rows - static_cast<Index>(structure.rods.size()) + static_cast<Index>(i));
+  data_ = std::move(data);
+}
+
+System::~System() = default;
+System::System(System&&) noexcept = default;
+
+Index System::coordinates() const { return data_->coordinates; }
+Index System::solved_coordinates() const { return data_->B.cols(); }
+Index System::constraints() const { return data_->rows; }
+Index System::linear_constraints() const { return data_->linear_rows; }
+bool System::eliminated() const { return data_->eliminated; }
+const SparseRows& System::mass() const { return data_->mass; }
+const SparseRows& System::node_mass() const { return data_->node_mass; }
+const VectorXd& System::constraint_lengths() const { return data_->lengths; }
+const std::vector<std::string>& System::constraint_names() const { return data_->names; }
+const std::vector<int>& System::rod_rows() const { return data_->rod_rows; }
+
+void System::expand(const ConstVec& z, MutVec q) const {
+  if (!data_->eliminated) {
+    q = z;
+    return;
+  }
+  q = data_->q0;
+  q.noalias() += data_->B * z;
+}
+
+void System::expand_rate(const ConstVec& w, MutVec v) const {
+  if (!data_->eliminated)
+    v = w;
+  else
+    v.noalias() = data_->B * w;
+}
+
+VectorXd System::reduce(const ConstVec& q) const {
+  VectorXd z(solved_coordinates());
+  for (Index i = 0; i < z.size(); ++i) z[i] = q[data_->free_coordinates[static_cast<std::size_t>(i)]];
+  return z;
+}
+
+VectorXd System::reduce_rate(const ConstVec& v) const { return reduce(v); }
+
+void System::reduce_force(const ConstVec& f, MutVec r) const {
+  if (!data_->eliminated)
+    r = f;
+  else
+    r.noalias() = data_->B.transpose() * f;
+}
+
+void System::add_applied_force(double t, const ConstVec& q, const ConstVec& v, double scale, MutVec f) const {
+  f += scale * data_->constant_force;
+  for (const auto& block : data_->forces) block->add(t, q.data(), v.data(), scale, f.data());
+}
+
+bool System::constant_forces() const { return data_->forces.empty(); }
+
+void System::constraint(const ConstVec& q, MutVec phi) const {
+  double* out = phi.data();
+  for (const ConstraintBlock* block : data_->kept) {
+    block->value(q.data(), out);
+    out += block->rows();
+  }
+}
+
+void System::add_constraint_force(const ConstVec& q, const ConstVec& lambda, double scale, MutVec f) const {
+  const double* in = lambda.data();
+  for (const ConstraintBlock* block : data_->kept) {
+    block->add_force(q.data(), in, scale, f.data());
+    in += block->rows();
+  }
+}
+
+void System::constraint_bias(const ConstVec& q, const ConstVec& v, MutVec phi_dd) const {
+  double* out = phi_dd.data();
+  for (const ConstraintBlock* block : data_->kept) {
+    block->bias(q.data(), v.data(), out);
+    out += block->rows();
+  }
+}
+
+SparseRows System::jacobian_pattern() const { return data_->pattern; }
+
+void System::jacobian(const ConstVec& q, SparseRows& G, std::vector<double>& scratch) const {
+  scratch.resize(data_->entries);
+  double* out = scratch.data();
+  for (std::size_t b = 0; b < data_->kept.size(); ++b) {
+    data_->kept[b]->jacobian(q.data(), out);
+    out += data_->block_entries[b];
+  }
+  double* value = G.valuePtr();
+  for (std::size_t e = 0; e + 1 < data_->sum_start.size(); ++e) {
+    double sum = 0;
+    for (int k = data_->sum_start[e]; k < data_->sum_start[e + 1]; ++k) {
+      const auto uk = static_cast<std::size_t>(k);
+      sum += data_->sum_coefficient[uk] * scratch[static_cast<std::size_t>(data_->sum_source[uk])];
+    }
+    value[e] = sum;
+  }
+}
+
+SparseRows System::curvature(const ConstVec& q, const ConstVec& lambda) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  Index row = 0;
+  for (const ConstraintBlock* block : data_->kept) {
+    std::size_t size = 0;
+    for (int r = 0; r < block->rows(); ++r) size += block->stencil(r).size() * block->stencil(r).size();
+    std::vector<double> hess(size);
+    block->curvature(q.data(), lambda.data() + row, hess.data());
+    const double* h = hess.data();
+    for (int r = 0; r < block->rows(); ++r)
+      for (const std::vector<int> c = block->stencil(r); int j : c)
+        for (int i : c) entries.emplace_back(i, j, *h++);
+    row += block->rows();
+  }
+  SparseRows K(coordinates(), coordinates());
+  K.setFromTriplets(entries.begin(), entries.end());
+  return SparseRows(data_->B.transpose() * K) * data_->B;
+}
+
+double System::kinetic_energy(const ConstVec& w) const { return 0.5 * w.dot(data_->mass * w); }
+double System::potential_energy(const ConstVec& q) const { return -data_->gravity_force.dot(q); }
+double System::load_work(const ConstVec& q) const { return data_->loads.dot(q - data_->start); }
+
+Index System::all_constraints() const { return total_rows(data_->all); }
+
+void System::all_constraint_values(const ConstVec& q, MutVec phi) const {
+  double* out = phi.data();
+  for (const ConstraintBlock* block : data_->all) {
+    block->value(q.data(), out);
+    out += block->rows();
+  }
+}
+
+SparseRows System::all_jacobian(const ConstVec& q) const { return node_jacobian(data_->all, q.data(), coordinates()); }
+
+std::vector<std::string> System::all_names() const {
+  std::vector<std::string> names;
+  for (const ConstraintBlock* block : data_->all)
+    for (int r = 0; r < block->rows(); ++r) names.push_back(block->name(r));
+  return names;
+}
+
+VectorXd System::all_lengths() const {
+  VectorXd lengths(all_constraints());
+  Index row = 0;
+  for (const ConstraintBlock* block : data_->all)
+    for (int r = 0; r < block->rows(); ++r) lengths[row++] = block->length(r);
+  return lengths;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,39 @@
+// What is wrong with a scene, and where.
+#pragma once
+
+#include <exception>
+#include <string>
+#include <vector>
+
+namespace unfurl {
+
+struct SourceLocation {
+  std::string file;          // as the user named it; "--set" for an override
+  int line = 0, column = 0;  // from 1; 0: unknown
+
+  bool operator==(const SourceLocation&) const = default;
+};
+
+// One mistake: "FILE:LINE:COLUMN: KEY: message".
+struct SceneProblem {
+  SourceLocation where;
+  std::string key;  // dotted: "structure.post_length"
+  std::string message;
+};
+
+// "FILE:LINE:COLUMN: KEY: message" or, for an override, "--set KEY: message".
+std::string problem_text(const SceneProblem& problem);
+
+// All mistakes found in one reading. what() joins them, one line each.
+class SceneError : public std::exception {
+ public:
+  explicit SceneError(std::vector<SceneProblem> problems);
+  const char* what() const noexcept override { return text_.c_str(); }
+  const std::vector<SceneProblem>& problems() const { return problems_; }
+
+ private:
+  std::vector<SceneProblem> problems_;
+  std::string text_;
+};
+
+}  // namespace unfurl

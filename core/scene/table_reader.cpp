@@ -1,0 +1,183 @@
+#include "core/scene/table_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/model/nearest_name.hpp"
+
+namespace unfurl {
+
+namespace {
+
+using Kind = TomlTree::Kind;
+
+std::optional<double> number(const TomlTree& tree) {
+  if (tree.kind == Kind::real) return tree.real;
+  if (tree.kind == Kind::integer) return static_cast<double>(tree.integer);
+  return std::nullopt;
+}
+
+// A whole number, also when written 3.0.
+std::optional<long> whole_number(const TomlTree& tree) {
+  constexpr double exact = 9007199254740992.0;  // 2^53: every whole number up to here is a double
+  if (tree.kind == Kind::integer) return tree.integer;
+  if (tree.kind == Kind::real && std::abs(tree.real) <= exact && tree.real == std::floor(tree.real))
+    return static_cast<long>(tree.real);
+  return std::nullopt;
+}
+
+std::optional<ParamValue> numbers(const TomlTree& tree) {
+  if (tree.kind != Kind::array) return std::nullopt;
+  std::vector<double> values;
+  for (const auto& item : tree.items) {
+    const auto x = number(item);
+    if (!x) return std::nullopt;
+    values.push_back(*x);
+  }
+  return values;
+}
+
+// The value in the shape that the parameter wants; nothing when its type cannot be that.
+std::optional<ParamValue> shaped(const ParamSpec& spec, const TomlTree& tree) {
+  switch (spec.kind) {
+    case ParamKind::boolean:
+      if (tree.kind == Kind::boolean) return tree.boolean;
+      break;
+    case ParamKind::integer:
+      if (const auto i = whole_number(tree)) return *i;
+      if (const auto x = number(tree)) return *x;
+      break;
+    case ParamKind::real:
+      if (const auto x = number(tree)) return *x;
+      break;
+    case ParamKind::choice:
+    case ParamKind::text:
+      if (tree.kind == Kind::text) return tree.text;
+      break;
+    case ParamKind::vector:
+      return numbers(tree);
+  }
+  return std::nullopt;
+}
+
+std::string mistyped(const ParamSpec& spec, const TomlTree& tree) {
+  std::string got = tree.describe();
+  if (tree.kind == Kind::text) got = "the text " + in_quotes(tree.text);
+  if (tree.kind == Kind::array && spec.kind == ParamKind::vector && tree.items.size() == spec.length)
+    for (const auto& item : tree.items)
+      if (!number(item)) got = "a list with " + item.describe();
+  return "must be " + wanted_text(spec) + "; got " + got;
+}
+
+}  // namespace
+
+void SceneNotes::add(const SourceLocation& where, std::string key, std::string message) {
+  problems.push_back({where, std::move(key), std::move(message)});
+}
+
+TableReader::TableReader(const TomlTree* table, std::string path, const SourceLocation& where,
+                         SceneNotes& notes)
+    : table_(table), path_(std::move(path)), where_(where), notes_(notes) {}
+
+std::string TableReader::key(std::string_view name) const {
+  if (name.empty() || path_.empty()) return path_ + std::string(name);
+  return path_ + "." + std::string(name);
+}
+
+void TableReader::problem(std::string_view name, std::string message) {
+  const TomlTree* value = table_ ? table_->find(name) : nullptr;
+  notes_.add(value ? value->where : where_, key(name), std::move(message));
+}
+
+const TomlTree* TableReader::member(std::string_view name) {
+  known_.push_back(name);
+  const TomlTree* value = table_ ? table_->find(name) : nullptr;
+  if (value) notes_.locations[key(name)] = value->where;
+  return value;
+}
+
+ParamSet TableReader::read(const std::vector<ParamSpec>& specs) {
+  ParamSet values(specs);
+  for (const auto& spec : specs) read_one(spec, values);
+  return values;
+}
+
+void TableReader::read_one(const ParamSpec& spec, ParamSet& values) {
+  const TomlTree* tree = member(spec.name);
+  if (!tree) {
+    if (spec.required) problem(spec.name, "is missing; must be " + wanted_text(spec));
+    return;
+  }
+  auto value = shaped(spec, *tree);
+  if (!value) return problem(spec.name, mistyped(spec, *tree));
+  std::string error = range_error(spec, *value);
+  const auto* text = std::get_if<std::string>(&*value);
+  if (!error.empty() && spec.kind == ParamKind::choice && text) {
+    const auto near = nearest_name(*text, spec.choices);
+    error = "must be " + wanted_text(spec) + "; got " + in_quotes(*text);
+    if (!near.empty()) error += "; did you mean " + in_quotes(near) + "?";
+  }
+  if (!error.empty()) return problem(spec.name, error);
+  values.set(spec.name, std::move(*value));
+}
+
+std::vector<std::string> TableReader::names(std::string_view name) {
+  const TomlTree* tree = member(name);
+  const std::string wanted = "a list of node names";
+  std::vector<std::string> values;
+  if (!tree) {
+    problem(name, "is missing; must be " + wanted);
+  } else if (tree->kind == Kind::text) {
+    values.push_back(tree->text);
+  } else if (tree->kind != Kind::array) {
+    problem(name, "must be " + wanted + "; got " + tree->describe());
+  } else {
+    for (const auto& item : tree->items) {
+      if (item.kind == Kind::text)
+        values.push_back(item.text);
+      else
+        notes_.add(item.where, key(name), "must be " + wanted + "; got a list with " + item.describe());
+    }
+    if (tree->items.empty()) problem(name, "must be " + wanted + "; got an empty list");
+  }
+  return values;
+}
+
+const TomlTree* TableReader::table(std::string_view name) {
+  const TomlTree* tree = member(name);
+  if (!tree || tree->kind == Kind::table) return tree;
+  problem(name, "must be a table, [" + key(name) + "]; got " + tree->describe());
+  return nullptr;
+}
+
+std::vector<const TomlTree*> TableReader::tables(std::string_view name) {
+  const TomlTree* tree = member(name);
+  std::vector<const TomlTree*> found;
+  if (!tree) return found;
+  if (tree->kind != Kind::array) {
+    problem(name, "must be an array of tables, [[" + key(name) + "]]; got " + tree->describe());
+    return found;
+  }
+  for (const auto& item : tree->items) {
+    if (item.kind == Kind::table)
+      found.push_back(&item);
+    else
+      notes_.add(item.where, key(name),
+                 "must be an array of tables, [[" + key(name) + "]]; got " + item.describe());
+  }
+  return found;
+}
+
+void TableReader::finish() {
+  if (!table_) return;
+  for (const auto& [name, value] : table_->entries) {
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    const auto& where =
+        value.key_where.line > 0 || value.key_where.file == "--set" ? value.key_where : value.where;
+    notes_.add(where, key(name), "unknown key" + did_you_mean(name, known_));
+  }
+}
+
+}  // namespace unfurl

@@ -1,0 +1,59 @@
+// One table of a scene against its declared parameters.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/model/param_spec.hpp"
+#include "core/scene/toml_tree.hpp"
+
+namespace unfurl {
+
+// What a reading collects: all mistakes, and where each key was given.
+struct SceneNotes {
+  std::vector<SceneProblem> problems;
+  std::map<std::string, SourceLocation> locations;  // dotted key -> place of its value
+
+  void add(const SourceLocation& where, std::string key, std::string message);
+};
+
+// Reads keys of one table; finish() reports the keys that nobody asked for. `path` is the dotted name of the
+// table,
+// "" for the root. The table may be absent (nullptr): every parameter takes its default then.
+class TableReader {
+ public:
+  TableReader(const TomlTree* table, std::string path, const SourceLocation& where, SceneNotes& notes);
+
+  // The parameters at their defaults, overwritten by what the table says. A value that is not allowed is
+  // noted and left at its default. A whole number is taken where a number is wanted, and 3.0 where a whole
+  // number is.
+  ParamSet read(const std::vector<ParamSpec>& specs);
+  // A list of texts; a single text counts as a list of one. Noted when it is missing or something else.
+  std::vector<std::string> names(std::string_view key);
+  // A member that is read elsewhere; marks it as known.
+  const TomlTree* member(std::string_view key);
+  // A member that must be a table, or an array of tables; nullptr or empty when absent or wrong (which is
+  // noted).
+  const TomlTree* table(std::string_view key);
+  std::vector<const TomlTree*> tables(std::string_view key);
+  void finish();
+
+  std::string key(std::string_view name) const;  // dotted
+  bool has(std::string_view name) const { return table_ && table_->find(name); }
+  const SourceLocation& where() const { return where_; }
+  void problem(std::string_view name,
+               std::string message);  // located at the member, or at the table without it
+
+ private:
+  void read_one(const ParamSpec& spec, ParamSet& values);
+
+  const TomlTree* table_;
+  std::string path_;
+  SourceLocation where_;
+  SceneNotes& notes_;
+  std::vector<std::string_view> known_;
+};
+
+}  // namespace unfurl

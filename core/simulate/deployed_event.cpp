@@ -1,0 +1,118 @@
+#include "core/simulate/deployed_event.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/integrators/index1.hpp"
+
+namespace unfurl {
+namespace {
+
+// Fold angles [rad] between which states are solved. Below the smaller one round-off in the hinges, 1e-16/fold, shows;
+// at nine points below the larger one the extrapolation error is of the order (0.01)^9.
+constexpr double nearest = 2.5e-3, farthest = 3e-2;
+constexpr int points = 9;
+
+struct Sample {
+  double sine;
+  State state;
+};
+
+class Locator {
+ public:
+  Locator(const Trajectory& trajectory, Integrator& integrator, double h)
+      : trajectory_(trajectory), integrator_(integrator), h_(h), index1_(trajectory.model().system, true) {}
+
+  std::optional<State> locate() {
+    const double start = sine(trajectory_.state(0));
+    const double far = std::min(farthest, 0.8 * start), near = std::min(nearest, 0.1 * start);
+    for (int i = 0; i < points; ++i) {
+      const double u = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / points);
+      solve_to(far + u * (near - far));
+    }
+    if (samples_.size() < 3) return std::nullopt;
+    return extrapolate();
+  }
+
+ private:
+  double sine(const State& s) {
+    q_.resize(system().coordinates());
+    system().expand(s.z, q_);
+    return trajectory_.structure().deployment.fold_sine(q_);
+  }
+  double sine_rate(const State& s) {
+    q_.resize(system().coordinates());
+    system().expand_rate(s.w, q_);
+    return trajectory_.structure().deployment.fold_sine.rate(q_);
+  }
+  const System& system() const { return trajectory_.model().system; }
+
+  // One step from the last state before `target`, its length found by the secant method; any sine near the target will do.
+  void solve_to(double target) {
+    std::size_t i = trajectory_.size() - 1;
+    while (i > 0 && sine(trajectory_.state(i)) < 1.0001 * target) --i;
+    const State& from = trajectory_.state(i);
+    const double s0 = sine(from), rate0 = sine_rate(from);
+    double lo = 0, f_lo = s0 - target;
+    double step = std::min(1.2 * h_, rate0 < 0 ? f_lo / -rate0 : h_);
+    for (int it = 0; it < 12; ++it) {
+      State to = from;
+      integrator_.restart();
+      if (!integrator_.step(to, step).ok()) {
+        step = 0.5 * (lo + step);
+        continue;
+      }
+      const double f = sine(to) - target;
+      if (std::abs(f) < 0.05 * target) {
+        keep(f + target, std::move(to));
+        return;
+      }
+      const double slope = (f - f_lo) / (step - lo);
+      if (f > 0) {
+        lo = step;
+        f_lo = f;
+      }
+      step = std::clamp(step - f / slope, 0.2 * step, 2.0 * step);
+    }
+  }
+
+  // Multipliers of least norm from the equations: those of a step's end are not as accurate as its coordinates.
+  void keep(double at, State state) {
+    VectorXd acceleration(state.w.size());
+    if (index1_.evaluate(state.t, state.z, state.w, acceleration, state.lambda)) samples_.push_back({at, std::move(state)});
+  }
+
+  // Lagrange extrapolation of everything, as functions of the sine, to zero.
+  std::optional<State> extrapolate() const {
+    State out = samples_.front().state;
+    out.t = 0;
+    for (VectorXd* v : {&out.z, &out.w, &out.lambda}) v->setZero();
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      double weight = 1;
+      for (std::size_t j = 0; j < samples_.size(); ++j)
+        if (j != i) weight *= samples_[j].sine / (samples_[j].sine - samples_[i].sine);
+      out.t += weight * samples_[i].state.t;
+      out.z += weight * samples_[i].state.z;
+      out.w += weight * samples_[i].state.w;
+      out.lambda += weight * samples_[i].state.lambda;
+    }
+    if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
+    return out;
+  }
+
+  const Trajectory& trajectory_;
+  Integrator& integrator_;
+  double h_;
+  Index1 index1_;
+  std::vector<Sample> samples_;
+  VectorXd q_;
+};
+
+}  // namespace
+
+std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h) {
+  return Locator(trajectory, integrator, h).locate();
+}
+
+}  // namespace unfurl

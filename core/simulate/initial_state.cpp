@@ -1,0 +1,56 @@
+#include "core/simulate/initial_state.hpp"
+
+#include "core/integrators/index1.hpp"
+#include "core/math/saddle_solver.hpp"
+
+namespace unfurl {
+
+void project(const System& system, State& state) {
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  SaddleSolver saddle(system.mass(), G);
+  VectorXd q(system.coordinates()), phi(system.constraints()), x(system.solved_coordinates()), y(phi.size());
+  const VectorXd no_force = VectorXd::Zero(x.size()), no_offset = VectorXd::Zero(phi.size());
+  for (int it = 0; it < 2; ++it) {
+    system.expand(state.z, q);
+    system.constraint(q, phi);
+    system.jacobian(q, G, scratch);
+    if (!saddle.factorise(G)) return;
+    saddle.solve(no_force, -phi, x, y, 0);
+    state.z += x;
+  }
+  const VectorXd p = system.mass() * state.w;
+  saddle.solve(p, no_offset, state.w, y);
+}
+
+InitialState initial_state(const Structure& structure, const System& system) {
+  VectorXd q(system.coordinates()), v(system.coordinates());
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i) {
+    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+    v.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].velocity;
+  }
+  InitialState out;
+  State& s = out.state;
+  s.z = system.reduce(q);
+  s.lambda.setZero(system.constraints());
+  // B w ~ v in the mass metric: exact where v fulfils the linear constraints.
+  s.w = system.reduce_rate(v);
+  if (!v.isZero(0.0)) {
+    SparseRows G = system.jacobian_pattern();
+    std::vector<double> scratch;
+    system.jacobian(q, G, scratch);
+    SaddleSolver saddle(system.mass(), G);
+    saddle.factorise(G);
+    VectorXd p(system.solved_coordinates()), y(system.constraints()), back(system.coordinates());
+    system.reduce_force(system.node_mass() * v, p);
+    saddle.solve(p, VectorXd::Zero(y.size()), s.w, y);
+    system.expand_rate(s.w, back);
+    out.velocity_change = (back - v).lpNorm<Eigen::Infinity>();
+  }
+  VectorXd acceleration(system.solved_coordinates());
+  Index1 index1(system);
+  if (!index1.evaluate(0.0, s.z, s.w, acceleration, s.lambda)) s.lambda.setZero();
+  return out;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,190 @@
+#include "core/simulate/simulation.hpp"
+
+#include <time.h>
+
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/integrators/integrator.hpp"
+#include "core/simulate/deployed_event.hpp"
+#include "core/simulate/initial_state.hpp"
+
+namespace unfurl {
+namespace {
+
+// A state whose sin(fold) is below this has lost digits to the singular deployed pose and counts as having reached it.
+constexpr double singular_margin = 1e-4;
+
+double thread_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::string seconds(double t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g s", t);
+  return text;
+}
+
+const char* reason(StepStatus status) {
+  switch (status) {
+    case StepStatus::converged: return "converged";
+    case StepStatus::stalled: return "the Newton iteration did not converge to round-off";
+    case StepStatus::diverged: return "the Newton matrix could not be factorised";
+    case StepStatus::not_finite: return "the state is not finite any more";
+  }
+  return "";
+}
+
+class TimeLoop {
+ public:
+  TimeLoop(Simulation& run, Integrator& integrator, const SimulationHooks& hooks)
+      : run_(run), integrator_(integrator), hooks_(hooks), deployment_(run.trajectory.structure().deployment) {}
+
+  void drive() {
+    const SolverOptions& o = run_.options;
+    const auto count = static_cast<long>(std::ceil(o.end_time / o.step - 1e-9));
+    for (long k = 1; k <= count; ++k) {
+      if (hooks_.cancelled && hooks_.cancelled()) {
+        run_.status = RunStatus::stopped;
+        run_.message = "stopped by the user at t = " + seconds(run_.trajectory.end_time());
+        return;
+      }
+      report_progress(run_.trajectory.end_time() / o.end_time);
+      const double target = k == count ? o.end_time : static_cast<double>(k) * o.step;
+      if (!advance_to(target)) return;
+    }
+    report_progress(1.0);
+  }
+
+ private:
+  // False where the run ends here.
+  bool advance_to(double target) {
+    State next = run_.trajectory.state(run_.trajectory.size() - 1);
+    const double h = target - next.t;
+    StepReport report = integrator_.step(next, h);
+    count(report);
+    const bool crossed = report.ok() && crosses(next);
+    if (crossed || (!report.ok() && about_to_cross(h))) {
+      if (!record_deployed(h)) return false;
+    }
+    if (!report.ok() && !retry(next, h, report)) {
+      run_.status = RunStatus::failed;
+      run_.message = "at t = " + seconds(next.t) + ": " + reason(report.status);
+      return false;
+    }
+    next.t = target;
+    run_.trajectory.append(std::move(next), report);
+    ++run_.steps;
+    return true;
+  }
+
+  // A failed step is tried again in 2, 4, ... 64 parts, uneven so that no part ends where the whole did.
+  bool retry(State& state, double h, StepReport& report) {
+    const State from = run_.trajectory.state(run_.trajectory.size() - 1);
+    for (int parts = 2; parts <= 64; parts *= 2) {
+      state = from;
+      integrator_.restart();
+      bool ok = true;
+      for (int i = 0; i < parts && ok; ++i) {
+        const double share = parts == 2 ? (i == 0 ? 0.53 : 0.47) : 1.0 / parts;
+        report = integrator_.step(state, share * h);
+        count(report);
+        ok = report.ok();
+      }
+      if (ok) return true;
+    }
+    state = from;
+    return false;
+  }
+
+  void count(const StepReport& report) {
+    run_.newton_iterations += report.newton_iterations;
+    run_.factorisations += report.factorisations;
+  }
+
+  double fold(const State& state) {
+    q_.resize(run_.trajectory.model().system.coordinates());
+    run_.trajectory.model().system.expand(state.z, q_);
+    return deployment_.fold_sine(q_);
+  }
+
+  bool crosses(const State& next) {
+    if (deployment_.empty() || deployed_) return false;
+    return fold(run_.trajectory.state(run_.trajectory.size() - 1)) > singular_margin && fold(next) <= singular_margin;
+  }
+
+  // Would the present rate bring the fold angle to zero within a step?
+  bool about_to_cross(double h) {
+    if (deployment_.empty() || deployed_) return false;
+    const State& now = run_.trajectory.state(run_.trajectory.size() - 1);
+    const double s = fold(now);
+    run_.trajectory.model().system.expand_rate(now.w, q_);
+    return s > 0 && s + 1.05 * h * deployment_.fold_sine.rate(q_) <= 1e-3;
+  }
+
+  // False where the run ends at the event.
+  bool record_deployed(double h) {
+    const std::unique_ptr<Integrator> fresh = find_method(run_.options.method)->make(run_.trajectory.model().system, run_.options);
+    std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
+    if (!event) return true;
+    deployed_ = true;
+    run_.events.push_back({"deployed", event->t});
+    if (run_.options.at_deployed != "stop") return true;
+    project(run_.trajectory.model().system, *event);
+    while (run_.trajectory.size() > 1 && run_.trajectory.end_time() >= event->t) run_.trajectory.pop_back();
+    run_.trajectory.append(std::move(*event), StepReport{.singular_event = true});
+    ++run_.steps;
+    run_.status = RunStatus::deployed;
+    report_progress(1.0);
+    return false;
+  }
+
+  void report_progress(double fraction) {
+    if (!hooks_.progress) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (fraction < 1.0 && now - last_progress_ < std::chrono::milliseconds(50)) return;
+    last_progress_ = now;
+    hooks_.progress(fraction);
+  }
+
+  Simulation& run_;
+  Integrator& integrator_;
+  const SimulationHooks& hooks_;
+  const Deployment& deployment_;
+  VectorXd q_;
+  bool deployed_ = false;
+  std::chrono::steady_clock::time_point last_progress_{};
+};
+
+}  // namespace
+
+std::string_view to_string(RunStatus status) {
+  switch (status) {
+    case RunStatus::completed: return "completed";
+    case RunStatus::deployed: return "deployed";
+    case RunStatus::stopped: return "stopped";
+    case RunStatus::failed: return "failed";
+  }
+  return "failed";
+}
+
+Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options, const SimulationHooks& hooks) {
+  const Method* method = find_method(options.method);
+  if (!method) throw std::invalid_argument("no method is called " + options.method);
+  Simulation run{.trajectory = Trajectory(model), .options = options};
+  InitialState start = initial_state(model->structure, model->system);
+  if (start.velocity_change > 1e-9)
+    run.warnings.push_back("the initial velocities violate the constraints and were projected on them (largest change " +
+                           std::to_string(start.velocity_change) + " m/s)");
+  run.trajectory.append(std::move(start.state), StepReport{});
+  const std::unique_ptr<Integrator> integrator = method->make(model->system, options);
+  const double begin = thread_cpu_seconds();
+  TimeLoop(run, *integrator, hooks).drive();
+  run.cpu_s = thread_cpu_seconds() - begin;
+  return run;
+}
+
+}  // namespace unfurl
