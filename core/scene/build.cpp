@@ -5,6 +5,7 @@
 #include "core/model/nearest_name.hpp"
 #include "core/model/structure_error.hpp"
 #include "core/structures/family.hpp"
+#include "core/structures/name_index.hpp"
 
 namespace unfurl {
 
@@ -64,17 +65,17 @@ void add_load(Structure& structure, int node, const Vec3& force) {
 }
 
 void add_loads(const Scene& scene, Structure& structure) {
-  std::vector<std::string_view> names;
-  for (const auto& node : structure.nodes) names.push_back(node.name);
+  NameIndex names;
+  for (const auto& node : structure.nodes) names.add(node.name);
   std::vector<SceneProblem> problems;
   for (std::size_t i = 0; i < scene.loads.size(); ++i) {
     const auto& load = scene.loads[i];
     for (const auto& pattern : load.nodes) {
-      const auto found = matching_names(pattern, names);
+      const auto found = names.matching(pattern);
       for (const int node : found) add_load(structure, node, load.force);
       if (found.empty())
         problems.push_back({load.where, "loads[" + std::to_string(i) + "].nodes",
-                            "no node matches " + in_quotes(pattern) + did_you_mean(pattern, names)});
+                            "no node matches " + in_quotes(pattern) + did_you_mean(pattern, names.names())});
     }
   }
   if (!problems.empty()) throw SceneError(std::move(problems));
