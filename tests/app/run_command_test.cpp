@@ -100,6 +100,20 @@ TEST_CASE("an output directory that cannot be used is found before the work") {
   }
 }
 
+TEST_CASE("a solver that fails says so and keeps the good part") {
+  const ScratchDirectory dir;
+  // A speed of 1e298 m/s after one step: its square is no double.
+  const ProgramResult r = run_program({"run", "double_pendulum", "--set",
+                                       "gravity.acceleration=[0, 0, 1e300]", "--quiet", "-o", dir / "out"});
+  CHECK(r.code == 4);
+  CHECK(single_error(r).starts_with("unfurl: the solver failed: at t = 0 s: "));
+  const auto summary = nlohmann::json::parse(file_text(dir / "out/summary.json"));
+  CHECK(summary["status"] == "failed");
+  CHECK(summary["message"].get<std::string>() != "");
+  CHECK(summary["final"]["t_s"] == 0.0);
+  CHECK(fs::exists(dir / "out/trajectory.csv"));
+}
+
 TEST_CASE("Ctrl-C keeps what is done") {
   const ScratchDirectory dir;
   // About a minute of work, interrupted after one second.
