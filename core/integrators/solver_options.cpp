@@ -1,11 +1,23 @@
 #include "core/integrators/solver_options.hpp"
 
+#include "core/integrators/integrator.hpp"
+
 namespace unfurl {
+
+namespace {
+
+std::vector<std::string_view> method_names() {
+  std::vector<std::string_view> names;
+  for (const auto& method : methods()) names.push_back(method.name);
+  return names;
+}
+
+}  // namespace
 
 const std::vector<ParamSpec>& solver_params() {
   static const SolverOptions fallback;
   static const std::vector<ParamSpec> params = {
-      choice_param("method", fallback.method, {"dvm", "rk4"}, "integrator; `unfurl list methods`"),
+      choice_param("method", fallback.method, method_names(), "integrator; `unfurl list methods`"),
       integer_param("stages", fallback.stages, 2, 8, "s, the interpolation nodes on a step (dvm)"),
       choice_param("nodes", fallback.nodes, {"lobatto", "equidistant", "chebyshev"},
                    "where the interpolation nodes lie on a step (dvm)"),

@@ -64,7 +64,9 @@ void StageEquations::evaluate() {
     f_.setZero();
     add_forces(k, f_);
     if (!at_ends || k == 0) system.add_constraint_force(Q.col(k), lambda.col(k), -h * multiplier_weight(k), f_);
-    force_scale_ = std::max(force_scale_, f_.size() ? f_.lpNorm<Eigen::Infinity>() : 0.0);
+    force_scale_ = std::max(force_scale_, f_.lpNorm<Eigen::Infinity>());
+    // Rows have unit gradients: single rod forces may far exceed their sum.
+    if (lambda.rows()) force_scale_ = std::max(force_scale_, std::abs(h * multiplier_weight(k)) * lambda.col(k).lpNorm<Eigen::Infinity>());
     system.reduce_force(f_, momentum.col(k));
     for (int j = 0; j < stages; ++j) momentum.col(k) += (c.C(k, j) / h) * MdX_.col(j);
   }

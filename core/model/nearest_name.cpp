@@ -53,7 +53,7 @@ std::string_view nearest_name(std::string_view given, const std::vector<std::str
 
 std::string did_you_mean(std::string_view given, const std::vector<std::string_view>& known) {
   if (const auto near = nearest_name(given, known); !near.empty())
-    return "; did you mean " + quoted(near) + "?";
+    return "; did you mean " + in_quotes(near) + "?";
   if (known.empty()) return "";
   std::string text = "; known: ";
   constexpr std::size_t most = 12;
@@ -61,7 +61,7 @@ std::string did_you_mean(std::string_view given, const std::vector<std::string_v
   return known.size() > most ? text + ", ..." : text;
 }
 
-std::string quoted(std::string_view name) {
+std::string in_quotes(std::string_view name) {
   constexpr std::size_t most = 60;
   constexpr std::string_view hex = "0123456789abcdef";
   std::string text = "'";

@@ -16,6 +16,6 @@ std::string_view nearest_name(std::string_view given, const std::vector<std::str
 std::string did_you_mean(std::string_view given, const std::vector<std::string_view>& known);
 
 // The name in quotes, fit for one line of an error message: control bytes as \xNN, long ones shortened.
-std::string quoted(std::string_view name);
+std::string in_quotes(std::string_view name);
 
 }  // namespace unfurl

@@ -15,7 +15,10 @@ std::string number_text(double x) {
   if (std::isnan(x)) return "nan";
   if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
   std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr;
+  const bool countable = x == std::floor(x) && std::abs(x) < 1e7;  // 100000 rather than 1e+05
+  const auto end = countable
+                       ? std::to_chars(buffer.data(), buffer.data() + buffer.size(), static_cast<long>(x)).ptr
+                       : std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr;
   return {buffer.data(), end};
 }
 
@@ -143,6 +146,10 @@ ParamSpec vector_param(std::string_view name, std::string_view unit, std::vector
   return spec;
 }
 
+ParamSpec text_param(std::string_view name, std::string_view fallback, std::string_view help) {
+  return named(name, "", ParamKind::text, std::string(fallback), help);
+}
+
 std::string range_text(const ParamSpec& spec) {
   const std::string interval = interval_text(spec);
   switch (spec.kind) {
@@ -170,7 +177,8 @@ std::string wanted_text(const ParamSpec& spec) {
     case ParamKind::integer:
     case ParamKind::real: {
       const std::string noun = spec.kind == ParamKind::integer ? "a whole number" : "a number";
-      if (interval_text(spec).empty()) return with_unit(noun, spec.unit);
+      if (interval_text(spec).empty())
+        return with_unit(spec.kind == ParamKind::integer ? "a whole number" : "a finite number", spec.unit);
       return noun + (range.front() == '[' || range.front() == '(' ? " in " : " ") + range;
     }
     case ParamKind::vector:

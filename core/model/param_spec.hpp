@@ -41,6 +41,8 @@ ParamSpec boolean_param(std::string_view name, bool fallback, std::string_view h
 ParamSpec vector_param(std::string_view name, std::string_view unit, std::vector<double> fallback,
                        std::string_view help);
 
+ParamSpec text_param(std::string_view name, std::string_view fallback, std::string_view help);
+
 // "[0.1, 8]", "> 0", "one of a, b": the allowed range in words, for help and error messages.
 std::string range_text(const ParamSpec& spec);
 

@@ -5,19 +5,20 @@
 namespace unfurl {
 
 std::string problem_text(const SceneProblem& problem) {
-  const bool override_ = problem.where.file == "--set";
-  std::string text = problem.where.file;
-  if (problem.where.line > 0)
-    text += ":" + std::to_string(problem.where.line) + ":" + std::to_string(problem.where.column);
-  if (!problem.key.empty()) text += (text.empty() ? "" : override_ ? " " : ": ") + problem.key;
-  return text.empty() ? problem.message : text + ": " + problem.message;
+  const SourceLocation& where = problem.where;
+  std::string text = where.file;
+  if (where.line > 0)
+    text.append(":").append(std::to_string(where.line)).append(":").append(std::to_string(where.column));
+  if (!problem.key.empty()) text.append(text.empty() ? "" : text == "--set" ? " " : ": ").append(problem.key);
+  return text.append(text.empty() ? "" : ": ").append(problem.message);
 }
 
 SceneError::SceneError(std::vector<SceneProblem> problems) : problems_(std::move(problems)) {
   constexpr std::size_t most = 50;  // lines worth reading at once
   for (std::size_t i = 0; i < problems_.size() && i < most; ++i)
-    text_ += (i ? "\n" : "") + problem_text(problems_[i]);
-  if (problems_.size() > most) text_ += "\n... and " + std::to_string(problems_.size() - most) + " more";
+    text_.append(i ? "\n" : "").append(problem_text(problems_[i]));
+  if (problems_.size() > most)
+    text_.append("\n... and ").append(std::to_string(problems_.size() - most)).append(" more");
 }
 
 }  // namespace unfurl

@@ -64,7 +64,7 @@ std::optional<ParamValue> shaped(const ParamSpec& spec, const TomlTree& tree) {
 
 std::string mistyped(const ParamSpec& spec, const TomlTree& tree) {
   std::string got = tree.describe();
-  if (tree.kind == Kind::text) got = "the text " + quoted(tree.text);
+  if (tree.kind == Kind::text) got = "the text " + in_quotes(tree.text);
   if (tree.kind == Kind::array && spec.kind == ParamKind::vector && tree.items.size() == spec.length)
     for (const auto& item : tree.items)
       if (!number(item)) got = "a list with " + item.describe();
@@ -116,8 +116,8 @@ void TableReader::read_one(const ParamSpec& spec, ParamSet& values) {
   const auto* text = std::get_if<std::string>(&*value);
   if (!error.empty() && spec.kind == ParamKind::choice && text) {
     const auto near = nearest_name(*text, spec.choices);
-    error = "must be " + wanted_text(spec) + "; got " + quoted(*text);
-    if (!near.empty()) error += "; did you mean " + quoted(near) + "?";
+    error = "must be " + wanted_text(spec) + "; got " + in_quotes(*text);
+    if (!near.empty()) error += "; did you mean " + in_quotes(near) + "?";
   }
   if (!error.empty()) return problem(spec.name, error);
   values.set(spec.name, std::move(*value));

@@ -34,19 +34,6 @@ std::size_t utf8_length(std::string_view text, std::size_t i) {
   return length;
 }
 
-TomlObstacle find_bad_encoding(std::string_view text) {
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-    return {0, "the file is UTF-16 (it starts with that byte-order mark); save it as UTF-8"};
-  if (text.starts_with("\xEF\xBB")) return {0, "half a UTF-8 byte-order mark"};
-  for (std::size_t i = 0; i < text.size();) {
-    if (text[i] == '\0') return {i, "a zero byte: this is not a text file in UTF-8"};
-    const std::size_t length = utf8_length(text, i);
-    if (length == 0) return {i, "not valid UTF-8"};
-    i += length;
-  }
-  return {};
-}
-
 // End of the string that opens at i: one past its closing quotes, or the line's end where a one-line string
 // stays open.
 std::size_t string_end(std::string_view text, std::size_t i) {
@@ -68,7 +55,7 @@ std::size_t string_end(std::string_view text, std::size_t i) {
   return text.size();
 }
 
-TomlObstacle find_deep_nesting(std::string_view text) {
+TextObstacle find_deep_nesting(std::string_view text) {
   std::size_t brackets = 0, dots = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     switch (text[i]) {
@@ -105,8 +92,21 @@ TomlObstacle find_deep_nesting(std::string_view text) {
 
 }  // namespace
 
-TomlObstacle find_toml_obstacle(std::string_view text) {
-  TomlObstacle obstacle = find_bad_encoding(text);
+TextObstacle find_bad_encoding(std::string_view text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    return {0, "the file is UTF-16 (it starts with that byte-order mark); save it as UTF-8"};
+  if (text.starts_with("\xEF\xBB")) return {0, "half a UTF-8 byte-order mark"};
+  for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '\0') return {i, "a zero byte: this is not a text file in UTF-8"};
+    const std::size_t length = utf8_length(text, i);
+    if (length == 0) return {i, "not valid UTF-8"};
+    i += length;
+  }
+  return {};
+}
+
+TextObstacle find_toml_obstacle(std::string_view text) {
+  TextObstacle obstacle = find_bad_encoding(text);
   return obstacle.message.empty() ? find_deep_nesting(text) : obstacle;
 }
 

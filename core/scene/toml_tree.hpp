@@ -33,14 +33,13 @@ struct TomlTree {
 // UTF-8; a UTF-8 byte-order mark is skipped. No input can make it abort or exhaust the stack.
 TomlTree parse_toml(std::string_view text, const std::string& file);
 
-// The first thing in `text` that keeps it from being handed to the TOML library (not UTF-8, a foreign
-// byte-order mark, keys or brackets nested past reason), or nullptr-like empty message. Offsets are turned
-// into locations.
-struct TomlObstacle {
+// What keeps a text from being read at all.
+struct TextObstacle {
   std::size_t offset = 0;  // byte
   std::string message;     // empty: none
 };
-TomlObstacle find_toml_obstacle(std::string_view text);
+TextObstacle find_bad_encoding(std::string_view text);   // not UTF-8, a foreign byte-order mark, a zero byte
+TextObstacle find_toml_obstacle(std::string_view text);  // these, and keys or brackets nested past reason
 
 // Line and column (in characters, from 1) of a byte of the text.
 SourceLocation locate(std::string_view text, std::size_t offset, const std::string& file);

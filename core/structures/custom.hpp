@@ -1,7 +1,9 @@
 // A mechanism that a person lists node by node.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/model/structure.hpp"
@@ -17,19 +19,27 @@ struct CustomNode {
 };
 
 struct CustomRod {
-  std::string name;                  // empty: "A-B" from its nodes
-  std::vector<std::string> nodes;    // two names
-  double mass = -1.0;                // [kg]; negative: density * area * length
-  double density = 0.0;              // [kg/m^3]
-  double area = 0.0;                 // [m^2]
+  std::string name;                // empty: "A-B" from its nodes
+  std::vector<std::string> nodes;  // two names
+  double mass = -1.0;              // [kg]; negative: density * area * length
+  double density = 0.0;            // [kg/m^3]
+  double area = 0.0;               // [m^2]
   std::string group = "rod";
 };
 
 struct CustomConstraint {
   std::string kind;
   std::vector<std::string> nodes;  // names or globs
-  Vec3 normal = Vec3::Zero();      // plane: its normal; line: its direction
+  Vec3 normal = Vec3::Zero();      // plane: its normal; line: its direction; any length but 0
 };
+
+// Which constraint kinds a list may use, and what each reads.
+struct CustomConstraintKind {
+  std::string_view kind;
+  std::string_view direction;  // key of its direction: "normal", "direction"; empty: it has none
+  std::string_view help;
+};
+std::span<const CustomConstraintKind> custom_constraint_kinds();
 
 struct CustomSpec {
   std::vector<CustomNode> nodes;
@@ -38,17 +48,29 @@ struct CustomSpec {
   bool lumped_mass = false;
 };
 
-// All that is wrong, each entry with the place in the spec ("rods[3].nodes") and the cure; empty: `build_custom` works.
 struct CustomProblem {
   std::string table;  // "nodes", "rods", "constraints"
   int index = -1;     // entry of the table; -1: the table itself
   std::string key;    // "nodes", "position", ...
   std::string message;
 };
+
+// All that is wrong, each with its place in the spec and the cure; empty: `build_custom` works. Stops after
+// 100.
 std::vector<CustomProblem> check_custom(const CustomSpec& spec);
+
+// Nodes in the spec's order; the rods' lengths are the distances of their nodes. Throws StructureError with
+// the first problem where check_custom has any.
 Structure build_custom(const CustomSpec& spec);
+
+// The name a rod goes by: its own, or "A-B" from its nodes.
+std::string rod_name(const CustomRod& rod);
 
 // Does `name` match `pattern` with * and ?
 bool glob_match(std::string_view pattern, std::string_view name);
+
+// Indices of the names that one pattern means: the name itself where there is one, else all that match its *
+// and ?. Ascending; empty when there is none.
+std::vector<int> matching_names(std::string_view pattern, const std::vector<std::string_view>& names);
 
 }  // namespace unfurl

@@ -1,0 +1,118 @@
+// The one place that knows the command-line library.
+#include "app/cli.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "app/command.hpp"
+#include "app/failure.hpp"
+#include "app/help.hpp"
+#include "core/model/nearest_name.hpp"
+
+namespace unfurl {
+
+namespace {
+
+const Command& find_command(const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const auto& command : commands()) {
+    if (command.name == name) return command;
+    names.push_back(command.name);
+  }
+  throw UsageError("no command " + in_quotes(name) + did_you_mean(name, names));
+}
+
+// A word that no option took: a mistyped option. Words without a dash are counted later.
+void refuse_unknown_options(const CLI::App& parser) {
+  std::vector<std::string> kept;
+  for (const auto* option : parser.get_options())
+    for (const auto& name : option->get_lnames()) kept.push_back("--" + name);
+  for (const auto& word : parser.remaining()) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name.starts_with("-"))
+      throw UsageError("no option " + in_quotes(name) + did_you_mean(name, {kept.begin(), kept.end()}));
+  }
+}
+
+struct Parsed {
+  Arguments arguments;
+  bool help = false;
+};
+
+Parsed parse(const std::vector<std::string>& words) {
+  Parsed parsed;
+  Arguments& a = parsed.arguments;
+  CLI::App parser;
+  parser.set_help_flag();
+  parser.allow_extras();
+  parser.add_option("names", a.names);
+  parser.add_option("--set", a.overrides)->allow_extra_args(false);
+  parser.add_option("-o,--output", a.output);
+  parser.add_flag("--force", a.force);
+  parser.add_flag("--quiet", a.quiet);
+  parser.add_flag("--json", a.json);
+  parser.add_option("--threads", a.threads)->check(CLI::Range(1, 1024));
+  parser.add_flag("-h,--help", parsed.help);
+  try {
+    parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  }
+  refuse_unknown_options(parser);
+  for (const auto& word : parser.remaining()) a.names.push_back(word);
+  return parsed;
+}
+
+void check_count(const Command& command, const Arguments& arguments) {
+  const std::size_t count = arguments.names.size();
+  std::string message;
+  if (count < command.min_names) message = "too few arguments";
+  if (count > command.max_names)
+    message = "unexpected argument " + in_quotes(arguments.names[command.max_names]);
+  if (message.empty() && command.needs_output && arguments.output.empty()) message = "-o is missing";
+  if (!message.empty()) throw UsageError(message + "; usage: " + usage_line(command));
+}
+
+int dispatch(const std::vector<std::string>& words) {
+  if (words.empty()) {
+    std::cerr << program_help();
+    return exit_usage;
+  }
+  const std::string& first = words.front();
+  if (first == "--help" || first == "-h" || first == "help") {
+    std::cout << program_help();
+    return exit_ok;
+  }
+  if (first == "--version") {
+    std::cout << "unfurl " << UNFURL_VERSION << "\n";
+    return exit_ok;
+  }
+  if (first.starts_with("-")) throw UsageError("a command comes first, then its options; see unfurl --help");
+  const Command& command = find_command(first);
+  const Parsed parsed = parse({words.begin() + 1, words.end()});
+  if (parsed.help) {
+    std::cout << command_help(command);
+    return exit_ok;
+  }
+  check_count(command, parsed.arguments);
+  return command.run(parsed.arguments);
+}
+
+}  // namespace
+
+int run_command_line(const std::vector<std::string>& words) {
+  int code = exit_internal;
+  try {
+    code = dispatch(words);
+  } catch (...) {
+    code = report_failure(std::cerr);
+  }
+  std::cout.flush();
+  if (std::cout.fail() && code == exit_ok) {
+    std::cerr << "unfurl: cannot write to standard output\n";
+    code = exit_file_error;
+  }
+  return code;
+}
+
+}  // namespace unfurl

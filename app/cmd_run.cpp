@@ -1,0 +1,30 @@
+// unfurl run SCENE -o DIR: simulate; write data.
+#include <iostream>
+
+#include "app/command.hpp"
+#include "app/interrupt.hpp"
+#include "app/output_directory.hpp"
+#include "app/scene_run.hpp"
+#include "core/scene/build.hpp"
+
+namespace unfurl {
+
+int cmd_run(const Arguments& arguments) {
+  if (arguments.output.empty() && !arguments.json)
+    throw UsageError("-o DIR is missing (or --json, for the summary alone)");
+  const Scene scene = scene_of(arguments);
+  auto model = build_model(scene);
+  std::filesystem::path directory;
+  if (!arguments.output.empty()) directory = open_output_directory(arguments.output, arguments.force);
+
+  const InterruptGuard guard;
+  const Simulation run = simulate_scene(scene, std::move(model), arguments);
+  const Diagnostics diagnostics = diagnose(run);
+  if (!directory.empty()) clear_old_results(directory);
+  const std::string summary = write_data(directory, scene, run, diagnostics);
+  report_run(run, diagnostics, arguments);
+  if (arguments.json) std::cout << summary;
+  return exit_code_of(run);
+}
+
+}  // namespace unfurl

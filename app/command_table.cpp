@@ -1,0 +1,21 @@
+#include "app/command.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr Command table[] = {
+    {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run},
+    {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
+     1, 1, false, cmd_check},
+    {"list", "structures|methods|figures|scenes|constraints|forces", "what there is to choose from", 1, 1,
+     false, cmd_list},
+};
+
+}  // namespace
+
+std::span<const Command> commands() {
+  return table;
+}
+
+}  // namespace unfurl

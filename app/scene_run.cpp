@@ -1,0 +1,76 @@
+#include "app/scene_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "app/interrupt.hpp"
+#include "app/progress.hpp"
+#include "core/export/atomic_file.hpp"
+#include "core/export/csv.hpp"
+#include "core/export/summary.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "core/scene/write.hpp"
+
+namespace unfurl {
+
+namespace {
+
+double max_abs(const Series& series) {
+  double largest = 0.0;
+  for (const double x : series.values) largest = std::max(largest, std::abs(x));
+  return largest;
+}
+
+}  // namespace
+
+Scene scene_of(const Arguments& arguments) {
+  return read_scene_file(find_scene(arguments.names.front()), arguments.overrides);
+}
+
+Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model,
+                          const Arguments& arguments) {
+  Progress progress("simulating", arguments.quiet);
+  SimulationHooks hooks;
+  hooks.progress = [&](double fraction) { progress.show(fraction); };
+  hooks.cancelled = interrupted;
+  return simulate(std::move(model), scene.solver, hooks);
+}
+
+std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
+                       const Diagnostics& diagnostics) {
+  const Model& model = run.trajectory.model();
+  const Mobility mobility = analyse_mobility(model.system, run.trajectory.node_positions(0));
+  const std::string summary = summary_json(scene.name, run, diagnostics, mobility);
+  if (directory.empty()) return summary;
+  write_file_atomically(directory / "scene.toml", scene_text(scene));
+  write_series_csv(directory / "series.csv", diagnostics);
+  write_trajectory_csv(directory / "trajectory.csv", run.trajectory);
+  write_rod_forces_csv(directory / "rod_forces.csv", run.trajectory, diagnostics);
+  write_file_atomically(directory / "summary.json", summary);
+  return summary;
+}
+
+void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {
+  for (const auto& warning : run.warnings) std::cerr << "unfurl: warning: " << warning << "\n";
+  if (run.status == RunStatus::failed) std::cerr << "unfurl: the solver failed: " << run.message << "\n";
+  if (run.status == RunStatus::stopped) std::cerr << "unfurl: interrupted; what is finished is kept\n";
+  if (arguments.quiet) return;
+  std::ostringstream text;
+  text << std::setprecision(9) << to_string(run.status) << " at " << run.trajectory.end_time()
+       << " s: " << run.steps << " steps, " << std::setprecision(3) << run.cpu_s
+       << " s of CPU time, constraint error " << max_abs(diagnostics.at("constraint_max_m"))
+       << " m, energy balance " << max_abs(diagnostics.at("energy_balance_J")) << " J\n";
+  std::cerr << text.str();
+}
+
+int exit_code_of(const Simulation& run) {
+  if (run.status == RunStatus::failed) return exit_solver_failed;
+  return run.status == RunStatus::stopped ? exit_interrupted : exit_ok;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,117 @@
+#include "core/export/csv.hpp"
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+
+#include "core/export/atomic_file.hpp"
+
+namespace unfurl {
+
+namespace {
+
+// Writes row by row, so that a long run needs no second copy of itself in memory.
+class CsvFile {
+ public:
+  explicit CsvFile(const std::filesystem::path& path)
+      : path_(path), pending_(path), file_(std::fopen(pending_.name().c_str(), "wb")) {
+    if (!file_) throw FileError(path_, errno);
+  }
+  ~CsvFile() {
+    if (file_) std::fclose(file_);
+  }
+  CsvFile(const CsvFile&) = delete;
+  CsvFile& operator=(const CsvFile&) = delete;
+
+  void cell(const std::string& text) { append(csv_cell(text)); }
+
+  void cell(double x) {
+    std::array<char, 32> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr;
+    append({buffer.data(), static_cast<std::size_t>(end - buffer.data())});
+  }
+
+  void end_row() {
+    row_ += '\n';
+    if (std::fwrite(row_.data(), 1, row_.size(), file_) != row_.size()) throw FileError(path_, errno);
+    row_.clear();
+  }
+
+  void commit() {
+    std::FILE* file = file_;
+    file_ = nullptr;
+    if (std::fclose(file) != 0) throw FileError(path_, errno);
+    pending_.commit();
+  }
+
+ private:
+  void append(std::string_view text) {
+    if (!row_.empty()) row_ += ',';
+    row_ += text;
+  }
+
+  std::filesystem::path path_;
+  PendingFile pending_;
+  std::FILE* file_;
+  std::string row_;
+};
+
+}  // namespace
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string cell = "\"";
+  for (const char c : text) cell.append(c == '"' ? 2 : 1, c);
+  return cell + '"';
+}
+
+void write_series_csv(const std::filesystem::path& path, const Diagnostics& diagnostics) {
+  CsvFile file(path);
+  file.cell("t_s");
+  for (const auto& column : diagnostics.columns) file.cell(column.name);
+  file.end_row();
+  for (std::size_t i = 0; i < diagnostics.t.size(); ++i) {
+    file.cell(diagnostics.t[i]);
+    for (const auto& column : diagnostics.columns) file.cell(column.values[i]);
+    file.end_row();
+  }
+  file.commit();
+}
+
+void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& trajectory) {
+  CsvFile file(path);
+  file.cell("t_s");
+  const auto& nodes = trajectory.structure().node_copies;
+  for (const auto& node : nodes)
+    for (const char* suffix : {".x_m", ".y_m", ".z_m", ".vx_m_s", ".vy_m_s", ".vz_m_s"})
+      file.cell(node.name + suffix);
+  file.end_row();
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
+    file.cell(trajectory.time(i));
+    for (Index node = 0; node < x.size() / 3; ++node) {
+      for (Index k = 0; k < 3; ++k) file.cell(x[3 * node + k]);
+      for (Index k = 0; k < 3; ++k) file.cell(v[3 * node + k]);
+    }
+    file.end_row();
+  }
+  file.commit();
+}
+
+void write_rod_forces_csv(const std::filesystem::path& path, const Trajectory& trajectory,
+                          const Diagnostics& diagnostics) {
+  CsvFile file(path);
+  file.cell("t_s");
+  const auto& rods = trajectory.structure().rod_copies;
+  for (const auto& rod : rods) file.cell(rod.name + ".axial_force_N");
+  file.end_row();
+  for (std::size_t i = 0; i < diagnostics.t.size(); ++i) {
+    file.cell(diagnostics.t[i]);
+    for (const auto& rod : rods) file.cell(diagnostics.axial_force(static_cast<Index>(i), rod.source));
+    file.end_row();
+  }
+  file.commit();
+}
+
+}  // namespace unfurl

@@ -1,0 +1,26 @@
+// A run as tables of comma-separated values: shortest text that reads back as the same double, header names
+// with units.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/diagnostics/diagnostics.hpp"
+
+namespace unfurl {
+
+// One row per accepted step: t_s, then every diagnostic. Throws FileError, as all of these.
+void write_series_csv(const std::filesystem::path& path, const Diagnostics& diagnostics);
+
+// t_s, then NAME.x_m NAME.y_m NAME.z_m NAME.vx_m_s NAME.vy_m_s NAME.vz_m_s for every node of the whole
+// structure.
+void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& trajectory);
+
+// t_s, then NAME.axial_force_N for every rod of the whole structure, tension positive.
+void write_rod_forces_csv(const std::filesystem::path& path, const Trajectory& trajectory,
+                          const Diagnostics& diagnostics);
+
+// A cell: in quotes where it holds a comma, a quote or a line break (RFC 4180).
+std::string csv_cell(const std::string& text);
+
+}  // namespace unfurl

@@ -1,0 +1,16 @@
+// A run in one small JSON document, for scripts; its keys are stable.
+#pragma once
+
+#include <string>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/model/mobility.hpp"
+
+namespace unfurl {
+
+// Pretty-printed, ends with a line break. "nodes" and "rods" count the whole structure; coordinates,
+// constraints and rank are those of the model that was solved. A number that is not finite is null.
+std::string summary_json(const std::string& scene_name, const Simulation& run, const Diagnostics& diagnostics,
+                         const Mobility& mobility);
+
+}  // namespace unfurl

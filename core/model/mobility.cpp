@@ -1,0 +1,75 @@
+#include "core/model/mobility.hpp"
+
+#include <Eigen/SVD>
+#include <limits>
+
+#include "core/math/linear_elimination.hpp"
+
+namespace unfurl {
+
+namespace {
+
+// What is left of a unit row after taking out all earlier ones counts as zero below this. Entries carry
+// round-off of 1e-16 and the chains of operations behind them amplify it to 1e-13 at most; what a real
+// structure leaves is its distance from a singular pose, 3e-3 for the folded ring of six units and 1e-7 for
+// one of a thousand.
+constexpr double tolerance = 1e-11;
+
+// Beyond this the dense analysis takes seconds (its cost is cubic): the sparse one finds the same rows.
+constexpr Index max_dense_coordinates = 900;
+
+// The Jacobian with every row scaled to length 1; rows of zeros stay.
+SparseRows unit_rows(const System& system, const ConstVec& q) {
+  SparseRows G = system.all_jacobian(q);
+  for (Index row = 0; row < G.rows(); ++row) {
+    const double norm = G.row(row).norm();
+    if (norm > 0.0) G.row(row) /= norm;
+  }
+  return G;
+}
+
+// Gram-Schmidt over the rows from the first to the last, each row projected twice so that the basis stays
+// orthogonal to round-off.
+std::vector<int> dependent_rows(const MatrixXd& G) {
+  std::vector<int> dependent;
+  MatrixXd basis(G.cols(), std::min(G.rows(), G.cols()));  // orthonormal columns
+  Index size = 0;
+  for (Index row = 0; row < G.rows(); ++row) {
+    VectorXd rest = G.row(row).transpose();
+    for (int pass = 0; pass < 2; ++pass) {
+      const VectorXd shares = basis.leftCols(size).transpose() * rest;
+      rest.noalias() -= basis.leftCols(size) * shares;
+    }
+    const double norm = rest.norm();
+    if (norm <= tolerance || size == basis.cols())
+      dependent.push_back(static_cast<int>(row));
+    else
+      basis.col(size++) = rest / norm;
+  }
+  return dependent;
+}
+
+}  // namespace
+
+Mobility analyse_mobility(const System& system, const ConstVec& q) {
+  Mobility mobility;
+  const SparseRows G = unit_rows(system, q);
+  mobility.coordinates = G.cols();
+  mobility.constraints = G.rows();
+  mobility.smallest_singular_value = std::numeric_limits<double>::quiet_NaN();
+
+  const bool dense = G.cols() <= max_dense_coordinates;
+  const MatrixXd full = dense ? MatrixXd(G) : MatrixXd();
+  const std::vector<int> dependent =
+      dense ? dependent_rows(full) : eliminate(G, VectorXd::Zero(G.rows()), tolerance).redundant;
+
+  mobility.rank = G.rows() - static_cast<Index>(dependent.size());
+  mobility.degrees_of_freedom = mobility.coordinates - mobility.rank;
+  const auto names = system.all_names();
+  for (const int row : dependent) mobility.redundant.push_back(names[static_cast<std::size_t>(row)]);
+  if (dense && mobility.rank > 0)
+    mobility.smallest_singular_value = full.bdcSvd().singularValues()[mobility.rank - 1];
+  return mobility;
+}
+
+}  // namespace unfurl

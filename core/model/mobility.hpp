@@ -1,0 +1,25 @@
+// How freely a structure can move: the rank of its constraints and the rows that add nothing to it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/model/system.hpp"
+
+namespace unfurl {
+
+struct Mobility {
+  Index coordinates = 0;               // 3 n
+  Index constraints = 0;               // rows of G, eliminated linear ones included
+  Index rank = 0;                      // of G
+  std::vector<std::string> redundant;  // rows that follow from the rows before them, in order
+  Index degrees_of_freedom = 0;        // coordinates - rank
+  // Of G with rows of unit length; how far the pose is from one in which more can move. NaN: too large a
+  // structure.
+  double smallest_singular_value = 0;
+};
+
+// At the pose q [3 n] of the solved nodes.
+Mobility analyse_mobility(const System& system, const ConstVec& q);
+
+}  // namespace unfurl

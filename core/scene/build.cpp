@@ -1,0 +1,94 @@
+#include "core/scene/build.hpp"
+
+#include <utility>
+
+#include "core/model/nearest_name.hpp"
+#include "core/model/structure_error.hpp"
+#include "core/structures/family.hpp"
+
+namespace unfurl {
+
+namespace {
+
+// Where a key was given; failing that, where its table was.
+SourceLocation location_of(const Scene& scene, const std::string& key) {
+  for (std::string name = key; !name.empty();) {
+    if (const auto it = scene.locations.find(name); it != scene.locations.end()) return it->second;
+    const std::size_t dot = name.find_last_of(".[");
+    if (dot == std::string::npos) break;
+    name.resize(dot);
+  }
+  const auto structure = scene.locations.find("structure");
+  return {structure == scene.locations.end() ? scene.name : structure->second.file, 0, 0};
+}
+
+Structure bare_structure(const Scene& scene) {
+  try {
+    if (const Family* family = find_family(scene.kind)) return family->build(scene.structure);
+    return build_custom(scene.custom);
+  } catch (const StructureError& error) {
+    const std::string key = "structure." + error.key;
+    throw SceneError({{location_of(scene, key), key, error.message}});
+  }
+}
+
+bool is_sector(const Structure& structure) {
+  return structure.node_copies.size() != structure.nodes.size();
+}
+
+// A sector stands for the whole only when gravity looks the same from every copy.
+void add_gravity(const Scene& scene, Structure& structure) {
+  structure.gravity = scene.gravity;
+  if (!is_sector(structure)) return;
+  constexpr double round_off = 1e-12;  // of a rotation matrix and a product of three terms, with a margin
+  for (const auto& copy : structure.node_copies) {
+    if ((copy.map * scene.gravity - scene.gravity).norm() <= round_off * scene.gravity.norm()) continue;
+    const std::string key = "gravity.acceleration";
+    throw SceneError(
+        {{location_of(scene, key), key,
+          "must act along the axis of symmetry in a sector model; set structure.model to \"full\""}});
+  }
+}
+
+// A load on a solved node is a load on each of its copies.
+void add_load(Structure& structure, int node, const Vec3& force) {
+  structure.loads.push_back({node, force, true});
+  for (std::size_t i = 0; i < structure.node_copies.size(); ++i) {
+    const auto& copy = structure.node_copies[i];
+    if (copy.source == node) structure.load_copies.push_back({static_cast<int>(i), copy.map * force});
+  }
+}
+
+void add_loads(const Scene& scene, Structure& structure) {
+  std::vector<std::string_view> names;
+  for (const auto& node : structure.nodes) names.push_back(node.name);
+  std::vector<SceneProblem> problems;
+  for (std::size_t i = 0; i < scene.loads.size(); ++i) {
+    const auto& load = scene.loads[i];
+    for (const auto& pattern : load.nodes) {
+      const auto found = matching_names(pattern, names);
+      for (const int node : found) add_load(structure, node, load.force);
+      if (found.empty())
+        problems.push_back({load.where, "loads[" + std::to_string(i) + "].nodes",
+                            "no node matches " + in_quotes(pattern) + did_you_mean(pattern, names)});
+    }
+  }
+  if (!problems.empty()) throw SceneError(std::move(problems));
+}
+
+}  // namespace
+
+Structure build_structure(const Scene& scene) {
+  Structure structure = bare_structure(scene);
+  add_gravity(scene, structure);
+  add_loads(scene, structure);
+  return structure;
+}
+
+std::shared_ptr<const Model> build_model(const Scene& scene) {
+  Structure structure = build_structure(scene);
+  System system(structure, scene.solver.eliminate_linear);
+  return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+}
+
+}  // namespace unfurl

@@ -1,0 +1,159 @@
+#include "core/scene/csv_table.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "core/model/nearest_name.hpp"
+
+namespace unfurl {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+struct Record {
+  int line = 0;  // where it begins
+  std::vector<std::string> cells;
+};
+
+// Takes one record after the other from the text.
+class Splitter {
+ public:
+  explicit Splitter(std::string_view text) : text_(text) {}
+
+  bool next(Record& record) {
+    while (at_ < text_.size() && (text_[at_] == '\n' || text_[at_] == '\r' || text_[at_] == '#')) skip_line();
+    if (at_ >= text_.size()) return false;
+    record = {line_, {}};
+    do record.cells.push_back(cell());
+    while (at_ < text_.size() && text_[at_++] == ',');
+    if (at_ > 0 && text_[at_ - 1] == '\n') ++line_;
+    return true;
+  }
+
+ private:
+  void skip_line() {
+    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+    if (at_ < text_.size()) ++at_;
+    ++line_;
+  }
+
+  // Stops at the comma or line end behind the cell.
+  std::string cell() {
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
+    std::string value;
+    if (at_ < text_.size() && text_[at_] == '"') value = quoted_cell();
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n') ++at_;
+    std::string_view rest = text_.substr(begin, at_ - begin);
+    if (!rest.empty() && rest.back() == '\r') rest.remove_suffix(1);
+    return value.append(trimmed(rest));
+  }
+
+  std::string quoted_cell() {
+    std::string value;
+    for (++at_; at_ < text_.size(); ++at_) {
+      if (text_[at_] == '"' && (at_ + 1 >= text_.size() || text_[at_ + 1] != '"')) {
+        ++at_;
+        break;
+      }
+      if (text_[at_] == '"') ++at_;
+      if (text_[at_] == '\n') ++line_;
+      value += text_[at_];
+    }
+    return value;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+};
+
+const CsvColumn* find_column(std::string_view header, const std::vector<CsvColumn>& columns) {
+  for (const auto& column : columns) {
+    const std::string with_unit = std::string(column.name) + "_" + std::string(column.unit);
+    if (header == column.name || (!column.unit.empty() && header == with_unit)) return &column;
+  }
+  return nullptr;
+}
+
+// The column of each cell; nullptr for unknown ones, which are noted.
+std::vector<const CsvColumn*> read_header(const Record& record, const std::string& file,
+                                          const std::vector<CsvColumn>& columns, SceneNotes& notes) {
+  const SourceLocation where{file, record.line, 1};
+  std::vector<std::string_view> names;
+  for (const auto& column : columns) names.push_back(column.name);
+  std::vector<const CsvColumn*> found;
+  for (const auto& cell : record.cells) {
+    const CsvColumn* column = find_column(cell, columns);
+    if (!column) notes.add(where, "", "unknown column " + in_quotes(cell) + did_you_mean(cell, names));
+    for (const auto* earlier : found)
+      if (column && earlier == column) notes.add(where, "", "column " + in_quotes(cell) + " appears twice");
+    found.push_back(column);
+  }
+  for (const auto& column : columns) {
+    bool present = !column.required;
+    for (const auto* given : found) present = present || given == &column;
+    if (!present) notes.add(where, "", "column " + in_quotes(column.name) + " is missing");
+  }
+  return found;
+}
+
+void read_number(const std::string& cell, const CsvColumn& column, CsvRow& row, SceneNotes& notes) {
+  if (cell.empty()) {
+    if (column.required) notes.add(row.where, std::string(column.name), "is empty");
+    return;
+  }
+  const char* begin = cell.data() + (cell[0] == '+' ? 1 : 0);
+  double x = 0.0;
+  const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
+  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x))
+    notes.add(row.where, std::string(column.name), "must be a finite number; got " + in_quotes(cell));
+  else
+    row.numbers[std::string(column.name)] = x;
+}
+
+}  // namespace
+
+std::vector<CsvRow> read_csv(std::string_view text, const std::string& file,
+                             const std::vector<CsvColumn>& columns, SceneNotes& notes) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  if (const auto obstacle = find_bad_encoding(text); !obstacle.message.empty()) {
+    notes.add(locate(text, obstacle.offset, file), "", obstacle.message);
+    return {};
+  }
+  Splitter splitter(text);
+  Record record;
+  if (!splitter.next(record)) {
+    notes.add({file, 1, 1}, "", "is empty; the first line must name the columns");
+    return {};
+  }
+  const std::size_t problems = notes.problems.size();
+  const auto header = read_header(record, file, columns, notes);
+  if (notes.problems.size() > problems) return {};
+  std::vector<CsvRow> rows;
+  while (splitter.next(record)) {
+    CsvRow row{{file, record.line, 1}, {}, {}};
+    if (record.cells.size() != header.size()) {
+      notes.add(row.where, "",
+                "has " + std::to_string(record.cells.size()) + " cells; the header has " +
+                    std::to_string(header.size()));
+      continue;
+    }
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (header[i]->number)
+        read_number(record.cells[i], *header[i], row, notes);
+      else
+        row.texts[std::string(header[i]->name)] = record.cells[i];
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,213 @@
+#include "core/scene/custom_reader.hpp"
+
+#include <set>
+
+#include "core/model/nearest_name.hpp"
+#include "core/scene/csv_table.hpp"
+#include "core/scene/text_file.hpp"
+
+namespace unfurl {
+
+namespace {
+
+Vec3 vec3(const ParamSet& values, std::string_view name) {
+  const auto& v = values.vector(name);
+  return {v[0], v[1], v[2]};
+}
+
+std::string entry_key(std::string_view table, std::size_t index) {
+  return "structure." + std::string(table) + "[" + std::to_string(index) + "]";
+}
+
+void read_nodes(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
+  for (const TomlTree* tree : table.tables("nodes")) {
+    const std::string key = entry_key("nodes", spec.nodes.size());
+    notes.locations[key] = tree->where;
+    TableReader entry(tree, key, tree->where, notes);
+    const ParamSet values = entry.read(custom_node_params());
+    entry.finish();
+    spec.nodes.push_back({values.text("name"), vec3(values, "position"), vec3(values, "velocity"),
+                          values.real("mass"), values.boolean("fixed")});
+  }
+}
+
+void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
+  for (const TomlTree* tree : table.tables("rods")) {
+    const std::string key = entry_key("rods", spec.rods.size());
+    notes.locations[key] = tree->where;
+    TableReader entry(tree, key, tree->where, notes);
+    const ParamSet values = entry.read(custom_rod_params());
+    CustomRod rod{values.text("name"),    entry.names("nodes"), values.real("mass"),
+                  values.real("density"), values.real("area"),  values.text("group")};
+    entry.finish();
+    if (!entry.has("mass")) rod.mass = -1.0;
+    spec.rods.push_back(std::move(rod));
+  }
+}
+
+ParamSpec kind_param() {
+  std::vector<std::string_view> kinds;
+  for (const auto& row : custom_constraint_kinds()) kinds.push_back(row.kind);
+  ParamSpec param = choice_param("kind", "", std::move(kinds), "");
+  param.required = true;
+  return param;
+}
+
+void read_constraints(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
+  for (const TomlTree* tree : table.tables("constraints")) {
+    const std::string key = entry_key("constraints", spec.constraints.size());
+    notes.locations[key] = tree->where;
+    TableReader entry(tree, key, tree->where, notes);
+    CustomConstraint constraint;
+    constraint.kind = entry.read({kind_param()}).text("kind");
+    constraint.nodes = entry.names("nodes");
+    for (const auto& row : custom_constraint_kinds()) {
+      if (row.kind != constraint.kind || row.direction.empty()) continue;
+      ParamSpec direction = vector_param(row.direction, "", {0, 0, 0}, "");
+      direction.required = true;
+      constraint.normal = vec3(entry.read({direction}), row.direction);
+    }
+    if (!constraint.kind.empty()) entry.finish();
+    spec.constraints.push_back(std::move(constraint));
+  }
+}
+
+double cell(const CsvRow& row, std::string_view name, double fallback) {
+  const auto it = row.numbers.find(name);
+  return it == row.numbers.end() ? fallback : it->second;
+}
+
+std::string text_cell(const CsvRow& row, std::string_view name, std::string_view fallback) {
+  const auto it = row.texts.find(name);
+  return it == row.texts.end() || it->second.empty() ? std::string(fallback) : it->second;
+}
+
+// The rows of the file that the key names; none when there is no such key.
+std::vector<CsvRow> file_rows(TableReader& table, std::string_view key, const std::string& name,
+                              const std::string& folder, const std::vector<CsvColumn>& columns,
+                              SceneNotes& notes) {
+  if (!table.has(key) || name.empty()) return {};
+  const TextFile file = read_file_beside(folder, name);
+  if (!file.error.empty()) {
+    table.problem(key, file.error);
+    return {};
+  }
+  return read_csv(file.text, file.path, columns, notes);
+}
+
+void read_nodes_file(TableReader& table, const std::string& name, const std::string& folder, CustomSpec& spec,
+                     SceneNotes& notes) {
+  static const std::vector<CsvColumn> columns = {
+      {"name", "", false, true}, {"x", "m", true, true}, {"y", "m", true, true},
+      {"z", "m", true, true},    {"vx", "m_s", true},    {"vy", "m_s", true},
+      {"vz", "m_s", true},       {"mass", "kg", true},   {"fixed", "", true}};
+  for (const auto& row : file_rows(table, "nodes_file", name, folder, columns, notes)) {
+    notes.locations[entry_key("nodes", spec.nodes.size())] = row.where;
+    spec.nodes.push_back({text_cell(row, "name", ""),
+                          {cell(row, "x", 0), cell(row, "y", 0), cell(row, "z", 0)},
+                          {cell(row, "vx", 0), cell(row, "vy", 0), cell(row, "vz", 0)},
+                          cell(row, "mass", 0),
+                          cell(row, "fixed", 0) != 0.0});
+  }
+}
+
+void read_rods_file(TableReader& table, const std::string& name, const std::string& folder, CustomSpec& spec,
+                    SceneNotes& notes) {
+  static const std::vector<CsvColumn> columns = {
+      {"a", "", false, true},     {"b", "", false, true}, {"name", ""}, {"mass", "kg", true},
+      {"density", "kg_m3", true}, {"area", "m2", true},   {"group", ""}};
+  for (const auto& row : file_rows(table, "rods_file", name, folder, columns, notes)) {
+    notes.locations[entry_key("rods", spec.rods.size())] = row.where;
+    spec.rods.push_back({text_cell(row, "name", ""),
+                         {text_cell(row, "a", ""), text_cell(row, "b", "")},
+                         cell(row, "mass", -1.0),
+                         cell(row, "density", 0.0),
+                         cell(row, "area", 0.0),
+                         text_cell(row, "group", "rod")});
+  }
+}
+
+// The place of a key of an entry, of the entry, or of the whole table: the closest that is known.
+SourceLocation nearest_location(const std::string& entry, const std::string& key, const TableReader& table,
+                                const SceneNotes& notes) {
+  for (const auto& name : {entry + "." + key, entry})
+    if (const auto it = notes.locations.find(name); it != notes.locations.end()) return it->second;
+  return table.where();
+}
+
+// What is wrong with the list as a whole. A key in which something is wrong already (problems from `before`
+// on) is not reported twice; where a whole list could not be read, everything that refers to it would be, so
+// nothing is.
+void note_problems(const CustomSpec& spec, std::size_t before, const TableReader& table, SceneNotes& notes) {
+  std::set<std::string> known;
+  for (std::size_t i = before; i < notes.problems.size(); ++i) {
+    if (notes.problems[i].key.find('[') == std::string::npos) return;
+    known.insert(notes.problems[i].key);
+  }
+  for (const auto& problem : check_custom(spec)) {
+    const std::string entry = problem.index < 0
+                                  ? "structure." + problem.table
+                                  : entry_key(problem.table, static_cast<std::size_t>(problem.index));
+    const std::string key = problem.key.empty() ? entry : entry + "." + problem.key;
+    if (!known.contains(key))
+      notes.add(nearest_location(entry, problem.key, table, notes), key, problem.message);
+  }
+}
+
+}  // namespace
+
+const std::vector<ParamSpec>& custom_params() {
+  static const std::vector<ParamSpec> params = [] {
+    ParamSpec nodes =
+        text_param("nodes_file", "", "CSV file beside the scene: name,x,y,z[,vx,vy,vz,mass,fixed]");
+    ParamSpec rods =
+        text_param("rods_file", "", "CSV file beside the scene: a,b[,name,mass,density,area,group]");
+    return std::vector<ParamSpec>{
+        choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"), nodes, rods};
+  }();
+  return params;
+}
+
+const std::vector<ParamSpec>& custom_node_params() {
+  static const std::vector<ParamSpec> params = [] {
+    ParamSpec name = text_param("name", "", "what rods, constraints and loads call the node");
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    ParamSpec position = vector_param("position", "m", {unknown, unknown, unknown}, "at t = 0");
+    name.required = position.required = true;
+    return std::vector<ParamSpec>{
+        name, position, vector_param("velocity", "m/s", {0, 0, 0}, "at t = 0; projected on the constraints"),
+        real_param("mass", "kg", 0.0, 0.0, std::numeric_limits<double>::infinity(),
+                   "added to the rods' share"),
+        boolean_param("fixed", false, "stays where it is")};
+  }();
+  return params;
+}
+
+const std::vector<ParamSpec>& custom_rod_params() {
+  static const std::vector<ParamSpec> params = [] {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    ParamSpec name = text_param("name", "", "\"A-B\" from its nodes by default");
+    ParamSpec group = text_param("group", "rod", "what colours and groups of rod forces go by");
+    return std::vector<ParamSpec>{
+        name, real_param("mass", "kg", 0.0, 0.0, infinity, "0: a pure distance constraint"),
+        real_param("density", "kg/m^3", 0.0, 0.0, infinity, "in place of mass, with area"),
+        real_param("area", "m^2", 0.0, 0.0, infinity, "cross section"), group};
+  }();
+  return params;
+}
+
+CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes& notes) {
+  const std::size_t before = notes.problems.size();
+  CustomSpec spec;
+  const ParamSet values = table.read(custom_params());
+  spec.lumped_mass = values.text("mass") == "lumped";
+  read_nodes(table, spec, notes);
+  read_nodes_file(table, values.text("nodes_file"), folder, spec, notes);
+  read_rods(table, spec, notes);
+  read_rods_file(table, values.text("rods_file"), folder, spec, notes);
+  read_constraints(table, spec, notes);
+  note_problems(spec, before, table, notes);
+  return spec;
+}
+
+}  // namespace unfurl

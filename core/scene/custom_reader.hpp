@@ -1,0 +1,21 @@
+// The [structure] table of a custom scene: nodes, rods and constraints, inline or from CSV files beside the
+// scene.
+#pragma once
+
+#include <string>
+
+#include "core/scene/table_reader.hpp"
+#include "core/structures/custom.hpp"
+
+namespace unfurl {
+
+// Reads and checks the list. `folder` is the scene's own, in which nodes_file and rods_file must lie; empty:
+// the scene did not come from a file and may not name any.
+CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes& notes);
+
+// Keys of the entries, also for the scene writer.
+const std::vector<ParamSpec>& custom_params();
+const std::vector<ParamSpec>& custom_node_params();
+const std::vector<ParamSpec>& custom_rod_params();
+
+}  // namespace unfurl

@@ -1,0 +1,24 @@
+// The scenes that come with the program.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace unfurl {
+
+// The folder of a kind of asset ("scenes"): in $UNFURL_ASSETS, in ../share/unfurl beside the program, or in
+// the source tree the program was built from; the first that exists. Empty: none does.
+std::string asset_folder(const std::string& kind);
+
+struct LibraryScene {
+  std::string name;  // "hoop6"
+  std::string path;
+  std::string title;  // "" where the file cannot be read
+};
+std::vector<LibraryScene> library_scenes();  // by name
+
+// The file that SCENE of a command line means: the file of that name, or else the library's scene. Throws
+// UnreadableScene (reader.hpp) with the nearest name.
+std::string find_scene(const std::string& scene);
+
+}  // namespace unfurl

@@ -1,0 +1,165 @@
+#include "core/scene/overrides.hpp"
+
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include "core/model/nearest_name.hpp"
+
+namespace unfurl {
+
+namespace {
+
+const SourceLocation from_command_line{"--set", 0, 0};
+
+// Why an override cannot be applied.
+struct Refusal {
+  std::string message;
+};
+
+struct Step {
+  std::string name;
+  bool quoted = false;
+  std::optional<std::size_t> index;  // [3]; `name` is empty then
+};
+
+std::string quoted_step(std::string_view key, std::size_t& i) {
+  const std::size_t end = key.find(key[i], i + 1);
+  if (end == std::string_view::npos) throw Refusal{"a quote in the key stays open"};
+  std::string name(key.substr(i + 1, end - i - 1));
+  i = end + 1;
+  return name;
+}
+
+Step index_step(std::string_view key, std::size_t& i) {
+  const std::size_t end = key.find(']', i);
+  const std::string_view digits = key.substr(i + 1, end == std::string_view::npos ? end : end - i - 1);
+  std::size_t index = 0;
+  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+  if (end == std::string_view::npos || error != std::errc() || stop != digits.data() + digits.size())
+    throw Refusal{"an index must be a whole number in brackets, [0] the first"};
+  i = end + 1;
+  return {"", false, index};
+}
+
+std::vector<Step> parse_key(std::string_view key) {
+  std::vector<Step> steps;
+  std::size_t i = 0;
+  while (true) {
+    if (i < key.size() && (key[i] == '"' || key[i] == '\'')) {
+      steps.push_back({quoted_step(key, i), true, std::nullopt});
+    } else {
+      const std::size_t end = std::min(key.find_first_of(".[", i), key.size());
+      if (end == i) throw Refusal{"the key has an empty part"};
+      steps.push_back({std::string(key.substr(i, end - i)), false, std::nullopt});
+      i = end;
+    }
+    while (i < key.size() && key[i] == '[') steps.push_back(index_step(key, i));
+    if (i == key.size()) return steps;
+    if (key[i++] != '.') throw Refusal{"parts of a key are separated by dots"};
+  }
+}
+
+void locate_at_command_line(TomlTree& tree) {
+  tree.where = tree.key_where = from_command_line;
+  for (auto& item : tree.items) locate_at_command_line(item);
+  for (auto& [name, value] : tree.entries) locate_at_command_line(value);
+}
+
+// Begins like a word rather than like a number, a list or a quoted string, and is one line of printable text.
+bool is_bare_word(std::string_view text) {
+  if (text.empty() || std::string_view("0123456789+-[]{}\"'=#").find(text[0]) != std::string_view::npos)
+    return false;
+  for (const char c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == '"') return false;
+  return true;
+}
+
+TomlTree parse_value(std::string_view text) {
+  TomlTree value;
+  try {
+    TomlTree parsed = parse_toml("value = " + std::string(text) + "\n", "--set");
+    if (parsed.entries.size() != 1) throw Refusal{"the value must be one TOML value"};
+    value = std::move(parsed.entries[0].second);
+  } catch (const SceneError& error) {
+    if (!is_bare_word(text)) {
+      const bool none = text.find_first_not_of(" \t") == std::string_view::npos;
+      throw Refusal{none ? "has no value"
+                         : "not a TOML value: " + in_quotes(text) +
+                               "; text goes in quotes unless it is a bare word"};
+    }
+    value.kind = TomlTree::Kind::text;
+    value.text = text;
+    if (const auto obstacle = find_bad_encoding(text); !obstacle.message.empty())
+      throw Refusal{obstacle.message};
+  }
+  locate_at_command_line(value);
+  return value;
+}
+
+// What an entry of an array of tables goes by: its name; a rod without one, "A-B" from its nodes.
+std::string entry_name(const TomlTree& entry) {
+  const TomlTree* name = entry.find("name");
+  if (name && name->kind == TomlTree::Kind::text) return name->text;
+  const TomlTree* nodes = entry.find("nodes");
+  if (!nodes || nodes->items.size() != 2) return "";
+  return nodes->items[0].text + "-" + nodes->items[1].text;
+}
+
+TomlTree& step_into_array(TomlTree& array, const Step& step, std::string_view so_far) {
+  if (step.index) {
+    if (*step.index < array.items.size()) return array.items[*step.index];
+    const std::size_t count = array.items.size();
+    throw Refusal{std::string(so_far) + " has " + std::to_string(count) +
+                  (count == 1 ? " entry" : " entries") + "; the first is [0]"};
+  }
+  std::vector<std::string> names;
+  for (auto& item : array.items) {
+    names.push_back(entry_name(item));
+    if (names.back() == step.name) return item;
+  }
+  throw Refusal{std::string(so_far) + " has no entry named " + in_quotes(step.name) +
+                did_you_mean(step.name, {names.begin(), names.end()})};
+}
+
+TomlTree& step_into(TomlTree& tree, const Step& step, std::string_view so_far) {
+  if (tree.kind == TomlTree::Kind::array) return step_into_array(tree, step, so_far);
+  if (tree.kind != TomlTree::Kind::table)
+    throw Refusal{std::string(so_far) + " is " + tree.describe() + ", not a table"};
+  if (step.index) throw Refusal{std::string(so_far) + " is not a list"};
+  if (TomlTree* found = tree.find(step.name)) return *found;
+  TomlTree made;
+  made.where = made.key_where = from_command_line;
+  tree.entries.emplace_back(step.name, std::move(made));
+  return tree.entries.back().second;
+}
+
+void apply(TomlTree& root, std::string_view key, std::string_view text) {
+  const auto steps = parse_key(key);
+  TomlTree value = parse_value(text);
+  TomlTree* target = &root;
+  std::string so_far;
+  for (const auto& step : steps) {
+    target = &step_into(*target, step, so_far);
+    so_far += step.index ? "[" + std::to_string(*step.index) + "]" : (so_far.empty() ? "" : ".") + step.name;
+  }
+  *target = std::move(value);
+}
+
+}  // namespace
+
+void apply_overrides(TomlTree& root, const std::vector<std::string>& overrides,
+                     std::vector<SceneProblem>& problems) {
+  for (const auto& text : overrides) {
+    const std::size_t equals = text.find('=');
+    const std::string key = text.substr(0, equals);
+    try {
+      if (equals == std::string::npos) throw Refusal{"must be key=value"};
+      apply(root, key, std::string_view(text).substr(equals + 1));
+    } catch (const Refusal& refusal) {
+      problems.push_back({from_command_line, key, refusal.message});
+    }
+  }
+}
+
+}  // namespace unfurl

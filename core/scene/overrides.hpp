@@ -1,0 +1,18 @@
+// `--set key=value`: changes to a scene before it is checked.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/scene/toml_tree.hpp"
+
+namespace unfurl {
+
+// Each override is "key=value". The key is dotted; an entry of an array goes by its index or, in an array of
+// tables, by its name: structure.nodes[0].mass, structure.nodes.B0.mass; a name with dots goes in quotes. The
+// value is TOML; a bare word is a string. Missing tables are made; arrays do not grow. What cannot be applied
+// is added to `problems`.
+void apply_overrides(TomlTree& root, const std::vector<std::string>& overrides,
+                     std::vector<SceneProblem>& problems);
+
+}  // namespace unfurl

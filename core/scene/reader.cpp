@@ -1,0 +1,157 @@
+#include "core/scene/reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <tuple>
+
+#include "core/model/nearest_name.hpp"
+#include "core/scene/custom_reader.hpp"
+#include "core/scene/overrides.hpp"
+#include "core/scene/table_reader.hpp"
+#include "core/scene/text_file.hpp"
+#include "core/structures/family.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr double max_steps = 1e9;
+
+// Where a table is, or would be.
+const SourceLocation& place(const TomlTree* table, const TomlTree& root) {
+  return table ? table->where : root.where;
+}
+
+ParamSpec kind_param() {
+  std::vector<std::string_view> kinds;
+  for (const auto& family : families()) kinds.push_back(family.kind);
+  kinds.push_back("custom");
+  ParamSpec param = choice_param("kind", "", std::move(kinds), "");
+  param.required = true;
+  return param;
+}
+
+void read_structure(TableReader& root, const TomlTree& tree, const std::string& folder, Scene& scene,
+                    SceneNotes& notes) {
+  const TomlTree* found = root.table("structure");
+  if (!found) {
+    if (!root.has("structure")) root.problem("structure", "is missing; a scene needs a [structure] table");
+    return;
+  }
+  TableReader table(found, "structure", place(found, tree), notes);
+  scene.kind = table.read({kind_param()}).text("kind");
+  if (scene.kind.empty()) return;  // its other keys mean nothing without it
+  if (const Family* family = find_family(scene.kind))
+    scene.structure = table.read(family->params());
+  else
+    scene.custom = read_custom(table, folder, notes);
+  table.finish();
+}
+
+void read_gravity(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
+  static const std::vector<ParamSpec> params = {
+      vector_param("acceleration", "m/s^2", {0, 0, 0}, "acceleration of free fall")};
+  const TomlTree* found = root.table("gravity");
+  TableReader table(found, "gravity", place(found, tree), notes);
+  const auto values = table.read(params);
+  const auto& a = values.vector("acceleration");
+  scene.gravity = {a[0], a[1], a[2]};
+  table.finish();
+}
+
+void read_loads(TableReader& root, Scene& scene, SceneNotes& notes) {
+  static const std::vector<ParamSpec> params = [] {
+    ParamSpec force = vector_param("force", "N", {0, 0, 0}, "constant force on each node");
+    force.required = true;
+    return std::vector<ParamSpec>{force};
+  }();
+  for (const TomlTree* tree : root.tables("loads")) {
+    const std::string key = "loads[" + std::to_string(scene.loads.size()) + "]";
+    TableReader entry(tree, key, tree->where, notes);
+    SceneLoad load;
+    load.nodes = entry.names("nodes");
+    const auto values = entry.read(params);
+    const auto& f = values.vector("force");
+    load.force = {f[0], f[1], f[2]};
+    load.where = tree->find("nodes") ? tree->find("nodes")->where : tree->where;
+    entry.finish();
+    scene.loads.push_back(std::move(load));
+  }
+}
+
+void read_solver(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
+  const TomlTree* found = root.table("solver");
+  TableReader table(found, "solver", place(found, tree), notes);
+  scene.solver = solver_options(table.read(solver_params()));
+  table.finish();
+  const double steps = scene.solver.end_time / scene.solver.step;
+  if (steps > max_steps)
+    table.problem("step",
+                  "end_time / step would be more than 1e9 steps; take a larger step or an earlier end_time");
+}
+
+void read_render(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
+  const TomlTree* found = root.table("render");
+  TableReader table(found, "render", place(found, tree), notes);
+  const ParamSet values = table.read(render_params());
+  table.finish();
+  const auto& size = values.vector("size");
+  if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]))
+    table.problem("size", "must be whole numbers of pixels");
+  scene.render.width = static_cast<int>(size[0]);
+  scene.render.height = static_cast<int>(size[1]);
+  scene.render.fps = values.real("fps");
+  scene.render.speed = values.real("speed");
+}
+
+void read_title(TableReader& root, Scene& scene) {
+  scene.title = root.read({text_param("title", scene.name, "")}).text("title");
+}
+
+// Overrides first, then each file from its top to its end.
+void sort_problems(std::vector<SceneProblem>& problems) {
+  std::map<std::string, int> rank{{"--set", 0}};
+  for (const auto& problem : problems) rank.try_emplace(problem.where.file, static_cast<int>(rank.size()));
+  std::stable_sort(problems.begin(), problems.end(), [&](const SceneProblem& a, const SceneProblem& b) {
+    const auto order = [&](const SourceLocation& where) {
+      return std::tuple(rank.at(where.file), where.line, where.column);
+    };
+    return order(a.where) < order(b.where);
+  });
+}
+
+}  // namespace
+
+Scene read_scene_text(std::string_view text, const std::string& name,
+                      const std::vector<std::string>& overrides, const std::string& folder) {
+  TomlTree tree = parse_toml(text, name);
+  SceneNotes notes;
+  apply_overrides(tree, overrides, notes.problems);
+  Scene scene;
+  scene.name = std::filesystem::path(name).stem().string();
+  TableReader root(&tree, "", tree.where, notes);
+  read_title(root, scene);
+  read_structure(root, tree, folder, scene, notes);
+  read_gravity(root, tree, scene, notes);
+  read_loads(root, scene, notes);
+  read_solver(root, tree, scene, notes);
+  read_render(root, tree, scene, notes);
+  root.finish();
+  if (!notes.problems.empty()) {
+    sort_problems(notes.problems);
+    throw SceneError(std::move(notes.problems));
+  }
+  scene.locations = std::move(notes.locations);
+  return scene;
+}
+
+Scene read_scene_file(const std::string& path, const std::vector<std::string>& overrides) {
+  const TextFile file = read_text_file(path);
+  if (!file.error.empty()) throw UnreadableScene("cannot read scene " + path + ": " + file.error);
+  std::string folder = std::filesystem::path(path).parent_path().string();
+  return read_scene_text(file.text, path, overrides, folder.empty() ? "." : folder);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,62 @@
+#include "core/scene/text_file.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace unfurl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string outside_error(const std::string& folder, const std::string& name) {
+  const fs::path path(name);
+  if (folder.empty()) return "a scene that is not a file cannot name other files";
+  if (path.is_absolute()) return "must be relative to the scene's folder";
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(folder, error);
+  const fs::path target = fs::weakly_canonical(root / path, error);
+  const fs::path inside = target.lexically_relative(root);
+  if (error || inside.empty() || *inside.begin() == "..") return "must lie inside the scene's folder";
+  return "";
+}
+
+}  // namespace
+
+TextFile read_text_file(const std::string& path) {
+  TextFile result{path, "", ""};
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    result.error = "is a directory";
+    return result;
+  }
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) {
+    result.error = std::strerror(errno);
+    return result;
+  }
+  std::vector<char> block(std::size_t{1} << 16U);
+  while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get())) {
+    result.text.append(block.data(), n);
+    if (result.text.size() > max_text_file_bytes) {
+      result.error = "is larger than " + std::to_string(max_text_file_bytes >> 20U) + " MB";
+      result.text.clear();
+      return result;
+    }
+  }
+  if (std::ferror(file.get())) result.error = "cannot be read";
+  return result;
+}
+
+TextFile read_file_beside(const std::string& folder, const std::string& name) {
+  if (std::string error = outside_error(folder, name); !error.empty()) return {name, "", std::move(error)};
+  TextFile file = read_text_file((fs::path(folder) / name).string());
+  if (!file.error.empty()) file.error = "cannot read " + file.path + ": " + file.error;
+  return file;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,145 @@
+#include "core/scene/write.hpp"
+
+#include <array>
+#include <charconv>
+
+#include "core/scene/custom_reader.hpp"
+#include "core/structures/family.hpp"
+
+namespace unfurl {
+
+namespace {
+
+// Shortest text that reads back as the same number; TOML needs a point or an exponent to call it a float.
+std::string real_text(double x) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr;
+  std::string text(buffer.data(), end);
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+std::string value_text(const ParamValue& value) {
+  struct Writer {
+    std::string operator()(bool b) const { return b ? "true" : "false"; }
+    std::string operator()(long i) const { return std::to_string(i); }
+    std::string operator()(double x) const { return real_text(x); }
+    std::string operator()(const std::string& s) const { return toml_string(s); }
+    std::string operator()(const std::vector<double>& v) const {
+      std::string text;
+      for (const double x : v) text += (text.empty() ? "" : ", ") + real_text(x);
+      return "[" + text + "]";
+    }
+  };
+  return std::visit(Writer{}, value);
+}
+
+std::string vec_text(const Vec3& v) {
+  return value_text(std::vector<double>{v[0], v[1], v[2]});
+}
+
+std::string names_text(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + toml_string(name);
+  return "[" + text + "]";
+}
+
+std::string line(std::string_view key, const std::string& value) {
+  return std::string(key) + " = " + value + "\n";
+}
+
+std::string params_text(const std::vector<ParamSpec>& specs, const ParamSet& values) {
+  std::string text;
+  for (const auto& spec : specs) {
+    text += line(spec.name, value_text(values.value(spec.name)));
+    if (!spec.unit.empty()) text.insert(text.size() - 1, "  # " + std::string(spec.unit));
+  }
+  return text;
+}
+
+std::string node_text(const CustomNode& node) {
+  std::string text = "\n[[structure.nodes]]\n" + line("name", toml_string(node.name));
+  text += line("position", vec_text(node.position));
+  if (!node.velocity.isZero(0.0)) text += line("velocity", vec_text(node.velocity));
+  if (node.mass != 0.0) text += line("mass", real_text(node.mass));
+  if (node.fixed) text += line("fixed", "true");
+  return text;
+}
+
+std::string rod_text(const CustomRod& rod) {
+  std::string text = "\n[[structure.rods]]\n";
+  if (!rod.name.empty()) text += line("name", toml_string(rod.name));
+  text += line("nodes", names_text(rod.nodes));
+  if (rod.mass >= 0.0) text += line("mass", real_text(rod.mass));
+  if (rod.density != 0.0) text += line("density", real_text(rod.density));
+  if (rod.area != 0.0) text += line("area", real_text(rod.area));
+  if (rod.group != "rod") text += line("group", toml_string(rod.group));
+  return text;
+}
+
+std::string constraint_text(const CustomConstraint& constraint) {
+  std::string text = "\n[[structure.constraints]]\n" + line("kind", toml_string(constraint.kind));
+  text += line("nodes", names_text(constraint.nodes));
+  for (const auto& row : custom_constraint_kinds())
+    if (row.kind == constraint.kind && !row.direction.empty())
+      text += line(row.direction, vec_text(constraint.normal));
+  return text;
+}
+
+std::string structure_text(const Scene& scene) {
+  std::string text = "\n[structure]\n" + line("kind", toml_string(scene.kind));
+  if (const Family* family = find_family(scene.kind))
+    return text + params_text(family->params(), scene.structure);
+  text += line("mass", toml_string(scene.custom.lumped_mass ? "lumped" : "consistent"));
+  for (const auto& node : scene.custom.nodes) text += node_text(node);
+  for (const auto& rod : scene.custom.rods) text += rod_text(rod);
+  for (const auto& constraint : scene.custom.constraints) text += constraint_text(constraint);
+  return text;
+}
+
+std::string solver_text(const Scene& scene) {
+  ParamSet values;
+  const SolverOptions& solver = scene.solver;
+  values.set("method", solver.method);
+  values.set("stages", static_cast<long>(solver.stages));
+  values.set("nodes", solver.nodes);
+  values.set("constraints_at", solver.constraints_at);
+  values.set("step", solver.step);
+  values.set("end_time", solver.end_time);
+  values.set("at_deployed", solver.at_deployed);
+  values.set("eliminate_linear", solver.eliminate_linear);
+  return "\n[solver]\n" + params_text(solver_params(), values);
+}
+
+std::string render_text(const Scene& scene) {
+  const RenderOptions& render = scene.render;
+  return "\n[render]\n" +
+         line("size", "[" + std::to_string(render.width) + ", " + std::to_string(render.height) + "]") +
+         line("fps", real_text(render.fps)) + line("speed", real_text(render.speed));
+}
+
+}  // namespace
+
+std::string toml_string(std::string_view text) {
+  constexpr std::string_view hex = "0123456789ABCDEF";
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      result.append(1, '\\').append(1, c);
+    else if (byte < 0x20 || byte == 0x7f)
+      result.append("\\u00").append(1, hex[byte >> 4U]).append(1, hex[byte & 15U]);
+    else
+      result += c;
+  }
+  return result + '"';
+}
+
+std::string scene_text(const Scene& scene) {
+  std::string text = line("title", toml_string(scene.title)) + structure_text(scene);
+  text += "\n[gravity]\n" + line("acceleration", vec_text(scene.gravity));
+  for (const auto& load : scene.loads)
+    text += "\n[[loads]]\n" + line("nodes", names_text(load.nodes)) + line("force", vec_text(load.force));
+  return text + solver_text(scene) + render_text(scene);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "core/scene/scene.hpp"
+
+namespace unfurl {
+
+// The scene as a TOML file that stands alone: overrides applied, every parameter written out, lists from CSV
+// files inline, numbers with all their digits. Reading it back gives an equal scene.
+std::string scene_text(const Scene& scene);
+
+// Text as a TOML basic string, quotes included.
+std::string toml_string(std::string_view text);
+
+}  // namespace unfurl

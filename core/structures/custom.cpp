@@ -1,0 +1,92 @@
+#include "core/structures/custom.hpp"
+
+#include <cmath>
+#include <unordered_map>
+
+#include "core/structures/family.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr CustomConstraintKind kinds[] = {
+    {"plane", "normal", "keeps nodes in the planes through their positions at t = 0 with this normal"},
+    {"line", "direction", "keeps nodes on the lines through their positions at t = 0 with this direction"},
+    {"fixed", "", "keeps nodes where they are at t = 0"},
+};
+
+double rod_mass(const CustomRod& rod, double length) {
+  return rod.mass >= 0.0 ? rod.mass : rod.density * rod.area * length;
+}
+
+// The round rod of the given section; without one, slender against its length.
+double rod_radius(const CustomRod& rod, double length) {
+  return rod.area > 0.0 ? std::sqrt(rod.area / pi) : 0.012 * length;
+}
+
+Constraint constraint_on(const std::string& kind, const Vec3& direction, int index, const Node& node) {
+  Constraint constraint;
+  constraint.kind = kind;
+  constraint.name = kind + " of " + node.name;
+  constraint.nodes = {index};
+  if (kind == "plane" || kind == "line") constraint.vectors = {direction.stableNormalized()};
+  if (kind == "plane") constraint.value = constraint.vectors[0].dot(node.position);
+  return constraint;
+}
+
+void add_nodes(const CustomSpec& spec, Structure& structure) {
+  for (const auto& entry : spec.nodes) {
+    const int index = static_cast<int>(structure.nodes.size());
+    structure.nodes.push_back({entry.name, entry.position, entry.velocity, entry.mass});
+    if (entry.fixed)
+      structure.constraints.push_back(constraint_on("fixed", Vec3::Zero(), index, structure.nodes.back()));
+  }
+}
+
+}  // namespace
+
+std::span<const CustomConstraintKind> custom_constraint_kinds() {
+  return kinds;
+}
+
+std::string rod_name(const CustomRod& rod) {
+  if (!rod.name.empty() || rod.nodes.size() != 2) return rod.name;
+  return rod.nodes[0] + "-" + rod.nodes[1];
+}
+
+Structure build_custom(const CustomSpec& spec) {
+  if (const auto problems = check_custom(spec); !problems.empty()) {
+    const auto& first = problems.front();
+    const std::string place =
+        first.index < 0 ? first.table : first.table + "[" + std::to_string(first.index) + "]";
+    throw StructureError(first.key.empty() ? place : place + "." + first.key, first.message);
+  }
+  Structure structure;
+  structure.kind = "custom";
+  structure.lumped_mass = spec.lumped_mass;
+  add_nodes(spec, structure);
+
+  std::vector<std::string_view> names;
+  std::unordered_map<std::string_view, int> index;
+  for (const auto& node : spec.nodes) {
+    index[node.name] = static_cast<int>(names.size());
+    names.push_back(node.name);
+  }
+  for (const auto& entry : spec.rods) {
+    const int a = index.at(entry.nodes[0]), b = index.at(entry.nodes[1]);
+    const double length =
+        (spec.nodes[static_cast<std::size_t>(b)].position - spec.nodes[static_cast<std::size_t>(a)].position)
+            .norm();
+    structure.rods.push_back({rod_name(entry), a, b, rod_mass(entry, length), length, entry.group,
+                              rod_radius(entry, length), 1.0});
+  }
+  for (const auto& entry : spec.constraints)
+    for (const auto& pattern : entry.nodes)
+      for (const int node : matching_names(pattern, names))
+        structure.constraints.push_back(
+            constraint_on(entry.kind, entry.normal, node, structure.nodes[static_cast<std::size_t>(node)]));
+  show_as_solved(structure);
+  return structure;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,165 @@
+// Everything that can be wrong with a list of nodes, rods and constraints.
+#include <cmath>
+#include <unordered_map>
+#include <utility>
+
+#include "core/model/nearest_name.hpp"
+#include "core/structures/custom.hpp"
+
+namespace unfurl {
+
+namespace {
+
+class Checker {
+ public:
+  explicit Checker(const CustomSpec& spec) : spec_(spec) {}
+
+  std::vector<CustomProblem> run() {
+    check_nodes();
+    check_rods();
+    check_constraints();
+    check_masses();
+    return std::move(problems_);
+  }
+
+ private:
+  bool full() const { return problems_.size() >= 100; }
+
+  void add(std::string table, std::size_t index, std::string key, std::string message) {
+    if (!full())
+      problems_.push_back({std::move(table), static_cast<int>(index), std::move(key), std::move(message)});
+  }
+
+  std::string hint(std::string_view name) const {
+    constexpr std::size_t most = 2000;  // more names than a person can have mistyped
+    return names_.size() > most ? "" : did_you_mean(name, names_);
+  }
+
+  void check_nodes() {
+    if (spec_.nodes.empty())
+      problems_.push_back({"nodes", -1, "", "a custom structure needs nodes: [[structure.nodes]]"});
+    for (std::size_t i = 0; i < spec_.nodes.size() && !full(); ++i) {
+      const auto& node = spec_.nodes[i];
+      names_.push_back(node.name);
+      if (node.name.empty()) {
+        add("nodes", i, "name", "a node needs a name");
+      } else if (const auto [first, is_new] = index_.try_emplace(node.name, i); !is_new) {
+        add("nodes", i, "name",
+            "there is already a node " + in_quotes(node.name) + ", entry " + std::to_string(first->second));
+      }
+      if (!node.position.allFinite()) add("nodes", i, "position", "must be finite");
+      if (!node.velocity.allFinite()) add("nodes", i, "velocity", "must be finite");
+      if (!(node.mass >= 0.0) || std::isinf(node.mass)) add("nodes", i, "mass", "must be >= 0 kg");
+    }
+  }
+
+  void check_rods() {
+    std::unordered_map<std::string, std::size_t> seen;
+    for (std::size_t i = 0; i < spec_.rods.size() && !full(); ++i) {
+      const auto& rod = spec_.rods[i];
+      check_rod_mass(rod, i);
+      if (!check_rod_nodes(rod, i)) continue;
+      const std::string name = rod_name(rod);
+      if (const auto [first, is_new] = seen.try_emplace(name, i); !is_new)
+        add("rods", i, "name",
+            "there is already a rod " + in_quotes(name) + ", entry " + std::to_string(first->second) +
+                "; give this one a name of its own");
+    }
+  }
+
+  bool check_rod_nodes(const CustomRod& rod, std::size_t i) {
+    if (rod.nodes.size() != 2) {
+      add("rods", i, "nodes", "a rod joins 2 nodes; got " + std::to_string(rod.nodes.size()));
+      return false;
+    }
+    bool known = true;
+    for (const auto& name : rod.nodes) {
+      if (index_.contains(name)) continue;
+      add("rods", i, "nodes", "there is no node " + in_quotes(name) + hint(name));
+      known = false;
+    }
+    if (!known) return false;
+    if (rod.nodes[0] == rod.nodes[1]) {
+      add("rods", i, "nodes", "a rod from " + in_quotes(rod.nodes[0]) + " to itself");
+      return false;
+    }
+    if (!spec_.nodes[index_.at(rod.nodes[0])].position.allFinite() ||
+        !spec_.nodes[index_.at(rod.nodes[1])].position.allFinite())
+      return true;  // the node is reported
+    const double length =
+        (spec_.nodes[index_.at(rod.nodes[0])].position - spec_.nodes[index_.at(rod.nodes[1])].position)
+            .stableNorm();
+    if (length == 0.0)
+      add("rods", i, "nodes",
+          "zero length: " + in_quotes(rod.nodes[0]) + " and " + in_quotes(rod.nodes[1]) +
+              " have the same position");
+    else if (!(length * length > 0.0) || !std::isfinite(length * length))
+      add("rods", i, "nodes", "the square of its length is outside the range of double precision");
+    return true;
+  }
+
+  void check_rod_mass(const CustomRod& rod, std::size_t i) {
+    const bool section = rod.density > 0.0 && rod.area > 0.0;
+    if (std::isnan(rod.mass) || std::isinf(rod.mass))
+      add("rods", i, "mass", "must be finite");
+    else if (rod.mass < 0.0 && !section)
+      add("rods", i, "mass", "give mass (0: a pure distance constraint), or both density and area");
+  }
+
+  void check_constraints() {
+    for (std::size_t i = 0; i < spec_.constraints.size() && !full(); ++i) {
+      const auto& constraint = spec_.constraints[i];
+      const CustomConstraintKind* kind = nullptr;
+      std::vector<std::string_view> kinds;
+      for (const auto& row : custom_constraint_kinds()) {
+        kinds.push_back(row.kind);
+        if (row.kind == constraint.kind) kind = &row;
+      }
+      if (!kind)
+        add("constraints", i, "kind",
+            "there is no constraint kind " + in_quotes(constraint.kind) +
+                did_you_mean(constraint.kind, kinds));
+      else if (!kind->direction.empty() &&
+               !(constraint.normal.stableNorm() > 0.0 && constraint.normal.allFinite()))
+        add("constraints", i, std::string(kind->direction), "must not be zero");
+      if (constraint.nodes.empty()) add("constraints", i, "nodes", "names no node");
+      for (const auto& pattern : constraint.nodes)
+        if (!index_.contains(pattern) && matching_names(pattern, names_).empty())
+          add("constraints", i, "nodes", "no node matches " + in_quotes(pattern) + hint(pattern));
+    }
+  }
+
+  // A node that moves needs mass: its own or a share of a rod's.
+  void check_masses() {
+    std::vector<bool> has_mass(spec_.nodes.size());
+    for (std::size_t i = 0; i < spec_.nodes.size(); ++i)
+      has_mass[i] = spec_.nodes[i].mass != 0.0 || spec_.nodes[i].fixed || spec_.nodes[i].name.empty();
+    for (const auto& rod : spec_.rods)
+      if (rod.mass != 0.0)
+        for (const auto& name : rod.nodes)
+          if (const auto it = index_.find(name); it != index_.end()) has_mass[it->second] = true;
+    for (const auto& constraint : spec_.constraints)
+      if (constraint.kind == "fixed")
+        for (const auto& pattern : constraint.nodes)
+          for (const int node : matching_names(pattern, names_))
+            has_mass[static_cast<std::size_t>(node)] = true;
+    for (std::size_t i = 0; i < has_mass.size() && !full(); ++i)
+      if (!has_mass[i])
+        add("nodes", i, "mass",
+            in_quotes(spec_.nodes[i].name) +
+                " has no mass: give it some, attach a rod that has mass, or fix it");
+  }
+
+  const CustomSpec& spec_;
+  std::vector<CustomProblem> problems_;
+  std::unordered_map<std::string_view, std::size_t> index_;
+  std::vector<std::string_view> names_;
+};
+
+}  // namespace
+
+std::vector<CustomProblem> check_custom(const CustomSpec& spec) {
+  return Checker(spec).run();
+}
+
+}  // namespace unfurl

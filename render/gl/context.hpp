@@ -1,0 +1,26 @@
+// Somewhere to draw: an OpenGL 3.3 core context. One door; a backend is another .cpp that implements the
+// interface.
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace unfurl {
+
+// One thread may use a context at a time, and one family of contexts (OSMesa or a window) per process at a
+// time: the pointers of gl:: are shared. With a window open, draw films into framebuffers of the window's own
+// context.
+class GlContext {
+ public:
+  virtual ~GlContext() = default;
+  // Make this the calling thread's context and load gl:: from it. Throws GraphicsError.
+  virtual void make_current() = 0;
+  virtual std::string description()
+      const = 0;  // "OSMesa, OpenGL 4.5, llvmpipe": for --version and error reports
+};
+
+// A context without a display; current on return. Draw into a Framebuffer of any size.
+// Throws GraphicsError, naming the package to install, where there is none.
+std::unique_ptr<GlContext> make_offscreen_context();
+
+}  // namespace unfurl

@@ -1,0 +1,37 @@
+// A picture to draw into, anti-aliased where the driver can.
+#pragma once
+
+#include "render/image/image.hpp"
+
+namespace unfurl {
+
+// RGBA8 colour and 24-bit depth of one size. Needs a current context from construction to destruction.
+class Framebuffer {
+ public:
+  // samples: wanted per pixel; 0 or 1 draws without multi-sampling. Takes what the driver has, down to none.
+  // Throws GraphicsError where the size is beyond the driver's limit.
+  Framebuffer(int width, int height, int samples = 4);
+  ~Framebuffer();
+  Framebuffer(const Framebuffer&) = delete;
+  Framebuffer& operator=(const Framebuffer&) = delete;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int samples() const { return samples_; }
+
+  void bind() const;     // draw into the (multi-sampled) picture; sets the viewport
+  void resolve() const;  // average the samples, then draw without multi-sampling: for text and panels
+  Image read() const;    // what was drawn since, of the resolved picture; top row first, alpha as drawn
+
+ private:
+  struct Surface {
+    unsigned framebuffer = 0, color = 0, depth = 0;
+  };
+  static bool make_surface(Surface& surface, int width, int height, int samples);
+  static void destroy_surface(Surface& surface);
+
+  int width_, height_, samples_;
+  Surface drawn_, resolved_;  // the same where there is no multi-sampling
+};
+
+}  // namespace unfurl

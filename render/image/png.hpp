@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "render/image/image.hpp"
+
+namespace unfurl {
+
+// The picture as the bytes of a PNG file, RGB or with its alpha RGBA. May run on several threads at once.
+std::vector<std::byte> encode_png(const Image& image, bool alpha = false);
+
+// The file appears whole or not at all. Throws FileError.
+void write_png(const std::filesystem::path& path, const Image& image, bool alpha = false);
+
+}  // namespace unfurl

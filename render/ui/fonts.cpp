@@ -1,0 +1,36 @@
+#include "render/ui/fonts.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace unfurl {
+namespace {
+
+// ImGui keeps the pointer until the atlas is built: pairs of first and last code point, ended by 0.
+constexpr ImWchar glyph_ranges[] = {0x0020, 0x017F,  // Latin, Latin-1, Latin Extended-A
+                                    0x0370, 0x03FF,  // Greek
+                                    0x2010, 0x2027,  // dashes, quotes, dots
+                                    0x2030, 0x203A,  // per mille, primes
+                                    0x2070, 0x209F,  // superscripts and subscripts
+                                    0x2190, 0x21FF,  // arrows
+                                    0x2200, 0x22FF,  // mathematics, minus among them
+                                    0x25A0, 0x25FF,  // shapes
+                                    0};
+
+// Debian's fonts-dejavu-core.
+constexpr const char* folder = "/usr/share/fonts/truetype/dejavu/";
+
+}  // namespace
+
+ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold) {
+  const std::string file = std::string(folder) + (bold ? "DejaVuSans-Bold.ttf" : "DejaVuSans.ttf");
+  std::error_code error;  // ImGui aborts on a file that is not there
+  if (std::filesystem::is_regular_file(file, error)) {
+    if (ImFont* font = atlas.AddFontFromFileTTF(file.c_str(), pixels, nullptr, glyph_ranges)) return font;
+  }
+  ImFontConfig config;
+  config.SizePixels = pixels;
+  return atlas.AddFontDefault(&config);
+}
+
+}  // namespace unfurl

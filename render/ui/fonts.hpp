@@ -1,0 +1,12 @@
+#pragma once
+
+#include <imgui.h>
+
+namespace unfurl {
+
+// Add the program's typeface at a size to an atlas: DejaVu Sans with Latin, Greek, minus, superscripts and
+// arrows, or ImGui's built-in font (plain Latin) where that is not installed. `pixels` is the height of a
+// line; draw at the size that was asked for, as scaling an atlas blurs it.
+ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold = false);
+
+}  // namespace unfurl

@@ -1,0 +1,112 @@
+// What the program says and returns for every kind of command line. Error texts are part of the contract.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/run_program.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+void check_error(const std::vector<std::string>& arguments, int code, const std::string& message) {
+  const ProgramResult r = run_program(arguments);
+  INFO(r.err);
+  CHECK(r.code == code);
+  CHECK(r.out == "");
+  CHECK(r.err == message + "\n");
+}
+
+}  // namespace
+
+TEST_CASE("help and version go to standard output") {
+  CHECK(contains(run_program({"--help"}).out, "unfurl run SCENE -o DIR"));
+  CHECK(run_program({"--help"}).code == 0);
+  CHECK(contains(run_program({"run", "--help"}).out, "usage: unfurl run SCENE -o DIR [options]"));
+  CHECK(run_program({"--version"}).out == "unfurl 0.1.0\n");
+}
+
+TEST_CASE("a command line without a command shows the help and fails") {
+  CHECK(run_program({}).code == 2);
+  CHECK(contains(run_program({}).err, "usage:"));
+}
+
+TEST_CASE("usage errors") {
+  check_error({"rn"}, 2, "unfurl: no command 'rn'; did you mean 'run'?");
+  check_error({"run", "hoop6", "--forse", "-o", "x"}, 2,
+              "unfurl: no option '--forse'; did you mean '--force'?");
+  check_error({"run", "hoop6", "-o"}, 2, "unfurl: --output: 1 required TEXT missing");
+  check_error({"run", "hoop6"}, 2, "unfurl: -o DIR is missing (or --json, for the summary alone)");
+  check_error({"run"}, 2, "unfurl: too few arguments; usage: unfurl run SCENE -o DIR");
+  check_error({"check", "hoop6", "hoop12"}, 2,
+              "unfurl: unexpected argument 'hoop12'; usage: unfurl check SCENE");
+  check_error({"--quiet", "run"}, 2, "unfurl: a command comes first, then its options; see unfurl --help");
+  check_error({"list", "method"}, 2, "unfurl: no list 'method'; did you mean 'methods'?");
+  CHECK(run_program({"run", "hoop6", "--threads", "0"}).code == 2);
+  CHECK(run_program({"run", "hoop6", "--threads", "many"}).code == 2);
+}
+
+TEST_CASE("invalid scenes") {
+  check_error({"check", "hoop6", "--set", "structure.units=2"}, 3,
+              "--set structure.units: must be a whole number in [3, 100000]; got 2");
+  check_error({"check", "hoop6", "--set", "solver.step=0"}, 3, "--set solver.step: must be > 0 s; got 0");
+  check_error({"check", "hoop6", "--set", "solver.method=dvn"}, 3,
+              "--set solver.method: must be one of dvm, rk4; got 'dvn'; did you mean 'dvm'?");
+  check_error({"check", "hoop6", "--set", "structure.post_length=-1", "--set", "solver.stpe=1"}, 3,
+              "--set structure.post_length: must be > 0 m; got -1\n"
+              "--set solver.stpe: unknown key; did you mean 'step'?");
+  const ScratchDirectory dir;
+  const auto path = dir.write("bad.toml", "[structure]\nkind = 'hoop'\ndensity = nan\n");
+  check_error({"check", path}, 3, path + ":3:11: structure.density: must be > 0 kg/m^3; got nan");
+  check_error({"check", dir.write("odd.toml", "[$")}, 3,
+              dir / "odd.toml" + ":1:2: not TOML: unexpected character here");
+}
+
+TEST_CASE("scenes that are not there") {
+  check_error({"check", "hoop7"}, 5,
+              "unfurl: no scene 'hoop7', neither a file nor a built-in one; did you mean 'hoop6'?");
+  check_error({"check", "no/such.toml"}, 5, "unfurl: cannot read scene no/such.toml: no such file");
+}
+
+TEST_CASE("check counts the six-unit ring and names its redundant constraints") {
+  const ProgramResult r = run_program({"check", "hoop6", "--json"});
+  REQUIRE(r.code == 0);
+  const auto json = nlohmann::json::parse(r.out);
+  CHECK(json["coordinates"] == 72);
+  CHECK(json["constraints"] == 78);
+  CHECK(json["rank"] == 71);
+  CHECK(json["redundant"].size() == 7);
+  CHECK(json["degrees_of_freedom"] == 1);
+  const std::string text = run_program({"check", "hoop6"}).out;
+  CHECK(contains(text, "rank                          71\n"));
+  for (const auto& name : json["redundant"]) CHECK(contains(text, "  " + name.get<std::string>() + "\n"));
+}
+
+TEST_CASE("lists") {
+  CHECK(contains(run_program({"list", "structures"}).out, "fold_angle"));
+  CHECK(contains(run_program({"list", "structures"}).out, "custom"));
+  CHECK(contains(run_program({"list", "methods"}).out, "rk4"));
+  CHECK(contains(run_program({"list", "constraints"}).out, "plane"));
+  CHECK(contains(run_program({"list", "forces"}).out, "gravity"));
+  CHECK(contains(run_program({"list", "scenes"}).out, "hoop6 "));
+  const auto json = nlohmann::json::parse(run_program({"list", "structures", "--json"}).out);
+  CHECK(json[0]["name"] == "hoop");
+  CHECK(json[0]["parameters"][0]["name"] == "units");
+}
+
+TEST_CASE("scenes are looked for where UNFURL_ASSETS says") {
+  const ScratchDirectory dir;
+  dir.write("scenes/mine.toml", "title = 'Mine'\n[structure]\nkind = 'hoop'\n");
+  const ProgramOptions here{.environment = {"UNFURL_ASSETS=" + (dir / "")}};
+  CHECK(run_program({"list", "scenes"}, here).out == "mine  Mine\n");
+  CHECK(run_program({"check", "mine"}, here).code == 0);
+}
+
+TEST_CASE("standard output that cannot be written is a file error") {
+  const ProgramResult r = run_program({"check", "hoop6"}, {.out_file = "/dev/full"});
+  CHECK(r.code == 5);
+  CHECK(r.err == "unfurl: cannot write to standard output\n");
+}

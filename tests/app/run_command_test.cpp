@@ -1,0 +1,114 @@
+// `unfurl run`: what it writes, what it refuses, what it keeps.
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/run_program.hpp"
+
+using namespace unfurl;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::vector<std::string> quick = {"run", "hoop6_sector", "--set", "solver.end_time=0.1", "--quiet"};
+
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+std::string single_error(const ProgramResult& r) {
+  INFO(r.err);
+  CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+  return r.err;
+}
+
+}  // namespace
+
+TEST_CASE("run writes the data and nothing else") {
+  const ScratchDirectory dir;
+  const ProgramResult r = run_program(quick + std::vector<std::string>{"-o", dir / "out"});
+  CHECK(r.code == 0);
+  CHECK(r.out == "");
+  CHECK(r.err == "");
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(dir / "out"))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  CHECK(names == std::vector<std::string>{"rod_forces.csv", "scene.toml", "series.csv", "summary.json",
+                                          "trajectory.csv"});
+  CHECK(file_text(dir / "out/series.csv").starts_with("t_s,kinetic_energy_J,"));
+  CHECK(file_text(dir / "out/trajectory.csv").starts_with("t_s,B0.x_m,B0.y_m,B0.z_m,B0.vx_m_s,"));
+}
+
+TEST_CASE("the written scene reproduces the run") {
+  const ScratchDirectory dir;
+  run_program(quick + std::vector<std::string>{"-o", dir / "a"});
+  CHECK(run_program({"run", dir / "a/scene.toml", "-o", dir / "b", "--quiet"}).code == 0);
+  CHECK(file_text(dir / "a/trajectory.csv") == file_text(dir / "b/trajectory.csv"));
+}
+
+TEST_CASE("--json prints the summary that is written") {
+  const ScratchDirectory dir;
+  const ProgramResult r = run_program(quick + std::vector<std::string>{"-o", dir / "out", "--json"});
+  CHECK(r.out == file_text(dir / "out/summary.json"));
+  CHECK(nlohmann::json::parse(r.out)["status"] == "completed");
+  const ProgramResult alone = run_program(quick + std::vector<std::string>{"--json"});
+  CHECK(alone.code == 0);
+  CHECK(nlohmann::json::parse(alone.out)["model"]["nodes"] == 24);
+}
+
+TEST_CASE("a directory with results of our own is used again, one with other files only by force") {
+  const ScratchDirectory dir;
+  const auto run = quick + std::vector<std::string>{"-o", dir / "out"};
+  CHECK(run_program(run).code == 0);
+  dir.write("out/frames/frame_00099.png", "an old frame");
+  CHECK(run_program(run).code == 0);
+  CHECK_FALSE(fs::exists(dir / "out/frames/frame_00099.png"));
+
+  dir.write("mine/thesis.txt", "precious");
+  const auto other = quick + std::vector<std::string>{"-o", dir / "mine"};
+  const ProgramResult refused = run_program(other);
+  CHECK(refused.code == 5);
+  CHECK(single_error(refused) ==
+        "unfurl: " + dir / "mine" +
+            ": is not empty and holds no earlier results; use --force to write into it\n");
+  CHECK(run_program(other + std::vector<std::string>{"--force"}).code == 0);
+  CHECK(file_text(dir / "mine/thesis.txt") == "precious");
+}
+
+TEST_CASE("an output directory that cannot be used is found before the work") {
+  const ScratchDirectory dir;
+  dir.write("file", "x");
+  const ProgramResult file = run_program(quick + std::vector<std::string>{"-o", dir / "file"});
+  CHECK(file.code == 5);
+  CHECK(single_error(file) == "unfurl: " + dir / "file" + ": is a file; -o names a directory\n");
+
+  const ProgramResult below = run_program(quick + std::vector<std::string>{"-o", dir / "file/below"});
+  CHECK(below.code == 5);
+  CHECK(single_error(below).find("not a directory") != std::string::npos);
+
+  if (::geteuid() != 0) {  // root may write anywhere
+    fs::create_directory(dir / "closed");
+    fs::permissions(dir / "closed", fs::perms::owner_read | fs::perms::owner_exec);
+    const ProgramResult closed = run_program(quick + std::vector<std::string>{"-o", dir / "closed"});
+    CHECK(closed.code == 5);
+    CHECK(single_error(closed).find("ermission denied") != std::string::npos);
+  }
+}
+
+TEST_CASE("Ctrl-C keeps what is done") {
+  const ScratchDirectory dir;
+  // About a minute of work, interrupted after one second.
+  const ProgramResult r = run_program(
+      {"run", "hoop6", "--set", "solver.step=1e-6", "--set", "solver.end_time=4", "-o", dir / "out"},
+      {.interrupt_after_s = 1.0});
+  CHECK(r.code == 130);
+  CHECK(r.err.find("unfurl: interrupted; what is finished is kept\n") != std::string::npos);
+  const auto summary = nlohmann::json::parse(file_text(dir / "out/summary.json"));
+  CHECK(summary["status"] == "stopped");
+  CHECK(summary["solver"]["steps"] > 0);
+  CHECK(fs::exists(dir / "out/trajectory.csv"));
+}

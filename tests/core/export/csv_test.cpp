@@ -1,0 +1,105 @@
+#include "core/export/csv.hpp"
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "core/export/atomic_file.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+struct TemporaryFile {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("unfurl_csv_" + std::to_string(::getpid()) + ".csv");
+  ~TemporaryFile() { std::filesystem::remove(path); }
+};
+
+Simulation short_run(const std::string& scene, const std::vector<std::string>& overrides) {
+  const Scene s = read_scene_file(find_scene(scene), overrides);
+  return simulate(build_model(s), s.solver);
+}
+
+// Rows of cells; no cell of these tables holds a comma.
+std::vector<std::vector<std::string>> table(const std::filesystem::path& path) {
+  std::vector<std::vector<std::string>> rows;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+double number(const std::string& cell) {
+  double x = -1;
+  std::from_chars(cell.data(), cell.data() + cell.size(), x);
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("the trajectory in CSV is the trajectory, bit for bit") {
+  const Simulation run = short_run("double_pendulum", {"solver.end_time=0.2"});
+  const TemporaryFile file;
+  write_trajectory_csv(file.path, run.trajectory);
+  const auto rows = table(file.path);
+  REQUIRE(rows.size() == run.trajectory.size() + 1);
+  CHECK(rows[0].size() == 1 + 6 * 3);
+  CHECK(rows[0][0] == "t_s");
+  CHECK(rows[0][7] == "elbow.x_m");
+  CHECK(rows[0][12] == "elbow.vz_m_s");
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+    CHECK(number(rows[i + 1][0]) == run.trajectory.time(i));
+    CHECK(number(rows[i + 1][9]) == run.trajectory.positions(i)[5]);
+    CHECK(number(rows[i + 1][18]) == run.trajectory.velocities(i)[8]);
+  }
+}
+
+TEST_CASE("the series in CSV have one row per state and one column per diagnostic") {
+  const Simulation run = short_run("hoop6_sector", {"solver.end_time=0.1"});
+  const Diagnostics diagnostics = diagnose(run);
+  const TemporaryFile file;
+  write_series_csv(file.path, diagnostics);
+  const auto rows = table(file.path);
+  REQUIRE(rows.size() == diagnostics.t.size() + 1);
+  REQUIRE(rows[0].size() == diagnostics.columns.size() + 1);
+  for (std::size_t c = 0; c < diagnostics.columns.size(); ++c) {
+    CHECK(rows[0][c + 1] == diagnostics.columns[c].name);
+    CHECK(number(rows.back()[c + 1]) == diagnostics.columns[c].values.back());
+  }
+}
+
+TEST_CASE("rod forces of a sector are written for every rod of the whole") {
+  const Simulation run = short_run("hoop6_sector", {"solver.end_time=0.1"});
+  const TemporaryFile file;
+  write_rod_forces_csv(file.path, run.trajectory, diagnose(run));
+  const auto rows = table(file.path);
+  CHECK(rows[0].size() == 1 + 30);
+  CHECK(rows[1].size() == 1 + 30);
+  // All posts of a ring that keeps its symmetry carry the same force: they are copies of one.
+  const std::size_t first_post = 5, second_post = 10;
+  REQUIRE(rows[0][first_post] == "B0-T0.axial_force_N");
+  REQUIRE(rows[0][second_post] == "B1-T1.axial_force_N");
+  CHECK(rows[5][first_post] == rows[5][second_post]);
+}
+
+TEST_CASE("cells that would break the table are quoted") {
+  CHECK(csv_cell("plain") == "plain");
+  CHECK(csv_cell("a,b") == "\"a,b\"");
+  CHECK(csv_cell("say \"x\"\n") == "\"say \"\"x\"\"\n\"");
+}
+
+TEST_CASE("a directory that is not there is a file error") {
+  const Simulation run = short_run("double_pendulum", {"solver.end_time=0.02"});
+  CHECK_THROWS_AS(write_trajectory_csv("/nowhere/t.csv", run.trajectory), FileError);
+}

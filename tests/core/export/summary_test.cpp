@@ -1,0 +1,76 @@
+#include "core/export/summary.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+nlohmann::ordered_json summary_of(const std::string& scene, const std::vector<std::string>& overrides) {
+  const Scene s = read_scene_file(find_scene(scene), overrides);
+  const Simulation run = simulate(build_model(s), s.solver);
+  const Model& model = run.trajectory.model();
+  return nlohmann::ordered_json::parse(summary_json(
+      s.name, run, diagnose(run), analyse_mobility(model.system, run.trajectory.node_positions(0))));
+}
+
+std::vector<std::string> keys(const nlohmann::ordered_json& object) {
+  std::vector<std::string> names;
+  for (const auto& [key, value] : object.items()) names.push_back(key);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("the summary has exactly its documented keys") {
+  const auto s = summary_of("hoop6", {"solver.end_time=0.05"});
+  CHECK(keys(s) == Names{"unfurl", "scene", "status", "message", "warnings", "model", "solver", "errors",
+                         "events", "final"});
+  CHECK(keys(s["model"]) == Names{"nodes", "rods", "coordinates", "solved_coordinates", "constraints", "rank",
+                                  "redundant", "degrees_of_freedom"});
+  CHECK(keys(s["solver"]) == Names{"method", "stages", "nodes", "constraints_at", "step_s", "steps",
+                                   "newton_iterations", "cpu_s"});
+  CHECK(keys(s["errors"]) == Names{"constraint_max_m", "constraint_relative_max",
+                                   "constraint_velocity_max_m_s", "energy_balance_max_J"});
+  CHECK(keys(s["final"]) == Names{"t_s", "positions_m", "velocities_m_s"});
+}
+
+TEST_CASE("the model of the six-unit ring is counted as documented") {
+  const auto s = summary_of("hoop6", {"solver.end_time=0.05"});
+  CHECK(s["scene"] == "hoop6");
+  CHECK(s["status"] == "completed");
+  CHECK(
+      s["model"].dump() ==
+      R"({"nodes":24,"rods":30,"coordinates":72,"solved_coordinates":24,"constraints":78,"rank":71,"redundant":7,"degrees_of_freedom":1})");
+  CHECK(s["solver"]["steps"] == 5);
+  CHECK(s["final"]["t_s"].get<double>() == Approx(0.05).epsilon(1e-12));  // five times 0.01, rounded
+  CHECK(s["final"]["positions_m"].size() == 24);
+}
+
+TEST_CASE("a sector counts the nodes of the whole and the coordinates of what was solved") {
+  const auto s = summary_of("hoop6_sector", {"solver.end_time=0.05"});
+  CHECK(s["model"]["nodes"] == 24);
+  CHECK(s["model"]["rods"] == 30);
+  CHECK(s["model"]["coordinates"] == 12);
+  CHECK(s["model"]["degrees_of_freedom"] == 1);
+  CHECK(s["final"]["velocities_m_s"].size() == 24);
+}
+
+TEST_CASE("odd node names survive") {
+  const Scene s = read_scene_text(
+      "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = \"q\\\"\\n\\u00f6\"\nposition = [0, 0, "
+      "0]\nmass = 1\n"
+      "[solver]\nend_time = 0.02\n",
+      "x");
+  const Simulation run = simulate(build_model(s), s.solver);
+  const auto json = nlohmann::json::parse(
+      summary_json("x", run, diagnose(run), analyse_mobility(run.trajectory.model().system, Vec3::Zero())));
+  CHECK(json["final"]["positions_m"].contains("q\"\n\xC3\xB6"));
+}

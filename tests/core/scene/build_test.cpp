@@ -1,0 +1,71 @@
+#include "core/scene/build.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    build_structure(read_scene_text(text, "s.toml", overrides));
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const std::string hoop = "[structure]\nkind = 'hoop'\n";
+
+}  // namespace
+
+TEST_CASE("every built-in scene becomes a model") {
+  for (const auto& row : library_scenes()) {
+    INFO(row.name);
+    const auto model = build_model(read_scene_file(row.path));
+    CHECK(model->system.coordinates() == static_cast<Index>(3 * model->structure.nodes.size()));
+  }
+}
+
+TEST_CASE("gravity and loads reach the structure") {
+  const Structure s =
+      build_structure(read_scene_text(hoop + "hinge_force = 0\n[gravity]\nacceleration = [0, 0, "
+                                             "-2]\n[[loads]]\nnodes = ['B?']\nforce = [0, 0, 5]\n",
+                                      "x"));
+  CHECK(s.gravity == Vec3(0, 0, -2));
+  double on_corners = 0;
+  for (const auto& load : s.loads)
+    if (s.nodes[static_cast<std::size_t>(load.node)].name.starts_with("B")) on_corners += load.force[2];
+  CHECK(on_corners == 6 * 5.0);  // B0..B5
+}
+
+TEST_CASE("a load on a sector is a load on every copy, turned with it") {
+  const Structure s = build_structure(read_scene_text(
+      hoop + "model = 'sector'\nhinge_force = 0\n[[loads]]\nnodes = 'B0'\nforce = [1, 0, 0]\n", "x"));
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (const auto& copy : s.load_copies)
+    if (copy.force.norm() > 0.5) {
+      sum += copy.force;
+      ++count;
+    }
+  CHECK(count == 6);
+  CHECK(sum.norm() < 1e-14);  // six unit vectors that cancel, each entry within an ulp
+}
+
+TEST_CASE("loads on nodes that are not there are reported together") {
+  CHECK(error_of(hoop + "[[loads]]\nnodes = ['Bx', 'B6']\nforce = [0, 0, 1]\n") ==
+        "s.toml:4:9: loads[0].nodes: no node matches 'Bx'; did you mean 'B0'?\n"
+        "s.toml:4:9: loads[0].nodes: no node matches 'B6'; did you mean 'B0'?");
+}
+
+TEST_CASE("gravity across a sector's axis is refused, along it is not") {
+  CHECK(error_of(hoop + "model = 'sector'\n[gravity]\nacceleration = [0, 0, -9.81]\n") == "");
+  CHECK(error_of(hoop + "model = 'sector'\n[gravity]\nacceleration = [1, 0, 0]\n") ==
+        "s.toml:5:16: gravity.acceleration: must act along the axis of symmetry in a sector model; set "
+        "structure.model to \"full\"");
+  CHECK(error_of(hoop + "[gravity]\nacceleration = [1, 0, 0]\n") == "");
+}

@@ -1,0 +1,149 @@
+// Custom structures from a scene and from CSV files beside it.
+#include <unistd.h>
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+// A folder of its own for a test's files, gone with it.
+struct Folder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("unfurl_custom_" + std::to_string(::getpid()));
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() { std::filesystem::remove_all(path); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name, std::ios::binary) << text;
+    return (path / name).string();
+  }
+};
+
+std::string error_of(std::string_view text) {
+  try {
+    read_scene_text(text, "s.toml");
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string file_error_of(const std::string& path) {
+  try {
+    read_scene_file(path);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const std::string head = "[structure]\nkind = 'custom'\n";
+const std::string two_nodes =
+    "[[structure.nodes]]\nname = 'A'\nposition = [0, 0, 0]\nfixed = true\n"
+    "[[structure.nodes]]\nname = 'B'\nposition = [0, 0, 2]\nvelocity = [1, 0, 0]\nmass = 3\n";
+
+}  // namespace
+
+TEST_CASE("nodes, rods, constraints and loads are read") {
+  const Scene scene =
+      read_scene_text(head + two_nodes +
+                          "[[structure.rods]]\nname = 'r'\nnodes = ['A', 'B']\ndensity = 2\narea = 3\n"
+                          "[[structure.constraints]]\nkind = 'line'\nnodes = 'B'\ndirection = [0, 0, 1]\n"
+                          "[[loads]]\nnodes = ['?']\nforce = [1, 0, 0]\n",
+                      "x");
+  CHECK(scene.custom.nodes[0].fixed);
+  CHECK(scene.custom.nodes[1].velocity == Vec3(1, 0, 0));
+  CHECK(scene.custom.nodes[1].mass == 3.0);
+  CHECK(scene.custom.rods[0].mass < 0.0);
+  const Structure s = build_structure(scene);
+  CHECK(s.rods[0].mass == 12.0);  // 2 kg/m^3 * 3 m^2 * 2 m
+  CHECK(s.constraints.size() == 2);
+  CHECK(s.loads.size() == 2);
+}
+
+TEST_CASE("mistakes in a list carry the entry's place") {
+  CHECK(error_of(head + two_nodes + "[[structure.rods]]\nnodes = ['A', 'b2']\nmass = 1\n") ==
+        "s.toml:13:9: structure.rods[0].nodes: there is no node 'b2'; did you mean 'B'?");
+  CHECK(error_of(head + two_nodes + "[[structure.rods]]\nnodes = ['A', 'B']\n") ==
+        "s.toml:12:1: structure.rods[0].mass: give mass (0: a pure distance constraint), or both density and "
+        "area");
+  CHECK(error_of(head + two_nodes + "[[structure.rods]]\nnodes = ['A', 'B']\nmass = -2\n") ==
+        "s.toml:14:8: structure.rods[0].mass: must be >= 0 kg; got -2");
+  CHECK(error_of(head + two_nodes + "[[structure.nodes]]\nposition = [0, 0, 'x']\n") ==
+        "s.toml:12:1: structure.nodes[2].name: is missing; must be text\n"
+        "s.toml:13:12: structure.nodes[2].position: must be a list of 3 numbers m; got a list with text");
+  CHECK(error_of(head + two_nodes +
+                 "[[structure.constraints]]\nkind = 'plane'\nnodes = 'B'\nnormal = [0, 0, 0]\n") ==
+        "s.toml:15:10: structure.constraints[0].normal: must not be zero");
+  CHECK(error_of(head + two_nodes + "[[structure.constraints]]\nkind = 'plane'\nnodes = 'B'\n") ==
+        "s.toml:12:1: structure.constraints[0].normal: is missing; must be a list of 3 numbers");
+  CHECK(error_of(head + two_nodes +
+                 "[[structure.constraints]]\nkind = 'fixed'\nnodes = 'B'\nnormal = [0, 0, 1]\n") ==
+        "s.toml:15:1: structure.constraints[0].normal: unknown key; known: kind, nodes");
+}
+
+TEST_CASE("one wrong node does not set off messages about what refers to it") {
+  CHECK(error_of(head + two_nodes +
+                 "[[structure.nodes]]\nname = 'C'\nposition = 3\n[[structure.rods]]\nnodes = ['B', "
+                 "'C']\nmass = 1\n") ==
+        "s.toml:14:12: structure.nodes[2].position: must be a list of 3 numbers m; got the whole number 3");
+}
+
+TEST_CASE("nodes and rods come from CSV files beside the scene") {
+  const Folder folder;
+  folder.write("n.csv", "name,x_m,y,z,mass_kg,fixed\nA,0,0,0,,1\n\"B, 2\",1e0,0.5,-2,3.25,0\n");
+  folder.write("r.csv", "\xEF\xBB\xBF# rods\r\na,b,mass\r\nA,\"B, 2\",1.5\r\n");
+  const auto path = folder.write("s.toml", head + "nodes_file = 'n.csv'\nrods_file = 'r.csv'\n");
+  const Scene scene = read_scene_file(path);
+  REQUIRE(scene.custom.nodes.size() == 2);
+  CHECK(scene.custom.nodes[0].fixed);
+  CHECK(scene.custom.nodes[1].name == "B, 2");
+  CHECK(scene.custom.nodes[1].position == Vec3(1, 0.5, -2));
+  CHECK(scene.custom.nodes[1].mass == 3.25);
+  REQUIRE(scene.custom.rods.size() == 1);
+  CHECK(scene.custom.rods[0].mass == 1.5);
+}
+
+TEST_CASE("mistakes in CSV files carry file and line") {
+  const Folder folder;
+  const std::string dir = folder.path.string() + "/";
+  const auto scene = folder.write("s.toml", head + "nodes_file = 'n.csv'\n");
+  const auto error = [&](const std::string& csv) {
+    folder.write("n.csv", csv);
+    return file_error_of(scene);
+  };
+  CHECK(error("name,x,y,z\nA,0,0,one\n") == dir + "n.csv:2:1: z: must be a finite number; got 'one'");
+  CHECK(error("name,x,y,z\nA,0,0,nan\n") == dir + "n.csv:2:1: z: must be a finite number; got 'nan'");
+  CHECK(error("name,x,y,z\n\nA,0,0\n") == dir + "n.csv:3:1: has 3 cells; the header has 4");
+  CHECK(error("name,x,y\nA,0,0\n") == dir + "n.csv:1:1: column 'z' is missing");
+  CHECK(error("name,x,y,z,mas\nA,0,0,0,1\n") ==
+        dir + "n.csv:1:1: unknown column 'mas'; did you mean 'mass'?");
+  CHECK(error("name,x,y,z,x\nA,0,0,0,1\n") == dir + "n.csv:1:1: column 'x' appears twice");
+  CHECK(error("") == dir + "n.csv:1:1: is empty; the first line must name the columns");
+  CHECK(error("name,x,y,z,mass\nA,0,0,0,1\nA,1,0,0,1\n") ==
+        dir + "n.csv:3:1: structure.nodes[1].name: there is already a node 'A', entry 0");
+  CHECK(error("name,x,y,z,mass\nA,0,0,0,-1\n") ==
+        dir + "n.csv:2:1: structure.nodes[0].mass: must be >= 0 kg");
+  CHECK(error("name,x,y,z\n\xFF,0,0,0\n") == dir + "n.csv:2:1: not valid UTF-8");
+}
+
+TEST_CASE("files outside the scene's folder are not read") {
+  const Folder folder;
+  std::filesystem::create_directories(folder.path / "in");
+  folder.write("n.csv", "name,x,y,z,mass\nA,0,0,0,1\n");
+  std::filesystem::create_symlink(folder.path / "n.csv", folder.path / "in" / "link.csv");
+  const auto error = [&](const std::string& name) {
+    return file_error_of(folder.write("in/s.toml", head + "nodes_file = '" + name + "'\n"));
+  };
+  CHECK(error("../n.csv").find("nodes_file: must lie inside the scene's folder") != std::string::npos);
+  CHECK(error("link.csv").find("nodes_file: must lie inside the scene's folder") != std::string::npos);
+  CHECK(error("/etc/passwd").find("nodes_file: must be relative to the scene's folder") != std::string::npos);
+  CHECK(error("none.csv").find("none.csv: No such file or directory") != std::string::npos);
+  CHECK(error_of(head + "nodes_file = 'n.csv'") ==
+        "s.toml:3:14: structure.nodes_file: a scene that is not a file cannot name other files");
+}

@@ -1,0 +1,89 @@
+#include "core/scene/overrides.hpp"
+
+#include <algorithm>
+
+#include <catch2/catch.hpp>
+
+using namespace unfurl;
+
+namespace {
+
+constexpr const char* document =
+    "title = 'x'\n[solver]\nstep = 0.01\n[structure]\nkind = 'custom'\n"
+    "[[structure.nodes]]\nname = 'A'\n[[structure.nodes]]\nname = 'B.0'\n"
+    "[[structure.rods]]\nnodes = ['A', 'B.0']\n";
+
+struct Result {
+  TomlTree tree;
+  std::string problems;
+};
+
+Result with(const std::vector<std::string>& overrides) {
+  Result result{parse_toml(document, "x.toml"), ""};
+  std::vector<SceneProblem> problems;
+  apply_overrides(result.tree, overrides, problems);
+  for (const auto& problem : problems) result.problems += problem_text(problem) + "\n";
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("an override replaces, adds and makes tables") {
+  const Result r =
+      with({"solver.step=0.5", "solver.method=rk4", "render.size=[10, 20]", "title = Two words"});
+  CHECK(r.problems == "");
+  CHECK(r.tree.find("solver")->find("step")->real == 0.5);
+  CHECK(r.tree.find("solver")->find("method")->text == "rk4");
+  CHECK(r.tree.find("render")->find("size")->items[1].integer == 20);
+}
+
+TEST_CASE("the value is TOML where it can be, else a bare word") {
+  CHECK(with({"title=true"}).tree.find("title")->kind == TomlTree::Kind::boolean);
+  CHECK(with({"title=1"}).tree.find("title")->kind == TomlTree::Kind::integer);
+  CHECK(with({"title='1'"}).tree.find("title")->text == "1");
+  CHECK(with({"title=sector"}).tree.find("title")->text == "sector");
+  CHECK(with({"title=B*"}).tree.find("title")->text == "B*");
+  CHECK(with({"title=nan"}).tree.find("title")->kind == TomlTree::Kind::real);
+}
+
+TEST_CASE("entries of arrays go by index or name") {
+  CHECK(with({"structure.nodes[1].mass=2"})
+            .tree.find("structure")
+            ->find("nodes")
+            ->items[1]
+            .find("mass")
+            ->integer == 2);
+  CHECK(with({"structure.nodes.A.mass=2"})
+            .tree.find("structure")
+            ->find("nodes")
+            ->items[0]
+            .find("mass")
+            ->integer == 2);
+  CHECK(with({"structure.nodes.\"B.0\".mass=2"}).problems == "");
+  CHECK(with({"structure.rods.\"A-B.0\".mass=2"}).problems == "");
+}
+
+TEST_CASE("overrides that cannot be applied say why") {
+  CHECK(with({"solver.step"}).problems == "--set solver.step: must be key=value\n");
+  CHECK(with({"solver.step="}).problems == "--set solver.step: has no value\n");
+  CHECK(with({"solver.step=1 2"}).problems ==
+        "--set solver.step: not a TOML value: '1 2'; text goes in quotes unless it is a bare word\n");
+  CHECK(with({"solver.step=1\nx=2"}).problems == "--set solver.step: the value must be one TOML value\n");
+  CHECK(with({"title.x=1"}).problems == "--set title.x: title is text, not a table\n");
+  CHECK(with({"structure.nodes[7].mass=1"}).problems ==
+        "--set structure.nodes[7].mass: structure.nodes has 2 entries; the first is [0]\n");
+  CHECK(with({"structure.nodes.a.mass=1"}).problems ==
+        "--set structure.nodes.a.mass: structure.nodes has no entry named 'a'; did you mean 'A'?\n");
+  CHECK(with({"solver[0]=1"}).problems == "--set solver[0]: solver is not a list\n");
+  CHECK(with({"a..b=1"}).problems == "--set a..b: the key has an empty part\n");
+  CHECK(with({"a[x]=1"}).problems ==
+        "--set a[x]: an index must be a whole number in brackets, [0] the first\n");
+  CHECK(with({"\"a=1"}).problems == "--set \"a: a quote in the key stays open\n");
+  CHECK(with({"=1"}).problems.find("the key has an empty part") != std::string::npos);
+}
+
+TEST_CASE("one bad override does not hide another") {
+  const Result r = with({"title.x=1", "solver.step=0.5", "a..b=1"});
+  CHECK(std::count(r.problems.begin(), r.problems.end(), '\n') == 2);
+  CHECK(r.tree.find("solver")->find("step")->real == 0.5);
+}

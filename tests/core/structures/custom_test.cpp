@@ -1,0 +1,188 @@
+#include "core/structures/custom.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/model/structure_error.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+CustomNode node(const char* name, Vec3 position, double mass = 1.0) {
+  return {name, position, Vec3::Zero(), mass, false};
+}
+
+CustomRod rod(const char* a, const char* b, double mass = 1.0) {
+  CustomRod r;
+  r.nodes = {a, b};
+  r.mass = mass;
+  return r;
+}
+
+CustomSpec triangle() {
+  CustomSpec spec;
+  spec.nodes = {node("A", {0, 0, 0}), node("B", {3, 0, 0}), node("C", {0, 4, 0})};
+  spec.rods = {rod("A", "B"), rod("B", "C"), rod("C", "A")};
+  return spec;
+}
+
+// "table[index].key: message", one line each.
+std::string problems_of(const CustomSpec& spec) {
+  std::string text;
+  for (const auto& p : check_custom(spec))
+    text += p.table + "[" + std::to_string(p.index) + "]." + p.key + ": " + p.message + "\n";
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a list becomes a structure with measured rods") {
+  CustomSpec spec = triangle();
+  spec.nodes[0].fixed = true;
+  spec.rods[1].mass = -1.0;
+  spec.rods[1].density = 2.0;
+  spec.rods[1].area = 0.5;
+  const Structure s = build_custom(spec);
+  REQUIRE(s.nodes.size() == 3);
+  REQUIRE(s.rods.size() == 3);
+  CHECK(s.rods[0].name == "A-B");
+  CHECK(s.rods[1].length == 5.0);  // 3-4-5, exact in binary
+  CHECK(s.rods[1].mass == 5.0);    // density * area * length
+  CHECK(s.rods[1].radius == Approx(std::sqrt(0.5 / pi)));
+  REQUIRE(s.constraints.size() == 1);
+  CHECK(s.constraints[0].kind == "fixed");
+  CHECK(s.constraints[0].nodes == std::vector<int>{0});
+  CHECK(s.node_copies.size() == 3);
+  CHECK(s.rod_copies.size() == 3);
+}
+
+TEST_CASE("a plane passes through each node's start, its normal made a unit vector") {
+  CustomSpec spec = triangle();
+  spec.constraints = {{"plane", {"B", "C"}, {0, 2, 0}}};
+  const Structure s = build_custom(spec);
+  REQUIRE(s.constraints.size() == 2);
+  CHECK(s.constraints[0].vectors[0] == Vec3(0, 1, 0));
+  CHECK(s.constraints[0].value == 0.0);
+  CHECK(s.constraints[1].value == 4.0);
+  CHECK(s.constraints[1].name == "plane of C");
+}
+
+TEST_CASE("a normal of any length will do") {
+  for (const double length : {1e-200, 1.0, 1e200}) {
+    CustomSpec spec = triangle();
+    spec.constraints = {{"plane", {"B"}, {0, 0, length}}};
+    CHECK(build_custom(spec).constraints[0].vectors[0] == Vec3(0, 0, 1));
+  }
+}
+
+TEST_CASE("constraints find their nodes by pattern, a literal name first") {
+  CustomSpec spec = triangle();
+  spec.nodes.push_back(node("*", {1, 1, 1}));
+  spec.constraints = {{"fixed", {"*"}, Vec3::Zero()}, {"fixed", {"?"}, Vec3::Zero()}};
+  const Structure s = build_custom(spec);
+  REQUIRE(s.constraints.size() == 1 + 4);
+  CHECK(s.constraints[0].nodes == std::vector<int>{3});
+}
+
+TEST_CASE("globs match as in a shell") {
+  CHECK(glob_match("B*", "B12"));
+  CHECK(glob_match("*", ""));
+  CHECK(glob_match("B?", "B1"));
+  CHECK(glob_match("*1*2", "a1b2c12"));
+  CHECK_FALSE(glob_match("B?", "B12"));
+  CHECK_FALSE(glob_match("B", "B1"));
+  CHECK_FALSE(glob_match("", "B"));
+  // A naive matcher needs 2^30 steps here.
+  CHECK_FALSE(glob_match("*a*a*a*a*a*a*a*a*a*a*a*a*a*a*ab", std::string(60, 'a')));
+}
+
+TEST_CASE("a sound list has no problems") {
+  CHECK(problems_of(triangle()) == "");
+}
+
+TEST_CASE("each mistake is found, with its place and its cure") {
+  CustomSpec spec = triangle();
+  SECTION("no nodes") {
+    CHECK(problems_of({}) == "nodes[-1].: a custom structure needs nodes: [[structure.nodes]]\n");
+  }
+  SECTION("the same name twice") {
+    spec.nodes.push_back(node("B", {9, 9, 9}));
+    CHECK(problems_of(spec) == "nodes[3].name: there is already a node 'B', entry 1\n");
+  }
+  SECTION("a rod to nowhere") {
+    spec.rods.push_back(rod("A", "Bb"));
+    CHECK(problems_of(spec) == "rods[3].nodes: there is no node 'Bb'; did you mean 'B'?\n");
+  }
+  SECTION("a rod to itself") {
+    spec.rods.push_back(rod("A", "A"));
+    CHECK(problems_of(spec) == "rods[3].nodes: a rod from 'A' to itself\n");
+  }
+  SECTION("a rod of no length") {
+    spec.nodes.push_back(node("D", {3, 0, 0}));
+    spec.rods.push_back(rod("B", "D"));
+    CHECK(problems_of(spec) == "rods[3].nodes: zero length: 'B' and 'D' have the same position\n");
+  }
+  SECTION("a rod whose squared length is no double") {
+    spec.nodes.push_back(node("D", {3e200, 0, 0}));
+    spec.rods.push_back(rod("A", "D"));
+    CHECK(problems_of(spec) ==
+          "rods[3].nodes: the square of its length is outside the range of double precision\n");
+  }
+  SECTION("the same rod twice without names of their own") {
+    spec.rods.push_back(rod("A", "B"));
+    CHECK(problems_of(spec) ==
+          "rods[3].name: there is already a rod 'A-B', entry 0; give this one a name of its own\n");
+  }
+  SECTION("no mass") {
+    spec.rods[0].mass = -1;
+    CHECK(problems_of(spec) ==
+          "rods[0].mass: give mass (0: a pure distance constraint), or both density and area\n");
+  }
+  SECTION("negative mass of a node") {
+    spec.nodes[0].mass = -1;
+    CHECK(problems_of(spec) == "nodes[0].mass: must be >= 0 kg\n");
+  }
+  SECTION("a node that moves without mass") {
+    spec.nodes.push_back(node("D", {9, 9, 9}, 0.0));
+    spec.rods.push_back(rod("A", "D", 0.0));
+    CHECK(problems_of(spec) ==
+          "nodes[3].mass: 'D' has no mass: give it some, attach a rod that has mass, or fix it\n");
+    spec.nodes[3].fixed = true;
+    CHECK(problems_of(spec) == "");
+  }
+  SECTION("a plane without a direction") {
+    spec.constraints = {{"plane", {"A"}, Vec3::Zero()}};
+    CHECK(problems_of(spec) == "constraints[0].normal: must not be zero\n");
+  }
+  SECTION("an unknown kind") {
+    spec.constraints = {{"plan", {"A"}, Vec3::UnitX()}};
+    CHECK(problems_of(spec) ==
+          "constraints[0].kind: there is no constraint kind 'plan'; did you mean 'plane'?\n");
+  }
+  SECTION("a pattern that matches nothing") {
+    spec.constraints = {{"fixed", {"X*"}, Vec3::Zero()}};
+    CHECK(problems_of(spec) == "constraints[0].nodes: no node matches 'X*'; known: A, B, C\n");
+  }
+  SECTION("what is not finite") {
+    spec.nodes[1].position[0] = std::nan("");
+    CHECK(problems_of(spec) == "nodes[1].position: must be finite\n");
+  }
+}
+
+TEST_CASE("building a wrong list throws its first problem") {
+  CustomSpec spec = triangle();
+  spec.rods.push_back(rod("A", "X"));
+  try {
+    build_custom(spec);
+    FAIL("built");
+  } catch (const StructureError& error) {
+    CHECK(error.key == "rods[3].nodes");
+  }
+}
+
+TEST_CASE("a list that is wrong everywhere ends its report") {
+  CustomSpec spec = triangle();
+  for (int i = 0; i < 10000; ++i) spec.rods.push_back(rod("A", "X"));
+  CHECK(check_custom(spec).size() == 100);
+}
