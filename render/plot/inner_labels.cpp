@@ -60,6 +60,16 @@ void add_line_label(const ReferenceLine& line, Obstacles& obstacles, PanelLayout
                         spot.hidden > 0});
 }
 
+void say_no_data(const Panel& panel, PanelLayout& out) {
+  const bool drawn =
+      std::any_of(out.curves.begin(), out.curves.end(), [](const auto& pieces) { return !pieces.empty(); }) ||
+      std::any_of(out.bands.begin(), out.bands.end(), [](const BandTrace& b) { return !b.lower.empty(); });
+  if (drawn || panel.bare || !panel.segments.empty() || !panel.dots.empty()) return;
+  const Point middle{(out.frame.x0 + out.frame.x1) / 2,
+                     (out.frame.y0 + out.frame.y1) / 2 + cap_height * small_size / 2};
+  out.labels.push_back({middle, "no data", {small_size, caption_color, Anchor::middle}, true});
+}
+
 void add_scale_bar(const Panel& panel, PanelLayout& out) {
   if (!(panel.scale_bar > 0)) return;
   const double length = panel.scale_bar / (out.x.scale.hi - out.x.scale.lo) * out.frame.width();
@@ -101,6 +111,7 @@ void add_inner_labels(const Panel& panel, PanelLayout& out) {
   Obstacles obstacles = obstacles_of(panel, out);
   for (const ReferenceLine& line : panel.lines) add_line_label(line, obstacles, out);
   add_scale_bar(panel, out);
+  say_no_data(panel, out);
 }
 
 }  // namespace unfurl::plot

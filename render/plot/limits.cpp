@@ -47,9 +47,14 @@ Extent data_extent(const Panel& panel, AxisOf which, bool log) {
   return e;
 }
 
-// Whole decades, at least one; another one below where zeros sit on the floor.
-Limits log_limits(const Extent& e, bool zeros_at_floor) {
+// With some air where two powers of ten or more remain inside; else, and always in y, whole decades, at least
+// one, and another one below where zeros sit on the floor.
+Limits log_limits(const Extent& e, AxisOf which, bool zeros_at_floor) {
   if (e.empty()) return {0.1, 10.0};
+  if (which == AxisOf::x && e.lo > 1e-290) {
+    const double air = std::pow(e.hi / e.lo, 0.03), lo = e.lo / air, hi = e.hi * air;
+    if (std::floor(std::log10(hi)) - std::ceil(std::log10(lo)) >= 1 && std::isfinite(hi)) return {lo, hi};
+  }
   double first = std::floor(std::log10(e.lo) + 1e-9), last = std::ceil(std::log10(e.hi) - 1e-9);
   if (zeros_at_floor && e.zeros && std::log10(e.lo) - first < 0.5) first -= 1;
   if (last <= first) first = last - 1;
@@ -81,7 +86,7 @@ Limits axis_limits(const Panel& panel, AxisOf which) {
   const bool usable = std::isfinite(axis.min) && std::isfinite(axis.max) && (!axis.log || axis.min > 0);
   if (usable && axis.min < axis.max) return {axis.min, axis.max};
   const Extent e = data_extent(panel, which, axis.log);
-  return axis.log ? log_limits(e, axis.zeros_at_floor) : linear_limits(e, which);
+  return axis.log ? log_limits(e, which, axis.zeros_at_floor) : linear_limits(e, which);
 }
 
 bool has_floored_zeros(const Panel& panel) {

@@ -18,10 +18,12 @@ class PanelPainter {
 
   void paint() {
     if (!panel_.bare) grid();
-    canvas_.begin_clip(panel_.bare ? frame_.grown(4) : frame_.grown(1.2));
+    const bool marked = std::any_of(panel_.curves.begin(), panel_.curves.end(),
+                                    [](const Curve& c) { return c.marker != Marker::none; });
+    canvas_.begin_clip(frame_.grown(panel_.bare ? 4 : marked ? 3 : 1.2));
     bands();
-    references();
     curves();
+    references();
     paint_pose(panel_, layout_, canvas_);
     canvas_.end_clip();
     if (!panel_.bare) axes();

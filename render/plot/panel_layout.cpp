@@ -34,16 +34,22 @@ bool fits(const AxisLayout& axis, double gap, Extent extent) {
   return true;
 }
 
+// As many ticks as read well: more on a longer axis, but not in proportion; two or more where labels can be
+// had.
 void set_ticks(const Axis& axis, const Limits& limits, bool horizontal, AxisLayout& out) {
   const double length = std::abs(out.scale.at_hi - out.scale.at_lo);
-  const double spacing = horizontal ? 45 : axis.log ? 15 : 21;
-  for (int most = std::clamp(static_cast<int>(length / spacing), 1, 10);; --most) {
+  const double spacing = horizontal ? 25 + 0.08 * length : axis.log ? 15 : 12 + 0.06 * length;
+  const auto fit = [&](int most) {
     out.ticks = ticks_of(axis, limits, most);
-    const auto width = [&](std::size_t i) {
+    const auto extent = [&](std::size_t i) {
       return horizontal ? text_width(out.ticks.labels[i], small_size) : small_size;
     };
-    if (most <= 1 || fits(out, horizontal ? 6.0 : 4.0, width)) return;
-  }
+    return fits(out, horizontal ? 6.0 : 4.0, extent);
+  };
+  int most = std::clamp(static_cast<int>(length / spacing), 1, 12);
+  while (!fit(most) && most > 1) --most;
+  for (int more = most + 1; out.ticks.major.size() < 2 && more <= most + 3; ++more)
+    if (!fit(more)) fit(most), more = most + 3;
 }
 
 void set_axis(const Panel& panel, AxisOf which, double at_lo, double at_hi, AxisLayout& out) {

@@ -1,7 +1,7 @@
 #include "render/plot/pose_painter.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 #include "render/plot/style.hpp"
 
@@ -41,9 +41,11 @@ void paint_pose(const Panel& panel, const PanelLayout& layout, Canvas& canvas) {
     const Segment& s = *item.segment;
     const Point a{x(s.x0), y(s.y0)}, b{x(s.x1), y(s.y1)};
     // The white edge stops short of the ends, where rods meet in a joint.
-    const Point from{a.x + 0.12 * (b.x - a.x), a.y + 0.12 * (b.y - a.y)},
-        to{b.x - 0.12 * (b.x - a.x), b.y - 0.12 * (b.y - a.y)};
-    canvas.line(from, to, {white, s.width + 2 * edge});
+    const double length = std::hypot(b.x - a.x, b.y - a.y),
+                 inset = std::max(0.15, (s.width + 3 * edge) / length);
+    const Point from{a.x + inset * (b.x - a.x), a.y + inset * (b.y - a.y)};
+    const Point to{b.x - inset * (b.x - a.x), b.y - inset * (b.y - a.y)};
+    if (inset < 0.5) canvas.line(from, to, {white, s.width + 2 * edge});
     canvas.line(a, b, {faded(s.color, s.depth), s.width});
   }
 }

@@ -13,8 +13,8 @@ struct Scale {
 
   // Values far outside stay within reach of single precision.
   double operator()(double value) const {
-    const double u =
-        log ? std::log(value / lo) / std::log(hi / lo) : (value / 2 - lo / 2) / (hi / 2 - lo / 2);
+    const double u = log ? (std::log(value) - std::log(lo)) / (std::log(hi) - std::log(lo))
+                         : (value / 2 - lo / 2) / (hi / 2 - lo / 2);
     return at_lo + std::clamp(u, -50.0, 50.0) * (at_hi - at_lo);
   }
 };
