@@ -7,9 +7,11 @@
 namespace unfurl {
 namespace {
 
-// level(): 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
-constexpr double wanted = 1.0, accepted = 30.0;
+// Levels: 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
+constexpr double wanted = 1.0, wanted_constraint = 2.0, accepted = 30.0;
 constexpr int max_frozen_iterations = 30;
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 class Dvm final : public Integrator {
  public:
@@ -66,8 +68,10 @@ class Dvm final : public Integrator {
   std::vector<double> rhs_f_, rhs_g_;
   VectorXd p1_, w1_, mu_, zero_, pose_, pose_z_, z1_;
   MatrixXd previous_, prolong_;
+  RowMajor consistent_f_;
   double previous_h_ = 0;
   bool have_history_ = false;
+  bool careful_ = false;
   bool frozen_ = false;  // saddle_ holds a factorisation near the present pose
   int lambdas_known_ = 0;
 };
@@ -125,13 +129,14 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
 
 // Residuals are computed from the equations themselves every time; the frozen matrix only steers.
 bool Dvm::frozen_iterations(StepReport& report) {
+  careful_ = false;
   double best_momentum = std::numeric_limits<double>::infinity(), best_constraint = best_momentum;
   int without_gain = 0;
   for (int it = 0; it <= max_frozen_iterations; ++it) {
     eq_.evaluate();
     const double level = eq_.level(), momentum = eq_.momentum_level(), constraint = eq_.constraint_level();
     report.residual = level;
-    if (level <= wanted) return report.status = StepStatus::converged, true;
+    if (momentum <= wanted && constraint <= wanted_constraint) return report.status = StepStatus::converged, true;
     // Redundant rows answer the constraint error of one iteration with momentum in the next: either may lag.
     const bool gain =
         momentum < 0.5 * best_momentum || (constraint > wanted && constraint < 0.5 * best_constraint);
@@ -139,7 +144,7 @@ bool Dvm::frozen_iterations(StepReport& report) {
     best_constraint = std::min(best_constraint, constraint);
     if (gain) {
       without_gain = 0;
-    } else if (++without_gain >= 3 || !std::isfinite(level)) {
+    } else if (careful_ = true; ++without_gain >= 3 || !std::isfinite(level)) {
       if (level <= accepted) return report.status = StepStatus::converged, true;
       break;
     }
@@ -155,17 +160,27 @@ bool Dvm::frozen_iterations(StepReport& report) {
 }
 
 // M dX_j + G^T Y_j = -h (C^-1 r)_j,  G dX_j = -Phi_j,  then  b_k dlambda_k = -(C Y)_k / h^2.
+//
+// Where rows of G depend on each other, the part of Phi that no motion can remove (round-off, above all) comes back as
+// a multiplier (that part / regularisation), which disturbs the momentum at the other nodes' poses. Once the iteration
+// no longer gains, the right-hand side is therefore replaced by what it can reach, G times the motion it caused.
 void Dvm::correct(StepReport& report) {
   const Index columns = c_.s - 1, n = eq_.dX.rows(), m = eq_.lambda.rows();
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::Map<RowMajor> f(rhs_f_.data(), n, columns), g(rhs_g_.data(), m, columns);
   f.noalias() = -eq_.h * (eq_.momentum * c_.C_inverse.transpose());
   for (Index r = 0; r < m; ++r) {
     const double noise = eq_.constraint_noise(r);
     for (Index j = 0; j < columns; ++j) g(r, j) = std::abs(eq_.phi(r, j)) > noise ? -eq_.phi(r, j) : 0.0;
   }
+  if (careful_) consistent_f_ = f;
   saddle_.apply(rhs_f_.data(), rhs_g_.data(), static_cast<int>(columns));
   report.right_hand_sides += static_cast<int>(columns);
+  if (careful_) {
+    g.noalias() = G_ * f;
+    f = consistent_f_;
+    saddle_.apply(rhs_f_.data(), rhs_g_.data(), static_cast<int>(columns));
+    report.right_hand_sides += static_cast<int>(columns);
+  }
   eq_.dX += f;
   for (Index k = 0; k < columns; ++k)
     for (Index j = 0; j < columns; ++j)
