@@ -11,6 +11,7 @@
 #include "core/scene/library.hpp"
 #include "core/structures/custom.hpp"
 #include "core/structures/family.hpp"
+#include "render/plot/figures.hpp"
 
 namespace unfurl {
 
@@ -38,7 +39,10 @@ std::vector<Item> method_items() {
 }
 
 std::vector<Item> figure_items() {
-  return {};
+  std::vector<Item> items;
+  for (const auto& kind : figure_kinds())
+    items.push_back({std::string(kind.name), std::string(kind.help), nullptr});
+  return items;
 }
 
 std::vector<Item> scene_items() {

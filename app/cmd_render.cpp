@@ -5,6 +5,7 @@
 #include "app/film.hpp"
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
+#include "app/run_figures.hpp"
 #include "app/scene_run.hpp"
 #include "core/scene/build.hpp"
 
@@ -26,8 +27,10 @@ int cmd_render(const Arguments& arguments) {
   if (arguments.json) std::cout << summary << std::flush;
   if (run.status == RunStatus::stopped) return exit_interrupted;
 
-  if (!write_film(directory, scene, run, *context, arguments)) {
-    std::cerr << "unfurl: interrupted; finished frames are kept\n";
+  FigureWriter writer(*context);
+  if (!write_film(directory, scene, run, *context, arguments) ||
+      !write_figures(directory / "figures", all_figures(), run, diagnostics, writer, arguments)) {
+    std::cerr << "unfurl: interrupted; what is finished is kept\n";
     return exit_interrupted;
   }
   return exit_code_of(run);

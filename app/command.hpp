@@ -34,6 +34,7 @@ std::span<const Command> commands();
 
 int cmd_run(const Arguments& arguments);
 int cmd_render(const Arguments& arguments);
+int cmd_figure(const Arguments& arguments);
 int cmd_check(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 

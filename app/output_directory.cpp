@@ -22,13 +22,18 @@ bool holds_our_results(const fs::path& directory) {
   return json.is_object() && json.contains("unfurl");
 }
 
+// The system's words of an error about another file.
+std::string cause_of(const FileError& error) {
+  const std::string text = error.what();
+  return text.substr(text.rfind(": ") + 2);
+}
+
 // A directory that cannot be written to, or a full disk, is found now rather than after the work.
 void probe(const fs::path& directory, bool leave_marker) {
   try {
     write_file_atomically(directory / marker, "Made by unfurl " UNFURL_VERSION "\n");
   } catch (const FileError& error) {
-    const std::string text = error.what();
-    throw FileError(directory, text.substr(text.rfind(": ") + 2));
+    throw FileError(directory, cause_of(error));
   }
   std::error_code ignored;
   if (!leave_marker) fs::remove(directory / marker, ignored);
@@ -58,6 +63,16 @@ fs::path open_output_directory(const std::string& path, bool force) {
     throw FileError(directory, "is not empty and holds no earlier results; use --force to write into it");
   probe(directory, ours);
   return directory;
+}
+
+void require_writable(const fs::path& file) {
+  if (fs::is_directory(file)) throw FileError(file, "is a directory");
+  try {
+    const PendingFile pending(file);
+    write_file_atomically(pending.name(), std::string_view("can this directory be written to?\n"));
+  } catch (const FileError& error) {
+    throw FileError(file, cause_of(error));
+  }
 }
 
 void clear_old_results(const fs::path& directory) {

@@ -1,0 +1,74 @@
+// unfurl figure SCENE NAME... -o FILE: one figure, PNG or SVG by extension; several, or `all`, into a
+// directory.
+#include <iostream>
+
+#include "app/command.hpp"
+#include "app/interrupt.hpp"
+#include "app/output_directory.hpp"
+#include "app/run_figures.hpp"
+#include "app/scene_run.hpp"
+#include "core/model/nearest_name.hpp"
+#include "core/scene/build.hpp"
+
+namespace unfurl {
+
+namespace {
+
+std::vector<const FigureKind*> chosen_figures(const Arguments& arguments) {
+  std::vector<const FigureKind*> kinds;
+  for (std::size_t i = 1; i < arguments.names.size(); ++i) {
+    if (arguments.names[i] == "all") return all_figures();
+    kinds.push_back(&figure_named(arguments.names[i]));
+  }
+  return kinds;
+}
+
+// Does -o name one file (rather than a directory)?
+bool single_file(const std::filesystem::path& output, const Arguments& arguments) {
+  const std::string extension = output.extension().string();
+  const bool one = arguments.names.size() == 2 && arguments.names[1] != "all";
+  if (extension == ".png" || extension == ".svg") {
+    if (!one)
+      throw UsageError("several figures go into a directory; " + in_quotes(output.string()) + " is one file");
+    return true;
+  }
+  if (one && !extension.empty())
+    throw UsageError("a figure is written as .png or .svg, not " + in_quotes(extension));
+  return false;
+}
+
+void require_data(const FigureKind& kind, const Scene& scene, const Simulation& run,
+                  const Diagnostics& diagnostics) {
+  if (!kind.applies(run, diagnostics))
+    throw UsageError("the scene " + scene.name + " has no data for the figure " + in_quotes(kind.name));
+}
+
+}  // namespace
+
+int cmd_figure(const Arguments& arguments) {
+  const auto kinds = chosen_figures(arguments);
+  const std::filesystem::path output(arguments.output);
+  const bool file = single_file(output, arguments);
+  const Scene scene = scene_of(arguments);
+  auto model = build_model(scene);
+  if (file) require_writable(output);
+  std::unique_ptr<GlContext> context;
+  if (output.extension() != ".svg") context = make_offscreen_context();
+
+  const InterruptGuard guard;
+  const Simulation run = simulate_scene(scene, std::move(model), arguments);
+  const Diagnostics diagnostics = diagnose(run);
+  if (arguments.names.size() == 2 && kinds.size() == 1) require_data(*kinds[0], scene, run, diagnostics);
+  if (file && context)
+    FigureWriter(*context).write(kinds[0]->make(run, diagnostics), output);
+  else if (file)
+    FigureWriter().write(kinds[0]->make(run, diagnostics), output);
+  else {
+    FigureWriter writer(*context);
+    if (!write_figures(output, kinds, run, diagnostics, writer, arguments)) return exit_interrupted;
+  }
+  report_run(run, diagnostics, arguments);
+  return exit_code_of(run);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,137 @@
+// `unfurl render` and `unfurl figure`: which files they write and how they fail.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/run_program.hpp"
+
+using namespace unfurl;
+namespace fs = std::filesystem;
+
+namespace {
+
+// Three small frames of a short run.
+const std::vector<std::string> small = {"hoop6_sector",         "--set", "solver.end_time=0.1", "--set",
+                                        "render.size=[96, 64]", "--set", "render.fps=20",       "--quiet"};
+
+std::vector<std::string> with(const std::vector<std::string>& first, std::vector<std::string> rest) {
+  std::vector<std::string> all = first;
+  all.insert(all.end(), rest.begin(), rest.end());
+  return all;
+}
+
+std::vector<std::string> files_in(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool is_png(const std::string& path) {
+  return file_text(path).starts_with("\x89PNG\r\n\x1a\n");
+}
+
+// Width and height that a PNG declares.
+std::pair<int, int> png_size(const std::string& path) {
+  const std::string bytes = file_text(path);
+  const auto number = [&](std::size_t at) {
+    int value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = 256 * value + static_cast<unsigned char>(bytes[at + i]);
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+}  // namespace
+
+TEST_CASE("render writes data, frames, an animation and every figure twice") {
+  const ScratchDirectory dir;
+  const ProgramResult r = run_program(with({"render"}, with(small, {"-o", dir / "out"})));
+  INFO(r.err);
+  CHECK(r.code == 0);
+  CHECK(r.out == "");
+  CHECK(files_in(dir / "out/frames") ==
+        std::vector<std::string>{"frame_00000.png", "frame_00001.png", "frame_00002.png"});
+  CHECK(png_size(dir / "out/frames/frame_00002.png") == std::pair(96, 64));
+  const std::string animation = file_text(dir / "out/animation.webp");
+  CHECK(animation.starts_with("RIFF"));
+  CHECK(animation.substr(8, 4) == "WEBP");
+  for (const char* name : {"deployment", "constraint_error", "energy", "rod_forces", "poses"}) {
+    CHECK(is_png(dir / "out/figures/" + std::string(name) + ".png"));
+    CHECK(file_text(dir / "out/figures/" + std::string(name) + ".svg").find("<svg") != std::string::npos);
+  }
+  CHECK(nlohmann::json::parse(file_text(dir / "out/summary.json"))["status"] == "completed");
+  CHECK(fs::exists(dir / "out/trajectory.csv"));
+}
+
+TEST_CASE("frames of an earlier, longer film do not survive") {
+  const ScratchDirectory dir;
+  const auto command = with({"render"}, with(small, {"-o", dir / "out"}));
+  CHECK(run_program(command).code == 0);
+  CHECK(run_program(with(command, {"--set", "solver.end_time=0.05"})).code == 0);
+  CHECK(files_in(dir / "out/frames") == std::vector<std::string>{"frame_00000.png", "frame_00001.png"});
+}
+
+TEST_CASE("a film of too many frames is refused before the work") {
+  const ProgramResult r = run_program({"render", "hoop6", "-o", "/nowhere/x", "--set", "render.speed=1e-6"});
+  CHECK(r.code == 3);
+  CHECK(r.err.find("render.fps: the film would have more than 99999 frames") != std::string::npos);
+}
+
+TEST_CASE("Ctrl-C while drawing keeps the finished frames") {
+  const ScratchDirectory dir;
+  const ProgramResult r =
+      run_program({"render", "hoop6", "--quiet", "-o", dir / "out", "--set", "render.fps=500"},
+                  {.interrupt_after_s = 3.0});
+  CHECK(r.code == 130);
+  CHECK(r.err.find("unfurl: interrupted; what is finished is kept\n") != std::string::npos);
+  const auto frames = files_in(dir / "out/frames");
+  REQUIRE_FALSE(frames.empty());
+  for (const auto& frame : frames) CHECK(is_png(dir / "out/frames/" + frame));
+  CHECK(fs::exists(dir / "out/summary.json"));
+  CHECK(fs::exists(dir / "out/animation.webp"));
+}
+
+TEST_CASE("one figure goes into the file that -o names") {
+  const ScratchDirectory dir;
+  const auto scene =
+      std::vector<std::string>{"figure", "hoop6_sector", "energy", "--set", "solver.end_time=0.1", "--quiet"};
+  CHECK(run_program(with(scene, {"-o", dir / "e.svg"})).code == 0);
+  CHECK(file_text(dir / "e.svg").find("<svg") != std::string::npos);
+  CHECK(run_program(with(scene, {"-o", dir / "e.png"})).code == 0);
+  CHECK(is_png(dir / "e.png"));
+  CHECK(files_in(dir / "") == std::vector<std::string>{"e.png", "e.svg"});
+}
+
+TEST_CASE("all figures go into a directory, those that the scene has data for") {
+  const ScratchDirectory dir;
+  const ProgramResult r = run_program(
+      {"figure", "double_pendulum", "all", "--set", "solver.end_time=0.1", "--quiet", "-o", dir / "figures"});
+  CHECK(r.code == 0);
+  CHECK(fs::exists(dir / "figures/energy.svg"));
+  CHECK_FALSE(fs::exists(dir / "figures/deployment.svg"));
+}
+
+TEST_CASE("figures that cannot be made say why") {
+  const ScratchDirectory dir;
+  const auto error = [](const std::vector<std::string>& arguments) { return run_program(arguments); };
+  ProgramResult r = error({"figure", "hoop6", "energi", "-o", dir / "x.png"});
+  CHECK(r.code == 2);
+  CHECK(r.err == "unfurl: no figure 'energi'; did you mean 'energy'?\n");
+  r = error({"figure", "hoop6", "energy", "-o", dir / "x.pdf"});
+  CHECK(r.code == 2);
+  CHECK(r.err == "unfurl: a figure is written as .png or .svg, not '.pdf'\n");
+  r = error({"figure", "hoop6", "energy", "poses", "-o", dir / "x.png"});
+  CHECK(r.code == 2);
+  r = error({"figure", "four_bar", "deployment", "-o", dir / "x.png"});
+  CHECK(r.code == 2);
+  CHECK(r.err == "unfurl: the scene four_bar has no data for the figure 'deployment'\n");
+  r = error({"figure", "hoop6", "energy", "-o", "/nowhere/x.png"});
+  CHECK(r.code == 5);
+  CHECK(r.err == "unfurl: /nowhere/x.png: no such file or directory\n");
+  r = error({"figure", "hoop6", "energy"});
+  CHECK(r.code == 2);
+  CHECK(r.err == "unfurl: -o is missing; usage: unfurl figure SCENE NAME... -o FILE\n");
+  CHECK(files_in(dir / "").empty());
+}
