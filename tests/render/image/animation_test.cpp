@@ -1,0 +1,136 @@
+#include <unistd.h>
+#include <webp/mux.h>
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "core/export/atomic_file.hpp"
+#include "render/image/mp4_pipe.hpp"
+#include "render/image/webp_animation.hpp"
+
+using namespace unfurl;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct ScratchFolder {
+  fs::path path = fs::temp_directory_path() / ("unfurl_film_" + std::to_string(::getpid()));
+  ScratchFolder() { fs::create_directories(path); }
+  ~ScratchFolder() { fs::remove_all(path); }
+};
+
+// A white square of a fifth of the width that moves from left to right on blue.
+Image moving_square(int width, int height, int frame) {
+  Image image{width, height, {}};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const bool inside = x >= 4 * frame && x < 4 * frame + width / 5 && y > height / 3 && y < height / 2;
+      for (const int value : inside ? std::array{255, 255, 255, 255} : std::array{20, 40, 160, 255}) {
+        image.rgba.push_back(static_cast<std::uint8_t>(value));
+      }
+    }
+  }
+  return image;
+}
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string output_of(const std::string& command) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  std::string text;
+  for (int c = std::fgetc(pipe.get()); c != EOF; c = std::fgetc(pipe.get())) text += static_cast<char>(c);
+  return text;
+}
+
+struct PathVariable {  // put back at the end
+  std::string old = std::getenv("PATH");
+  explicit PathVariable(const std::string& value) { setenv("PATH", value.c_str(), 1); }
+  ~PathVariable() { setenv("PATH", old.c_str(), 1); }
+};
+
+}  // namespace
+
+TEST_CASE("an animated WebP holds every frame for its time and repeats forever") {
+  const ScratchFolder scratch;
+  const fs::path file = scratch.path / "a.webp";
+  WebpAnimation film(file, 64, 48, 30.0);
+  for (int k = 0; k < 7; ++k) film.add(moving_square(64, 48, k));
+  CHECK_FALSE(fs::exists(file));  // nothing appears before it is whole
+  film.finish();
+  const std::string bytes = bytes_of(file);
+  const WebPData data{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+  const std::unique_ptr<WebPMux, void (*)(WebPMux*)> mux(WebPMuxCreate(&data, 0), WebPMuxDelete);
+  REQUIRE(mux);
+  int frames = 0, width = 0, height = 0, duration = 0;
+  CHECK(WebPMuxNumChunks(mux.get(), WEBP_CHUNK_ANMF, &frames) == WEBP_MUX_OK);
+  CHECK(frames == 7);
+  CHECK(WebPMuxGetCanvasSize(mux.get(), &width, &height) == WEBP_MUX_OK);
+  CHECK(width == 64);
+  CHECK(height == 48);
+  for (int k = 1; k <= frames; ++k) {
+    WebPMuxFrameInfo frame;
+    REQUIRE(WebPMuxGetFrame(mux.get(), static_cast<std::uint32_t>(k), &frame) == WEBP_MUX_OK);
+    duration += frame.duration;
+    WebPDataClear(&frame.bitstream);
+  }
+  CHECK(duration == 233);  // 7 / 30 s in whole milliseconds: rounding does not add up
+  WebPMuxAnimParams params;
+  CHECK(WebPMuxGetAnimationParams(mux.get(), &params) == WEBP_MUX_OK);
+  CHECK(params.loop_count == 0);
+}
+
+TEST_CASE("an animation that cannot be written is a file error, one without frames is no file") {
+  const ScratchFolder scratch;
+  WebpAnimation lost(scratch.path / "nowhere" / "a.webp", 16, 16, 30.0);
+  lost.add(moving_square(16, 16, 0));
+  CHECK_THROWS_AS(lost.finish(), FileError);
+  WebpAnimation(scratch.path / "empty.webp", 16, 16, 30.0).finish();
+  CHECK(fs::is_empty(scratch.path));
+  CHECK_THROWS_AS(WebpAnimation(scratch.path / "big.webp", 20000, 16, 30.0), FileError);
+  CHECK_THROWS_AS(lost.add(moving_square(8, 8, 0)), std::invalid_argument);
+}
+
+TEST_CASE("an MP4 of odd size is made even and has every frame") {
+  if (!ffmpeg_available()) return;
+  const ScratchFolder scratch;
+  const fs::path file = scratch.path / "it's a film.mp4";  // no shell is asked
+  Mp4Pipe film(file, 65, 47, 25.0);
+  for (int k = 0; k < 10; ++k) film.add(moving_square(65, 47, k));
+  CHECK(film.finish() == "");
+  CHECK(std::distance(fs::directory_iterator(scratch.path), fs::directory_iterator()) == 1);
+  CHECK(output_of("ffprobe -v error -count_frames -select_streams v -of csv=p=0 -show_entries "
+                  "stream=width,height,r_frame_rate,nb_read_frames \"" +
+                  file.string() + "\"") == "66,48,25/1,10\n");
+}
+
+TEST_CASE("an MP4 that fails is a warning and leaves nothing behind") {
+  const ScratchFolder scratch;
+  const fs::path bin = scratch.path / "bin";
+  fs::create_directory(bin);
+  std::ofstream(bin / "ffmpeg") << "#!/bin/sh\nexit 1\n";
+  fs::permissions(bin / "ffmpeg", fs::perms::owner_all);
+  const fs::path file = scratch.path / "a.mp4";
+  SECTION("ffmpeg dies while it is fed more than any buffer holds") {
+    const PathVariable path(bin.string());
+    CHECK(ffmpeg_available());
+    Mp4Pipe film(file, 640, 480, 25.0);
+    for (int k = 0; k < 5; ++k) film.add(moving_square(640, 480, k));
+    CHECK(film.finish() == file.string() + ": no MP4 was written: ffmpeg stopped early");
+  }
+  SECTION("there is no ffmpeg") {
+    const PathVariable path((scratch.path / "none").string());
+    CHECK_FALSE(ffmpeg_available());
+    Mp4Pipe film(file, 64, 48, 25.0);
+    film.add(moving_square(64, 48, 0));
+    CHECK(film.finish() ==
+          file.string() + ": no MP4 was written: cannot start ffmpeg: No such file or directory");
+  }
+  CHECK(std::distance(fs::directory_iterator(scratch.path), fs::directory_iterator()) == 1);
+}
