@@ -33,7 +33,7 @@ struct Legend {
   bool inside = true;  // in the frame, on a white ground; false: above it
   std::vector<LegendEntry> entries;
 };
-inline constexpr double legend_sample = 16.0;  // length of a sample [points]
+inline constexpr double legend_sample = 19.0;  // length of a sample [points]
 
 struct AxisLayout {
   bool used = true;

@@ -7,7 +7,8 @@
 namespace unfurl::plot {
 namespace {
 
-constexpr double largest = 1e300;  // differences of values up to it are finite
+constexpr double largest = 1e300;    // differences of values up to it are finite
+constexpr double smallest = 1e-290;  // ticks of a smaller range would underflow
 
 struct Extent {
   bool log = false;
@@ -65,8 +66,8 @@ Limits log_limits(const Extent& e, AxisOf which, bool zeros_at_floor) {
 Limits linear_limits(const Extent& e, AxisOf which) {
   if (e.empty()) return {0.0, 1.0};
   const double size = std::max(std::abs(e.lo), std::abs(e.hi)), range = e.hi - e.lo;
-  if (range <= 1e-12 * size || size == 0) {
-    const double air = size > 0 ? 0.1 * size : 1.0;
+  if (range <= 1e-12 * size || range < smallest) {
+    const double air = size > smallest ? 0.1 * size : 1.0;
     return {e.lo - air, e.hi + air};
   }
   const double air = (which == AxisOf::x ? 0.015 : 0.05) * range;
@@ -83,8 +84,9 @@ const Axis& axis_of(const Panel& panel, AxisOf which) {
 
 Limits axis_limits(const Panel& panel, AxisOf which) {
   const Axis& axis = axis_of(panel, which);
-  const bool usable = std::isfinite(axis.min) && std::isfinite(axis.max) && (!axis.log || axis.min > 0);
-  if (usable && axis.min < axis.max) return {axis.min, axis.max};
+  const bool usable =
+      std::abs(axis.min) <= largest && std::abs(axis.max) <= largest && (!axis.log || axis.min > 0);
+  if (usable && axis.max - axis.min > smallest) return {axis.min, axis.max};
   const Extent e = data_extent(panel, which, axis.log);
   return axis.log ? log_limits(e, which, axis.zeros_at_floor) : linear_limits(e, which);
 }

@@ -114,6 +114,8 @@ class PanelPainter {
         FigureColor fill = palette(e.band->color);
         fill.a = band_opacity;
         canvas_.rectangle({from.x, from.y - 2.6, to.x, to.y + 2.6}, fill);
+        for (const double y : {from.y - 2.6, from.y + 2.6})
+          canvas_.line({from.x, y}, {to.x, y}, {palette(e.band->color), 0.8});
       } else {
         const FigureColor color = palette(e.curve->color);
         canvas_.line(from, to, {color, e.curve->width, e.curve->dash});

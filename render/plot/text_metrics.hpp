@@ -14,6 +14,9 @@ inline constexpr double cap_height = 0.729, ascent = 0.76, descent = 0.22;
 
 // Advance of one line of UTF-8 text in DejaVu Sans, without kerning [points].
 double text_width(std::string_view text, double size);
+// Height of a line of DejaVu Sans, ascenders of any language included, relative to the size.
+inline constexpr double line_height = 2384.0 / 2048.0;
+
 // What the text covers, capitals and descenders included.
 Rect text_box(Point at, std::string_view text, const TextStyle& style);
 

@@ -24,12 +24,17 @@ struct Step {
   double multiple(double i) const { return decimal(i * m, k); }
 };
 
-Step nice_step(double range, int most) {
-  const double raw = range / std::max(most, 1);
-  const int k = static_cast<int>(std::floor(std::log10(raw)));
-  for (const Step s : {Step{1, k, 5}, Step{2, k, 4}, Step{5, k, 5}, Step{1, k + 1, 5}, Step{2, k + 1, 4}})
-    if (s.size() >= raw * (1 - hair)) return s;
-  return {5, k + 1, 5};
+// How many multiples of the step lie in [lo, hi].
+double count(double lo, double hi, const Step& s) {
+  return std::floor(hi / s.size() + hair) - std::ceil(lo / s.size() - hair) + 1;
+}
+
+Step nice_step(double lo, double hi, int most) {
+  const int k = static_cast<int>(std::floor(std::log10((hi - lo) / (std::max(most, 1) + 1.0))));
+  for (const Step s :
+       {Step{1, k, 5}, Step{2, k, 4}, Step{5, k, 5}, Step{1, k + 1, 5}, Step{2, k + 1, 4}, Step{5, k + 1, 5}})
+    if (count(lo, hi, s) <= std::max(most, 1)) return s;
+  return {1, k + 2, 5};
 }
 
 void fill_multiples(double lo, double hi, const Step& s, Ticks& out) {
@@ -67,28 +72,24 @@ void label_linear(double lo, double hi, const Step& s, Ticks& out) {
 
 Ticks linear_ticks(double lo, double hi, int most) {
   Ticks out;
-  if (!(hi > lo)) return out;
-  const Step s = nice_step(hi - lo, most);
+  if (!(hi - lo > 1e-295 && std::isfinite(hi - lo))) return out;
+  const Step s = nice_step(lo, hi, most);
   fill_multiples(lo, hi, s, out);
   label_linear(lo, hi, s, out);
   return out;
 }
 
 Ticks degree_ticks(double lo, double hi, int most) {
-  struct Choice {
-    int degrees, parts;
-  };
-  static constexpr std::array choices{Choice{1, 2},   Choice{2, 2},   Choice{5, 5},  Choice{10, 2},
-                                      Choice{15, 3},  Choice{30, 3},  Choice{45, 3}, Choice{90, 3},
-                                      Choice{180, 2}, Choice{360, 4}, Choice{720, 2}};
-  const double raw = (hi - lo) / std::max(most, 1);
-  if (!(hi > lo) || raw <= 0.5 || raw > choices.back().degrees) return linear_ticks(lo, hi, most);
-  const auto* choice = std::find_if(choices.begin(), choices.end(),
-                                    [raw](const Choice& c) { return c.degrees >= raw * (1 - hair); });
+  static constexpr std::array choices{Step{1, 0, 2},   Step{2, 0, 2},   Step{5, 0, 5},  Step{10, 0, 2},
+                                      Step{15, 0, 3},  Step{30, 0, 3},  Step{45, 0, 3}, Step{90, 0, 3},
+                                      Step{180, 0, 2}, Step{360, 0, 4}, Step{720, 0, 2}};
+  if (!(hi - lo > 1) || !std::isfinite(hi - lo)) return linear_ticks(lo, hi, most);
+  const auto* s = std::find_if(choices.begin(), choices.end(),
+                               [&](const Step& c) { return count(lo, hi, c) <= std::max(most, 1); });
+  if (s == choices.end()) return linear_ticks(lo, hi, most);
   Ticks out;
-  const Step s{choice->degrees, 0, choice->parts};
-  fill_multiples(lo, hi, s, out);
-  label_linear(lo, hi, s, out);
+  fill_multiples(lo, hi, *s, out);
+  label_linear(lo, hi, *s, out);
   return out;
 }
 
@@ -96,16 +97,17 @@ Ticks log_ticks(double lo, double hi, int most) {
   const int first = static_cast<int>(std::ceil(std::log10(lo) - hair));
   const int last = static_cast<int>(std::floor(std::log10(hi) + hair));
   if (last <= first) return linear_ticks(lo, hi, most);
-  int stride = 100;
+  int stride = 100;  // the most that doubles need: 10^-308 to 10^308 in seven
   for (const int s : {50, 20, 10, 5, 4, 3, 2, 1})
     if ((last - first) / s + 1 <= std::max(most, 2)) stride = s;
+  const int fine = stride <= 10 ? 1 : stride / 5;
   Ticks out;
   for (int k = first - 1; k <= last; ++k) {
     const double power = decimal(1, k);
     if (k >= first && k % stride == 0) {
       out.major.push_back(power);
       out.labels.push_back(power_of_ten(k));
-    } else if (k >= first) {
+    } else if (k >= first && k % fine == 0) {
       out.minor.push_back(power);
     }
     for (int m = 2; m <= 9 && stride == 1; ++m)

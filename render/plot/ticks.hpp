@@ -13,7 +13,7 @@ struct Ticks {
   std::string note;
 };
 
-// Ticks at multiples of 1, 2 or 5 times a power of ten, about `most` of them or fewer.
+// Ticks at multiples of 1, 2 or 5 times a power of ten, as many as `most` allows.
 Ticks linear_ticks(double lo, double hi, int most);
 // Ticks at multiples of 1, 2, 5, 10, 15, 30, 45, 90, ... degrees; below a degree as linear_ticks.
 Ticks degree_ticks(double lo, double hi, int most);
