@@ -93,6 +93,19 @@ TEST_CASE("Ctrl-C while drawing keeps the finished frames") {
   CHECK(fs::exists(dir / "out/animation.webp"));
 }
 
+TEST_CASE("without OSMesa pictures end before the work, SVG and data do not need it") {
+  const ScratchDirectory dir;
+  const ProgramOptions missing{.environment = {"UNFURL_OSMESA=libNoSuchThing.so"}};
+  const ProgramResult r = run_program({"render", "hoop6", "-o", dir / "out"}, missing);
+  CHECK(r.code == 6);
+  CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+  CHECK(r.err.find("libosmesa6") != std::string::npos);
+  CHECK_FALSE(fs::exists(dir / "out/summary.json"));
+  CHECK(run_program({"run", "hoop6_sector", "-o", dir / "data", "--quiet"}, missing).code == 0);
+  CHECK(run_program({"figure", "hoop6_sector", "energy", "-o", dir / "e.svg", "--quiet"}, missing).code == 0);
+  CHECK(run_program({"figure", "hoop6_sector", "energy", "-o", dir / "e.png", "--quiet"}, missing).code == 6);
+}
+
 TEST_CASE("one figure goes into the file that -o names") {
   const ScratchDirectory dir;
   const auto scene =
