@@ -1,4 +1,5 @@
-// Constraint kinds. A kind is evaluated in blocks: one virtual call for all constraints of the kind in a structure.
+// Constraint kinds. A kind is evaluated in blocks: one virtual call for all constraints of the kind in a
+// structure.
 #pragma once
 
 #include <memory>
@@ -17,9 +18,9 @@ class ConstraintBlock {
  public:
   virtual ~ConstraintBlock() = default;
   virtual int rows() const = 0;
-  virtual bool linear() const = 0;             // G constant in q and t: may be eliminated exactly
+  virtual bool linear() const = 0;  // G constant in q and t: may be eliminated exactly
   virtual std::string name(int row) const = 0;
-  virtual double length(int row) const = 0;    // the length to which this row's error is relative [m]
+  virtual double length(int row) const = 0;  // the length to which this row's error is relative [m]
   // Coordinates that row depends on, in the order used by jacobian and curvature.
   virtual std::vector<int> stencil(int row) const = 0;
 
@@ -30,7 +31,8 @@ class ConstraintBlock {
   virtual void add_force(const double* q, const double* lambda, double scale, double* f) const = 0;
   // phi_dd[row] = v^T Hess Phi_row v.
   virtual void bias(const double* q, const double* v, double* phi_dd) const = 0;
-  // For each row a dense k x k matrix lambda_row * Hess Phi_row, column by column, k the length of its stencil.
+  // For each row a dense k x k matrix lambda_row * Hess Phi_row, column by column, k the length of its
+  // stencil.
   virtual void curvature(const double* q, const double* lambda, double* hess) const = 0;
 };
 

@@ -21,7 +21,9 @@ class LinearRows final : public ConstraintBlock {
   bool linear() const override { return true; }
   std::string name(int row) const override { return rows_[static_cast<std::size_t>(row)].name; }
   double length(int row) const override { return rows_[static_cast<std::size_t>(row)].length; }
-  std::vector<int> stencil(int row) const override { return rows_[static_cast<std::size_t>(row)].coordinates; }
+  std::vector<int> stencil(int row) const override {
+    return rows_[static_cast<std::size_t>(row)].coordinates;
+  }
 
   void value(const double* q, double* phi) const override {
     for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -39,16 +41,20 @@ class LinearRows final : public ConstraintBlock {
       for (std::size_t i = 0; i < rows_[r].coordinates.size(); ++i)
         f[rows_[r].coordinates[i]] += scale * lambda[r] * rows_[r].coefficients[i];
   }
-  void bias(const double*, const double*, double* phi_dd) const override { std::fill_n(phi_dd, rows_.size(), 0.0); }
+  void bias(const double*, const double*, double* phi_dd) const override {
+    std::fill_n(phi_dd, rows_.size(), 0.0);
+  }
   void curvature(const double*, const double*, double* hess) const override {
-    for (const Row& row : rows_) hess = std::fill_n(hess, row.coordinates.size() * row.coordinates.size(), 0.0);
+    for (const Row& row : rows_)
+      hess = std::fill_n(hess, row.coordinates.size() * row.coordinates.size(), 0.0);
   }
 
  private:
   std::vector<Row> rows_;
 };
 
-// The length that a linear row's error is compared with: the mean rod length, a metre where there are no rods.
+// The length that a linear row's error is compared with: the mean rod length, a metre where there are no
+// rods.
 double reference_length(const Structure& structure) {
   double sum = 0;
   for (const Rod& rod : structure.rods) sum += rod.length;
@@ -64,7 +70,8 @@ void append(Row& row, int node, const Vec3& direction) {
 }
 
 template <class MakeRows>
-std::unique_ptr<ConstraintBlock> block_of(const Structure& structure, std::string_view kind, MakeRows make_rows) {
+std::unique_ptr<ConstraintBlock> block_of(const Structure& structure, std::string_view kind,
+                                          MakeRows make_rows) {
   std::vector<Row> rows;
   const double length = reference_length(structure);
   for (const Constraint& c : structure.constraints)
@@ -74,8 +81,13 @@ std::unique_ptr<ConstraintBlock> block_of(const Structure& structure, std::strin
 }
 
 // One row that holds x . direction at its value at t = 0.
-Row held(const Structure& structure, const Constraint& c, const Vec3& direction, double length, const char* suffix) {
-  Row row{c.name + suffix, {}, {}, direction.dot(structure.nodes[static_cast<std::size_t>(c.nodes[0])].position), length};
+Row held(const Structure& structure, const Constraint& c, const Vec3& direction, double length,
+         const char* suffix) {
+  Row row{c.name + suffix,
+          {},
+          {},
+          direction.dot(structure.nodes[static_cast<std::size_t>(c.nodes[0])].position),
+          length};
   append(row, c.nodes[0], direction);
   return row;
 }

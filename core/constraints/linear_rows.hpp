@@ -6,13 +6,13 @@
 
 namespace unfurl {
 
-// Linear constraints: every row is Phi = sum_i c_i q_i - b with constant coefficients, G = c, no curvature. A row's
-// coefficients are directions, so that it is in metres.
+// Linear constraints: every row is Phi = sum_i c_i q_i - b with constant coefficients, G = c, no curvature. A
+// row's coefficients are directions, so that it is in metres.
 //
 //   plane     n . x = value                                    one row;  vectors = {unit normal n}
-//   line      the two directions across `vectors[0]` are held  two rows; the line passes through the node at t = 0
-//   fixed     the node stays where it is at t = 0              three rows
-//   relation  sum_i vectors[i] . x_{nodes[i]} = value          one row: mirror, equality, any affine relation
+//   line      the two directions across `vectors[0]` are held  two rows; the line passes through the node at
+//   t = 0 fixed     the node stays where it is at t = 0              three rows relation  sum_i vectors[i] .
+//   x_{nodes[i]} = value          one row: mirror, equality, any affine relation
 std::unique_ptr<ConstraintBlock> plane_block(const Structure& structure);
 std::unique_ptr<ConstraintBlock> line_block(const Structure& structure);
 std::unique_ptr<ConstraintBlock> fixed_block(const Structure& structure);

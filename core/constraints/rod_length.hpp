@@ -10,8 +10,8 @@ namespace unfurl {
 //
 //     Phi = (d.d - l^2) / (2 l)        G = [-d/l, d/l]        Hess Phi = [I -I; -I I] / l
 //
-// so that a row is in metres (to first order the rod's change of length) and its multiplier is the rod's axial force
-// in newtons, tension positive.
+// so that a row is in metres (to first order the rod's change of length) and its multiplier is the rod's
+// axial force in newtons, tension positive.
 std::unique_ptr<ConstraintBlock> rod_length_block(const Structure& structure);
 
 }  // namespace unfurl

@@ -15,11 +15,11 @@ struct Instant {
   const Simulation& run;
   std::size_t i;
   const State& state;
-  const VectorXd &q, &v;           // node coordinates, velocities
-  const VectorXd &phi, &lengths;   // of all constraints [m]
-  const VectorXd& velocity_phi;    // G v of all constraints [m/s]
-  const VectorXd& axial_force;     // of the solved rods [N]
-  double first_energy;             // kinetic + potential at t = 0 [J]
+  const VectorXd &q, &v;          // node coordinates, velocities
+  const VectorXd &phi, &lengths;  // of all constraints [m]
+  const VectorXd& velocity_phi;   // G v of all constraints [m/s]
+  const VectorXd& axial_force;    // of the solved rods [N]
+  double first_energy;            // kinetic + potential at t = 0 [J]
 
   const System& system() const { return run.trajectory.model().system; }
   const Deployment& deployment() const { return run.trajectory.structure().deployment; }
@@ -29,7 +29,9 @@ struct Instant {
   }
 };
 
-double max_norm(const VectorXd& v) { return v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0; }
+double max_norm(const VectorXd& v) {
+  return v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
+}
 
 struct Row {
   const char *name, *label, *unit;
@@ -43,7 +45,8 @@ const std::array rows{
     Row{"kinetic_energy_J", "kinetic energy", "J", false, [](const Instant& s) { return s.kinetic(); }},
     Row{"potential_energy_J", "potential energy", "J", false,
         [](const Instant& s) { return s.system().potential_energy(s.q); }},
-    Row{"work_J", "work of the loads", "J", false, [](const Instant& s) { return s.system().load_work(s.q); }},
+    Row{"work_J", "work of the loads", "J", false,
+        [](const Instant& s) { return s.system().load_work(s.q); }},
     Row{"energy_balance_J", "energy balance", "J", false,
         [](const Instant& s) {
           return s.kinetic() + s.system().potential_energy(s.q) - s.first_energy - s.system().load_work(s.q);
@@ -55,7 +58,8 @@ const std::array rows{
         [](const Instant& s) { return s.relative_constraint() / ulp; }},
     Row{"constraint_velocity_max_m_s", "velocity constraint error", "m/s", false,
         [](const Instant& s) { return max_norm(s.velocity_phi); }},
-    Row{"fold_angle_rad", "fold angle", "rad", true, [](const Instant& s) { return s.deployment().fold_angle(s.q); }},
+    Row{"fold_angle_rad", "fold angle", "rad", true,
+        [](const Instant& s) { return s.deployment().fold_angle(s.q); }},
     Row{"fold_rate_rad_s", "fold rate", "rad/s", true,
         [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v); }},
     Row{"deployed_fraction", "deployed fraction", "", true,
@@ -70,9 +74,10 @@ const std::array rows{
         [](const Instant& s) { return static_cast<double>(s.run.trajectory.report(s.i).newton_iterations); }},
 };
 
-// Axial forces from the index-1 equations at the state: least-norm where rods are redundant, per rod of the whole. At an
-// event in a singular pose they are the extrapolated ones that the state holds.
-void axial_forces(Index1& index1, const Model& model, const State& state, bool singular_event, VectorXd& force) {
+// Axial forces from the index-1 equations at the state: least-norm where rods are redundant, per rod of the
+// whole. At an event in a singular pose they are the extrapolated ones that the state holds.
+void axial_forces(Index1& index1, const Model& model, const State& state, bool singular_event,
+                  VectorXd& force) {
   VectorXd acceleration(model.system.solved_coordinates()), lambda = state.lambda;
   const bool ok = singular_event || index1.evaluate(state.t, state.z, state.w, acceleration, lambda);
   for (Index r = 0; r < force.size(); ++r) {

@@ -19,16 +19,17 @@ struct Series {
 };
 
 struct Diagnostics {
-  std::vector<double> t;             // [s], one entry per state
-  std::vector<Series> columns;       // in the table's order; each as long as t
-  MatrixXd axial_force;              // [states x rods of the solved model], tension positive [N]
-  const Series* find(std::string_view name) const;       // nullptr where the scene has no such column
-  const Series& at(std::string_view name) const;         // throws std::out_of_range
+  std::vector<double> t;        // [s], one entry per state
+  std::vector<Series> columns;  // in the table's order; each as long as t
+  MatrixXd axial_force;         // [states x rods of the solved model], tension positive [N]
+  const Series* find(std::string_view name) const;  // nullptr where the scene has no such column
+  const Series& at(std::string_view name) const;    // throws std::out_of_range
 };
 
-// Column names: kinetic_energy_J potential_energy_J work_J energy_balance_J constraint_max_m constraint_relative_max
-// constraint_round_off_max constraint_velocity_max_m_s fold_angle_rad fold_rate_rad_s deployed_fraction
-// axial_force_max_N axial_force_min_N step_s newton_iterations; fold columns only where the structure has a fold angle.
+// Column names: kinetic_energy_J potential_energy_J work_J energy_balance_J constraint_max_m
+// constraint_relative_max constraint_round_off_max constraint_velocity_max_m_s fold_angle_rad fold_rate_rad_s
+// deployed_fraction axial_force_max_N axial_force_min_N step_s newton_iterations; fold columns only where the
+// structure has a fold angle.
 Diagnostics diagnose(const Simulation& run);
 
 }  // namespace unfurl

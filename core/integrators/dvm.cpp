@@ -7,9 +7,11 @@
 namespace unfurl {
 namespace {
 
-// level(): 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
-constexpr double wanted = 1.0, accepted = 30.0;
+// Levels: 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
+constexpr double wanted = 1.0, wanted_constraint = 2.0, accepted = 30.0;
 constexpr int max_frozen_iterations = 30;
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 class Dvm final : public Integrator {
  public:
@@ -66,8 +68,10 @@ class Dvm final : public Integrator {
   std::vector<double> rhs_f_, rhs_g_;
   VectorXd p1_, w1_, mu_, zero_, pose_, pose_z_, z1_;
   MatrixXd previous_, prolong_;
+  RowMajor consistent_f_;
   double previous_h_ = 0;
   bool have_history_ = false;
+  bool careful_ = false;
   bool frozen_ = false;  // saddle_ holds a factorisation near the present pose
   int lambdas_known_ = 0;
 };
@@ -84,9 +88,9 @@ void Dvm::analyse_mass() {
   mass_factor_.factorise(upper.valuePtr());
 }
 
-// Prolong the last step's polynomial; at a start, fly on with the present velocity. Multipliers start from the last
-// step's end, which is solved afresh every step: prolonging stage multipliers would amplify their round-off in
-// directions where they are not unique.
+// Prolong the last step's polynomial; at a start, fly on with the present velocity. Multipliers start from
+// the last step's end, which is solved afresh every step: prolonging stage multipliers would amplify their
+// round-off in directions where they are not unique.
 void Dvm::predict(const State& state, double h) {
   if (have_history_) {
     const double ratio = h / previous_h_;
@@ -125,17 +129,22 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
 
 // Residuals are computed from the equations themselves every time; the frozen matrix only steers.
 bool Dvm::frozen_iterations(StepReport& report) {
-  double best = std::numeric_limits<double>::infinity();
+  careful_ = false;
+  double best_momentum = std::numeric_limits<double>::infinity(), best_constraint = best_momentum;
   int without_gain = 0;
   for (int it = 0; it <= max_frozen_iterations; ++it) {
     eq_.evaluate();
-    const double level = eq_.level();
+    const double level = eq_.level(), momentum = eq_.momentum_level(), constraint = eq_.constraint_level();
     report.residual = level;
-    if (level <= wanted) return report.status = StepStatus::converged, true;
-    if (level < 0.5 * best) {
-      best = level;
+    if (momentum <= wanted && constraint <= wanted_constraint) return report.status = StepStatus::converged, true;
+    // Redundant rows answer the constraint error of one iteration with momentum in the next: either may lag.
+    const bool gain =
+        momentum < 0.5 * best_momentum || (constraint > wanted && constraint < 0.5 * best_constraint);
+    best_momentum = std::min(best_momentum, momentum);
+    best_constraint = std::min(best_constraint, constraint);
+    if (gain) {
       without_gain = 0;
-    } else if (++without_gain >= 2 || level > 1e3 * best) {
+    } else if (careful_ = true; ++without_gain >= 3 || !std::isfinite(level)) {
       if (level <= accepted) return report.status = StepStatus::converged, true;
       break;
     }
@@ -151,28 +160,41 @@ bool Dvm::frozen_iterations(StepReport& report) {
 }
 
 // M dX_j + G^T Y_j = -h (C^-1 r)_j,  G dX_j = -Phi_j,  then  b_k dlambda_k = -(C Y)_k / h^2.
+//
+// Where rows of G depend on each other, the part of Phi that no motion can remove (round-off, above all) comes back as
+// a multiplier (that part / regularisation), which disturbs the momentum at the other nodes' poses. Once the iteration
+// no longer gains, the right-hand side is therefore replaced by what it can reach, G times the motion it caused.
 void Dvm::correct(StepReport& report) {
   const Index columns = c_.s - 1, n = eq_.dX.rows(), m = eq_.lambda.rows();
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::Map<RowMajor> f(rhs_f_.data(), n, columns), g(rhs_g_.data(), m, columns);
   f.noalias() = -eq_.h * (eq_.momentum * c_.C_inverse.transpose());
   for (Index r = 0; r < m; ++r) {
-    const double noise = eq_.constraint_noise(r);
+    const double noise = wanted_constraint * eq_.constraint_noise(r);
     for (Index j = 0; j < columns; ++j) g(r, j) = std::abs(eq_.phi(r, j)) > noise ? -eq_.phi(r, j) : 0.0;
   }
+  if (careful_) consistent_f_ = f;
   saddle_.apply(rhs_f_.data(), rhs_g_.data(), static_cast<int>(columns));
   report.right_hand_sides += static_cast<int>(columns);
+  if (careful_) {
+    g.noalias() = G_ * f;
+    f = consistent_f_;
+    saddle_.apply(rhs_f_.data(), rhs_g_.data(), static_cast<int>(columns));
+    report.right_hand_sides += static_cast<int>(columns);
+  }
   eq_.dX += f;
   for (Index k = 0; k < columns; ++k)
     for (Index j = 0; j < columns; ++j)
       eq_.lambda.col(k) -= (c_.C(k, j) / (eq_.h * eq_.h * c_.b[k])) * g.col(j);
 }
 
-// One multiplier: Y_j = (C^-1)_j1 / (C^-1)_s1 y with y that of the last node; the other nodes follow from M alone.
+// One multiplier: Y_j = (C^-1)_j1 / (C^-1)_s1 y with y that of the last node; the other nodes follow from M
+// alone.
 void Dvm::correct_at_ends(StepReport& report) {
   const Index last = c_.s - 2, n = eq_.dX.rows();
   const double h = eq_.h;
-  const auto column = [&](Index j) -> VectorXd { return -h * (eq_.momentum * c_.C_inverse.row(j).transpose()); };
+  const auto column = [&](Index j) -> VectorXd {
+    return -h * (eq_.momentum * c_.C_inverse.row(j).transpose());
+  };
   Eigen::Map<VectorXd> f(rhs_f_.data(), n), y(rhs_g_.data(), eq_.lambda.rows());
   f = column(last);
   y = -eq_.phi.col(last);
@@ -188,8 +210,8 @@ void Dvm::correct_at_ends(StepReport& report) {
   eq_.lambda.col(0) -= y / (0.5 * h * h * c_.C_inverse(last, 0));
 }
 
-// p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; 0] at the end pose, mu = h b_s lambda_s.
-// The factorisation is the one that the next step starts with.
+// p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; 0] at the end pose, mu = h b_s
+// lambda_s. The factorisation is the one that the next step starts with.
 void Dvm::finish(State& state, double h, StepReport& report) {
   eq_.end_momentum(p1_);
   freeze(eq_.node(c_.s - 1), report);
@@ -212,14 +234,20 @@ void Dvm::finish(State& state, double h, StepReport& report) {
 }  // namespace
 
 Claims dvm_claims(const SolverOptions& options) {
-  Claims claims{.symplectic = true, .symmetric = true, .implicit = true, .holds_positions = true, .holds_velocities = true};
+  Claims claims{.symplectic = true,
+                .symmetric = true,
+                .implicit = true,
+                .holds_positions = true,
+                .holds_velocities = true};
   const int s = options.stages;
   if (options.constraints_at == "ends")
     claims.order = 2;
   else if (options.nodes == "lobatto")
     claims.order = 2 * s - 2;
   else
-    claims.order = 2 * (s / 2);  // symmetric interpolatory quadrature with s points: degree s - 1, one more for odd s
+    claims.order =
+        2 *
+        ((s + 1) / 2);  // that of a symmetric interpolatory quadrature: exact to degree s - 1, s for odd s
   return claims;
 }
 

@@ -11,7 +11,8 @@ namespace {
 using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-void add_block(Entries& entries, const SparseRows& A, Index row, Index column, double scale, bool transposed) {
+void add_block(Entries& entries, const SparseRows& A, Index row, Index column, double scale,
+               bool transposed) {
   for (int r = 0; r < A.outerSize(); ++r)
     for (SparseRows::InnerIterator it(A, r); it; ++it) {
       const Index i = transposed ? it.col() : r, j = transposed ? r : it.col();
@@ -19,17 +20,20 @@ void add_block(Entries& entries, const SparseRows& A, Index row, Index column, d
     }
 }
 
-// Rows and columns are scaled as in SaddleSolver: coordinates by 1/sqrt(M_ii), multipliers so that G has unit rows.
+// Rows and columns are scaled as in SaddleSolver: coordinates by 1/sqrt(M_ii), multipliers so that G has unit
+// rows.
 struct Scales {
   VectorXd coordinate, multiplier;
 };
 
 Scales scales_of(const StageEquations& eq, const SparseRows& G) {
   Scales s{VectorXd(eq.dX.rows()), VectorXd(eq.lambda.rows())};
-  for (Index i = 0; i < s.coordinate.size(); ++i) s.coordinate[i] = 1.0 / std::sqrt(eq.system.mass().coeff(i, i));
+  for (Index i = 0; i < s.coordinate.size(); ++i)
+    s.coordinate[i] = 1.0 / std::sqrt(eq.system.mass().coeff(i, i));
   for (int r = 0; r < G.outerSize(); ++r) {
     double square = 0;
-    for (SparseRows::InnerIterator it(G, r); it; ++it) square += std::pow(it.value() * s.coordinate[it.col()], 2);
+    for (SparseRows::InnerIterator it(G, r); it; ++it)
+      square += std::pow(it.value() * s.coordinate[it.col()], 2);
     s.multiplier[r] = square > 0 ? 1.0 / std::sqrt(square) : 1.0;
   }
   return s;

@@ -5,14 +5,14 @@
 
 namespace unfurl {
 
-// The Newton iteration with the exact matrix of the stage equations: Jacobians at every node and the curvature of the
-// constraints. In the unknowns dX_j and Y_j = -h^2 sum_k (C^-1)_jk b_k dlambda_k it reads
+// The Newton iteration with the exact matrix of the stage equations: Jacobians at every node and the
+// curvature of the constraints. In the unknowns dX_j and Y_j = -h^2 sum_k (C^-1)_jk b_k dlambda_k it reads
 //
 //     sum_j C_kj (M dX_j + G(Q_k)^T Y_j) - h^2 b_k H_k dX_k = -h r_k,   H_k = sum_i lambda_ki Hess Phi_i(Q_k)
 //     G(Q_j) dX_j - e Y_j = -Phi_j
 //
-// with a small e for redundant rows. It is slow (a sparse LU of all stages at once, with allocation) and meant for the
-// few steps near singular poses at which the simplified iteration does not contract.
+// with a small e for redundant rows. It is slow (a sparse LU of all stages at once, with allocation) and
+// meant for the few steps near singular poses at which the simplified iteration does not contract.
 StepStatus full_newton(StageEquations& equations, double wanted, double accepted, StepReport& report);
 
 }  // namespace unfurl

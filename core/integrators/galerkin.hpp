@@ -7,18 +7,20 @@
 
 namespace unfurl {
 
-// The coefficients of a Galerkin variational step with s control times c_1 = 0 < ... < c_s = 1 on the unit interval.
+// The coefficients of a Galerkin variational step with s control times c_1 = 0 < ... < c_s = 1 on the unit
+// interval.
 struct GalerkinCoefficients {
   GalerkinCoefficients(std::string_view family, int s);
 
   int s;
-  Barycentric basis;        // l_k on the control times
-  VectorXd b;               // b_k = integral of l_k
-  MatrixXd K;               // K_ki = integral of l_k' l_i'  [s x s]
-  MatrixXd C, C_inverse;    // K_kj for k = 1..s-1, j = 2..s: the kinetic terms of the stage equations
-  VectorXd tau, weight;     // Gauss-Legendre quadrature of the action
-  MatrixXd value, slope;    // l_k(tau_j), l_k'(tau_j)  [s x s]
-  MatrixXd extrapolation;   // row i: increments of the polynomial of a step, prolonged to c_{i+2} of the next step
+  Barycentric basis;      // l_k on the control times
+  VectorXd b;             // b_k = integral of l_k
+  MatrixXd K;             // K_ki = integral of l_k' l_i'  [s x s]
+  MatrixXd C, C_inverse;  // K_kj for k = 1..s-1, j = 2..s: the kinetic terms of the stage equations
+  VectorXd tau, weight;   // Gauss-Legendre quadrature of the action
+  MatrixXd value, slope;  // l_k(tau_j), l_k'(tau_j)  [s x s]
+  MatrixXd
+      extrapolation;  // row i: increments of the polynomial of a step, prolonged to c_{i+2} of the next step
 
   // Row i: l_j(1 + c_{i+2} ratio) - l_j(1), j = 2..s (the increment of Q_1 is zero). [s-1 x s-1]
   void extrapolate(double ratio, MatrixXd& out) const;

@@ -5,7 +5,8 @@
 
 namespace unfurl {
 
-// Accelerations and multipliers from the equations of motion with the constraints differentiated twice (index 1):
+// Accelerations and multipliers from the equations of motion with the constraints differentiated twice (index
+// 1):
 //
 //     [ M  G^T ] [w']     [ F(t, q, v)       ]
 //     [ G   0  ] [lambda] [ -v^T Hess Phi v  ]
@@ -13,8 +14,8 @@ namespace unfurl {
 // Multipliers that are not unique come with least scaled norm. One evaluation is one factorisation.
 class Index1 {
  public:
-  // clean_multipliers: for reporting forces rather than for stepping; slower, with round-off in redundant multipliers
-  // held at 1e-9 of their size instead of 1e-6.
+  // clean_multipliers: for reporting forces rather than for stepping; slower, with round-off in redundant
+  // multipliers held at 1e-9 of their size instead of 1e-6.
   explicit Index1(const System& system, bool clean_multipliers = false);
   // False where the factorisation broke down or the result is not finite.
   bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda);

@@ -22,12 +22,12 @@ class Integrator {
 
 // What a method claims about itself; the conformance test checks every claim of every row.
 struct Claims {
-  int order = 0;                 // of the position error for these options
+  int order = 0;  // of the position error for these options
   bool symplectic = false;
-  bool symmetric = false;        // a step back with -h undoes a step
+  bool symmetric = false;  // a step back with -h undoes a step
   bool implicit = false;
-  bool holds_positions = false;  // |Phi| at round-off after every step
-  bool holds_velocities = false; // |G v| at round-off after every step
+  bool holds_positions = false;   // |Phi| at round-off after every step
+  bool holds_velocities = false;  // |G v| at round-off after every step
 };
 
 struct Method {

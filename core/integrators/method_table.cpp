@@ -9,8 +9,10 @@ namespace unfurl {
 
 std::span<const Method> methods() {
   static const std::array rows{
-      Method{"dvm", "discrete variational (Galerkin) method, constraints held to round-off", dvm_claims, make_dvm},
-      Method{"rk4", "classical Runge-Kutta on the index-1 equations; constraints drift", rk4_claims, make_rk4},
+      Method{"dvm", "discrete variational (Galerkin) method, constraints held to round-off", dvm_claims,
+             make_dvm},
+      Method{"rk4", "classical Runge-Kutta on the index-1 equations; constraints drift", rk4_claims,
+             make_rk4},
   };
   return rows;
 }

@@ -8,7 +8,10 @@ namespace {
 class RungeKutta4 final : public Integrator {
  public:
   explicit RungeKutta4(const System& system)
-      : system_(system), index1_(system), q_(system.coordinates()), lambda_(system.constraints()),
+      : system_(system),
+        index1_(system),
+        q_(system.coordinates()),
+        lambda_(system.constraints()),
         phi_(system.constraints()) {
     for (VectorXd& k : dz_) k.setZero(system.solved_coordinates());
     for (VectorXd& k : dw_) k.setZero(system.solved_coordinates());
@@ -61,7 +64,9 @@ class RungeKutta4 final : public Integrator {
 
 }  // namespace
 
-Claims rk4_claims(const SolverOptions&) { return {.order = 4}; }
+Claims rk4_claims(const SolverOptions&) {
+  return {.order = 4};
+}
 
 std::unique_ptr<Integrator> make_rk4(const System& system, const SolverOptions&) {
   return std::make_unique<RungeKutta4>(system);

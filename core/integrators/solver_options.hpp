@@ -9,16 +9,16 @@ namespace unfurl {
 // The [solver] table of a scene, checked.
 struct SolverOptions {
   std::string method = "dvm";
-  int stages = 3;                          // s, the interpolation nodes on a step
-  std::string nodes = "lobatto";           // lobatto | equidistant | chebyshev
-  std::string constraints_at = "nodes";    // nodes | ends
-  double step = 0.01;                      // h [s]
-  double end_time = 1.0;                   // [s]
-  std::string at_deployed = "stop";        // stop | pass
-  bool eliminate_linear = true;            // solve in coordinates that fulfil the linear constraints exactly
+  int stages = 3;                        // s, the interpolation nodes on a step
+  std::string nodes = "lobatto";         // lobatto | equidistant | chebyshev
+  std::string constraints_at = "nodes";  // nodes | ends
+  double step = 0.01;                    // h [s]
+  double end_time = 1.0;                 // [s]
+  std::string at_deployed = "stop";      // stop | pass
+  bool eliminate_linear = true;          // solve in coordinates that fulfil the linear constraints exactly
 };
 
-const std::vector<ParamSpec>& solver_params();           // one row per key of [solver]
-SolverOptions solver_options(const ParamSet& values);    // values: checked against solver_params()
+const std::vector<ParamSpec>& solver_params();         // one row per key of [solver]
+SolverOptions solver_options(const ParamSet& values);  // values: checked against solver_params()
 
 }  // namespace unfurl

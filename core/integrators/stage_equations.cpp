@@ -20,7 +20,9 @@ StageEquations::StageEquations(const System& sys, const GalerkinCoefficients& co
   v_tau_.setZero(system.coordinates());
 }
 
-double StageEquations::multiplier_weight(int k) const { return at_ends ? 0.5 : c.b[k]; }
+double StageEquations::multiplier_weight(int k) const {
+  return at_ends ? 0.5 : c.b[k];
+}
 
 void StageEquations::start(double time, const ConstVec& z, const ConstVec& w, double step) {
   t = time;
@@ -63,10 +65,13 @@ void StageEquations::evaluate() {
   for (int k = 0; k < stages; ++k) {
     f_.setZero();
     add_forces(k, f_);
-    if (!at_ends || k == 0) system.add_constraint_force(Q.col(k), lambda.col(k), -h * multiplier_weight(k), f_);
+    if (!at_ends || k == 0)
+      system.add_constraint_force(Q.col(k), lambda.col(k), -h * multiplier_weight(k), f_);
     force_scale_ = std::max(force_scale_, f_.lpNorm<Eigen::Infinity>());
     // Rows have unit gradients: single rod forces may far exceed their sum.
-    if (lambda.rows()) force_scale_ = std::max(force_scale_, std::abs(h * multiplier_weight(k)) * lambda.col(k).lpNorm<Eigen::Infinity>());
+    if (lambda.rows())
+      force_scale_ = std::max(force_scale_,
+                              std::abs(h * multiplier_weight(k)) * lambda.col(k).lpNorm<Eigen::Infinity>());
     system.reduce_force(f_, momentum.col(k));
     for (int j = 0; j < stages; ++j) momentum.col(k) += (c.C(k, j) / h) * MdX_.col(j);
   }
@@ -74,8 +79,8 @@ void StageEquations::evaluate() {
   measure();
 }
 
-// Momentum: compared with the sizes of the terms that cancel in it. Constraints: with the larger of a row's length
-// and the coordinates, whose rounding moves a row by that much.
+// Momentum: compared with the sizes of the terms that cancel in it. Constraints: with the larger of a row's
+// length and the coordinates, whose rounding moves a row by that much.
 void StageEquations::measure() {
   double size = force_scale_ + p0.lpNorm<Eigen::Infinity>();
   size = std::max(size, MdX_.lpNorm<Eigen::Infinity>() * c.C.lpNorm<Eigen::Infinity>() / std::abs(h));

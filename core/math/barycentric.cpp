@@ -34,7 +34,9 @@ MatrixXd Barycentric::derivative_matrix() const {
 }
 
 // l_k' is the interpolant of its own values at the nodes.
-VectorXd Barycentric::derivatives(double t) const { return derivative_matrix().transpose() * values(t); }
+VectorXd Barycentric::derivatives(double t) const {
+  return derivative_matrix().transpose() * values(t);
+}
 
 VectorXd interpolation_nodes(std::string_view family, int s) {
   if (s < 2) throw std::invalid_argument("interpolation_nodes: at least two");

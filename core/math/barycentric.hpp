@@ -1,5 +1,5 @@
-// Barycentric Lagrange interpolation (Berrut & Trefethen 2004, SIAM Review 46): the paper's "center of gravity"
-// interpolation. Weights are computed from the nodes, whatever they are.
+// Barycentric Lagrange interpolation (Berrut & Trefethen 2004, SIAM Review 46): the paper's "center of
+// gravity" interpolation. Weights are computed from the nodes, whatever they are.
 #pragma once
 
 #include <string_view>

@@ -54,7 +54,8 @@ LinearElimination eliminate(const SparseRows& A, const ConstVec& b, double toler
     substitute(row, rhs, pivots, pivot_of);
     std::erase_if(row, [&](const auto& e) { return std::abs(e.second) <= tolerance * size; });
     if (row.empty()) {
-      auto& list = std::abs(rhs) <= 1e-9 * std::max({1.0, size, std::abs(b[r])}) ? result.redundant : result.inconsistent;
+      auto& list = std::abs(rhs) <= 1e-9 * std::max({1.0, size, std::abs(b[r])}) ? result.redundant
+                                                                                 : result.inconsistent;
       list.push_back(r);
       continue;
     }
@@ -65,7 +66,8 @@ LinearElimination eliminate(const SparseRows& A, const ConstVec& b, double toler
     for (const auto& [c, a] : row)
       if (c != pivot.column) pivot.row[c] = a / best->second;
     const int index = static_cast<int>(pivots.size());
-    for (int user : users[static_cast<std::size_t>(pivot.column)]) {  // keep earlier rows free of the new pivot
+    for (int user :
+         users[static_cast<std::size_t>(pivot.column)]) {  // keep earlier rows free of the new pivot
       Pivot& old = pivots[static_cast<std::size_t>(user)];
       const auto at = old.row.find(pivot.column);
       if (at == old.row.end()) continue;

@@ -12,7 +12,8 @@ struct Legendre {
   long double previous;    // P_{n-1}(x)
 };
 
-// Three-term recurrence (k+1) P_{k+1} = (2k+1) x P_k - k P_{k-1}; derivative from (x^2-1) P_n' = n (x P_n - P_{n-1}).
+// Three-term recurrence (k+1) P_{k+1} = (2k+1) x P_k - k P_{k-1}; derivative from (x^2-1) P_n' = n (x P_n -
+// P_{n-1}).
 Legendre legendre(int n, long double x) {
   long double p0 = 1, p1 = x;
   for (int k = 1; k < n; ++k) {

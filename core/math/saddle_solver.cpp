@@ -15,9 +15,9 @@ std::vector<int> minimum_degree_order(const SparseRows& upper) {
 
 namespace {
 
-// Approximate minimum degree, then every constraint is moved behind the coordinates that it acts on. A constraint
-// eliminated before them would bring the pivot -e, and with it growth by 1/e; behind them its pivot is of order one
-// unless the constraint is truly redundant.
+// Approximate minimum degree, then every constraint is moved behind the coordinates that it acts on. A
+// constraint eliminated before them would bring the pivot -e, and with it growth by 1/e; behind them its
+// pivot is of order one unless the constraint is truly redundant.
 std::vector<int> elimination_order(const SparseRows& upper, const SparseRows& G) {
   const int n = static_cast<int>(G.cols()), size = static_cast<int>(upper.rows());
   std::vector<int> open(static_cast<std::size_t>(size - n), 0);
@@ -41,7 +41,8 @@ std::vector<int> elimination_order(const SparseRows& upper, const SparseRows& G)
     }
     order.push_back(row);
     for (int c : acting[static_cast<std::size_t>(row)])
-      if (--open[static_cast<std::size_t>(c)] == 0 && waiting[static_cast<std::size_t>(c)]) order.push_back(n + c);
+      if (--open[static_cast<std::size_t>(c)] == 0 && waiting[static_cast<std::size_t>(c)])
+        order.push_back(n + c);
   }
   return order;
 }
@@ -49,7 +50,12 @@ std::vector<int> elimination_order(const SparseRows& upper, const SparseRows& G)
 }  // namespace
 
 SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns, double regularisation)
-    : n_(M.rows()), m_(G.rows()), M_(M), G_(G), column_scale_(M.rows()), row_scale_(VectorXd::Ones(G.rows())) {
+    : n_(M.rows()),
+      m_(G.rows()),
+      M_(M),
+      G_(G),
+      column_scale_(M.rows()),
+      row_scale_(VectorXd::Ones(G.rows())) {
   for (Index i = 0; i < n_; ++i) column_scale_[i] = 1.0 / std::sqrt(M.coeff(i, i));
   M_ = column_scale_.asDiagonal() * M * column_scale_.asDiagonal();
   M_.makeCompressed();
@@ -112,10 +118,12 @@ void SaddleSolver::apply(double* f, double* g, int columns) const {
     for (int c = 0; c < columns; ++c) g[i * columns + c] = bg[i * columns + c] * row_scale_[i];
 }
 
-// Refinement in scaled unknowns: x += K_e^{-1} (b - K_0 x), keeping the best iterate; it stops when the residual no
-// longer halves, which round-off and inconsistent right-hand sides bring about.
-double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y, int max_refinements) const {
-  const double size = std::max((f.cwiseProduct(column_scale_)).norm() + (g.cwiseProduct(row_scale_)).norm(), 1e-300);
+// Refinement in scaled unknowns: x += K_e^{-1} (b - K_0 x), keeping the best iterate; it stops when the
+// residual no longer halves, which round-off and inconsistent right-hand sides bring about.
+double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y,
+                           int max_refinements) const {
+  const double size =
+      std::max((f.cwiseProduct(column_scale_)).norm() + (g.cwiseProduct(row_scale_)).norm(), 1e-300);
   double* const b = packed_.data();
   best_x_.setZero();
   best_y_.setZero();

@@ -3,10 +3,11 @@
 //     [ M  G^T ] [x]   [f]
 //     [ G   0  ] [y] = [g]
 //
-// for redundant and rank-losing G. It is solved in scaled unknowns, M^ = D M D with unit diagonal and rows of G^ = R G D
-// of unit length, through the quasi-definite K_e = [M^ G^^T; G^ -e I], which has an L D L^T in every order. The rows
-// of G whose singular value is far above sqrt(e) are solved to round-off by a refinement or two; directions in which G
-// has no rank get the multiplier of least (scaled) norm, namely none.
+// for redundant and rank-losing G. It is solved in scaled unknowns, M^ = D M D with unit diagonal and rows of
+// G^ = R G D of unit length, through the quasi-definite K_e = [M^ G^^T; G^ -e I], which has an L D L^T in
+// every order. The rows of G whose singular value is far above sqrt(e) are solved to round-off by a
+// refinement or two; directions in which G has no rank get the multiplier of least (scaled) norm, namely
+// none.
 #pragma once
 
 #include <vector>
@@ -21,17 +22,17 @@ std::vector<int> minimum_degree_order(const SparseRows& upper);
 
 class SaddleSolver {
  public:
-  // M: constant, symmetric, positive diagonal. G: its pattern (values are not used). max_columns: right-hand sides
-  // that one call to solve may bring.
-  // A larger regularisation suppresses round-off in multipliers that are not unique (it is 1e-16 / e) and needs more
-  // refinements for directions of small singular values.
-  SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns = 1, double regularisation = standard_regularisation);
+  // M: constant, symmetric, positive diagonal. G: its pattern (values are not used). max_columns: right-hand
+  // sides that one call to solve may bring. A larger regularisation suppresses round-off in multipliers that
+  // are not unique (it is 1e-16 / e) and needs more refinements for directions of small singular values.
+  SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns = 1,
+               double regularisation = standard_regularisation);
 
   // Numeric factorisation with the values of G (same pattern). False where it broke down.
   bool factorise(const SparseRows& G);
 
-  // One application of K_e^{-1}, no refinement: right for the corrections of an iteration that computes its own
-  // residuals. f [n], g [m] are overwritten by x, y; row by row for several columns: f[i * columns + c].
+  // One application of K_e^{-1}, no refinement: right for the corrections of an iteration that computes its
+  // own residuals. f [n], g [m] are overwritten by x, y; row by row for several columns: f[i * columns + c].
   void apply(double* f, double* g, int columns) const;
 
   // Solve to round-off with iterative refinement on the true system; x and y may not alias f and g.
@@ -43,11 +44,11 @@ class SaddleSolver {
 
  private:
   Index n_ = 0, m_ = 0;
-  SparseRows M_, G_;                     // scaled
-  VectorXd column_scale_, row_scale_;    // D, R
+  SparseRows M_, G_;                   // scaled
+  VectorXd column_scale_, row_scale_;  // D, R
   SparseLdlt ldlt_;
-  std::vector<double> values_;           // upper triangle of K_e
-  std::vector<int> jacobian_place_;      // where each entry of G goes in values_
+  std::vector<double> values_;       // upper triangle of K_e
+  std::vector<int> jacobian_place_;  // where each entry of G goes in values_
   mutable std::vector<double> packed_;
   mutable VectorXd rhs_f_, rhs_g_, best_x_, best_y_, try_x_, try_y_;
 };

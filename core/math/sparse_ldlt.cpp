@@ -5,7 +5,8 @@
 
 namespace unfurl {
 
-// Elimination tree and row patterns of L (Liu 1990; the up-looking method of Davis 2006, "Direct Methods", ch. 4).
+// Elimination tree and row patterns of L (Liu 1990; the up-looking method of Davis 2006, "Direct Methods",
+// ch. 4).
 void SparseLdlt::analyse(const SparseRows& upper, const std::vector<int>& order) {
   n_ = upper.rows();
   const auto n = static_cast<std::size_t>(n_);
@@ -63,8 +64,10 @@ void SparseLdlt::analyse(const SparseRows& upper, const std::vector<int>& order)
   work_.assign(n, 0.0);
   fill_.assign(column_start_.begin(), column_start_.end() - 1);
   for (int k = 0; k < n_; ++k)
-    for (int r = reach_start_[static_cast<std::size_t>(k)]; r < reach_start_[static_cast<std::size_t>(k) + 1]; ++r)
-      row_index_[static_cast<std::size_t>(fill_[static_cast<std::size_t>(reach_[static_cast<std::size_t>(r)])]++)] = k;
+    for (int r = reach_start_[static_cast<std::size_t>(k)]; r < reach_start_[static_cast<std::size_t>(k) + 1];
+         ++r)
+      row_index_[static_cast<std::size_t>(
+          fill_[static_cast<std::size_t>(reach_[static_cast<std::size_t>(r)])]++)] = k;
   permuted_.assign(8 * n, 0.0);
 }
 
@@ -119,13 +122,15 @@ void SparseLdlt::solve_fixed(double* x) const {
   for (int j = 0; j < n; ++j) {
     double bj[R];
     for (int c = 0; c < R; ++c) bj[c] = b[j * R + c];
-    for (int p = column_start_[static_cast<std::size_t>(j)]; p < column_start_[static_cast<std::size_t>(j) + 1]; ++p)
+    for (int p = column_start_[static_cast<std::size_t>(j)];
+         p < column_start_[static_cast<std::size_t>(j) + 1]; ++p)
       for (int c = 0; c < R; ++c) b[rows[p] * R + c] -= l[p] * bj[c];
   }
   for (int j = n - 1; j >= 0; --j) {
     double bj[R];
     for (int c = 0; c < R; ++c) bj[c] = b[j * R + c] * inverse_pivot_[static_cast<std::size_t>(j)];
-    for (int p = column_start_[static_cast<std::size_t>(j)]; p < column_start_[static_cast<std::size_t>(j) + 1]; ++p)
+    for (int p = column_start_[static_cast<std::size_t>(j)];
+         p < column_start_[static_cast<std::size_t>(j) + 1]; ++p)
       for (int c = 0; c < R; ++c) bj[c] -= l[p] * b[rows[p] * R + c];
     for (int c = 0; c < R; ++c) b[j * R + c] = bj[c];
   }
@@ -135,14 +140,23 @@ void SparseLdlt::solve_fixed(double* x) const {
 
 void SparseLdlt::solve(double* x, int columns) const {
   switch (columns) {
-    case 1: return solve_fixed<1>(x);
-    case 2: return solve_fixed<2>(x);
-    case 3: return solve_fixed<3>(x);
-    case 4: return solve_fixed<4>(x);
-    case 5: return solve_fixed<5>(x);
-    case 6: return solve_fixed<6>(x);
-    case 7: return solve_fixed<7>(x);
-    default: eigen_assert(columns == 8); return solve_fixed<8>(x);
+    case 1:
+      return solve_fixed<1>(x);
+    case 2:
+      return solve_fixed<2>(x);
+    case 3:
+      return solve_fixed<3>(x);
+    case 4:
+      return solve_fixed<4>(x);
+    case 5:
+      return solve_fixed<5>(x);
+    case 6:
+      return solve_fixed<6>(x);
+    case 7:
+      return solve_fixed<7>(x);
+    default:
+      eigen_assert(columns == 8);
+      return solve_fixed<8>(x);
   }
 }
 

@@ -1,7 +1,8 @@
 // Sparse L D L^T of a symmetric quasi-definite matrix, in a fixed order without pivoting.
 //
-// A quasi-definite matrix [A G^T; G -C] with A, C positive definite has L D L^T in every order (Vanderbei 1995,
-// SIAM J. Optim. 5). The pattern is analysed once; a numeric factorisation and a solve allocate nothing.
+// A quasi-definite matrix [A G^T; G -C] with A, C positive definite has L D L^T in every order (Vanderbei
+// 1995, SIAM J. Optim. 5). The pattern is analysed once; a numeric factorisation and a solve allocate
+// nothing.
 #pragma once
 
 #include <vector>
@@ -12,14 +13,15 @@ namespace unfurl {
 
 class SparseLdlt {
  public:
-  // upper: pattern of the upper triangle with the diagonal, as the rows of a symmetric matrix (row <= column).
-  // order[k]: which row is eliminated k-th.
+  // upper: pattern of the upper triangle with the diagonal, as the rows of a symmetric matrix (row <=
+  // column). order[k]: which row is eliminated k-th.
   void analyse(const SparseRows& upper, const std::vector<int>& order);
 
   // values: as the nonzeros of `upper` in their storage order. False where a pivot is zero or not finite.
   bool factorise(const double* values);
 
-  // Solve for `columns` right-hand sides held row by row: x[row * columns + c], in place, in the caller's row order.
+  // Solve for `columns` right-hand sides held row by row: x[row * columns + c], in place, in the caller's row
+  // order.
   void solve(double* x, int columns) const;
 
   Index size() const { return n_; }
@@ -31,8 +33,8 @@ class SparseLdlt {
   void solve_fixed(double* x) const;
 
   Index n_ = 0;
-  std::vector<int> order_;             // position -> row
-  std::vector<int> column_start_;      // of L, by columns, unit diagonal left out
+  std::vector<int> order_;         // position -> row
+  std::vector<int> column_start_;  // of L, by columns, unit diagonal left out
   std::vector<int> row_index_;
   std::vector<double> l_;
   std::vector<double> pivot_, inverse_pivot_;
@@ -40,7 +42,7 @@ class SparseLdlt {
   std::vector<int> entry_start_;               // column k of the permuted upper triangle
   std::vector<int> entry_row_, entry_source_;  // its rows and where their values come from
   std::vector<double> work_;
-  std::vector<int> fill_;                      // next free place of each column of L
+  std::vector<int> fill_;  // next free place of each column of L
   mutable std::vector<double> permuted_;
 };
 

@@ -19,7 +19,8 @@ SparseRows node_mass_matrix(const Structure& structure) {
     }
   }
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    add(static_cast<int>(i), static_cast<int>(i), structure.nodes[i].mass);  // also keeps the diagonal in the pattern
+    add(static_cast<int>(i), static_cast<int>(i),
+        structure.nodes[i].mass);  // also keeps the diagonal in the pattern
   const auto n = 3 * static_cast<Index>(structure.nodes.size());
   SparseRows M(n, n);
   M.setFromTriplets(entries.begin(), entries.end());

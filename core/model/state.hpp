@@ -19,11 +19,11 @@ struct StepReport {
   StepStatus status = StepStatus::converged;
   int newton_iterations = 0;
   int factorisations = 0;
-  int right_hand_sides = 0;       // linear solves
-  double residual = 0.0;          // last momentum residual, relative
-  double constraint_norm = 0.0;   // max |Phi| at the step's end, rows in metres
-  // The state is a located event at a singular pose; its multipliers are extrapolated from solved states, and cannot be
-  // had from the equations there.
+  int right_hand_sides = 0;      // linear solves
+  double residual = 0.0;         // last momentum residual, relative
+  double constraint_norm = 0.0;  // max |Phi| at the step's end, rows in metres
+  // The state is a located event at a singular pose; its multipliers are extrapolated from solved states, and
+  // cannot be had from the equations there.
   bool singular_event = false;
   bool ok() const { return status == StepStatus::converged; }
 };

@@ -4,7 +4,9 @@
 
 namespace unfurl {
 
-double LinearForm::operator()(const ConstVec& q) const { return rate(q) + offset; }
+double LinearForm::operator()(const ConstVec& q) const {
+  return rate(q) + offset;
+}
 
 double LinearForm::rate(const ConstVec& v) const {
   double sum = 0;
@@ -12,7 +14,9 @@ double LinearForm::rate(const ConstVec& v) const {
   return sum;
 }
 
-double Deployment::fold_angle(const ConstVec& q) const { return std::atan2(fold_sine(q), fold_cosine(q)); }
+double Deployment::fold_angle(const ConstVec& q) const {
+  return std::atan2(fold_sine(q), fold_cosine(q));
+}
 
 double Deployment::fold_rate(const ConstVec& q, const ConstVec& v) const {
   const double s = fold_sine(q), c = fold_cosine(q);
@@ -29,7 +33,8 @@ void show_as_solved(Structure& structure) {
   structure.rod_copies.clear();
   structure.load_copies.clear();
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    structure.node_copies.push_back({structure.nodes[i].name, static_cast<int>(i), Mat3::Identity(), Vec3::Zero()});
+    structure.node_copies.push_back(
+        {structure.nodes[i].name, static_cast<int>(i), Mat3::Identity(), Vec3::Zero()});
   for (std::size_t i = 0; i < structure.rods.size(); ++i)
     structure.rod_copies.push_back(
         {structure.rods[i].name, structure.rods[i].a, structure.rods[i].b, static_cast<int>(i)});

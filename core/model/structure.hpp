@@ -1,4 +1,5 @@
-// A structure as plain data: what is solved (nodes, rods, constraints, loads) and what is shown (copies of those).
+// A structure as plain data: what is solved (nodes, rods, constraints, loads) and what is shown (copies of
+// those).
 #pragma once
 
 #include <string>
@@ -18,21 +19,23 @@ struct Node {
 // A uniform rigid rod between two nodes; mass 0 makes it a pure distance constraint.
 struct Rod {
   std::string name;
-  int a = 0, b = 0;          // node indices
-  double mass = 0.0;         // [kg]
-  double length = 0.0;       // [m]; the distance of its nodes at t = 0
-  std::string group;         // "chord", "post", "rod", ...: what colours and groups of rod forces go by
-  double radius = 0.0;       // for drawing [m]
-  double multiplicity = 1.0; // how many equal rods of the whole structure this one stands for (sector models)
+  int a = 0, b = 0;     // node indices
+  double mass = 0.0;    // [kg]
+  double length = 0.0;  // [m]; the distance of its nodes at t = 0
+  std::string group;    // "chord", "post", "rod", ...: what colours and groups of rod forces go by
+  double radius = 0.0;  // for drawing [m]
+  double multiplicity =
+      1.0;  // how many equal rods of the whole structure this one stands for (sector models)
 };
 
-// One constraint of a kind in the constraint table (constraints/constraint.hpp says how each kind reads the fields).
+// One constraint of a kind in the constraint table (constraints/constraint.hpp says how each kind reads the
+// fields).
 struct Constraint {
-  std::string kind;            // "plane", "fixed", "relation", ...
-  std::string name;            // for messages: "plane of B0"
-  std::vector<int> nodes;      // node indices
-  std::vector<Vec3> vectors;   // directions or coefficients
-  double value = 0.0;          // offset or length [m]
+  std::string kind;           // "plane", "fixed", "relation", ...
+  std::string name;           // for messages: "plane of B0"
+  std::vector<int> nodes;     // node indices
+  std::vector<Vec3> vectors;  // directions or coefficients
+  double value = 0.0;         // offset or length [m]
 };
 
 // A constant force on a node.
@@ -55,17 +58,18 @@ struct LinearForm {
   double rate(const ConstVec& v) const;
 };
 
-// How far the structure has unfolded. The fold angle is atan2(fold_sine, fold_cosine); it is 0 when fully deployed.
-// A structure that has no such measure leaves both empty: no deployed event, no fold angle.
+// How far the structure has unfolded. The fold angle is atan2(fold_sine, fold_cosine); it is 0 when fully
+// deployed. A structure that has no such measure leaves both empty: no deployed event, no fold angle.
 struct Deployment {
   LinearForm fold_sine;    // [-]
   LinearForm fold_cosine;  // [-]
-  double initial_fold_angle = 0.0;  // [rad]; the deployed fraction is (cos fold - cos initial) / (1 - cos initial)
+  double initial_fold_angle =
+      0.0;  // [rad]; the deployed fraction is (cos fold - cos initial) / (1 - cos initial)
 
   bool empty() const { return fold_sine.empty(); }
-  double fold_angle(const ConstVec& q) const;                     // [rad]
-  double fold_rate(const ConstVec& q, const ConstVec& v) const;   // [rad/s]
-  double fraction(const ConstVec& q) const;                       // 0 folded, 1 deployed
+  double fold_angle(const ConstVec& q) const;                    // [rad]
+  double fold_rate(const ConstVec& q, const ConstVec& v) const;  // [rad/s]
+  double fraction(const ConstVec& q) const;                      // 0 folded, 1 deployed
 };
 
 // A node of the whole structure: map * (position of the solved node `source`) + offset.
@@ -99,7 +103,8 @@ struct Structure {
   Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]
   bool lumped_mass = false;     // true: half of a rod's mass at each node instead of the consistent matrix
   Deployment deployment;
-  // What is shown and exported: the whole structure (equal to the solved one unless a sector model replicates it).
+  // What is shown and exported: the whole structure (equal to the solved one unless a sector model replicates
+  // it).
   std::vector<NodeCopy> node_copies;
   std::vector<RodCopy> rod_copies;
   std::vector<LoadCopy> load_copies;
@@ -108,7 +113,8 @@ struct Structure {
 // Fill the copies with the solved nodes, rods and loads themselves.
 void show_as_solved(Structure& structure);
 
-// Coordinates or velocities of the whole structure [3 N] from those of the solved nodes [3 n]; velocities take no offset.
+// Coordinates or velocities of the whole structure [3 N] from those of the solved nodes [3 n]; velocities
+// take no offset.
 VectorXd whole_positions(const Structure& structure, const ConstVec& q);
 VectorXd whole_velocities(const Structure& structure, const ConstVec& v);
 

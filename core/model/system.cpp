@@ -13,7 +13,8 @@ namespace {
 using Blocks = std::vector<const ConstraintBlock*>;
 
 int total_rows(const Blocks& blocks) {
-  return std::accumulate(blocks.begin(), blocks.end(), 0, [](int sum, const auto* b) { return sum + b->rows(); });
+  return std::accumulate(blocks.begin(), blocks.end(), 0,
+                         [](int sum, const auto* b) { return sum + b->rows(); });
 }
 
 std::size_t jacobian_entries(const Blocks& blocks) {
@@ -55,7 +56,8 @@ struct System::Data {
   VectorXd lengths;
   std::vector<std::string> names;
   std::vector<int> rod_rows;
-  // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e, start_{e+1}).
+  // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e,
+  // start_{e+1}).
   SparseRows pattern;
   std::vector<int> sum_start, sum_source;
   std::vector<double> sum_coefficient;
@@ -141,7 +143,8 @@ void System::Data::build_jacobian_map() {
   for (const ConstraintBlock* block : kept)
     for (int r = 0; r < block->rows(); ++r, ++row)
       for (int c : block->stencil(r)) {
-        for (SparseRows::InnerIterator it(B, c); it; ++it) terms.push_back({row, static_cast<int>(it.col()), source, it.value()});
+        for (SparseRows::InnerIterator it(B, c); it; ++it)
+          terms.push_back({row, static_cast<int>(it.col()), source, it.value()});
         ++source;
       }
   std::stable_sort(terms.begin(), terms.end(), [](const Term& a, const Term& b) {
@@ -169,9 +172,10 @@ void System::Data::check_mass(const Structure& structure) const {
   for (Index i = 0; i < mass.rows(); ++i)
     if (!(mass.coeff(i, i) > 0)) {
       const auto node = static_cast<std::size_t>(free_coordinates[static_cast<std::size_t>(i)] / 3);
-      throw StructureError("nodes[" + std::to_string(node) + "].mass",
-                           "node " + structure.nodes[node].name +
-                               " can move but has no mass: give it a mass, or a mass to a rod that ends there");
+      throw StructureError(
+          "nodes[" + std::to_string(node) + "].mass",
+          "node " + structure.nodes[node].name +
+              " can move but has no mass: give it a mass, or a mass to a rod that ends there");
     }
 }
 
@@ -189,23 +193,44 @@ System::System(const Structure& structure, bool eliminate_linear) {
   data->build_jacobian_map();
   data->rod_rows.assign(structure.rods.size(), -1);
   for (std::size_t i = 0; i < structure.rods.size(); ++i)  // rods are the last kept block
-    data->rod_rows[i] = static_cast<int>(data->rows - static_cast<Index>(structure.rods.size()) + static_cast<Index>(i));
+    data->rod_rows[i] =
+        static_cast<int>(data->rows - static_cast<Index>(structure.rods.size()) + static_cast<Index>(i));
   data_ = std::move(data);
 }
 
 System::~System() = default;
 System::System(System&&) noexcept = default;
 
-Index System::coordinates() const { return data_->coordinates; }
-Index System::solved_coordinates() const { return data_->B.cols(); }
-Index System::constraints() const { return data_->rows; }
-Index System::linear_constraints() const { return data_->linear_rows; }
-bool System::eliminated() const { return data_->eliminated; }
-const SparseRows& System::mass() const { return data_->mass; }
-const SparseRows& System::node_mass() const { return data_->node_mass; }
-const VectorXd& System::constraint_lengths() const { return data_->lengths; }
-const std::vector<std::string>& System::constraint_names() const { return data_->names; }
-const std::vector<int>& System::rod_rows() const { return data_->rod_rows; }
+Index System::coordinates() const {
+  return data_->coordinates;
+}
+Index System::solved_coordinates() const {
+  return data_->B.cols();
+}
+Index System::constraints() const {
+  return data_->rows;
+}
+Index System::linear_constraints() const {
+  return data_->linear_rows;
+}
+bool System::eliminated() const {
+  return data_->eliminated;
+}
+const SparseRows& System::mass() const {
+  return data_->mass;
+}
+const SparseRows& System::node_mass() const {
+  return data_->node_mass;
+}
+const VectorXd& System::constraint_lengths() const {
+  return data_->lengths;
+}
+const std::vector<std::string>& System::constraint_names() const {
+  return data_->names;
+}
+const std::vector<int>& System::rod_rows() const {
+  return data_->rod_rows;
+}
 
 void System::expand(const ConstVec& z, MutVec q) const {
   if (!data_->eliminated) {
@@ -229,7 +254,9 @@ VectorXd System::reduce(const ConstVec& q) const {
   return z;
 }
 
-VectorXd System::reduce_rate(const ConstVec& v) const { return reduce(v); }
+VectorXd System::reduce_rate(const ConstVec& v) const {
+  return reduce(v);
+}
 
 void System::reduce_force(const ConstVec& f, MutVec r) const {
   if (!data_->eliminated)
@@ -243,7 +270,9 @@ void System::add_applied_force(double t, const ConstVec& q, const ConstVec& v, d
   for (const auto& block : data_->forces) block->add(t, q.data(), v.data(), scale, f.data());
 }
 
-bool System::constant_forces() const { return data_->forces.empty(); }
+bool System::constant_forces() const {
+  return data_->forces.empty();
+}
 
 void System::constraint(const ConstVec& q, MutVec phi) const {
   double* out = phi.data();
@@ -269,7 +298,9 @@ void System::constraint_bias(const ConstVec& q, const ConstVec& v, MutVec phi_dd
   }
 }
 
-SparseRows System::jacobian_pattern() const { return data_->pattern; }
+SparseRows System::jacobian_pattern() const {
+  return data_->pattern;
+}
 
 void System::jacobian(const ConstVec& q, SparseRows& G, std::vector<double>& scratch) const {
   scratch.resize(data_->entries);
@@ -308,11 +339,19 @@ SparseRows System::curvature(const ConstVec& q, const ConstVec& lambda) const {
   return SparseRows(data_->B.transpose() * K) * data_->B;
 }
 
-double System::kinetic_energy(const ConstVec& w) const { return 0.5 * w.dot(data_->mass * w); }
-double System::potential_energy(const ConstVec& q) const { return -data_->gravity_force.dot(q); }
-double System::load_work(const ConstVec& q) const { return data_->loads.dot(q - data_->start); }
+double System::kinetic_energy(const ConstVec& w) const {
+  return 0.5 * w.dot(data_->mass * w);
+}
+double System::potential_energy(const ConstVec& q) const {
+  return -data_->gravity_force.dot(q);
+}
+double System::load_work(const ConstVec& q) const {
+  return data_->loads.dot(q - data_->start);
+}
 
-Index System::all_constraints() const { return total_rows(data_->all); }
+Index System::all_constraints() const {
+  return total_rows(data_->all);
+}
 
 void System::all_constraint_values(const ConstVec& q, MutVec phi) const {
   double* out = phi.data();
@@ -322,7 +361,9 @@ void System::all_constraint_values(const ConstVec& q, MutVec phi) const {
   }
 }
 
-SparseRows System::all_jacobian(const ConstVec& q) const { return node_jacobian(data_->all, q.data(), coordinates()); }
+SparseRows System::all_jacobian(const ConstVec& q) const {
+  return node_jacobian(data_->all, q.data(), coordinates());
+}
 
 std::vector<std::string> System::all_names() const {
   std::vector<std::string> names;

@@ -1,9 +1,11 @@
-// The equations of motion of a structure as an index-3 DAE (paper eq. 13-14), in the coordinates that are solved for:
+// The equations of motion of a structure as an index-3 DAE (paper eq. 13-14), in the coordinates that are
+// solved for:
 //
 //     M z'' + G(z)^T lambda = F(t, z, z'),   Phi(z) = 0
 //
-// Node coordinates are q = q_0 + B z. With elimination, B spans the null space of the linear constraints, which then
-// hold exactly and leave the equations; without it, B = I. A System is immutable and may be shared by threads.
+// Node coordinates are q = q_0 + B z. With elimination, B spans the null space of the linear constraints,
+// which then hold exactly and leave the equations; without it, B = I. A System is immutable and may be shared
+// by threads.
 #pragma once
 
 #include <memory>
@@ -30,7 +32,8 @@ class System {
   Index linear_constraints() const;  // how many rows were eliminated or could be
   bool eliminated() const;
 
-  // Node coordinates and velocities from the solved ones, and back (exact where q fulfils the linear constraints).
+  // Node coordinates and velocities from the solved ones, and back (exact where q fulfils the linear
+  // constraints).
   void expand(const ConstVec& z, MutVec q) const;
   void expand_rate(const ConstVec& w, MutVec v) const;
   VectorXd reduce(const ConstVec& q) const;
@@ -41,10 +44,12 @@ class System {
   const SparseRows& node_mass() const;  // of q [kg]
 
   // In node coordinates (fast kernels; callers expand first).
-  void add_applied_force(double t, const ConstVec& q, const ConstVec& v, double scale, MutVec f) const;  // f += scale F
-  bool constant_forces() const;  // true: F does not depend on t, q, v
-  void constraint(const ConstVec& q, MutVec phi) const;                                                // [m]
-  void add_constraint_force(const ConstVec& q, const ConstVec& lambda, double scale, MutVec f) const;  // f += scale G^T lambda
+  void add_applied_force(double t, const ConstVec& q, const ConstVec& v, double scale,
+                         MutVec f) const;                // f += scale F
+  bool constant_forces() const;                          // true: F does not depend on t, q, v
+  void constraint(const ConstVec& q, MutVec phi) const;  // [m]
+  void add_constraint_force(const ConstVec& q, const ConstVec& lambda, double scale,
+                            MutVec f) const;                                        // f += scale G^T lambda
   void constraint_bias(const ConstVec& q, const ConstVec& v, MutVec phi_dd) const;  // v^T Hess Phi v [m/s^2]
 
   // Jacobian with respect to z [m x size of z]; `pattern` allocates it once, `jacobian` only writes values.
@@ -54,19 +59,19 @@ class System {
   // sum_k lambda_k Hess Phi_k with respect to z (for a full Newton matrix; allocates).
   SparseRows curvature(const ConstVec& q, const ConstVec& lambda) const;
 
-  double kinetic_energy(const ConstVec& w) const;                    // [J]
-  double potential_energy(const ConstVec& q) const;                  // gravity [J]
-  double load_work(const ConstVec& q) const;                         // of the constant loads since q = 0 [J]
+  double kinetic_energy(const ConstVec& w) const;    // [J]
+  double potential_energy(const ConstVec& q) const;  // gravity [J]
+  double load_work(const ConstVec& q) const;         // of the constant loads since q = 0 [J]
 
-  const VectorXd& constraint_lengths() const;                        // [m] per kept row
-  const std::vector<std::string>& constraint_names() const;          // per kept row
+  const VectorXd& constraint_lengths() const;                // [m] per kept row
+  const std::vector<std::string>& constraint_names() const;  // per kept row
   // Kept row of each rod; -1 where it is none.
   const std::vector<int>& rod_rows() const;
 
   // Every constraint of the structure, eliminated ones included (for check and diagnostics).
   Index all_constraints() const;
-  void all_constraint_values(const ConstVec& q, MutVec phi) const;   // [m]
-  SparseRows all_jacobian(const ConstVec& q) const;                  // of the node coordinates
+  void all_constraint_values(const ConstVec& q, MutVec phi) const;  // [m]
+  SparseRows all_jacobian(const ConstVec& q) const;                 // of the node coordinates
   std::vector<std::string> all_names() const;
   VectorXd all_lengths() const;
 

@@ -9,8 +9,8 @@
 namespace unfurl {
 namespace {
 
-// Fold angles [rad] between which states are solved. Below the smaller one round-off in the hinges, 1e-16/fold, shows;
-// at nine points below the larger one the extrapolation error is of the order (0.01)^9.
+// Fold angles [rad] between which states are solved. Below the smaller one round-off in the hinges,
+// 1e-16/fold, shows; at nine points below the larger one the extrapolation error is of the order (0.01)^9.
 constexpr double nearest = 2.5e-3, farthest = 3e-2;
 constexpr int points = 9;
 
@@ -48,7 +48,8 @@ class Locator {
   }
   const System& system() const { return trajectory_.model().system; }
 
-  // One step from the last state before `target`, its length found by the secant method; any sine near the target will do.
+  // One step from the last state before `target`, its length found by the secant method; any sine near the
+  // target will do.
   void solve_to(double target) {
     std::size_t i = trajectory_.size() - 1;
     while (i > 0 && sine(trajectory_.state(i)) < 1.0001 * target) --i;
@@ -77,10 +78,12 @@ class Locator {
     }
   }
 
-  // Multipliers of least norm from the equations: those of a step's end are not as accurate as its coordinates.
+  // Multipliers of least norm from the equations: those of a step's end are not as accurate as its
+  // coordinates.
   void keep(double at, State state) {
     VectorXd acceleration(state.w.size());
-    if (index1_.evaluate(state.t, state.z, state.w, acceleration, state.lambda)) samples_.push_back({at, std::move(state)});
+    if (index1_.evaluate(state.t, state.z, state.w, acceleration, state.lambda))
+      samples_.push_back({at, std::move(state)});
   }
 
   // Lagrange extrapolation of everything, as functions of the sine, to zero.

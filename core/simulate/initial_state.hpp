@@ -6,16 +6,16 @@
 
 namespace unfurl {
 
-// The state at t = 0, with the velocities projected on the constraints in the mass metric (least kinetic energy of the
-// change) and the multipliers of the index-1 equations.
+// The state at t = 0, with the velocities projected on the constraints in the mass metric (least kinetic
+// energy of the change) and the multipliers of the index-1 equations.
 struct InitialState {
   State state;
   double velocity_change = 0;  // max norm of what the projection took away [m/s]
 };
 InitialState initial_state(const Structure& structure, const System& system);
 
-// Move z to the nearest point of Phi = 0 and w to G w = 0, both in the mass metric, leaving directions without rank
-// alone. For states that are nearly right already: one or two Newton steps.
+// Move z to the nearest point of Phi = 0 and w to G w = 0, both in the mass metric, leaving directions
+// without rank alone. For states that are nearly right already: one or two Newton steps.
 void project(const System& system, State& state);
 
 }  // namespace unfurl

@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "core/integrators/integrator.hpp"
@@ -13,7 +15,8 @@
 namespace unfurl {
 namespace {
 
-// A state whose sin(fold) is below this has lost digits to the singular deployed pose and counts as having reached it.
+// A state whose sin(fold) is below this has lost digits to the singular deployed pose and counts as having
+// reached it.
 constexpr double singular_margin = 1e-4;
 
 double thread_cpu_seconds() {
@@ -30,10 +33,14 @@ std::string seconds(double t) {
 
 const char* reason(StepStatus status) {
   switch (status) {
-    case StepStatus::converged: return "converged";
-    case StepStatus::stalled: return "the Newton iteration did not converge to round-off";
-    case StepStatus::diverged: return "the Newton matrix could not be factorised";
-    case StepStatus::not_finite: return "the state is not finite any more";
+    case StepStatus::converged:
+      return "converged";
+    case StepStatus::stalled:
+      return "the Newton iteration did not converge to round-off";
+    case StepStatus::diverged:
+      return "the Newton matrix could not be factorised";
+    case StepStatus::not_finite:
+      return "the state is not finite any more";
   }
   return "";
 }
@@ -41,7 +48,10 @@ const char* reason(StepStatus status) {
 class TimeLoop {
  public:
   TimeLoop(Simulation& run, Integrator& integrator, const SimulationHooks& hooks)
-      : run_(run), integrator_(integrator), hooks_(hooks), deployment_(run.trajectory.structure().deployment) {}
+      : run_(run),
+        integrator_(integrator),
+        hooks_(hooks),
+        deployment_(run.trajectory.structure().deployment) {}
 
   void drive() {
     const SolverOptions& o = run_.options;
@@ -53,24 +63,34 @@ class TimeLoop {
         return;
       }
       report_progress(run_.trajectory.end_time() / o.end_time);
-      const double target = k == count ? o.end_time : static_cast<double>(k) * o.step;
-      if (!advance_to(target)) return;
+      if (!advance_to(k == count ? o.end_time : static_cast<double>(k) * o.step)) return;
     }
     report_progress(1.0);
   }
 
  private:
+  const State& now() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
+
   // False where the run ends here.
   bool advance_to(double target) {
-    State next = run_.trajectory.state(run_.trajectory.size() - 1);
+    State next = now();
     const double h = target - next.t;
-    StepReport report = integrator_.step(next, h);
-    count(report);
-    const bool crossed = report.ok() && crosses(next);
-    if (crossed || (!report.ok() && about_to_cross(h))) {
-      if (!record_deployed(h)) return false;
+    StepReport report = step(next, h);
+    std::optional<State> event;
+    if (!report.ok() && may_cross(h)) event = locate(h, target + 0.05 * h);
+    if (!event && !report.ok()) report = retry(next, h, report);
+    if (!event && report.ok() && crosses(next)) event = locate(h, std::numeric_limits<double>::infinity());
+    if (event) {
+      deployed_ = true;
+      run_.events.push_back({"deployed", event->t});
+      if (run_.options.at_deployed == "stop") return finish_deployed(*event), false;
+      if (!report.ok() || std::abs(fold(next)) < singular_margin) return step_over(target, h);
     }
-    if (!report.ok() && !retry(next, h, report)) {
+    return accept(next, target, report);
+  }
+
+  bool accept(State& next, double target, const StepReport& report) {
+    if (!report.ok()) {
       run_.status = RunStatus::failed;
       run_.message = "at t = " + seconds(next.t) + ": " + reason(report.status);
       return false;
@@ -81,28 +101,30 @@ class TimeLoop {
     return true;
   }
 
-  // A failed step is tried again in 2, 4, ... 64 parts, uneven so that no part ends where the whole did.
-  bool retry(State& state, double h, StepReport& report) {
-    const State from = run_.trajectory.state(run_.trajectory.size() - 1);
-    for (int parts = 2; parts <= 64; parts *= 2) {
-      state = from;
-      integrator_.restart();
-      bool ok = true;
-      for (int i = 0; i < parts && ok; ++i) {
-        const double share = parts == 2 ? (i == 0 ? 0.53 : 0.47) : 1.0 / parts;
-        report = integrator_.step(state, share * h);
-        count(report);
-        ok = report.ok();
-      }
-      if (ok) return true;
-    }
-    state = from;
-    return false;
+  // The step would land on the singular pose: end it a little behind instead. The grid goes on after that.
+  bool step_over(double target, double h) {
+    State next = now();
+    const StepReport report = step(next, 1.41 * h);
+    return accept(next, target + 0.41 * h, report);
   }
 
-  void count(const StepReport& report) {
+  StepReport step(State& state, double h) {
+    const StepReport report = integrator_.step(state, h);
     run_.newton_iterations += report.newton_iterations;
     run_.factorisations += report.factorisations;
+    return report;
+  }
+
+  // A failed step is tried again in 2, 4, ... 64 parts.
+  StepReport retry(State& state, double h, StepReport report) {
+    for (int parts = 2; parts <= 64 && !report.ok(); parts *= 2) {
+      state = now();
+      integrator_.restart();
+      report = StepReport{};
+      for (int i = 0; i < parts && report.ok(); ++i) report = step(state, h / parts);
+    }
+    if (!report.ok()) state = now();
+    return report;
   }
 
   double fold(const State& state) {
@@ -113,33 +135,31 @@ class TimeLoop {
 
   bool crosses(const State& next) {
     if (deployment_.empty() || deployed_) return false;
-    return fold(run_.trajectory.state(run_.trajectory.size() - 1)) > singular_margin && fold(next) <= singular_margin;
+    return fold(now()) > singular_margin && fold(next) <= singular_margin;
   }
 
-  // Would the present rate bring the fold angle to zero within a step?
-  bool about_to_cross(double h) {
+  // Could the fold angle reach zero within a step? Its rate may double on the way.
+  bool may_cross(double h) {
     if (deployment_.empty() || deployed_) return false;
-    const State& now = run_.trajectory.state(run_.trajectory.size() - 1);
-    const double s = fold(now);
-    run_.trajectory.model().system.expand_rate(now.w, q_);
-    return s > 0 && s + 1.05 * h * deployment_.fold_sine.rate(q_) <= 1e-3;
+    const double sine = fold(now());
+    run_.trajectory.model().system.expand_rate(now().w, q_);
+    return sine > 0 && sine + 2.0 * h * deployment_.fold_sine.rate(q_) <= 0;
   }
 
-  // False where the run ends at the event.
-  bool record_deployed(double h) {
-    const std::unique_ptr<Integrator> fresh = find_method(run_.options.method)->make(run_.trajectory.model().system, run_.options);
+  std::optional<State> locate(double h, double latest) {
+    const auto fresh = find_method(run_.options.method)->make(run_.trajectory.model().system, run_.options);
     std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
-    if (!event) return true;
-    deployed_ = true;
-    run_.events.push_back({"deployed", event->t});
-    if (run_.options.at_deployed != "stop") return true;
-    project(run_.trajectory.model().system, *event);
-    while (run_.trajectory.size() > 1 && run_.trajectory.end_time() >= event->t) run_.trajectory.pop_back();
-    run_.trajectory.append(std::move(*event), StepReport{.singular_event = true});
+    if (event && event->t > latest) event.reset();
+    return event;
+  }
+
+  void finish_deployed(State& event) {
+    project(run_.trajectory.model().system, event);
+    while (run_.trajectory.size() > 1 && run_.trajectory.end_time() >= event.t) run_.trajectory.pop_back();
+    run_.trajectory.append(std::move(event), StepReport{.singular_event = true});
     ++run_.steps;
     run_.status = RunStatus::deployed;
     report_progress(1.0);
-    return false;
   }
 
   void report_progress(double fraction) {
@@ -163,22 +183,28 @@ class TimeLoop {
 
 std::string_view to_string(RunStatus status) {
   switch (status) {
-    case RunStatus::completed: return "completed";
-    case RunStatus::deployed: return "deployed";
-    case RunStatus::stopped: return "stopped";
-    case RunStatus::failed: return "failed";
+    case RunStatus::completed:
+      return "completed";
+    case RunStatus::deployed:
+      return "deployed";
+    case RunStatus::stopped:
+      return "stopped";
+    case RunStatus::failed:
+      return "failed";
   }
   return "failed";
 }
 
-Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options, const SimulationHooks& hooks) {
+Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
+                    const SimulationHooks& hooks) {
   const Method* method = find_method(options.method);
   if (!method) throw std::invalid_argument("no method is called " + options.method);
   Simulation run{.trajectory = Trajectory(model), .options = options};
   InitialState start = initial_state(model->structure, model->system);
   if (start.velocity_change > 1e-9)
-    run.warnings.push_back("the initial velocities violate the constraints and were projected on them (largest change " +
-                           std::to_string(start.velocity_change) + " m/s)");
+    run.warnings.push_back(
+        "the initial velocities violate the constraints and were projected on them (largest change " +
+        std::to_string(start.velocity_change) + " m/s)");
   run.trajectory.append(std::move(start.state), StepReport{});
   const std::unique_ptr<Integrator> integrator = method->make(model->system, options);
   const double begin = thread_cpu_seconds();

@@ -27,17 +27,18 @@ struct SimulationHooks {
 struct Simulation {
   Trajectory trajectory;
   RunStatus status = RunStatus::completed;
-  std::string message = {};   // why it stopped or failed; empty otherwise
+  std::string message = {};  // why it stopped or failed; empty otherwise
   std::vector<std::string> warnings = {};
   std::vector<Event> events = {};
   SolverOptions options = {};
   long steps = 0;
   long newton_iterations = 0;
   long factorisations = 0;
-  double cpu_s = 0.0;         // CPU time of the stepping loop
+  double cpu_s = 0.0;  // CPU time of the stepping loop
 };
 
-// Throws std::invalid_argument on an unknown method; everything that goes wrong while stepping is in the result.
+// Throws std::invalid_argument on an unknown method; everything that goes wrong while stepping is in the
+// result.
 Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
                     const SimulationHooks& hooks = {});
 

@@ -28,8 +28,12 @@ VectorXd Trajectory::node_velocities(std::size_t i) const {
   return v;
 }
 
-VectorXd Trajectory::positions(std::size_t i) const { return whole_positions(structure(), node_positions(i)); }
-VectorXd Trajectory::velocities(std::size_t i) const { return whole_velocities(structure(), node_velocities(i)); }
+VectorXd Trajectory::positions(std::size_t i) const {
+  return whole_positions(structure(), node_positions(i));
+}
+VectorXd Trajectory::velocities(std::size_t i) const {
+  return whole_velocities(structure(), node_velocities(i));
+}
 
 VectorXd Trajectory::positions_at(double t) const {
   const auto after = std::upper_bound(states_.begin(), states_.end(), t,

@@ -31,10 +31,18 @@ HoopShape shape_of(const ParamSet& p) {
   return s;
 }
 
-Vec3 radial(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
-Vec3 tangential(double angle) { return {-std::sin(angle), std::cos(angle), 0.0}; }
-double corner_angle(const HoopShape& s, int k) { return 2.0 * pi * k / s.n; }
-double hinge_angle(const HoopShape& s, int k) { return 2.0 * pi * (k + 0.5) / s.n; }
+Vec3 radial(double angle) {
+  return {std::cos(angle), std::sin(angle), 0.0};
+}
+Vec3 tangential(double angle) {
+  return {-std::sin(angle), std::cos(angle), 0.0};
+}
+double corner_angle(const HoopShape& s, int k) {
+  return 2.0 * pi * k / s.n;
+}
+double hinge_angle(const HoopShape& s, int k) {
+  return 2.0 * pi * (k + 0.5) / s.n;
+}
 
 // Nodes of unit k are 4 k + these.
 enum : int { bottom_corner = 0, top_corner = 1, bottom_hinge = 2, top_hinge = 3 };
@@ -58,8 +66,11 @@ void add_symmetry(Structure& out, const HoopShape& s, int k) {
   const int first = 4 * k;
   for (int j = 0; j < 4; ++j) {
     const double angle = j < 2 ? corner_angle(s, k) : hinge_angle(s, k);
-    out.constraints.push_back({"plane", "plane of " + out.nodes[static_cast<std::size_t>(first + j)].name, {first + j},
-                               {tangential(angle)}, 0.0});
+    out.constraints.push_back({"plane",
+                               "plane of " + out.nodes[static_cast<std::size_t>(first + j)].name,
+                               {first + j},
+                               {tangential(angle)},
+                               0.0});
   }
   const Vec3 r = radial(corner_angle(s, k));
   const int b = first + bottom_corner, t = first + top_corner;
@@ -71,7 +82,13 @@ void add_symmetry(Structure& out, const HoopShape& s, int k) {
 Rod rod(const Structure& out, int a, int b, double mass, double length, const char* group, double radius) {
   const auto& nodes = out.nodes;
   return {nodes[static_cast<std::size_t>(a)].name + "-" + nodes[static_cast<std::size_t>(b)].name,
-          a, b, mass, length, group, radius, 1.0};
+          a,
+          b,
+          mass,
+          length,
+          group,
+          radius,
+          1.0};
 }
 
 void set_deployment(Structure& out, const HoopShape& s, int units) {
@@ -100,12 +117,16 @@ Structure build_full(const HoopShape& s) {
     const Vec3 e = radial(hinge_angle(s, k));
     for (int level : {0, 1}) {
       const int a = first + level, m = first + bottom_hinge + level, b = next + level;
-      out.constraints.push_back({"relation", "face of " + out.nodes[static_cast<std::size_t>(m)].name,
-                                 {m, a, b}, {e, -0.5 * e, -0.5 * e}, 0.0});
+      out.constraints.push_back({"relation",
+                                 "face of " + out.nodes[static_cast<std::size_t>(m)].name,
+                                 {m, a, b},
+                                 {e, -0.5 * e, -0.5 * e},
+                                 0.0});
       out.rods.push_back(rod(out, a, m, s.chord_mass, s.l1, "chord", s.radius));
       out.rods.push_back(rod(out, m, b, s.chord_mass, s.l1, "chord", s.radius));
     }
-    out.rods.push_back(rod(out, first + bottom_corner, first + top_corner, s.post_mass, s.l2, "post", s.radius));
+    out.rods.push_back(
+        rod(out, first + bottom_corner, first + top_corner, s.post_mass, s.l2, "post", s.radius));
   }
   set_deployment(out, s, s.n);
   show_as_solved(out);
@@ -117,13 +138,15 @@ void replicate(Structure& out, const HoopShape& s) {
   const char* names[4] = {"B", "T", "Mb", "Mt"};
   for (int k = 0; k < s.n; ++k) {
     const Mat3 turn = Eigen::AngleAxisd(corner_angle(s, k), Vec3::UnitZ()).toRotationMatrix();
-    for (int j = 0; j < 4; ++j) out.node_copies.push_back({names[j] + std::to_string(k), j, turn, Vec3::Zero()});
+    for (int j = 0; j < 4; ++j)
+      out.node_copies.push_back({names[j] + std::to_string(k), j, turn, Vec3::Zero()});
     for (const Load& load : out.loads) out.load_copies.push_back({4 * k + load.node, turn * load.force});
   }
   const auto copy = [&](int a, int b, int source) {
     const auto& nodes = out.node_copies;
-    out.rod_copies.push_back({nodes[static_cast<std::size_t>(a)].name + "-" + nodes[static_cast<std::size_t>(b)].name,
-                              a, b, source});
+    out.rod_copies.push_back(
+        {nodes[static_cast<std::size_t>(a)].name + "-" + nodes[static_cast<std::size_t>(b)].name, a, b,
+         source});
   };
   for (int k = 0; k < s.n; ++k) {
     const int first = 4 * k, next = 4 * ((k + 1) % s.n);
@@ -143,7 +166,8 @@ Structure build_sector(const HoopShape& s) {
   for (int level : {0, 1}) {
     const int m = bottom_hinge + level;
     // The next corner is the mirror image of this one in the hinge's plane: their mean along e is this one's.
-    out.constraints.push_back({"relation", "face of " + out.nodes[static_cast<std::size_t>(m)].name, {m, level}, {e, -e}, 0.0});
+    out.constraints.push_back(
+        {"relation", "face of " + out.nodes[static_cast<std::size_t>(m)].name, {m, level}, {e, -e}, 0.0});
     out.rods.push_back(rod(out, level, m, s.chord_mass, s.l1, "chord", s.radius));
     out.rods.back().multiplicity = 2.0;
   }
@@ -163,10 +187,12 @@ const std::vector<ParamSpec>& hoop_params() {
         positive_param("post_length", "m", 1.2, "length of a post"),
         positive_param("density", "kg/m^3", 3000.0, "density of the rods"),
         positive_param("section_area", "m^2", 9e-4, "cross section of the rods"),
-        real_param("fold_angle", "deg", 89.34053637766085, 0.0, 90.0, "fold angle at t = 0; 0 is fully deployed"),
+        real_param("fold_angle", "deg", 89.34053637766085, 0.0, 90.0,
+                   "fold angle at t = 0; 0 is fully deployed"),
         real_param("hinge_force", "N", 200.0, -1e12, 1e12,
                    "the paper's f: -f along z on each bottom hinge, +f on each top hinge"),
-        choice_param("model", "full", {"full", "sector"}, "full: every unit is solved; sector: one, replicated"),
+        choice_param("model", "full", {"full", "sector"},
+                     "full: every unit is solved; sector: one, replicated"),
         choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"),
     };
     p[5].max_open = true;

@@ -14,13 +14,20 @@ enum class Dash { solid, dashed, dotted, dash_dot };
 enum class Marker { none, circle, square, triangle, diamond };
 
 struct Curve {
-  std::string label;  // legend entry; empty: none
+  std::string label;         // legend entry; empty: none
   std::vector<double> x, y;  // NaN breaks the line
   int color = 0;             // index into the colour-blind-safe palette; see palette()
   Dash dash = Dash::solid;
   Marker marker = Marker::none;
-  float width = 1.5f;        // [points]
-  bool right_axis = false;   // drawn against the panel's second y axis
+  float width = 1.2f;       // [points]
+  bool right_axis = false;  // drawn against the panel's second y axis
+};
+
+// The region between two curves over the same x ("from the smallest to the largest force of the group").
+struct Band {
+  std::string label;
+  std::vector<double> x, lower, upper;
+  int color = 0;
 };
 
 // A horizontal or vertical reference line ("round-off of the rod length").
@@ -35,7 +42,11 @@ struct Axis {
   std::string label;  // with its unit: "time (s)"
   bool log = false;
   double min = 0, max = 0;  // min == max: from the data
-  bool shown = true;
+  bool shown = true;        // false: no tick labels and no axis label (a panel that shares the one below)
+  bool degrees = false;     // ticks at multiples of 15, 30, 45, ...
+  // Log axes leave out values <= 0. True: exact zeros are drawn at the bottom edge instead; say so in the
+  // caption.
+  bool zeros_at_floor = false;
 };
 
 // A rod of a pose, already projected to the panel's plane.
@@ -46,22 +57,41 @@ struct Segment {
   float width = 2.0f;  // [points]
 };
 
+// A joint of a pose.
+struct Dot {
+  double x, y;
+  double depth = 0;
+  int color = 6;
+  float radius = 1.0f;  // [points]
+};
+
 struct Panel {
   std::string title;
   Axis x, y, y2;
+  std::vector<Band> bands;
   std::vector<Curve> curves;
   std::vector<ReferenceLine> lines;
-  std::vector<Segment> segments;  // for poses; drawn with equal scales on both axes
-  bool equal_scale = false;
+  std::vector<Segment> segments;  // for poses; drawn by depth
+  std::vector<Dot> dots;
+  bool equal_scale = false;  // one unit is as long in x as in y
+  bool bare = false;         // no axes, ticks or grid
+  double scale_bar = 0;      // its length in data units; 0: none
+  std::string scale_bar_label;
+  double height = 1;  // relative to the other rows; the first panel of a row decides
 };
 
 struct Figure {
-  std::string name;     // "constraint_error": the file's stem
+  std::string name;  // "constraint_error": the file's stem
   std::string title;
   std::string caption;  // one or two sentences with the numbers of this run
   int rows = 1, columns = 1;
   std::vector<Panel> panels;  // row by row
   double width_mm = 160, height_mm = 100;
 };
+
+// Colour i of the palette (i counts modulo its size). 0 blue, 1 vermilion, 2 green, 3 purple, 4 ochre, 5 sky,
+// 6 ink, 7 grey: told apart with every kind of colour blindness, each with a contrast of 3 or more on white.
+FigureColor palette(int i);
+inline constexpr int palette_size = 8;
 
 }  // namespace unfurl

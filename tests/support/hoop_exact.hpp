@@ -1,5 +1,5 @@
-// The exact deployment of a hoop that is released at rest: one degree of freedom, by energy (see physics of the ring in
-// hoop.hpp for the geometry).
+// The exact deployment of a hoop that is released at rest: one degree of freedom, by energy (see physics of
+// the ring in hoop.hpp for the geometry).
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,8 @@ namespace unfurl::exact {
 
 // Per unit, with theta the fold angle and f the force on each hinge,
 //     l1^2 theta'^2 G(theta) = 2 f l1 (sin theta_0 - sin theta)
-//     G = (2/3) m1 [k^2 (1 + 2 cos^2(pi/n)) sin^2 theta + cos^2 theta] + (1/2) m2 k^2 sin^2 theta,  k = 1 / sin(pi/n)
+//     G = (2/3) m1 [k^2 (1 + 2 cos^2(pi/n)) sin^2 theta + cos^2 theta] + (1/2) m2 k^2 sin^2 theta,  k = 1 /
+//     sin(pi/n)
 struct Hoop {
   int n = 6;
   double l1 = 3.0, l2 = 1.2, density = 3000.0, area = 9e-4, fold_angle_deg = 89.34053637766085, f = 200.0;
@@ -17,16 +18,17 @@ struct Hoop {
   double G(double theta) const {
     const double k = 1 / std::sin(M_PI / n), c = std::cos(M_PI / n), s = std::sin(theta);
     const double m1 = density * area * l1, m2 = density * area * l2;
-    return 2.0 / 3.0 * m1 * (k * k * (1 + 2 * c * c) * s * s + std::cos(theta) * std::cos(theta)) + 0.5 * m2 * k * k * s * s;
+    return 2.0 / 3.0 * m1 * (k * k * (1 + 2 * c * c) * s * s + std::cos(theta) * std::cos(theta)) +
+           0.5 * m2 * k * k * s * s;
   }
   double rate(double theta) const {  // theta' < 0 [rad/s]
     return -std::sqrt(2 * f * (std::sin(theta0()) - std::sin(theta)) / (l1 * G(theta)));
   }
 
   // t(theta): theta = theta_0 - u^2 removes the end singularity; dt = 2 u du / |theta'|. With
-  // sin a - sin b = 2 cos((a+b)/2) sin((a-b)/2) nothing cancels near theta_0. Tanh-sinh free: composite Gauss-Legendre
-  // with 10 points on panels that shrink towards u = 0, where near dead centre the integrand varies on the scale of
-  // 90 deg - theta_0; doubled until nothing changes above round-off.
+  // sin a - sin b = 2 cos((a+b)/2) sin((a-b)/2) nothing cancels near theta_0. Tanh-sinh free: composite
+  // Gauss-Legendre with 10 points on panels that shrink towards u = 0, where near dead centre the integrand
+  // varies on the scale of 90 deg - theta_0; doubled until nothing changes above round-off.
   double time(double theta) const {
     const double end = std::sqrt(theta0() - theta);
     double previous = -1, sum = 0;
@@ -60,14 +62,15 @@ struct Hoop {
  private:
   double integrand(double u) const {
     const double theta = theta0() - u * u;
-    const double difference = 2 * std::cos(theta0() - 0.5 * u * u) * std::sin(0.5 * u * u);  // sin theta0 - sin theta
+    const double difference =
+        2 * std::cos(theta0() - 0.5 * u * u) * std::sin(0.5 * u * u);  // sin theta0 - sin theta
     return 2 * u * std::sqrt(l1 * G(theta) / (2 * f * difference));
   }
   double panel(double lo, double hi) const {
-    static const double x[5] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244, 0.8650633666889845,
-                                0.9739065285171717};
-    static const double w[5] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820, 0.1494513491505806,
-                                0.0666713443086881};
+    static const double x[5] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244,
+                                0.8650633666889845, 0.9739065285171717};
+    static const double w[5] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820,
+                                0.1494513491505806, 0.0666713443086881};
     const double m = 0.5 * (lo + hi), r = 0.5 * (hi - lo);
     double sum = 0;
     for (int i = 0; i < 5; ++i) sum += w[i] * (integrand(m - r * x[i]) + integrand(m + r * x[i]));

@@ -1,0 +1,43 @@
+#include "render/plot/figures.hpp"
+
+#include <array>
+
+#include "render/plot/figures/kinds.hpp"
+
+namespace unfurl {
+namespace {
+
+bool always(const Simulation&, const Diagnostics&) {
+  return true;
+}
+bool has_rods(const Simulation& run, const Diagnostics&) {
+  return !run.trajectory.structure().rods.empty();
+}
+bool has_fold_angle(const Simulation&, const Diagnostics& d) {
+  return d.find("fold_angle_rad") != nullptr;
+}
+
+constexpr std::array kinds{
+    FigureKind{"deployment", "fold angle and deployed fraction over time", has_fold_angle, deployment_figure},
+    FigureKind{"constraint_error", "constraint error of positions, relative to rod length, and of velocities",
+               always, constraint_error_figure},
+    FigureKind{"energy", "kinetic and potential energy, work of the loads, error of their balance", always,
+               energy_figure},
+    FigureKind{"rod_forces", "axial forces of the rods by group, tension positive", has_rods,
+               rod_forces_figure},
+    FigureKind{"poses", "the configuration at six times", has_rods, poses_figure},
+};
+
+}  // namespace
+
+std::span<const FigureKind> figure_kinds() {
+  return kinds;
+}
+
+const FigureKind* find_figure(std::string_view name) {
+  for (const FigureKind& kind : kinds)
+    if (kind.name == name) return &kind;
+  return nullptr;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,16 @@
+// The functions behind the table of figures; figures.cpp says what each shows.
+#pragma once
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/simulate/simulation.hpp"
+#include "render/plot/figure.hpp"
+
+namespace unfurl {
+
+Figure deployment_figure(const Simulation& run, const Diagnostics& diagnostics);
+Figure constraint_error_figure(const Simulation& run, const Diagnostics& diagnostics);
+Figure energy_figure(const Simulation& run, const Diagnostics& diagnostics);
+Figure rod_forces_figure(const Simulation& run, const Diagnostics& diagnostics);
+Figure poses_figure(const Simulation& run, const Diagnostics& diagnostics);
+
+}  // namespace unfurl

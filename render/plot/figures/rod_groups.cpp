@@ -1,0 +1,24 @@
+#include "render/plot/figures/rod_groups.hpp"
+
+#include <algorithm>
+
+namespace unfurl {
+
+std::vector<RodGroup> rod_groups(const Structure& structure) {
+  std::vector<RodGroup> groups;
+  std::vector<std::size_t> group_of(structure.rods.size());
+  for (std::size_t r = 0; r < structure.rods.size(); ++r) {
+    const std::string& name = structure.rods[r].group;
+    auto g =
+        std::find_if(groups.begin(), groups.end(), [&](const RodGroup& have) { return have.name == name; });
+    if (g == groups.end())
+      g = groups.insert(g, {name.empty() ? "rod" : name, {}, 0, static_cast<int>(groups.size())});
+    g->rods.push_back(static_cast<int>(r));
+    group_of[r] = static_cast<std::size_t>(g - groups.begin());
+  }
+  for (const RodCopy& copy : structure.rod_copies)
+    ++groups[group_of[static_cast<std::size_t>(copy.source)]].shown;
+  return groups;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/model/structure.hpp"
+
+namespace unfurl {
+
+struct RodGroup {
+  std::string name;
+  std::vector<int> rods;  // of the solved structure
+  int shown = 0;          // rods of the whole structure
+  int color = 0;          // of the palette
+};
+
+// By Rod::group, in the order of first appearance.
+std::vector<RodGroup> rod_groups(const Structure& structure);
+
+}  // namespace unfurl

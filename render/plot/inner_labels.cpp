@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <cmath>
+
+#include "render/plot/obstacles_of.hpp"
+#include "render/plot/panel_layout.hpp"
+#include "render/plot/style.hpp"
+#include "render/plot/text_metrics.hpp"
+
+namespace unfurl::plot {
+namespace {
+
+// Best of the candidate boxes: hides least, the first of equals.
+Spot best_of(const Obstacles& obstacles, const std::vector<Rect>& boxes) {
+  Spot best{boxes.front(), 1e300};
+  for (const Rect& box : boxes)
+    if (const double hidden = obstacles.hidden(box.grown(1.0)); hidden < best.hidden - 1e-6)
+      best = {box, hidden};
+  return best;
+}
+
+constexpr double away = 2.5;  // of a label from its line [points]
+
+// Above and below a horizontal line from right to left; right and left of a vertical one from top to bottom.
+std::vector<Rect> candidates(const Rect& frame, const ReferenceLine& line, double at, double width,
+                             double height) {
+  constexpr int places = 13;
+  std::vector<Rect> boxes;
+  for (int i = 0; i < places; ++i) {
+    const double u = static_cast<double>(i) / (places - 1);
+    if (line.horizontal) {
+      const double x = frame.x1 - 3 - width - u * (frame.width() - width - 6);
+      boxes.push_back({x, at - away - height, x + width, at - away});
+      boxes.push_back({x, at + away, x + width, at + away + height});
+    } else {
+      const double y = frame.y0 + 3 + u * (frame.height() - height - 6);
+      boxes.push_back({at + away + 1, y, at + away + 1 + width, y + height});
+      boxes.push_back({at - away - 1 - width, y, at - away - 1, y + height});
+    }
+  }
+  std::vector<Rect> inside;
+  std::copy_if(boxes.begin(), boxes.end(), std::back_inserter(inside),
+               [&](const Rect& b) { return frame.grown(0.5).contains(b); });
+  return inside;
+}
+
+void add_line_label(const ReferenceLine& line, Obstacles& obstacles, PanelLayout& out) {
+  if (line.label.empty()) return;
+  const Rect& frame = out.frame;
+  const double at = (line.horizontal ? out.y : out.x).scale(line.value);
+  const std::string text = shorten_text(line.label, small_size, frame.width() - 8);
+  const double width = text_width(text, small_size), height = (ascent + descent) * small_size;
+  const std::vector<Rect> boxes = candidates(frame, line, at, width, height);
+  if (boxes.empty()) return;
+  const Spot spot = best_of(obstacles, boxes);
+  if (spot.hidden >= touches_text) return;
+  obstacles.add_box(spot.box);
+  out.labels.push_back({{spot.box.x0, spot.box.y0 + ascent * small_size},
+                        text,
+                        {small_size, palette(line.color)},
+                        spot.hidden > 0});
+}
+
+void say_no_data(const Panel& panel, PanelLayout& out) {
+  const bool drawn =
+      std::any_of(out.curves.begin(), out.curves.end(), [](const auto& pieces) { return !pieces.empty(); }) ||
+      std::any_of(out.bands.begin(), out.bands.end(), [](const BandTrace& b) { return !b.lower.empty(); });
+  if (drawn || panel.bare || !panel.segments.empty() || !panel.dots.empty()) return;
+  const Point middle{(out.frame.x0 + out.frame.x1) / 2,
+                     (out.frame.y0 + out.frame.y1) / 2 + cap_height * small_size / 2};
+  out.labels.push_back({middle, "no data", {small_size, caption_color, Anchor::middle}, true});
+}
+
+// In the corner where it hides least, the lower left one first.
+void add_scale_bar(const Panel& panel, Obstacles& obstacles, PanelLayout& out) {
+  if (!(panel.scale_bar > 0)) return;
+  const double length = panel.scale_bar / (out.x.scale.hi - out.x.scale.lo) * out.frame.width();
+  const double width = std::max(length, text_width(panel.scale_bar_label, small_size)),
+               height = small_size + 6;
+  const Rect f = out.frame.grown(-3);
+  std::vector<Rect> corners;
+  for (const double y : {f.y1 - height, f.y0})
+    for (const double x : {f.x0, f.x1 - width}) corners.push_back({x, y, x + width, y + height});
+  const Rect box = best_of(obstacles, corners).box;
+  const double middle = (box.x0 + box.x1) / 2, y = box.y1 - 2;
+  out.scale_bar = Rect{middle - length / 2, y, middle + length / 2, y};
+  out.labels.push_back({{middle, y - 3.5}, panel.scale_bar_label, {small_size, ink, Anchor::middle}});
+  obstacles.add_box(box);
+}
+
+}  // namespace
+
+Obstacles obstacles_of(const Panel& panel, const PanelLayout& layout) {
+  Obstacles out;
+  for (const auto& pieces : layout.curves)
+    for (const Polyline& piece : pieces) out.add_line(piece);
+  for (const BandTrace& band : layout.bands) {
+    for (std::size_t i = 0; i < band.lower.size(); ++i) {
+      for (const double u : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+        Polyline line = band.lower[i];
+        for (std::size_t k = 0; k < line.size(); ++k) line[k].y += u * (band.upper[i][k].y - line[k].y);
+        out.add_line(std::move(line));
+      }
+    }
+  }
+  for (const ReferenceLine& line : panel.lines) {
+    const double at = (line.horizontal ? layout.y : layout.x).scale(line.value);
+    const Rect& f = layout.frame;
+    out.add_line(line.horizontal ? Polyline{{f.x0, at}, {f.x1, at}} : Polyline{{at, f.y0}, {at, f.y1}});
+  }
+  for (const Segment& s : panel.segments)
+    out.add_line(
+        {{layout.x.scale(s.x0), layout.y.scale(s.y0)}, {layout.x.scale(s.x1), layout.y.scale(s.y1)}});
+  if (layout.legend && layout.legend->inside) out.add_box(layout.legend->box.grown(1));
+  return out;
+}
+
+void add_inner_labels(const Panel& panel, PanelLayout& out) {
+  Obstacles obstacles = obstacles_of(panel, out);
+  for (const ReferenceLine& line : panel.lines) add_line_label(line, obstacles, out);
+  add_scale_bar(panel, obstacles, out);
+  say_no_data(panel, out);
+}
+
+}  // namespace unfurl::plot

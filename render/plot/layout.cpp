@@ -1,0 +1,156 @@
+#include "render/plot/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/plot/legend.hpp"
+#include "render/plot/panel_layout.hpp"
+#include "render/plot/style.hpp"
+#include "render/plot/text_metrics.hpp"
+
+namespace unfurl::plot {
+namespace {
+
+constexpr double outer = 4.0, column_gap = 12.0, row_gap = 6.0, smallest_frame = 12.0;
+
+// The frames of a grid of panels: rows and columns line up, whatever their labels need.
+class Grid {
+ public:
+  Grid(const Figure& figure, const Rect& area, std::vector<PanelLayout>& panels)
+      : figure_(figure), area_(area), panels_(panels), columns_(std::max(figure.columns, 1)) {
+    rows_ = std::max(figure.rows, static_cast<int>((panels.size() + static_cast<std::size_t>(columns_) - 1) /
+                                                   static_cast<std::size_t>(columns_)));
+  }
+
+  // Ticks depend on the frames' sizes and these on the ticks' labels: three rounds settle it.
+  void settle(const std::vector<int>& legend_rows) {
+    legend_rows_ = legend_rows;
+    column_.assign(static_cast<std::size_t>(columns_), {30, 10, 0, 0});
+    row_.assign(static_cast<std::size_t>(rows_), {0, 0, 10, 25});
+    for (int round = 0; round < 3; ++round) {
+      place();
+      for (std::size_t i = 0; i < panels_.size(); ++i) set_axes(figure_.panels[i], panels_[i]);
+      measure();
+    }
+    place();
+    for (std::size_t i = 0; i < panels_.size(); ++i) set_axes(figure_.panels[i], panels_[i]);
+  }
+
+  Rect cell(std::size_t i) const {
+    const Margins &c = column_[i % column_.size()], &r = row_[i / column_.size()];
+    const Rect& f = panels_[i].frame;
+    return {f.x0 - c.left, f.y0 - r.top, f.x1 + c.right, f.y1 + r.bottom};
+  }
+
+ private:
+  void measure() {
+    for (Margins& m : column_) m = {};
+    for (Margins& m : row_) m = {};
+    for (std::size_t i = 0; i < panels_.size(); ++i) {
+      const Margins m = margins(figure_.panels[i], panels_[i], legend_rows_[i]);
+      Margins &c = column_[i % column_.size()], &r = row_[i / column_.size()];
+      c.left = std::max(c.left, m.left), c.right = std::max(c.right, m.right);
+      r.top = std::max(r.top, m.top), r.bottom = std::max(r.bottom, m.bottom);
+    }
+  }
+
+  double share(std::size_t row) const {
+    const std::size_t i = row * column_.size();
+    return i < figure_.panels.size() ? std::max(figure_.panels[i].height, 0.05) : 1.0;
+  }
+
+  void place() {
+    double width = area_.width() - column_gap * (columns_ - 1),
+           height = area_.height() - row_gap * (rows_ - 1), shares = 0;
+    for (const Margins& m : column_) width -= m.left + m.right;
+    for (std::size_t r = 0; r < row_.size(); ++r) height -= row_[r].top + row_[r].bottom, shares += share(r);
+    const double frame_width = std::max(width / columns_, smallest_frame);
+    double y = area_.y0;
+    for (std::size_t r = 0; r < row_.size(); ++r) {
+      const double frame_height = std::max(height * share(r) / shares, smallest_frame);
+      double x = area_.x0;
+      for (std::size_t c = 0; c < column_.size(); ++c) {
+        x += column_[c].left;
+        const std::size_t i = r * column_.size() + c;
+        if (i < panels_.size())
+          panels_[i].frame = {x, y + row_[r].top, x + frame_width, y + row_[r].top + frame_height};
+        x += frame_width + column_[c].right + column_gap;
+      }
+      y += row_[r].top + frame_height + row_[r].bottom + row_gap;
+    }
+  }
+
+  const Figure& figure_;
+  Rect area_;
+  std::vector<PanelLayout>& panels_;
+  int columns_, rows_ = 1;
+  std::vector<int> legend_rows_;
+  std::vector<Margins> column_, row_;  // of columns: left and right; of rows: top and bottom
+};
+
+// Title above, caption below; what is left for the panels.
+Rect lay_out_page(const Figure& figure, const LayoutOptions& options, FigureLayout& out) {
+  Rect area{outer, outer, out.width - outer, out.height - outer};
+  if (options.title && !figure.title.empty()) {
+    const std::string title = shorten_text(figure.title, title_size, area.width());
+    out.labels.push_back({{area.x0, area.y0 + ascent * title_size}, title, {title_size, ink}});
+    area.y0 += 1.5 * title_size;
+  }
+  if (!options.caption || figure.caption.empty()) return area;
+  const std::vector<std::string> lines = wrap_text(figure.caption, small_size, area.width());
+  const double pitch = line_spacing * small_size;
+  const double top = area.y1 - pitch * static_cast<double>(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    out.labels.push_back({{area.x0, top + pitch * static_cast<double>(i) + 0.9 * small_size},
+                          lines[i],
+                          {small_size, caption_color}});
+  area.y1 = top - 5;
+  return area;
+}
+
+// Inside where a place is free, else rows above the frame. False where room above has to be made first.
+bool place_legends(const Figure& figure, std::vector<PanelLayout>& panels, std::vector<int>& rows) {
+  bool room = true;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const Panel& panel = figure.panels[i];
+    if (rows[i] > 0) {
+      const double bottom = panels[i].frame.y0 - 3 - (has_note(panels[i]) ? note_height : 0);
+      panels[i].legend = legend_above(panel, panels[i].frame, bottom);
+      continue;
+    }
+    panels[i].legend = inside_legend(panel, panels[i]);
+    if (panels[i].legend) continue;
+    rows[i] = legend_rows(panel, panels[i].frame.width());
+    room = room && rows[i] == 0;
+  }
+  return room;
+}
+
+}  // namespace
+
+FigureLayout lay_out(const Figure& figure, const LayoutOptions& options) {
+  FigureLayout out;
+  out.width = figure.width_mm * points_per_mm;
+  out.height = figure.height_mm * points_per_mm;
+  const Rect area = lay_out_page(figure, options, out);
+  out.panels.resize(figure.panels.size());
+  if (figure.panels.empty()) return out;
+  Grid grid(figure, area, out.panels);
+  std::vector<int> rows(figure.panels.size(), 0);
+  for (int round = 0; round < 3; ++round) {
+    grid.settle(rows);
+    for (std::size_t i = 0; i < out.panels.size(); ++i) {
+      out.panels[i].curves.clear();
+      out.panels[i].bands.clear();
+      set_traces(figure.panels[i], out.panels[i]);
+    }
+    if (place_legends(figure, out.panels, rows)) break;
+  }
+  for (std::size_t i = 0; i < out.panels.size(); ++i) {
+    add_axis_labels(figure.panels[i], grid.cell(i), rows[i], out.panels[i]);
+    add_inner_labels(figure.panels[i], out.panels[i]);
+  }
+  return out;
+}
+
+}  // namespace unfurl::plot

@@ -1,0 +1,67 @@
+// Where everything of a figure goes on the page. Independent of the canvas, so that PNG and SVG agree.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/plot/canvas.hpp"
+#include "render/plot/figure.hpp"
+#include "render/plot/scale.hpp"
+#include "render/plot/ticks.hpp"
+#include "render/plot/trace.hpp"
+
+namespace unfurl::plot {
+
+struct Label {
+  Point at;
+  std::string text;
+  TextStyle style;
+  bool backed = false;  // on a white ground, because it covers a line
+};
+
+// A legend's entry: a sample of a curve or a band, then its label.
+struct LegendEntry {
+  const Curve* curve = nullptr;
+  const Band* band = nullptr;
+  Point sample;  // the left end of the sample's middle line
+  Label label;
+};
+
+struct Legend {
+  Rect box;
+  bool inside = true;  // in the frame, on a white ground; false: above it
+  std::vector<LegendEntry> entries;
+};
+inline constexpr double legend_sample = 19.0;  // length of a sample [points]
+
+struct AxisLayout {
+  bool used = true;
+  Scale scale;
+  Ticks ticks;
+};
+
+struct PanelLayout {
+  Rect frame;  // what the axes span
+  AxisLayout x, y, y2;
+  std::vector<std::vector<Polyline>> curves;  // the pieces of each curve
+  std::vector<BandTrace> bands;
+  std::optional<Legend> legend;
+  std::vector<Label> labels;      // all other text
+  std::optional<Rect> scale_bar;  // its stroke
+};
+
+struct FigureLayout {
+  double width = 0, height = 0;     // [points]
+  std::vector<PanelLayout> panels;  // as many as the figure has
+  std::vector<Label> labels;        // title and caption
+};
+
+struct LayoutOptions {
+  bool title = true, caption = true;
+};
+
+// The figure must outlive the layout.
+FigureLayout lay_out(const Figure& figure, const LayoutOptions& options = {});
+
+}  // namespace unfurl::plot

@@ -1,0 +1,174 @@
+#include "render/plot/svg_canvas.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "render/plot/style.hpp"
+#include "render/plot/text_metrics.hpp"
+
+namespace unfurl::plot {
+
+std::string escape_xml(std::string_view text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t from = at;
+    const char32_t c = next_code_point(text, at);
+    const bool allowed =
+        c >= 0x20 && c != 0xFFFD && c != 0xFFFE && c != 0xFFFF && !(c >= 0xD800 && c < 0xE000);
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (allowed)
+      out += text.substr(from, at - from);
+  }
+  return out;
+}
+
+SvgCanvas::SvgCanvas(double width, double height, std::string_view title, std::string_view description) {
+  out_ =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" "
+      "width=\"";
+  number(width / points_per_mm);
+  out_ += "mm\" height=\"";
+  number(height / points_per_mm);
+  out_ += "mm\" viewBox=\"0 0 ";
+  number(width);
+  out_ += ' ';
+  number(height);
+  out_ +=
+      "\" font-family=\"'DejaVu Sans', 'Bitstream Vera Sans', Verdana, sans-serif\" "
+      "stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
+  out_ += "<title>" + escape_xml(title) + "</title>\n<desc>" + escape_xml(description) + "</desc>\n";
+}
+
+std::string SvgCanvas::finish() {
+  out_ += "</svg>\n";
+  return std::move(out_);
+}
+
+void SvgCanvas::number(double value) {
+  char text[32];
+  const double rounded = std::round(value * 100) / 100 + 0.0;  // a hundredth of a point; no "-0"
+  const auto end = std::to_chars(text, text + sizeof text, rounded).ptr;
+  out_.append(text, end);
+}
+
+void SvgCanvas::point(Point p) {
+  number(p.x);
+  out_ += ',';
+  number(p.y);
+}
+
+void SvgCanvas::points(std::span<const Point> points) {
+  out_ += " points=\"";
+  for (const Point& p : points) {
+    point(p);
+    out_ += ' ';
+  }
+  if (!points.empty()) out_.pop_back();
+  out_ += '"';
+}
+
+void SvgCanvas::paint(const char* what, FigureColor c) {
+  const auto byte = [](float v) { return static_cast<int>(std::lround(255 * std::clamp(v, 0.0f, 1.0f))); };
+  char text[64];
+  std::snprintf(text, sizeof text, " %s=\"#%02X%02X%02X\"", what, byte(c.r), byte(c.g), byte(c.b));
+  out_ += text;
+  if (c.a >= 1) return;
+  out_ += ' ';
+  out_ += what;
+  out_ += "-opacity=\"";
+  number(c.a);
+  out_ += '"';
+}
+
+void SvgCanvas::polyline(std::span<const Point> line, const Pen& pen) {
+  if (line.size() < 2) return;
+  out_ += "<polyline fill=\"none\" stroke-width=\"";
+  number(pen.width);
+  out_ += '"';
+  paint("stroke", pen.color);
+  if (const auto pattern = dash_pattern(pen.dash); !pattern.empty()) {
+    out_ += " stroke-linecap=\"butt\" stroke-dasharray=\"";
+    for (const double d : pattern) {
+      number(d * pen.width);
+      out_ += ' ';
+    }
+    out_.back() = '"';
+  }
+  points(line);
+  out_ += "/>\n";
+}
+
+void SvgCanvas::band(std::span<const Point> lower, std::span<const Point> upper, FigureColor fill) {
+  std::vector<Point> outline(lower.begin(), lower.end());
+  outline.insert(outline.end(), upper.rbegin(), upper.rend());
+  convex(outline, fill);
+}
+
+void SvgCanvas::convex(std::span<const Point> corners, FigureColor fill) {
+  if (corners.size() < 3) return;
+  out_ += "<polygon";
+  paint("fill", fill);
+  points(corners);
+  out_ += "/>\n";
+}
+
+void SvgCanvas::circle(Point center, double radius, FigureColor fill) {
+  out_ += "<circle cx=\"";
+  number(center.x);
+  out_ += "\" cy=\"";
+  number(center.y);
+  out_ += "\" r=\"";
+  number(radius);
+  out_ += '"';
+  paint("fill", fill);
+  out_ += "/>\n";
+}
+
+void SvgCanvas::text(Point at, std::string_view text, const TextStyle& style) {
+  out_ += "<text x=\"";
+  number(at.x);
+  out_ += "\" y=\"";
+  number(at.y);
+  out_ += "\" font-size=\"";
+  number(style.size);
+  out_ += '"';
+  paint("fill", style.color);
+  if (style.anchor == Anchor::middle) out_ += " text-anchor=\"middle\"";
+  if (style.anchor == Anchor::end) out_ += " text-anchor=\"end\"";
+  if (style.upward) {
+    out_ += " transform=\"rotate(-90 ";
+    number(at.x);
+    out_ += ' ';
+    number(at.y);
+    out_ += ")\"";
+  }
+  out_ += ">" + escape_xml(text) + "</text>\n";
+}
+
+void SvgCanvas::begin_clip(const Rect& r) {
+  const std::string id = "clip" + std::to_string(++clips_);
+  out_ += "<clipPath id=\"" + id + "\"><rect x=\"";
+  number(r.x0);
+  out_ += "\" y=\"";
+  number(r.y0);
+  out_ += "\" width=\"";
+  number(r.width());
+  out_ += "\" height=\"";
+  number(r.height());
+  out_ += "\"/></clipPath>\n<g clip-path=\"url(#" + id + ")\">\n";
+}
+
+void SvgCanvas::end_clip() {
+  out_ += "</g>\n";
+}
+
+}  // namespace unfurl::plot

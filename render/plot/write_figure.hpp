@@ -1,0 +1,48 @@
+// Figures to files: PNG through OpenGL, SVG without.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "render/gl/context.hpp"
+#include "render/image/image.hpp"
+#include "render/plot/layout.hpp"
+
+namespace unfurl {
+
+struct FigureOptions {
+  double dpi = 300;  // pixels per inch of a PNG: 160 mm are 1890 pixels
+  plot::LayoutOptions layout;
+};
+
+// Paints figures; what that needs (a context, a font atlas) is made once, at the first PNG.
+class FigureWriter {
+ public:
+  explicit FigureWriter(FigureOptions options = {});
+  // In a context of the caller's, which must outlive the writer.
+  explicit FigureWriter(GlContext& context, FigureOptions options = {});
+  ~FigureWriter();
+  FigureWriter(const FigureWriter&) = delete;
+  FigureWriter& operator=(const FigureWriter&) = delete;
+
+  // By extension, .png or .svg; throws std::invalid_argument for another one, FileError where it cannot be
+  // written, GraphicsError where there is no OpenGL for a PNG. The file appears whole or not at all.
+  void write(const Figure& figure, const std::filesystem::path& path);
+  Image paint(const Figure& figure);
+
+ private:
+  struct Painter;
+  FigureOptions options_;
+  GlContext* given_ = nullptr;
+  std::unique_ptr<Painter> painter_;
+};
+
+void write_figure(const Figure& figure, const std::filesystem::path& path, FigureOptions options = {});
+void write_figure(const Figure& figure, const std::filesystem::path& path, GlContext& context,
+                  FigureOptions options = {});
+
+// The figure as an SVG document: text as text, no OpenGL involved.
+std::string figure_svg(const Figure& figure, const plot::LayoutOptions& options = {});
+
+}  // namespace unfurl

@@ -1,0 +1,92 @@
+// Every row of the constraint table: Jacobian, curvature, bias and force against finite differences of the
+// values.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/constraints/constraint.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+// A structure that has at least one constraint of every kind. A new kind must be added here: the test fails
+// without.
+Structure sample() {
+  Structure s;
+  s.nodes = {{"a", {0.1, 0.2, 0.3}}, {"b", {1.3, -0.4, 0.6}}, {"c", {0.7, 1.9, -0.8}}};
+  s.rods = {{"ab", 0, 1, 1.0, 1.5, "rod", 0.01, 1.0}, {"bc", 1, 2, 1.0, 2.0, "rod", 0.01, 1.0}};
+  const Vec3 n = Vec3(1, 2, 2) / 3;
+  s.constraints = {{"plane", "plane", {0}, {n}, 0.25},
+                   {"line", "line", {1}, {n}, 0.0},
+                   {"fixed", "fixed", {2}, {}, 0.0},
+                   {"relation", "relation", {0, 1, 2}, {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, -1)}, 0.5}};
+  return s;
+}
+
+MatrixXd dense_jacobian(const ConstraintBlock& block, const VectorXd& q) {
+  std::vector<double> values;
+  for (int r = 0; r < block.rows(); ++r) values.resize(values.size() + block.stencil(r).size());
+  block.jacobian(q.data(), values.data());
+  MatrixXd G = MatrixXd::Zero(block.rows(), q.size());
+  std::size_t e = 0;
+  for (int r = 0; r < block.rows(); ++r)
+    for (int c : block.stencil(r)) G(r, c) += values[e++];
+  return G;
+}
+
+}  // namespace
+
+TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
+  const Structure structure = sample();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const ConstraintKind& kind : constraint_kinds()) {
+    const auto block = kind.make(structure);
+    INFO("constraint " << kind.kind);
+    REQUIRE(block);
+    const Index n = 9, m = block->rows();
+    VectorXd q(n), v(n), lambda(m);
+    for (VectorXd* x : {&q, &v, &lambda})
+      for (Index i = 0; i < x->size(); ++i) (*x)[i] = uniform(random);
+    const MatrixXd G = dense_jacobian(*block, q);
+    // Central differences of quadratics are exact up to round-off / step = 1e-16 / 1e-4 = 1e-12, for kinds of
+    // higher degree up to step^2 = 1e-8.
+    const double step = 1e-4;
+    VectorXd up(m), down(m);
+    for (Index i = 0; i < n; ++i) {
+      VectorXd moved = q;
+      moved[i] += step;
+      block->value(moved.data(), up.data());
+      moved[i] -= 2 * step;
+      block->value(moved.data(), down.data());
+      CHECK(((up - down) / (2 * step) - G.col(i)).cwiseAbs().maxCoeff() <= 1e-8);
+    }
+    VectorXd f = VectorXd::Zero(n);
+    block->add_force(q.data(), lambda.data(), 2.0, f.data());
+    CHECK((f - 2.0 * G.transpose() * lambda).cwiseAbs().maxCoeff() <=
+          1e-14);  // the same products, once added
+    VectorXd bias(m);
+    block->bias(q.data(), v.data(), bias.data());
+    const VectorXd turned =
+        (dense_jacobian(*block, q + step * v) - dense_jacobian(*block, q - step * v)) * v / (2 * step);
+    CHECK((bias - turned).cwiseAbs().maxCoeff() <= 1e-8);
+
+    std::size_t size = 0;
+    for (int r = 0; r < m; ++r) size += block->stencil(r).size() * block->stencil(r).size();
+    std::vector<double> hess(size);
+    block->curvature(q.data(), lambda.data(), hess.data());
+    MatrixXd H = MatrixXd::Zero(n, n);
+    const double* h = hess.data();
+    for (int r = 0; r < m; ++r)
+      for (const auto c = block->stencil(r); int j : c)
+        for (int i : c) H(i, j) += *h++;
+    for (Index i = 0; i < n; ++i) {
+      VectorXd unit = VectorXd::Unit(n, i) * step;
+      const VectorXd column =
+          (dense_jacobian(*block, q + unit) - dense_jacobian(*block, q - unit)).transpose() * lambda /
+          (2 * step);
+      CHECK((H.col(i) - column).cwiseAbs().maxCoeff() <= 1e-8);
+    }
+    CHECK(block->linear() == H.isZero(1e-12));
+  }
+}

@@ -1,0 +1,96 @@
+#include "core/math/saddle_solver.hpp"
+
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+#include <random>
+
+using namespace unfurl;
+
+namespace {
+
+SparseRows sparse(const MatrixXd& A) {
+  SparseRows S = A.sparseView(1.0, 0.0);
+  S.makeCompressed();
+  return S;
+}
+
+// Random M (diagonally dominant, positive definite) and G with some rows repeated.
+struct Problem {
+  MatrixXd M, G;
+  VectorXd f, g;
+};
+
+Problem random_problem(int n, int rows, int repeated, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Problem p{MatrixXd::Zero(n, n), MatrixXd::Zero(rows + repeated, n), VectorXd(n),
+            VectorXd::Zero(rows + repeated)};
+  for (int i = 0; i < n; ++i) {
+    p.M(i, i) = std::pow(10.0, 2 * uniform(random));
+    p.f[i] = uniform(random);
+  }
+  for (int i = 0; i + 1 < n; ++i)
+    p.M(i, i + 1) = p.M(i + 1, i) = 0.3 * std::min(p.M(i, i), p.M(i + 1, i + 1));
+  for (int r = 0; r < rows; ++r)
+    for (int k = 0; k < 4; ++k)
+      p.G(r, static_cast<int>(random() % static_cast<unsigned>(n))) = uniform(random);
+  for (int r = 0; r < repeated; ++r) p.G.row(rows + r) = 2.0 * p.G.row(r) - p.G.row(r + 1);
+  p.g = p.G * VectorXd::Ones(n);  // consistent
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("the saddle-point solver agrees with a dense rank-revealing solve, redundant rows included") {
+  for (unsigned seed = 1; seed <= 20; ++seed)
+    for (int repeated : {0, 3}) {
+      const Problem p = random_problem(24, 10, repeated, seed);
+      SaddleSolver solver(sparse(p.M), sparse(p.G));
+      REQUIRE(solver.factorise(sparse(p.G)));
+      VectorXd x(p.f.size()), y(p.g.size());
+      const double residual = solver.solve(p.f, p.g, x, y);
+      MatrixXd K = MatrixXd::Zero(34 + repeated, 34 + repeated);
+      K << p.M, p.G.transpose(), p.G, MatrixXd::Zero(p.G.rows(), p.G.rows());
+      VectorXd b(K.rows());
+      b << p.f, p.g;
+      const VectorXd dense = K.completeOrthogonalDecomposition().solve(b);
+      INFO("seed " << seed << ", repeated rows " << repeated);
+      // Condition numbers reach 1e5 here (masses from 1e-2 to 1e2): 1e5 ulp on either side.
+      CHECK((x - dense.head(24)).norm() <= 1e-10 * dense.head(24).norm());
+      CHECK(residual <= 1e-14);
+      // Multipliers are unique up to the null space of G^T: the forces G^T y are unique.
+      CHECK((p.G.transpose() * (y - dense.tail(y.size()))).norm() <= 1e-9 * p.f.norm());
+    }
+}
+
+TEST_CASE("multipliers of repeated rows come with least norm") {
+  MatrixXd M = MatrixXd::Identity(2, 2), G(3, 2);
+  G << 1, 0, 1, 0, 1, 0;  // one rod three times: each carries a third
+  SaddleSolver solver(sparse(M), sparse(G));
+  REQUIRE(solver.factorise(sparse(G)));
+  VectorXd x(2), y(3);
+  solver.solve(Eigen::Vector2d(3, 5), VectorXd::Zero(3), x, y);
+  // Round-off in directions without rank is 1e-16 / e = 1e-6.
+  for (int r = 0; r < 3; ++r) CHECK(y[r] == Approx(1.0).epsilon(3e-6));
+  CHECK(std::abs(x[0]) <= 1e-15);
+  CHECK(x[1] == Approx(5.0).epsilon(1e-15));
+}
+
+TEST_CASE("several right-hand sides at once give what each gives alone") {
+  const Problem p = random_problem(30, 12, 2, 7);
+  SaddleSolver solver(sparse(p.M), sparse(p.G), 7);
+  REQUIRE(solver.factorise(sparse(p.G)));
+  const int columns = 7;
+  std::vector<double> f(30 * columns), g(14 * columns);
+  for (int i = 0; i < 30; ++i)
+    for (int c = 0; c < columns; ++c) f[static_cast<std::size_t>(i * columns + c)] = p.f[i] * (c + 1);
+  for (int i = 0; i < 14; ++i)
+    for (int c = 0; c < columns; ++c) g[static_cast<std::size_t>(i * columns + c)] = p.g[i] * (c + 1);
+  solver.apply(f.data(), g.data(), columns);
+  VectorXd f1 = p.f, g1 = p.g;
+  solver.apply(f1.data(), g1.data(), 1);
+  for (int i = 0; i < 30; ++i)
+    for (int c = 0; c < columns; ++c)  // the same operations, scaled: a few hundred of them
+      CHECK(f[static_cast<std::size_t>(i * columns + c)] ==
+            Approx((c + 1) * f1[i]).epsilon(1e-10).margin(1e-12));
+}
