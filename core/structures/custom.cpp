@@ -19,9 +19,9 @@ double rod_mass(const CustomRod& rod, double length) {
   return rod.mass >= 0.0 ? rod.mass : rod.density * rod.area * length;
 }
 
-// The round rod of the given section; without one, slender against its length.
-double rod_radius(const CustomRod& rod, double length) {
-  return rod.area > 0.0 ? std::sqrt(rod.area / pi) : 0.012 * length;
+// The round rod of the given section; 0 without one, and whoever draws chooses the same for all of them.
+double rod_radius(const CustomRod& rod) {
+  return rod.area > 0.0 ? std::sqrt(rod.area / pi) : 0.0;
 }
 
 Constraint constraint_on(const std::string& kind, const Vec3& direction, int index, const Node& node) {
@@ -73,8 +73,8 @@ Structure build_custom(const CustomSpec& spec) {
     const double length =
         (spec.nodes[static_cast<std::size_t>(b)].position - spec.nodes[static_cast<std::size_t>(a)].position)
             .norm();
-    structure.rods.push_back({rod_name(entry), a, b, rod_mass(entry, length), length, entry.group,
-                              rod_radius(entry, length), 1.0});
+    structure.rods.push_back(
+        {rod_name(entry), a, b, rod_mass(entry, length), length, entry.group, rod_radius(entry), 1.0});
   }
   for (const auto& entry : spec.constraints)
     for (const auto& pattern : entry.nodes)
