@@ -23,7 +23,7 @@ struct Rod {
   double mass = 0.0;    // [kg]
   double length = 0.0;  // [m]; the distance of its nodes at t = 0
   std::string group;    // "chord", "post", "rod", ...: what colours and groups of rod forces go by
-  double radius = 0.0;  // for drawing [m]
+  double radius = 0.0;  // for drawing; 0: not known [m]
   double multiplicity =
       1.0;  // how many equal rods of the whole structure this one stands for (sector models)
 };

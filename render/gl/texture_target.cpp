@@ -28,7 +28,7 @@ TextureTarget::TextureTarget(TextureKind kind, int side) : side_(side) {
   gl::BindTexture(GL_TEXTURE_2D, texture_);
   gl::GenFramebuffers(1, &framebuffer_);
   gl::BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  (kind == TextureKind::depth_compare ? attach_depth : attach_shade)(texture_, side);
+  (kind == TextureKind::depth ? attach_depth : attach_shade)(texture_, side);
   gl::TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   gl::TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   gl::TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
@@ -52,6 +52,10 @@ void TextureTarget::bind() const {
 void TextureTarget::use_as_texture(int unit) const {
   gl::ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
   gl::BindTexture(GL_TEXTURE_2D, texture_);
+}
+
+void TextureTarget::compare_depths(bool compare) const {
+  gl::TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, compare ? GL_COMPARE_REF_TO_TEXTURE : GL_NONE);
 }
 
 }  // namespace unfurl

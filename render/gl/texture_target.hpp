@@ -3,8 +3,8 @@
 namespace unfurl {
 
 enum class TextureKind {
-  depth_compare,  // 24-bit depth, read by a sampler2DShadow
-  shade           // one 8-bit channel
+  depth,  // 24 bits, read by a sampler2DShadow
+  shade   // one 8-bit channel
 };
 
 // A square texture that one pass draws and a later one reads, bilinearly. Outside it continues its edge.
@@ -19,6 +19,8 @@ class TextureTarget {
   int side() const { return side_; }    // [pixels]
   void bind() const;                    // draw into it; sets the viewport
   void use_as_texture(int unit) const;  // read it
+  // Of a depth texture in use: read by a sampler2DShadow (as it begins) or, unfiltered, by a sampler2D.
+  void compare_depths(bool compare) const;
 
  private:
   int side_;

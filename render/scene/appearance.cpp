@@ -64,8 +64,8 @@ Appearance appearance_of(const Structure& s, double size) {
   for (const NodeCopy& copy : s.node_copies) out.fixed.push_back(held[static_cast<std::size_t>(copy.source)]);
   for (const LoadCopy& load : s.load_copies)
     out.largest_force = std::max(out.largest_force, load.force.norm());
-  out.arrow_length = 0.16 * size;
-  out.arrow_radius = 0.008 * size;
+  out.arrow_length = median > 0 ? std::min(0.16 * size, 0.3 * median) : 0.16 * size;
+  out.arrow_radius = 0.05 * out.arrow_length;
   return out;
 }
 

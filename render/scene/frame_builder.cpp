@@ -79,7 +79,7 @@ void FrameBuilder::prepare_still() {
   still_.ground.fade = static_cast<float>(3.2 * bounds.radius);
   // The key light comes from above the viewer's left shoulder.
   const Vec3 side = Vec3::UnitZ().cross(view_direction(bounds)).normalized();
-  still_.light_direction = (0.36 * view_direction(bounds) - 0.42 * side + 1.15 * Vec3::UnitZ()).cast<float>();
+  still_.light_direction = (0.70 * view_direction(bounds) - 0.42 * side + 1.15 * Vec3::UnitZ()).cast<float>();
 }
 
 DrawList FrameBuilder::build(double t) const {

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Matrix4f;
 
-constexpr int shadow_side = 2048, shade_side = 512;  // [pixels]
+constexpr int shadow_side = 1536, shade_side = 384;  // [pixels]
 
 const void* offset_of(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);
@@ -46,7 +46,7 @@ Renderer::Renderer(GlContext& context, int width, int height, int samples)
       bodies_{make_body(capsule_mesh(12, 2), capsule_mesh(6, 1)),
               make_body(capsule_mesh(16, 4), capsule_mesh(8, 2)),
               make_body(cylinder_mesh(12), cylinder_mesh(6))},
-      shadow_map_(TextureKind::depth_compare, shadow_side),
+      shadow_map_(TextureKind::depth, shadow_side),
       shade_across_(TextureKind::shade, shade_side),
       shade_on_floor_(TextureKind::shade, shade_side) {
   gl::GenVertexArrays(1, &empty_array_);
@@ -130,6 +130,8 @@ void Renderer::draw_shadows(const DrawList& list, const Matrix4f& light) const {
   shade_.use();
   shade_.set("depth", 0);
   shade_.set("shade", 1);
+  shade_.set("texels", shadow_map_.side() / shade_on_floor_.side());
+  shadow_map_.compare_depths(false);
   for (const bool across : {true, false}) {
     (across ? shade_across_ : shade_on_floor_).bind();
     if (!across) shade_across_.use_as_texture(1);
@@ -137,6 +139,8 @@ void Renderer::draw_shadows(const DrawList& list, const Matrix4f& light) const {
     gl::DrawArrays(GL_TRIANGLES, 0, 3);
   }
   shade_on_floor_.use_as_texture(1);
+  shadow_map_.use_as_texture(0);
+  shadow_map_.compare_depths(true);
   gl::Enable(GL_DEPTH_TEST);
 }
 

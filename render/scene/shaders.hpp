@@ -52,10 +52,8 @@ layout(location = 0) out vec4 color;
 float lit(vec3 p, vec3 n, float texel) {
   vec3 at = (light_projection * vec4(p + n * 1.5 * texel, 1.0)).xyz * 0.5 + 0.5;
   if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
-  vec2 step = 0.75 / vec2(textureSize(shadow_map, 0));
-  return 0.25 * (texture(shadow_map, at + vec3(step, 0.0)) + texture(shadow_map, at - vec3(step, 0.0)) +
-                 texture(shadow_map, at + vec3(step.x, -step.y, 0.0)) +
-                 texture(shadow_map, at + vec3(-step.x, step.y, 0.0)));
+  float step = 0.6 / float(textureSize(shadow_map, 0).x);
+  return 0.5 * (texture(shadow_map, at + vec3(step, step, 0.0)) + texture(shadow_map, at - vec3(step, step, 0.0)));
 }
 
 vec3 room(vec3 d) {  // what a mirror would show: a pale floor, a bright horizon, a lamp overhead
@@ -89,19 +87,23 @@ void main() {
 
 // Two passes of a blur. Across: of the depth map, whatever is nearer to the light than the floor. Then along.
 inline constexpr const char* shade_fragment = R"(#version 330 core
-uniform int across;
-uniform sampler2DShadow depth;
-uniform sampler2D shade;
+uniform int across, texels;  // of the depth map for one of the shade
+uniform sampler2D depth, shade;
 layout(location = 0) out float color;
 void main() {
-  float side = float(textureSize(depth, 0).x);
-  vec2 at = gl_FragCoord.xy * 4.0 / side;  // four texels of depth for one of shade
-  float sum = 0.0;
   if (across == 1) {
-    for (int i = 0; i < 6; ++i) sum += texture(depth, vec3(at + vec2(2.0 * float(i) - 5.0, 0.0) / side, 0.99999));
-    color = 1.0 - sum / 6.0;
+    ivec2 at = ivec2(gl_FragCoord.xy) * texels + ivec2(texels / 2);
+    ivec2 last = textureSize(depth, 0) - 1;
+    float sum = 0.0;
+    for (int i = 0; i < 8; ++i) {  // on different rows, or a shadow along the rows would be dashed
+      ivec2 p = clamp(at + ivec2(3 * i / 2 - 5, (3 * i & 3) - 2) * texels / 4, ivec2(0), last);
+      sum += texelFetch(depth, p, 0).r < 1.0 ? 1.0 : 0.0;
+    }
+    color = sum / 8.0;
   } else {
-    for (int i = 0; i < 4; ++i) sum += texture(shade, at + vec2(0.0, 3.0 * float(i) - 4.5) / side).r;
+    vec2 texel = 1.0 / vec2(textureSize(shade, 0)), at = gl_FragCoord.xy * texel;
+    float sum = 0.0;
+    for (int i = -3; i <= 3; i += 2) sum += texture(shade, at + vec2(0.0, 0.45 * float(i)) * texel).r;
     color = 0.25 * sum;
   }
 })";

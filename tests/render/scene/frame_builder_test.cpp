@@ -1,0 +1,188 @@
+#include "render/scene/frame_builder.hpp"
+
+#include <Eigen/LU>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/simulate/simulation.hpp"
+#include "render/scene/view.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+const std::string ring = R"(
+[structure]
+kind = "hoop"
+units = 6
+fold_angle = 85.0
+hinge_force = 200.0
+[solver]
+step = 0.02
+end_time = 10.0
+)";
+
+const std::string pendulum = R"(
+[[structure.nodes]]
+name = "P"
+position = [0, 0, 0]
+fixed = true
+[[structure.nodes]]
+name = "E"
+position = [1, 0, 0]
+velocity = VELOCITY
+[[structure.rods]]
+nodes = ["P", "E"]
+mass = 1.0
+[structure]
+kind = "custom"
+[gravity]
+acceleration = GRAVITY
+[solver]
+step = 0.02
+end_time = 2.0
+)";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  text.replace(text.find(from), from.size(), to);
+  return text;
+}
+
+Simulation run(const std::string& text) {
+  const Scene scene = read_scene_text(text, "test.toml");
+  return simulate(build_model(scene), scene.solver);
+}
+
+// The smallest distance [pixels] of any node, at any state, from the nearest edge of the picture.
+double margin(const Trajectory& trajectory, const FrameBuilder& builder, int width, int height) {
+  double least = 1e9;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const VectorXd q = trajectory.positions(i);
+    for (Index k = 0; k < q.size() / 3; ++k) {
+      const Vec3 x = builder.upright() * q.segment<3>(3 * k);
+      const Vec3f p = project(builder.camera(), width, height, x.cast<float>());
+      if (p.z() <= builder.camera().near_plane) return -1;
+      least = std::min({least, static_cast<double>(p.x()), width - static_cast<double>(p.x()),
+                        static_cast<double>(p.y()), height - static_cast<double>(p.y())});
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("the whole motion of a ring stays inside the picture, whatever its shape") {
+  const Simulation result = run(ring);
+  REQUIRE(result.status == RunStatus::deployed);
+  const auto [width, height] = GENERATE(std::pair{1280, 720}, std::pair{400, 400}, std::pair{360, 640});
+  const FrameBuilder builder(result.trajectory, {width, height, "Ring", true, true});
+  const double least = margin(result.trajectory, builder, width, height);
+  CHECK(least > 0.05 * std::min(width, height));
+  CHECK(least < 0.30 * std::min(width, height));  // and fills it
+}
+
+TEST_CASE("parts of the ring are all there, coloured by group, and stay above the floor") {
+  const Simulation result = run(ring);
+  const FrameBuilder builder(result.trajectory, {1280, 720, "Ring", true, true});
+  for (const double share : {0.0, 0.5, 0.9, 1.0}) {
+    const DrawList list = builder.build(share * result.trajectory.end_time());
+    CHECK(list.tubes.size() == 30);
+    CHECK(list.sleeves.size() == 60);
+    CHECK(list.balls.size() == 24);
+    CHECK(list.arrows.size() == 12);
+    for (const Ball& ball : list.balls) {
+      CHECK(ball.center.z() - ball.radius > list.ground.z);
+      CHECK((ball.center - list.center).norm() + ball.radius <= list.radius);
+    }
+  }
+  const DrawList list = builder.build(0);
+  std::size_t posts = 0;
+  for (const Tube& tube : list.tubes)
+    posts += tube.color.r == group_color(1).r && tube.color.b == group_color(1).b;
+  CHECK(posts == 6);
+}
+
+TEST_CASE("joints are where the trajectory says at that time") {
+  const Simulation result = run(ring);
+  const FrameBuilder builder(result.trajectory, {1280, 720, "", true, true});
+  const double t = 0.617 * result.trajectory.end_time();
+  const VectorXd q = result.trajectory.positions_at(t);
+  const DrawList list = builder.build(t);
+  for (std::size_t i = 0; i < list.balls.size(); ++i) {
+    // The ring is some 6 m in size: single precision holds it to 1e-6 m.
+    CHECK((list.balls[i].center.cast<double>() - q.segment<3>(3 * static_cast<Index>(i))).norm() < 1e-6);
+  }
+}
+
+TEST_CASE("title, time and deployed fraction are written") {
+  const Simulation result = run(ring);
+  const FrameBuilder builder(result.trajectory, {1280, 720, "Ring", true, true});
+  const auto texts = [&](double t) {
+    std::string all;
+    for (const TextLabel& label : builder.build(t).labels) all += label.text + "|";
+    return all;
+  };
+  CHECK_THAT(texts(0), Catch::StartsWith("Ring|t = 0.00 s    deployed 0 %|"));
+  CHECK_THAT(texts(1e9), Catch::Contains("deployed 100 %"));  // after the end: the end
+  FrameStyle bare;
+  bare.labels = bare.loads = false;
+  const DrawList list = FrameBuilder(result.trajectory, bare).build(0);
+  CHECK(list.labels.empty());
+  CHECK(list.arrows.empty());
+}
+
+TEST_CASE("a sector model shows the whole ring and the same deployed fraction") {
+  const Simulation full = run(ring);
+  const Simulation sector = run(replaced(ring, "units = 6", "units = 6\nmodel = \"sector\""));
+  const DrawList a = FrameBuilder(full.trajectory, {}).build(2.0);
+  const DrawList b = FrameBuilder(sector.trajectory, {}).build(2.0);
+  CHECK(b.tubes.size() == a.tubes.size());
+  CHECK(b.arrows.size() == a.arrows.size());
+  REQUIRE(!a.labels.empty());
+  CHECK(b.labels[0].text == a.labels[0].text);
+}
+
+TEST_CASE("gravity points down in the picture, whatever axis the scene chose") {
+  const std::string gravity =
+      GENERATE("[0, 0, -9.81]", "[0, -9.81, 0]", "[0, 9.81, 0]", "[-5, 0, -8]", "[0, 0, 9.81]");
+  const Simulation result = run(replaced(replaced(pendulum, "GRAVITY", gravity), "VELOCITY", "[0, 0, 0]"));
+  const FrameBuilder builder(result.trajectory, {});
+  const Vec3 down = builder.upright() * result.trajectory.structure().gravity;
+  CHECK(down.z() == Approx(-down.norm()).epsilon(1e-12));
+  CHECK(std::abs(builder.upright().determinant() - 1) < 1e-12);  // turned, not mirrored
+  CHECK(margin(result.trajectory, builder, 1280, 720) > 36);
+}
+
+TEST_CASE("a motion in a plane is seen nearly along its normal") {
+  const Simulation result =
+      run(replaced(replaced(pendulum, "GRAVITY", "[0, 0, -9.81]"), "VELOCITY", "[0, 0, -1]"));
+  const FrameBuilder builder(result.trajectory, {});
+  const Vec3f view = (builder.camera().target - builder.camera().eye).normalized();
+  CHECK(std::abs(view.dot(Vec3f::UnitY())) > std::cos(25 * radians_per_degree));
+  CHECK(std::abs(view.dot(Vec3f::UnitY())) < std::cos(10 * radians_per_degree));  // but not flat on
+  CHECK(margin(result.trajectory, builder, 1280, 720) > 36);
+}
+
+TEST_CASE("a structure that rests is framed as well") {
+  const Simulation result =
+      run(replaced(replaced(pendulum, "GRAVITY", "[0, 0, 0]"), "VELOCITY", "[0, 0, 0]"));
+  const FrameBuilder builder(result.trajectory, {});
+  CHECK(margin(result.trajectory, builder, 1280, 720) > 36);
+  CHECK(builder.camera().eye.allFinite());
+}
+
+TEST_CASE("frames come at the film's rate and the last one shows the end") {
+  const Simulation result =
+      run(replaced(replaced(pendulum, "GRAVITY", "[0, 0, -9.81]"), "VELOCITY", "[0, 0, 0]"));
+  REQUIRE(result.trajectory.end_time() == Approx(2.0));
+  const std::vector<double> times = frame_times(result.trajectory, 25, 1);
+  REQUIRE(times.size() == 51);  // 2 s: 50 gaps
+  CHECK(times[1] == Approx(0.04));
+  CHECK(times.back() == result.trajectory.end_time());
+  const std::vector<double> slow = frame_times(result.trajectory, 25, 0.3);
+  CHECK(slow[1] == Approx(0.012));
+  CHECK(slow.back() == result.trajectory.end_time());
+  CHECK(slow[slow.size() - 2] < slow.back());
+}

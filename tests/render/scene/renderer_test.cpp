@@ -1,0 +1,191 @@
+#include "render/scene/renderer.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "render/gl/functions.hpp"
+#include "render/scene/view.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+constexpr int width = 320, height = 180;
+
+struct Pixel {
+  int r, g, b;
+  int sum() const { return r + g + b; }
+};
+
+Pixel at(const Image& image, float x, float y) {
+  const auto i =
+      4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+  return {image.rgba.at(i), image.rgba.at(i + 1), image.rgba.at(i + 2)};
+}
+
+// What shows at the place of a point in space.
+Pixel at(const Image& image, const DrawList& list, const Vec3f& point) {
+  const Vec3f pixel = project(list.camera, image.width, image.height, point);
+  return at(image, pixel.x(), pixel.y());
+}
+
+// A floor without lines where we look, seen from above at an angle; the light comes straight from above.
+DrawList empty_room() {
+  DrawList list;
+  list.camera.eye = {0, -8, 6};
+  list.camera.target = {0, 0, 0.5f};
+  list.camera.vertical_field_of_view = 0.6f;
+  list.radius = 4;
+  list.light_direction = {0, 0, 1};
+  list.ground.cell = 100;  // its lines are far from where we look, but for those through the origin
+  list.ground.fade = 30;
+  list.background_top = {0.5f, 0.6f, 0.7f, 1};
+  list.background_bottom = {0.9f, 0.9f, 0.9f, 1};
+  return list;
+}
+
+const Tube red_tube{{-2, 0, 1}, {2, 0, 1}, 0.2f, {0.8f, 0.05f, 0.05f, 1}, Finish::paint};
+
+struct Studio {
+  std::unique_ptr<GlContext> context = make_offscreen_context();
+  Renderer renderer{*context, width, height};
+};
+
+}  // namespace
+
+TEST_CASE("without a floor the background is its gradient") {
+  Studio studio;
+  DrawList list = empty_room();
+  list.ground.shown = false;
+  const Image image = studio.renderer.draw(list);
+  // Half a pixel from the edges the mix is 1/360 off the end colours: 8-bit rounding at most.
+  const Pixel top = at(image, 10, 0), bottom = at(image, 310, height - 1);
+  CHECK(top.r == Approx(0.5 * 255).margin(1.5));
+  CHECK(top.b == Approx(0.7 * 255).margin(1.5));
+  CHECK(bottom.r == Approx(0.9 * 255).margin(1.5));
+  CHECK(gl::GetError() == GL_NO_ERROR);
+}
+
+TEST_CASE("a red tube across the picture is red, and only there") {
+  Studio studio;
+  DrawList list = empty_room();
+  const Image without = studio.renderer.draw(list);
+  list.tubes.push_back(red_tube);
+  const Image image = studio.renderer.draw(list);
+  for (const float x : {-1.9f, -1.0f, 0.0f, 1.0f, 1.9f}) {
+    const Pixel p = at(image, list, {x, 0, 1});
+    CHECK(p.r > 120);
+    CHECK(p.r > 2 * p.g);
+    CHECK(p.r > 2 * p.b);
+  }
+  const Pixel above = at(image, list, {0, 0, 1.6f}), before = at(without, list, {0, 0, 1.6f});
+  CHECK(above.sum() == before.sum());
+}
+
+TEST_CASE("the tube's upper side is brighter than its lower side") {
+  Studio studio;
+  DrawList list = empty_room();
+  list.camera.eye = {0, -8, 1};
+  list.camera.target = {0, 0, 1};
+  list.tubes.push_back(red_tube);
+  const Image image = studio.renderer.draw(list);
+  CHECK(at(image, list, {0.5f, -0.15f, 1.13f}).sum() > at(image, list, {0.5f, -0.15f, 0.87f}).sum() + 60);
+}
+
+TEST_CASE("the floor is darker in the tube's shadow than beside it") {
+  Studio studio;
+  DrawList list = empty_room();
+  const Image lit = studio.renderer.draw(list);
+  list.tubes.push_back(red_tube);
+  const Image image = studio.renderer.draw(list);
+  for (const float x : {-1.5f, 0.7f, 1.5f}) {
+    const Vec3f below(x, 0.1f, 0), beside(x, -1.0f, 0);
+    CHECK(at(image, list, below).sum() < at(lit, list, below).sum() - 60);
+    CHECK(at(image, list, beside).sum() == at(lit, list, beside).sum());
+  }
+}
+
+TEST_CASE("a body in another's shadow is darker") {
+  Studio studio;
+  DrawList list = empty_room();
+  list.balls.push_back({{0, 0, 0.5f}, 0.4f, {0.7f, 0.7f, 0.7f, 1}, Finish::paint});
+  const Vec3f probe(0, -0.15f, 0.85f);
+  const Pixel lit = at(studio.renderer.draw(list), list, probe);
+  list.tubes.push_back({{-2, 0, 2.5f}, {2, 0, 2.5f}, 0.5f, {0.7f, 0.7f, 0.7f, 1}});
+  const Pixel shaded = at(studio.renderer.draw(list), list, probe);
+  CHECK(shaded.sum() < lit.sum() - 60);
+}
+
+TEST_CASE("nearer bodies cover farther ones, whatever their kind and order") {
+  Studio studio;
+  DrawList list = empty_room();
+  const Color blue{0.05f, 0.1f, 0.8f, 1};
+  list.balls.push_back({{0, 2, 1}, 0.6f, blue, Finish::paint});
+  list.sleeves.push_back({{-1, -2, 1}, {1, -2, 1}, 0.3f, red_tube.color, Finish::paint});
+  const Image image = studio.renderer.draw(list);
+  CHECK(at(image, list, {0, -2, 1}).r > 2 * at(image, list, {0, -2, 1}).b);
+  CHECK(at(image, list, {0, 2, 1.3f}).b > 2 * at(image, list, {0, 2, 1.3f}).r);
+}
+
+TEST_CASE("grid lines lie on whole cells and fade with distance") {
+  Studio studio;
+  DrawList list = empty_room();
+  const Image plain = studio.renderer.draw(list);
+  list.ground.cell = 1;
+  const Image image = studio.renderer.draw(list);
+  const Vec3f on_line(1, -0.5f, 0), in_cell(1.5f, -0.5f, 0);
+  CHECK(at(image, list, on_line).sum() < at(plain, list, on_line).sum() - 15);
+  CHECK(at(image, list, in_cell).sum() == at(plain, list, in_cell).sum());
+  list.ground.fade = 1;
+  const Image faded = studio.renderer.draw(list);
+  CHECK(at(faded, list, on_line).sum() == at(plain, list, on_line).sum());
+}
+
+TEST_CASE("edges are anti-aliased") {
+  Studio studio;
+  DrawList list = empty_room();
+  list.ground.shown = false;
+  list.background_top = list.background_bottom = {1, 1, 1, 1};
+  list.tubes.push_back({{-2, 0, 0.9f}, {2, 0, 1.1f}, 0.2f, {0.0f, 0.0f, 0.0f, 1}, Finish::paint});
+  const Image image = studio.renderer.draw(list);
+  int between = 0;  // a slope of 1:20 crosses pixel rows; hard edges would jump from white to dark
+  for (int x = 100; x < 220; ++x) {
+    for (int y = 0; y < height; ++y) {
+      const int value = at(image, static_cast<float>(x), static_cast<float>(y)).sum();
+      between += value > 400 && value < 740;
+    }
+  }
+  CHECK(between >= 60);
+}
+
+TEST_CASE("labels are drawn over the picture") {
+  Studio studio;
+  DrawList list = empty_room();
+  const Image before = studio.renderer.draw(list);
+  list.labels.push_back({20, 10, 16, {0, 0, 0, 1}, "Ring"});
+  const Image after = studio.renderer.draw(list);
+  int changed_inside = 0, changed_outside = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
+      const bool inside = x >= 20 && x < 70 && y >= 10 && y < 30;
+      (inside ? changed_inside : changed_outside) += at(before, fx, fy).sum() != at(after, fx, fy).sum();
+    }
+  }
+  CHECK(changed_inside > 60);
+  CHECK(changed_outside == 0);
+}
+
+TEST_CASE("the same list gives the same bytes, also after another picture and in another context") {
+  DrawList list = empty_room();
+  list.tubes.push_back(red_tube);
+  list.arrows.push_back({{0, 0, 1}, {0, 0, 2}, 0.05f, {0, 0, 1, 1}});
+  list.labels.push_back({20, 10, 16, {0, 0, 0, 1}, "Ring"});
+  Studio studio;
+  const Image first = studio.renderer.draw(list);
+  studio.renderer.draw(empty_room());
+  CHECK(studio.renderer.draw(list).rgba == first.rgba);
+  Studio other;
+  CHECK(other.renderer.draw(list).rgba == first.rgba);
+  studio.context->make_current();  // it goes last, and needs its context
+}

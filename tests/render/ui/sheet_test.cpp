@@ -1,0 +1,124 @@
+#include "render/ui/sheet.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "render/gl/context.hpp"
+#include "render/gl/framebuffer.hpp"
+#include "render/gl/functions.hpp"
+#include "render/ui/text_overlay.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+constexpr ImU32 black = IM_COL32(0, 0, 0, 255), red = IM_COL32(255, 0, 0, 255);
+
+std::uint8_t channel(const Image& image, int x, int y, int c) {
+  return image.rgba.at(4 * static_cast<std::size_t>(y * image.width + x) + static_cast<std::size_t>(c));
+}
+
+// The box of all pixels that are not white: left, top, right, bottom (inclusive); -1 where there is none.
+std::array<int, 4> inked(const Image& image) {
+  std::array<int, 4> box{-1, -1, -1, -1};
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      if (channel(image, x, y, 0) == 255 && channel(image, x, y, 1) == 255) continue;
+      if (box[1] < 0) box = {x, y, x, y};
+      box = {std::min(box[0], x), box[1], std::max(box[2], x), y};
+    }
+  }
+  return box;
+}
+
+struct Paper {
+  std::unique_ptr<GlContext> context = make_offscreen_context();
+  Framebuffer frame{200, 100, 0};
+  Paper() { clear(); }
+  void clear() const {
+    gl::ClearColor(1, 1, 1, 1);
+    gl::Clear(GL_COLOR_BUFFER_BIT);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a rectangle covers exactly its pixels") {
+  const Paper paper;
+  Sheet sheet;
+  sheet.begin(200, 100).AddRectFilled({20, 30}, {50, 40}, red);
+  sheet.end();
+  const Image image = paper.frame.read();
+  CHECK(inked(image) == std::array{20, 30, 49, 39});
+  CHECK(channel(image, 35, 35, 0) == 255);
+  CHECK(channel(image, 35, 35, 1) == 0);
+  CHECK(channel(image, 35, 35, 3) == 255);
+}
+
+TEST_CASE("a clip rectangle cuts what lies outside it") {
+  const Paper paper;
+  Sheet sheet;
+  ImDrawList& list = sheet.begin(200, 100);
+  list.PushClipRect({60, 10}, {80, 25});
+  list.AddRectFilled({0, 0}, {200, 100}, black);
+  list.PopClipRect();
+  sheet.end();
+  CHECK(inked(paper.frame.read()) == std::array{60, 10, 79, 24});
+}
+
+TEST_CASE("more vertices than 16 bits can count are drawn in the right place") {
+  const Paper paper;
+  Sheet sheet;
+  ImDrawList& list = sheet.begin(200, 100);
+  for (int i = 0; i < 20000; ++i) list.AddRectFilled({5, 5}, {6, 6}, black);  // 80000 vertices
+  list.AddRectFilled({150, 70}, {160, 80}, red);
+  sheet.end();
+  const Image image = paper.frame.read();
+  CHECK(inked(image) == std::array{5, 5, 159, 79});
+  CHECK(channel(image, 155, 75, 1) == 0);
+  CHECK(channel(image, 100, 50, 1) == 255);
+}
+
+TEST_CASE("text has its size, and fonts may be added between pictures") {
+  const Paper paper;
+  Sheet sheet;
+  ImFont* small = sheet.font(16);
+  sheet.begin(200, 100).AddText(small, 16, {10, 10}, black, "HHHH");
+  sheet.end();
+  const auto first = inked(paper.frame.read());
+  paper.clear();
+  ImFont* large = sheet.font(32);
+  CHECK(sheet.font(16) == small);
+  sheet.begin(200, 100).AddText(large, 32, {10, 10}, black, "HHHH");
+  sheet.end();
+  const auto second = inked(paper.frame.read());
+  // A capital is about 0.63 of DejaVu's line height; within a pixel of anti-aliasing on either side.
+  CHECK(first[3] - first[1] + 1 == Approx(0.63 * 16).margin(2));
+  CHECK(second[3] - second[1] + 1 == Approx(0.63 * 32).margin(2));
+  CHECK(second[2] - second[0] == Approx(2.0 * (first[2] - first[0])).margin(3));
+}
+
+TEST_CASE("Greek, minus, superscripts and arrows have glyphs") {
+  const Paper paper;
+  Sheet sheet;
+  ImFont* font = sheet.font(16);
+  sheet.begin(200, 100);
+  for (const int letter : {0x03B8, 0x03BB, 0x2212, 0x207B, 0x00B9, 0x2075, 0x2192, 0x25A0, 0x00B0}) {
+    INFO(letter);
+    CHECK(font->FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr);
+  }
+  sheet.end();
+}
+
+TEST_CASE("labels are aligned to the left, the middle or the right of their place") {
+  const Paper paper;
+  TextOverlay overlay;
+  const float align = GENERATE(0.0f, 0.5f, 1.0f);
+  overlay.draw({{100, 40, 16, {0, 0, 0, 1}, "label", align}}, 200, 100);
+  const auto box = inked(paper.frame.read());
+  const double width = box[2] - box[0] + 1;
+  CHECK(width > 30);
+  // Letters keep a pixel or so of white at both sides.
+  CHECK(box[0] == Approx(100 - static_cast<double>(align) * width).margin(3));
+  CHECK(box[1] >= 40);
+  CHECK(box[3] < 40 + 20);
+}
