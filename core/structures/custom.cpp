@@ -19,11 +19,7 @@ double rod_mass(const CustomRod& rod, double length) {
   return rod.mass >= 0.0 ? rod.mass : rod.density * rod.area * length;
 }
 
-<<<<<<< HEAD
-// The round rod of the given section; 0 where none is given: whoever draws it chooses.
-=======
 // The round rod of the given section; 0 without one, and whoever draws chooses the same for all of them.
->>>>>>> render
 double rod_radius(const CustomRod& rod) {
   return rod.area > 0.0 ? std::sqrt(rod.area / pi) : 0.0;
 }
