@@ -9,10 +9,13 @@
 #include "app/scene_run.hpp"
 #include "core/model/mobility.hpp"
 #include "core/scene/build.hpp"
+#include "core/simulate/initial_state.hpp"
 
 namespace unfurl {
 
 namespace {
+
+constexpr double visible_change = 1e-9;  // [m/s]; below it, round-off of velocities that are meant to fit
 
 VectorXd start_positions(const Structure& structure) {
   VectorXd q(static_cast<Index>(3 * structure.nodes.size()));
@@ -63,6 +66,12 @@ int cmd_check(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   const auto model = build_model(scene);
   const Mobility mobility = analyse_mobility(model->system, start_positions(model->structure));
+  const double change = initial_state(model->structure, model->system).velocity_change;
+  if (change > visible_change)
+    std::cerr << "unfurl: warning: the initial velocities violate the constraints and will be projected on "
+                 "them (largest "
+                 "change "
+              << change << " m/s)\n";
   if (arguments.json)
     print_json(scene, *model, mobility);
   else

@@ -33,6 +33,7 @@ struct Command {
 std::span<const Command> commands();
 
 int cmd_run(const Arguments& arguments);
+int cmd_render(const Arguments& arguments);
 int cmd_check(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 

@@ -6,6 +6,7 @@ namespace {
 
 constexpr Command table[] = {
     {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run},
+    {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
      1, 1, false, cmd_check},
     {"list", "structures|methods|figures|scenes|constraints|forces", "what there is to choose from", 1, 1,

@@ -11,11 +11,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// An earlier run ends with a summary that names the program.
+// Put into directories that were empty before, so that a run that was killed can be repeated without --force.
+constexpr const char* marker = ".unfurl";
+
 bool holds_our_results(const fs::path& directory) {
+  std::error_code error;
+  if (fs::exists(directory / marker, error)) return true;
   const TextFile summary = read_text_file((directory / "summary.json").string());
   const auto json = nlohmann::json::parse(summary.text, nullptr, false);
   return json.is_object() && json.contains("unfurl");
+}
+
+// A directory that cannot be written to, or a full disk, is found now rather than after the work.
+void probe(const fs::path& directory, bool leave_marker) {
+  try {
+    write_file_atomically(directory / marker, "Made by unfurl " UNFURL_VERSION "\n");
+  } catch (const FileError& error) {
+    const std::string text = error.what();
+    throw FileError(directory, text.substr(text.rfind(": ") + 2));
+  }
+  std::error_code ignored;
+  if (!leave_marker) fs::remove(directory / marker, ignored);
 }
 
 void remove_matching(const fs::path& folder, std::string_view prefix, std::string_view suffix) {
@@ -37,10 +53,10 @@ fs::path open_output_directory(const std::string& path, bool force) {
   if (error) throw FileError(directory, error.value());
   const bool empty = fs::is_empty(directory, error);
   if (error) throw FileError(directory, error.value());
-  if (!empty && !force && !holds_our_results(directory))
+  const bool ours = empty || holds_our_results(directory);
+  if (!ours && !force)
     throw FileError(directory, "is not empty and holds no earlier results; use --force to write into it");
-  const PendingFile probe(directory / "probe");
-  write_file_atomically(probe.name(), std::string_view("can this directory be written to?\n"));
+  probe(directory, ours);
   return directory;
 }
 

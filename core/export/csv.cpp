@@ -27,6 +27,7 @@ class CsvFile {
   void cell(const std::string& text) { append(csv_cell(text)); }
 
   void cell(double x) {
+    x += 0.0;  // a zero has no sign worth printing
     std::array<char, 32> buffer{};
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr;
     append({buffer.data(), static_cast<std::size_t>(end - buffer.data())});

@@ -169,7 +169,7 @@ void Dvm::correct(StepReport& report) {
   Eigen::Map<RowMajor> f(rhs_f_.data(), n, columns), g(rhs_g_.data(), m, columns);
   f.noalias() = -eq_.h * (eq_.momentum * c_.C_inverse.transpose());
   for (Index r = 0; r < m; ++r) {
-    const double noise = eq_.constraint_noise(r);
+    const double noise = wanted_constraint * eq_.constraint_noise(r);
     for (Index j = 0; j < columns; ++j) g(r, j) = std::abs(eq_.phi(r, j)) > noise ? -eq_.phi(r, j) : 0.0;
   }
   if (careful_) consistent_f_ = f;

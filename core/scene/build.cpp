@@ -5,6 +5,7 @@
 #include "core/model/nearest_name.hpp"
 #include "core/model/structure_error.hpp"
 #include "core/structures/family.hpp"
+#include "core/structures/name_index.hpp"
 
 namespace unfurl {
 
@@ -22,13 +23,17 @@ SourceLocation location_of(const Scene& scene, const std::string& key) {
   return {structure == scene.locations.end() ? scene.name : structure->second.file, 0, 0};
 }
 
+[[noreturn]] void refuse(const Scene& scene, const StructureError& error) {
+  const std::string key = error.key.empty() ? "structure" : "structure." + error.key;
+  throw SceneError({{location_of(scene, key), key, error.message}});
+}
+
 Structure bare_structure(const Scene& scene) {
   try {
     if (const Family* family = find_family(scene.kind)) return family->build(scene.structure);
     return build_custom(scene.custom);
   } catch (const StructureError& error) {
-    const std::string key = "structure." + error.key;
-    throw SceneError({{location_of(scene, key), key, error.message}});
+    refuse(scene, error);
   }
 }
 
@@ -60,17 +65,17 @@ void add_load(Structure& structure, int node, const Vec3& force) {
 }
 
 void add_loads(const Scene& scene, Structure& structure) {
-  std::vector<std::string_view> names;
-  for (const auto& node : structure.nodes) names.push_back(node.name);
+  NameIndex names;
+  for (const auto& node : structure.nodes) names.add(node.name);
   std::vector<SceneProblem> problems;
   for (std::size_t i = 0; i < scene.loads.size(); ++i) {
     const auto& load = scene.loads[i];
     for (const auto& pattern : load.nodes) {
-      const auto found = matching_names(pattern, names);
+      const auto found = names.matching(pattern);
       for (const int node : found) add_load(structure, node, load.force);
       if (found.empty())
         problems.push_back({load.where, "loads[" + std::to_string(i) + "].nodes",
-                            "no node matches " + in_quotes(pattern) + did_you_mean(pattern, names)});
+                            "no node matches " + in_quotes(pattern) + did_you_mean(pattern, names.names())});
     }
   }
   if (!problems.empty()) throw SceneError(std::move(problems));
@@ -87,8 +92,12 @@ Structure build_structure(const Scene& scene) {
 
 std::shared_ptr<const Model> build_model(const Scene& scene) {
   Structure structure = build_structure(scene);
-  System system(structure, scene.solver.eliminate_linear);
-  return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+  try {
+    System system(structure, scene.solver.eliminate_linear);
+    return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+  } catch (const StructureError& error) {
+    refuse(scene, error);
+  }
 }
 
 }  // namespace unfurl

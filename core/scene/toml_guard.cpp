@@ -95,7 +95,6 @@ TextObstacle find_deep_nesting(std::string_view text) {
 TextObstacle find_bad_encoding(std::string_view text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     return {0, "the file is UTF-16 (it starts with that byte-order mark); save it as UTF-8"};
-  if (text.starts_with("\xEF\xBB")) return {0, "half a UTF-8 byte-order mark"};
   for (std::size_t i = 0; i < text.size();) {
     if (text[i] == '\0') return {i, "a zero byte: this is not a text file in UTF-8"};
     const std::size_t length = utf8_length(text, i);

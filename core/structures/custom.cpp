@@ -1,9 +1,9 @@
 #include "core/structures/custom.hpp"
 
 #include <cmath>
-#include <unordered_map>
 
-#include "core/structures/family.hpp"
+#include "core/model/structure_error.hpp"
+#include "core/structures/name_index.hpp"
 
 namespace unfurl {
 
@@ -66,14 +66,10 @@ Structure build_custom(const CustomSpec& spec) {
   structure.lumped_mass = spec.lumped_mass;
   add_nodes(spec, structure);
 
-  std::vector<std::string_view> names;
-  std::unordered_map<std::string_view, int> index;
-  for (const auto& node : spec.nodes) {
-    index[node.name] = static_cast<int>(names.size());
-    names.push_back(node.name);
-  }
+  NameIndex names;
+  for (const auto& node : spec.nodes) names.add(node.name);
   for (const auto& entry : spec.rods) {
-    const int a = index.at(entry.nodes[0]), b = index.at(entry.nodes[1]);
+    const int a = names.find(entry.nodes[0]), b = names.find(entry.nodes[1]);
     const double length =
         (spec.nodes[static_cast<std::size_t>(b)].position - spec.nodes[static_cast<std::size_t>(a)].position)
             .norm();
@@ -82,7 +78,7 @@ Structure build_custom(const CustomSpec& spec) {
   }
   for (const auto& entry : spec.constraints)
     for (const auto& pattern : entry.nodes)
-      for (const int node : matching_names(pattern, names))
+      for (const int node : names.matching(pattern))
         structure.constraints.push_back(
             constraint_on(entry.kind, entry.normal, node, structure.nodes[static_cast<std::size_t>(node)]));
   show_as_solved(structure);

@@ -66,11 +66,4 @@ Structure build_custom(const CustomSpec& spec);
 // The name a rod goes by: its own, or "A-B" from its nodes.
 std::string rod_name(const CustomRod& rod);
 
-// Does `name` match `pattern` with * and ?
-bool glob_match(std::string_view pattern, std::string_view name);
-
-// Indices of the names that one pattern means: the name itself where there is one, else all that match its *
-// and ?. Ascending; empty when there is none.
-std::vector<int> matching_names(std::string_view pattern, const std::vector<std::string_view>& names);
-
 }  // namespace unfurl

@@ -5,6 +5,7 @@
 
 #include "core/model/nearest_name.hpp"
 #include "core/structures/custom.hpp"
+#include "core/structures/name_index.hpp"
 
 namespace unfurl {
 
@@ -32,7 +33,11 @@ class Checker {
 
   std::string hint(std::string_view name) const {
     constexpr std::size_t most = 2000;  // more names than a person can have mistyped
-    return names_.size() > most ? "" : did_you_mean(name, names_);
+    return names_.names().size() > most ? "" : did_you_mean(name, names_.names());
+  }
+
+  const Vec3& position_of(const std::string& node) const {
+    return spec_.nodes[static_cast<std::size_t>(names_.find(node))].position;
   }
 
   void check_nodes() {
@@ -40,12 +45,12 @@ class Checker {
       problems_.push_back({"nodes", -1, "", "a custom structure needs nodes: [[structure.nodes]]"});
     for (std::size_t i = 0; i < spec_.nodes.size() && !full(); ++i) {
       const auto& node = spec_.nodes[i];
-      names_.push_back(node.name);
+      const int first = names_.add(node.name);
       if (node.name.empty()) {
         add("nodes", i, "name", "a node needs a name");
-      } else if (const auto [first, is_new] = index_.try_emplace(node.name, i); !is_new) {
+      } else if (first >= 0) {
         add("nodes", i, "name",
-            "there is already a node " + in_quotes(node.name) + ", entry " + std::to_string(first->second));
+            "there is already a node " + in_quotes(node.name) + ", entry " + std::to_string(first));
       }
       if (!node.position.allFinite()) add("nodes", i, "position", "must be finite");
       if (!node.velocity.allFinite()) add("nodes", i, "velocity", "must be finite");
@@ -74,7 +79,7 @@ class Checker {
     }
     bool known = true;
     for (const auto& name : rod.nodes) {
-      if (index_.contains(name)) continue;
+      if (names_.find(name) >= 0) continue;
       add("rods", i, "nodes", "there is no node " + in_quotes(name) + hint(name));
       known = false;
     }
@@ -83,12 +88,9 @@ class Checker {
       add("rods", i, "nodes", "a rod from " + in_quotes(rod.nodes[0]) + " to itself");
       return false;
     }
-    if (!spec_.nodes[index_.at(rod.nodes[0])].position.allFinite() ||
-        !spec_.nodes[index_.at(rod.nodes[1])].position.allFinite())
-      return true;  // the node is reported
-    const double length =
-        (spec_.nodes[index_.at(rod.nodes[0])].position - spec_.nodes[index_.at(rod.nodes[1])].position)
-            .stableNorm();
+    const Vec3 &a = position_of(rod.nodes[0]), &b = position_of(rod.nodes[1]);
+    if (!a.allFinite() || !b.allFinite()) return true;  // the node is reported
+    const double length = (a - b).stableNorm();
     if (length == 0.0)
       add("rods", i, "nodes",
           "zero length: " + in_quotes(rod.nodes[0]) + " and " + in_quotes(rod.nodes[1]) +
@@ -124,7 +126,7 @@ class Checker {
         add("constraints", i, std::string(kind->direction), "must not be zero");
       if (constraint.nodes.empty()) add("constraints", i, "nodes", "names no node");
       for (const auto& pattern : constraint.nodes)
-        if (!index_.contains(pattern) && matching_names(pattern, names_).empty())
+        if (names_.matching(pattern).empty())
           add("constraints", i, "nodes", "no node matches " + in_quotes(pattern) + hint(pattern));
     }
   }
@@ -137,12 +139,11 @@ class Checker {
     for (const auto& rod : spec_.rods)
       if (rod.mass != 0.0)
         for (const auto& name : rod.nodes)
-          if (const auto it = index_.find(name); it != index_.end()) has_mass[it->second] = true;
+          if (const int node = names_.find(name); node >= 0) has_mass[static_cast<std::size_t>(node)] = true;
     for (const auto& constraint : spec_.constraints)
       if (constraint.kind == "fixed")
         for (const auto& pattern : constraint.nodes)
-          for (const int node : matching_names(pattern, names_))
-            has_mass[static_cast<std::size_t>(node)] = true;
+          for (const int node : names_.matching(pattern)) has_mass[static_cast<std::size_t>(node)] = true;
     for (std::size_t i = 0; i < has_mass.size() && !full(); ++i)
       if (!has_mass[i])
         add("nodes", i, "mass",
@@ -152,8 +153,7 @@ class Checker {
 
   const CustomSpec& spec_;
   std::vector<CustomProblem> problems_;
-  std::unordered_map<std::string_view, std::size_t> index_;
-  std::vector<std::string_view> names_;
+  NameIndex names_;
 };
 
 }  // namespace

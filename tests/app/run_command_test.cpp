@@ -37,8 +37,8 @@ TEST_CASE("run writes the data and nothing else") {
   for (const auto& entry : fs::directory_iterator(dir / "out"))
     names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
-  CHECK(names == std::vector<std::string>{"rod_forces.csv", "scene.toml", "series.csv", "summary.json",
-                                          "trajectory.csv"});
+  CHECK(names == std::vector<std::string>{".unfurl", "rod_forces.csv", "scene.toml", "series.csv",
+                                          "summary.json", "trajectory.csv"});
   CHECK(file_text(dir / "out/series.csv").starts_with("t_s,kinetic_energy_J,"));
   CHECK(file_text(dir / "out/trajectory.csv").starts_with("t_s,B0.x_m,B0.y_m,B0.z_m,B0.vx_m_s,"));
 }
@@ -77,6 +77,7 @@ TEST_CASE("a directory with results of our own is used again, one with other fil
             ": is not empty and holds no earlier results; use --force to write into it\n");
   CHECK(run_program(other + std::vector<std::string>{"--force"}).code == 0);
   CHECK(file_text(dir / "mine/thesis.txt") == "precious");
+  CHECK_FALSE(fs::exists(dir / "mine/.unfurl"));  // force is asked for again as long as there is no summary
 }
 
 TEST_CASE("an output directory that cannot be used is found before the work") {
@@ -97,6 +98,20 @@ TEST_CASE("an output directory that cannot be used is found before the work") {
     CHECK(closed.code == 5);
     CHECK(single_error(closed).find("ermission denied") != std::string::npos);
   }
+}
+
+TEST_CASE("a solver that fails says so and keeps the good part") {
+  const ScratchDirectory dir;
+  // A speed of 1e298 m/s after one step: its square is no double.
+  const ProgramResult r = run_program({"run", "double_pendulum", "--set",
+                                       "gravity.acceleration=[0, 0, 1e300]", "--quiet", "-o", dir / "out"});
+  CHECK(r.code == 4);
+  CHECK(single_error(r).starts_with("unfurl: the solver failed: at t = 0 s: "));
+  const auto summary = nlohmann::json::parse(file_text(dir / "out/summary.json"));
+  CHECK(summary["status"] == "failed");
+  CHECK(summary["message"].get<std::string>() != "");
+  CHECK(summary["final"]["t_s"] == 0.0);
+  CHECK(fs::exists(dir / "out/trajectory.csv"));
 }
 
 TEST_CASE("Ctrl-C keeps what is done") {

@@ -69,3 +69,18 @@ TEST_CASE("gravity across a sector's axis is refused, along it is not") {
         "structure.model to \"full\"");
   CHECK(error_of(hoop + "[gravity]\nacceleration = [1, 0, 0]\n") == "");
 }
+
+TEST_CASE("what only the equations of motion can tell is located as well") {
+  // A third of the smallest double is zero: the list gives the tip a mass, the mass matrix does not.
+  const Scene scene = read_scene_file(find_scene("double_pendulum"), {"structure.rods[1].mass=5e-324"});
+  try {
+    build_model(scene);
+    FAIL("built a model with a massless node");
+  } catch (const SceneError& error) {
+    REQUIRE(error.problems().size() == 1);
+    CHECK(error.problems()[0].key == "structure.nodes[2].mass");
+    CHECK(error.problems()[0].where.file == find_scene("double_pendulum"));
+    CHECK(error.problems()[0].where.line == 17);  // the entry [[structure.nodes]] of the tip
+    CHECK(error.problems()[0].message.find("tip") != std::string::npos);
+  }
+}

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/model/structure_error.hpp"
+#include "core/structures/name_index.hpp"
 
 using namespace unfurl;
 

@@ -1,6 +1,4 @@
-#include <algorithm>
-
-#include "core/structures/custom.hpp"
+#include "core/structures/name_index.hpp"
 
 namespace unfurl {
 
@@ -26,13 +24,23 @@ bool glob_match(std::string_view pattern, std::string_view name) {
   return p == pattern.size();
 }
 
-std::vector<int> matching_names(std::string_view pattern, const std::vector<std::string_view>& names) {
-  if (const auto exact = std::find(names.begin(), names.end(), pattern); exact != names.end())
-    return {static_cast<int>(exact - names.begin())};
+int NameIndex::add(std::string_view name) {
+  const auto [entry, is_new] = index_.try_emplace(name, static_cast<int>(names_.size()));
+  names_.push_back(name);
+  return is_new ? -1 : entry->second;
+}
+
+int NameIndex::find(std::string_view name) const {
+  const auto entry = index_.find(name);
+  return entry == index_.end() ? -1 : entry->second;
+}
+
+std::vector<int> NameIndex::matching(std::string_view pattern) const {
+  if (const int exact = find(pattern); exact >= 0) return {exact};
   std::vector<int> found;
   if (pattern.find_first_of("*?") == std::string_view::npos) return found;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (glob_match(pattern, names[i])) found.push_back(static_cast<int>(i));
+  for (std::size_t i = 0; i < names_.size(); ++i)
+    if (glob_match(pattern, names_[i])) found.push_back(static_cast<int>(i));
   return found;
 }
 

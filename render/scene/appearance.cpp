@@ -1,0 +1,72 @@
+#include "render/scene/appearance.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace unfurl {
+namespace {
+
+constexpr double visible_radius = 0.0065;  // of the motion's radius: some six pixels of a 1280 x 720 picture
+constexpr double slender = 1.0 / 20.0;     // a rod is never drawn thicker than this part of its length
+constexpr double unknown_radius = 1.0 / 60.0;  // of the median length, for rods that have none
+
+double median_length(const Structure& s) {
+  std::vector<double> lengths;
+  for (const Rod& rod : s.rods) lengths.push_back(rod.length);
+  if (lengths.empty()) return 0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+double drawn_radius(const Rod& rod, double median, double size) {
+  const double wanted = rod.radius > 0 ? rod.radius : unknown_radius * median;
+  return std::max(wanted, std::min(visible_radius * size, slender * rod.length));
+}
+
+int group_index(std::vector<std::string>& groups, const std::string& group) {
+  const auto found = std::find(groups.begin(), groups.end(), group);
+  if (found == groups.end()) groups.push_back(group);
+  return static_cast<int>(found - groups.begin());
+}
+
+}  // namespace
+
+Color group_color(std::size_t index) {
+  static constexpr std::array<Color, 6> palette{{{0.00f, 0.37f, 0.66f, 1},    // blue
+                                                 {0.88f, 0.50f, 0.02f, 1},    // orange
+                                                 {0.00f, 0.55f, 0.40f, 1},    // bluish green
+                                                 {0.72f, 0.38f, 0.58f, 1},    // reddish purple
+                                                 {0.25f, 0.62f, 0.85f, 1},    // sky blue
+                                                 {0.80f, 0.30f, 0.00f, 1}}};  // vermilion
+  return palette[index % palette.size()];
+}
+
+Appearance appearance_of(const Structure& s, double size) {
+  Appearance out;
+  const double median = median_length(s);
+  for (const Rod& rod : s.rods) {
+    out.rod_group.push_back(group_index(out.groups, rod.group));
+    out.rod_radius.push_back(drawn_radius(rod, median, size));
+  }
+  out.joint_radius.assign(s.node_copies.size(), 0.0);
+  for (const RodCopy& rod : s.rod_copies) {
+    for (const int end : {rod.a, rod.b}) {
+      double& joint = out.joint_radius[static_cast<std::size_t>(end)];
+      joint = std::max(joint, 1.75 * out.rod_radius[static_cast<std::size_t>(rod.source)]);
+    }
+  }
+  std::vector<bool> held(s.nodes.size(), false);
+  for (const Constraint& c : s.constraints) {
+    if (c.kind != "fixed") continue;
+    for (const int node : c.nodes) held[static_cast<std::size_t>(node)] = true;
+  }
+  for (const NodeCopy& copy : s.node_copies) out.fixed.push_back(held[static_cast<std::size_t>(copy.source)]);
+  for (const LoadCopy& load : s.load_copies)
+    out.largest_force = std::max(out.largest_force, load.force.norm());
+  out.arrow_length = 0.16 * size;
+  out.arrow_radius = 0.008 * size;
+  return out;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,30 @@
+// How the parts of a structure look: colours by group, sizes that can be seen.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/model/structure.hpp"
+#include "render/scene/draw_list.hpp"
+
+namespace unfurl {
+
+// Colours that people with any colour vision tell apart (Okabe and Ito 2008), darkened for a pale background.
+Color group_color(std::size_t index);
+
+struct Appearance {
+  std::vector<std::string> groups;   // of the rods, in order of appearance: colour group_color(i)
+  std::vector<int> rod_group;        // per solved rod, index into groups
+  std::vector<double> rod_radius;    // per solved rod, as drawn [m]
+  std::vector<double> joint_radius;  // per copied node, of its ball; 0: no rod ends there [m]
+  std::vector<bool> fixed;           // per copied node: held in place
+  double arrow_length = 0;           // of the largest load [m]
+  double arrow_radius = 0;           // [m]
+  double largest_force = 0;          // [N]
+};
+
+// `size`: the radius of a sphere around the whole motion [m]. Rods thinner than can be seen at that size are
+// drawn thicker.
+Appearance appearance_of(const Structure& structure, double size);
+
+}  // namespace unfurl

@@ -1,0 +1,41 @@
+// The few shapes that a scene is made of, as bodies of revolution between two points.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/scene/draw_list.hpp"
+
+namespace unfurl {
+
+// A point of a body around the z axis, to be placed between the points a and b of an instance by the shader:
+// at a (end 0) or b (end 1), moved by `offset` times the radius there, the z axis turned to b - a.
+struct MeshVertex {
+  Vec3f offset;
+  Vec3f normal;  // of a cylinder; the shader tilts it where the radii differ
+  float end;
+};
+
+struct Mesh {
+  std::vector<MeshVertex> vertices;
+  std::vector<std::uint16_t> indices;  // triangles, counter-clockwise seen from outside
+};
+
+Mesh capsule_mesh(int sides, int cap_rings);  // round ends beyond a and b; a ball where a = b
+Mesh cylinder_mesh(int sides);                // flat ends at a and b with a bevel; a cone where a radius is 0
+
+// One body of a mesh: 13 floats, as the shader takes them.
+struct SolidInstance {
+  Vec3f a, b;
+  float radius_a, radius_b;  // [m]
+  float red, green, blue;    // sRGB-encoded
+  float metal, roughness;    // 0..1
+};
+
+// The instances of a picture by the mesh that they use.
+struct Solids {
+  std::vector<SolidInstance> capsules, balls, cylinders;
+};
+Solids solids_of(const DrawList& list);
+
+}  // namespace unfurl
