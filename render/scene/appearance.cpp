@@ -25,9 +25,9 @@ double drawn_radius(const Rod& rod, double median, double size) {
 }
 
 int group_index(std::vector<std::string>& groups, const std::string& group) {
-  const auto found = std::find(groups.begin(), groups.end(), group);
-  if (found == groups.end()) groups.push_back(group);
-  return static_cast<int>(found - groups.begin());
+  const auto index = std::find(groups.begin(), groups.end(), group) - groups.begin();
+  if (index == std::ssize(groups)) groups.push_back(group);
+  return static_cast<int>(index);
 }
 
 }  // namespace

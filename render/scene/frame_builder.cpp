@@ -9,7 +9,7 @@
 namespace unfurl {
 namespace {
 
-constexpr Color ink{0.13f, 0.17f, 0.22f, 1}, fitting{0.74f, 0.76f, 0.79f, 1}, joint{0.30f, 0.33f, 0.37f, 1},
+constexpr Color ink{0.13f, 0.17f, 0.22f, 1}, fitting{0.62f, 0.64f, 0.67f, 1}, joint{0.30f, 0.33f, 0.37f, 1},
     anchor{0.16f, 0.18f, 0.21f, 1}, load_color{0.78f, 0.08f, 0.22f, 1};
 
 // The rotation that turns gravity downwards; none without gravity.
@@ -37,6 +37,12 @@ std::string deployed_text(double fraction) {
   char text[64];
   std::snprintf(text, sizeof text, "deployed %.0f %%", std::max(0.0, std::round(100 * fraction)));
   return text;
+}
+
+// The width of a text in pixels, roughly; enough to space out a legend.
+float about_width(const std::string& text, float height) {
+  const auto letters = std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; });  // of UTF-8
+  return 0.56f * height * static_cast<float>(letters);
 }
 
 }  // namespace
@@ -73,7 +79,7 @@ void FrameBuilder::prepare_still() {
   still_.ground.fade = static_cast<float>(3.2 * bounds.radius);
   // The key light comes from above the viewer's left shoulder.
   const Vec3 side = Vec3::UnitZ().cross(view_direction(bounds)).normalized();
-  still_.light_direction = (0.45 * view_direction(bounds) - 0.45 * side + 1.05 * Vec3::UnitZ()).cast<float>();
+  still_.light_direction = (0.36 * view_direction(bounds) - 0.42 * side + 1.15 * Vec3::UnitZ()).cast<float>();
 }
 
 DrawList FrameBuilder::build(double t) const {
@@ -156,7 +162,7 @@ void FrameBuilder::add_labels(double t, const VectorXd& whole, DrawList& list) c
   float right = width - edge;
   for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry) {
     list.labels.push_back({right, low, small, entry->second, entry->first, 1});
-    right -= (static_cast<float>(entry->first.size()) * 0.62f + 1.2f) * small;
+    right -= about_width(entry->first, small) + 1.2f * small;
   }
 }
 

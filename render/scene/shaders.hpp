@@ -66,7 +66,7 @@ vec3 room(vec3 d) {  // what a mirror would show: a pale floor, a bright horizon
 void main() {
   vec3 n = normalize(normal), v = normalize(eye - world);
   float metal = metal_roughness.x, roughness = metal_roughness.y;
-  float texel = 2.0 / (length(light_projection[0].xyz) * 2048.0);
+  float texel = 2.0 / (length(light_projection[0].xyz) * float(textureSize(shadow_map, 0).x));
   float n_l = dot(n, to_light), n_v = max(dot(n, v), 0.02);
   float key = n_l > 0.0 ? n_l * lit(world, n, texel) : 0.0;
   float occlusion = mix(0.55, 1.0, smoothstep(0.0, 1.0, (world.z - floor_height_reach.x) / floor_height_reach.y)) *
@@ -85,6 +85,25 @@ void main() {
   light += f0 * min(highlight, 6.0) * key;
   light = light / (1.0 + 0.18 * light) * 1.12;  // rolls off what is brighter than paper
   color = vec4(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);
+})";
+
+// Two passes of a blur. Across: of the depth map, whatever is nearer to the light than the floor. Then along.
+inline constexpr const char* shade_fragment = R"(#version 330 core
+uniform int across;
+uniform sampler2DShadow depth;
+uniform sampler2D shade;
+layout(location = 0) out float color;
+void main() {
+  float side = float(textureSize(depth, 0).x);
+  vec2 at = gl_FragCoord.xy * 4.0 / side;  // four texels of depth for one of shade
+  float sum = 0.0;
+  if (across == 1) {
+    for (int i = 0; i < 6; ++i) sum += texture(depth, vec3(at + vec2(2.0 * float(i) - 5.0, 0.0) / side, 0.99999));
+    color = 1.0 - sum / 6.0;
+  } else {
+    for (int i = 0; i < 4; ++i) sum += texture(shade, at + vec2(0.0, 3.0 * float(i) - 4.5) / side).r;
+    color = 0.25 * sum;
+  }
 })";
 
 inline constexpr const char* background_vertex = R"(#version 330 core
@@ -118,18 +137,11 @@ uniform float picture_height;
 uniform vec3 center;
 uniform float reach, cell;
 uniform mat4 light_projection;
-uniform sampler2DShadow shadow_map;
+uniform sampler2D shade;
 layout(location = 0) out vec4 color;
 
-float lit(vec3 p) {
-  vec3 at = (light_projection * vec4(p, 1.0)).xyz * 0.5 + 0.5;
-  at.z = min(at.z, 1.0);  // the floor may lie beyond the sphere that the map covers
-  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
-  vec2 step = 2.0 / vec2(textureSize(shadow_map, 0));
-  float sum = 0.0;
-  for (int i = -1; i <= 1; ++i)
-    for (int j = -1; j <= 1; ++j) sum += texture(shadow_map, at + vec3(step * vec2(i, j), 0.0));
-  return sum / 9.0;
+float lit(vec3 p) {  // the map's edge is lit, and continues
+  return 1.0 - texture(shade, (light_projection * vec4(p, 1.0)).xy * 0.5 + 0.5).r;
 }
 
 float lines(vec2 p, float pixels) {  // 1 on the lines of the unit grid
