@@ -56,7 +56,7 @@ void add_line_label(const ReferenceLine& line, Obstacles& obstacles, PanelLayout
   obstacles.add_box(spot.box);
   out.labels.push_back({{spot.box.x0, spot.box.y0 + ascent * small_size},
                         text,
-                        {small_size, palette(line.color)},
+                        {small_size, readable(palette(line.color))},
                         spot.hidden > 0});
 }
 

@@ -10,6 +10,8 @@ namespace unfurl::plot {
 namespace {
 
 constexpr double tick_gap = 2.5, label_gap = 4.0, edge = 1.0;
+constexpr double bare_gap =
+    3.0;  // between the title and what stands at the upper edge of a frame without axes
 constexpr double tick_text = tick_length + tick_gap;  // from the frame to tick labels
 constexpr double half_digit = cap_height * small_size / 2;
 
@@ -97,7 +99,7 @@ FigureColor axis_text_color(const Panel& panel, const PanelLayout& layout, bool 
     if (color >= 0 && color != c.color) return ink;
     color = c.color;
   }
-  return layout.y2.used && color >= 0 ? palette(color) : ink;
+  return layout.y2.used && color >= 0 ? readable(palette(color)) : ink;
 }
 
 void add_x_labels(const Panel& panel, const Rect& cell, PanelLayout& out) {
@@ -166,7 +168,7 @@ void set_axes(const Panel& panel, PanelLayout& out) {
 
 Margins margins(const Panel& panel, const PanelLayout& l, int legend_rows) {
   Margins m{edge, edge, edge, edge};
-  if (!panel.title.empty()) m.top += panel_title_height;
+  if (!panel.title.empty()) m.top += panel_title_height + (panel.bare ? bare_gap : 0);
   m.top += legend_rows > 0 ? legend_rows * legend_row_height + 3 : 0;
   if (panel.bare) return m;
   m.top += has_note(l) ? note_height : half_digit;  // the uppermost tick label stands half above the frame

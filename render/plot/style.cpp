@@ -1,6 +1,7 @@
 #include "render/plot/style.hpp"
 
 #include <array>
+#include <cmath>
 
 namespace unfurl {
 namespace {
@@ -26,6 +27,18 @@ FigureColor palette(int i) {
 FigureColor plot::lighter(FigureColor c, float share) {
   const auto mix = [share](float v) { return v + (1.0f - v) * share; };
   return {mix(c.r), mix(c.g), mix(c.b), c.a};
+}
+
+double plot::contrast_on_white(FigureColor c) {
+  const auto linear = [](float v) {
+    return v <= 0.04045f ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);  // sRGB, IEC 61966-2-1
+  };
+  return 1.05 / (0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b) + 0.05);
+}
+
+FigureColor plot::readable(FigureColor c) {
+  while (contrast_on_white(c) < 4.5) c = {0.95f * c.r, 0.95f * c.g, 0.95f * c.b, c.a};
+  return c;
 }
 
 }  // namespace unfurl

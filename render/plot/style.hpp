@@ -27,5 +27,9 @@ inline constexpr float band_opacity = 0.22f;
 
 // `share` of white mixed into a colour.
 FigureColor lighter(FigureColor color, float share);
+// How far a colour stands out from white: 1 not at all, 21 black (relative luminance as in WCAG 2).
+double contrast_on_white(FigureColor color);
+// The colour, darkened where it must be for small text: contrast of 4.5 or more.
+FigureColor readable(FigureColor color);
 
 }  // namespace unfurl::plot

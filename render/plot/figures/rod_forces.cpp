@@ -96,10 +96,12 @@ Figure rod_forces_figure(const Simulation& run, const Diagnostics& d) {
     add_rods(run, d, p);
   else
     for (const RodGroup& g : groups) add_group(d, g, 3e-3 * largest, p);
-  f.caption = one_by_one ? "Axial force of every rod, tension positive."
-                         : "Axial force of the rods by group, tension positive: one line where all rods of a "
-                           "group carry the "
-                           "same force, else the range between the extremes.";
+  f.caption = "Axial force of every rod, tension positive.";
+  if (!one_by_one)
+    f.caption =
+        "Axial force of the rods by group, tension positive: one line where the forces of a group differ by "
+        "less than "
+        "its width, else the range between the extremes.";
   f.caption += " Largest magnitude " + plot::format_number(largest, 4) + " N. " + method_sentence(run);
   f.panels.push_back(std::move(p));
   return f;

@@ -1,0 +1,107 @@
+#include <catch2/catch.hpp>
+#include <chrono>
+
+#include "render/plot/layout.hpp"
+#include "render/plot/painter.hpp"
+#include "tests/render/plot/recording_canvas.hpp"
+#include "tests/render/plot/sample_figures.hpp"
+
+namespace unfurl {
+
+using plot::faults;
+
+TEST_CASE("no figure has text outside, overlapping, pale or out of size", "[figure]") {
+  for (const Figure& figure : sample_figures()) CHECK(faults(figure) == std::vector<std::string>{});
+}
+
+TEST_CASE("figures stay in order at other sizes", "[figure]") {
+  for (Figure figure : sample_figures()) {
+    figure.width_mm *= 0.75;
+    CHECK(faults(figure) == std::vector<std::string>{});
+    figure.width_mm *= 2;
+    figure.height_mm *= 1.5;
+    CHECK(faults(figure) == std::vector<std::string>{});
+  }
+}
+
+TEST_CASE("the judge sees what is wrong", "[figure]") {
+  plot::RecordingCanvas canvas;
+  Figure figure = sample_figures().front();
+  figure.height_mm = 12;  // no room for anything
+  CHECK_FALSE(faults(figure).empty());
+}
+
+TEST_CASE("an empty figure and a figure of empty panels are painted", "[figure]") {
+  Figure figure;
+  figure.name = "empty";
+  CHECK(faults(figure).empty());
+  figure.panels.resize(5);
+  figure.rows = 2, figure.columns = 3;
+  CHECK(faults(figure).empty());
+}
+
+TEST_CASE("a million points are thinned to what a page can show", "[figure]") {
+  Figure figure;
+  figure.panels.resize(1);
+  Curve c;
+  for (long i = 0; i < 1000000; ++i)
+    c.x.push_back(static_cast<double>(i)), c.y.push_back(static_cast<double>(i * 7919 % 10007));
+  figure.panels[0].curves.push_back(c);
+  const plot::FigureLayout layout = plot::lay_out(figure);
+  plot::RecordingCanvas canvas;
+  plot::paint(figure, layout, canvas);
+  CHECK(static_cast<double>(canvas.points) < 4 * layout.width / plot::trace_column + 1000);
+  CHECK(static_cast<double>(canvas.points) > 2 * layout.width / plot::trace_column);
+}
+
+TEST_CASE("curves keep their place: points land where the axes say", "[figure]") {
+  Figure figure;
+  figure.panels.resize(1);
+  Curve c;
+  c.x = {0, 1, 2}, c.y = {10, 30, 20};
+  figure.panels[0].curves.push_back(c);
+  figure.panels[0].x.max = 4;
+  figure.panels[0].y.max = 40;
+  const plot::FigureLayout layout = plot::lay_out(figure);
+  const plot::PanelLayout& p = layout.panels[0];
+  REQUIRE(p.curves[0].size() == 1);
+  const auto& line = p.curves[0][0];
+  CHECK(line[1].x == Approx(p.frame.x0 + 0.25 * p.frame.width()));
+  CHECK(line[1].y == Approx(p.frame.y1 - 0.75 * p.frame.height()));
+}
+
+TEST_CASE("equal scales are equal", "[figure]") {
+  Figure figure;
+  figure.panels.resize(1);
+  figure.panels[0].segments.push_back({0, 0, 3, 1});
+  figure.panels[0].equal_scale = true;
+  for (const bool bare : {false, true}) {
+    figure.panels[0].bare = bare;
+    const plot::FigureLayout layout = plot::lay_out(figure);
+    const plot::PanelLayout& p = layout.panels[0];
+    const double x = p.x.scale(1) - p.x.scale(0), y = p.y.scale(0) - p.y.scale(1);
+    CHECK(x == Approx(y).epsilon(1e-12));
+    CHECK(p.x.scale(3) <= p.frame.x1 + 1e-9);
+  }
+}
+
+TEST_CASE("legends hide no data", "[figure]") {
+  for (const Figure& figure : sample_figures()) {
+    const plot::FigureLayout layout = plot::lay_out(figure);
+    for (std::size_t i = 0; i < layout.panels.size(); ++i) {
+      const auto& p = layout.panels[i];
+      if (!p.legend) continue;
+      CAPTURE(figure.name, i);
+      if (!p.legend->inside) {
+        CHECK(p.legend->box.y1 <= p.frame.y0);
+        continue;
+      }
+      CHECK(p.frame.contains(p.legend->box));
+      for (const auto& pieces : p.curves)
+        for (const auto& line : pieces)
+          for (const auto& at : line) CHECK_FALSE(p.legend->box.contains({at.x, at.y, at.x, at.y}));
+    }
+  }
+}
+
+}  // namespace unfurl

@@ -1,0 +1,175 @@
+#include "render/plot/figures.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "tests/render/plot/recording_canvas.hpp"
+#include "tests/support/models.hpp"
+
+namespace unfurl {
+namespace {
+
+struct Run {
+  Simulation simulation;
+  Diagnostics diagnostics;
+  Figure figure(std::string_view name) const { return find_figure(name)->make(simulation, diagnostics); }
+};
+
+Run run(const Structure& structure, double step, double end_time) {
+  Simulation s = simulate(testing::make_model(structure), testing::dvm_options(3, step, end_time));
+  Diagnostics d = diagnose(s);
+  return {std::move(s), std::move(d)};
+}
+
+const Run& hoop() {
+  static const Run r = run(testing::hoop_structure({{"units", 4L}, {"fold_angle", 60.0}}), 0.02, 9.0);
+  return r;
+}
+const Run& sector() {
+  static const Run r =
+      run(testing::hoop_structure({{"units", 4L}, {"fold_angle", 60.0}, {"model", std::string("sector")}}),
+          0.02, 9.0);
+  return r;
+}
+const Run& pendulum() {
+  static const Run r = run(testing::double_pendulum(), 0.02, 1.0);
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("every figure of the table is found by its name and names its file", "[figures]") {
+  std::set<std::string_view> names;
+  for (const FigureKind& kind : figure_kinds()) {
+    CHECK(find_figure(kind.name) == &kind);
+    CHECK(names.insert(kind.name).second);
+    CHECK_FALSE(kind.help.empty());
+    if (!kind.applies(hoop().simulation, hoop().diagnostics)) continue;
+    CHECK(hoop().figure(kind.name).name == kind.name);
+  }
+  CHECK(find_figure("no such figure") == nullptr);
+}
+
+TEST_CASE("figures of real runs are in order", "[figures]") {
+  for (const Run* r : {&hoop(), &sector(), &pendulum()}) {
+    for (const FigureKind& kind : figure_kinds()) {
+      if (!kind.applies(r->simulation, r->diagnostics)) continue;
+      CAPTURE(kind.name, r->simulation.trajectory.structure().kind);
+      CHECK(plot::faults(r->figure(kind.name)) == std::vector<std::string>{});
+    }
+  }
+}
+
+TEST_CASE("a run that ended at once still has its figures", "[figures]") {
+  const Run r = run(testing::double_pendulum(), 0.02, 0.02);
+  Run first = {r.simulation, {}};
+  while (first.simulation.trajectory.size() > 1) first.simulation.trajectory.pop_back();
+  first.simulation.status = RunStatus::failed;
+  first.simulation.message = "at t = 0 s: the state is not finite any more";
+  first.diagnostics = diagnose(first.simulation);
+  for (const FigureKind& kind : figure_kinds())
+    if (kind.applies(first.simulation, first.diagnostics))
+      CHECK(plot::faults(first.figure(kind.name)).empty());
+  CHECK(first.figure("energy").caption.find("failed at t = 0 s") != std::string::npos);
+}
+
+TEST_CASE("what a scene has no data for does not apply", "[figures]") {
+  const FigureKind* deployment = find_figure("deployment");
+  CHECK(deployment->applies(hoop().simulation, hoop().diagnostics));
+  CHECK_FALSE(deployment->applies(pendulum().simulation, pendulum().diagnostics));
+}
+
+TEST_CASE("the deployment figure shows degrees from the first to the last and marks the event", "[figures]") {
+  const Figure f = hoop().figure("deployment");
+  const Panel& p = f.panels.at(0);
+  CHECK(p.curves.at(0).y.front() == Approx(60).epsilon(1e-12));
+  CHECK(std::abs(p.curves.at(0).y.back()) < 1e-6);  // located to about 1e-8 rad
+  CHECK(p.curves.at(1).right_axis);
+  CHECK(p.curves.at(1).y.back() == Approx(1).epsilon(1e-9));
+  REQUIRE(p.lines.size() == 1);
+  CHECK(p.lines[0].label == "deployed");
+  CHECK(p.lines[0].value == hoop().simulation.events.at(0).t);
+}
+
+TEST_CASE("errors are drawn on log axes with the round-off of a double", "[figures]") {
+  const Panel p = hoop().figure("constraint_error").panels.at(0);
+  CHECK(p.y.log);
+  CHECK(p.y.zeros_at_floor);
+  CHECK(std::any_of(p.lines.begin(), p.lines.end(),
+                    [](const ReferenceLine& l) { return l.horizontal && l.value == std::ldexp(1.0, -52); }));
+}
+
+TEST_CASE("exact zeros on a log axis are owned up to in the caption", "[figures]") {
+  Run r = {hoop().simulation, hoop().diagnostics};
+  for (Series& s : r.diagnostics.columns)
+    if (s.name == "constraint_relative_max")
+      std::fill(s.values.begin(), s.values.begin() + 3, 0.0),
+          std::replace(s.values.begin() + 3, s.values.end(), 0.0, 1e-16);
+  CHECK(r.figure("constraint_error").caption.find("The 3 exact zeros are drawn at the bottom edge.") !=
+        std::string::npos);
+}
+
+TEST_CASE("energies that are zero throughout are left out", "[figures]") {
+  const auto labels = [](const Figure& f) {
+    std::vector<std::string> out;
+    for (const Curve& c : f.panels.at(0).curves) out.push_back(c.label);
+    return out;
+  };
+  CHECK(labels(hoop().figure("energy")) == std::vector<std::string>{"kinetic energy", "work of the loads"});
+  CHECK(labels(pendulum().figure("energy")) ==
+        std::vector<std::string>{"kinetic energy", "potential energy"});
+}
+
+TEST_CASE("rod forces are drawn by group, and a sector stands for the whole", "[figures]") {
+  for (const Run* r : {&hoop(), &sector()}) {
+    const Figure f = r->figure("rod_forces");
+    std::set<std::string> labels;
+    for (const Curve& c : f.panels.at(0).curves) labels.insert(c.label);
+    for (const Band& b : f.panels.at(0).bands) labels.insert(b.label.substr(0, b.label.find(',')));
+    CHECK(labels.count("chord (16 rods)") == 1);
+    CHECK(labels.count("post (4 rods)") == 1);
+  }
+  const Figure single = pendulum().figure("rod_forces");
+  CHECK(single.panels.at(0).curves.size() == 2);
+  CHECK(single.panels.at(0).curves.at(0).label == "OA");
+}
+
+TEST_CASE("poses show every rod six times to one scale, the sector's whole ring included", "[figures]") {
+  const Figure full = hoop().figure("poses"), part = sector().figure("poses");
+  REQUIRE(full.panels.size() == 6);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Panel &a = full.panels[k], &b = part.panels[k];
+    REQUIRE(a.segments.size() == 20);
+    REQUIRE(b.segments.size() == 20);
+    CHECK(a.dots.size() == 16);
+    CHECK(a.equal_scale);
+    CHECK(a.x.max - a.x.min == Approx(full.panels[0].x.max - full.panels[0].x.min));
+    for (std::size_t i = 0; i < 20; ++i) {
+      // A projection shortens rods; it never lengthens them.
+      const Segment& s = a.segments[i];
+      CHECK(std::hypot(s.x1 - s.x0, s.y1 - s.y0) <= 3.0 * (1 + 1e-9));
+      // Full and sector model agree to about 1e-9 m in time and place; rods come in the same order.
+      CHECK(s.x0 == Approx(b.segments[i].x0).margin(1e-5));
+      CHECK(s.y1 == Approx(b.segments[i].y1).margin(1e-5));
+    }
+  }
+  CHECK(full.panels.front().title == "0.00 s, 0 %");
+  CHECK(full.panels.back().title.find("100 %") != std::string::npos);
+}
+
+TEST_CASE("a plane mechanism is seen along its normal", "[figures]") {
+  CustomSpec spec;
+  spec.nodes = {{"O", {0, 2, 0}, {0, 0, 0}, 0.0, true}, {"A", {0.6, 2, -0.8}, {0, 0, 0}, 0.0, false}};
+  spec.rods = {{"OA", {"O", "A"}, 2.0}};
+  Structure structure = build_custom(spec);
+  structure.gravity = {0, 0, -9.81};
+  const Run r = run(structure, 0.02, 1.0);
+  for (const Panel& p : r.figure("poses").panels) {
+    const Segment& s = p.segments.at(0);
+    CHECK(std::hypot(s.x1 - s.x0, s.y1 - s.y0) ==
+          Approx(1).epsilon(1e-6));  // true length; cubic between the steps
+  }
+}
+
+}  // namespace unfurl
