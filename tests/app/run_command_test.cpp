@@ -50,7 +50,7 @@ TEST_CASE("the written scene reproduces the run") {
   CHECK(file_text(dir / "a/trajectory.csv") == file_text(dir / "b/trajectory.csv"));
 }
 
-TEST_CASE("--json prints the summary that is written") {
+TEST_CASE("with --json the summary that is written is also printed") {
   const ScratchDirectory dir;
   const ProgramResult r = run_program(quick + std::vector<std::string>{"-o", dir / "out", "--json"});
   CHECK(r.out == file_text(dir / "out/summary.json"));
