@@ -45,7 +45,7 @@ SparseRows node_jacobian(const Blocks& blocks, const double* q, Index n) {
 
 struct System::Data {
   std::vector<std::unique_ptr<ConstraintBlock>> owned;
-  Blocks all, kept, linear, leaving;  // leaving: linear ones that are eliminated
+  Blocks all, kept, linear, leaving;                // leaving: linear ones that are eliminated
   std::vector<std::unique_ptr<ForceBlock>> forces;  // those that depend on t, q or v
   VectorXd constant_force;                          // the sum of the others [N]
   VectorXd loads, gravity_force;                    // its parts, for energies
