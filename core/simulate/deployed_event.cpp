@@ -48,8 +48,8 @@ class Locator {
   }
   const System& system() const { return trajectory_.model().system; }
 
-  // One step from the last state before `target`, its length found by the secant method; any sine near the
-  // target will do.
+  // One step from the last state before `target`, its length found by the secant method; any sine within 2 %
+  // of the target will do: targets lie at least 5 % apart, and no two samples may coincide.
   void solve_to(double target) {
     std::size_t i = trajectory_.size() - 1;
     while (i > 0 && sine(trajectory_.state(i)) < 1.0001 * target) --i;
@@ -65,7 +65,7 @@ class Locator {
         continue;
       }
       const double f = sine(to) - target;
-      if (std::abs(f) < 0.05 * target) {
+      if (std::abs(f) < 0.02 * target) {
         keep(f + target, std::move(to));
         return;
       }

@@ -58,7 +58,8 @@ InitialState initial_state(const Structure& structure, const System& system) {
 
 std::string velocity_warning(const InitialState& start, const Structure& structure) {
   double fastest = 0;
-  for (const Node& node : structure.nodes) fastest = std::max(fastest, node.velocity.lpNorm<Eigen::Infinity>());
+  for (const Node& node : structure.nodes)
+    fastest = std::max(fastest, node.velocity.lpNorm<Eigen::Infinity>());
   if (start.velocity_change <= 1e-9 * fastest) return {};
   std::ostringstream text;
   text << "the initial velocities violate the constraints and were projected on them (largest change "
