@@ -58,18 +58,23 @@ struct LinearForm {
   double rate(const ConstVec& v) const;
 };
 
-// How far the structure has unfolded. The fold angle is atan2(fold_sine, fold_cosine); it is 0 when fully
-// deployed. A structure that has no such measure leaves both empty: no deployed event, no fold angle.
+// How far the structure has unfolded. The fold angle atan2(fold_sine, fold_cosine) falls from its initial to
+// its deployed value. A structure that has no such measure leaves both forms empty: no deployed event, no
+// fold angle.
 struct Deployment {
-  LinearForm fold_sine;    // [-]
-  LinearForm fold_cosine;  // [-]
-  double initial_fold_angle =
-      0.0;  // [rad]; the deployed fraction is (cos fold - cos initial) / (1 - cos initial)
+  LinearForm fold_sine;              // [-]
+  LinearForm fold_cosine;            // [-]
+  double initial_fold_angle = 0.0;   // [rad]
+  double deployed_fold_angle = 0.0;  // [rad]
 
   bool empty() const { return fold_sine.empty(); }
   double fold_angle(const ConstVec& q) const;                    // [rad]
   double fold_rate(const ConstVec& q, const ConstVec& v) const;  // [rad/s]
-  double fraction(const ConstVec& q) const;                      // 0 folded, 1 deployed
+  // (cos fold - cos initial) / (cos deployed - cos initial): 0 folded, 1 deployed.
+  double fraction(const ConstVec& q) const;
+  // sin(fold - deployed), of which the deployed event is the zero, and its rate [1/s]; both are linear.
+  double remaining_sine(const ConstVec& q) const;
+  double remaining_rate(const ConstVec& v) const;
 };
 
 // A node of the whole structure: map * (position of the solved node `source`) + offset.

@@ -3,13 +3,20 @@
 #include <algorithm>
 #include <array>
 
+#include "core/structures/chain.hpp"
 #include "core/structures/hoop.hpp"
+#include "core/structures/pendulum.hpp"
+#include "core/structures/scissor_mast.hpp"
 
 namespace unfurl {
 
 std::span<const Family> families() {
   static const std::array rows{
       Family{"hoop", "ring antenna of n re-entrant units that share their posts", hoop_params, build_hoop},
+      Family{"scissor_mast", "mast of crossed rods pinned at their middles, planar or with 3 and more sides",
+             scissor_mast_params, build_scissor_mast},
+      Family{"chain", "rigid links in a row, hanging, falling or free", chain_params, build_chain},
+      Family{"pendulum", "a rod with a bob, swinging from a fixed point", pendulum_params, build_pendulum},
   };
   return rows;
 }
