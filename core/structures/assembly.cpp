@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/model/structure_error.hpp"
+
 namespace unfurl {
 
 RodSection rod_section(const ParamSet& params) {
@@ -18,6 +20,18 @@ ParamSpec section_area_param(double fallback) {
   return positive_param("section_area", "m^2", fallback, "cross section of the rods");
 }
 
+void require_unfolding(double fold_angle, double deployed_angle) {
+  if (!(deployed_angle < fold_angle))
+    throw StructureError("deployed_angle",
+                         "deployed_angle must be smaller than fold_angle, at which the motion starts");
+}
+
+void hide_braces(Structure& structure) {
+  std::erase_if(structure.rod_copies, [&](const RodCopy& copy) {
+    return structure.rods[static_cast<std::size_t>(copy.source)].group == "brace";
+  });
+}
+
 int Assembly::node(std::string name, const Vec3& position, double mass, const Vec3& velocity) {
   structure.nodes.push_back({std::move(name), position, velocity, mass});
   return static_cast<int>(structure.nodes.size()) - 1;
@@ -26,6 +40,12 @@ int Assembly::node(std::string name, const Vec3& position, double mass, const Ve
 int Assembly::rod(int a, int b, double length, double mass, std::string_view group, double radius) {
   structure.rods.push_back({name(a) + "-" + name(b), a, b, mass, length, std::string(group), radius, 1.0});
   return static_cast<int>(structure.rods.size()) - 1;
+}
+
+int Assembly::brace(int a, int b, double length) {
+  const int index = rod(a, b, length, 0.0, "brace", 0.0);
+  structure.rods.back().name.insert(0, "brace ");
+  return index;
 }
 
 void Assembly::constrain(const char* kind, int node, const Vec3& direction) {

@@ -18,6 +18,9 @@ RodSection rod_section(const ParamSet& params);
 ParamSpec density_param();
 ParamSpec section_area_param(double fallback);  // fallback [m^2]
 
+// Throws StructureError unless deployed_angle < fold_angle [deg].
+void require_unfolding(double fold_angle, double deployed_angle);
+
 // Puts a structure together from its nodes at t = 0. Node arguments are indices; constraints hold what the
 // positions fulfil.
 class Assembly {
@@ -25,6 +28,9 @@ class Assembly {
   int node(std::string name, const Vec3& position, double mass = 0.0, const Vec3& velocity = Vec3::Zero());
   // A rod "A-B" with the given length, the distance of its nodes up to round-off.
   int rod(int a, int b, double length, double mass, std::string_view group, double radius);
+
+  // A massless rod "brace A-B" of the group "brace", which makes its neighbours one rigid body.
+  int brace(int a, int b, double length);
 
   void fix(int node);
   void plane(int node, const Vec3& normal);    // a unit normal
@@ -43,5 +49,8 @@ class Assembly {
  private:
   void constrain(const char* kind, int node, const Vec3& direction);
 };
+
+// Takes the braces out of what is shown, after show_as_solved.
+void hide_braces(Structure& structure);
 
 }  // namespace unfurl

@@ -4,9 +4,11 @@
 #include <array>
 
 #include "core/structures/chain.hpp"
+#include "core/structures/hoberman.hpp"
 #include "core/structures/hoop.hpp"
 #include "core/structures/pendulum.hpp"
 #include "core/structures/scissor_mast.hpp"
+#include "core/structures/scissor_ring.hpp"
 
 namespace unfurl {
 
@@ -15,6 +17,10 @@ std::span<const Family> families() {
       Family{"hoop", "ring antenna of n re-entrant units that share their posts", hoop_params, build_hoop},
       Family{"scissor_mast", "mast of crossed rods pinned at their middles, planar or with 3 and more sides",
              scissor_mast_params, build_scissor_mast},
+      Family{"scissor_ring", "closed ring of crossed rods pinned at their middles, which opens from a bundle",
+             scissor_ring_params, build_scissor_ring},
+      Family{"hoberman", "Hoberman's ring of angulated elements, which grows in its plane", hoberman_params,
+             build_hoberman},
       Family{"chain", "rigid links in a row, hanging, falling or free", chain_params, build_chain},
       Family{"pendulum", "a rod with a bob, swinging from a fixed point", pendulum_params, build_pendulum},
   };

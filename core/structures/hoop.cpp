@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/structures/ring.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -31,12 +33,6 @@ HoopShape shape_of(const ParamSet& p) {
   return s;
 }
 
-Vec3 radial(double angle) {
-  return {std::cos(angle), std::sin(angle), 0.0};
-}
-Vec3 tangential(double angle) {
-  return {-std::sin(angle), std::cos(angle), 0.0};
-}
 double corner_angle(const HoopShape& s, int k) {
   return 2.0 * pi * k / s.n;
 }

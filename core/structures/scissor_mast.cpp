@@ -4,6 +4,7 @@
 
 #include "core/model/structure_error.hpp"
 #include "core/structures/assembly.hpp"
+#include "core/structures/ring.hpp"
 
 namespace unfurl {
 
@@ -19,10 +20,10 @@ struct MastShape {
   int corners() const { return planar() ? 2 : sides; }
   double side() const { return l * sine; }
   double radius() const { return side() / (2.0 * std::sin(pi / sides)); }
-  Vec3 radial(int k) const { return {std::cos(2.0 * pi * k / sides), std::sin(2.0 * pi * k / sides), 0.0}; }
+  Vec3 direction(int k) const { return radial(2.0 * pi * k / sides); }
   Vec3 at(int k, int level) const {
     const Vec3 height = level * l * cosine * Vec3::UnitZ();
-    return planar() ? Vec3(height + k * side() * Vec3::UnitX()) : Vec3(height + radius() * radial(k));
+    return planar() ? Vec3(height + k * side() * Vec3::UnitX()) : Vec3(height + radius() * direction(k));
   }
   std::string letter(int k) const {
     return planar() ? (k == 0 ? "L" : "R") : std::string(1, static_cast<char>('A' + k));
@@ -37,9 +38,7 @@ MastShape shape_of(const ParamSet& p) {
     throw StructureError("sides",
                          "a mast has 1 side (planar) or 3 and more; two faces cannot enclose a mast");
   const double fold = p.real("fold_angle"), deployed = p.real("deployed_angle");
-  if (!(deployed < fold))
-    throw StructureError("deployed_angle",
-                         "deployed_angle must be smaller than fold_angle, at which the mast starts");
+  require_unfolding(fold, deployed);
   s.l = p.real("rod_length");
   s.sine = std::sin(fold * radians_per_degree);
   s.cosine = std::sin((90.0 - fold) * radians_per_degree);  // keeps its digits near 90 degrees
@@ -62,10 +61,10 @@ void hold_base(Assembly& a, const MastShape& s) {
     return;
   }
   const int first = corner(s, 0, 0);
-  for (int k = 0; k < s.sides; ++k) a.line(corner(s, k, 0), s.radial(k));
+  for (int k = 0; k < s.sides; ++k) a.line(corner(s, k, 0), s.direction(k));
   for (int k = 1; k < s.sides; ++k)
     a.relation("equal radius of " + a.name(first + k) + " and " + a.name(first), {first + k, first},
-               {s.radial(k), -s.radial(0)});
+               {s.direction(k), -s.direction(0)});
 }
 
 void add_scissor(Assembly& a, const MastShape& s, int k, int cell) {
@@ -88,7 +87,7 @@ void set_deployment(Structure& out, const MastShape& s, const ParamSet& p) {
   if (s.planar())
     d.fold_sine = {{base, corner(s, 1, 0)}, {-Vec3::UnitX() / s.l, Vec3::UnitX() / s.l}, 0.0};
   else
-    d.fold_sine = {{base}, {2.0 * std::sin(pi / s.sides) / s.l * s.radial(0)}, 0.0};
+    d.fold_sine = {{base}, {2.0 * std::sin(pi / s.sides) / s.l * s.direction(0)}, 0.0};
   d.initial_fold_angle = std::atan2(s.sine, s.cosine);
   d.deployed_fold_angle = p.real("deployed_angle") * radians_per_degree;
 }

@@ -46,4 +46,32 @@ struct ScissorMast {
   }
 };
 
+// The exact opening of a pantograph ring that is released at rest (geometry in scissor_ring.hpp). The
+// corners' nodes move with R' = w' / (2 sin(pi/n)) radially and +-h'/2 along the axis; the ends of a rod at
+// an angle of 2 pi/n and with opposite signs, so that the 2 n rods have
+//
+//     T = (n m / 3) (R'^2 (2 + cos(2 pi/n)) + h'^2 / 4)
+//
+// and a force f outward on each of the 2 n corner nodes does the work 2 n f (R - R_0).
+struct ScissorRing {
+  int n;
+  double l, rod_mass, fold_deg, deployed_deg, force;
+
+  double deployed() const { return (fold_deg - deployed_deg) * M_PI / 180; }
+
+  // x = theta_0 - theta, w = l cos(theta), h = l sin(theta).
+  OneFreedom motion() const {
+    const ScissorRing s = *this;
+    const double k = 1 / (2 * std::sin(M_PI / n)), theta0 = fold_deg * M_PI / 180,
+                 c = 2 + std::cos(2 * M_PI / n);
+    return {[=](double x) {
+              const double R = k * s.l * std::sin(theta0 - x), h = s.l * std::cos(theta0 - x);  // per theta'
+              return 2.0 / 3 * s.n * s.rod_mass * (c * R * R + 0.25 * h * h);
+            },
+            [=](double x) {  // cos b - cos a = 2 sin((a+b)/2) sin((a-b)/2)
+              return 2 * s.n * s.force * k * s.l * 2 * std::sin(theta0 - 0.5 * x) * std::sin(0.5 * x);
+            }};
+  }
+};
+
 }  // namespace unfurl::exact

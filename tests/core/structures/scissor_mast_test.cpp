@@ -60,5 +60,5 @@ TEST_CASE("a scissor mast that cannot be is refused by the parameter at fault") 
   CHECK(refusal("scissor_mast", {{"sides", 2L}}) ==
         "sides: a mast has 1 side (planar) or 3 and more; two faces cannot enclose a mast");
   CHECK(refusal("scissor_mast", {{"fold_angle", 30.0}, {"deployed_angle", 30.0}}) ==
-        "deployed_angle: deployed_angle must be smaller than fold_angle, at which the mast starts");
+        "deployed_angle: deployed_angle must be smaller than fold_angle, at which the motion starts");
 }
