@@ -77,6 +77,14 @@ struct Deployment {
   double remaining_rate(const ConstVec& v) const;
 };
 
+// A length of the whole that is reported where a structure has it: `name` with its unit is a column of the
+// series.
+struct Measure {
+  std::string name;   // "column_pitch_m"
+  std::string label;  // "column pitch"
+  LinearForm value;   // [m]
+};
+
 // A node of the whole structure: map * (position of the solved node `source`) + offset.
 struct NodeCopy {
   std::string name;
@@ -108,6 +116,10 @@ struct Structure {
   Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]
   bool lumped_mass = false;     // true: half of a rod's mass at each node instead of the consistent matrix
   Deployment deployment;
+  std::vector<Measure> measures;
+  // Indices of the measures along and across a stretch; their strain increments give Poisson's ratio,
+  // -(across'/across) / (along'/along). -1: the structure has none.
+  int strain_along = -1, strain_across = -1;
   // What is shown and exported: the whole structure (equal to the solved one unless a sector model replicates
   // it).
   std::vector<NodeCopy> node_copies;

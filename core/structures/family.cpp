@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "core/structures/bricard.hpp"
 #include "core/structures/chain.hpp"
 #include "core/structures/hoberman.hpp"
 #include "core/structures/hoop.hpp"
 #include "core/structures/pendulum.hpp"
+#include "core/structures/reentrant_sheet.hpp"
 #include "core/structures/scissor_mast.hpp"
 #include "core/structures/scissor_ring.hpp"
 
@@ -21,6 +23,11 @@ std::span<const Family> families() {
              scissor_ring_params, build_scissor_ring},
       Family{"hoberman", "Hoberman's ring of angulated elements, which grows in its plane", hoberman_params,
              build_hoberman},
+      Family{"reentrant_sheet", "sheet of re-entrant units: a negative Poisson's ratio",
+             reentrant_sheet_params, build_reentrant_sheet},
+      Family{"bricard",
+             "overconstrained loop of six bars and six hinges, which opens from a bundle to a triangle",
+             bricard_params, build_bricard},
       Family{"chain", "rigid links in a row, hanging, falling or free", chain_params, build_chain},
       Family{"pendulum", "a rod with a bob, swinging from a fixed point", pendulum_params, build_pendulum},
   };

@@ -54,7 +54,6 @@ void add_element(Assembly& a, const HobermanShape& s, int from, int kink, int to
   const double mass = s.section.mass_per_length * s.p;
   a.rod(from, kink, s.p, mass, group, s.section.radius);
   a.rod(kink, to, s.p, mass, group, s.section.radius);
-  a.brace(from, to, 2.0 * s.p * std::cos(0.5 * s.pitch()));
 }
 
 void set_deployment(Structure& out, const HobermanShape& s, double deployed_degrees) {
@@ -102,6 +101,11 @@ Structure build_hoberman(const ParamSet& params) {
   for (int k = 0; k < s.n; ++k) {
     add_element(a, s, node_of(s, k - 1, inner), node_of(s, k, pin), node_of(s, k, outer), "left element");
     add_element(a, s, node_of(s, k, inner), node_of(s, k, pin), node_of(s, k - 1, outer), "right element");
+  }
+  const double chord = 2.0 * s.p * std::cos(0.5 * s.pitch());  // of an element's ends
+  for (int k = 0; k < s.n; ++k) {
+    a.brace(node_of(s, k - 1, inner), node_of(s, k, outer), chord);
+    a.brace(node_of(s, k, inner), node_of(s, k - 1, outer), chord);
   }
   set_deployment(a.structure, s, params.real("deployed_angle"));
   a.structure.kind = "hoberman";

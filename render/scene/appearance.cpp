@@ -58,8 +58,12 @@ Color group_color(std::size_t index) {
 Appearance appearance_of(const Structure& s, double size) {
   Appearance out;
   const double median = median_length(s);
-  for (const Rod& rod : s.rods) {
-    out.rod_group.push_back(group_index(out.groups, rod.group));
+  std::vector<bool> shown(s.rods.size(), false);
+  for (const RodCopy& copy : s.rod_copies) shown[static_cast<std::size_t>(copy.source)] = true;
+  for (std::size_t i = 0; i < s.rods.size(); ++i) {
+    const Rod& rod = s.rods[i];
+    out.rod_group.push_back(shown[i] ? group_index(out.groups, rod.group)
+                                     : 0);  // hidden: no colour of its own
     out.rod_radius.push_back(drawn_radius(rod, median, size));
   }
   out.joint_radius.assign(s.node_copies.size(), 0.0);
