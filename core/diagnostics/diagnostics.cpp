@@ -79,8 +79,8 @@ const std::array rows{
 // rest is the one that begins.
 double poisson_ratio(const Instant& s) {
   const Structure& structure = s.run.trajectory.structure();
-  const LinearForm& along = structure.measures[static_cast<std::size_t>(structure.strain_along)].value;
-  const LinearForm& across = structure.measures[static_cast<std::size_t>(structure.strain_across)].value;
+  const LinearForm& along = structure.lengths[static_cast<std::size_t>(structure.strain_along)].value;
+  const LinearForm& across = structure.lengths[static_cast<std::size_t>(structure.strain_across)].value;
   const VectorXd& motion = s.v.isZero(0.0) ? s.acceleration : s.v;
   const double stretch = along.rate(motion) / along(s.q);
   return stretch == 0.0 ? std::numeric_limits<double>::quiet_NaN()
@@ -89,12 +89,12 @@ double poisson_ratio(const Instant& s) {
 
 // The columns that only this structure has, at the end.
 void add_own_columns(const Structure& structure, Diagnostics& out) {
-  for (const Measure& m : structure.measures) out.columns.push_back({m.name, m.label, "m", {}});
+  for (const ReportedLength& m : structure.lengths) out.columns.push_back({m.name, m.label, "m", {}});
   if (structure.strain_along >= 0) out.columns.push_back({"poisson_ratio", "Poisson's ratio", "", {}});
 }
 
 void add_own_values(const Structure& structure, const Instant& s, Series* column) {
-  for (const Measure& m : structure.measures) (column++)->values.push_back(m.value(s.q));
+  for (const ReportedLength& m : structure.lengths) (column++)->values.push_back(m.value(s.q));
   if (structure.strain_along >= 0) column->values.push_back(poisson_ratio(s));
 }
 

@@ -79,7 +79,7 @@ struct Deployment {
 
 // A length of the whole that is reported where a structure has it: `name` with its unit is a column of the
 // series.
-struct Measure {
+struct ReportedLength {
   std::string name;   // "column_pitch_m"
   std::string label;  // "column pitch"
   LinearForm value;   // [m]
@@ -116,8 +116,8 @@ struct Structure {
   Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]
   bool lumped_mass = false;     // true: half of a rod's mass at each node instead of the consistent matrix
   Deployment deployment;
-  std::vector<Measure> measures;
-  // Indices of the measures along and across a stretch; their strain increments give Poisson's ratio,
+  std::vector<ReportedLength> lengths;
+  // Indices of the lengths along and across a stretch; their strain increments give Poisson's ratio,
   // -(across'/across) / (along'/along). -1: the structure has none.
   int strain_along = -1, strain_across = -1;
   // What is shown and exported: the whole structure (equal to the solved one unless a sector model replicates

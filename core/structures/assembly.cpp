@@ -87,6 +87,10 @@ void Assembly::point_of_rod(int point, int a, int b, double share) {
   }
 }
 
+void Assembly::coplanar(std::vector<int> nodes, std::string name) {
+  structure.constraints.push_back({"coplanar", std::move(name), std::move(nodes), {}, 0.0});
+}
+
 void Assembly::load(int node, const Vec3& force) {
   if (!force.isZero(0.0)) structure.loads.push_back({node, force, true});
 }

@@ -39,6 +39,8 @@ class Assembly {
   void relation(std::string name, std::vector<int> nodes, std::vector<Vec3> vectors);
   // x_point = (1 - share) x_a + share x_b: three relations, which make `point` a point of the rod ab.
   void point_of_rod(int point, int a, int b, double share = 0.5);
+  // Four nodes stay in one plane, which moves with them.
+  void coplanar(std::vector<int> nodes, std::string name);
   void load(int node, const Vec3& force);
 
   const Vec3& position(int node) const;

@@ -94,7 +94,7 @@ void set_measures(Structure& out, const SheetShape& s, double deployed_degrees) 
   d.fold_cosine = {{first, last}, {-x / (2.0 * s.columns * s.l), x / (2.0 * s.columns * s.l)}, 0.0};
   d.initial_fold_angle = std::atan2(s.sine, s.cosine);
   d.deployed_fold_angle = deployed_degrees * radians_per_degree;
-  out.measures = {
+  out.lengths = {
       {"column_pitch_m", "column pitch", {{first, last}, {-x / s.columns, x / s.columns}, 0.0}},
       {"row_pitch_m", "row pitch", {{first, s.node(s.rows, s.rows % 2)}, {-z / s.rows, z / s.rows}, 0.0}}};
   out.strain_along = 0;

@@ -9,7 +9,7 @@ Figure poisson_figure(const Simulation& run, const Diagnostics& diagnostics) {
   Panel top = time_panel(run, "length (m)");
   int color = 0;
   for (const int i : {structure.strain_along, structure.strain_across}) {
-    const Measure& m = structure.measures[static_cast<std::size_t>(i)];
+    const ReportedLength& m = structure.lengths[static_cast<std::size_t>(i)];
     top.curves.push_back(over_time(diagnostics, diagnostics.at(m.name).values, m.label, color));
     if (color++ > 0) top.curves.back().dash = Dash::dashed;
   }
