@@ -147,7 +147,7 @@ class TimeLoop {
   double fold(const State& state) {
     q_.resize(run_.trajectory.model().system.coordinates());
     run_.trajectory.model().system.expand(state.z, q_);
-    return deployment_.fold_sine(q_);
+    return deployment_.remaining_sine(q_);
   }
 
   bool crosses(const State& next) {
@@ -160,7 +160,7 @@ class TimeLoop {
     if (deployment_.empty() || deployed_) return false;
     const double sine = fold(now());
     run_.trajectory.model().system.expand_rate(now().w, q_);
-    return sine > 0 && sine + 2.0 * h * deployment_.fold_sine.rate(q_) <= 0;
+    return sine > 0 && sine + 2.0 * h * deployment_.remaining_rate(q_) <= 0;
   }
 
   std::optional<State> locate(double h, double latest) {

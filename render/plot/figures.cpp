@@ -16,6 +16,9 @@ bool has_rods(const Simulation& run, const Diagnostics&) {
 bool has_fold_angle(const Simulation&, const Diagnostics& d) {
   return d.find("fold_angle_rad") != nullptr;
 }
+bool has_poisson_ratio(const Simulation&, const Diagnostics& d) {
+  return d.find("poisson_ratio") != nullptr;
+}
 
 constexpr std::array kinds{
     FigureKind{"deployment", "fold angle and deployed fraction over time", has_fold_angle, deployment_figure},
@@ -25,6 +28,8 @@ constexpr std::array kinds{
                energy_figure},
     FigureKind{"rod_forces", "axial forces of the rods by group, tension positive", has_rods,
                rod_forces_figure},
+    FigureKind{"poisson", "lengths along and across a stretch, Poisson's ratio", has_poisson_ratio,
+               poisson_figure},
     FigureKind{"poses", "the configuration at six times", has_rods, poses_figure},
 };
 

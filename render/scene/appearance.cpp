@@ -30,6 +30,19 @@ int group_index(std::vector<std::string>& groups, const std::string& group) {
   return static_cast<int>(index);
 }
 
+// Nodes at which no rod ends but that lie on rods, the pins of scissors: a little smaller than a joint.
+void add_pins(const Structure& s, Appearance& looks) {
+  std::vector<double> on_rods(s.nodes.size(), 0.0);
+  for (const Constraint& c : s.constraints) {
+    if (c.kind != "relation" || c.nodes.empty()) continue;
+    for (const int node : c.nodes) on_rods[static_cast<std::size_t>(node)] = 1.0;
+  }
+  const double thickest = looks.rod_radius.empty() ? 0.0 : *std::ranges::max_element(looks.rod_radius);
+  for (std::size_t i = 0; i < s.node_copies.size(); ++i)
+    if (looks.joint_radius[i] <= 0)
+      looks.joint_radius[i] = 1.5 * thickest * on_rods[static_cast<std::size_t>(s.node_copies[i].source)];
+}
+
 }  // namespace
 
 Color group_color(std::size_t index) {
@@ -45,8 +58,12 @@ Color group_color(std::size_t index) {
 Appearance appearance_of(const Structure& s, double size) {
   Appearance out;
   const double median = median_length(s);
-  for (const Rod& rod : s.rods) {
-    out.rod_group.push_back(group_index(out.groups, rod.group));
+  std::vector<bool> shown(s.rods.size(), false);
+  for (const RodCopy& copy : s.rod_copies) shown[static_cast<std::size_t>(copy.source)] = true;
+  for (std::size_t i = 0; i < s.rods.size(); ++i) {
+    const Rod& rod = s.rods[i];
+    out.rod_group.push_back(shown[i] ? group_index(out.groups, rod.group)
+                                     : 0);  // hidden: no colour of its own
     out.rod_radius.push_back(drawn_radius(rod, median, size));
   }
   out.joint_radius.assign(s.node_copies.size(), 0.0);
@@ -56,6 +73,7 @@ Appearance appearance_of(const Structure& s, double size) {
       joint = std::max(joint, 1.75 * out.rod_radius[static_cast<std::size_t>(rod.source)]);
     }
   }
+  add_pins(s, out);
   std::vector<bool> held(s.nodes.size(), false);
   for (const Constraint& c : s.constraints) {
     if (c.kind != "fixed") continue;
