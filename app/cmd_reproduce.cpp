@@ -1,0 +1,6 @@
+#include "app/command.hpp"
+namespace unfurl {
+int cmd_reproduce(const Arguments&) {
+  return 0;
+}
+}  // namespace unfurl
