@@ -45,7 +45,7 @@ std::string replace_pairs(std::string text, std::string_view mark, const std::st
 }
 
 std::string html_text(std::string_view text) {
-  return replace_pairs(replace_pairs(escaped(text), "**", "strong"), "`", "code");
+  return replace_pairs(replace_pairs(replace_pairs(escaped(text), "**", "strong"), "*", "em"), "`", "code");
 }
 
 std::string base64(std::string_view bytes) {

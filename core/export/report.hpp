@@ -17,7 +17,7 @@ struct ReportBlock {
   std::string file = {};  // of a picture, relative to the report: "figures/poses.png"
 };
 
-// Text may hold `code` and **bold**; everything else is plain.
+// Text may hold `code`, *emphasis* and **strong emphasis**; everything else is plain.
 struct Report {
   std::string title;
   std::vector<ReportBlock> blocks = {};
