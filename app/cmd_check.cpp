@@ -15,8 +15,6 @@ namespace unfurl {
 
 namespace {
 
-constexpr double visible_change = 1e-9;  // [m/s]; below it, round-off of velocities that are meant to fit
-
 VectorXd start_positions(const Structure& structure) {
   VectorXd q(static_cast<Index>(3 * structure.nodes.size()));
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
@@ -66,12 +64,9 @@ int cmd_check(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   const auto model = build_model(scene);
   const Mobility mobility = analyse_mobility(model->system, start_positions(model->structure));
-  const double change = initial_state(model->structure, model->system).velocity_change;
-  if (change > visible_change)
-    std::cerr << "unfurl: warning: the initial velocities violate the constraints and will be projected on "
-                 "them (largest "
-                 "change "
-              << change << " m/s)\n";
+  const std::string warning =
+      velocity_warning(initial_state(model->structure, model->system), model->structure);
+  if (!warning.empty()) std::cerr << "unfurl: warning: " << warning << "\n";
   if (arguments.json)
     print_json(scene, *model, mobility);
   else

@@ -8,8 +8,15 @@ namespace unfurl {
 namespace {
 
 // Levels: 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
-constexpr double wanted = 1.0, wanted_constraint = 2.0, accepted = 30.0;
+constexpr double wanted = 1.5, wanted_constraint = 2.0, accepted = 30.0;
+// A system with more unknowns than this is not given the full Newton matrix, whose factors grow too fast;
+// instead its weak modes may keep a larger constraint error.
+constexpr Index full_newton_unknowns = 4000;
 constexpr int max_frozen_iterations = 30;
+
+bool is_small(const System& system, int stages) {
+  return (system.solved_coordinates() + system.constraints()) * (stages - 1) <= full_newton_unknowns;
+}
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -20,7 +27,9 @@ class Dvm final : public Integrator {
         c_(options.nodes, options.stages),
         eq_(system, c_, options.constraints_at == "ends"),
         G_(system.jacobian_pattern()),
-        saddle_(system.mass(), G_, c_.s - 1) {
+        saddle_(system.mass(), G_, c_.s - 1,
+                is_small(system, c_.s) ? SaddleSolver::standard_regularisation
+                                       : 0.1 * SaddleSolver::standard_regularisation) {
     const Index n = system.solved_coordinates(), m = system.constraints();
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
@@ -28,6 +37,8 @@ class Dvm final : public Integrator {
     for (VectorXd* v : {&mu_, &zero_}) v->setZero(m);
     pose_.setZero(system.coordinates());
     if (eq_.at_ends) analyse_mass();
+    small_ = is_small(system, c_.s);
+    if (!small_) left_constraint_ = 1000.0;
     restart();
   }
 
@@ -71,7 +82,10 @@ class Dvm final : public Integrator {
   RowMajor consistent_f_;
   double previous_h_ = 0;
   bool have_history_ = false;
+  double left_constraint_ = 8.0;  // level of constraint error that weak modes may keep
   bool careful_ = false;
+  bool feed_ = true;
+  bool small_ = true;
   bool frozen_ = false;  // saddle_ holds a factorisation near the present pose
   int lambdas_known_ = 0;
 };
@@ -120,7 +134,7 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
   eq_.evaluate();
   freeze(eq_.node(c_.s / 2), report);
   if (frozen_iterations(report)) return;
-  if (!eq_.at_ends) {
+  if (!eq_.at_ends && small_) {
     predict(state, h);
     report.status = full_newton(eq_, wanted, accepted, report);
     frozen_ = false;
@@ -130,13 +144,18 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
 // Residuals are computed from the equations themselves every time; the frozen matrix only steers.
 bool Dvm::frozen_iterations(StepReport& report) {
   careful_ = false;
+  feed_ = true;
   double best_momentum = std::numeric_limits<double>::infinity(), best_constraint = best_momentum;
   int without_gain = 0;
   for (int it = 0; it <= max_frozen_iterations; ++it) {
     eq_.evaluate();
     const double level = eq_.level(), momentum = eq_.momentum_level(), constraint = eq_.constraint_level();
     report.residual = level;
-    if (momentum <= wanted && constraint <= wanted_constraint) return report.status = StepStatus::converged, true;
+    // What is left of a weak mode's constraint error near round-off would need multipliers of error /
+    // sigma^2: leave it.
+    if (constraint <= left_constraint_ && constraint > 0.5 * best_constraint) feed_ = false;
+    if (momentum <= wanted && constraint <= (feed_ ? wanted_constraint : left_constraint_))
+      return report.status = StepStatus::converged, true;
     // Redundant rows answer the constraint error of one iteration with momentum in the next: either may lag.
     const bool gain =
         momentum < 0.5 * best_momentum || (constraint > wanted && constraint < 0.5 * best_constraint);
@@ -161,16 +180,18 @@ bool Dvm::frozen_iterations(StepReport& report) {
 
 // M dX_j + G^T Y_j = -h (C^-1 r)_j,  G dX_j = -Phi_j,  then  b_k dlambda_k = -(C Y)_k / h^2.
 //
-// Where rows of G depend on each other, the part of Phi that no motion can remove (round-off, above all) comes back as
-// a multiplier (that part / regularisation), which disturbs the momentum at the other nodes' poses. Once the iteration
-// no longer gains, the right-hand side is therefore replaced by what it can reach, G times the motion it caused.
+// Where rows of G depend on each other, the part of Phi that no motion can remove (round-off, above all)
+// comes back as a multiplier (that part / regularisation), which disturbs the momentum at the other nodes'
+// poses. Once the iteration no longer gains, the right-hand side is therefore replaced by what it can reach,
+// G times the motion it caused.
 void Dvm::correct(StepReport& report) {
   const Index columns = c_.s - 1, n = eq_.dX.rows(), m = eq_.lambda.rows();
   Eigen::Map<RowMajor> f(rhs_f_.data(), n, columns), g(rhs_g_.data(), m, columns);
   f.noalias() = -eq_.h * (eq_.momentum * c_.C_inverse.transpose());
   for (Index r = 0; r < m; ++r) {
     const double noise = wanted_constraint * eq_.constraint_noise(r);
-    for (Index j = 0; j < columns; ++j) g(r, j) = std::abs(eq_.phi(r, j)) > noise ? -eq_.phi(r, j) : 0.0;
+    for (Index j = 0; j < columns; ++j)
+      g(r, j) = feed_ && std::abs(eq_.phi(r, j)) > noise ? -eq_.phi(r, j) : 0.0;
   }
   if (careful_) consistent_f_ = f;
   saddle_.apply(rhs_f_.data(), rhs_g_.data(), static_cast<int>(columns));

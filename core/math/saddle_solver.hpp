@@ -40,7 +40,7 @@ class SaddleSolver {
   double solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y, int max_refinements = 8) const;
 
   Index factor_nonzeros() const { return ldlt_.factor_nonzeros(); }
-  static constexpr double standard_regularisation = 1e-10;  // e, in the scaled unknowns
+  static constexpr double standard_regularisation = 1e-13;  // e, in the scaled unknowns
 
  private:
   Index n_ = 0, m_ = 0;

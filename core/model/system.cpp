@@ -1,6 +1,7 @@
 #include "core/model/system.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 #include "core/forces/force.hpp"
@@ -44,7 +45,7 @@ SparseRows node_jacobian(const Blocks& blocks, const double* q, Index n) {
 
 struct System::Data {
   std::vector<std::unique_ptr<ConstraintBlock>> owned;
-  Blocks all, kept, linear;
+  Blocks all, kept, linear, leaving;                // leaving: linear ones that are eliminated
   std::vector<std::unique_ptr<ForceBlock>> forces;  // those that depend on t, q or v
   VectorXd constant_force;                          // the sum of the others [N]
   VectorXd loads, gravity_force;                    // its parts, for energies
@@ -64,37 +65,55 @@ struct System::Data {
   std::vector<std::size_t> block_entries;  // entries of the node Jacobian of each kept block
   std::size_t entries = 0;
 
-  void build_blocks(const Structure& structure);
-  void build_coordinates(bool eliminate_linear);
+  void build_blocks(const Structure& structure, bool eliminate_linear);
+  void add_blocks(const Structure& structure, bool eliminate_linear);
+  void build_coordinates();
   void build_forces(const Structure& structure);
   void build_jacobian_map();
   void check_mass(const Structure& structure) const;
 };
 
-void System::Data::build_blocks(const Structure& structure) {
+// Constraints with a massless node are eliminated in any case: such a node has no equation of motion and can
+// only follow from others (a pin, the middle of a rod).
+void System::Data::build_blocks(const Structure& structure, bool eliminate_linear) {
+  const auto massless = [&](int node) { return !(node_mass.coeff(3 * node, 3 * node) > 0); };
+  const auto follows = [&](const Constraint& c) {
+    return std::any_of(c.nodes.begin(), c.nodes.end(), massless);
+  };
+  if (eliminate_linear || std::none_of(structure.constraints.begin(), structure.constraints.end(), follows))
+    return add_blocks(structure, eliminate_linear);
+  Structure rest = structure, following;
+  following.nodes = structure.nodes;
+  following.constraints.assign(structure.constraints.begin(), structure.constraints.end());
+  std::erase_if(rest.constraints, follows);
+  std::erase_if(following.constraints, std::not_fn(follows));
+  add_blocks(following, true);
+  add_blocks(rest, false);
+}
+
+void System::Data::add_blocks(const Structure& structure, bool eliminate_linear) {
   for (const ConstraintKind& kind : constraint_kinds()) {
     auto block = kind.make(structure);
     if (!block) continue;
     all.push_back(block.get());
     if (block->linear()) linear.push_back(block.get());
+    (block->linear() && eliminate_linear ? leaving : kept).push_back(block.get());
     owned.push_back(std::move(block));
   }
-  linear_rows = total_rows(linear);
 }
 
-void System::Data::build_coordinates(bool eliminate_linear) {
-  eliminated = eliminate_linear && linear_rows > 0;
-  for (const ConstraintBlock* block : all)
-    if (!(eliminated && block->linear())) kept.push_back(block);
+void System::Data::build_coordinates() {
+  linear_rows = total_rows(linear);
+  eliminated = !leaving.empty();
   if (eliminated) {
     const VectorXd zero = VectorXd::Zero(coordinates);
-    VectorXd phi(linear_rows);
+    VectorXd phi(total_rows(leaving));
     Index at = 0;
-    for (const ConstraintBlock* block : linear) {
+    for (const ConstraintBlock* block : leaving) {
       block->value(zero.data(), phi.data() + at);
       at += block->rows();
     }
-    LinearElimination e = eliminate(node_jacobian(linear, zero.data(), coordinates), -phi);
+    LinearElimination e = eliminate(node_jacobian(leaving, zero.data(), coordinates), -phi);
     B = std::move(e.B);
     q0 = std::move(e.q0);
     free_coordinates = std::move(e.free_coordinates);
@@ -186,8 +205,8 @@ System::System(const Structure& structure, bool eliminate_linear) {
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
     data->start.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
   data->node_mass = node_mass_matrix(structure);
-  data->build_blocks(structure);
-  data->build_coordinates(eliminate_linear);
+  data->build_blocks(structure, eliminate_linear);
+  data->build_coordinates();
   data->check_mass(structure);
   data->build_forces(structure);
   data->build_jacobian_map();

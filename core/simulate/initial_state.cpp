@@ -1,5 +1,8 @@
 #include "core/simulate/initial_state.hpp"
 
+#include <algorithm>
+#include <sstream>
+
 #include "core/integrators/index1.hpp"
 #include "core/math/saddle_solver.hpp"
 
@@ -51,6 +54,16 @@ InitialState initial_state(const Structure& structure, const System& system) {
   Index1 index1(system);
   if (!index1.evaluate(0.0, s.z, s.w, acceleration, s.lambda)) s.lambda.setZero();
   return out;
+}
+
+std::string velocity_warning(const InitialState& start, const Structure& structure) {
+  double fastest = 0;
+  for (const Node& node : structure.nodes) fastest = std::max(fastest, node.velocity.lpNorm<Eigen::Infinity>());
+  if (start.velocity_change <= 1e-9 * fastest) return {};
+  std::ostringstream text;
+  text << "the initial velocities violate the constraints and were projected on them (largest change "
+       << start.velocity_change << " m/s)";
+  return text.str();
 }
 
 }  // namespace unfurl

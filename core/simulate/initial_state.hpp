@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/model/state.hpp"
 #include "core/model/structure.hpp"
 #include "core/model/system.hpp"
@@ -13,6 +15,9 @@ struct InitialState {
   double velocity_change = 0;  // max norm of what the projection took away [m/s]
 };
 InitialState initial_state(const Structure& structure, const System& system);
+
+// What to tell the user where the projection took away more than round-off; empty otherwise.
+std::string velocity_warning(const InitialState& start, const Structure& structure);
 
 // Move z to the nearest point of Phi = 0 and w to G w = 0, both in the mass metric, leaving directions
 // without rank alone. For states that are nearly right already: one or two Newton steps.

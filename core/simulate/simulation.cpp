@@ -2,6 +2,7 @@
 
 #include <time.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -55,7 +56,7 @@ class TimeLoop {
 
   void drive() {
     const SolverOptions& o = run_.options;
-    const auto count = static_cast<long>(std::ceil(o.end_time / o.step - 1e-9));
+    const auto count = std::max(1L, static_cast<long>(std::ceil(o.end_time / o.step - 1e-9)));
     for (long k = 1; k <= count; ++k) {
       if (hooks_.cancelled && hooks_.cancelled()) {
         run_.status = RunStatus::stopped;
@@ -201,10 +202,8 @@ Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& opt
   if (!method) throw std::invalid_argument("no method is called " + options.method);
   Simulation run{.trajectory = Trajectory(model), .options = options};
   InitialState start = initial_state(model->structure, model->system);
-  if (start.velocity_change > 1e-9)
-    run.warnings.push_back(
-        "the initial velocities violate the constraints and were projected on them (largest change " +
-        std::to_string(start.velocity_change) + " m/s)");
+  if (std::string warning = velocity_warning(start, model->structure); !warning.empty())
+    run.warnings.push_back(std::move(warning));
   run.trajectory.append(std::move(start.state), StepReport{});
   const std::unique_ptr<Integrator> integrator = method->make(model->system, options);
   const double begin = thread_cpu_seconds();
