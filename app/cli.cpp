@@ -51,6 +51,13 @@ void add_study_options(CLI::App& parser, StudyArguments& study) {
   parser.add_option("--steps", study.ladder);
   parser.add_option("--repeats", study.repeats)->check(CLI::Range(1, 1000));
   parser.add_flag("--models", study.models);
+  parser.add_option("--vary", study.vary)->allow_extra_args(false);
+  parser.add_option("--measure", study.measure);
+  parser.add_option("--shard", study.shard);
+  parser.add_option("--merge", study.merge)->allow_extra_args(false);
+  parser.add_option("--find", study.find);
+  parser.add_option("--target", study.target);
+  parser.add_option("--between", study.between);
 }
 
 Parsed parse(const Command& command, const std::vector<std::string>& words) {

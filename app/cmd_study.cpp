@@ -54,13 +54,8 @@ int cmd_study(const Arguments& arguments) {
   const InterruptGuard guard;
   StudySession session(arguments, "measuring", scene_text(scene), "study.csv");
   const StudyHooks hooks = session.hooks();
-  StudyPlan plan = [&] {
-    try {
-      return plan_study(std::move(model), scene.solver, range.from, range.to, hooks);
-    } catch (const std::invalid_argument& error) {
-      throw UsageError(error.what());
-    }
-  }();
+  StudyPlan plan =
+      as_usage([&] { return plan_study(std::move(model), scene.solver, range.from, range.to, hooks); });
   if (arguments.study.repeats > 0) plan.timing.repeats = arguments.study.repeats;
   Study study;
   {

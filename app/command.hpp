@@ -12,9 +12,14 @@ namespace unfurl {
 
 // What only the verbs that measure take; empty or 0: not given.
 struct StudyArguments {
-  std::string ladder;   // --steps LARGEST:SMALLEST
-  int repeats = 0;      // --repeats
-  bool models = false;  // --models
+  std::string ladder;                 // --steps LARGEST:SMALLEST
+  int repeats = 0;                    // --repeats
+  bool models = false;                // --models
+  std::vector<std::string> vary;      // --vary KEY=FROM:TO:COUNT
+  std::string measure;                // --measure NAME,NAME
+  std::string shard;                  // --shard I/N
+  std::vector<std::string> merge;     // --merge DIR
+  std::string find, target, between;  // --find KEY --target NAME=VALUE --between LOW:HIGH
 };
 
 // What the command line says, the same for every verb.
@@ -46,6 +51,8 @@ int cmd_render(const Arguments& arguments);
 int cmd_figure(const Arguments& arguments);
 int cmd_check(const Arguments& arguments);
 int cmd_study(const Arguments& arguments);
+int cmd_sweep(const Arguments& arguments);
+int cmd_solve(const Arguments& arguments);
 int cmd_reproduce(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 

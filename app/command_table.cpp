@@ -12,11 +12,16 @@ constexpr Command table[] = {
      cmd_figure},
     {"study", "SCENE -o DIR", "speed against accuracy: every method over a ladder of steps", 1, 1, true,
      cmd_study, "--steps --repeats --models"},
+    {"sweep", "SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR",
+     "measures of the scene over a grid of parameters", 1, 1, true, cmd_sweep,
+     "--vary --measure --shard --merge"},
+    {"solve", "SCENE --find KEY --target NAME=VALUE", "the parameter for which a measure takes a value", 1, 1,
+     false, cmd_solve, "--find --target --between"},
     {"reproduce", "-o DIR", "the paper's tables and figures, beside ours", 0, 0, true, cmd_reproduce},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
      1, 1, false, cmd_check},
-    {"list", "structures|methods|figures|scenes|constraints|forces", "what there is to choose from", 1, 1,
-     false, cmd_list},
+    {"list", "structures|methods|figures|scenes|constraints|forces|measures", "what there is to choose from",
+     1, 1, false, cmd_list},
 };
 
 }  // namespace

@@ -7,6 +7,14 @@ namespace {
 constexpr OwnOption rows[] = {
     {"--steps", "LARGEST:SMALLEST", "the ladder of steps [s], each half the one before"},
     {"--repeats", "N", "timed runs per point, at most (5)"},
+    {"--vary", "KEY=FROM:TO:COUNT",
+     "a key of the scene and its values (repeatable); also FROM:TO:COUNT:log or A,B,C"},
+    {"--measure", "NAME,...", "what to measure of every run (unfurl list measures)"},
+    {"--shard", "I/N", "only every N-th point, from the I-th: N jobs share a sweep"},
+    {"--merge", "DIR", "take the points of this directory instead of computing (repeatable)"},
+    {"--find", "KEY", "the key of the scene that is solved for"},
+    {"--target", "NAME=VALUE", "the measure (unfurl list measures) and what it shall be"},
+    {"--between", "LOW:HIGH", "look for the key between these (default: around its value in the scene)"},
     {"--models", "", "compare models of the scene instead of methods"},
 };
 

@@ -37,6 +37,16 @@ class StudySession {
 };
 
 // The words of a report with its end: 0 or interrupted, with a line on stderr.
+// What a person asked for cannot be: std::invalid_argument of the studies as UsageError.
+template <class Work>
+auto as_usage(const Work& work) {
+  try {
+    return work();
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+}
+
 int finish(bool complete, const Arguments& arguments, const std::string& sentence);
 
 }  // namespace unfurl
