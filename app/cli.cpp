@@ -51,6 +51,7 @@ void add_study_options(CLI::App& parser, StudyArguments& study) {
   parser.add_option("--steps", study.ladder);
   parser.add_option("--repeats", study.repeats)->check(CLI::Range(1, 1000));
   parser.add_flag("--models", study.models);
+  parser.add_option("--extreme", study.extremes)->allow_extra_args(false);
   parser.add_option("--vary", study.vary)->allow_extra_args(false);
   parser.add_option("--measure", study.measure);
   parser.add_option("--shard", study.shard);

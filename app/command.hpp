@@ -15,6 +15,7 @@ struct StudyArguments {
   std::string ladder;                 // --steps LARGEST:SMALLEST
   int repeats = 0;                    // --repeats
   bool models = false;                // --models
+  std::vector<std::string> extremes;  // --extreme NAME
   std::vector<std::string> vary;      // --vary KEY=FROM:TO:COUNT
   std::string measure;                // --measure NAME,NAME
   std::string shard;                  // --shard I/N
@@ -51,6 +52,7 @@ int cmd_render(const Arguments& arguments);
 int cmd_figure(const Arguments& arguments);
 int cmd_check(const Arguments& arguments);
 int cmd_study(const Arguments& arguments);
+int cmd_stress(const Arguments& arguments);
 int cmd_sweep(const Arguments& arguments);
 int cmd_solve(const Arguments& arguments);
 int cmd_reproduce(const Arguments& arguments);

@@ -12,6 +12,8 @@ constexpr Command table[] = {
      cmd_figure},
     {"study", "SCENE -o DIR", "speed against accuracy: every method over a ladder of steps", 1, 1, true,
      cmd_study, "--steps --repeats --models"},
+    {"stress", "SCENE -o DIR", "stability at the extremes: every method and step", 1, 1, true, cmd_stress,
+     "--extreme"},
     {"sweep", "SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR",
      "measures of the scene over a grid of parameters", 1, 1, true, cmd_sweep,
      "--vary --measure --shard --merge"},

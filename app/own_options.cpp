@@ -7,6 +7,7 @@ namespace {
 constexpr OwnOption rows[] = {
     {"--steps", "LARGEST:SMALLEST", "the ladder of steps [s], each half the one before"},
     {"--repeats", "N", "timed runs per point, at most (5)"},
+    {"--extreme", "NAME", "only this one: mass_ratio, force, fold_angle, units, stiffness (repeatable)"},
     {"--vary", "KEY=FROM:TO:COUNT",
      "a key of the scene and its values (repeatable); also FROM:TO:COUNT:log or A,B,C"},
     {"--measure", "NAME,...", "what to measure of every run (unfurl list measures)"},

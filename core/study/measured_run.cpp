@@ -58,8 +58,11 @@ void measure_invariants(const Simulation& run, MeasuredRun& out) {
     out.constraint_relative_max =
         std::max(out.constraint_relative_max, max_norm(VectorXd(phi.cwiseQuotient(lengths))));
     out.constraint_velocity_max = std::max(out.constraint_velocity_max, max_norm(system.all_jacobian(q) * v));
-    const double energy =
-        system.kinetic_energy(run.trajectory.state(i).w) + system.potential_energy(q) - system.load_work(q);
+    const double kinetic = system.kinetic_energy(run.trajectory.state(i).w);
+    const double potential = system.potential_energy(q), work = system.load_work(q);
+    const double energy = kinetic + potential - work;
+    out.energy_scale = std::max({out.energy_scale, kinetic, std::abs(potential), std::abs(work)});
+    out.kinetic_energy_max = std::max(out.kinetic_energy_max, kinetic);
     if (i == 0) first = energy;
     out.energy_error = std::max(out.energy_error, std::abs(energy - first));
   }

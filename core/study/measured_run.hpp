@@ -18,6 +18,8 @@ struct MeasuredRun {
   double constraint_relative_max = 0;  // relative to rod length
   double constraint_velocity_max = 0;  // [m/s]
   double energy_error = 0;             // largest |kinetic + potential - work - start| [J]
+  double kinetic_energy_max = 0;       // [J]
+  double energy_scale = 0;  // largest kinetic or potential energy or work: what round-off goes by [J]
   long newton_iterations = 0, factorisations = 0, linear_solves = 0;
   double cpu_median = 0, cpu_min = 0, cpu_max = 0;  // of the stepping loop [s]
   int repeats = 0;

@@ -114,13 +114,14 @@ double structure_size(const Model& model) {
 }
 
 Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
-                          const StudyHooks& hooks) {
-  const double size = structure_size(*model), goal = 64 * std::numeric_limits<double>::epsilon() * size;
+                          const StudyHooks& hooks, double goal) {
+  const double size = structure_size(*model);
+  goal = std::max(goal, 64 * std::numeric_limits<double>::epsilon() * size);
   Best best = tighten(extrapolated(*model, end, intervals, hooks), goal);
   Reference out;
   out.how = "Bulirsch-Stoer extrapolation of order 16 on the index-1 equations with " +
             std::to_string(intervals << best.level) + " basic steps";
-  if (!(best.uncertainty < 1e-9 * size)) {
+  if (!(best.uncertainty <= std::max(goal, 1e-9 * size))) {
     Best other = tighten(variational(*model, end, intervals, hooks), goal);
     if (other.uncertainty < best.uncertainty) {
       best = std::move(other);

@@ -42,8 +42,9 @@ struct Reference {
 // Solved with step after halved step until two solutions agree to round-off or come no closer: by
 // extrapolation of the index-1 equations, and where singular poses stop those, by dvm with 8 nodes against 7.
 // Throws ReferenceError where no two solutions agree to a millionth of the structure's size, Cancelled.
+// `goal`: an agreement that is enough [m]; 0: round-off.
 Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
-                          const StudyHooks& hooks);
+                          const StudyHooks& hooks, double goal = 0);
 
 // Largest distance between equal nodes of two configurations [m].
 double node_distance(const ConstVec& a, const ConstVec& b);

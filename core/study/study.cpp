@@ -44,35 +44,42 @@ MeasuredRun run_of(const std::vector<std::string>& row) {
   return r;
 }
 
-// Errors below this are not the method's own: the reference's, or those of rounded coordinates.
-double floor_of(const Study& study) {
-  return std::max(10 * study.reference_uncertainty, 1e-14 * study.size);
+bool gains(const MeasuredRun& now, const MeasuredRun& before) {
+  return !now.ok() || !before.ok() || now.position_error < 0.8 * before.position_error;
 }
 
-// Where error ~ step^p: answers that are right to a hundredth of the structure, above the floor, before
-// round-off makes a smaller step worse; the four smallest such steps.
-ObservedOrder order_of(const StudyCurve& curve, const Study& study) {
+// Errors below this are not the methods' own: the reference's, those of rounded coordinates, and the largest
+// that any method is left with where smaller steps gain nothing.
+double floor_of(const Study& study) {
+  double floor = std::max(10 * study.reference_uncertainty, 1e-14 * study.size);
+  for (const StudyCurve& curve : study.curves)
+    for (std::size_t i = 1; i < curve.runs.size(); ++i) {
+      const MeasuredRun& run = curve.runs[i];
+      if (!gains(run, curve.runs[i - 1]) && run.position_error < 1e-6 * study.size)
+        floor = std::max(floor, 2 * run.position_error);
+    }
+  return floor;
+}
+
+// Where error ~ step^p: answers that are right to a hundredth of the structure and above the floor; the five
+// smallest such steps.
+ObservedOrder order_of(const StudyCurve& curve, double floor, double size) {
   std::vector<double> step, error;
   for (const MeasuredRun& r : curve.runs) {
-    if (!r.ok() || r.position_error > 1e-2 * study.size) continue;
-    if (r.position_error < floor_of(study)) break;
-    if (!error.empty() && r.position_error > 0.7 * error.back()) break;
+    if (!r.ok() || r.position_error > 1e-2 * size) continue;
+    if (r.position_error < floor) break;
     step.push_back(r.step);
     error.push_back(r.position_error);
   }
-  const std::size_t skip = step.size() > 4 ? step.size() - 4 : 0;
-  return fit_order({step.begin() + static_cast<std::ptrdiff_t>(skip), step.end()},
-                   {error.begin() + static_cast<std::ptrdiff_t>(skip), error.end()});
+  const auto skip = static_cast<std::ptrdiff_t>(step.size() > 5 ? step.size() - 5 : 0);
+  return fit_order({step.begin() + skip, step.end()}, {error.begin() + skip, error.end()});
 }
 
 // Two steps in a row that gain nothing: smaller ones would only cost more.
-bool exhausted(const std::vector<MeasuredRun>& runs) {
+bool exhausted(const std::vector<MeasuredRun>& runs, double size) {
   const std::size_t n = runs.size();
-  if (n < 3) return false;
-  const auto gains = [&](std::size_t i) {
-    return !runs[i].ok() || !runs[i - 1].ok() || runs[i].position_error < 0.5 * runs[i - 1].position_error;
-  };
-  return !gains(n - 1) && !gains(n - 2);
+  return n >= 3 && !gains(runs[n - 1], runs[n - 2]) && !gains(runs[n - 2], runs[n - 3]) &&
+         runs[n - 1].position_error < 1e-6 * size;
 }
 
 }  // namespace
@@ -108,16 +115,18 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
   for (const Setting& setting : plan.settings) study.curves.push_back({setting, {}, {}});
   try {
     const Reference reference =
-        solve_reference(plan.model, plan.end, static_cast<int>(plan.ladder.coarsest), hooks);
+        solve_reference(plan.model, plan.end, static_cast<int>(plan.ladder.grid), hooks);
     study.reference = reference.how;
     study.reference_uncertainty = reference.uncertainty;
     double done = 0;
-    const double all = static_cast<double>(plan.settings.size()) * (std::exp2(plan.ladder.levels) - 1);
+    double all = 0;
+    for (const long steps : plan.ladder.steps)
+      all += static_cast<double>(steps * static_cast<long>(plan.settings.size()));
     for (StudyCurve& curve : study.curves) {
-      for (int level = 0; level < plan.ladder.levels; ++level, done += std::exp2(level - 1)) {
+      for (const long steps : plan.ladder.steps) {
         hooks.tell(done / all);
-        if (exhausted(curve.runs)) continue;
-        const long steps = plan.ladder.steps(level);
+        done += static_cast<double>(steps);
+        if (exhausted(curve.runs, study.size)) continue;
         if (const auto* row = journal.find({curve.setting.name, std::to_string(steps)})) {
           curve.runs.push_back(run_of(*row));
           continue;
@@ -132,7 +141,8 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
   } catch (const Cancelled&) {
     study.complete = false;
   }
-  for (StudyCurve& curve : study.curves) curve.order = order_of(curve, study);
+  const double floor = floor_of(study);
+  for (StudyCurve& curve : study.curves) curve.order = order_of(curve, floor, study.size);
   return study;
 }
 

@@ -21,11 +21,11 @@ struct Setting {
 // (equidistant nodes, constraints at step ends) where that makes a difference.
 std::vector<Setting> study_settings(const SolverOptions& base);
 
-// Steps: `coarsest` steps over the whole motion, then twice as many per level.
+// Numbers of steps over the whole motion, rising; each a multiple of `grid`, so that all runs meet at the
+// same times.
 struct StepLadder {
-  long coarsest = 1;
-  int levels = 1;
-  long steps(int level) const { return coarsest << level; }
+  long grid = 1;
+  std::vector<long> steps;
 };
 
 // From the largest step to the smallest [s], each halved; 0: eight times the scene's step, to a sixteenth of

@@ -51,14 +51,17 @@ StepLadder make_ladder(double end, double scene_step, double largest, double sma
   if (given && largest > end / 2)
     throw std::invalid_argument("the largest step must fit twice into the motion of " + std::to_string(end) +
                                 " s");
+  const double levels = std::log2(largest / smallest);
+  if (levels > max_levels)
+    throw std::invalid_argument("a ladder spans at most a factor of " + std::to_string(1L << max_levels) +
+                                " in the step");
   StepLadder ladder;
-  ladder.coarsest = std::max(4L, std::lround(end / largest));
-  const double levels = std::log2(end / smallest / static_cast<double>(ladder.coarsest));
-  ladder.levels = 1 + static_cast<int>(std::lround(std::max(levels, 1.0)));
-  if (ladder.levels > max_levels)
-    throw std::invalid_argument("a ladder has at most " + std::to_string(max_levels) +
-                                " steps, each half the one before; this one would have " +
-                                std::to_string(ladder.levels));
+  ladder.grid = std::max(2L, std::lround(end / largest / 2));
+  const long finest = std::lround(end / smallest / static_cast<double>(ladder.grid));
+  for (long n = 2; n <= std::max(finest, 4L); n *= 2) {
+    ladder.steps.push_back(n * ladder.grid);
+    if (n * n <= finest * 2) ladder.steps.push_back(n / 2 * 3 * ladder.grid);
+  }
   return ladder;
 }
 

@@ -105,7 +105,8 @@ class PanelPainter {
       for (const double v : axis.ticks.major) draw(axis.scale(v), tick_length);
     };
     ticks(layout_.x, [&](double x, double length) { canvas_.line({x, f.y1}, {x, f.y1 + length}, pen); });
-    ticks(layout_.y, [&](double y, double length) { canvas_.line({f.x0, y}, {f.x0 - length, y}, pen); });
+    if (panel_.y.shown)
+      ticks(layout_.y, [&](double y, double length) { canvas_.line({f.x0, y}, {f.x0 - length, y}, pen); });
     if (layout_.y2.used)
       ticks(layout_.y2, [&](double y, double length) { canvas_.line({f.x1, y}, {f.x1 + length, y}, pen); });
   }

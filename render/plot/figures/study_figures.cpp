@@ -38,6 +38,32 @@ Panel log_panel(std::string x, std::string y) {
   return p;
 }
 
+// The key to all panels, in one of its own.
+Panel key_panel(const Study& study) {
+  Panel p;
+  p.bare = true;
+  for (std::size_t i = 0; i < study.curves.size(); ++i) {
+    p.curves.push_back(curve_of(study, i, true, &MeasuredRun::step, &MeasuredRun::step));
+    p.curves.back().x.clear();
+    p.curves.back().y.clear();
+  }
+  return p;
+}
+
+// From the fastest to the slowest of the repeated runs, as a thin line.
+void add_spread(const StudyCurve& from, int color, Panel& panel) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Curve c;
+  c.color = color;
+  c.width = 0.6f;
+  for (const MeasuredRun& run : from.runs) {
+    if (!run.ok()) continue;
+    c.x.insert(c.x.end(), {run.cpu_min, run.cpu_max, nan});
+    c.y.insert(c.y.end(), {run.position_error, run.position_error, nan});
+  }
+  panel.curves.push_back(std::move(c));
+}
+
 void add_floor(const Study& study, Panel& panel) {
   if (study.reference_uncertainty > 0)
     panel.lines.push_back({study.reference_uncertainty, true, "uncertainty of the reference", 7});
@@ -55,17 +81,18 @@ Figure work_precision_figure(const Study& study, const std::string& scene) {
   Figure f;
   f.name = "work_precision";
   f.title = "Speed against accuracy: " + scene;
-  f.columns = 2;
-  f.width_mm = 180;
-  f.height_mm = 105;
+  f.columns = 3;
+  f.width_mm = 215;
+  f.height_mm = 95;
   f.caption =
-      "Largest error of a node's position against CPU time (median of repeated runs; the bars of CPU "
-      "time are in study.csv) and against the number of linear solves. " +
+      "Largest error of a node's position against CPU time (median of repeated runs; a thin line from "
+      "the fastest to the slowest) and against the number of linear solves. " +
       span_sentence(study);
   Panel time = log_panel("CPU time (s)", "position error (m)");
   Panel solves = log_panel("linear solves", "position error (m)");
   for (std::size_t i = 0; i < study.curves.size(); ++i) {
-    time.curves.push_back(curve_of(study, i, true, &MeasuredRun::cpu_median, &MeasuredRun::position_error));
+    time.curves.push_back(curve_of(study, i, false, &MeasuredRun::cpu_median, &MeasuredRun::position_error));
+    add_spread(study.curves[i], time.curves.back().color, time);
     solves.curves.push_back(
         curve_of(study, i, false, &MeasuredRun::cpu_median, &MeasuredRun::position_error));
     Curve& c = solves.curves.back();
@@ -73,7 +100,7 @@ Figure work_precision_figure(const Study& study, const std::string& scene) {
       c.x[k] = static_cast<double>(study.curves[i].runs[k].linear_solves);
   }
   add_floor(study, time);
-  f.panels = {std::move(time), std::move(solves)};
+  f.panels = {std::move(time), std::move(solves), key_panel(study)};
   return f;
 }
 
@@ -81,9 +108,9 @@ Figure convergence_figure(const Study& study, const std::string& scene) {
   Figure f;
   f.name = "convergence";
   f.title = "Errors against the step: " + scene;
-  f.columns = 3;
-  f.width_mm = 200;
-  f.height_mm = 95;
+  f.rows = f.columns = 2;
+  f.width_mm = 180;
+  f.height_mm = 160;
   f.caption =
       "Position error against the reference, and what a run shows without one: the error of the "
       "constraints relative to rod length, and of the energy balance. " +
@@ -93,14 +120,14 @@ Figure convergence_figure(const Study& study, const std::string& scene) {
   Panel energy = log_panel("step (s)", "energy error (J)");
   constraint.y.zeros_at_floor = energy.y.zeros_at_floor = true;
   for (std::size_t i = 0; i < study.curves.size(); ++i) {
-    position.curves.push_back(curve_of(study, i, true, &MeasuredRun::step, &MeasuredRun::position_error));
+    position.curves.push_back(curve_of(study, i, false, &MeasuredRun::step, &MeasuredRun::position_error));
     constraint.curves.push_back(
         curve_of(study, i, false, &MeasuredRun::step, &MeasuredRun::constraint_relative_max));
     energy.curves.push_back(curve_of(study, i, false, &MeasuredRun::step, &MeasuredRun::energy_error));
   }
   add_floor(study, position);
   constraint.lines.push_back({std::numeric_limits<double>::epsilon(), true, "round-off", 7});
-  f.panels = {std::move(position), std::move(constraint), std::move(energy)};
+  f.panels = {std::move(position), std::move(constraint), std::move(energy), key_panel(study)};
   return f;
 }
 
