@@ -55,7 +55,7 @@ double floor_of(const Study& study) {
   for (const StudyCurve& curve : study.curves)
     for (std::size_t i = 1; i < curve.runs.size(); ++i) {
       const MeasuredRun& run = curve.runs[i];
-      if (!gains(run, curve.runs[i - 1]) && run.position_error < 1e-6 * study.size)
+      if (!gains(run, curve.runs[i - 1]) && run.position_error < 1e-9 * study.size)
         floor = std::max(floor, 2 * run.position_error);
     }
   return floor;
@@ -79,7 +79,7 @@ ObservedOrder order_of(const StudyCurve& curve, double floor, double size) {
 bool exhausted(const std::vector<MeasuredRun>& runs, double size) {
   const std::size_t n = runs.size();
   return n >= 3 && !gains(runs[n - 1], runs[n - 2]) && !gains(runs[n - 2], runs[n - 3]) &&
-         runs[n - 1].position_error < 1e-6 * size;
+         runs[n - 1].position_error < 1e-9 * size;
 }
 
 }  // namespace
