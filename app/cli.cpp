@@ -64,6 +64,7 @@ void add_study_options(CLI::App& parser, StudyArguments& study) {
 Parsed parse(const Command& command, const std::vector<std::string>& words) {
   Parsed parsed;
   Arguments& a = parsed.arguments;
+  std::string tolerance;
   CLI::App parser;
   parser.set_help_flag();
   parser.allow_extras();
@@ -75,12 +76,14 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_flag("--json", a.json);
   parser.add_option("--threads", a.threads)->check(CLI::Range(1, 1024));
   parser.add_flag("-h,--help", parsed.help);
+  parser.add_option("--tolerance", tolerance);
   add_study_options(parser, a.study);
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   }
+  if (!tolerance.empty()) a.overrides.push_back("solver.tolerance=" + tolerance);
   refuse_unknown_options(parser);
   refuse_foreign_options(parser, command);
   for (const auto& word : parser.remaining()) a.names.push_back(word);

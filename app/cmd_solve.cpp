@@ -15,6 +15,7 @@
 #include "core/study/measures.hpp"
 #include "core/study/scene_variation.hpp"
 #include "core/study/solve_for.hpp"
+#include "core/study/tolerance.hpp"
 
 namespace unfurl {
 
@@ -94,7 +95,7 @@ int cmd_solve(const Arguments& arguments) {
   const Objective objective = [&](double x) {
     try {
       const Scene changed = source.read({study.find + "=" + exact_number(x)});
-      const Simulation run = simulate(build_model(changed), changed.solver, hooks);
+      const Simulation run = simulate_as_asked(build_model(changed), changed.solver, hooks);
       return target.measure.value(run, diagnose(run));
     } catch (const SceneError&) {
       return std::numeric_limits<double>::quiet_NaN();

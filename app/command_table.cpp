@@ -5,11 +5,12 @@ namespace unfurl {
 namespace {
 
 constexpr Command table[] = {
-    {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run},
-    {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render},
+    {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run, "--tolerance"},
+    {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
+     "--tolerance"},
     {"figure", "SCENE NAME... -o FILE",
      "one figure, PNG or SVG by extension; NAME all: every figure, into a directory", 2, 100, true,
-     cmd_figure},
+     cmd_figure, "--tolerance"},
     {"study", "SCENE -o DIR", "speed against accuracy: every method over a ladder of steps", 1, 1, true,
      cmd_study, "--steps --repeats --models"},
     {"stress", "SCENE -o DIR", "stability at the extremes: every method and step", 1, 1, true, cmd_stress,

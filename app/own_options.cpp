@@ -5,6 +5,7 @@ namespace unfurl {
 namespace {
 
 constexpr OwnOption rows[] = {
+    {"--tolerance", "METRES", "pick stages and step for this error of node positions (solver.tolerance)"},
     {"--steps", "LARGEST:SMALLEST", "the ladder of steps [s], each half the one before"},
     {"--repeats", "N", "timed runs per point, at most (5)"},
     {"--extreme", "NAME", "only this one: mass_ratio, force, fold_angle, units, stiffness (repeatable)"},

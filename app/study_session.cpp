@@ -20,13 +20,12 @@ StudySession::StudySession(const Arguments& arguments, std::string task, const s
       progress_(std::move(task), arguments.quiet) {
   const fs::path scene = directory_ / "scene.toml", results = directory_ / journal_;
   std::error_code error;
-  if (fs::exists(results, error) && read_text_file(scene.string()).text != identity) {
-    if (!arguments.force)
-      throw FileError(directory_,
-                      "holds results of another scene or other settings; use another directory, or --force "
-                      "to begin anew");
-    fs::remove(results, error);
-  }
+  const bool begun = fs::exists(results, error);
+  if (arguments.force) fs::remove(results, error);
+  if (begun && !arguments.force && read_text_file(scene.string()).text != identity)
+    throw FileError(directory_,
+                    "holds results of another scene or other settings; use another directory, or --force to "
+                    "begin anew");
   if (!identity.empty()) write_file_atomically(scene, identity);
   fs::create_directories(directory_ / "figures", error);
   if (error) throw FileError(directory_ / "figures", error.value());

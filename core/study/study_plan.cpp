@@ -23,6 +23,8 @@ std::vector<Setting> study_settings(const SolverOptions& base) {
   for (const Method& method : methods()) {
     SolverOptions own = base;
     own.method = method.name;
+    own.adaptive = false;  // the ladder says the step
+    own.tolerance = 0;
     const std::string name(method.name);
     const auto order = [&](const SolverOptions& o) { return method.claims(o).order; };
     const SolverOptions two = with(own, 2, "lobatto", "nodes"), printed = with(own, 3, "equidistant", "ends");
@@ -58,7 +60,7 @@ StepLadder make_ladder(double end, double scene_step, double largest, double sma
   StepLadder ladder;
   ladder.grid = std::max(2L, std::lround(end / largest / 2));
   const long finest = std::lround(end / smallest / static_cast<double>(ladder.grid));
-  for (long n = 2; n <= std::max(finest, 4L); n *= 2) {
+  for (long n = 2; n <= std::max(finest * 7 / 5, 4L); n *= 2) {
     ladder.steps.push_back(n * ladder.grid);
     if (n * n <= finest * 2) ladder.steps.push_back(n / 2 * 3 * ladder.grid);
   }

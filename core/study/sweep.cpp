@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "core/scene/build.hpp"
+#include "core/study/tolerance.hpp"
 
 namespace unfurl {
 namespace {
@@ -18,7 +19,7 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const s
     const Scene scene = plan.source.read(changes);
     SimulationHooks own;
     own.cancelled = hooks.cancelled;
-    const Simulation run = simulate(build_model(scene), scene.solver, own);
+    const Simulation run = simulate_as_asked(build_model(scene), scene.solver, own);
     if (run.status == RunStatus::stopped) return std::nullopt;
     const Diagnostics diagnostics = diagnose(run);
     row.emplace_back(to_string(run.status));
