@@ -7,6 +7,7 @@
 #include "app/command.hpp"
 #include "app/failure.hpp"
 #include "app/help.hpp"
+#include "app/own_options.hpp"
 #include "core/model/nearest_name.hpp"
 
 namespace unfurl {
@@ -39,9 +40,31 @@ struct Parsed {
   bool help = false;
 };
 
-Parsed parse(const std::vector<std::string>& words) {
+// An option of another verb.
+void refuse_foreign_options(const CLI::App& parser, const Command& command) {
+  for (const OwnOption& own : own_options())
+    if (parser.count(std::string(own.name)) > 0 && !takes(command, own.name))
+      throw UsageError("unfurl " + std::string(command.name) + " has no option " + in_quotes(own.name));
+}
+
+void add_study_options(CLI::App& parser, StudyArguments& study) {
+  parser.add_option("--steps", study.ladder);
+  parser.add_option("--repeats", study.repeats)->check(CLI::Range(1, 1000));
+  parser.add_flag("--models", study.models);
+  parser.add_option("--extreme", study.extremes)->allow_extra_args(false);
+  parser.add_option("--vary", study.vary)->allow_extra_args(false);
+  parser.add_option("--measure", study.measure);
+  parser.add_option("--shard", study.shard);
+  parser.add_option("--merge", study.merge)->allow_extra_args(false);
+  parser.add_option("--find", study.find);
+  parser.add_option("--target", study.target);
+  parser.add_option("--between", study.between);
+}
+
+Parsed parse(const Command& command, const std::vector<std::string>& words) {
   Parsed parsed;
   Arguments& a = parsed.arguments;
+  std::string tolerance;
   CLI::App parser;
   parser.set_help_flag();
   parser.allow_extras();
@@ -53,12 +76,16 @@ Parsed parse(const std::vector<std::string>& words) {
   parser.add_flag("--json", a.json);
   parser.add_option("--threads", a.threads)->check(CLI::Range(1, 1024));
   parser.add_flag("-h,--help", parsed.help);
+  parser.add_option("--tolerance", tolerance);
+  add_study_options(parser, a.study);
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   }
+  if (!tolerance.empty()) a.overrides.push_back("solver.tolerance=" + tolerance);
   refuse_unknown_options(parser);
+  refuse_foreign_options(parser, command);
   for (const auto& word : parser.remaining()) a.names.push_back(word);
   return parsed;
 }
@@ -89,7 +116,7 @@ int dispatch(const std::vector<std::string>& words) {
   }
   if (first.starts_with("-")) throw UsageError("a command comes first, then its options; see unfurl --help");
   const Command& command = find_command(first);
-  const Parsed parsed = parse({words.begin() + 1, words.end()});
+  const Parsed parsed = parse(command, {words.begin() + 1, words.end()});
   if (parsed.help) {
     std::cout << command_help(command);
     return exit_ok;

@@ -1,4 +1,4 @@
-// unfurl list structures|methods|figures|scenes|constraints|forces: what there is to choose from.
+// unfurl list structures|methods|figures|scenes|constraints|forces|measures: what there is to choose from.
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
@@ -11,6 +11,7 @@
 #include "core/scene/library.hpp"
 #include "core/structures/custom.hpp"
 #include "core/structures/family.hpp"
+#include "core/study/measures.hpp"
 #include "render/plot/figures.hpp"
 
 namespace unfurl {
@@ -51,6 +52,14 @@ std::vector<Item> scene_items() {
   return items;
 }
 
+std::vector<Item> measure_items() {
+  std::vector<Item> items;
+  for (const auto& measure : named_measures())
+    items.push_back({std::string(measure.name), std::string(measure.help), nullptr});
+  items.push_back({"max:COLUMN", "largest value of a column of series.csv; also min: and final:", nullptr});
+  return items;
+}
+
 std::vector<Item> constraint_items() {
   std::vector<Item> items;
   for (const auto& kind : custom_constraint_kinds())
@@ -72,7 +81,8 @@ struct List {
 
 constexpr List lists[] = {{"structures", structure_items},   {"methods", method_items},
                           {"figures", figure_items},         {"scenes", scene_items},
-                          {"constraints", constraint_items}, {"forces", force_items}};
+                          {"constraints", constraint_items}, {"forces", force_items},
+                          {"measures", measure_items}};
 
 std::string default_text(const ParamSpec& spec) {
   if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";

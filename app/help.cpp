@@ -1,5 +1,7 @@
 #include "app/help.hpp"
 
+#include "app/own_options.hpp"
+
 namespace unfurl {
 
 namespace {
@@ -28,8 +30,13 @@ std::string usage_line(const Command& command) {
 }
 
 std::string command_help(const Command& command) {
-  return "usage: " + usage_line(command) + " [options]\n" + std::string(command.help) + "\n\n" +
-         std::string(common_options);
+  std::string text = "usage: " + usage_line(command) + " [options]\n" + std::string(command.help) + "\n\n";
+  if (!command.options.empty()) text += "options of its own:\n";
+  for (const OwnOption& own : own_options())
+    if (takes(command, own.name))
+      text += "  " + padded(std::string(own.name) + " " + std::string(own.value), 30) +
+              std::string(own.help) + "\n";
+  return text + (command.options.empty() ? "" : "\n") + std::string(common_options);
 }
 
 std::string program_help() {

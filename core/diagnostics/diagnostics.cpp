@@ -127,6 +127,12 @@ const Series& Diagnostics::at(std::string_view name) const {
   return *s;
 }
 
+std::vector<std::string_view> diagnostic_names() {
+  std::vector<std::string_view> names;
+  for (const Row& row : rows) names.emplace_back(row.name);
+  return names;
+}
+
 Diagnostics diagnose(const Simulation& run) {
   const Trajectory& trajectory = run.trajectory;
   const Model& model = trajectory.model();

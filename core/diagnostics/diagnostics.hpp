@@ -32,4 +32,7 @@ struct Diagnostics {
 // structure has a fold angle. Then the structure's own lengths and, where it names strains, poisson_ratio.
 Diagnostics diagnose(const Simulation& run);
 
+// Names of all columns that a scene may have.
+std::vector<std::string_view> diagnostic_names();
+
 }  // namespace unfurl
