@@ -8,6 +8,7 @@
 
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
+#include "core/diagnostics/accuracy.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/csv.hpp"
 #include "core/export/summary.hpp"
@@ -56,7 +57,8 @@ std::string write_data(const std::filesystem::path& directory, const Scene& scen
 }
 
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {
-  for (const auto& warning : run.warnings) std::cerr << "unfurl: warning: " << warning << "\n";
+  for (const auto& warnings : {run.warnings, accuracy_warnings(diagnostics)})
+    for (const auto& warning : warnings) std::cerr << "unfurl: warning: " << warning << "\n";
   if (run.status == RunStatus::failed) std::cerr << "unfurl: the solver failed: " << run.message << "\n";
   if (run.status == RunStatus::stopped) std::cerr << "unfurl: interrupted; what is finished is kept\n";
   if (arguments.quiet) return;
