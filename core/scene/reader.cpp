@@ -100,10 +100,7 @@ void read_render(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
   const auto& size = values.vector("size");
   if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]))
     table.problem("size", "must be whole numbers of pixels");
-  scene.render.width = static_cast<int>(size[0]);
-  scene.render.height = static_cast<int>(size[1]);
-  scene.render.fps = values.real("fps");
-  scene.render.speed = values.real("speed");
+  scene.render = render_options(values);
 }
 
 void read_title(TableReader& root, Scene& scene) {
