@@ -31,7 +31,7 @@ class FilmEncoders {
     gif_height_ = std::max(1, (options.height * gif_width_ + options.width / 2) / options.width);
     if (options.webp)
       webp_.emplace(directory / "animation.webp", options.width, options.height, options.fps,
-                    options.transparent);
+                    has_alpha(options));
     if (options.gif) gif_.emplace(directory / "animation.gif", gif_width_, gif_height_, options.fps);
     if (options.mp4 && ffmpeg_available())
       mp4_.emplace(directory / "animation.mp4", options.width, options.height, options.fps);
@@ -48,8 +48,8 @@ class FilmEncoders {
       busy_.push_back(
           std::async(policy_, [this, frame] { gif_->add(scaled_down(*frame, gif_width_, gif_height_)); }));
     if (mp4_)
-      busy_.push_back(std::async(
-          policy_, [this, frame] { mp4_->add(options_.transparent ? on_white(*frame) : *frame); }));
+      busy_.push_back(
+          std::async(policy_, [this, frame] { mp4_->add(has_alpha(options_) ? on_white(*frame) : *frame); }));
   }
 
   void finish() {

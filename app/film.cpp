@@ -35,6 +35,8 @@ FrameStyle style_of(const Scene& scene) {
   style.width = options.width * options.supersample;
   style.height = options.height * options.supersample;
   style.title = scene.title;
+  style.look = options.look;
+  style.transparent = options.transparent;
   return style;
 }
 
@@ -50,6 +52,11 @@ void check_film(const Scene& scene) {
                      "render.speed or an earlier solver.end_time"}});
 }
 
+bool has_alpha(const RenderOptions& options) {
+  const Look* look = find_look(options.look);
+  return options.transparent || (look != nullptr && look->transparent);
+}
+
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
                  const Diagnostics& /*diagnostics*/, GlContext& context, const Arguments& arguments) {
   const RenderOptions& options = scene.render;
@@ -60,6 +67,7 @@ bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation&
     if (!folder.finished(k)) missing.push_back(k);
   if (missing.empty()) return true;
   folder.set_encoded(false);
+  const bool alpha = has_alpha(options);
   const FrameStyle style = style_of(scene);
   const FrameBuilder builder(run.trajectory, style);
   Renderer renderer(context, style.width, style.height);
@@ -72,9 +80,9 @@ bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation&
     }
     progress.show(static_cast<double>(i) / static_cast<double>(missing.size()));
     auto image = std::make_shared<const Image>(renderer.draw(builder.build(times[missing[i]])));
-    writers.add([image = std::move(image), path = folder.frame(missing[i]), &options] {
-      if (options.supersample == 1) return write_png(path, *image, options.transparent);
-      write_png(path, scaled_down(*image, options.width, options.height), options.transparent);
+    writers.add([image = std::move(image), path = folder.frame(missing[i]), &options, alpha] {
+      if (options.supersample == 1) return write_png(path, *image, alpha);
+      write_png(path, scaled_down(*image, options.width, options.height), alpha);
     });
   }
   writers.finish();

@@ -16,6 +16,9 @@ namespace unfurl {
 // reason.
 void check_film(const Scene& scene);
 
+// Do the frames have transparent pixels: because the scene says so, or its look?
+bool has_alpha(const RenderOptions& options);
+
 // Draws the frames that the folder lacks, or those of them that --frames asks for. Stops at Ctrl-C. Returns
 // whether all that were asked for are there. Throws FileError, GraphicsError, UsageError.
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,

@@ -9,9 +9,6 @@
 namespace unfurl {
 namespace {
 
-constexpr Color ink{0.13f, 0.17f, 0.22f, 1}, fitting{0.62f, 0.64f, 0.67f, 1}, joint{0.30f, 0.33f, 0.37f, 1},
-    anchor{0.16f, 0.18f, 0.21f, 1}, load_color{0.78f, 0.08f, 0.22f, 1};
-
 // The rotation that turns gravity downwards; none without gravity.
 Mat3 upright_rotation(const Vec3& gravity) {
   if (gravity.isZero()) return Mat3::Identity();
@@ -48,7 +45,8 @@ float about_width(const std::string& text, float height) {
 }  // namespace
 
 FrameBuilder::FrameBuilder(const Trajectory& trajectory, FrameStyle style)
-    : trajectory_(trajectory), style_(std::move(style)) {
+    : trajectory_(trajectory), style_(std::move(style)), look_(find_look(style_.look)) {
+  if (look_ == nullptr) throw std::invalid_argument("FrameBuilder: no look '" + style_.look + "'");
   if (trajectory_.empty()) throw std::invalid_argument("FrameBuilder: the trajectory has no state");
   upright_ = upright_rotation(trajectory_.structure().gravity);
   prepare_still();
@@ -70,6 +68,14 @@ void FrameBuilder::prepare_still() {
   const double around = thickest + (style_.loads && !s.load_copies.empty() ? 0.5 * looks_.arrow_length : 0.0);
   const double aspect = static_cast<double>(style_.width) / style_.height;
   still_.camera = frame_motion(node_points, bounds, around, aspect, Margins{});
+  still_.shading = look_->shading;
+  still_.background_top = look_->background_top;
+  still_.background_bottom = look_->background_bottom;
+  still_.transparent = style_.transparent || look_->transparent;
+  still_.stars = look_->stars;
+  still_.depth_fade = look_->depth_fade;
+  still_.hidden_gap = static_cast<float>(3 * thickest);
+  still_.ground.shown = look_->ground;
   still_.center = bounds.center.cast<float>();
   still_.radius = static_cast<float>(bounds.radius + looks_.arrow_length + thickest);
 
@@ -101,11 +107,11 @@ void FrameBuilder::add_rods(const VectorXd& whole, DrawList& list) const {
     const double length = (b - a).norm();
     const auto thick = static_cast<float>(radius);
     const auto group = static_cast<std::size_t>(looks_.rod_group[source]);
-    list.tubes.push_back({a.cast<float>(), b.cast<float>(), thick, group_color(group)});
+    list.tubes.push_back({a.cast<float>(), b.cast<float>(), thick, look_->group(group)});
     if (length <= 0) continue;
     const Vec3 fitted = (b - a) * (std::min(6.5 * radius, 0.2 * length) / length);  // from the joint's centre
-    list.sleeves.push_back({a.cast<float>(), (a + fitted).cast<float>(), 1.32f * thick, fitting});
-    list.sleeves.push_back({b.cast<float>(), (b - fitted).cast<float>(), 1.32f * thick, fitting});
+    list.sleeves.push_back({a.cast<float>(), (a + fitted).cast<float>(), 1.32f * thick, look_->fitting});
+    list.sleeves.push_back({b.cast<float>(), (b - fitted).cast<float>(), 1.32f * thick, look_->fitting});
   }
 }
 
@@ -115,7 +121,8 @@ void FrameBuilder::add_joints(const VectorXd& whole, DrawList& list) const {
     const double scale = looks_.fixed[i] ? 1.5 : 1.0;
     const Vec3 at = node(whole, static_cast<int>(i));
     list.balls.push_back({at.cast<float>(), static_cast<float>(scale * looks_.joint_radius[i]),
-                          looks_.fixed[i] ? anchor : joint, looks_.fixed[i] ? Finish::paint : Finish::metal});
+                          looks_.fixed[i] ? look_->anchor : look_->joint,
+                          looks_.fixed[i] ? Finish::paint : Finish::metal});
   }
 }
 
@@ -125,7 +132,7 @@ void FrameBuilder::add_loads(const VectorXd& whole, DrawList& list) const {
     const Vec3 tail = node(whole, load.node);
     const Vec3 head = tail + upright_ * load.force * (looks_.arrow_length / looks_.largest_force);
     list.arrows.push_back(
-        {tail.cast<float>(), head.cast<float>(), static_cast<float>(looks_.arrow_radius), load_color});
+        {tail.cast<float>(), head.cast<float>(), static_cast<float>(looks_.arrow_radius), look_->load});
   }
 }
 
@@ -146,19 +153,20 @@ void FrameBuilder::add_labels(double t, const VectorXd& whole, DrawList& list) c
   const float unit = std::max(0.55f, std::min(height / 720.0f, width / 1280.0f));
   const float edge = 30 * unit, small = std::round(21 * unit), large = std::round(28 * unit);
   const float low = height - edge - small;
-  if (!style_.title.empty()) list.labels.push_back({edge, 0.8f * edge, large, ink, style_.title, 0, true});
+  if (!style_.title.empty())
+    list.labels.push_back({edge, 0.8f * edge, large, look_->ink, style_.title, 0, true});
   std::string status = time_text(t, trajectory_.end_time() - trajectory_.start_time());
   const Deployment& deployment = trajectory_.structure().deployment;
   if (!deployment.empty()) status += "    " + deployed_text(deployment.fraction(solved(whole)));
-  list.labels.push_back({edge, low, small, ink, status});
+  list.labels.push_back({edge, low, small, look_->ink, status});
 
   std::vector<std::pair<std::string, Color>> legend;
   if (looks_.groups.size() > 1) {
     for (std::size_t i = 0; i < looks_.groups.size(); ++i) {
-      legend.emplace_back("\u25A0 " + looks_.groups[i], group_color(i));
+      legend.emplace_back("\u25A0 " + looks_.groups[i], look_->group(i));
     }
   }
-  if (!list.arrows.empty()) legend.emplace_back("\u2192 load", load_color);
+  if (!list.arrows.empty()) legend.emplace_back("\u2192 load", look_->load);
   float right = width - edge;
   for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry) {
     list.labels.push_back({right, low, small, entry->second, entry->first, 1});

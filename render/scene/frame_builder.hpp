@@ -8,6 +8,7 @@
 #include "render/scene/appearance.hpp"
 #include "render/scene/draw_list.hpp"
 #include "render/scene/framing.hpp"
+#include "render/scene/look.hpp"
 
 namespace unfurl {
 
@@ -16,13 +17,16 @@ struct FrameStyle {
   std::string title;               // top left; empty: none
   bool labels = true;              // title, time, deployed fraction, legend
   bool loads = true;               // arrows
+  std::string look = "studio";     // of looks()
+  bool transparent = false;        // no background, whatever the look
 };
 
 // All pictures of a run share one still camera that sees the whole motion. Gravity, where there is some,
 // points down in the picture; else the scene's z axis points up.
 class FrameBuilder {
  public:
-  // The trajectory must outlive the builder and have at least one state (else std::invalid_argument).
+  // The trajectory must outlive the builder and have at least one state, and the look must be known (else
+  // std::invalid_argument).
   FrameBuilder(const Trajectory& trajectory, FrameStyle style);
 
   // At any time [s]; outside the run its nearest end.
@@ -43,6 +47,7 @@ class FrameBuilder {
   const Trajectory& trajectory_;
   FrameStyle style_;
   Mat3 upright_ = Mat3::Identity();
+  const Look* look_;
   Appearance looks_;
   DrawList still_;  // what all pictures share: camera, floor, light
 };
