@@ -155,7 +155,8 @@ void main() {
     if (line < 0.02) discard;
     color = vec4(misty(mix(ink, vec3(1.0), 0.55)), 0.75 * line);
   } else {
-    color = vec4(misty(mix(mix(vec3(1.0), hue, 0.10), ink, line)), 1.0);
+    float filled = metal_roughness.x > 0.0 ? 0.10 : 1.0;  // what is painted is so here
+    color = vec4(misty(mix(mix(vec3(1.0), hue, filled), ink, line)), 1.0);
   }
 })";
 
