@@ -89,7 +89,7 @@ bool encode_films(const std::filesystem::path& directory, const FilmFolder& fold
                   const Simulation& run, const Arguments& arguments) {
   const RenderOptions& options = scene.render;
   if (folder.encoded() || !(options.webp || options.gif || options.mp4)) return true;
-  const std::size_t frames = frame_times(run.trajectory, options.fps, options.speed).size();
+  const std::size_t frames = film_shots(run.trajectory, options).size();
   std::size_t finished = 0;
   for (std::size_t k = 0; k < frames; ++k) finished += folder.finished(k);
   if (finished < frames) {

@@ -10,6 +10,8 @@
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/model/nearest_name.hpp"
+#include "core/structures/name_index.hpp"
 #include "render/image/image_scale.hpp"
 #include "render/image/png.hpp"
 #include "render/image/task_queue.hpp"
@@ -29,14 +31,37 @@ int writer_threads(const Arguments& arguments) {
   return threads == 1 ? 0 : std::min(threads, 16);
 }
 
-FrameStyle style_of(const Scene& scene) {
+SourceLocation place_of(const Scene& scene, const std::string& key) {
+  const auto it = scene.locations.find(key);
+  return it == scene.locations.end() ? SourceLocation{scene.name, 0, 0} : it->second;
+}
+
+// Names that only the structure and its run can tell to be right.
+void check_names(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
+  const RenderOptions& options = scene.render;
+  if (!options.inset.empty() && !diagnostics.find(options.inset)) {
+    std::vector<std::string_view> names;
+    for (const Series& series : diagnostics.columns) names.push_back(series.name);
+    throw SceneError({{place_of(scene, "render.inset"), "render.inset",
+                       "no column " + in_quotes(options.inset) + did_you_mean(options.inset, names)}});
+  }
+  NameIndex nodes;
+  for (const NodeCopy& copy : run.trajectory.structure().node_copies) nodes.add(copy.name);
+  if (!options.trails.empty() && nodes.matching(options.trails).empty())
+    throw SceneError({{place_of(scene, "render.trails"), "render.trails",
+                       "no node matches " + in_quotes(options.trails) +
+                           did_you_mean(options.trails, nodes.names())}});
+}
+
+FrameStyle style_of(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
   const RenderOptions& options = scene.render;
   FrameStyle style;
   style.width = options.width * options.supersample;
   style.height = options.height * options.supersample;
   style.title = scene.title;
-  style.look = options.look;
-  style.transparent = options.transparent;
+  style.options = options;
+  style.run = &run;
+  style.diagnostics = &diagnostics;
   return style;
 }
 
@@ -44,10 +69,8 @@ FrameStyle style_of(const Scene& scene) {
 
 void check_film(const Scene& scene) {
   const RenderOptions& render = scene.render;
-  if (scene.solver.end_time / render.speed * render.fps <= max_frames) return;
-  const auto it = scene.locations.find("render.fps");
-  const auto where = it == scene.locations.end() ? SourceLocation{scene.name, 0, 0} : it->second;
-  throw SceneError({{where, "render.fps",
+  if (most_shots(scene.solver.end_time, render) <= max_frames) return;
+  throw SceneError({{place_of(scene, "render.fps"), "render.fps",
                      "the film would have more than 99999 frames; take fewer per second, a larger "
                      "render.speed or an earlier solver.end_time"}});
 }
@@ -58,17 +81,18 @@ bool has_alpha(const RenderOptions& options) {
 }
 
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
-                 const Diagnostics& /*diagnostics*/, GlContext& context, const Arguments& arguments) {
+                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments) {
   const RenderOptions& options = scene.render;
-  const auto times = frame_times(run.trajectory, options.fps, options.speed);
-  const FrameRange range = frame_range(arguments.frames, times.size());
+  const std::vector<Shot> shots = film_shots(run.trajectory, options);
+  const FrameRange range = frame_range(arguments.frames, shots.size());
   std::vector<std::size_t> missing;
   for (std::size_t k = range.first; k < range.end; ++k)
     if (!folder.finished(k)) missing.push_back(k);
   if (missing.empty()) return true;
   folder.set_encoded(false);
+  check_names(scene, run, diagnostics);
   const bool alpha = has_alpha(options);
-  const FrameStyle style = style_of(scene);
+  const FrameStyle style = style_of(scene, run, diagnostics);
   const FrameBuilder builder(run.trajectory, style);
   Renderer renderer(context, style.width, style.height);
   TaskQueue writers(writer_threads(arguments));
@@ -79,7 +103,7 @@ bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation&
       return false;
     }
     progress.show(static_cast<double>(i) / static_cast<double>(missing.size()));
-    auto image = std::make_shared<const Image>(renderer.draw(builder.build(times[missing[i]])));
+    auto image = std::make_shared<const Image>(renderer.draw(builder.build(shots[missing[i]])));
     writers.add([image = std::move(image), path = folder.frame(missing[i]), &options, alpha] {
       if (options.supersample == 1) return write_png(path, *image, alpha);
       write_png(path, scaled_down(*image, options.width, options.height), alpha);

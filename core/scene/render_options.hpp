@@ -26,6 +26,25 @@ struct RenderOptions {
   int supersample = 1;             // every pixel is the mean of as many in each direction
   bool transparent = false;        // no background
   std::string look = "studio";
+  // What colours the rods: their group or a quantity, over a range that stays fixed through the film.
+  std::string colour_by = "group";
+  std::array<double, 2> colour_range{0.0, 0.0};  // in the quantity's unit; equal ends: from the run
+  // What is written or drawn over the picture.
+  bool title = true, time = true, legend = true, loads = true;
+  bool method = false, errors = false, scale_bar = false, axes = false, dimensions = false;
+  bool node_labels = false, rod_labels = false;
+  std::string inset = "";   // a column of series.csv, as a small figure that grows with the film
+  std::string trails = "";  // nodes that leave a trail: a name or a glob
+  int ghosts = 0;           // earlier poses that stay visible
+  // The camera.
+  std::string camera = "auto";
+  std::string projection = "perspective";
+  double zoom = 1.0;
+  double orbit = 0.0;      // turns around the motion by so much during the film [deg]
+  bool follow = false;     // keeps what is there in the picture, instead of the whole motion
+  double turntable = 0.0;  // after the motion one turn around its end that takes so long [s of film]
+  double hold = 0.0;       // the last picture stays for so long [s of film]
+  std::vector<CameraKey> camera_keys;
   // Which films are made of the frames; changes no frame.
   bool webp = true, gif = true, mp4 = true;
   int gif_width = 640;  // frames that are wider are scaled down to it for the GIF [pixels]
@@ -34,6 +53,7 @@ struct RenderOptions {
 };
 
 const std::vector<ParamSpec>& render_params();          // one row per key of [render]
+const std::vector<ParamSpec>& camera_key_params();         // of an entry of [[render.camera_keys]]
 RenderOptions render_options(const ParamSet& values);   // values: checked against render_params()
 ParamSet render_values(const RenderOptions& options);   // the other way round
 RenderOptions without_encoding(RenderOptions options);  // keys that change no frame at their defaults

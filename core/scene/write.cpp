@@ -101,7 +101,12 @@ std::string solver_text(const Scene& scene) {
 }
 
 std::string render_text(const RenderOptions& render) {
-  return "\n[render]\n" + params_text(render_params(), render_values(render));
+  std::string text = "\n[render]\n" + params_text(render_params(), render_values(render));
+  for (const CameraKey& key : render.camera_keys)
+    text += "\n[[render.camera_keys]]\n" + line("time", real_text(key.time)) +
+            line("azimuth", real_text(key.azimuth)) + line("elevation", real_text(key.elevation)) +
+            line("zoom", real_text(key.zoom));
+  return text;
 }
 
 }  // namespace

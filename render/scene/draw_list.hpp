@@ -2,8 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "render/plot/figure.hpp"
 
 namespace unfurl {
 
@@ -76,6 +79,12 @@ struct OverlayArea {  // a filled rectangle over the picture, under the lines [p
   Color color;
 };
 
+struct Inset {  // a figure over the picture; null: none
+  std::shared_ptr<const Figure> figure;
+  float x = 0, y = 0, width = 0, height = 0;  // [pixels]
+  double pixels_per_point = 1;
+};
+
 struct Ground {
   bool shown = true;
   bool grid = true;  // else only the shadow tells where it is
@@ -95,6 +104,7 @@ struct DrawList {
   std::vector<OverlayArea> areas;
   std::vector<OverlayLine> lines;
   std::vector<TextLabel> labels;
+  Inset inset;
   Ground ground;
   // A sphere around everything that casts a shadow. Keep it still through a film, or the shadows' edges
   // crawl.

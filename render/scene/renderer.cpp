@@ -151,9 +151,10 @@ void Renderer::draw_outlines(const DrawList& list, const Matrix4f& view, const M
 // Ghosts do not cover each other nor what is solid: drawn last, blended, and each pixel once.
 void Renderer::draw_ghosts(const DrawList& list, const Matrix4f& view, const Matrix4f& light) {
   if (list.ghosts.empty()) return;
-  upload(bodies_[ghost_body], tubes_of(list.ghosts));
-  const Program& program = begin_solids("ghost", shaders::ghost_fragment, list, view, light);
-  program.set("opacity", list.ghosts.front().color.a);
+  std::vector<SolidInstance> tubes = tubes_of(list.ghosts);
+  for (std::size_t i = 0; i < tubes.size(); ++i) tubes[i].metal = list.ghosts[i].color.a;
+  upload(bodies_[ghost_body], tubes);
+  begin_solids("ghost", shaders::ghost_fragment, list, view, light);
   begin_blending();
   gl::DepthMask(GL_TRUE);
   draw_body(bodies_[ghost_body], &Body::fine);

@@ -162,9 +162,9 @@ void main() {
 
 // What is seen through: ghosts of other poses.
 inline constexpr const char* ghost_fragment = R"(
-uniform float opacity;
 void main() {
   vec3 n = normalize(normal);
+  float opacity = metal_roughness.x;
   color = vec4(misty(pow(albedo, vec3(1.0 / 2.2)) * mix(0.85, 1.0, 0.5 + 0.5 * n.z)), opacity);
 })";
 

@@ -116,6 +116,9 @@ Scene random_custom_scene(unsigned seed) {
   scene.render.speed = 1.0 / 7.0;
   scene.render.look = "print";
   scene.render.gif = false;
+  scene.render.colour_range = {-2.5, 1.0 / 3.0};
+  scene.render.trails = "B*";
+  scene.render.camera_keys = {{0.0, -60.0, 20.0, 1.0}, {1.0 / 3.0, 10.0, 45.0, 2.5}};
   scene.render.supersample = 2;
   return scene;
 }
