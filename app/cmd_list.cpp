@@ -1,4 +1,8 @@
+<<<<<<< HEAD
 // unfurl list structures|methods|figures|scenes|constraints|forces|measures: what there is to choose from.
+=======
+// unfurl list structures|methods|figures|scenes|constraints|forces|looks: what there is to choose from.
+>>>>>>> pictures
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
@@ -13,6 +17,7 @@
 #include "core/structures/family.hpp"
 #include "core/study/measures.hpp"
 #include "render/plot/figures.hpp"
+#include "render/scene/look.hpp"
 
 namespace unfurl {
 
@@ -74,15 +79,31 @@ std::vector<Item> force_items() {
   return items;
 }
 
+std::vector<Item> look_items() {
+  std::vector<Item> items;
+  for (const auto& look : looks()) items.push_back({std::string(look.name), std::string(look.help), nullptr});
+  return items;
+}
+
 struct List {
   std::string_view name;
   std::vector<Item> (*items)();
 };
 
+<<<<<<< HEAD
 constexpr List lists[] = {{"structures", structure_items},   {"methods", method_items},
                           {"figures", figure_items},         {"scenes", scene_items},
                           {"constraints", constraint_items}, {"forces", force_items},
                           {"measures", measure_items}};
+=======
+constexpr List lists[] = {{"structures", structure_items},
+                          {"methods", method_items},
+                          {"figures", figure_items},
+                          {"scenes", scene_items},
+                          {"constraints", constraint_items},
+                          {"forces", force_items},
+                          {"looks", look_items}};
+>>>>>>> pictures
 
 std::string default_text(const ParamSpec& spec) {
   if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";

@@ -28,6 +28,7 @@ struct Arguments {
   std::vector<std::string> names;      // the words behind the verb: SCENE NAME...
   std::vector<std::string> overrides;  // --set
   std::string output;                  // -o; empty: not given
+  std::string frames;                  // --frames FIRST:END; empty: all
   bool force = false;
   bool quiet = false;
   bool json = false;

@@ -3,6 +3,8 @@
 #include <zlib.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -30,6 +32,11 @@ unsigned char* deflate_for_stb(unsigned char* data, int size, int* out_size, int
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #include <stb_image_write.h>
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#include <stb_image.h>
 
 namespace unfurl {
 namespace {
@@ -74,6 +81,22 @@ std::vector<std::byte> encode_png(const Image& image, bool alpha) {
 
 void write_png(const std::filesystem::path& path, const Image& image, bool alpha) {
   write_file_atomically(path, encode_png(image, alpha));
+}
+
+Image read_png(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw FileError(path, "cannot be read");
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  Image image;
+  int channels = 0;
+  const std::unique_ptr<unsigned char, decltype(&stbi_image_free)> pixels(
+      stbi_load_from_memory(reinterpret_cast<const unsigned char*>(bytes.data()),
+                            static_cast<int>(bytes.size()), &image.width, &image.height, &channels, 4),
+      &stbi_image_free);
+  if (!pixels) throw FileError(path, "is not a whole PNG file");
+  const std::size_t size = 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  image.rgba.assign(pixels.get(), pixels.get() + size);
+  return image;
 }
 
 }  // namespace unfurl

@@ -14,4 +14,7 @@ std::vector<std::byte> encode_png(const Image& image, bool alpha = false);
 // The file appears whole or not at all. Throws FileError.
 void write_png(const std::filesystem::path& path, const Image& image, bool alpha = false);
 
+// Any PNG. Throws FileError where there is none or it cannot be read.
+Image read_png(const std::filesystem::path& path);
+
 }  // namespace unfurl

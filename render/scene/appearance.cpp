@@ -1,7 +1,8 @@
 #include "render/scene/appearance.hpp"
 
 #include <algorithm>
-#include <array>
+
+#include "render/scene/look.hpp"
 
 namespace unfurl {
 namespace {
@@ -46,13 +47,7 @@ void add_pins(const Structure& s, Appearance& looks) {
 }  // namespace
 
 Color group_color(std::size_t index) {
-  static constexpr std::array<Color, 6> palette{{{0.00f, 0.37f, 0.66f, 1},    // blue
-                                                 {0.88f, 0.50f, 0.02f, 1},    // orange
-                                                 {0.00f, 0.55f, 0.40f, 1},    // bluish green
-                                                 {0.72f, 0.38f, 0.58f, 1},    // reddish purple
-                                                 {0.25f, 0.62f, 0.85f, 1},    // sky blue
-                                                 {0.80f, 0.30f, 0.00f, 1}}};  // vermilion
-  return palette[index % palette.size()];
+  return looks().front().group(index);
 }
 
 Appearance appearance_of(const Structure& s, double size) {

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <memory>
+#include <string>
 
 #include "render/gl/context.hpp"
 #include "render/gl/framebuffer.hpp"
@@ -41,16 +44,26 @@ class Renderer {
   static Body make_body(const Mesh& fine, const Mesh& coarse);
   static void destroy_shape(const Shape& shape);
   static void upload(Body& body, const std::vector<SolidInstance>& instances);
+  static void draw_body(const Body& body, Shape Body::*shape);
   void draw_bodies(Shape Body::*shape) const;
   void draw_shadows(const DrawList& list, const Eigen::Matrix4f& light) const;
-  void draw_solids(const DrawList& list, const Eigen::Matrix4f& view, const Eigen::Matrix4f& light) const;
+  // A look's program is made at its first picture.
+  const Program& solid_program(const char* name, const char* fragment);
+  const Program& begin_solids(const char* name, const char* fragment, const DrawList& list,
+                              const Eigen::Matrix4f& view, const Eigen::Matrix4f& light);
+  void draw_solids(const DrawList& list, const Eigen::Matrix4f& view, const Eigen::Matrix4f& light);
+  void draw_outlines(const DrawList& list, const Eigen::Matrix4f& view, const Eigen::Matrix4f& light);
+  void draw_ghosts(const DrawList& list, const Eigen::Matrix4f& view, const Eigen::Matrix4f& light);
+  static void begin_blending();
+  static void end_blending();
   void draw_surroundings(const DrawList& list, const Eigen::Matrix4f& view,
                          const Eigen::Matrix4f& light) const;
   void set_background(const Program& program, const DrawList& list) const;
 
   Framebuffer frame_;
-  Program depth_, shade_, solid_, background_, ground_;
-  std::array<Body, 3> bodies_;  // capsules, balls, cylinders
+  Program depth_, shade_, background_, ground_;
+  std::map<std::string, std::unique_ptr<Program>> solid_;  // by name
+  std::array<Body, 4> bodies_;                             // capsules, balls, cylinders, ghosts
   unsigned empty_array_ = 0;
   TextureTarget shadow_map_;                     // depth from the light
   TextureTarget shade_across_, shade_on_floor_;  // the shadow on the floor, blurred one way, then both
