@@ -1,8 +1,5 @@
-<<<<<<< HEAD
-// unfurl list structures|methods|figures|scenes|constraints|forces|measures: what there is to choose from.
-=======
-// unfurl list structures|methods|figures|scenes|constraints|forces|looks: what there is to choose from.
->>>>>>> pictures
+// unfurl list structures|methods|figures|scenes|constraints|forces|looks|measures: what there is to choose
+// from.
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
@@ -90,20 +87,14 @@ struct List {
   std::vector<Item> (*items)();
 };
 
-<<<<<<< HEAD
-constexpr List lists[] = {{"structures", structure_items},   {"methods", method_items},
-                          {"figures", figure_items},         {"scenes", scene_items},
-                          {"constraints", constraint_items}, {"forces", force_items},
-                          {"measures", measure_items}};
-=======
 constexpr List lists[] = {{"structures", structure_items},
                           {"methods", method_items},
                           {"figures", figure_items},
                           {"scenes", scene_items},
                           {"constraints", constraint_items},
                           {"forces", force_items},
-                          {"looks", look_items}};
->>>>>>> pictures
+                          {"looks", look_items},
+                          {"measures", measure_items}};
 
 std::string default_text(const ParamSpec& spec) {
   if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";

@@ -23,13 +23,8 @@ constexpr Command table[] = {
     {"reproduce", "-o DIR", "the paper's tables and figures, beside ours", 0, 0, true, cmd_reproduce},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
      1, 1, false, cmd_check},
-<<<<<<< HEAD
-    {"list", "structures|methods|figures|scenes|constraints|forces|measures", "what there is to choose from",
-     1, 1, false, cmd_list},
-=======
-    {"list", "structures|methods|figures|scenes|constraints|forces|looks", "what there is to choose from", 1, 1,
-     false, cmd_list},
->>>>>>> pictures
+    {"list", "structures|methods|figures|scenes|constraints|forces|looks|measures",
+     "what there is to choose from", 1, 1, false, cmd_list},
 };
 
 }  // namespace
