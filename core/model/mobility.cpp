@@ -65,10 +65,9 @@ Index rigid_motions(const SparseRows& G, const ConstVec& q) {
     }
   }
   if (G.rows() == 0) return 6;
-  const auto rank = [](const MatrixXd& A) {
-    const VectorXd sigma = A.jacobiSvd().singularValues();
-    return (sigma.array() > 1e-9 * sigma[0]).count();
-  };
+  // Rows of G have the length 1 and entries of R are below 1: round-off is 1e-15, a motion that a row forbids
+  // 1e-3 and more.
+  const auto rank = [](const MatrixXd& A) { return (A.jacobiSvd().singularValues().array() > 1e-9).count(); };
   return rank(R) - rank(G * R);
 }
 
