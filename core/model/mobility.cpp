@@ -64,12 +64,10 @@ Index rigid_motions(const SparseRows& G, const ConstVec& q) {
       R.block<3, 1>(3 * i, 3 + k) = Vec3::Unit(k).cross(x);
     }
   }
-  if (G.rows() == 0) return 6;
-  const auto rank = [](const MatrixXd& A) {
-    const VectorXd sigma = A.jacobiSvd().singularValues();
-    return (sigma.array() > 1e-9 * sigma[0]).count();
-  };
-  return rank(R) - rank(G * R);
+  // Rows of G have the length 1 and entries of R are below 1: round-off is 1e-15, a motion that a row forbids
+  // 1e-3 and more.
+  const auto rank = [](const MatrixXd& A) { return (A.jacobiSvd().singularValues().array() > 1e-9).count(); };
+  return rank(R) - (G.rows() > 0 ? rank(G * R) : 0);
 }
 
 // Rows before a row may nearly depend on each other although all rows together do not; then round-off in what
@@ -96,7 +94,8 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
 
   const bool dense = G.cols() <= max_dense_coordinates;
   const MatrixXd full = dense ? MatrixXd(G) : MatrixXd();
-  const VectorXd singular_values = dense ? VectorXd(full.bdcSvd().singularValues()) : VectorXd();
+  const VectorXd singular_values =
+      dense && full.size() > 0 ? VectorXd(full.bdcSvd().singularValues()) : VectorXd();
   const std::vector<int> dependent = dense ? dependent_rows(full, singular_values)
                                            : eliminate(G, VectorXd::Zero(G.rows()), tolerance).redundant;
 

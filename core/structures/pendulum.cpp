@@ -32,7 +32,7 @@ Structure build_pendulum(const ParamSet& params) {
   Assembly a;
   const int pivot = a.node("pivot", Vec3::Zero());
   const int bob = a.node("bob", l * along, bob_mass, velocity);
-  a.rod(pivot, bob, l, rod_mass, "rod", 0.0);
+  a.rod(pivot, bob, l, rod_mass, "rod", 0.01 * l);  // slender, for the eye only
   a.fix(pivot);
   a.structure.kind = "pendulum";
   show_as_solved(a.structure);

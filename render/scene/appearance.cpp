@@ -1,6 +1,7 @@
 #include "render/scene/appearance.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/scene/look.hpp"
 
@@ -44,6 +45,17 @@ void add_pins(const Structure& s, Appearance& looks) {
       looks.joint_radius[i] = 1.5 * thickest * on_rods[static_cast<std::size_t>(s.node_copies[i].source)];
 }
 
+// Nodes with a mass of their own, bobs and payloads, have larger balls: by the cube root of it, up to two and
+// a half times.
+void enlarge_masses(const Structure& s, Appearance& looks) {
+  double rods = 0;
+  for (const Rod& rod : s.rods) rods += rod.mass / static_cast<double>(s.rods.size());
+  for (std::size_t i = 0; i < s.node_copies.size(); ++i) {
+    const double mass = s.nodes[static_cast<std::size_t>(s.node_copies[i].source)].mass;
+    if (mass > 0) looks.joint_radius[i] *= 1.0 + std::min(1.5, std::cbrt(mass / std::max(rods, 1e-3 * mass)));
+  }
+}
+
 }  // namespace
 
 Color group_color(std::size_t index) {
@@ -69,6 +81,7 @@ Appearance appearance_of(const Structure& s, double size) {
     }
   }
   add_pins(s, out);
+  enlarge_masses(s, out);
   std::vector<bool> held(s.nodes.size(), false);
   for (const Constraint& c : s.constraints) {
     if (c.kind != "fixed") continue;

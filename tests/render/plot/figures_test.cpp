@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tests/render/plot/recording_canvas.hpp"
+#include "tests/support/family_structure.hpp"
 #include "tests/support/models.hpp"
 
 namespace unfurl {
@@ -32,6 +33,11 @@ const Run& sector() {
           0.02, 9.0);
   return r;
 }
+const Run& sheet() {
+  static const Run r =
+      run(testing::family_structure("reentrant_sheet", {{"rows", 2L}, {"columns", 2L}}), 0.02, 9.0);
+  return r;
+}
 const Run& pendulum() {
   static const Run r = run(testing::double_pendulum(), 0.02, 1.0);
   return r;
@@ -52,7 +58,7 @@ TEST_CASE("every figure of the table is found by its name and names its file", "
 }
 
 TEST_CASE("figures of real runs are in order", "[figures]") {
-  for (const Run* r : {&hoop(), &sector(), &pendulum()}) {
+  for (const Run* r : {&hoop(), &sector(), &pendulum(), &sheet()}) {
     for (const FigureKind& kind : figure_kinds()) {
       if (!kind.applies(r->simulation, r->diagnostics)) continue;
       CAPTURE(kind.name, r->simulation.trajectory.structure().kind);
@@ -170,6 +176,17 @@ TEST_CASE("a plane mechanism is seen along its normal", "[figures]") {
     CHECK(std::hypot(s.x1 - s.x0, s.y1 - s.y0) ==
           Approx(1).epsilon(1e-6));  // true length; cubic between the steps
   }
+}
+
+TEST_CASE("Poisson's ratio has a figure where a structure names its strains", "[figures]") {
+  const FigureKind* kind = find_figure("poisson");
+  REQUIRE(kind);
+  CHECK_FALSE(kind->applies(hoop().simulation, hoop().diagnostics));
+  REQUIRE(kind->applies(sheet().simulation, sheet().diagnostics));
+  const Figure f = sheet().figure("poisson");
+  REQUIRE(f.panels.size() == 2);
+  CHECK(f.panels[0].curves.size() == 2);
+  CHECK(f.panels[1].curves.at(0).y == sheet().diagnostics.at("poisson_ratio").values);
 }
 
 }  // namespace unfurl
