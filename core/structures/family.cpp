@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/structures/four_bar_ladder.hpp"
 #include "core/structures/hoop.hpp"
 
 namespace unfurl {
@@ -10,6 +11,8 @@ namespace unfurl {
 std::span<const Family> families() {
   static const std::array rows{
       Family{"hoop", "ring antenna of n re-entrant units that share their posts", hoop_params, build_hoop},
+      Family{"four_bar_ladder", "row of four-bar windows that passes poses with all rods collinear",
+             four_bar_ladder_params, build_four_bar_ladder},
   };
   return rows;
 }
