@@ -284,7 +284,8 @@ Claims dvm_claims(const SolverOptions& options) {
                 .symmetric = true,
                 .implicit = true,
                 .holds_positions = true,
-                .holds_velocities = true};
+                .holds_velocities = true,
+                .conserves_momentum_maps = true};
   const int s = options.stages;
   if (options.constraints_at == "ends")
     claims.order = 2;
