@@ -6,6 +6,7 @@
 #include "core/structures/bricard.hpp"
 #include "core/structures/chain.hpp"
 #include "core/structures/hoberman.hpp"
+#include "core/structures/four_bar_ladder.hpp"
 #include "core/structures/hoop.hpp"
 #include "core/structures/pendulum.hpp"
 #include "core/structures/reentrant_sheet.hpp"
@@ -30,6 +31,8 @@ std::span<const Family> families() {
              bricard_params, build_bricard},
       Family{"chain", "rigid links in a row, hanging, falling or free", chain_params, build_chain},
       Family{"pendulum", "a rod with a bob, swinging from a fixed point", pendulum_params, build_pendulum},
+      Family{"four_bar_ladder", "row of four-bar windows that passes poses with all rods collinear",
+             four_bar_ladder_params, build_four_bar_ladder},
   };
   return rows;
 }
