@@ -10,10 +10,12 @@ constexpr Command table[] = {
     {"figure", "SCENE NAME... -o FILE",
      "one figure, PNG or SVG by extension; NAME all: every figure, into a directory", 2, 100, true,
      cmd_figure},
+    {"poster", "SCENE -o FILE.png", "a strip of poses side by side, from start to end (--poses N)", 1, 1,
+     true, cmd_poster},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
      1, 1, false, cmd_check},
-    {"list", "structures|methods|figures|scenes|constraints|forces|looks", "what there is to choose from", 1, 1,
-     false, cmd_list},
+    {"list", "structures|methods|figures|scenes|constraints|forces|looks", "what there is to choose from", 1,
+     1, false, cmd_list},
 };
 
 }  // namespace
