@@ -103,6 +103,7 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_option("--set", a.overrides)->allow_extra_args(false);
   parser.add_option("-o,--output", a.output);
   parser.add_option("--frames", a.frames);
+  parser.add_option("--poses", a.poses)->check(CLI::Range(1, 20));
   add_short_cuts(parser, a.overrides);
   parser.add_flag("--force", a.force);
   parser.add_flag("--quiet", a.quiet);

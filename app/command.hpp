@@ -29,6 +29,7 @@ struct Arguments {
   std::vector<std::string> overrides;  // --set
   std::string output;                  // -o; empty: not given
   std::string frames;                  // --frames FIRST:END; empty: all
+  int poses = 5;                       // --poses
   bool force = false;
   bool quiet = false;
   bool json = false;
@@ -50,6 +51,7 @@ std::span<const Command> commands();
 
 int cmd_run(const Arguments& arguments);
 int cmd_render(const Arguments& arguments);
+int cmd_poster(const Arguments& arguments);
 int cmd_figure(const Arguments& arguments);
 int cmd_check(const Arguments& arguments);
 int cmd_study(const Arguments& arguments);

@@ -21,6 +21,8 @@ constexpr Command table[] = {
     {"solve", "SCENE --find KEY --target NAME=VALUE", "the parameter for which a measure takes a value", 1, 1,
      false, cmd_solve, "--find --target --between"},
     {"reproduce", "-o DIR", "the paper's tables and figures, beside ours", 0, 0, true, cmd_reproduce},
+    {"poster", "SCENE -o FILE.png", "a strip of poses side by side, from start to end (--poses N)", 1, 1,
+     true, cmd_poster, "--poses"},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
      1, 1, false, cmd_check},
     {"list", "structures|methods|figures|scenes|constraints|forces|looks|measures",

@@ -48,9 +48,9 @@ void check_names(const Scene& scene, const Simulation& run, const Diagnostics& d
   NameIndex nodes;
   for (const NodeCopy& copy : run.trajectory.structure().node_copies) nodes.add(copy.name);
   if (!options.trails.empty() && nodes.matching(options.trails).empty())
-    throw SceneError({{place_of(scene, "render.trails"), "render.trails",
-                       "no node matches " + in_quotes(options.trails) +
-                           did_you_mean(options.trails, nodes.names())}});
+    throw SceneError(
+        {{place_of(scene, "render.trails"), "render.trails",
+          "no node matches " + in_quotes(options.trails) + did_you_mean(options.trails, nodes.names())}});
 }
 
 FrameStyle style_of(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {

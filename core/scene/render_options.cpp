@@ -74,7 +74,8 @@ std::vector<Key> picture_keys() {
       {choice_param("colour_by", "", {"group", "axial_force", "speed", "constraint_error"},
                     "what the colours of the rods stand for"),
        &R::colour_by},
-      {vector_param("colour_range", "", {0, 0}, "from which value to which the colours run; [0, 0]: the run's"),
+      {vector_param("colour_range", "", {0, 0},
+                    "from which value to which the colours run; [0, 0]: the run's"),
        &R::colour_range},
   };
 }
@@ -109,7 +110,8 @@ std::vector<Key> camera_keys() {
       {real_param("orbit", "deg", 0, -36000, 36000, "the camera's turn around the motion during the film"),
        &R::orbit},
       {boolean_param("follow", false, "frame what is there, instead of the whole motion"), &R::follow},
-      {real_param("turntable", "s", 0, 0, 3600, "after the motion one turn around its end in so much film time"),
+      {real_param("turntable", "s", 0, 0, 3600,
+                  "after the motion one turn around its end in so much film time"),
        &R::turntable},
       {real_param("hold", "s", 0, 0, 3600, "film time for which the last picture stays"), &R::hold},
   };
@@ -120,7 +122,8 @@ std::vector<Key> film_keys() {
       {boolean_param("webp", false, "make animation.webp"), &R::webp, false},
       {boolean_param("gif", false, "make animation.gif"), &R::gif, false},
       {boolean_param("mp4", false, "make animation.mp4 where ffmpeg is"), &R::mp4, false},
-      {integer_param("gif_width", 0, 16, 8192, "the GIF is at most so many pixels wide"), &R::gif_width, false},
+      {integer_param("gif_width", 0, 16, 8192, "the GIF is at most so many pixels wide"), &R::gif_width,
+       false},
   };
 }
 

@@ -53,7 +53,7 @@ struct RenderOptions {
 };
 
 const std::vector<ParamSpec>& render_params();          // one row per key of [render]
-const std::vector<ParamSpec>& camera_key_params();         // of an entry of [[render.camera_keys]]
+const std::vector<ParamSpec>& camera_key_params();      // of an entry of [[render.camera_keys]]
 RenderOptions render_options(const ParamSet& values);   // values: checked against render_params()
 ParamSet render_values(const RenderOptions& options);   // the other way round
 RenderOptions without_encoding(RenderOptions options);  // keys that change no frame at their defaults

@@ -74,4 +74,21 @@ Image on_white(Image image) {
   return image;
 }
 
+Image side_by_side(const std::vector<Image>& images) {
+  Image out;
+  if (images.empty()) return out;
+  out.height = images.front().height;
+  for (const Image& image : images) {
+    if (image.height != out.height) throw std::invalid_argument("side_by_side: the heights differ");
+    out.width += image.width;
+  }
+  for (int y = 0; y < out.height; ++y) {
+    for (const Image& image : images) {
+      const auto row = image.rgba.begin() + 4 * static_cast<std::ptrdiff_t>(y) * image.width;
+      out.rgba.insert(out.rgba.end(), row, row + 4 * static_cast<std::ptrdiff_t>(image.width));
+    }
+  }
+  return out;
+}
+
 }  // namespace unfurl

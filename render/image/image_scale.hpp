@@ -11,4 +11,7 @@ Image scaled_down(const Image& image, int width, int height);
 // The picture before a white wall, without transparency.
 Image on_white(Image image);
 
+// Pictures of one height, from left to right.
+Image side_by_side(const std::vector<Image>& images);
+
 }  // namespace unfurl

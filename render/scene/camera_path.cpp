@@ -96,9 +96,9 @@ CameraPath::CameraPath(std::vector<std::vector<Vec3>> poses, std::vector<double>
   if (keys_.empty() && orbit_ == 0 && !turntable_) return;
   for (const double elevation : elevations)
     for (int k = 0; k < directions; ++k)
-      distance_ = std::max(distance_, centered_distance(all, bounds_.center,
-                                                        {start_.azimuth + 2 * pi * k / directions, elevation},
-                                                        framing_));
+      distance_ = std::max(
+          distance_, centered_distance(all, bounds_.center,
+                                       {start_.azimuth + 2 * pi * k / directions, elevation}, framing_));
 }
 
 // Each sample frames all that moves within the window around it. A moment's camera is the mean of those whose
@@ -108,8 +108,11 @@ void CameraPath::prepare_follow() {
   const double start = times_.front(), span = times_.back() - start;
   std::vector<Camera> fitted;
   for (int k = 0; k < follow_samples; ++k) {
-    const auto time = [&](int i) { return start + span * std::clamp(i, 0, follow_samples - 1) / (follow_samples - 1); };
-    const auto first = std::lower_bound(times_.begin(), times_.end(), time(k - follow_window)) - times_.begin();
+    const auto time = [&](int i) {
+      return start + span * std::clamp(i, 0, follow_samples - 1) / (follow_samples - 1);
+    };
+    const auto first =
+        std::lower_bound(times_.begin(), times_.end(), time(k - follow_window)) - times_.begin();
     const auto end = std::upper_bound(times_.begin(), times_.end(), time(k + follow_window)) - times_.begin();
     const auto low = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, first - 1));
     const std::size_t high = std::min(poses_.size(), static_cast<std::size_t>(end) + 1);

@@ -48,7 +48,7 @@ class CameraPath {
   bool turntable_ = false, follow_ = false;
   std::vector<CameraKey> keys_;
   Camera still_;
-  double distance_ = 0;         // of the moving cameras from the centre [m]
+  double distance_ = 0;              // of the moving cameras from the centre [m]
   std::vector<Camera> follow_path_;  // at equal steps of the time
 };
 

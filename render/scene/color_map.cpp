@@ -23,8 +23,13 @@ Color along(const std::array<Rgb, n>& stops, double x) {
 }  // namespace
 
 Color diverging_color(double x) {
-  static constexpr std::array<Rgb, 7> stops{{{40, 60, 180}, {85, 125, 225}, {145, 180, 235}, {200, 200, 200},
-                                             {235, 160, 130}, {215, 90, 70}, {165, 5, 35}}};
+  static constexpr std::array<Rgb, 7> stops{{{40, 60, 180},
+                                             {85, 125, 225},
+                                             {145, 180, 235},
+                                             {200, 200, 200},
+                                             {235, 160, 130},
+                                             {215, 90, 70},
+                                             {165, 5, 35}}};
   return along(stops, 0.5 + 0.5 * x);
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/structures/name_index.hpp"
 #include "render/scene/frame_overlay.hpp"
+#include "render/scene/pose_times.hpp"
 
 namespace unfurl {
 namespace {
@@ -26,25 +27,6 @@ double round_length(double x) {
     if (step * power <= x) return step * power;
   }
   return power;
-}
-
-// Which states lie at equal steps of the way that all nodes go: `count` of them from the first one on.
-std::vector<std::size_t> equal_steps(const Trajectory& run, std::size_t count) {
-  std::vector<double> way{0.0};
-  VectorXd last = run.positions(0);
-  for (std::size_t i = 1; i < run.size(); ++i) {
-    const VectorXd next = run.positions(i);
-    way.push_back(way.back() + (next - last).norm());
-    last = next;
-  }
-  std::vector<std::size_t> states;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double wanted = way.back() * static_cast<double>(k) / static_cast<double>(count);
-    const auto at = std::lower_bound(way.begin(), way.end(), wanted) - way.begin();
-    if (states.empty() || static_cast<std::size_t>(at) > states.back())
-      states.push_back(static_cast<std::size_t>(at));
-  }
-  return states;
 }
 
 Color mixed(const Color& a, const Color& b, float u) {
@@ -89,7 +71,9 @@ double FrameBuilder::prepare_camera() {
   const double thickest = looks_.joint_radius.empty() ? 0.0 : *std::ranges::max_element(looks_.joint_radius);
   Framing framing;
   framing.around = thickest + (style_.loads && !s.load_copies.empty() ? 0.5 * looks_.arrow_length : 0.0);
+  if (look_->dimensions || style_.options.dimensions) framing.around += 0.08 * bounds_.radius;
   framing.aspect = static_cast<double>(style_.width) / style_.height;
+  if (!style_.options.inset.empty() && style_.diagnostics) framing.margins.right = 0.27;
   path_ = std::make_unique<CameraPath>(std::move(poses), std::move(times), bounds_, framing, style_.options);
   return thickest;
 }
@@ -207,9 +191,9 @@ void FrameBuilder::add_ghosts(double t, DrawList& list) const {
     for (const RodCopy& rod : trajectory_.structure().rod_copies) {
       Color color = mixed(rod_color(ghost.t, rod), look_->background_bottom, 0.25f);
       color.a = 0.30f;
-      list.ghosts.push_back({node(ghost.whole, rod.a).cast<float>(), node(ghost.whole, rod.b).cast<float>(),
-                             0.7f * static_cast<float>(looks_.rod_radius[static_cast<std::size_t>(rod.source)]),
-                             color});
+      list.ghosts.push_back(
+          {node(ghost.whole, rod.a).cast<float>(), node(ghost.whole, rod.b).cast<float>(),
+           0.7f * static_cast<float>(looks_.rod_radius[static_cast<std::size_t>(rod.source)]), color});
     }
   }
 }

@@ -1,4 +1,5 @@
-// The part of the overlay that is a figure: one column of the run's series, drawn as far as the film has come.
+// The part of the overlay that is a figure: one column of the run's series, drawn as far as the film has
+// come.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -24,7 +25,8 @@ void FrameOverlay::prepare_inset() {
   curve.y = series->values;
   curve.width = 1.6f;
   panel.curves.push_back(std::move(curve));
-  const plot::Limits x = plot::axis_limits(panel, plot::AxisOf::x), y = plot::axis_limits(panel, plot::AxisOf::y);
+  const plot::Limits x = plot::axis_limits(panel, plot::AxisOf::x),
+                     y = plot::axis_limits(panel, plot::AxisOf::y);
   panel.x.min = x.lo, panel.x.max = x.hi, panel.y.min = y.lo, panel.y.max = y.hi;
   inset_->panels.push_back(std::move(panel));
 }
@@ -37,8 +39,8 @@ void FrameOverlay::add_inset(double t, DrawList& list) const {
   figure->width_mm = static_cast<double>(wide) / pixels_per_point / plot::points_per_mm;
   figure->height_mm = static_cast<double>(high) / pixels_per_point / plot::points_per_mm;
   Curve& curve = figure->panels[0].curves[0];
-  const auto shown = static_cast<std::size_t>(
-      std::upper_bound(curve.x.begin(), curve.x.end(), t + 1e-12) - curve.x.begin());
+  const auto shown =
+      static_cast<std::size_t>(std::upper_bound(curve.x.begin(), curve.x.end(), t + 1e-12) - curve.x.begin());
   curve.x.resize(shown), curve.y.resize(shown);
   if (shown > 0) {  // a dot where the film is
     Curve here;

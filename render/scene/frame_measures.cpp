@@ -27,7 +27,9 @@ double round_length(double x) {
 struct Screen {
   Vec3f forward, right, up;
   explicit Screen(const Camera& c)
-      : forward((c.target - c.eye).normalized()), right(forward.cross(c.up).normalized()), up(right.cross(forward)) {}
+      : forward((c.target - c.eye).normalized()),
+        right(forward.cross(c.up).normalized()),
+        up(right.cross(forward)) {}
 };
 
 Color clear_backing(const Look& look) {
@@ -49,7 +51,8 @@ void FrameOverlay::add_scale_bar(DrawList& list) const {
   const auto length = pixels * static_cast<float>(metres);
   const float x = 0.5f * (width_ - length), y = height_ - edge_, tick = 5 * unit_, thick = 2 * unit_;
   list.lines.push_back({x, y, x + length, y, thick, look_.ink});
-  for (const float end : {x, x + length}) list.lines.push_back({end, y - tick, end, y + tick, thick, look_.ink});
+  for (const float end : {x, x + length})
+    list.lines.push_back({end, y - tick, end, y + tick, thick, look_.ink});
   char text[32];
   std::snprintf(text, sizeof text, "%g m", metres);
   list.labels.push_back({x + 0.5f * length, y - 1.35f * small_, small_, look_.ink, text, 0.5f});
@@ -81,7 +84,8 @@ void FrameOverlay::add_dimension(const Vec3& a, const Vec3& b, const Vec3& away,
   const float thick = 1.2f * unit_, tick = 5 * unit_;
   list.lines.push_back({p.x(), p.y(), q.x(), q.y(), thick, look_.ink});
   for (const auto& [end, at] : {std::pair(p, a), std::pair(q, b)}) {
-    list.lines.push_back({end.x() - tick, end.y() + tick, end.x() + tick, end.y() - tick, 1.4f * thick, look_.ink});
+    list.lines.push_back(
+        {end.x() - tick, end.y() + tick, end.x() + tick, end.y() - tick, 1.4f * thick, look_.ink});
     const Vec3f from = place(at + 0.25 * away), to = place(at + 1.15 * away);
     Color pale = look_.ink;
     pale.a = 0.45f;
@@ -91,8 +95,8 @@ void FrameOverlay::add_dimension(const Vec3& a, const Vec3& b, const Vec3& away,
                          length_text(metres), 0.5f, false, clear_backing(look_)});
 }
 
-// Of the box around what there is, in the axes of the picture: the two lower edges towards the viewer, and the
-// leftmost upright one.
+// Of the box around what there is, in the axes of the picture: the two lower edges towards the viewer, and
+// the leftmost upright one.
 void FrameOverlay::add_dimensions(const VectorXd& whole, DrawList& list) const {
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   for (Index k = 0; k < whole.size() / 3; ++k) {
@@ -149,7 +153,8 @@ void FrameOverlay::add_name(const std::string& name, const Vec3& at, std::vector
       taken.push_back(box);
       Color pale = look_.ink;
       pale.a = 0.5f;
-      list.lines.push_back({p.x(), p.y(), p.x() + 0.85f * reach * dx, p.y() + 0.85f * reach * dy, unit_, pale});
+      list.lines.push_back(
+          {p.x(), p.y(), p.x() + 0.85f * reach * dx, p.y() + 0.85f * reach * dy, unit_, pale});
       list.labels.push_back({x, box.y0, line, look_.ink, name, 0.5f, false, clear_backing(look_)});
       return;
     }

@@ -106,8 +106,8 @@ void FrameOverlay::add_heading(double t, DrawList& list) const {
     const Diagnostics& d = *style_.diagnostics;
     list.labels.push_back({edge_, y, line, look_.ink,
                            "so far: constraints " + number_text(largest_until(d, "constraint_max_m", t)) +
-                               " m, energy balance " +
-                               number_text(largest_until(d, "energy_balance_J", t)) + " J"});
+                               " m, energy balance " + number_text(largest_until(d, "energy_balance_J", t)) +
+                               " J"});
   }
 }
 
@@ -137,9 +137,12 @@ void FrameOverlay::add_color_bar(DrawList& list) const {
   const float length = 280 * unit_, thick = 12 * unit_, line = std::round(0.8f * small_);
   const float x = width_ - edge_ - length, y = height_ - edge_ - 1.25f * line - thick;
   const double low = field_->low, high = field_->high;
-  const auto value = [&](double u) { return field_->log ? low * std::pow(high / low, u) : low + u * (high - low); };
+  const auto value = [&](double u) {
+    return field_->log ? low * std::pow(high / low, u) : low + u * (high - low);
+  };
   for (int k = 0; k < steps; ++k) {
-    const float a = x + length * static_cast<float>(k) / steps, b = x + length * static_cast<float>(k + 1) / steps;
+    const float a = x + length * static_cast<float>(k) / steps,
+                b = x + length * static_cast<float>(k + 1) / steps;
     list.areas.push_back({a, y, b, y + thick, field_->color(value((k + 0.5) / steps))});
   }
   for (const double u : {0.0, 0.5, 1.0}) {

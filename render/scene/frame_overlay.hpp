@@ -12,8 +12,8 @@ namespace unfurl {
 class FrameOverlay {
  public:
   // Everything given must outlive the overlay. field: null where rods are coloured by group.
-  FrameOverlay(const Trajectory& trajectory, const FrameStyle& style, const Look& look, const Appearance& looks,
-               const RodField* field, const Mat3& upright);
+  FrameOverlay(const Trajectory& trajectory, const FrameStyle& style, const Look& look,
+               const Appearance& looks, const RodField* field, const Mat3& upright);
 
   // whole: the positions of all nodes at the time t.
   void add(double t, const VectorXd& whole, DrawList& list) const;

@@ -104,11 +104,14 @@ struct Sight {
   double share_x, share_y;  // of the picture's width and height that are inside the margins
 
   Sight(const PointSource& points, const ViewAngles& view, const Framing& f)
-      : right(view.right()), up(view.up()), forward(-view.direction()),
+      : right(view.right()),
+        up(view.up()),
+        forward(-view.direction()),
         tan_y(f.parallel ? 0.0 : std::tan(0.5 * field_of_view)),
         x{tan_y * f.aspect * (1 - 2 * f.margins.left), tan_y * f.aspect * (1 - 2 * f.margins.right)},
         y{tan_y * (1 - 2 * f.margins.bottom), tan_y * (1 - 2 * f.margins.top)},
-        share_x(1 - f.margins.left - f.margins.right), share_y(1 - f.margins.bottom - f.margins.top) {
+        share_x(1 - f.margins.left - f.margins.right),
+        share_y(1 - f.margins.bottom - f.margins.top) {
     points([&](const Vec3& p) {
       const double depth = forward.dot(p);
       x.add(right.dot(p), depth, f.around);
@@ -152,8 +155,9 @@ Camera frame_points(const PointSource& points, const MotionBounds& bounds, const
   }
   const double fitted = std::min(sight.x.farthest(), sight.y.farthest());
   const double depth = center - (center - fitted) / f.zoom;
-  return looking(sight.x.middle(fitted) * sight.right + sight.y.middle(fitted) * sight.up + depth * sight.forward,
-                 bounds, view, f, 0);
+  return looking(
+      sight.x.middle(fitted) * sight.right + sight.y.middle(fitted) * sight.up + depth * sight.forward,
+      bounds, view, f, 0);
 }
 
 double centered_distance(const PointSource& points, const Vec3& center, const ViewAngles& view,
@@ -169,8 +173,8 @@ double centered_distance(const PointSource& points, const Vec3& center, const Vi
   return sight.forward.dot(center) - std::min(sight.x.farthest_at(x), sight.y.farthest_at(y));
 }
 
-Camera centered_camera(const MotionBounds& bounds, const Vec3& center, double distance, const ViewAngles& view,
-                       const Framing& f) {
+Camera centered_camera(const MotionBounds& bounds, const Vec3& center, double distance,
+                       const ViewAngles& view, const Framing& f) {
   if (!f.parallel) return looking(center + distance / f.zoom * view.direction(), bounds, view, f, 0);
   const double back = parallel_distance * (bounds.radius + f.around);
   return looking(center + back * view.direction(), bounds, view, f, distance / f.zoom);

@@ -41,10 +41,10 @@ ViewAngles automatic_view(const MotionBounds& bounds);
 
 // What a camera has to show, and how.
 struct Framing {
-  double around = 0;        // room for every point [m]
+  double around = 0;  // room for every point [m]
   double aspect = 16.0 / 9;
   Margins margins;
-  bool parallel = false;    // no perspective
+  bool parallel = false;  // no perspective
   double zoom = 1;
 };
 
@@ -52,12 +52,12 @@ struct Framing {
 Camera frame_points(const PointSource& points, const MotionBounds& bounds, const ViewAngles& view,
                     const Framing& framing);
 
-// How far such a camera must be from `center` at least (or how high its parallel picture) if it looks straight
-// at it [m].
+// How far such a camera must be from `center` at least (or how high its parallel picture) if it looks
+// straight at it [m].
 double centered_distance(const PointSource& points, const Vec3& center, const ViewAngles& view,
                          const Framing& framing);
 // The camera at that distance.
-Camera centered_camera(const MotionBounds& bounds, const Vec3& center, double distance, const ViewAngles& view,
-                       const Framing& framing);
+Camera centered_camera(const MotionBounds& bounds, const Vec3& center, double distance,
+                       const ViewAngles& view, const Framing& framing);
 
 }  // namespace unfurl

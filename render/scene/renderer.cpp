@@ -1,6 +1,8 @@
 #include "render/scene/renderer.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <string>
 
 #include "render/gl/functions.hpp"
@@ -25,6 +27,26 @@ Eigen::Vector4f eye_of(const Camera& camera) {
   if (camera.parallel_height <= 0) return {camera.eye.x(), camera.eye.y(), camera.eye.z(), 1};
   const Vec3f back = (camera.eye - camera.target).normalized();
   return {back.x(), back.y(), back.z(), 0};
+}
+
+constexpr float few_pixels = 2.5f;  // of radius: with so few, six sides look as round as twelve
+
+bool same(const std::vector<SolidInstance>& a, const std::vector<SolidInstance>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
+}
+
+// The largest radius in pixels that a body has in the picture, roughly.
+float thickest_pixels(const std::vector<SolidInstance>& bodies, const Camera& camera, int height) {
+  const Vec3f forward = (camera.target - camera.eye).normalized();
+  const float slope = 2 * std::tan(0.5f * camera.vertical_field_of_view);
+  float most = 0;
+  for (const SolidInstance& body : bodies) {
+    const float depth = std::max(
+        camera.near_plane, std::min(forward.dot(body.a - camera.eye), forward.dot(body.b - camera.eye)));
+    const float visible = camera.parallel_height > 0 ? camera.parallel_height : slope * depth;
+    most = std::max(most, std::max(body.radius_a, body.radius_b) / visible);
+  }
+  return most * static_cast<float>(height);
 }
 
 // What was blended over nothing holds its colours multiplied by its alpha.
@@ -201,12 +223,27 @@ void Renderer::draw_surroundings(const DrawList& list, const Matrix4f& view, con
   gl::DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Renderer::paint(const DrawList& list) {
-  const Solids solids = solids_of(list);
-  upload(bodies_[0], solids.capsules);
-  upload(bodies_[1], solids.balls);
-  upload(bodies_[2], solids.cylinders);
+// Returns whether anything is not as it was in the picture before.
+bool Renderer::upload_solids(const DrawList& list) {
+  Solids solids = solids_of(list);
+  const bool moved = !same(solids.capsules, solids_.capsules) || !same(solids.balls, solids_.balls) ||
+                     !same(solids.cylinders, solids_.cylinders) || list.ground.shown != floor_shown_;
+  if (moved) {
+    upload(bodies_[0], solids.capsules);
+    upload(bodies_[1], solids.balls);
+    upload(bodies_[2], solids.cylinders);
+    solids_ = std::move(solids);
+    floor_shown_ = list.ground.shown;
+  }
+  bodies_[0].small = thickest_pixels(solids_.capsules, list.camera, frame_.height()) < few_pixels;
+  bodies_[1].small = thickest_pixels(solids_.balls, list.camera, frame_.height()) < few_pixels;
+  bodies_[2].small = thickest_pixels(solids_.cylinders, list.camera, frame_.height()) < few_pixels;
   bodies_[ghost_body].instance_count = 0;
+  return moved;
+}
+
+void Renderer::paint(const DrawList& list) {
+  const bool moved = upload_solids(list);
   const float aspect = static_cast<float>(frame_.width()) / static_cast<float>(frame_.height());
   const Matrix4f view = view_projection(list.camera, aspect);
   const Matrix4f light = light_projection(list.light_direction, list.center, list.radius);
@@ -218,7 +255,10 @@ void Renderer::paint(const DrawList& list) {
   gl::DepthMask(GL_TRUE);
   gl::Enable(GL_CULL_FACE);
   gl::CullFace(GL_BACK);
-  draw_shadows(list, light);
+  if (moved || light != shadows_from_) draw_shadows(list, light);
+  shadows_from_ = light;
+  shadow_map_.use_as_texture(0);
+  shade_on_floor_.use_as_texture(1);
   frame_.bind();
   gl::ClearColor(0, 0, 0, 0);  // where there is a background it covers what is left
   gl::Clear(GL_DEPTH_BUFFER_BIT | (list.transparent ? GL_COLOR_BUFFER_BIT : 0U));
@@ -230,12 +270,17 @@ void Renderer::paint(const DrawList& list) {
   gl::Disable(GL_CULL_FACE);
   frame_.resolve();
   text_.draw(list, frame_.width(), frame_.height());
+  transparent_ = list.transparent;
 }
 
 Image Renderer::draw(const DrawList& list) {
   paint(list);
+  return read();
+}
+
+Image Renderer::read() const {
   Image image = frame_.read();
-  if (list.transparent) divide_by_alpha(image);
+  if (transparent_) divide_by_alpha(image);
   return image;
 }
 

@@ -29,6 +29,8 @@ class Renderer {
   Image draw(const DrawList& list);
   // The same without reading back: leaves the finished picture in the bound framebuffer.
   void paint(const DrawList& list);
+  // The picture that was painted last.
+  Image read() const;
 
  private:
   struct Shape {  // a mesh, with a body's instances
@@ -39,11 +41,13 @@ class Renderer {
     Shape fine, coarse;      // for the picture; for the shadow, where nobody counts the corners
     unsigned instances = 0;  // of this picture
     int instance_count = 0;
+    bool small = false;  // no body is more than a few pixels thick: the coarse shape is as good
   };
   static Shape make_shape(const Mesh& mesh, unsigned instances);
   static Body make_body(const Mesh& fine, const Mesh& coarse);
   static void destroy_shape(const Shape& shape);
   static void upload(Body& body, const std::vector<SolidInstance>& instances);
+  bool upload_solids(const DrawList& list);
   static void draw_body(const Body& body, Shape Body::*shape);
   void draw_bodies(Shape Body::*shape) const;
   void draw_shadows(const DrawList& list, const Eigen::Matrix4f& light) const;
@@ -68,6 +72,10 @@ class Renderer {
   TextureTarget shadow_map_;                     // depth from the light
   TextureTarget shade_across_, shade_on_floor_;  // the shadow on the floor, blurred one way, then both
   TextOverlay text_;
+  bool transparent_ = false;  // of the picture that was painted last
+  Solids solids_;             // that the buffers hold
+  bool floor_shown_ = false;
+  Eigen::Matrix4f shadows_from_ = Eigen::Matrix4f::Zero();  // the light that the shadow maps were drawn for
 };
 
 }  // namespace unfurl

@@ -69,9 +69,9 @@ void Renderer::upload(Body& body, const std::vector<SolidInstance>& instances) {
 
 void Renderer::draw_body(const Body& body, Shape Body::*shape) {
   if (body.instance_count == 0) return;
-  gl::BindVertexArray((body.*shape).vertex_array);
-  gl::DrawElementsInstanced(GL_TRIANGLES, (body.*shape).index_count, GL_UNSIGNED_SHORT, nullptr,
-                            body.instance_count);
+  const Shape& drawn = body.small ? body.coarse : body.*shape;
+  gl::BindVertexArray(drawn.vertex_array);
+  gl::DrawElementsInstanced(GL_TRIANGLES, drawn.index_count, GL_UNSIGNED_SHORT, nullptr, body.instance_count);
 }
 
 void Renderer::draw_bodies(Shape Body::*shape) const {

@@ -55,9 +55,10 @@ double length_error(const VectorXd& q, const VectorXd&, const Rod& rod) {
 // The run's own range. Forces blow up for an instant where a mechanism is straight: what is rare saturates.
 void choose_range(RodField& field) {
   const double most = quantile(field.values, 1.0), usual = quantile(field.values, typical);
-  const double high = rounded_up(std::max(most > 2 * usual && usual > 0 ? usual : most,
-                                          std::numeric_limits<double>::min() * 1e20));
-  field.high = field.log ? std::max(std::pow(10.0, std::ceil(std::log10(std::max(most, 1e-16)))), 1e-15) : high;
+  const double high = rounded_up(
+      std::max(most > 2 * usual && usual > 0 ? usual : most, std::numeric_limits<double>::min() * 1e20));
+  field.high =
+      field.log ? std::max(std::pow(10.0, std::ceil(std::log10(std::max(most, 1e-16)))), 1e-15) : high;
   field.low = field.diverging ? -field.high : field.log ? 1e-4 * field.high : 0;
 }
 

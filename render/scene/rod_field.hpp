@@ -11,9 +11,9 @@
 namespace unfurl {
 
 struct RodField {
-  std::string label;       // with its unit: "axial force (N), tension > 0"
-  std::vector<double> t;   // of the rows [s]
-  MatrixXd values;         // [states x solved rods]; NaN where it is not known
+  std::string label;      // with its unit: "axial force (N), tension > 0"
+  std::vector<double> t;  // of the rows [s]
+  MatrixXd values;        // [states x solved rods]; NaN where it is not known
   double low = 0, high = 1;
   bool diverging = false;  // around zero
   bool log = false;

@@ -31,9 +31,8 @@ void draw_inset(const Inset& inset, Sheet& sheet, ImDrawList& paper) {
   paper.AddRectFilled({inset.x, inset.y}, {inset.x + inset.width, inset.y + inset.height},
                       packed({1, 1, 1, 0.85f}), 0.03f * inset.height);
   const plot::FigureLayout layout = plot::lay_out(*inset.figure, {.title = false, .caption = false});
-  plot::ImguiCanvas canvas(
-      paper, [&](float pixels) { return sheet.font(pixels); }, inset.pixels_per_point,
-      {static_cast<double>(inset.x), static_cast<double>(inset.y)});
+  plot::ImguiCanvas canvas(paper, [&](float pixels) { return sheet.font(pixels); }, inset.pixels_per_point,
+                           {static_cast<double>(inset.x), static_cast<double>(inset.y)});
   plot::paint(*inset.figure, layout, canvas);
 }
 

@@ -50,9 +50,10 @@ float distance_to_others(const DrawList& list, std::size_t own, const Vec3f& pix
 }  // namespace
 
 TEST_CASE("every rod has the hue of its group wherever it is seen alone") {
-  const Scene scene = read_scene_text("structure.kind = \"hoop\"\nstructure.fold_angle = 85.0\n"
-                                      "structure.hinge_force = 200.0\nsolver.end_time = 10.0\n",
-                                      "ring.toml");
+  const Scene scene = read_scene_text(
+      "structure.kind = \"hoop\"\nstructure.fold_angle = 85.0\n"
+      "structure.hinge_force = 200.0\nsolver.end_time = 10.0\n",
+      "ring.toml");
   const Simulation run = simulate(build_model(scene), scene.solver);
   REQUIRE(run.status == RunStatus::deployed);
   FrameStyle style;
@@ -71,8 +72,8 @@ TEST_CASE("every rod has the hue of its group wherever it is seen alone") {
         const Vec3f pixel = project(list.camera, width, height, tube.a + u * (tube.b - tube.a));
         if (distance_to_others(list, i, pixel) < 12) continue;  // fittings are up to 10 pixels thick
         INFO("frame " << k << ", rod " << i << " at " << u);
-        // The lamp's warm light and the reflected room turn the hue by less than 20 degrees; the two groups are
-        // 170 degrees apart.
+        // The lamp's warm light and the reflected room turn the hue by less than 20 degrees; the two groups
+        // are 170 degrees apart.
         CHECK(hue_distance(hue_at(image, pixel), hue(tube.color.r, tube.color.g, tube.color.b)) < 25);
         ++looked;
       }
