@@ -12,6 +12,7 @@
 namespace unfurl {
 
 int cmd_render(const Arguments& arguments) {
+  const FigureOptions style = figure_options(arguments);
   const Scene scene = scene_of(arguments);
   check_film(scene);
   auto model = build_model(scene);
@@ -27,7 +28,7 @@ int cmd_render(const Arguments& arguments) {
   if (arguments.json) std::cout << summary << std::flush;
   if (run.status == RunStatus::stopped) return exit_interrupted;
 
-  FigureWriter writer(*context);
+  FigureWriter writer(*context, style);
   if (!write_film(directory, scene, run, *context, arguments) ||
       !write_figures(directory / "figures", all_figures(), run, diagnostics, writer, arguments)) {
     std::cerr << "unfurl: interrupted; what is finished is kept\n";
