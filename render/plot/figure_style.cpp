@@ -52,9 +52,12 @@ plot::LayoutOptions layout_options(const Figure& figure, const FigureStyle& styl
   out.width_mm = style.width_mm > 0 ? style.width_mm / style.scale : figure.width_mm;
   const bool to_scale =
       std::any_of(figure.panels.begin(), figure.panels.end(), [](const Panel& p) { return p.equal_scale; });
-  const double stretch = to_scale ? out.width_mm / figure.width_mm : style.stretch;
+  const double height = figure.height_mm - left_out(figure, style);
+  // Titles of panels and a legend keep their height where the drawing becomes smaller.
+  constexpr double fixed_mm = 16;
   out.height_mm = style.height_mm > 0 ? style.height_mm / style.scale
-                                      : (figure.height_mm - left_out(figure, style)) * stretch;
+                  : to_scale          ? fixed_mm + (height - fixed_mm) * out.width_mm / figure.width_mm
+                                      : height * style.stretch;
   return out;
 }
 
