@@ -109,6 +109,8 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_flag("--quiet", a.quiet);
   parser.add_flag("--json", a.json);
   parser.add_option("--threads", a.threads)->check(CLI::Range(1, 1024));
+  parser.add_option("--style", a.style);
+  parser.add_option("--dpi", a.dpi)->check(CLI::Range(20.0, 2400.0));
   parser.add_flag("-h,--help", parsed.help);
   parser.add_option("--tolerance", tolerance);
   add_study_options(parser, a.study);

@@ -14,6 +14,7 @@
 namespace unfurl {
 
 int cmd_render(const Arguments& arguments) {
+  const FigureOptions style = figure_options(arguments);
   const Scene scene = scene_of(arguments);
   check_film(scene);
   auto model = build_model(scene);
@@ -36,7 +37,7 @@ int cmd_render(const Arguments& arguments) {
   if (arguments.json) std::cout << summary << std::flush;
   if (run.status == RunStatus::stopped) return exit_interrupted;
 
-  FigureWriter writer(*context);
+  FigureWriter writer(*context, style);
   if (!draw_frames(folder, scene, run, diagnostics, *context, arguments) ||
       !write_figures(directory / "figures", all_figures(), run, diagnostics, writer, arguments) ||
       !encode_films(directory, folder, scene, run, arguments)) {

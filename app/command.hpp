@@ -33,7 +33,9 @@ struct Arguments {
   bool force = false;
   bool quiet = false;
   bool json = false;
-  int threads = 0;  // 0: as many as the machine has
+  int threads = 0;    // 0: as many as the machine has
+  std::string style;  // --style, of figures; empty: screen
+  double dpi = 0;     // --dpi, of figures; 0: the style's
   StudyArguments study;
 };
 

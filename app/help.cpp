@@ -24,6 +24,8 @@ constexpr std::string_view common_options =
     "  --quiet            no progress and no report\n"
     "  --json             the summary or the list as JSON on standard output\n"
     "  --threads N        at most N threads\n"
+    "  --style NAME       of figures: screen, single-column (89 mm), double-column (183 mm), slide\n"
+    "  --dpi N            pixels per inch of figures as PNG\n"
     "  --help, --version\n";
 
 }  // namespace

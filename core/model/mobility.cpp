@@ -20,7 +20,8 @@ constexpr double tolerance = 1e-11;
 // Beyond this the dense analysis takes seconds (its cost is cubic): the sparse one finds the same rows.
 constexpr Index max_dense_coordinates = 900;
 
-// The Jacobian with every row scaled to length 1; rows of zeros stay.
+}  // namespace
+
 SparseRows unit_rows(const System& system, const ConstVec& q) {
   SparseRows G = system.all_jacobian(q);
   for (Index row = 0; row < G.rows(); ++row) {
@@ -29,6 +30,8 @@ SparseRows unit_rows(const System& system, const ConstVec& q) {
   }
   return G;
 }
+
+namespace {
 
 // Gram-Schmidt over the rows from the first to the last, each row projected twice so that the basis stays
 // orthogonal to round-off.

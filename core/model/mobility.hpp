@@ -21,6 +21,9 @@ struct Mobility {
   double smallest_singular_value = 0;
 };
 
+// The Jacobian of all constraints at the pose q [3 n], every row scaled to length 1; rows of zeros stay.
+SparseRows unit_rows(const System& system, const ConstVec& q);
+
 // At the pose q [3 n] of the solved nodes.
 Mobility analyse_mobility(const System& system, const ConstVec& q);
 

@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -77,6 +78,21 @@ std::vector<std::byte> encode_png(const Image& image, bool alpha) {
   if (!bytes) throw std::bad_alloc();
   const auto* first = reinterpret_cast<const std::byte*>(bytes.get());
   return {first, first + size};
+}
+
+std::vector<std::byte> with_resolution(std::vector<std::byte> png, double dpi) {
+  constexpr std::size_t behind_header = 8 + 25;  // signature and IHDR
+  std::vector<std::uint8_t> chunk{0, 0, 0, 9, 'p', 'H', 'Y', 's'};
+  const auto put = [&](std::uint32_t v) {
+    for (const int shift : {24, 16, 8, 0}) chunk.push_back(static_cast<std::uint8_t>(v >> shift & 255));
+  };
+  const auto per_metre = static_cast<std::uint32_t>(std::lround(dpi / 0.0254));
+  put(per_metre), put(per_metre);
+  chunk.push_back(1);  // the unit is the metre
+  put(static_cast<std::uint32_t>(crc32(0, chunk.data() + 4, static_cast<uInt>(chunk.size() - 4))));
+  const auto* first = reinterpret_cast<const std::byte*>(chunk.data());
+  png.insert(png.begin() + behind_header, first, first + chunk.size());
+  return png;
 }
 
 void write_png(const std::filesystem::path& path, const Image& image, bool alpha) {

@@ -131,9 +131,9 @@ TEST_CASE("figures that cannot be made say why") {
   ProgramResult r = error({"figure", "hoop6", "energi", "-o", dir / "x.png"});
   CHECK(r.code == 2);
   CHECK(r.err == "unfurl: no figure 'energi'; did you mean 'energy'?\n");
-  r = error({"figure", "hoop6", "energy", "-o", dir / "x.pdf"});
+  r = error({"figure", "hoop6", "energy", "-o", dir / "x.eps"});
   CHECK(r.code == 2);
-  CHECK(r.err == "unfurl: a figure is written as .png or .svg, not '.pdf'\n");
+  CHECK(r.err == "unfurl: a figure is written as .png, .svg or .pdf, not '.eps'\n");
   r = error({"figure", "hoop6", "energy", "poses", "-o", dir / "x.png"});
   CHECK(r.code == 2);
   r = error({"figure", "four_bar", "deployment", "-o", dir / "x.png"});

@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "core/diagnostics/accuracy.hpp"
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/run_facts.hpp"
 #include "render/plot/ticks.hpp"
@@ -26,6 +27,10 @@ Figure constraint_error_figure(const Simulation& run, const Diagnostics& diagnos
   Panel top = time_panel(run, "position error (relative)");
   top.y.log = top.y.zeros_at_floor = true;
   top.lines.push_back({round_off, true, "round-off, 2\u207B\u2075\u00B2", 1});
+  if (const double aim = constraint_tolerance(run); aim > 0) {
+    top.lines.push_back({aim, true, "Newton iterations end", 2});
+    f.caption += " They end where the constraints are met to " + plot::format_number(aim, 2) + ".";
+  }
   top.curves.push_back(over_time(diagnostics, position, "", 0));
   Panel bottom = time_panel(run, "velocity error (m/s)");
   bottom.y.log = bottom.y.zeros_at_floor = true;

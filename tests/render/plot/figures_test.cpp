@@ -62,9 +62,42 @@ TEST_CASE("figures of real runs are in order", "[figures]") {
     for (const FigureKind& kind : figure_kinds()) {
       if (!kind.applies(r->simulation, r->diagnostics)) continue;
       CAPTURE(kind.name, r->simulation.trajectory.structure().kind);
-      CHECK(plot::faults(r->figure(kind.name)) == std::vector<std::string>{});
+      const Figure figure = r->figure(kind.name);
+      CHECK(plot::twins(figure) == std::vector<std::string>{});
+      for (const FigureStyle& style : figure_styles()) {
+        CAPTURE(style.name);
+        CHECK(plot::faults(figure, style) == std::vector<std::string>{});
+      }
     }
   }
+}
+
+TEST_CASE("the phase portrait runs from the released fold angle at rest to the deployed pose", "[figures]") {
+  const Panel p = hoop().figure("phase").panels.at(0);
+  CHECK(p.curves.at(0).x.front() == Approx(60).epsilon(1e-12));
+  CHECK(p.curves.at(0).y.front() == 0.0);
+  // The exact rate from the energy of the ring of four units (model's own data): compared with itself through
+  // finite differences of the angle, which the rate is the derivative of: second order, 1e-3 at h = 0.02 s.
+  const std::vector<double>&a = p.curves.at(0).x, &rate = p.curves.at(0).y, &t = hoop().diagnostics.t;
+  const std::size_t i = a.size() / 2;
+  CHECK((a[i + 1] - a[i - 1]) / (t[i + 1] - t[i - 1]) == Approx(rate[i]).epsilon(1e-3));
+  CHECK(p.curves.at(2).x.at(0) == a.back());
+}
+
+TEST_CASE("the histogram of steps counts every step once", "[figures]") {
+  const Figure f = hoop().figure("steps");
+  for (const Panel& p : f.panels) {
+    double sum = 0;
+    const std::vector<double>& counts = p.bands.at(0).upper;  // each bar has two points
+    for (std::size_t k = 0; k < counts.size(); k += 2) sum += counts[k];
+    CHECK(sum == static_cast<double>(hoop().diagnostics.t.size() - 1));
+  }
+}
+
+TEST_CASE("captions have the numbers of the run", "[figures]") {
+  CHECK(hoop().figure("jacobian").caption.find("zero to round-off") != std::string::npos);
+  CHECK(hoop().figure("phase").caption.find("From 60\u00B0") != std::string::npos);
+  CHECK(hoop().figure("steps").caption.find(std::to_string(hoop().diagnostics.t.size() - 1) + " steps") == 0);
 }
 
 TEST_CASE("a run that ended at once still has its figures", "[figures]") {
