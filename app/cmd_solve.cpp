@@ -34,7 +34,7 @@ Target target_of(const std::string& text) {
   return {find_measure(text.substr(0, equals)), value};
 }
 
-SolveOptions options_of(const Arguments& arguments, const Scene& scene) {
+SolveOptions options_of(const Arguments& arguments, const SceneSource& source, const Scene& scene) {
   const StudyArguments& study = arguments.study;
   SolveOptions options;
   if (!study.between.empty()) {
@@ -48,6 +48,7 @@ SolveOptions options_of(const Arguments& arguments, const Scene& scene) {
     return options;
   }
   const auto start = scene_number(scene, study.find);
+  if (!start) source.read({study.find + "=1"});  // an unknown key has a better message
   if (!start)
     throw UsageError(in_quotes(study.find) +
                      " is no number of this scene; --between LOW:HIGH says where to look");
@@ -86,7 +87,7 @@ int cmd_solve(const Arguments& arguments) {
   const Target target = as_usage([&] { return target_of(study.target); });
   const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
   const Scene scene = source.read();
-  const SolveOptions options = options_of(arguments, scene);
+  const SolveOptions options = options_of(arguments, source, scene);
   source.read({study.find + "=" + exact_number(options.low < options.high ? options.low : options.start)});
 
   const InterruptGuard guard;

@@ -1,10 +1,14 @@
 // unfurl study SCENE -o DIR: speed against accuracy.
+#include <iostream>
+
 #include "app/command.hpp"
 #include "app/interrupt.hpp"
 #include "app/scene_run.hpp"
 #include "app/study_session.hpp"
 #include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
 #include "core/scene/write.hpp"
+#include "core/study/models.hpp"
 #include "core/study/study.hpp"
 #include "render/plot/figures/study_figures.hpp"
 
@@ -45,9 +49,35 @@ Report study_report(const Study& study, const Scene& scene, const std::vector<st
   return report;
 }
 
+int study_models(const Arguments& arguments) {
+  const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
+  const Scene scene = source.read();
+  const InterruptGuard guard;
+  StudySession session(arguments, "measuring", scene_text(scene), "models.csv");
+  std::vector<MeasuredModel> models;
+  try {
+    models =
+        compare_models(source, arguments.study.repeats > 0 ? arguments.study.repeats : 5, session.hooks());
+  } catch (const Cancelled&) {
+    std::cerr << "unfurl: interrupted before there was anything to write\n";
+    return exit_interrupted;
+  }
+  session.write("models.csv", csv_text(models_table(models)));
+  Report report{"What each modelling choice costs and changes: " + scene.title};
+  report.paragraph(
+      "The scene as it stands, and with one choice made otherwise at a time. CPU times are medians; the "
+      "memory is that of the model and the solver; the difference is the largest distance of a node from "
+      "where it is in the first row, over the whole motion.");
+  report.add(models_summary(models));
+  const std::string text = report_markdown(report);
+  session.write("models.md", text);
+  return finish(true, arguments, markdown_text(models_summary(models)));
+}
+
 }  // namespace
 
 int cmd_study(const Arguments& arguments) {
+  if (arguments.study.models) return study_models(arguments);
   const Range range = step_range(arguments.study.ladder);
   const Scene scene = scene_of(arguments);
   auto model = build_model(scene);

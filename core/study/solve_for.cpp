@@ -19,6 +19,7 @@ class Search {
     else
       bracket_around();
     refine();
+    refuse_jump();
     return {best_.x, best_.value, a_.x, b_.x, std::move(seen_)};
   }
 
@@ -117,6 +118,15 @@ class Search {
         side = -1;
       }
     }
+  }
+
+  // A bracket that closed on a jump holds no root.
+  void refuse_jump() const {
+    const double jump = std::abs(b_.value - a_.value);
+    if (off(best_) <= 1e-6 * std::max(std::abs(target_), 1e-300) || jump < 1e-4 * std::abs(target_)) return;
+    throw NotFound("the measure jumps over the target at " + short_number(best_.x, 9) + ", from " +
+                   short_number(a_.value, 9) + " to " + short_number(b_.value, 9) +
+                   (std::isinf(jump) ? "; a later solver.end_time may help" : ""));
   }
 
   const Objective& f_;

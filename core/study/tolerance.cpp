@@ -14,7 +14,7 @@ namespace {
 
 // The estimate aims here, as shares of the tolerance: below `most`, and not much more work than for `least`.
 constexpr double most = 0.5, least = 0.02, aim = 0.2;
-constexpr long first_steps = 64, max_steps = 100'000'000;
+constexpr long first_steps = 128, max_steps = 100'000'000;
 constexpr int tries = 8;  // per number of stages
 
 // Two solutions, the second more accurate.
@@ -52,7 +52,12 @@ class Picker {
  public:
   Picker(const std::shared_ptr<const Model>& model, const SolverOptions& options,
          const SimulationHooks& hooks)
-      : model_(model), options_(options), hooks_(hooks), method_(*find_method(options.method)) {
+      : model_(model),
+        options_(options),
+        hooks_(hooks),
+        method_(*find_method(options.method)),
+        size_(structure_size(*model)),
+        fewest_steps_(model->structure.deployment.empty() ? 32 : 128) {
     quiet_.cancelled = hooks.cancelled;
     options_.adaptive = false;
   }
@@ -61,6 +66,8 @@ class Picker {
     for (const int stages : stage_choices()) {
       try_stages(stages);
       if (stopped_) return std::move(*stopped_);
+      if (round_off_) break;  // fewer stages and more steps would meet it all the more
+      if (stages == 2 && best_ && best_->estimate <= most * options_.tolerance) break;
     }
     if (!best_) return simulate(model_, options_, hooks_);  // nothing ran through: as the scene says
     Simulation run = std::move(best_->run);
@@ -81,7 +88,11 @@ class Picker {
   }
 
   std::vector<int> stage_choices() const {
-    return by_stages() ? std::vector{5, 6, 7, 4, 3, 2} : std::vector{options_.stages};
+    if (!by_stages()) return {options_.stages};
+    // Locating the deployed pose solves steps next to a singular one, at a price that grows fast with the
+    // stages.
+    if (!model_->structure.deployment.empty()) return {4, 3, 2, 5, 6, 7};
+    return {5, 6, 7, 4, 3, 2};
   }
 
   // A pair with so many steps to the end; nothing where the user stopped it.
@@ -119,18 +130,19 @@ class Picker {
       auto pair = solve(stages, steps);
       if (!pair) return;
       const double share = pair->estimate / options_.tolerance;
-      const bool hopeless = share > most && pair->estimate > 0.7 * last && pair->estimate < 1e-9;
+      const bool hopeless = share > most && pair->estimate > 0.7 * last && pair->estimate < 1e-6 * size_;
       last = pair->estimate;
       const double work = pair->work;
       if (share <= most) enough = enough == 0 ? steps : std::min(enough, steps);
       keep(std::move(*pair));
-      if (hopeless || (share <= most && share >= least) || (share < least && steps <= 8)) return;
+      round_off_ = hopeless;
+      if (hopeless || (share <= most && share >= least) || (share < least && steps == fewest_steps_)) return;
       const double factor = std::isfinite(share) ? std::pow(share / aim, 1 / order) : 4.0;
       const long next = std::lround(static_cast<double>(steps) * std::clamp(factor, 0.125, 8.0));
       const double cost = work * static_cast<double>(next) / static_cast<double>(steps);
       if (next == steps || next > max_steps || (enough > 0 && next >= enough)) return;
       if (best_ && best_->estimate <= most * options_.tolerance && cost > 1.3 * best_->work) return;
-      steps = std::max(4L, next);
+      steps = std::max(fewest_steps_, next);
     }
   }
 
@@ -149,8 +161,11 @@ class Picker {
   const SimulationHooks& hooks_;
   SimulationHooks quiet_;
   const Method& method_;
+  double size_;  // of the structure [m]
+  long fewest_steps_;
   std::optional<Pair> best_;
   std::optional<Simulation> stopped_;
+  bool round_off_ = false;
 };
 
 }  // namespace
