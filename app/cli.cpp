@@ -52,6 +52,7 @@ Parsed parse(const std::vector<std::string>& words) {
   parser.add_flag("--quiet", a.quiet);
   parser.add_flag("--json", a.json);
   parser.add_option("--threads", a.threads)->check(CLI::Range(1, 1024));
+  parser.add_option("--ui-scale", a.ui_scale)->check(CLI::Range(0.5, 4.0));
   parser.add_flag("-h,--help", parsed.help);
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));

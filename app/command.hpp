@@ -18,6 +18,7 @@ struct Arguments {
   bool force = false;
   bool quiet = false;
   bool json = false;
+  double ui_scale = 0;  // --ui-scale of the window; 0: the monitor's
   int threads = 0;  // 0: as many as the machine has
 };
 
@@ -36,6 +37,7 @@ int cmd_run(const Arguments& arguments);
 int cmd_render(const Arguments& arguments);
 int cmd_figure(const Arguments& arguments);
 int cmd_check(const Arguments& arguments);
+int cmd_view(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 
 }  // namespace unfurl

@@ -19,6 +19,7 @@ constexpr std::string_view common_options =
     "  --quiet            no progress and no report\n"
     "  --json             the summary or the list as JSON on standard output\n"
     "  --threads N        at most N threads\n"
+    "  --ui-scale X       size of the window's text and widgets, 0.5 to 4; else the monitor's\n"
     "  --help, --version\n";
 
 }  // namespace

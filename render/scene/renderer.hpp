@@ -26,6 +26,7 @@ class Renderer {
   Image draw(const DrawList& list);
   // The same without reading back: leaves the finished picture in the bound framebuffer.
   void paint(const DrawList& list);
+  const Framebuffer& picture() const { return frame_; }  // what was painted last
 
  private:
   struct Shape {  // a mesh, with a body's instances
