@@ -45,11 +45,17 @@ void StageEquations::add_forces(int k, MutVec f) {
   for (int j = 0; j < c.s; ++j) f.noalias() += (h * c.weight[j] * c.value(k, j)) * force_.col(j);
 }
 
-void StageEquations::evaluate() {
-  const int stages = c.s - 1;
-  for (int j = 0; j < stages; ++j) {
+void StageEquations::place_nodes() {
+  for (int j = 0; j + 1 < c.s; ++j) {
     z_ = z0 + dX.col(j);
     system.expand(z_, Q.col(j + 1));
+  }
+}
+
+void StageEquations::evaluate() {
+  const int stages = c.s - 1;
+  place_nodes();
+  for (int j = 0; j < stages; ++j) {
     if (!at_ends || j == stages - 1) system.constraint(Q.col(j + 1), phi.col(j));
     MdX_.col(j).noalias() = system.mass() * dX.col(j);
   }

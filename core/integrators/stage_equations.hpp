@@ -19,6 +19,7 @@ class StageEquations {
   StageEquations(const System& system, const GalerkinCoefficients& coefficients, bool at_ends);
 
   void start(double t, const ConstVec& z0, const ConstVec& w0, double h);  // w0: p_0 = M w0
+  void place_nodes();                                                      // Q of the present dX
   void evaluate();               // residuals of the present dX, lambda
   void end_momentum(MutVec p1);  // p_1 without the share of lambda_s
 
