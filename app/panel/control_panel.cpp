@@ -36,8 +36,14 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
       options_(std::move(options)),
       state_(std::move(document)),
       view_(context),
+      export_(options_.wake),
       simulator_(options_.wake) {
-  state_.dark = options_.dark;
+  state_.dark = options_.settings.dark;
+  state_.left_open = options_.settings.left_open;
+  state_.right_open = options_.settings.right_open;
+  const auto& open = options_.settings.open_figures;
+  for (FigureCard& card : cards_.cards())
+    card.open = std::find(open.begin(), open.end(), card.kind->name) != open.end();
   state_.sections = param_sections(base_scene(state_.history.now()));
   context_.make_current();
   make_context();
@@ -50,6 +56,17 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
 ControlPanel::~ControlPanel() {
   context_.make_current();
   ImGui::DestroyContext(imgui_);
+}
+
+PanelSettings ControlPanel::settings() {
+  PanelSettings now = options_.settings;
+  now.dark = state_.dark;
+  now.left_open = state_.left_open;
+  now.right_open = state_.right_open;
+  now.open_figures.clear();
+  for (const FigureCard& card : cards_.cards())
+    if (card.open) now.open_figures.emplace_back(card.kind->name);
+  return now;
 }
 
 void ControlPanel::make_context() {
@@ -189,12 +206,31 @@ void ControlPanel::follow_document() {
   settling_ = std::max(settling_, 2);
 }
 
+// The edge between two panes, to drag. `way`: of a wider pane.
+void ControlPanel::draw_splitter(const char* name, float x, float top, float bottom, float& width,
+                                 float way) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+  const float thick = std::round(ui_.px(6));
+  const Pane pane(name, x - thick / 2, top, thick, bottom - top, ImGuiWindowFlags_NoBackground);
+  ImGui::PopStyleVar(2);
+  ImGui::InvisibleButton(name, {thick, std::max(1.0f, bottom - top)});
+  ui_.note(name);
+  const bool held = ImGui::IsItemActive();
+  const float line = held || ImGui::IsItemHovered() ? ui_.px(3) : 1.0f;
+  ImGui::GetWindowDrawList()->AddRectFilled(
+      {x - line / 2, top}, {x + line / 2, bottom},
+      ui_.color(held || ImGui::IsItemHovered() ? ui_.theme.accent : ui_.theme.rule));
+  if (held) width = std::clamp(width + way * ImGui::GetIO().MouseDelta.x / ui_.scale, 200.0f, 900.0f);
+}
+
 void ControlPanel::draw_panes() {
   const auto width = static_cast<float>(options_.width), height = static_cast<float>(options_.height);
   const float top = std::round(ui_.px(bar_height)), bottom = height - std::round(ui_.px(timeline_height));
-  const float left = state_.left_open ? std::min(std::round(ui_.px(options_.left_width)), 0.4f * width) : 0;
+  const float left =
+      state_.left_open ? std::min(std::round(ui_.px(options_.settings.left_width)), 0.4f * width) : 0;
   const float right =
-      state_.right_open ? std::min(std::round(ui_.px(options_.right_width)), 0.4f * width) : 0;
+      state_.right_open ? std::min(std::round(ui_.px(options_.settings.right_width)), 0.4f * width) : 0;
   {
     const Pane pane("bar", 0, 0, width, top, ImGuiWindowFlags_NoScrollWithMouse);
     draw_top_bar(ui_, state_);
@@ -222,7 +258,10 @@ void ControlPanel::draw_panes() {
     const Pane pane("timeline", 0, bottom, width, height - bottom, ImGuiWindowFlags_NoScrollWithMouse);
     draw_timeline(ui_, state_);
   }
+  if (left > 0) draw_splitter("left edge", left, top, bottom, options_.settings.left_width, 1);
+  if (right > 0) draw_splitter("right edge", width - right, top, bottom, options_.settings.right_width, -1);
   draw_help(ui_, state_);
+  draw_export(ui_, state_, export_);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.AddRectFilled({0, 0}, {width, top}, ui_.color(ui_.theme.window));
 }

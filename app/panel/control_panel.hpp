@@ -6,10 +6,12 @@
 #include <functional>
 #include <memory>
 
+#include "app/panel/export_job.hpp"
 #include "app/panel/figure_cards.hpp"
 #include "app/panel/input_event.hpp"
 #include "app/panel/panel_state.hpp"
 #include "app/panel/scene_view.hpp"
+#include "app/panel/settings.hpp"
 #include "app/panel/ui.hpp"
 #include "render/gl/framebuffer.hpp"
 #include "render/ui/imgui_painter.hpp"
@@ -19,9 +21,8 @@ namespace unfurl {
 struct PanelOptions {
   int width = 1280, height = 720;  // [pixels]
   float scale = 1;                 // pixels per point of a screen with 96 dpi
-  bool dark = false;
-  float left_width = 300, right_width = 360;  // of the panes [points]
-  std::function<void()> wake;                 // called by the simulating thread when there is news
+  PanelSettings settings;          // window size aside
+  std::function<void()> wake;      // called by the simulating thread when there is news
   std::function<void(const char*)> set_clipboard;
   std::function<std::string()> get_clipboard;
 };
@@ -43,7 +44,7 @@ class ControlPanel {
   const Framebuffer& picture() const { return *picture_; }
 
   PanelState& state() { return state_; }
-  const PanelOptions& options() const { return options_; }
+  PanelSettings settings();  // as they are now, to be remembered
   // Where a widget was drawn in the last frame, by its key; throws std::out_of_range.
   const plot::Rect& place(const std::string& key) const { return ui_.places.at(key); }
   bool has_place(const std::string& key) const { return ui_.places.contains(key); }
@@ -59,6 +60,7 @@ class ControlPanel {
   void take_results();
   void follow_document();
   void draw_panes();
+  void draw_splitter(const char* name, float x, float top, float bottom, float& width, float way);
   void paint();
 
   GlContext& context_;
@@ -77,6 +79,7 @@ class ControlPanel {
   int settling_ = 3;  // frames until new widgets have their sizes
   std::optional<SceneDocument> submitted_;
   std::string clipboard_;
+  ExportJob export_;
   Simulator simulator_;  // last: ends before what it wakes
 };
 

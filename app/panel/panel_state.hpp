@@ -43,6 +43,8 @@ struct PanelState {
 
   bool dark = false;
   bool help_open = false, export_open = false;
+  std::string export_path;            // of the scene's file; empty: not thought of yet
+  std::string export_output = "out";  // directory of film and figures
   bool left_open = true, right_open = true;
   // What others are asked to do, once.
   bool wants_screenshot = false, wants_quit = false, wants_stop = false;

@@ -11,20 +11,12 @@ namespace {
 
 constexpr std::size_t longest_text = 256;
 
-// As many digits as the number needs, up to six, and the unit.
-std::string format_of(double value, const ParamSpec& spec, int digits = 6) {
-  char number[40];
-  std::snprintf(number, sizeof number, "%.*g", digits, value);
-  const std::string text = std::string(number).find('e') == std::string::npos
-                               ? "%." + std::to_string([&] {
-                                   const std::string s(number);
-                                   const auto point = s.find('.');
-                                   return point == std::string::npos ? std::size_t{0} : s.size() - point - 1;
-                                 }()) +
-                                     "f"
-                               : "%." + std::to_string(digits) + "g";
+// Seven digits and the unit. ImGui takes the digits for the smallest number of a logarithmic slider too.
+std::string format_of(const ParamSpec& spec, const SliderRange& range) {
+  const double smallest = range.logarithmic && range.low > 0 ? std::log10(range.low) : 0.0;
+  const int digits = std::clamp(static_cast<int>(std::ceil(-smallest)) + 1, 7, 15);
   const std::string unit = unit_caption(spec.unit);
-  return unit.empty() ? text : text + (unit == "°" ? "" : " ") + unit;
+  return "%." + std::to_string(digits) + "g" + (unit.empty() || unit == "°" ? "" : " ") + unit;
 }
 
 bool real_widget(const ParamRow& row, ParamValue& value) {
@@ -32,7 +24,7 @@ bool real_widget(const ParamRow& row, ParamValue& value) {
   const SliderRange range = slider_range(row.spec, row.value);
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_NoRoundToFormat | (range.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-  const std::string format = format_of(x, row.spec);
+  const std::string format = format_of(row.spec, range);
   if (!ImGui::SliderScalar("##value", ImGuiDataType_Double, &x, &range.low, &range.high, format.c_str(),
                            flags))
     return false;

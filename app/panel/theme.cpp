@@ -55,7 +55,9 @@ void set_colors(ImGuiStyle& style, const Theme& t) {
   c[ImGuiCol_FrameBg] = field;
   c[ImGuiCol_FrameBgHovered] = t.dark ? rgb(0x333c47) : rgb(0xeaf2f9);
   c[ImGuiCol_FrameBgActive] = t.dark ? rgb(0x3a4551) : rgb(0xdcebf7);
-  c[ImGuiCol_SliderGrab] = c[ImGuiCol_SliderGrabActive] = c[ImGuiCol_CheckMark] = t.accent;
+  c[ImGuiCol_CheckMark] = t.accent;
+  c[ImGuiCol_SliderGrab] = with(t.accent, 0.38f);  // the value stays readable on it
+  c[ImGuiCol_SliderGrabActive] = with(t.accent, 0.60f);
   c[ImGuiCol_Button] = t.dark ? rgb(0x313a44) : rgb(0xffffff);
   c[ImGuiCol_ButtonHovered] = t.dark ? rgb(0x3d4854) : rgb(0xe3eef8);
   c[ImGuiCol_ButtonActive] = with(t.accent, 0.45f);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/panel/comparison.hpp"
 #include "app/panel/panes.hpp"
 #include "core/diagnostics/diagnostics.hpp"
 
@@ -120,6 +121,37 @@ void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame) 
                ui.color(failed ? ui.theme.error : ink, failed ? 1.0f : 0.75f), line.c_str());
 }
 
+// A and B side by side, in the lower left corner.
+void draw_comparison(Ui& ui, const PanelState& state, const Frame& frame) {
+  if (!state.pinned) return;
+  const auto rows = compare(*state.pinned, *state.shown);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float line = ui.regular->FontSize + ui.px(3), pad = ui.px(10);
+  const float columns[] = {ui.px(118), ui.px(106), ui.px(106), ui.px(66)};
+  float width = 2 * pad;
+  for (const float column : columns) width += column;
+  const float height = 2 * pad + line * static_cast<float>(rows.size() + 1);
+  const ImVec2 low(frame.low.x + ui.px(12), frame.low.y + frame.size.y - height - ui.px(12));
+  list.AddRectFilled(low, {low.x + width, low.y + height}, ui.color(ui.theme.window, 0.92f), ui.px(6));
+  list.AddRect(low, {low.x + width, low.y + height}, ui.color(ui.theme.rule), ui.px(6));
+  float y = low.y + pad;
+  const auto draw = [&](const ComparisonRow& row, const ImVec4& a, const ImVec4& b) {
+    const std::pair<const std::string*, const ImVec4*> cells[] = {
+        {&row.label, &ui.theme.dim}, {&row.a, &a}, {&row.b, &b}, {&row.change, &ui.theme.text}};
+    float right = low.x + pad;
+    for (int i = 0; i < 4; ++i) {
+      right += columns[i];
+      const float wide = ImGui::CalcTextSize(cells[i].first->c_str()).x;
+      list.AddText({i == 0 ? right - columns[0] : right - wide, y}, ui.color(*cells[i].second),
+                   cells[i].first->c_str());
+    }
+    y += line;
+  };
+  draw({"", "A (pinned)", "B (now)", "B/A"}, ui.theme.curve_a, ui.theme.curve_b);
+  for (const ComparisonRow& row : rows) draw(row, ui.theme.text, ui.theme.text);
+  ui.places["comparison"] = {low.x, low.y, low.x + width, low.y + height};
+}
+
 void choose_preset(PanelState& state, const SceneView& view, ViewPreset preset) {
   const float aspect = static_cast<float>(view.width()) / static_cast<float>(std::max(1, view.height()));
   state.orbit = preset_view(preset, view.center(), view.radius(), aspect, view.framed().field_of_view);
@@ -168,6 +200,7 @@ void draw_view_pane(Ui& ui, PanelState& state, SceneView& view) {
     mark(ui, state, view, frame, state.hovered, ui.color(ui.theme.accent, 0.6f));
   draw_readings(ui, state, frame);
   draw_state_line(ui, state, frame);
+  draw_comparison(ui, state, frame);
   draw_view_buttons(ui, state, view, frame);
   draw_pending(ui, state, frame);
 }

@@ -1,7 +1,10 @@
 // The window: events in, finished pictures out, redrawn only when something changes.
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <tuple>
 
 #include "app/exit_code.hpp"
 #include "app/interrupt.hpp"
@@ -11,6 +14,7 @@
 #include "app/window/window.hpp"
 #include "render/gl/functions.hpp"
 #include "render/gl/graphics_error.hpp"
+#include "render/image/png.hpp"
 
 namespace unfurl {
 
@@ -40,9 +44,13 @@ class SdlWindow final : public GlContext {
     sdl().GL_GetDrawableSize(window_, &width, &height);
     return {width, height};
   }
-  float pixels_per_unit() const {
+  std::pair<int, int> units() const {  // of the desktop
     int width = 0, height = 0;
     sdl().GetWindowSize(window_, &width, &height);
+    return {width, height};
+  }
+  float pixels_per_unit() const {
+    const int width = units().first;
     return width > 0 ? static_cast<float>(pixels().first) / static_cast<float>(width) : 1.0f;
   }
   // Of the monitor: 1 at 96 dpi, in quarters.
@@ -75,10 +83,18 @@ bool has_display() {
 }
 
 SdlWindow::SdlWindow(int width, int height) {
-  sdl().SetHint(SDL_HINT_VIDEODRIVER, "x11,wayland");
+  const std::string nowhere = "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)";
+  const auto named = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr && *value != '\0';
+  };
+  const bool x11 = named("DISPLAY"), wayland = named("WAYLAND_DISPLAY");
+  if (!x11 && !wayland) fail(nowhere);
+  // Only what the environment names: the libraries of the other would complain on their own.
+  sdl().SetHint(SDL_HINT_VIDEODRIVER, x11 && wayland ? "x11,wayland" : x11 ? "x11" : "wayland");
   sdl().SetHint("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2");
   if (sdl().Init(SDL_INIT_VIDEO) != 0 || !has_display()) {
-    const std::string cause = "there is no display (is DISPLAY or WAYLAND_DISPLAY set?)";
+    const std::string cause = std::string("the display does not answer: ") + sdl().GetError();
     sdl().Quit();
     fail(cause);
   }
@@ -112,9 +128,12 @@ SdlWindow::~SdlWindow() {
 class Host {
  public:
   Host(SceneDocument document, const WindowOptions& options)
-      : window_(1280, 720), wake_event_(sdl().RegisterEvents(1)) {
+      : remembered_(load_settings(settings_file())),
+        window_(remembered_.width, remembered_.height),
+        wake_event_(sdl().RegisterEvents(1)) {
     const auto [width, height] = window_.pixels();
     PanelOptions panel;
+    panel.settings = remembered_;
     panel.width = width;
     panel.height = height;
     panel.scale = options.ui_scale > 0 ? options.ui_scale : window_.scale();
@@ -144,11 +163,29 @@ class Host {
       last = now;
       more = panel_->frame(more ? seconds : 0.0);
       window_.show(panel_->picture());
+      take_screenshot();
     }
+    PanelSettings now = panel_->settings();
+    std::tie(now.width, now.height) = window_.units();
+    if (!(now == remembered_)) save_settings(settings_file(), now);
     return exit_ok;
   }
 
  private:
+  void take_screenshot() {
+    PanelState& state = panel_->state();
+    if (!state.wants_screenshot) return;
+    state.wants_screenshot = false;
+    try {
+      std::string name = "unfurl.png";
+      for (int i = 1; std::filesystem::exists(name); ++i) name = "unfurl_" + std::to_string(i) + ".png";
+      write_png(name, panel_->picture().read());
+      state.message = "screenshot: " + name;
+    } catch (const std::exception& error) {
+      state.message = error.what();
+    }
+  }
+
   // Until there is a reason to draw; false: the window is to close.
   bool wait(bool more) {
     SDL_Event event;
@@ -172,6 +209,7 @@ class Host {
     return true;
   }
 
+  PanelSettings remembered_;
   SdlWindow window_;
   Uint32 wake_event_;
   std::unique_ptr<ControlPanel> panel_;
