@@ -111,6 +111,7 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_option("--threads", a.threads)->check(CLI::Range(1, 1024));
   parser.add_option("--style", a.style);
   parser.add_option("--dpi", a.dpi)->check(CLI::Range(20.0, 2400.0));
+  parser.add_option("--ui-scale", a.ui_scale)->check(CLI::Range(0.5, 4.0));
   parser.add_flag("-h,--help", parsed.help);
   parser.add_option("--tolerance", tolerance);
   add_study_options(parser, a.study);

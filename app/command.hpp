@@ -33,6 +33,7 @@ struct Arguments {
   bool force = false;
   bool quiet = false;
   bool json = false;
+  double ui_scale = 0;  // --ui-scale of the window; 0: the monitor's
   int threads = 0;    // 0: as many as the machine has
   std::string style;  // --style, of figures; empty: screen
   double dpi = 0;     // --dpi, of figures; 0: the style's
@@ -61,6 +62,7 @@ int cmd_stress(const Arguments& arguments);
 int cmd_sweep(const Arguments& arguments);
 int cmd_solve(const Arguments& arguments);
 int cmd_reproduce(const Arguments& arguments);
+int cmd_view(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 
 }  // namespace unfurl

@@ -26,6 +26,7 @@ constexpr std::string_view common_options =
     "  --threads N        at most N threads\n"
     "  --style NAME       of figures: screen, single-column (89 mm), double-column (183 mm), slide\n"
     "  --dpi N            pixels per inch of figures as PNG\n"
+    "  --ui-scale X       size of the window's text and widgets, 0.5 to 4; else the monitor's\n"
     "  --help, --version\n";
 
 }  // namespace

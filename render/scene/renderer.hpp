@@ -31,6 +31,7 @@ class Renderer {
   void paint(const DrawList& list);
   // The picture that was painted last.
   Image read() const;
+  const Framebuffer& picture() const { return frame_; }  // what was painted last
 
  private:
   struct Shape {  // a mesh, with a body's instances
