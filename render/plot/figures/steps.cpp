@@ -27,7 +27,7 @@ Histogram histogram(const std::vector<double>& values, std::vector<double> edges
 
 // Equal in ratio where the values span more than a factor of ten, else equal in size; `log` says which.
 std::vector<double> step_edges(const std::vector<double>& h, bool log) {
-  constexpr int bins = 30;
+  constexpr int bins = 31;  // odd: a single size stands in the middle of its bar
   double lo = *std::min_element(h.begin(), h.end()), hi = *std::max_element(h.begin(), h.end());
   if (hi - lo < 1e-3 * hi) lo *= 0.9, hi *= 1.1;  // one size, give or take what summing up times leaves
   std::vector<double> edges;
