@@ -34,7 +34,7 @@ class Dvm final : public Integrator {
     const Index n = system.solved_coordinates(), m = system.constraints();
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
-    for (VectorXd* v : {&p1_, &w1_}) v->setZero(n);
+    for (VectorXd* v : {&p1_, &w1_, &z1_}) v->setZero(n);
     for (VectorXd* v : {&mu_, &zero_}) v->setZero(m);
     pose_.setZero(system.coordinates());
     halfway_ = c_.basis.values(0.5);
@@ -85,7 +85,7 @@ class Dvm final : public Integrator {
   SaddleSolver saddle_;
   SparseLdlt mass_factor_;  // ends variant only
   std::vector<double> rhs_f_, rhs_g_;
-  VectorXd p1_, w1_, mu_, zero_, pose_, halfway_;
+  VectorXd p1_, w1_, mu_, zero_, pose_, halfway_, z1_;
   MatrixXd previous_, prolong_;
   RowMajor consistent_f_;
   double previous_h_ = 0;

@@ -57,9 +57,12 @@ TEST_CASE("render writes data, frames, an animation and every figure twice") {
   const std::string animation = file_text(dir / "out/animation.webp");
   CHECK(animation.starts_with("RIFF"));
   CHECK(animation.substr(8, 4) == "WEBP");
-  for (const char* name : {"deployment", "constraint_error", "energy", "rod_forces", "poses"}) {
+  for (const char* name :
+       {"deployment", "constraint_error", "energy", "rod_forces", "phase", "steps", "jacobian", "poses"}) {
     CHECK(is_png(dir / "out/figures/" + std::string(name) + ".png"));
     CHECK(file_text(dir / "out/figures/" + std::string(name) + ".svg").find("<svg") != std::string::npos);
+    for (const char* extension : {".pdf", ".csv", ".caption.txt"})
+      CHECK(fs::exists(dir / "out/figures/" + std::string(name) + extension));
   }
   CHECK(nlohmann::json::parse(file_text(dir / "out/summary.json"))["status"] == "completed");
   CHECK(fs::exists(dir / "out/trajectory.csv"));
@@ -113,7 +116,19 @@ TEST_CASE("one figure goes into the file that -o names") {
   CHECK(file_text(dir / "e.svg").find("<svg") != std::string::npos);
   CHECK(run_program(with(scene, {"-o", dir / "e.png"})).code == 0);
   CHECK(is_png(dir / "e.png"));
-  CHECK(files_in(dir / "") == std::vector<std::string>{"e.png", "e.svg"});
+  CHECK(run_program(with(scene, {"-o", dir / "e.pdf", "--style", "single-column"})).code == 0);
+  CHECK(file_text(dir / "e.pdf").starts_with("%PDF-"));
+  CHECK(file_text(dir / "e.caption.txt").starts_with("Energy. "));
+  CHECK(run_program(with(scene, {"-o", dir / "slide.png", "--style", "slide"})).code == 0);
+  CHECK(png_size(dir / "slide.png") == std::pair(1920, 1080));
+  CHECK(run_program(with(scene, {"-o", dir / "small.png", "--dpi", "72"})).code == 0);
+  CHECK(png_size(dir / "small.png").first == 454);  // 160 mm at 72 dpi: 453.5
+  const std::vector<std::string> files = files_in(dir / "");
+  CHECK(std::vector<std::string>(files.begin(), files.begin() + 5) ==
+        std::vector<std::string>{"e.caption.txt", "e.csv", "e.pdf", "e.png", "e.svg"});
+  const ProgramResult r = run_program(with(scene, {"-o", dir / "x.png", "--style", "slides"}));
+  CHECK(r.code == 2);
+  CHECK(r.err == "unfurl: no style 'slides'; did you mean 'slide'?\n");
 }
 
 TEST_CASE("all figures go into a directory, those that the scene has data for") {

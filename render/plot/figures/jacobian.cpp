@@ -30,7 +30,7 @@ Figure jacobian_figure(const Simulation& run, const Diagnostics&) {
     p.curves.push_back(std::move(c));
   };
   add("largest", spectrum.largest, 7, Dash::dotted);
-  for (std::size_t k = spectrum.smallest.size(); k-- > 0;)
+  for (std::size_t k = 0; k < spectrum.smallest.size(); ++k)
     add(ordinal(k), spectrum.smallest[k], static_cast<int>(k), dashes[k % 3]);
 
   Figure f;

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "core/math/types.hpp"
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/run_facts.hpp"
@@ -35,7 +37,9 @@ Figure phase_figure(const Simulation& run, const Diagnostics& diagnostics) {
       c.marker = marker;
       p.curves.push_back(std::move(c));
     };
+    const double size = largest_magnitude(path.x);
     const auto place = [&](double x, double y) {
+      if (std::abs(x) < 1e-6 * size) x = 0;  // located by extrapolation, to some 1e-8
       return plot::format_number(x, 5) + "\u00B0 and " + plot::format_number(y, 4) + "\u00B0/s";
     };
     f.caption +=

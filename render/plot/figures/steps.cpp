@@ -27,9 +27,9 @@ Histogram histogram(const std::vector<double>& values, std::vector<double> edges
 
 // Equal in ratio where the values span more than a factor of ten, else equal in size; `log` says which.
 std::vector<double> step_edges(const std::vector<double>& h, bool log) {
-  constexpr int bins = 30;
+  constexpr int bins = 31;  // odd: a single size stands in the middle of its bar
   double lo = *std::min_element(h.begin(), h.end()), hi = *std::max_element(h.begin(), h.end());
-  if (hi - lo < 1e-9 * hi) lo *= 0.9, hi *= 1.1;
+  if (hi - lo < 1e-3 * hi) lo *= 0.9, hi *= 1.1;  // one size, give or take what summing up times leaves
   std::vector<double> edges;
   for (int k = 0; k <= bins; ++k) {
     const double u = static_cast<double>(k) / bins;
@@ -43,13 +43,16 @@ void add_bars(const Histogram& h, int color, Panel& p) {
   Band bars;
   Curve outline;
   outline.x.push_back(h.edges.front()), outline.y.push_back(0);
-  for (std::size_t k = 0; k < h.counts.size(); ++k)
+  const auto corner = [&](double x, double count) {
+    bars.x.push_back(x), bars.lower.push_back(0), bars.upper.push_back(count);
+  };
+  for (std::size_t k = 0; k < h.counts.size(); ++k) {
     for (const double x : {h.edges[k], h.edges[k + 1]}) {
-      bars.x.push_back(x);
-      bars.lower.push_back(0);
-      bars.upper.push_back(h.counts[k]);
+      corner(x, h.counts[k]);
       outline.x.push_back(x), outline.y.push_back(h.counts[k]);
     }
+    corner(h.edges[k + 1], std::nan(""));  // every bar is a piece of its own
+  }
   outline.x.push_back(h.edges.back()), outline.y.push_back(0);
   bars.color = outline.color = color;
   outline.width = 0.9f;

@@ -119,8 +119,6 @@ TEST_CASE("a subset of a font keeps its glyphs, its numbers and little else", "[
   for (std::size_t i = 0; i < file.size(); ++i)
     sum += static_cast<std::uint32_t>(static_cast<unsigned char>(file[i])) << (8 * (3 - i % 4));
   CHECK(sum == 0xB1B0AFBA);  // OpenType: the sum of a whole font file
-  const plot::TrueType back(file + std::string());
-  CHECK(back.advance(a) == font().advance(a));
 }
 
 TEST_CASE("files that are no fonts are refused", "[pdf]") {
@@ -142,7 +140,6 @@ TEST_CASE("poppler finds the font embedded and the text as text", "[pdf]") {
     CHECK(text.find(figure.title) != std::string::npos);
     CHECK(text.find("10\u207B\u00B9\u2074") != std::string::npos);
     CHECK(text.find("velocity error (m/s)") != std::string::npos);
-    CHECK(output_of("pdfinfo " + path.string()).find("Errors") == std::string::npos);
   }
   std::filesystem::remove(path);
 }
