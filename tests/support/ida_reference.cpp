@@ -183,10 +183,12 @@ class Ida {
     y_ = N_VNew_Serial(size, context_);
     dy_ = N_VClone(y_);
     id_ = N_VClone(y_);
+    tolerance_ = N_VClone(y_);
     set_start(system, start);
     memory_ = IDACreate(context_);
     require(IDAInit(memory_, residual, start.t, y_, dy_), "init");
-    require(IDASStolerances(memory_, options.relative_tolerance, options.absolute_tolerance), "tolerances");
+    set_tolerances(options);
+    require(IDASVtolerances(memory_, options.relative_tolerance, tolerance_), "tolerances");
     require(IDASetUserData(memory_, &equations), "data");
     require(IDASetErrHandlerFn(memory_, silent, nullptr), "messages");
     require(IDASetMaxNumSteps(memory_, options.max_steps), "steps");
@@ -201,7 +203,7 @@ class Ida {
     IDAFree(&memory_);
     SUNLinSolFree(solver_);
     SUNMatDestroy(matrix_);
-    for (N_Vector v : {id_, dy_, y_}) N_VDestroy(v);
+    for (N_Vector v : {tolerance_, id_, dy_, y_}) N_VDestroy(v);
     SUNContext_Free(&context_);
   }
   Ida(const Ida&) = delete;
@@ -234,6 +236,15 @@ class Ida {
   }
 
  private:
+  // Multipliers follow from the coordinates and are the less determined the smaller the step: they take part
+  // in neither the error test nor that of Newton's convergence.
+  void set_tolerances(const IdaOptions& options) {
+    N_VConst(1e10, tolerance_);
+    Map(NV_DATA_S(tolerance_), equations_.size())
+        .head(2 * equations_.n())
+        .setConstant(options.absolute_tolerance);
+  }
+
   void set_start(const System& system, const State& start) {
     const Index n = equations_.n();
     N_VConst(0.0, y_);
@@ -262,7 +273,7 @@ class Ida {
 
   Equations& equations_;
   SUNContext context_ = nullptr;
-  N_Vector y_ = nullptr, dy_ = nullptr, id_ = nullptr;
+  N_Vector y_ = nullptr, dy_ = nullptr, id_ = nullptr, tolerance_ = nullptr;
   SUNMatrix matrix_ = nullptr;
   SUNLinearSolver solver_ = nullptr;
   void* memory_ = nullptr;
