@@ -34,7 +34,7 @@ class Dvm final : public Integrator {
     const Index n = system.solved_coordinates(), m = system.constraints();
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
-    for (VectorXd* v : {&p1_, &w1_, &z1_}) v->setZero(n);
+    for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_}) v->setZero(n);
     for (VectorXd* v : {&mu_, &zero_}) v->setZero(m);
     pose_.setZero(system.coordinates());
     halfway_ = c_.basis.values(0.5);
@@ -85,7 +85,7 @@ class Dvm final : public Integrator {
   SaddleSolver saddle_;
   SparseLdlt mass_factor_;  // ends variant only
   std::vector<double> rhs_f_, rhs_g_;
-  VectorXd p1_, w1_, mu_, zero_, pose_, halfway_, z1_;
+  VectorXd p1_, w1_, end_z_, pull_, mu_, zero_, pose_, halfway_;
   MatrixXd previous_, prolong_;
   RowMajor consistent_f_;
   double previous_h_ = 0;
@@ -230,19 +230,17 @@ void Dvm::correct(StepReport& report) {
 void Dvm::correct_at_ends(StepReport& report) {
   const Index last = c_.s - 2, n = eq_.dX.rows();
   const double h = eq_.h;
-  const auto column = [&](Index j) -> VectorXd {
-    return -h * (eq_.momentum * c_.C_inverse.row(j).transpose());
-  };
   Eigen::Map<VectorXd> f(rhs_f_.data(), n), y(rhs_g_.data(), eq_.lambda.rows());
-  f = column(last);
+  f.noalias() = -h * (eq_.momentum * c_.C_inverse.row(last).transpose());
   y = -eq_.phi.col(last);
   saddle_.apply(rhs_f_.data(), rhs_g_.data(), 1);
   eq_.dX.col(last) += f;
-  const VectorXd pull = G_.transpose() * y;
+  pull_.noalias() = G_.transpose() * y;
   for (Index j = 0; j < last; ++j) {
-    VectorXd r = column(j) - (c_.C_inverse(j, 0) / c_.C_inverse(last, 0)) * pull;
-    mass_factor_.solve(r.data(), 1);
-    eq_.dX.col(j) += r;
+    f.noalias() = -h * (eq_.momentum * c_.C_inverse.row(j).transpose());
+    f -= (c_.C_inverse(j, 0) / c_.C_inverse(last, 0)) * pull_;
+    mass_factor_.solve(f.data(), 1);
+    eq_.dX.col(j) += f;
   }
   report.right_hand_sides += static_cast<int>(c_.s - 1);
   eq_.lambda.col(0) -= y / (0.5 * h * h * c_.C_inverse(last, 0));
@@ -266,8 +264,8 @@ void Dvm::settle_end() {
   const Eigen::Map<const VectorXd> dz(rhs_f_.data(), eq_.dX.rows());
   if (!(dz.lpNorm<Eigen::Infinity>() <= far * size)) return;
   eq_.dX.col(last) += dz;
-  z1_ = eq_.z0 + eq_.dX.col(last);
-  system_.expand(z1_, eq_.Q.col(last + 1));
+  end_z_ = eq_.z0 + eq_.dX.col(last);
+  system_.expand(end_z_, eq_.Q.col(last + 1));
   system_.constraint(eq_.Q.col(last + 1), eq_.phi.col(last));
 }
 

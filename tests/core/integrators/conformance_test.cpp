@@ -166,7 +166,7 @@ TEST_CASE("conformance: a symplectic method keeps its energy bounded over 10^5 s
 TEST_CASE("conformance: constraints are held at the levels that are claimed") {
   for (const auto& [name, options] : variants()) {
     const Claims claims = claims_of(options);
-    Stepper s(ladder_structure(2, 3.0), options);
+    Stepper s(double_pendulum(), options);
     double position = 0, velocity = 0;
     s.run(100, 0.01, [&] {
       const VectorXd q = s.q();
@@ -179,7 +179,7 @@ TEST_CASE("conformance: constraints are held at the levels that are claimed") {
       velocity = std::max(velocity, (G * s.state.w).lpNorm<Eigen::Infinity>());
     });
     INFO(name << ": position " << position << " m, velocity " << velocity << " m/s");
-    // Coordinates up to 3 m and speeds up to 9 m/s: some ulp. Without a claim the error is that of the
+    // Coordinates up to 2 m and speeds up to 8 m/s: some ulp. Without a claim the error is that of the
     // method.
     if (claims.holds_positions)
       CHECK(position <= 3e-14);
@@ -205,10 +205,10 @@ TEST_CASE("conformance: a momentum map is conserved where it is claimed") {
                [&] { tumble_error = std::max(tumble_error, (tumble.angular_momentum() - whole).norm()); });
     INFO(name << ": swing " << swing_error << ", tumble " << tumble_error << " of " << whole.norm()
               << " kg m^2/s");
-    // 500 steps of round-off of numbers of order one.
+    // 500 steps that each leave a few ulp of momenta of order one.
     if (claims_of(options).conserves_momentum_maps) {
       CHECK(swing_error <= 1e-12);
-      CHECK(tumble_error <= 1e-12);
+      CHECK(tumble_error <= 1e-12 * whole.norm());
     } else {
       CHECK(std::max(swing_error, tumble_error) > 1e-10);
     }
@@ -218,7 +218,7 @@ TEST_CASE("conformance: a momentum map is conserved where it is claimed") {
 TEST_CASE("conformance: the same run gives the same bits") {
   for (const auto& [name, options] : variants()) {
     INFO(name);
-    Stepper one(ladder_structure(3, 5.0), options), other(ladder_structure(3, 5.0), options);
+    Stepper one(hoop_structure(), options), other(hoop_structure(), options);
     one.run(50, 0.01);
     other.run(50, 0.01);
     const auto bytes = static_cast<std::size_t>(one.state.z.size()) * sizeof(double);
