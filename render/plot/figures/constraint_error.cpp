@@ -17,6 +17,9 @@ Figure constraint_error_figure(const Simulation& run, const Diagnostics& diagnos
       aim > 0 ? " Newton iterations end where the constraints are met to " + plot::format_number(aim, 2) + "."
               : "";
 
+  std::vector<double> both = position;
+  both.insert(both.end(), velocity.begin(), velocity.end());
+
   Figure f;
   f.name = "constraint_error";
   f.title = "Constraint error";
@@ -26,7 +29,7 @@ Figure constraint_error_figure(const Simulation& run, const Diagnostics& diagnos
       "Largest error of all constraints, of positions relative to rod length and of velocities. Worst: " +
       plot::format_number(largest_magnitude(position), 2) + " (" +
       plot::format_number(largest_magnitude(position) / round_off, 2) + " units of round-off) and " +
-      plot::format_number(largest_magnitude(velocity), 2) + " m/s." + end + zeros_sentence(position) + " " +
+      plot::format_number(largest_magnitude(velocity), 2) + " m/s." + end + zeros_sentence(both) + " " +
       method_sentence(run);
 
   Panel top = time_panel(run, "position error (relative)");

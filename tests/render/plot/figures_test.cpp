@@ -142,7 +142,9 @@ TEST_CASE("errors are drawn on log axes with the round-off of a double", "[figur
 TEST_CASE("exact zeros on a log axis are owned up to in the caption", "[figures]") {
   Run r = {hoop().simulation, hoop().diagnostics};
   for (Series& s : r.diagnostics.columns)
-    if (s.name == "constraint_relative_max")
+    if (s.name == "constraint_velocity_max_m_s")
+      std::replace(s.values.begin(), s.values.end(), 0.0, 1e-16);
+    else if (s.name == "constraint_relative_max")
       std::fill(s.values.begin(), s.values.begin() + 3, 0.0),
           std::replace(s.values.begin() + 3, s.values.end(), 0.0, 1e-16);
   CHECK(r.figure("constraint_error").caption.find("The 3 exact zeros are drawn at the bottom edge.") !=
@@ -158,6 +160,18 @@ TEST_CASE("energies that are zero throughout are left out", "[figures]") {
   CHECK(labels(hoop().figure("energy")) == std::vector<std::string>{"kinetic energy", "work of the loads"});
   CHECK(labels(pendulum().figure("energy")) ==
         std::vector<std::string>{"kinetic energy", "potential energy"});
+}
+
+TEST_CASE("an energy that hardly changes is shown as the level it is", "[figures]") {
+  Run r = {pendulum().simulation, pendulum().diagnostics};
+  for (Series& s : r.diagnostics.columns)
+    for (std::size_t i = 0; i < s.values.size(); ++i) {
+      if (s.name == "kinetic_energy_J") s.values[i] = 22 + (i % 2 ? 1e-9 : 0);
+      if (s.name == "potential_energy_J" || s.name == "work_J") s.values[i] = 0;
+    }
+  const Panel p = r.figure("energy").panels.at(0);
+  CHECK(p.y.min == 0);
+  CHECK(p.y.max > 22);
 }
 
 TEST_CASE("rod forces are drawn by group, and a sector stands for the whole", "[figures]") {
