@@ -56,7 +56,7 @@ int cmd_poster(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   auto model = build_model(scene);
   require_writable(output);
-  const auto context = make_offscreen_context();
+  const auto context = make_offscreen_context(arguments.threads);
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
