@@ -22,16 +22,14 @@ namespace {
 
 // Each pose is a third as wide and half as high as a frame of the film, and all are drawn to one scale.
 FrameStyle panel_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
-  FrameStyle style;
-  style.options = scene.render;
+  FrameStyle style = film_style(scene, run, diagnostics);
+  style.title.clear();
   style.width = std::max(16, scene.render.width / 3) * scene.render.supersample;
   style.height = std::max(16, scene.render.height / 2) * scene.render.supersample;
-  style.options.legend = style.options.title = false;
+  style.options.legend = false;
   style.options.inset.clear();
   style.options.orbit = style.options.turntable = 0;
   style.options.follow = false;
-  style.run = &run;
-  style.diagnostics = &diagnostics;
   return style;
 }
 
@@ -58,7 +56,7 @@ int cmd_poster(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   auto model = build_model(scene);
   require_writable(output);
-  const auto context = make_offscreen_context();
+  const auto context = make_offscreen_context(arguments.threads);
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);

@@ -36,36 +36,43 @@ SourceLocation place_of(const Scene& scene, const std::string& key) {
   return it == scene.locations.end() ? SourceLocation{scene.name, 0, 0} : it->second;
 }
 
-// Names that only the structure and its run can tell to be right.
-void check_names(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
-  const RenderOptions& options = scene.render;
-  if (!options.inset.empty() && !diagnostics.find(options.inset)) {
-    std::vector<std::string_view> names;
-    for (const Series& series : diagnostics.columns) names.push_back(series.name);
-    throw SceneError({{place_of(scene, "render.inset"), "render.inset",
-                       "no column " + in_quotes(options.inset) + did_you_mean(options.inset, names)}});
-  }
-  NameIndex nodes;
-  for (const NodeCopy& copy : run.trajectory.structure().node_copies) nodes.add(copy.name);
-  if (!options.trails.empty() && nodes.matching(options.trails).empty())
-    throw SceneError(
-        {{place_of(scene, "render.trails"), "render.trails",
-          "no node matches " + in_quotes(options.trails) + did_you_mean(options.trails, nodes.names())}});
+// The inset's column is one that only the run can tell to be there.
+void check_inset(const Scene& scene, const Diagnostics& diagnostics) {
+  const std::string& inset = scene.render.inset;
+  if (inset.empty() || diagnostics.find(inset)) return;
+  std::vector<std::string_view> names;
+  for (const Series& series : diagnostics.columns) names.push_back(series.name);
+  throw SceneError({{place_of(scene, "render.inset"), "render.inset",
+                     "no column " + in_quotes(inset) + did_you_mean(inset, names)}});
 }
 
-FrameStyle style_of(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
+std::vector<int> trail_nodes(const Scene& scene, const Structure& structure) {
+  const std::string& pattern = scene.render.trails;
+  if (pattern.empty()) return {};
+  NameIndex nodes;
+  for (const NodeCopy& copy : structure.node_copies) nodes.add(copy.name);
+  std::vector<int> found = nodes.matching(pattern);
+  if (found.empty())
+    throw SceneError({{place_of(scene, "render.trails"), "render.trails",
+                       "no node matches " + in_quotes(pattern) + did_you_mean(pattern, nodes.names())}});
+  return found;
+}
+
+}  // namespace
+
+FrameStyle film_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
   const RenderOptions& options = scene.render;
   FrameStyle style;
   style.width = options.width * options.supersample;
   style.height = options.height * options.supersample;
   style.title = scene.title;
+  check_inset(scene, diagnostics);
   style.options = options;
+  style.trails = trail_nodes(scene, run.trajectory.structure());
   style.run = &run;
   style.diagnostics = &diagnostics;
   return style;
 }
-
-}  // namespace
 
 void check_film(const Scene& scene) {
   const RenderOptions& render = scene.render;
@@ -90,9 +97,8 @@ bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation&
     if (!folder.finished(k)) missing.push_back(k);
   if (missing.empty()) return true;
   folder.set_encoded(false);
-  check_names(scene, run, diagnostics);
   const bool alpha = has_alpha(options);
-  const FrameStyle style = style_of(scene, run, diagnostics);
+  const FrameStyle style = film_style(scene, run, diagnostics);
   const FrameBuilder builder(run.trajectory, style);
   Renderer renderer(context, style.width, style.height);
   TaskQueue writers(writer_threads(arguments));

@@ -9,12 +9,17 @@
 #include "core/scene/scene.hpp"
 #include "core/simulate/simulation.hpp"
 #include "render/gl/context.hpp"
+#include "render/scene/frame_builder.hpp"
 
 namespace unfurl {
 
 // How many frames a run to the scene's end time would have at most; throws SceneError where that is beyond
 // reason.
 void check_film(const Scene& scene);
+
+// What the scene says about its pictures, for a FrameBuilder. Points to run and diagnostics. Throws
+// SceneError where a name in it is none of this run's.
+FrameStyle film_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics);
 
 // Do the frames have transparent pixels: because the scene says so, or its look?
 bool has_alpha(const RenderOptions& options);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/structures/name_index.hpp"
 #include "render/scene/frame_overlay.hpp"
 #include "render/scene/pose_times.hpp"
 
@@ -109,11 +108,8 @@ void FrameBuilder::prepare_ghosts() {
 }
 
 void FrameBuilder::prepare_trails() {
-  if (style_.options.trails.empty()) return;
-  const auto& nodes = trajectory_.structure().node_copies;
-  NameIndex names;
-  for (const NodeCopy& copy : nodes) names.add(copy.name);
-  for (const int k : names.matching(style_.options.trails)) trails_.push_back({k, {}, {}});
+  if (style_.trails.empty()) return;
+  for (const int k : style_.trails) trails_.push_back({k, {}, {}});
   for (const std::size_t i : equal_steps(trajectory_, trail_points)) {
     const VectorXd whole = trajectory_.positions(i);
     for (Trail& trail : trails_) {

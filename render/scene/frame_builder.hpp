@@ -25,6 +25,7 @@ struct FrameStyle {
   // What colours by a quantity, errors, method and inset are read from; without them those are left out.
   const Simulation* run = nullptr;
   const Diagnostics* diagnostics = nullptr;
+  std::vector<int> trails = {};  // the copied nodes that leave one (options.trails is their pattern)
 };
 
 class FrameOverlay;

@@ -252,7 +252,8 @@ float lines(vec2 p, float pixels) {  // 1 on the lines of the unit grid
 void main() {
   float fade = 1.0 - smoothstep(0.35, 1.0, length(world - center.xy) / reach);
   vec3 paper = mix(background_bottom, background_top, gl_FragCoord.y / picture_height).rgb;
-  float grid = max(0.20 * lines(world / cell, 1.1), 0.34 * lines(world / (5.0 * cell), 1.3)) * grid_strength * fade;
+  float finer = max(1.0, picture_height / 720.0);  // lines as wide for the eye in pictures of any size
+  float grid = max(0.20 * lines(world / cell, 1.1 * finer), 0.34 * lines(world / (5.0 * cell), 1.3 * finer)) * grid_strength * fade;
   float shadow = fade > 0.0 ? fade * (1.0 - lit(vec3(world, center.z))) : 0.0;
   if (transparent == 1) {  // multiplied by its own opacity
     float ink = max(grid, 0.40 * shadow);

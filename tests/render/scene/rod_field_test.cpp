@@ -108,7 +108,7 @@ TEST_CASE("the picture of a run shows the field's colour, its bar and what else 
   const DrawList list = builder.build(0.25);
   CHECK(list.tubes[0].color.g == Approx(sequential_color(0.5).g).margin(1e-4));
   CHECK(list.areas.size() == 64);
-  std::string texts;
+  std::string texts = "|";
   for (const TextLabel& label : list.labels) texts += label.text + "|";
   for (const char* text :
        {"speed (m/s)|", "dvm, s = 4, h = 0.01 s|", "so far: constraints ", "|x|", "|P|", "|E|", "P-E"})
@@ -127,7 +127,7 @@ TEST_CASE("ghosts are earlier poses, trails end at their node") {
   CHECK(list.ghosts.size() ==
         3);  // of the poses at 0, 1/4, 1/2 and 3/4 of the way, those before 0.3 of 0.5 s
   style.options.ghosts = 0;
-  style.options.trails = "E";
+  style.trails = {1};
   list = FrameBuilder(r.run.trajectory, style).build(0.3);
   REQUIRE(list.ghosts.size() > 5);
   CHECK((list.ghosts.back().b.cast<double>() - r.run.trajectory.positions_at(0.3).segment<3>(3)).norm() <
