@@ -74,7 +74,7 @@ std::optional<Extreme> force(const SceneSource& source) {
 std::optional<Extreme> fold_angle(const SceneSource& source) {
   if (!scene_number(source.read(), "structure.fold_angle")) return std::nullopt;
   return by_key(source, "fold_angle", "90\u00B0 \u2212 fold angle (\u00B0)",
-                {1e-9, 1e-7, 1e-5, 1e-3, 1e-1, 1, 10, 30, 60}, "structure.fold_angle",
+                {1e-7, 1e-5, 1e-3, 1e-2, 1e-1, 1, 10, 30, 60}, "structure.fold_angle",
                 [](double value) { return 90.0 - value; });
 }
 
@@ -111,7 +111,7 @@ std::optional<Extreme> stiffness(const SceneSource& source) {
 constexpr std::array kinds{
     ExtremeKind{"mass_ratio", "some rods lighter or heavier than the others, to 1e8", mass_ratio},
     ExtremeKind{"force", "loads and gravity, to 1e8 times", force},
-    ExtremeKind{"fold_angle", "folded towards dead centre, to 90 deg - 1e-9", fold_angle},
+    ExtremeKind{"fold_angle", "folded towards dead centre, to 90 deg - 1e-7", fold_angle},
     ExtremeKind{"units", "more units", units},
     ExtremeKind{"stiffness", "stiffer springs, to 1e10", stiffness},
 };

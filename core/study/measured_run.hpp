@@ -39,6 +39,8 @@ struct TimingOptions {
 MeasuredRun measure_run(const std::shared_ptr<const Model>& model, SolverOptions options, long steps,
                         const Reference& reference, const TimingOptions& timing, const StudyHooks& hooks);
 
+double thread_cpu_seconds();  // of the calling thread so far
+
 // Errors that a run shows about itself, written into `out`.
 void measure_invariants(const Simulation& run, MeasuredRun& out);
 

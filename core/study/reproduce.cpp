@@ -129,7 +129,7 @@ Reproduction reproduce_paper(const StudyHooks& hooks) {
       hooks.tell(0.2 + 0.8 * done++ / static_cast<double>(r.schemes.size() * reproduced_steps.size()));
       ReproducedRun run;
       run.measured =
-          measure_run(model, s.options, std::lround(r.end / step), reference, {.repeats = 9}, hooks);
+          measure_run(model, s.options, std::lround(r.end / step), reference, {.repeats = 5}, hooks);
       record(model, s.options, reference, run);
       s.runs.push_back(std::move(run));
     }

@@ -56,7 +56,7 @@ void compare(Report& report, const Reproduction& r, const ReproductionPictures& 
   report.heading("Tables 1 and 2 of the paper, beside ours");
   report.paragraph(
       "CPU times are of different machines and programs; what carries over is the ratio to Runge-Kutta. "
-      "Ours are medians of up to nine runs from 0 to " +
+      "Ours are medians of five runs from 0 to " +
       short_number(r.end) +
       " s. The lower two rows "
       "are not in the paper.");

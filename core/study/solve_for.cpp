@@ -93,7 +93,8 @@ class Search {
     }
     side.last = next;
     side.stride *= side.walled ? 0.5 : 2;
-    side.open = std::abs(side.stride) > 1e-9 * std::max(std::abs(side.last.x), 1e-3);
+    const double far = std::abs(side.last.x - o_.start), unit = std::max(std::abs(o_.start), 1.0);
+    side.open = std::abs(side.stride) > 1e-9 * std::max(std::abs(side.last.x), 1e-3) && far < 1e9 * unit;
     return false;
   }
 
@@ -124,7 +125,7 @@ class Search {
   void refuse_jump() const {
     const double jump = std::abs(b_.value - a_.value);
     if (off(best_) <= 1e-6 * std::max(std::abs(target_), 1e-300) || jump < 1e-4 * std::abs(target_)) return;
-    throw NotFound("the measure jumps over the target at " + short_number(best_.x, 9) + ", from " +
+    throw NotFound("the measure jumps over the target at " + short_number(b_.x, 9) + ", from " +
                    short_number(a_.value, 9) + " to " + short_number(b_.value, 9) +
                    (std::isinf(jump) ? "; a later solver.end_time may help" : ""));
   }

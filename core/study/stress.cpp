@@ -19,9 +19,11 @@ struct Site {
   std::string trouble = {};  // why there is none
 };
 
+constexpr double probing_seconds = 3.0;
+
 // How long the motion is: to 99 % of the deployment where there is one, however late; else to the scene's
 // end, which moves with the square root of the forces. Found with the first of these methods that gets there.
-double duration(const Site& site, SolverOptions options) {
+double duration(const Site& site, SolverOptions options, const StudyHooks& hooks) {
   double end = options.end_time;
   if (site.extreme->name == "force") end /= std::sqrt(site.value);
   if (site.model->structure.deployment.empty()) return end;
@@ -32,7 +34,11 @@ double duration(const Site& site, SolverOptions options) {
   for (const auto& [method, stages] : {std::pair{"dvm", 4}, {"dvm", 3}, {"rk4", 3}}) {
     options.method = method;
     options.stages = stages;
-    const Simulation run = simulate(site.model, options);
+    const double begin = thread_cpu_seconds();
+    SimulationHooks bounded;
+    bounded.cancelled = [&] { return hooks.stopped() || thread_cpu_seconds() - begin > probing_seconds; };
+    const Simulation run = simulate(site.model, options, bounded);
+    if (hooks.stopped()) throw Cancelled();
     for (const Event& event : run.events)
       if (event.name == "deployed") return 0.99 * event.t;
   }
@@ -44,7 +50,7 @@ void prepare(Site& site, int intervals, const StudyHooks& hooks) {
     SolverOptions options;
     site.model = site.extreme->build(site.value, options);
     const double enough = 1e-6 * structure_size(*site.model);
-    site.reference = solve_reference(site.model, duration(site, options), intervals, hooks, enough);
+    site.reference = solve_reference(site.model, duration(site, options, hooks), intervals, hooks, enough);
   } catch (const ReferenceError& error) {
     site.trouble = error.what();
   } catch (const SceneError& error) {

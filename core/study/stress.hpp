@@ -22,7 +22,7 @@ std::span<const Verdict> verdicts();
 std::string criterion(Verdict verdict);  // in words
 
 struct StressLimits {
-  double seconds = 3.0;      // a run that takes longer by the clock is too slow
+  double seconds = 3.0;      // a run that takes more CPU time is too slow
   double constraint = 1e-3;  // of a rod's length
   double energy = 0.05;      // of the largest kinetic energy
   double branch = 0.1;       // position error, of the structure's size

@@ -28,7 +28,7 @@ std::string criterion(Verdict verdict) {
     case Verdict::solver_failed:
       return "the solver stops and says so (Newton iteration or factorisation)";
     case Verdict::too_slow:
-      return "no end within " + short_number(limits.seconds) + " s";
+      return "no end within " + short_number(limits.seconds) + " s of CPU time";
     case Verdict::constraint_lost:
       return "a constraint is off by more than " + short_number(100 * limits.constraint) +
              " % of a rod's length";

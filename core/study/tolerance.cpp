@@ -66,7 +66,7 @@ class Picker {
     for (const int stages : stage_choices()) {
       try_stages(stages);
       if (stopped_) return std::move(*stopped_);
-      if (round_off_) break;  // fewer stages and more steps would meet it all the more
+      if (round_off_ > 1) break;  // fewer stages and more steps would meet it all the more
       if (stages == 2 && best_ && best_->estimate <= most * options_.tolerance) break;
     }
     if (!best_) return simulate(model_, options_, hooks_);  // nothing ran through: as the scene says
@@ -135,7 +135,7 @@ class Picker {
       const double work = pair->work;
       if (share <= most) enough = enough == 0 ? steps : std::min(enough, steps);
       keep(std::move(*pair));
-      round_off_ = hopeless;
+      if (hopeless) ++round_off_;
       if (hopeless || (share <= most && share >= least) || (share < least && steps == fewest_steps_)) return;
       const double factor = std::isfinite(share) ? std::pow(share / aim, 1 / order) : 4.0;
       const long next = std::lround(static_cast<double>(steps) * std::clamp(factor, 0.125, 8.0));
@@ -165,7 +165,7 @@ class Picker {
   long fewest_steps_;
   std::optional<Pair> best_;
   std::optional<Simulation> stopped_;
-  bool round_off_ = false;
+  int round_off_ = 0;  // numbers of stages that met it
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 using namespace unfurl;
 
 namespace {
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
 }
 
 TEST_CASE("a root is bracketed from where the search starts") {
@@ -18,7 +18,7 @@ TEST_CASE("a root is bracketed from where the search starts") {
 
 TEST_CASE("the search approaches a wall behind which parameters are invalid") {
   // Like the deployment time near dead centre: it grows without end towards 90.
-  const auto f = [](double x) { return x < 90 ? -std::log(90 - x) : nan; };
+  const auto f = [](double x) { return x < 90 ? -std::log(90 - x) : none; };
   const Solved s = solve_for(f, std::log(1e6), {.start = 60}, {});
   CHECK(90 - s.x == Approx(1e-6).epsilon(1e-5));  // x is good to 1e-12 of 90
 }
@@ -28,7 +28,7 @@ TEST_CASE("a target out of reach is told with what was reached") {
                     Catch::Contains("the target is not reached on either side of 1"));
   CHECK_THROWS_WITH(solve_for([](double x) { return x; }, 9, {.low = 0, .high = 1}, {}),
                     Catch::Contains("does not lie between the ends of --between"));
-  CHECK_THROWS_AS(solve_for([](double) { return nan; }, 9, {.start = 1}, {}), NotFound);
+  CHECK_THROWS_AS(solve_for([](double) { return none; }, 9, {.start = 1}, {}), NotFound);
 }
 
 TEST_CASE("a jump over the target is no root") {
