@@ -274,13 +274,17 @@ void ControlPanel::paint() {
   painter_->draw(*ImGui::GetDrawData());
 }
 
-bool ControlPanel::frame(double seconds) {
+bool ControlPanel::frame(double seconds, bool visible) {
   context_.make_current();
   ImGui::SetCurrentContext(imgui_);
   take_events();
   take_results();
   if (state_.shown) {
     const Trajectory& trajectory = state_.shown->simulation.trajectory;
+    if (state_.playback.playing && seconds > 0) {
+      const double rate = 1 / seconds, before = state_.frames_per_second;
+      state_.frames_per_second = before > 0 ? before + 0.1 * (rate - before) : rate;
+    }
     state_.playback = advanced(state_.playback, seconds, trajectory.start_time(), trajectory.end_time());
   }
   if (state_.dark != dark_drawn_) {
@@ -297,7 +301,7 @@ bool ControlPanel::frame(double seconds) {
   ImGui::PopFont();
   ImGui::Render();
   follow_document();
-  paint();
+  if (visible) paint();
   settling_ = std::max(0, settling_ - 1);
   return settling_ > 0 || !events_.empty() || state_.playback.playing || io.WantTextInput;
 }

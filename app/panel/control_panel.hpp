@@ -40,7 +40,8 @@ class ControlPanel {
   void handle(const InputEvent& event) { events_.push_back(event); }
   // Take input, move on by `seconds`, draw. Returns whether another frame is wanted without further input:
   // the motion plays, events wait, or widgets settle.
-  bool frame(double seconds);
+  // A panel that nobody can see is not painted.
+  bool frame(double seconds, bool visible = true);
   const Framebuffer& picture() const { return *picture_; }
 
   PanelState& state() { return state_; }

@@ -37,6 +37,7 @@ struct PanelState {
   std::string message;                    // other trouble, or what was done, in a line
 
   Playback playback;
+  double frames_per_second = 0;  // while it plays, smoothed
   ViewOptions view;
   std::optional<OrbitCamera> orbit;  // none: the camera that frames the motion
   Selection selected, hovered;

@@ -60,7 +60,7 @@ void escape(PanelState& state) {
 }
 
 void pin(PanelState& state) {
-  state.pinned = state.pinned == state.shown ? nullptr : state.shown;
+  state.pinned = state.pinned ? nullptr : state.shown;
 }
 
 }  // namespace

@@ -115,6 +115,10 @@ void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame) 
   char facts[160];
   std::snprintf(facts, sizeof facts, " at %.4g s, %ld steps, %.3g s of CPU time",
                 run.simulation.trajectory.end_time(), run.simulation.steps, run.simulation.cpu_s);
+  if (state.playback.playing && state.frames_per_second > 0) {
+    const std::size_t end = std::char_traits<char>::length(facts);
+    std::snprintf(facts + end, sizeof facts - end, ", %.0f frames/s", state.frames_per_second);
+  }
   const bool failed = run.simulation.status == RunStatus::failed;
   line = failed ? "the solver failed " + run.simulation.message : line + facts;
   list.AddText({at.x, at.y + ui.bold->FontSize + ui.px(4)},

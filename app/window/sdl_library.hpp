@@ -13,6 +13,7 @@
   X(DestroyWindow)              \
   X(SetWindowMinimumSize)       \
   X(GetWindowSize)              \
+  X(GetWindowFlags)             \
   X(GetWindowDisplayIndex)      \
   X(GetDisplayDPI)              \
   X(GL_SetAttribute)            \

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <thread>
 #include <tuple>
 
 #include "app/exit_code.hpp"
@@ -61,6 +62,9 @@ class SdlWindow final : public GlContext {
     if (index < 0 || sdl().GetDisplayDPI(index, nullptr, &dpi, nullptr) != 0 || dpi < 48 || dpi > 800)
       return fine;
     return std::max(1.0f, std::round(4 * std::max(fine, dpi / 96)) / 4);
+  }
+  bool visible() const {
+    return (sdl().GetWindowFlags(window_) & (SDL_WINDOW_MINIMIZED | SDL_WINDOW_HIDDEN)) == 0;
   }
   void show(const Framebuffer& picture) {
     picture.copy_to_window(pixels().second);
@@ -161,8 +165,11 @@ class Host {
       const auto now = Clock::now();
       const double seconds = std::chrono::duration<double>(now - last).count();
       last = now;
-      more = panel_->frame(more ? seconds : 0.0);
-      window_.show(panel_->picture());
+      more = panel_->frame(more ? seconds : 0.0, window_.visible());
+      if (window_.visible())
+        window_.show(panel_->picture());
+      else
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
       take_screenshot();
     }
     PanelSettings now = panel_->settings();

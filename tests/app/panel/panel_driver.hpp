@@ -11,15 +11,24 @@ namespace unfurl {
 
 class PanelDriver {
  public:
-  explicit PanelDriver(PanelOptions options = {}, const std::string& scene = "hoop6")
+  explicit PanelDriver(PanelOptions options = small(), const std::string& scene = "hoop6")
       : context_(make_offscreen_context()), panel_(*context_, document(scene), std::move(options)) {
     settle();
+  }
+
+  // Quick to draw.
+  static PanelOptions small() {
+    PanelOptions options;
+    options.width = 1000;
+    options.height = 560;
+    options.scale = 0.75f;
+    return options;
   }
 
   ControlPanel& panel() { return panel_; }
   PanelState& state() { return panel_.state(); }
 
-  void frame(double seconds = 1.0 / 60) { panel_.frame(seconds); }
+  void frame(double seconds = 1.0 / 60, bool visible = true) { panel_.frame(seconds, visible); }
   // Until nothing simulates and the widgets have their sizes.
   void settle() {
     for (int i = 0; i < 60000; ++i) {
