@@ -249,7 +249,7 @@ void Dvm::correct_at_ends(StepReport& report) {
 // Takes away what the iteration left of Phi at the end pose, where a motion of its own size does so. Weak
 // modes, which would move far, keep theirs.
 void Dvm::settle_end() {
-  constexpr double far = 100.0, settled = 0.5;
+  constexpr double far = 1000.0, settled = 0.5;
   const Index last = c_.s - 2;
   double level = 0, size = 0;
   for (Index r = 0; r < eq_.phi.rows(); ++r) {
