@@ -87,6 +87,19 @@ void Assembly::point_of_rod(int point, int a, int b, double share) {
   }
 }
 
+void Assembly::pin_middles(int pin, int a, int b, int c, int d) {
+  constexpr const char* axes[] = {" x", " y", " z"};
+  point_of_rod(pin, a, b);
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 half = 0.5 * Vec3::Unit(k);
+    structure.constraints.push_back({"relation",
+                                     name(pin) + " on rod " + name(c) + "-" + name(d) + axes[k],
+                                     {a, b, c, d},
+                                     {half, half, -half, -half},
+                                     0.0});
+  }
+}
+
 void Assembly::coplanar(std::vector<int> nodes, std::string name) {
   structure.constraints.push_back({"coplanar", std::move(name), std::move(nodes), {}, 0.0});
 }

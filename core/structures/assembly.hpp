@@ -39,6 +39,9 @@ class Assembly {
   void relation(std::string name, std::vector<int> nodes, std::vector<Vec3> vectors);
   // x_point = (1 - share) x_a + share x_b: three relations, which make `point` a point of the rod ab.
   void point_of_rod(int point, int a, int b, double share = 0.5);
+  // Rods ab and cd cross at their middles, where the massless node `pin` holds them together: it is the
+  // middle of ab (eliminated in any case), and x_a + x_b = x_c + x_d, which concerns the rods' ends only.
+  void pin_middles(int pin, int a, int b, int c, int d);
   // Four nodes stay in one plane, which moves with them.
   void coplanar(std::vector<int> nodes, std::string name);
   void load(int node, const Vec3& force);

@@ -52,7 +52,7 @@ void add_zigzag(Assembly& a, const SheetShape& s, int j) {
   for (int i = 0; i + 1 < s.width(); ++i)
     a.rod(s.node(j, i), s.node(j, i + 1), s.l, mass, "chord", s.section.radius);
   for (int i = 2; i < s.width(); ++i)
-    a.relation("level of " + a.name(s.node(j, i)), {s.node(j, i), s.node(j, i % 2)},
+    a.relation("level of " + a.name(s.node(j, i)), {s.node(j, i), s.node(j, i - 2)},
                {Vec3::UnitZ(), -Vec3::UnitZ()});
 }
 

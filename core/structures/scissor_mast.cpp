@@ -75,8 +75,7 @@ void add_scissor(Assembly& a, const MastShape& s, int k, int cell) {
   const double mass = s.section.mass_per_length * s.l;
   a.rod(low, high_next, s.l, mass, "right arm", s.section.radius);
   a.rod(low_next, high, s.l, mass, "left arm", s.section.radius);
-  a.point_of_rod(pin, low, high_next);
-  a.point_of_rod(pin, low_next, high);
+  a.pin_middles(pin, low, high_next, low_next, high);
 }
 
 void set_deployment(Structure& out, const MastShape& s, const ParamSet& p) {

@@ -32,8 +32,7 @@ void add_unit(Assembly& a, const RingShape& s, int k) {
   const double mass = s.section.mass_per_length * s.l;
   a.rod(low, high_next, s.l, mass, "right arm", s.section.radius);
   a.rod(low_next, high, s.l, mass, "left arm", s.section.radius);
-  a.point_of_rod(middle, low, high_next);
-  a.point_of_rod(middle, low_next, high);
+  a.pin_middles(middle, low, high_next, low_next, high);
   a.plane(low, tangential(s.corner_angle(k)));
   if (k < 2) a.plane(high, tangential(s.corner_angle(k)));
   a.plane(middle, tangential(s.corner_angle(k) + pi / s.n));
