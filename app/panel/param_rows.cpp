@@ -114,7 +114,8 @@ SliderRange slider_range(const ParamSpec& spec, const ParamValue& base) {
             std::min(spec.max, std::max(12.0, rounded_up(4 * room))), false};
   if (spec.min >= 0) {  // sizes and masses: factors rather than differences
     const double high = std::min(spec.max, rounded_up(10 * room));
-    return {std::max(spec.min_open ? 0.0 : spec.min, high / 1000), high, true};
+    return {value < high / 1000 ? spec.min : std::max(spec.min_open ? 0.0 : spec.min, high / 1000), high,
+            true};
   }
   const double reach = rounded_up(4 * room);
   return {std::max(spec.min, -reach), std::min(spec.max, reach), false};

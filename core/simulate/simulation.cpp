@@ -121,8 +121,14 @@ class TimeLoop {
   // The step would land on the singular pose: end it a little behind instead. The grid goes on after that.
   bool step_over(double target, double h) {
     State next = now();
-    const StepReport report = step(next, 1.41 * h);
-    return accept(next, target + 0.41 * h, report);
+    StepReport report;
+    for (const double length : {1.41, 1.73, 1.19, 2.24}) {
+      next = now();
+      integrator_.restart();
+      report = step(next, length * h);
+      if (report.ok()) return accept(next, target + (length - 1) * h, report);
+    }
+    return accept(next, target, report);
   }
 
   StepReport step(State& state, double h) {
