@@ -68,7 +68,8 @@ TEST_CASE("an error names file, line, column, key, range and the nearest name") 
   CHECK(error_of(hoop + "density = nan") == "s.toml:3:11: structure.density: must be > 0 kg/m^3; got nan");
   CHECK(error_of(hoop + "density = inf") == "s.toml:3:11: structure.density: must be > 0 kg/m^3; got inf");
   CHECK(error_of(hoop + "model = 'sectr'") ==
-        "s.toml:3:9: structure.model: must be one of full, sector, joints; got 'sectr'; did you mean 'sector'?");
+        "s.toml:3:9: structure.model: must be one of full, sector, joints; got 'sectr'; did you mean "
+        "'sector'?");
   CHECK(error_of(hoop + "units = [1]") ==
         "s.toml:3:9: structure.units: must be a whole number in [3, 100000]; got a list of 1 entry");
   CHECK(error_of(hoop + "units = 1979-05-27").find("got a date or time") != std::string::npos);

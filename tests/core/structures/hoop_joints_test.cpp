@@ -82,7 +82,8 @@ TEST_CASE("an unevenly driven arc floats without momentum and keeps its energy b
   const double size = 100.0;
   for (std::size_t i = 0; i < run.trajectory.size(); i += 20)
     CHECK(momenta(run.trajectory, i).cwiseAbs().maxCoeff() <= 1e-9 * size);
-  // Driven evenly, units 0 and 3, at the ends, would mirror each other. Unit 0 lags: its hinges are less unfolded.
+  // Driven evenly, units 0 and 3, at the ends, would mirror each other. Unit 0 lags: its hinges are less
+  // unfolded.
   const VectorXd q = run.trajectory.positions(run.trajectory.size() - 1);
   const auto sag = [&](Index k) { return q[3 * (4 * k + 2) + 2] - q[3 * (4 * k) + 2]; };
   CHECK(sag(0) > sag(3) + 0.1);
