@@ -21,28 +21,37 @@ struct Site {
 
 constexpr double probing_seconds = 3.0;
 
+// When the structure is deployed, looked for up to `end`; NaN where it is not.
+double deployment_by(const Site& site, SolverOptions options, double end, const StudyHooks& hooks) {
+  options.end_time = end;
+  options.step = end / 4000;
+  const double begin = thread_cpu_seconds();
+  SimulationHooks bounded;
+  bounded.cancelled = [&] { return hooks.stopped() || thread_cpu_seconds() - begin > probing_seconds; };
+  const Simulation run = simulate(site.model, options, bounded);
+  if (hooks.stopped()) throw Cancelled();
+  for (const Event& event : run.events)
+    if (event.name == "deployed") return event.t;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 // How long the motion is: to 99 % of the deployment where there is one, however late; else to the scene's
 // end, which moves with the square root of the forces. Found with the first of these methods that gets there.
+// NaN: it never deploys.
 double duration(const Site& site, SolverOptions options, const StudyHooks& hooks) {
   double end = options.end_time;
   if (site.extreme->name == "force") end /= std::sqrt(site.value);
   if (site.model->structure.deployment.empty()) return end;
-  options.end_time = 12 * end;
-  options.step = options.end_time / 4000;
   options.nodes = "lobatto";
   options.constraints_at = "nodes";
-  for (const auto& [method, stages] : {std::pair{"dvm", 4}, {"dvm", 3}, {"rk4", 3}}) {
-    options.method = method;
-    options.stages = stages;
-    const double begin = thread_cpu_seconds();
-    SimulationHooks bounded;
-    bounded.cancelled = [&] { return hooks.stopped() || thread_cpu_seconds() - begin > probing_seconds; };
-    const Simulation run = simulate(site.model, options, bounded);
-    if (hooks.stopped()) throw Cancelled();
-    for (const Event& event : run.events)
-      if (event.name == "deployed") return 0.99 * event.t;
-  }
-  return end;
+  for (const double factor : {2.0, 20.0, 400.0, 8000.0, 160000.0})
+    for (const auto& [method, stages] : {std::pair{"dvm", 4}, {"dvm", 3}, {"rk4", 3}}) {
+      options.method = method;
+      options.stages = stages;
+      const double t = deployment_by(site, options, factor * end, hooks);
+      if (!std::isnan(t)) return 0.99 * t;
+    }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 void prepare(Site& site, int intervals, const StudyHooks& hooks) {
@@ -50,7 +59,11 @@ void prepare(Site& site, int intervals, const StudyHooks& hooks) {
     SolverOptions options;
     site.model = site.extreme->build(site.value, options);
     const double enough = 1e-6 * structure_size(*site.model);
-    site.reference = solve_reference(site.model, duration(site, options, hooks), intervals, hooks, enough);
+    const double end = duration(site, options, hooks);
+    if (std::isnan(end))
+      site.trouble = "it does not deploy";
+    else
+      site.reference = solve_reference(site.model, end, intervals, hooks, enough);
   } catch (const ReferenceError& error) {
     site.trouble = error.what();
   } catch (const SceneError& error) {
