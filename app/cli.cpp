@@ -48,6 +48,7 @@ Parsed parse(const std::vector<std::string>& words) {
   parser.add_option("names", a.names);
   parser.add_option("--set", a.overrides)->allow_extra_args(false);
   parser.add_option("-o,--output", a.output);
+  parser.add_option("--export", a.exports)->allow_extra_args(false)->delimiter(',');
   parser.add_flag("--force", a.force);
   parser.add_flag("--quiet", a.quiet);
   parser.add_flag("--json", a.json);

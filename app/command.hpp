@@ -15,6 +15,7 @@ struct Arguments {
   std::vector<std::string> names;      // the words behind the verb: SCENE NAME...
   std::vector<std::string> overrides;  // --set
   std::string output;                  // -o; empty: not given
+  std::vector<std::string> exports;    // --export, split at commas
   bool force = false;
   bool quiet = false;
   bool json = false;

@@ -15,6 +15,7 @@ constexpr std::string_view common_options =
     "string:\n"
     "                     --set solver.step=0.005 --set structure.model=sector --set "
     "structure.nodes.B0.mass=2\n"
+    "  --export FORMATS   of run and render, also write vtk, gltf, csv, npy (a comma list, repeatable)\n"
     "  --force            write into a directory that holds other files\n"
     "  --quiet            no progress and no report\n"
     "  --json             the summary or the list as JSON on standard output\n"
