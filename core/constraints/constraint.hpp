@@ -12,8 +12,8 @@
 
 namespace unfurl {
 
-// All constraints of one kind. Every row is scaled to metres. Phi(q) = 0, G = dPhi/dq, curvature = Hess Phi.
-// q: node coordinates of the solved nodes [3 n]; coordinate index of node i, axis k is 3 i + k.
+// All constraints of one kind. Every row is scaled to metres. Phi(q, t) = 0, G = dPhi/dq, curvature = Hess
+// Phi. q: node coordinates of the solved nodes [3 n]; coordinate index of node i, axis k is 3 i + k.
 class ConstraintBlock {
  public:
   virtual ~ConstraintBlock() = default;
@@ -25,6 +25,10 @@ class ConstraintBlock {
   virtual std::vector<int> stencil(int row) const = 0;
 
   virtual void value(const double* q, double* phi) const = 0;
+  // A kind that prescribes values over time is Phi(q, t) = value(q) - g(t); G does not depend on t.
+  virtual bool rheonomic() const { return false; }
+  // out[row] += scale * (derivative of g of this order, 0, 1 or 2) at t.
+  virtual void add_target(int /*order*/, double /*t*/, double /*scale*/, double* /*out*/) const {}
   // Entries of all rows one after the other, each in the order of its stencil.
   virtual void jacobian(const double* q, double* g) const = 0;
   // f += scale * G(q)^T lambda, without forming G.

@@ -120,8 +120,9 @@ Diagnostics diagnose(const Simulation& run) {
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const State& state = trajectory.state(i);
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
-    model.system.all_constraint_values(q, phi);
+    model.system.all_constraint_values(state.t, q, phi);
     velocity_phi = model.system.all_jacobian(q) * v;
+    if (model.system.rheonomic()) velocity_phi -= model.system.all_target_rates(state.t);
     axial_forces(index1, model, state, trajectory.report(i).singular_event, force);
     out.axial_force.row(static_cast<Index>(i)) = force.transpose();
     if (i == 0) first_energy = model.system.kinetic_energy(state.w) + model.system.potential_energy(q);

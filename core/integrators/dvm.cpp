@@ -34,7 +34,7 @@ class Dvm final : public Integrator {
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
     for (VectorXd* v : {&p1_, &w1_, &pose_z_, &z1_}) v->setZero(n);
-    for (VectorXd* v : {&mu_, &zero_}) v->setZero(m);
+    for (VectorXd* v : {&mu_, &rate_}) v->setZero(m);
     pose_.setZero(system.coordinates());
     if (eq_.at_ends) analyse_mass();
     small_ = is_small(system, c_.s);
@@ -77,7 +77,7 @@ class Dvm final : public Integrator {
   SaddleSolver saddle_;
   SparseLdlt mass_factor_;  // ends variant only
   std::vector<double> rhs_f_, rhs_g_;
-  VectorXd p1_, w1_, mu_, zero_, pose_, pose_z_, z1_;
+  VectorXd p1_, w1_, mu_, rate_, pose_, pose_z_, z1_;
   MatrixXd previous_, prolong_;
   RowMajor consistent_f_;
   double previous_h_ = 0;
@@ -231,18 +231,19 @@ void Dvm::correct_at_ends(StepReport& report) {
   eq_.lambda.col(0) -= y / (0.5 * h * h * c_.C_inverse(last, 0));
 }
 
-// p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; 0] at the end pose, mu = h b_s
-// lambda_s. The factorisation is the one that the next step starts with.
+// p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; g'(t)] at the end pose, mu = h
+// b_s lambda_s. The factorisation is the one that the next step starts with.
 void Dvm::finish(State& state, double h, StepReport& report) {
   eq_.end_momentum(p1_);
   freeze(eq_.node(c_.s - 1), report);
-  saddle_.solve(p1_, zero_, w1_, mu_);
+  if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
+  saddle_.solve(p1_, rate_, w1_, mu_);
   report.right_hand_sides += 1;
   if (!frozen_ || !w1_.allFinite()) {
     report.status = StepStatus::not_finite;
     return;
   }
-  report.constraint_norm = zero_.size() ? eq_.phi.col(c_.s - 2).lpNorm<Eigen::Infinity>() : 0.0;
+  report.constraint_norm = rate_.size() ? eq_.phi.col(c_.s - 2).lpNorm<Eigen::Infinity>() : 0.0;
   previous_ = eq_.dX;
   previous_h_ = h;
   have_history_ = true;

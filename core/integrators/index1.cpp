@@ -21,7 +21,7 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   f_.setZero();
   system_.add_applied_force(t, q_, v_, 1.0, f_);
   system_.reduce_force(f_, force_);
-  system_.constraint_bias(q_, v_, bias_);
+  system_.constraint_bias(t, q_, v_, bias_);
   bias_ = -bias_;
   saddle_.solve(force_, bias_, acceleration, lambda, refinements_);
   return acceleration.allFinite() && lambda.allFinite();

@@ -50,7 +50,8 @@ void StageEquations::evaluate() {
   for (int j = 0; j < stages; ++j) {
     z_ = z0 + dX.col(j);
     system.expand(z_, Q.col(j + 1));
-    if (!at_ends || j == stages - 1) system.constraint(Q.col(j + 1), phi.col(j));
+    if (!at_ends || j == stages - 1)
+      system.constraint(t + c.basis.nodes()[j + 1] * h, Q.col(j + 1), phi.col(j));
     MdX_.col(j).noalias() = system.mass() * dX.col(j);
   }
   if (!system.constant_forces()) {

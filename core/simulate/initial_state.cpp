@@ -13,17 +13,19 @@ void project(const System& system, State& state) {
   std::vector<double> scratch;
   SaddleSolver saddle(system.mass(), G);
   VectorXd q(system.coordinates()), phi(system.constraints()), x(system.solved_coordinates()), y(phi.size());
-  const VectorXd no_force = VectorXd::Zero(x.size()), no_offset = VectorXd::Zero(phi.size());
+  VectorXd rate(phi.size());
+  const VectorXd no_force = VectorXd::Zero(x.size());
   for (int it = 0; it < 2; ++it) {
     system.expand(state.z, q);
-    system.constraint(q, phi);
+    system.constraint(state.t, q, phi);
     system.jacobian(q, G, scratch);
     if (!saddle.factorise(G)) return;
     saddle.solve(no_force, -phi, x, y, 0);
     state.z += x;
   }
   const VectorXd p = system.mass() * state.w;
-  saddle.solve(p, no_offset, state.w, y);
+  system.target_rate(state.t, rate);
+  saddle.solve(p, rate, state.w, y);
 }
 
 InitialState initial_state(const Structure& structure, const System& system) {
@@ -38,7 +40,9 @@ InitialState initial_state(const Structure& structure, const System& system) {
   s.lambda.setZero(system.constraints());
   // B w ~ v in the mass metric: exact where v fulfils the linear constraints.
   s.w = system.reduce_rate(v);
-  if (!v.isZero(0.0)) {
+  VectorXd rate(system.constraints());
+  system.target_rate(0.0, rate);
+  if (!v.isZero(0.0) || !rate.isZero(0.0)) {
     SparseRows G = system.jacobian_pattern();
     std::vector<double> scratch;
     system.jacobian(q, G, scratch);
@@ -46,7 +50,7 @@ InitialState initial_state(const Structure& structure, const System& system) {
     saddle.factorise(G);
     VectorXd p(system.solved_coordinates()), y(system.constraints()), back(system.coordinates());
     system.reduce_force(system.node_mass() * v, p);
-    saddle.solve(p, VectorXd::Zero(y.size()), s.w, y);
+    saddle.solve(p, rate, s.w, y);
     system.expand_rate(s.w, back);
     out.velocity_change = (back - v).lpNorm<Eigen::Infinity>();
   }
@@ -58,7 +62,8 @@ InitialState initial_state(const Structure& structure, const System& system) {
 
 std::string velocity_warning(const InitialState& start, const Structure& structure) {
   double fastest = 0;
-  for (const Node& node : structure.nodes) fastest = std::max(fastest, node.velocity.lpNorm<Eigen::Infinity>());
+  for (const Node& node : structure.nodes)
+    fastest = std::max(fastest, node.velocity.lpNorm<Eigen::Infinity>());
   if (start.velocity_change <= 1e-9 * fastest) return {};
   std::ostringstream text;
   text << "the initial velocities violate the constraints and were projected on them (largest change "
