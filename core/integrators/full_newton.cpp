@@ -39,6 +39,22 @@ Scales scales_of(const StageEquations& eq, const SparseRows& G) {
   return s;
 }
 
+// h dr_k / dX_i of the forces that vary: h sum_j w_j l_k(tau_j) [h l_i(tau_j) dF/dz + l_i'(tau_j) dF/dz']
+void add_force_blocks(Entries& entries, const StageEquations& eq) {
+  const Index n = eq.dX.rows();
+  SparseRows by_z, by_w;
+  for (int j = 0; j < eq.c.s; ++j) {
+    const VectorXd q = eq.Q * eq.c.value.col(j), v = eq.Q * eq.c.slope.col(j) / eq.h;
+    eq.system.force_derivatives(eq.t + eq.c.tau[j] * eq.h, q, v, by_z, by_w);
+    for (Index k = 0; k + 1 < eq.c.s; ++k)
+      for (Index i = 1; i < eq.c.s; ++i) {
+        const double weight = eq.h * eq.c.weight[j] * eq.c.value(k, j);
+        add_block(entries, by_z, k * n, (i - 1) * n, weight * eq.h * eq.c.value(i, j), false);
+        add_block(entries, by_w, k * n, (i - 1) * n, weight * eq.c.slope(i, j), false);
+      }
+  }
+}
+
 Columns newton_matrix(const StageEquations& eq, const VectorXd& scale) {
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
   Entries entries;
@@ -64,22 +80,6 @@ Columns newton_matrix(const StageEquations& eq, const VectorXd& scale) {
   Columns A(stages * (n + m), stages * (n + m));
   A.setFromTriplets(entries.begin(), entries.end());
   return A;
-}
-
-// h dr_k / dX_i of the forces that vary: h sum_j w_j l_k(tau_j) [h l_i(tau_j) dF/dz + l_i'(tau_j) dF/dz']
-void add_force_blocks(Entries& entries, const StageEquations& eq) {
-  const Index n = eq.dX.rows();
-  SparseRows by_z, by_w;
-  for (int j = 0; j < eq.c.s; ++j) {
-    const VectorXd q = eq.Q * eq.c.value.col(j), v = eq.Q * eq.c.slope.col(j) / eq.h;
-    eq.system.force_derivatives(eq.t + eq.c.tau[j] * eq.h, q, v, by_z, by_w);
-    for (Index k = 0; k + 1 < eq.c.s; ++k)
-      for (Index i = 1; i < eq.c.s; ++i) {
-        const double weight = eq.h * eq.c.weight[j] * eq.c.value(k, j);
-        add_block(entries, by_z, k * n, (i - 1) * n, weight * eq.h * eq.c.value(i, j), false);
-        add_block(entries, by_w, k * n, (i - 1) * n, weight * eq.c.slope(i, j), false);
-      }
-  }
 }
 
 VectorXd right_hand_side(const StageEquations& eq) {

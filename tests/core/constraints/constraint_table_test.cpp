@@ -13,13 +13,29 @@ namespace {
 // without.
 Structure sample() {
   Structure s;
-  s.nodes = {{"a", {0.1, 0.2, 0.3}}, {"b", {1.3, -0.4, 0.6}}, {"c", {0.7, 1.9, -0.8}}};
+  s.nodes = {
+      {"a", {0.1, 0.2, 0.3}}, {"b", {1.3, -0.4, 0.6}}, {"c", {0.7, 1.9, -0.8}}, {"d", {-0.6, 0.5, 1.1}}};
   s.rods = {{"ab", 0, 1, 1.0, 1.5, "rod", 0.01, 1.0}, {"bc", 1, 2, 1.0, 2.0, "rod", 0.01, 1.0}};
   const Vec3 n = Vec3(1, 2, 2) / 3;
   s.constraints = {{"plane", "plane", {0}, {n}, 0.25},
                    {"line", "line", {1}, {n}, 0.0},
                    {"fixed", "fixed", {2}, {}, 0.0},
-                   {"relation", "relation", {0, 1, 2}, {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, -1)}, 0.5}};
+                   {"relation", "relation", {0, 1, 2}, {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, -1)}, 0.5},
+                   {"collinear", "collinear", {0, 1, 2}, {}, 0.0},
+                   {"coplanar", "coplanar", {0, 1, 2, 3}, {}, 0.0}};
+  s.deployment.fold_sine = {{0, 1}, {n, -n}, 0.3};
+  s.deployment.fold_cosine = {{1, 3}, {Vec3(0.5, 0, 1), n}, 1.2};
+  const Measure measures[] = {
+      {MeasureKind::coordinate, {2}, n, 0},           {MeasureKind::coordinate, {0, 3}, n, 0},
+      {MeasureKind::length, {1, 3}, Vec3::Zero(), 0}, {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0},
+      {MeasureKind::angle, {0, 1, 2, 3}, n, 0.5},     {MeasureKind::fold, {}, Vec3::Zero(), 0}};
+  for (const Measure& measure : measures) {
+    s.constraints.push_back({"measure", "measure", {}, {}, 0.0, measure, {}});
+    TimeFunction& target = s.constraints.back().target;
+    target.kind = TimeFunction::Kind::smooth;
+    target.rise = 0.7;
+    target.duration = 2.0;
+  }
   return s;
 }
 
@@ -44,7 +60,7 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
     const auto block = kind.make(structure);
     INFO("constraint " << kind.kind);
     REQUIRE(block);
-    const Index n = 9, m = block->rows();
+    const Index n = 12, m = block->rows();
     VectorXd q(n), v(n), lambda(m);
     for (VectorXd* x : {&q, &v, &lambda})
       for (Index i = 0; i < x->size(); ++i) (*x)[i] = uniform(random);
@@ -87,6 +103,17 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
           (2 * step);
       CHECK((H.col(i) - column).cwiseAbs().maxCoeff() <= 1e-8);
     }
-    CHECK(block->linear() == H.isZero(1e-12));
+    if (!block->rheonomic()) {
+      CHECK(block->linear() == H.isZero(1e-12));
+      continue;
+    }
+    CHECK(!block->linear());  // eliminated rows cannot move
+    for (int order : {1, 2}) {
+      VectorXd rate = VectorXd::Zero(m), later = rate, earlier = rate;
+      block->add_target(order, 0.8, 1.0, rate.data());
+      block->add_target(order - 1, 0.8 + step, 1.0, later.data());
+      block->add_target(order - 1, 0.8 - step, 1.0, earlier.data());
+      CHECK(((later - earlier) / (2 * step) - rate).cwiseAbs().maxCoeff() <= 1e-7);
+    }
   }
 }
