@@ -8,6 +8,7 @@
 
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
+#include "core/diagnostics/accuracy.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/csv.hpp"
 #include "core/export/summary.hpp"
@@ -78,7 +79,8 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
 }
 
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {
-  for (const auto& warning : run.warnings) std::cerr << "unfurl: warning: " << warning << "\n";
+  for (const auto& warnings : {run.warnings, accuracy_warnings(diagnostics)})
+    for (const auto& warning : warnings) std::cerr << "unfurl: warning: " << warning << "\n";
   if (run.status == RunStatus::failed) std::cerr << "unfurl: the solver failed: " << run.message << "\n";
   if (run.status == RunStatus::stopped) std::cerr << "unfurl: interrupted; what is finished is kept\n";
   if (arguments.quiet) return;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/diagnostics/accuracy.hpp"
+
 namespace unfurl {
 
 namespace {
@@ -60,6 +62,7 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   Json summary = {{"unfurl", UNFURL_VERSION}, {"scene", scene_name}, {"status", to_string(run.status)}};
   summary["message"] = run.message;
   summary["warnings"] = run.warnings;
+  for (const auto& warning : accuracy_warnings(diagnostics)) summary["warnings"].push_back(warning);
   summary["model"] = model_json(model.structure, model.system, mobility);
   summary["solver"] = solver_json(run);
   for (const char* name : {"constraint_max_m", "constraint_relative_max", "constraint_velocity_max_m_s"})

@@ -11,7 +11,7 @@ namespace {
 constexpr double wanted = 1.5, wanted_constraint = 2.0, accepted = 30.0;
 // A system with more unknowns than this is not given the full Newton matrix, whose factors grow too fast;
 // instead its weak modes may keep a larger constraint error.
-constexpr Index full_newton_unknowns = 4000;
+constexpr Index full_newton_unknowns = 2500;
 constexpr int max_frozen_iterations = 30;
 
 bool is_small(const System& system, int stages) {

@@ -24,6 +24,11 @@ const std::vector<ParamSpec>& solver_params() {
       choice_param("constraints_at", fallback.constraints_at, {"nodes", "ends"},
                    "constraints hold at every interpolation node, or at step ends only (dvm)"),
       positive_param("step", "s", fallback.step, "time step h"),
+      boolean_param("adaptive", fallback.adaptive,
+                    "steps follow the motion, time-symmetrically and none larger than `step`; a symplectic "
+                    "method is then symmetric only"),
+      positive_param("turn", "rad", fallback.turn,
+                     "with `adaptive`: about how far a rod may turn, or velocities change, in a step"),
       positive_param("end_time", "s", fallback.end_time, "the run ends here at the latest"),
       choice_param("at_deployed", fallback.at_deployed, {"stop", "pass"},
                    "what happens when the structure is fully deployed"),
@@ -40,10 +45,27 @@ SolverOptions solver_options(const ParamSet& values) {
   options.nodes = values.text("nodes");
   options.constraints_at = values.text("constraints_at");
   options.step = values.real("step");
+  options.adaptive = values.boolean("adaptive");
+  options.turn = values.real("turn");
   options.end_time = values.real("end_time");
   options.at_deployed = values.text("at_deployed");
   options.eliminate_linear = values.boolean("eliminate_linear");
   return options;
+}
+
+ParamSet solver_values(const SolverOptions& solver) {
+  ParamSet values;
+  values.set("method", solver.method);
+  values.set("stages", static_cast<long>(solver.stages));
+  values.set("nodes", solver.nodes);
+  values.set("constraints_at", solver.constraints_at);
+  values.set("step", solver.step);
+  values.set("adaptive", solver.adaptive);
+  values.set("turn", solver.turn);
+  values.set("end_time", solver.end_time);
+  values.set("at_deployed", solver.at_deployed);
+  values.set("eliminate_linear", solver.eliminate_linear);
+  return values;
 }
 
 }  // namespace unfurl

@@ -13,12 +13,15 @@ struct SolverOptions {
   std::string nodes = "lobatto";         // lobatto | equidistant | chebyshev
   std::string constraints_at = "nodes";  // nodes | ends
   double step = 0.01;                    // h [s]
+  bool adaptive = false;                 // steps follow the motion, none larger than h
+  double turn = 0.1;                     // with `adaptive`: turn of a rod that a step may bring [rad]
   double end_time = 1.0;                 // [s]
   std::string at_deployed = "stop";      // stop | pass
   bool eliminate_linear = true;          // solve in coordinates that fulfil the linear constraints exactly
 };
 
 const std::vector<ParamSpec>& solver_params();         // one row per key of [solver]
+ParamSet solver_values(const SolverOptions& options);  // and back
 SolverOptions solver_options(const ParamSet& values);  // values: checked against solver_params()
 
 }  // namespace unfurl

@@ -97,17 +97,7 @@ std::string structure_text(const Scene& scene) {
 }
 
 std::string solver_text(const Scene& scene) {
-  ParamSet values;
-  const SolverOptions& solver = scene.solver;
-  values.set("method", solver.method);
-  values.set("stages", static_cast<long>(solver.stages));
-  values.set("nodes", solver.nodes);
-  values.set("constraints_at", solver.constraints_at);
-  values.set("step", solver.step);
-  values.set("end_time", solver.end_time);
-  values.set("at_deployed", solver.at_deployed);
-  values.set("eliminate_linear", solver.eliminate_linear);
-  return "\n[solver]\n" + params_text(solver_params(), values);
+  return "\n[solver]\n" + params_text(solver_params(), solver_values(scene.solver));
 }
 
 std::string render_text(const Scene& scene) {

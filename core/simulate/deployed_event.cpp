@@ -9,9 +9,11 @@
 namespace unfurl {
 namespace {
 
-// Fold angles [rad] between which states are solved. Below the smaller one round-off in the hinges,
-// 1e-16/fold, shows; at nine points below the larger one the extrapolation error is of the order (0.01)^9.
-constexpr double nearest = 2.5e-3, farthest = 3e-2;
+// States are solved at fold angles between `farthest` and a twelfth of it [rad]. Below 2.5e-3 round-off in
+// the hinges, 1e-16/fold, begins to show; at nine points below 3e-2 the extrapolation error of a six-unit
+// ring is of the order (0.01)^9. The fold rate varies on the scale sin(pi/n) of the fold angle: `farthest` is
+// halved until the rate changes by less than `even` over its outer half.
+constexpr double farthest = 3e-2, span = 12, even = 0.1, smallest_farthest = 1e-3;
 constexpr int points = 9;
 
 struct Sample {
@@ -26,7 +28,7 @@ class Locator {
 
   std::optional<State> locate() {
     const double start = sine(trajectory_.state(0));
-    const double far = std::min(farthest, 0.8 * start), near = std::min(nearest, 0.1 * start);
+    const double far = reach(std::min(farthest, 0.8 * start)), near = far / span;
     for (int i = 0; i < points; ++i) {
       const double u = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / points);
       solve_to(far + u * (near - far));
@@ -36,6 +38,19 @@ class Locator {
   }
 
  private:
+  double reach(double far) {
+    for (; far > smallest_farthest; far *= 0.5) {
+      samples_.clear();
+      solve_to(far);
+      solve_to(0.5 * far);
+      if (samples_.size() < 2) continue;
+      const double outer = sine_rate(samples_[0].state), inner = sine_rate(samples_[1].state);
+      if (std::abs(outer - inner) < even * std::abs(inner)) break;
+    }
+    samples_.clear();
+    return far;
+  }
+
   double sine(const State& s) {
     q_.resize(system().coordinates());
     system().expand(s.z, q_);
@@ -48,8 +63,8 @@ class Locator {
   }
   const System& system() const { return trajectory_.model().system; }
 
-  // One step from the last state before `target`, its length found by the secant method; any sine near the
-  // target will do.
+  // One step from the last state before `target`, its length found by the secant method; any sine within 2 %
+  // of the target will do: targets lie at least 5 % apart, and no two samples may coincide.
   void solve_to(double target) {
     std::size_t i = trajectory_.size() - 1;
     while (i > 0 && sine(trajectory_.state(i)) < 1.0001 * target) --i;
@@ -65,7 +80,7 @@ class Locator {
         continue;
       }
       const double f = sine(to) - target;
-      if (std::abs(f) < 0.05 * target) {
+      if (std::abs(f) < 0.02 * target) {
         keep(f + target, std::move(to));
         return;
       }

@@ -7,11 +7,18 @@
 #include "core/math/saddle_solver.hpp"
 
 namespace unfurl {
+namespace {
+
+// Regularisation of a projection next to a singular pose: modes whose scaled singular value lies below its
+// root would answer round-off with motion, and stay as they are.
+constexpr double weak_modes_left_alone = 1e-6;
+
+}  // namespace
 
 void project(const System& system, State& state) {
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
-  SaddleSolver saddle(system.mass(), G);
+  SaddleSolver saddle(system.mass(), G, 1, weak_modes_left_alone);
   VectorXd q(system.coordinates()), phi(system.constraints()), x(system.solved_coordinates()), y(phi.size());
   VectorXd rate(phi.size());
   const VectorXd no_force = VectorXd::Zero(x.size());

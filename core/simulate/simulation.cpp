@@ -12,6 +12,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/simulate/step_control.hpp"
 
 namespace unfurl {
 namespace {
@@ -56,21 +57,31 @@ class TimeLoop {
 
   void drive() {
     const SolverOptions& o = run_.options;
-    const auto count = std::max(1L, static_cast<long>(std::ceil(o.end_time / o.step - 1e-9)));
-    for (long k = 1; k <= count; ++k) {
-      if (hooks_.cancelled && hooks_.cancelled()) {
-        run_.status = RunStatus::stopped;
-        run_.message = "stopped by the user at t = " + seconds(run_.trajectory.end_time());
-        return;
+    if (o.adaptive) {
+      StepControl control(run_.trajectory.structure(), run_.trajectory.model().system, o);
+      while (now().t < o.end_time) {
+        const double h = control.next(now());
+        const bool last = now().t + 1.001 * h >= o.end_time;
+        if (!go_on() || !advance_to(last ? o.end_time : now().t + h)) return;
       }
-      report_progress(run_.trajectory.end_time() / o.end_time);
-      if (!advance_to(k == count ? o.end_time : static_cast<double>(k) * o.step)) return;
+    } else {
+      const auto count = std::max(1L, static_cast<long>(std::ceil(o.end_time / o.step - 1e-9)));
+      for (long k = 1; k <= count; ++k)
+        if (!go_on() || !advance_to(k == count ? o.end_time : static_cast<double>(k) * o.step)) return;
     }
     report_progress(1.0);
   }
 
  private:
   const State& now() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
+
+  bool go_on() {
+    report_progress(run_.trajectory.end_time() / run_.options.end_time);
+    if (!hooks_.cancelled || !hooks_.cancelled()) return true;
+    run_.status = RunStatus::stopped;
+    run_.message = "stopped by the user at t = " + seconds(run_.trajectory.end_time());
+    return false;
+  }
 
   // False where the run ends here.
   bool advance_to(double target) {
@@ -80,7 +91,10 @@ class TimeLoop {
     std::optional<State> event;
     if (!report.ok() && may_cross(h)) event = locate(h, target + 0.05 * h);
     if (!event && !report.ok()) report = retry(next, h, report);
-    if (!event && report.ok() && crosses(next)) event = locate(h, std::numeric_limits<double>::infinity());
+    if (!event && report.ok() && crosses(next)) {
+      event = locate(h, std::numeric_limits<double>::infinity());
+      if (!event) return fail("the deployed pose was passed but its time could not be located");
+    }
     if (event) {
       deployed_ = true;
       run_.events.push_back({"deployed", event->t});
@@ -90,12 +104,14 @@ class TimeLoop {
     return accept(next, target, report);
   }
 
+  bool fail(const std::string& why) {
+    run_.status = RunStatus::failed;
+    run_.message = "at t = " + seconds(now().t) + ": " + why;
+    return false;
+  }
+
   bool accept(State& next, double target, const StepReport& report) {
-    if (!report.ok()) {
-      run_.status = RunStatus::failed;
-      run_.message = "at t = " + seconds(next.t) + ": " + reason(report.status);
-      return false;
-    }
+    if (!report.ok()) return fail(reason(report.status));
     next.t = target;
     run_.trajectory.append(std::move(next), report);
     ++run_.steps;

@@ -1,0 +1,48 @@
+#include "core/diagnostics/accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace unfurl {
+namespace {
+
+// Shares of the energy turned over and of a rod's length beyond which a motion is wrong to the eye.
+constexpr double energy_share = 1e-3, length_share = 1e-3;
+
+double largest(const Series& series) {
+  double m = 0;
+  for (const double x : series.values) m = std::max(m, std::abs(x));
+  return m;
+}
+
+double range(const Series& series) {
+  const auto [low, high] = std::minmax_element(series.values.begin(), series.values.end());
+  return series.values.empty() ? 0.0 : *high - *low;
+}
+
+}  // namespace
+
+std::vector<std::string> accuracy_warnings(const Diagnostics& d) {
+  std::vector<std::string> warnings;
+  const double off = largest(d.at("energy_balance_J"));
+  const double turned =
+      std::max({largest(d.at("kinetic_energy_J")), range(d.at("potential_energy_J")), range(d.at("work_J"))});
+  std::ostringstream text;
+  text.precision(3);
+  if (off > energy_share * turned) {
+    text << "the energy balance is off by " << off << " J, " << 100 * off / turned
+         << " % of the energy turned over: take a smaller solver.step or more solver.stages";
+    warnings.push_back(text.str());
+  }
+  const double stretch = largest(d.at("constraint_relative_max"));
+  if (stretch > length_share) {
+    text.str("");
+    text << "constraints are violated by " << 100 * stretch
+         << " % of a rod's length: take a smaller solver.step, or method dvm, which holds them";
+    warnings.push_back(text.str());
+  }
+  return warnings;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,42 @@
+// Step sizes that follow the motion, chosen so that the choice is the same forwards and backwards in time.
+#pragma once
+
+#include <memory>
+
+#include "core/integrators/index1.hpp"
+#include "core/integrators/solver_options.hpp"
+#include "core/model/state.hpp"
+#include "core/model/system.hpp"
+
+namespace unfurl {
+
+// Rates [1/s] at which a motion turns and changes: omega = max |v_b - v_a| / l over the rods of `structure`,
+// and r = |w'| / (|w| + |w'| / r_0) in the mass norm, which a motion from rest keeps below r_0.
+//
+//     Q(z, w) = sqrt(1 + (h_0 (omega + r) / alpha)^2),     h_{n-1/2} h_{n+1/2} = (h_0 / Q(z_n, w_n))^2
+//
+// with h_0 the largest step (solver.step) and alpha the turn and relative change that a step may bring
+// (solver.turn). Q is even in w and the recursion is symmetric in its two steps, so a symmetric method stays
+// symmetric (Huang & Leimkuhler 1997; Hairer, Lubich & Wanner, Geometric Numerical Integration, VIII.3, here
+// in geometric instead of arithmetic mean, which keeps steps positive). A symplectic method is no longer
+// symplectic with it.
+class StepControl {
+ public:
+  StepControl(const Structure& structure, const System& system, const SolverOptions& options);
+  // The step that follows `state` [s]; to be asked once for every accepted state, in order.
+  double next(const State& state);
+  // As if the last step had been h [s].
+  void continue_from(double h) { previous_ = h; }
+
+ private:
+  double density(const State& state);  // Q
+
+  const Structure& structure_;
+  const System& system_;
+  Index1 index1_;
+  double largest_, turn_;
+  double previous_ = 0;  // the last step [s]; 0 before the first
+  VectorXd acceleration_, lambda_, v_;
+};
+
+}  // namespace unfurl
