@@ -1,6 +1,7 @@
 #include "core/constraints/alignment.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "core/constraints/linear_rows.hpp"
 
@@ -16,6 +17,11 @@ struct Entry {
 
 Eigen::Map<const Vec3> at(const double* x, int node) {
   return Eigen::Map<const Vec3>(x + 3 * static_cast<Index>(node));
+}
+
+// The three numbers at x, to be written.
+Eigen::Map<Vec3> three(double* x) {
+  return Eigen::Map<Vec3>(x);
 }
 
 Mat3 cross_matrix(const Vec3& a) {
@@ -59,7 +65,7 @@ class Collinear final : public Alignment {
   }
   void value(const double* q, double* phi) const override {
     for (const Entry& e : entries_) {
-      Eigen::Map<Vec3>(phi) = edge(e, 1, q).cross(edge(e, 2, q)) / length_;
+      three(phi) = edge(e, 1, q).cross(edge(e, 2, q)) / length_;
       phi += 3;
     }
   }
@@ -85,7 +91,7 @@ class Collinear final : public Alignment {
   }
   void bias(const double*, const double* v, double* phi_dd) const override {
     for (const Entry& e : entries_) {
-      Eigen::Map<Vec3>(phi_dd) = 2 / length_ * edge(e, 1, v).cross(edge(e, 2, v));
+      three(phi_dd) = 2 / length_ * edge(e, 1, v).cross(edge(e, 2, v));
       phi_dd += 3;
     }
   }
@@ -96,8 +102,7 @@ class Collinear final : public Alignment {
       Eigen::Matrix<double, 9, 9> H;
       H << B + B.transpose(), -B.transpose(), -B, -B, Mat3::Zero(), B, -B.transpose(), B.transpose(),
           Mat3::Zero();
-      Eigen::Map<Eigen::Matrix<double, 9, 9>>(hess) = H;
-      hess += 81;
+      hess = std::copy_n(H.data(), 81, hess);
     }
   }
 
@@ -124,7 +129,8 @@ class Coplanar final : public Alignment {
   }
   void jacobian(const double* q, double* g) const override {
     for (const Entry& e : entries_) {
-      Eigen::Map<Vec9>(g + 3) = gradient(edges_of(e, q));
+      const Vec9 by_edges = gradient(edges_of(e, q));
+      std::copy(by_edges.begin(), by_edges.end(), g + 3);
       Eigen::Map<Vec3> first(g);
       first.setZero();
       for (int k = 1; k < 4; ++k) first -= Eigen::Map<Vec3>(g + 3 * k);
@@ -164,8 +170,8 @@ class Coplanar final : public Alignment {
         from_nodes.block<3, 3>(3 * k, 0) = -Mat3::Identity();
         from_nodes.block<3, 3>(3 * k, 3 * k + 3) = Mat3::Identity();
       }
-      Eigen::Map<Eigen::Matrix<double, 12, 12>>(hess) = from_nodes.transpose() * H * from_nodes;
-      hess += 144;
+      const Eigen::Matrix<double, 12, 12> by_nodes = from_nodes.transpose() * H * from_nodes;
+      hess = std::copy_n(by_nodes.data(), 144, hess);
     }
   }
 

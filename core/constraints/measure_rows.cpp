@@ -29,6 +29,12 @@ class MeasureRows final : public ConstraintBlock {
   void value(const double* q, double* phi) const override {
     for (const Row& row : rows_) *phi++ = row.scale * row.measure.value(q);
   }
+  void list_drives(std::vector<Drive>& drives) const override {
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      if (rows_[r].target.moves())
+        drives.push_back({rows_[r].name, static_cast<int>(r), rows_[r].scale, rows_[r].measure.is_angle(),
+                          rows_[r].target});
+  }
   void add_target(int order, double t, double scale, double* out) const override {
     for (const Row& row : rows_) {
       *out += scale * row.scale * row.target.derivative(order, t);

@@ -34,6 +34,7 @@ class ForceBlock {
 enum class Members {
   none,       // its table has a form of its own
   each_node,  // nodes: names or globs, one force each
+  node_list,  // nodes = [A, B, ...]: all of them in one
   two_nodes,  // nodes = [A, B]
   rod,        // rod: one name; its direction follows the rod
   angle       // rods = [R, S], nodes = [A, HINGE, B], or fold_angle = true

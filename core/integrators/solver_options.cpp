@@ -30,8 +30,8 @@ const std::vector<ParamSpec>& solver_params() {
       positive_param("turn", "rad", fallback.turn,
                      "with `adaptive`: about how far a rod may turn, or velocities change, in a step"),
       positive_param("end_time", "s", fallback.end_time, "the run ends here at the latest"),
-      choice_param("at_deployed", fallback.at_deployed, {"stop", "pass"},
-                   "what happens when the structure is fully deployed"),
+      choice_param("at_deployed", fallback.at_deployed, {"stop", "pass", "latch"},
+                   "when fully deployed: the run stops, the motion passes through, or the structure locks"),
       boolean_param("eliminate_linear", fallback.eliminate_linear,
                     "solve in coordinates that fulfil the linear constraints exactly; changes no result"),
   };

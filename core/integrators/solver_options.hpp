@@ -16,7 +16,7 @@ struct SolverOptions {
   bool adaptive = false;                 // steps follow the motion, none larger than h
   double turn = 0.1;                     // with `adaptive`: turn of a rod that a step may bring [rad]
   double end_time = 1.0;                 // [s]
-  std::string at_deployed = "stop";      // stop | pass
+  std::string at_deployed = "stop";      // stop | pass | latch
   bool eliminate_linear = true;          // solve in coordinates that fulfil the linear constraints exactly
 };
 

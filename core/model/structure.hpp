@@ -93,6 +93,10 @@ struct Deployment {
   double initial_fold_angle =
       0.0;  // [rad]; the deployed fraction is (cos fold - cos initial) / (1 - cos initial)
 
+  // Zero when deployed; what latches hold. Empty: fold_sine is held. Where several parts can move on their
+  // own in the deployed pose, each needs one.
+  std::vector<LinearForm> latches = {};
+
   bool empty() const { return fold_sine.empty(); }
   double fold_angle(const ConstVec& q) const;                    // [rad]
   double fold_rate(const ConstVec& q, const ConstVec& v) const;  // [rad/s]

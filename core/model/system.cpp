@@ -75,6 +75,7 @@ struct System::Data {
   VectorXd lengths;
   std::vector<std::string> names;
   std::vector<int> rod_rows;
+  std::vector<Drive> drives;
   // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e,
   // start_{e+1}).
   SparseRows pattern;
@@ -144,6 +145,13 @@ void System::Data::build_coordinates() {
   }
   B.makeCompressed();
   rows = total_rows(kept);
+  int first = 0;
+  for (const ConstraintBlock* block : kept) {
+    const std::size_t before = drives.size();
+    block->list_drives(drives);
+    for (std::size_t d = before; d < drives.size(); ++d) drives[d].row += first;
+    first += block->rows();
+  }
   rheonomic = std::any_of(kept.begin(), kept.end(), [](const auto* block) { return block->rheonomic(); });
   lengths.resize(rows);
   Index row = 0;
@@ -393,6 +401,10 @@ double System::potential_energy(const ConstVec& q) const {
 }
 double System::load_work(const ConstVec& q) const {
   return data_->loads.dot(q - data_->start);
+}
+
+const std::vector<Drive>& System::drives() const {
+  return data_->drives;
 }
 
 bool System::has_power(bool dissipative) const {

@@ -76,6 +76,8 @@ class System {
   void force_derivatives(double t, const ConstVec& q, const ConstVec& v, SparseRows& by_z,
                          SparseRows& by_w) const;
 
+  const std::vector<Drive>& drives() const;  // kept rows that prescribe a motion
+
   const VectorXd& constraint_lengths() const;                // [m] per kept row
   const std::vector<std::string>& constraint_names() const;  // per kept row
   // Kept row of each rod; -1 where it is none.

@@ -28,8 +28,9 @@ struct ElementKind {
   Members members;
   const std::vector<ParamSpec>& (*params)();
 };
-const std::vector<ElementKind>& scene_forces();       // kinds of [[forces]]
-const std::vector<ElementKind>& scene_constraints();  // kinds of [[constraints]] and [[structure.constraints]]
+const std::vector<ElementKind>& scene_forces();  // kinds of [[forces]]
+const std::vector<ElementKind>&
+scene_constraints();  // kinds of [[constraints]] and [[structure.constraints]]
 const ElementKind* find_kind(const std::vector<ElementKind>& kinds, std::string_view kind);
 
 // How a kind names its members, for `unfurl list`: "nodes = [A, B]".

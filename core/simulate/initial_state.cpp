@@ -35,6 +35,19 @@ void project(const System& system, State& state) {
   saddle.solve(p, rate, state.w, y);
 }
 
+VectorXd fitted_rates(const System& system, double t, const ConstVec& q, const ConstVec& v) {
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  system.jacobian(q, G, scratch);
+  SaddleSolver saddle(system.mass(), G);
+  saddle.factorise(G);
+  VectorXd p(system.solved_coordinates()), w(p.size()), y(system.constraints()), rate(y.size());
+  system.target_rate(t, rate);
+  system.reduce_force(system.node_mass() * v, p);
+  saddle.solve(p, rate, w, y);
+  return w;
+}
+
 InitialState initial_state(const Structure& structure, const System& system) {
   VectorXd q(system.coordinates()), v(system.coordinates());
   for (std::size_t i = 0; i < structure.nodes.size(); ++i) {
@@ -50,14 +63,8 @@ InitialState initial_state(const Structure& structure, const System& system) {
   VectorXd rate(system.constraints());
   system.target_rate(0.0, rate);
   if (!v.isZero(0.0) || !rate.isZero(0.0)) {
-    SparseRows G = system.jacobian_pattern();
-    std::vector<double> scratch;
-    system.jacobian(q, G, scratch);
-    SaddleSolver saddle(system.mass(), G);
-    saddle.factorise(G);
-    VectorXd p(system.solved_coordinates()), y(system.constraints()), back(system.coordinates());
-    system.reduce_force(system.node_mass() * v, p);
-    saddle.solve(p, rate, s.w, y);
+    VectorXd back(system.coordinates());
+    s.w = fitted_rates(system, 0.0, q, v);
     system.expand_rate(s.w, back);
     out.velocity_change = (back - v).lpNorm<Eigen::Infinity>();
   }

@@ -12,6 +12,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/simulate/latch.hpp"
 #include "core/simulate/step_control.hpp"
 
 namespace unfurl {
@@ -49,18 +50,23 @@ const char* reason(StepStatus status) {
 
 class TimeLoop {
  public:
-  TimeLoop(Simulation& run, Integrator& integrator, const SimulationHooks& hooks)
+  TimeLoop(Simulation& run, const SimulationHooks& hooks)
       : run_(run),
-        integrator_(integrator),
+        integrator_(fresh_integrator()),
         hooks_(hooks),
         deployment_(run.trajectory.structure().deployment) {}
 
   void drive() {
     const SolverOptions& o = run_.options;
     if (o.adaptive) {
-      StepControl control(run_.trajectory.structure(), run_.trajectory.model().system, o);
+      std::optional<StepControl> control;
+      const System* controlled = nullptr;
       while (now().t < o.end_time) {
-        const double h = control.next(now());
+        if (controlled != &system()) {  // the first step, or the model has changed
+          controlled = &system();
+          control.emplace(run_.trajectory.structure(), *controlled, o);
+        }
+        const double h = control->next(now());
         const bool last = now().t + 1.001 * h >= o.end_time;
         if (!go_on() || !advance_to(last ? o.end_time : now().t + h)) return;
       }
@@ -73,6 +79,10 @@ class TimeLoop {
   }
 
  private:
+  const System& system() const { return run_.trajectory.last_model().system; }
+  std::unique_ptr<Integrator> fresh_integrator() const {
+    return find_method(run_.options.method)->make(system(), run_.options);
+  }
   const State& now() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
 
   bool go_on() {
@@ -99,6 +109,7 @@ class TimeLoop {
       deployed_ = true;
       run_.events.push_back({"deployed", event->t});
       if (run_.options.at_deployed == "stop") return finish_deployed(*event), false;
+      if (run_.options.at_deployed == "latch") return latch(*event, target);
       if (!report.ok() || std::abs(fold(next)) < singular_margin) return step_over(target, h);
     }
     return accept(next, target, report);
@@ -126,7 +137,7 @@ class TimeLoop {
   }
 
   StepReport step(State& state, double h) {
-    const StepReport report = integrator_.step(state, h);
+    const StepReport report = integrator_->step(state, h);
     run_.newton_iterations += report.newton_iterations;
     run_.factorisations += report.factorisations;
     return report;
@@ -136,7 +147,7 @@ class TimeLoop {
   StepReport retry(State& state, double h, StepReport report) {
     for (int parts = 2; parts <= 64 && !report.ok(); parts *= 2) {
       state = now();
-      integrator_.restart();
+      integrator_->restart();
       report = StepReport{};
       for (int i = 0; i < parts && report.ok(); ++i) report = step(state, h / parts);
     }
@@ -145,8 +156,8 @@ class TimeLoop {
   }
 
   double fold(const State& state) {
-    q_.resize(run_.trajectory.model().system.coordinates());
-    run_.trajectory.model().system.expand(state.z, q_);
+    q_.resize(system().coordinates());
+    system().expand(state.z, q_);
     return deployment_.fold_sine(q_);
   }
 
@@ -159,22 +170,38 @@ class TimeLoop {
   bool may_cross(double h) {
     if (deployment_.empty() || deployed_) return false;
     const double sine = fold(now());
-    run_.trajectory.model().system.expand_rate(now().w, q_);
+    system().expand_rate(now().w, q_);
     return sine > 0 && sine + 2.0 * h * deployment_.fold_sine.rate(q_) <= 0;
   }
 
   std::optional<State> locate(double h, double latest) {
-    const auto fresh = find_method(run_.options.method)->make(run_.trajectory.model().system, run_.options);
+    const auto fresh = fresh_integrator();
     std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
     if (event && event->t > latest) event.reset();
     return event;
   }
 
-  void finish_deployed(State& event) {
-    project(run_.trajectory.model().system, event);
+  void append_deployed(State& event) {
+    project(system(), event);
     while (run_.trajectory.size() > 1 && run_.trajectory.end_time() >= event.t) run_.trajectory.pop_back();
     run_.trajectory.append(std::move(event), StepReport{.singular_event = true});
     ++run_.steps;
+  }
+
+  // Lock the structure and go on with it: two states at this time, before and after the impulse.
+  bool latch(State& event, double target) {
+    append_deployed(event);
+    const auto locked = latched_model(run_.trajectory.last_model(), run_.options.eliminate_linear);
+    Handover after = hand_over(run_.trajectory.last_model(), now(), *locked);
+    run_.events.push_back({"latched", now().t, after.energy_lost});
+    run_.trajectory.change_model(locked);
+    run_.trajectory.append(std::move(after.state), StepReport{});
+    integrator_ = fresh_integrator();
+    return now().t < target ? advance_to(target) : true;
+  }
+
+  void finish_deployed(State& event) {
+    append_deployed(event);
     run_.status = RunStatus::deployed;
     report_progress(1.0);
   }
@@ -188,7 +215,7 @@ class TimeLoop {
   }
 
   Simulation& run_;
-  Integrator& integrator_;
+  std::unique_ptr<Integrator> integrator_;
   const SimulationHooks& hooks_;
   const Deployment& deployment_;
   VectorXd q_;
@@ -214,16 +241,14 @@ std::string_view to_string(RunStatus status) {
 
 Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
                     const SimulationHooks& hooks) {
-  const Method* method = find_method(options.method);
-  if (!method) throw std::invalid_argument("no method is called " + options.method);
+  if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);
   Simulation run{.trajectory = Trajectory(model), .options = options};
   InitialState start = initial_state(model->structure, model->system);
   if (std::string warning = velocity_warning(start, model->structure); !warning.empty())
     run.warnings.push_back(std::move(warning));
   run.trajectory.append(std::move(start.state), StepReport{});
-  const std::unique_ptr<Integrator> integrator = method->make(model->system, options);
   const double begin = thread_cpu_seconds();
-  TimeLoop(run, *integrator, hooks).drive();
+  TimeLoop(run, hooks).drive();
   run.cpu_s = thread_cpu_seconds() - begin;
   return run;
 }
