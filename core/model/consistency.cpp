@@ -72,6 +72,7 @@ class Checker {
     std::vector<Index> others;
     for (Index k = 0; k < G_.rows(); ++k)
       if (k != r) others.push_back(k);
+    if (others.empty()) return {};
     const MatrixXd A = G_(others, Eigen::all).transpose();
     const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(A);
     const VectorXd row = G_.row(r).transpose(), y = solver.solve(row);
@@ -102,8 +103,8 @@ class Checker {
     qr.setThreshold(1e-9);
     if (qr.rank() < G_.cols()) return;
     std::vector<std::string> members;
-    for (const auto& n : names_)
-      if (n.rfind("rod ", 0) != 0) members.push_back(n);
+    for (auto n = names_.rbegin(); n != names_.rend(); ++n)  // what is held or driven by name comes first
+      if (n->rfind("rod ", 0) != 0) members.push_back(*n);
     for (const auto& n : names_)
       if (n.rfind("rod ", 0) == 0) members.push_back(n);
     throw StructureError("", "nothing can move: " + std::to_string(names_.size()) + " constraints hold all " +

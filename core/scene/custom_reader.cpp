@@ -56,17 +56,19 @@ void read_constraints(TableReader& table, const std::string& folder, CustomSpec&
                       std::vector<SceneElement>& general) {
   std::size_t count = 0;
   for (const TomlTree* tree : table.tables("constraints")) {
-    const bool custom = is_custom_kind(*tree);
-    const std::string key = entry_key("constraints", custom ? spec.constraints.size() : count);
-    ++count;
-    notes.locations[key] = tree->where;
-    TableReader entry(tree, key, tree->where, notes);
-    if (!custom) {
-      general.push_back(read_element(entry, key, scene_constraints(), folder, notes));
+    if (!is_custom_kind(*tree)) {
+      SceneNotes own;  // its places must not be taken for those of an entry of spec.constraints
+      const std::string key = entry_key("constraints", count++);
+      TableReader entry(tree, key, tree->where, own);
+      general.push_back(read_element(entry, key, scene_constraints(), folder, own));
+      notes.problems.insert(notes.problems.end(), own.problems.begin(), own.problems.end());
       continue;
     }
+    ++count;
+    const std::string key = entry_key("constraints", spec.constraints.size());
+    notes.locations[key] = tree->where;
+    TableReader entry(tree, key, tree->where, notes);
     CustomConstraint constraint;
-    entry.read({text_param("name", "", "")});
     constraint.kind = entry.read({text_param("kind", "", "")}).text("kind");
     constraint.nodes = entry.names("nodes");
     for (const auto& row : custom_constraint_kinds()) {

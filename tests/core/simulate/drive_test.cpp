@@ -227,6 +227,6 @@ TEST_CASE("impossible scenes are refused by the names of their members") {
                "[[constraints]]\nkind = 'equal'\nname = 'level'\nnodes = ['A', 'P']\ndirection = [0, 1, 0]\n")
           .find("the structure cannot be assembled as given: level (A, P) is violated at t = 0, by up to 2 "
                 "m") != std::string::npos);
-  CHECK(error_of(crank, {"structure.constraints.motor.nodes=[P, O, B]"}).find("there is no node 'B'") !=
+  CHECK(error_of(crank, {"structure.constraints.motor.nodes=['P', 'O', 'B']"}).find("there is no node 'B'") !=
         std::string::npos);
 }

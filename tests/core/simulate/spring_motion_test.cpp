@@ -17,7 +17,8 @@ Simulation run_scene(const std::string& text, const std::vector<std::string>& ch
 
 double largest(const Simulation& run, const char* column) {
   double m = 0;
-  for (const double x : diagnose(run).at(column).values) m = std::max(m, std::abs(x));
+  const Diagnostics d = diagnose(run);
+  for (const double x : d.at(column).values) m = std::max(m, std::abs(x));
   return m;
 }
 
@@ -96,11 +97,12 @@ TEST_CASE("an oscillator swings as the cosine, with and without damping") {
       // Order 6: (5 * 0.02)^6 = 1e-6 times a small constant; the largest seen is 1e-10.
       CHECK(x_at(run, i) == Approx(1 + 0.5 * std::exp(-delta * t) * swing).margin(2e-9));
     }
-    CHECK(largest(run, "energy_balance_J") <= 1e-8);  // of 6.25 J
+    // Of 6.25 J; the quadrature of order 6 sees decays of up to 27 / s: (27 * 0.02)^6 / 7! of the power.
+    CHECK(largest(run, "energy_balance_J") <= 1e-7);
     if (c > 0)
       CHECK(largest(run, "dissipated_J") == Approx(6.25 - diagnose(run).at("kinetic_energy_J").values.back() -
                                                    diagnose(run).at("potential_energy_J").values.back())
-                                                .margin(1e-8));
+                                                .margin(1e-7));
   }
 }
 
