@@ -13,6 +13,7 @@ constexpr double wanted = 1.5, wanted_constraint = 2.0, accepted = 30.0;
 // instead its weak modes may keep a larger constraint error.
 constexpr Index full_newton_unknowns = 2500;
 constexpr int max_frozen_iterations = 30;
+constexpr int slow_iterations = 8;
 
 bool is_small(const System& system, int stages) {
   return (system.solved_coordinates() + system.constraints()) * (stages - 1) <= full_newton_unknowns;
@@ -33,9 +34,10 @@ class Dvm final : public Integrator {
     const Index n = system.solved_coordinates(), m = system.constraints();
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
-    for (VectorXd* v : {&p1_, &w1_, &pose_z_, &z1_}) v->setZero(n);
+    for (VectorXd* v : {&p1_, &w1_}) v->setZero(n);
     for (VectorXd* v : {&mu_, &rate_}) v->setZero(m);
     pose_.setZero(system.coordinates());
+    halfway_ = c_.basis.values(0.5);
     if (eq_.at_ends) analyse_mass();
     small_ = is_small(system, c_.s);
     if (!small_) left_constraint_ = 1000.0;
@@ -46,8 +48,12 @@ class Dvm final : public Integrator {
     StepReport report;
     eq_.start(state.t, state.z, state.w, h);
     predict(state, h);
-    if (!frozen_) freeze(eq_.node(0), report);
+    if (slow_)
+      freeze_in_the_middle(report);
+    else if (!frozen_)
+      freeze(eq_.node(0), report);
     iterate(state, h, report);
+    slow_ = report.newton_iterations > slow_iterations;
     if (report.ok()) finish(state, h, report);
     if (!report.ok()) restart();
     return report;
@@ -56,13 +62,14 @@ class Dvm final : public Integrator {
   void restart() override {
     have_history_ = false;
     frozen_ = false;
-    lambdas_known_ = 0;
+    slow_ = false;
   }
 
  private:
   void analyse_mass();
   void predict(const State& state, double h);
   void freeze(const ConstVec& q, StepReport& report);
+  void freeze_in_the_middle(StepReport& report);
   void iterate(const State& state, double h, StepReport& report);
   bool frozen_iterations(StepReport& report);
   void correct(StepReport& report);
@@ -77,7 +84,7 @@ class Dvm final : public Integrator {
   SaddleSolver saddle_;
   SparseLdlt mass_factor_;  // ends variant only
   std::vector<double> rhs_f_, rhs_g_;
-  VectorXd p1_, w1_, mu_, rate_, pose_, pose_z_, z1_;
+  VectorXd p1_, w1_, mu_, rate_, pose_, halfway_;
   MatrixXd previous_, prolong_;
   RowMajor consistent_f_;
   double previous_h_ = 0;
@@ -86,8 +93,8 @@ class Dvm final : public Integrator {
   bool careful_ = false;
   bool feed_ = true;
   bool small_ = true;
+  bool slow_ = false;    // the last step took many iterations
   bool frozen_ = false;  // saddle_ holds a factorisation near the present pose
-  int lambdas_known_ = 0;
 };
 
 void Dvm::analyse_mass() {
@@ -128,12 +135,21 @@ void Dvm::freeze(const ConstVec& q, StepReport& report) {
   ++report.factorisations;
 }
 
+// The prediction's pose halfway: half as far from every node as the step's start, so that motions which turn
+// far in a step take half the iterations.
+void Dvm::freeze_in_the_middle(StepReport& report) {
+  eq_.place_nodes();
+  pose_.noalias() = eq_.Q * halfway_;
+  freeze(pose_, report);
+}
+
 void Dvm::iterate(const State& state, double h, StepReport& report) {
   if (frozen_iterations(report)) return;
-  predict(state, h);  // once more, with G frozen in the middle of the step
-  eq_.evaluate();
-  freeze(eq_.node(c_.s / 2), report);
-  if (frozen_iterations(report)) return;
+  if (!slow_) {
+    predict(state, h);  // once more
+    freeze_in_the_middle(report);
+    if (frozen_iterations(report)) return;
+  }
   if (!eq_.at_ends && small_) {
     predict(state, h);
     report.status = full_newton(eq_, wanted, accepted, report);

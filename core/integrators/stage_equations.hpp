@@ -19,6 +19,7 @@ class StageEquations {
   StageEquations(const System& system, const GalerkinCoefficients& coefficients, bool at_ends);
 
   void start(double t, const ConstVec& z0, const ConstVec& w0, double h);  // w0: p_0 = M w0
+  void place_nodes();                                                      // Q of the present dX
   void evaluate();               // residuals of the present dX, lambda
   void end_momentum(MutVec p1);  // p_1 without the share of lambda_s
 
@@ -48,11 +49,13 @@ class StageEquations {
   static constexpr double ulp = std::numeric_limits<double>::epsilon();
   void add_forces(int k, MutVec f);
   void measure();
+  void find_stiffness();
 
   MatrixXd MdX_, force_;  // M dX_j; node forces at the quadrature times or (constant) one column
   VectorXd z_, f_, q_tau_, v_tau_;
   double momentum_level_ = 0, constraint_level_ = 0;
   double force_scale_ = 0, reach_ = 0;
+  double stiffness_ = -1;  // largest entry of dF/dz at the first step [N/m]; negative: not known yet
 };
 
 }  // namespace unfurl
