@@ -25,18 +25,16 @@ struct Spring {
 
 class Springs final : public ForceBlock {
  public:
-  Springs(const Structure& structure, std::string_view kind) {
+  Springs(const std::vector<Force>& springs, const Deployment& deployment) {
     std::size_t largest = 0;
-    for (const Force& f : structure.forces) {
-      if (f.kind != kind) continue;
+    for (const Force& f : springs) {
       springs_.push_back(
-          {MeasureFunction(f.measure, structure.deployment), f.stiffness, f.damping, f.rest, f.one_sided});
+          {MeasureFunction(f.measure, deployment), f.stiffness, f.damping, f.rest, f.one_sided});
       largest = std::max(largest, springs_.back().measure.stencil().size());
       damped_ = damped_ || f.damping > 0;
     }
     size_ = largest;
   }
-  bool empty() const { return springs_.empty(); }
   bool constant() const override { return false; }
   bool has_power() const override { return damped_; }
   bool dissipative() const override { return true; }
@@ -114,15 +112,21 @@ class Springs final : public ForceBlock {
 };
 
 std::unique_ptr<ForceBlock> block_of(const Structure& structure, std::string_view kind) {
-  auto block = std::make_unique<Springs>(structure, kind);
-  if (block->empty()) return nullptr;
-  return block;
+  std::vector<Force> springs;
+  for (const Force& f : structure.forces)
+    if (f.kind == kind) springs.push_back(f);
+  return spring_block(springs, structure.deployment);
 }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double as_built = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
+
+std::unique_ptr<ForceBlock> spring_block(const std::vector<Force>& springs, const Deployment& deployment) {
+  if (springs.empty()) return nullptr;
+  return std::make_unique<Springs>(springs, deployment);
+}
 
 std::unique_ptr<ForceBlock> axial_spring_block(const Structure& structure, const SparseRows&) {
   return block_of(structure, "spring");

@@ -1,6 +1,7 @@
 // [[constraints]] of a scene into a structure.
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "core/scene/element_members.hpp"
@@ -20,7 +21,7 @@ class ConstraintAdder {
 
   void add(const SceneElement& e) {
     if (e.kind == "plane" || e.kind == "line" || e.kind == "fixed") return add_each(e);
-    if (e.kind == "angle") return add_angle(e);
+    if (e.kind == "angle" || e.kind == "angle_stop") return add_angle(e);
     const auto nodes = find_.nodes(e, e.kind == "equal" || e.kind == "coplanar" || e.kind == "collinear");
     if (nodes.empty()) return;
     if (e.kind == "equal") add_equal(e, nodes);
@@ -28,8 +29,8 @@ class ConstraintAdder {
     if (e.kind == "relation") add_relation(e, nodes);
     if (e.kind == "collinear") add_aligned(e, nodes, 2);
     if (e.kind == "coplanar") add_aligned(e, nodes, 3);
-    if (e.kind == "length") add_length(e, nodes);
-    if (e.kind == "coordinate") add_coordinate(e, nodes);
+    if (e.kind == "length" || e.kind == "length_stop") add_length(e, nodes);
+    if (e.kind == "coordinate" || e.kind == "coordinate_stop") add_coordinate(e, nodes);
   }
   void finish() { find_.throw_problems(); }
 
@@ -143,6 +144,7 @@ class ConstraintAdder {
 
   // `unit`: of the scene's numbers in those of the measure.
   void push_measure(const SceneElement& e, const Measure& measure, double unit) {
+    if (e.values.has("restitution")) return push_stop(e, measure, unit);
     const double initial = find_.initial(measure);
     const ParamSet& v = e.values;
     const std::string& motion = v.text("motion");
@@ -164,6 +166,27 @@ class ConstraintAdder {
       check_begin(e, f(0.0), initial, unit);
     }
     structure_.constraints.push_back({"measure", e.name, measure.nodes, {}, 0.0, measure, std::move(f)});
+  }
+
+  void push_stop(const SceneElement& e, const Measure& measure, double unit) {
+    const double initial = find_.initial(measure), round_off = 1e-9 * std::max(1.0, std::abs(initial));
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Vec3 limits(-infinity, infinity, 0);
+    int given = 0;
+    for (const int side : {0, 1}) {
+      const char* key = side == 0 ? "min" : "max";
+      const double limit = unit * e.values.real(key);
+      if (std::isnan(limit)) continue;
+      ++given;
+      limits[side] = limit;
+      if (side == 0 ? initial >= limit - round_off : initial <= limit + round_off) continue;
+      std::ostringstream text;
+      text << "is passed already at t = 0, where the value is " << initial / unit;
+      find_.problem(e, key, text.str());
+    }
+    if (given == 0) return find_.problem(e, "min", "is missing, and so is max: a stop needs a limit");
+    const Vec3 impact(e.values.real("restitution"), unit * e.values.real("rest_speed"), 0);
+    structure_.constraints.push_back({"stop", e.name, {}, {limits, impact}, 0.0, measure, {}});
   }
 
   void check_begin(const SceneElement& e, double begin, double initial, double unit) {

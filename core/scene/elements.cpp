@@ -93,6 +93,28 @@ const std::vector<ParamSpec>& angle_params() {
   });
 }
 
+std::vector<ParamSpec> stop_params(std::string_view unit) {
+  ParamSpec restitution =
+      real_param("restitution", "", 0.0, 0.0, 1.0, "rebound speed over approach speed; 0: no rebound");
+  return {real_param("min", unit, as_built, -infinity, infinity, "lower limit; none by default"),
+          real_param("max", unit, as_built, -infinity, infinity, "upper limit; none by default"), restitution,
+          real_param("rest_speed", unit == "m" ? "m/s" : "deg/s", 1e-3, 0.0, infinity,
+                     "rebounds slower than this rest on the stop")};
+}
+const std::vector<ParamSpec>& length_stop_params() {
+  return once([] { return stop_params("m"); });
+}
+const std::vector<ParamSpec>& coordinate_stop_params() {
+  return once(
+      [] { return std::vector{direction_param("direction", "of the coordinate")} + stop_params("m"); });
+}
+const std::vector<ParamSpec>& angle_stop_params() {
+  return once([] {
+    return std::vector{vector_param("axis", "", {0, 0, 0}, "of the hinge, as for angle")} +
+           stop_params("deg");
+  });
+}
+
 // Times and values of a CSV table, into the entry's parameters.
 void read_table(TableReader& entry, ParamSet& values, const std::string& folder, SceneNotes& notes) {
   static const std::vector<CsvColumn> columns = {{"t", "s", true, true}, {"value", "", true, true}};
@@ -202,6 +224,12 @@ const std::vector<ElementKind>& scene_constraints() {
        Members::node_list, coordinate_params},
       {"angle", "the angle between two rods, or the fold angle, is held or driven by a motor", Members::angle,
        angle_params},
+      {"length_stop", "end stop: the distance of two nodes stays within limits", Members::two_nodes,
+       length_stop_params},
+      {"coordinate_stop", "end stop: a node's coordinate, or the difference of two, stays within limits",
+       Members::node_list, coordinate_stop_params},
+      {"angle_stop", "end stop: the angle between two rods, or the fold angle, stays within limits",
+       Members::angle, angle_stop_params},
   };
   return kinds;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "core/integrators/integrator.hpp"
@@ -14,6 +15,7 @@
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/step_control.hpp"
+#include "core/simulate/stops.hpp"
 
 namespace unfurl {
 namespace {
@@ -54,7 +56,8 @@ class TimeLoop {
       : run_(run),
         integrator_(fresh_integrator()),
         hooks_(hooks),
-        deployment_(run.trajectory.structure().deployment) {}
+        deployment_(run.trajectory.structure().deployment),
+        stops_(run.trajectory.structure()) {}
 
   void drive() {
     const SolverOptions& o = run_.options;
@@ -123,10 +126,103 @@ class TimeLoop {
 
   bool accept(State& next, double target, const StepReport& report) {
     if (!report.ok()) return fail(reason(report.status));
+    if (!stops_.empty())
+      if (const auto hit = first_hit(next, target)) return strike(hit->stop, hit->time, target);
     next.t = target;
     run_.trajectory.append(std::move(next), report);
     ++run_.steps;
+    return held_.empty() || release_stops();
+  }
+
+  struct Hit {
+    std::size_t stop;
+    double time;
+  };
+
+  // The first stop that the step from now to `next` runs into.
+  std::optional<Hit> first_hit(const State& next, double target) {
+    std::optional<Hit> first;
+    for (std::size_t i = 0; i < stops_.size(); ++i) {
+      if (held_.contains(i) || stops_.gap(i, system(), next) >= -stops_.touching()) continue;
+      const double time = time_of_contact(i, target - now().t);
+      if (!first || time < first->time) first = Hit{i, time};
+    }
+    return first;
+  }
+
+  // Steps of different lengths from now: the Illinois variant of regula falsi on the gap. A stop that is
+  // touched and left for less than a millionth of the step counts as touched now.
+  double time_of_contact(std::size_t i, double h) {
+    const auto fresh = fresh_integrator();
+    const auto gap_after = [&](double step) {
+      State state = now();
+      fresh->restart();
+      return fresh->step(state, step).ok() ? stops_.gap(i, system(), state) : -1.0;
+    };
+    double high = h, at_high = gap_after(high), low = h, at_low = at_high;
+    while (at_low <= 0 && low > 1e-6 * h) at_low = gap_after(low *= 0.5);
+    if (at_low <= 0) return now().t;
+    if (low < h) high = 2 * low, at_high = gap_after(high);
+    for (int it = 0; it < 60 && high - low > 1e-15 * h; ++it) {
+      const double middle = (low * at_high - high * at_low) / (at_high - at_low), at = gap_after(middle);
+      if (std::abs(at) <= 0.01 * stops_.touching()) return now().t + middle;
+      if ((at > 0) == (at_low > 0))
+        low = middle, at_low = at, at_high *= 0.5;
+      else
+        high = middle, at_high = at, at_low *= 0.5;
+    }
+    return now().t + low;
+  }
+
+  // Go to the contact, rebound or rest, and on to `target`.
+  bool strike(std::size_t i, double time, double target) {
+    if (time > now().t) {
+      State contact = now();
+      integrator_->restart();
+      const StepReport report = step(contact, time - now().t);
+      if (!report.ok()) return fail(reason(report.status));
+      run_.trajectory.append(std::move(contact), report);
+      ++run_.steps;
+    }
+    State after = now();
+    const double approach = -stops_.gap_rate(i, system(), after);
+    const bool rests = stops_[i].restitution * approach <= stops_[i].rest_speed;
+    if (rests) return hold(i) && (now().t >= target || advance_to(target));
+    const double lost = stops_.rebound(i, system(), after);
+    if (std::isnan(lost)) return fail("a drive pushes against the stop " + stops_[i].name);
+    run_.events.push_back({"stop " + stops_[i].name, after.t, lost});
+    run_.trajectory.append(std::move(after), StepReport{});
+    integrator_->restart();
+    return now().t >= target || advance_to(target);
+  }
+
+  bool hold(std::size_t i) {
+    State trial = now();
+    if (std::isnan(stops_.rebound(i, system(), trial)))
+      return fail("a drive pushes against the stop " + stops_[i].name);
+    if (held_.empty()) base_ = &run_.trajectory.last_model();
+    held_.insert(i);
+    switch_held("rests on stop " + stops_[i].name);
     return true;
+  }
+
+  // Stops that would have to pull let go.
+  bool release_stops() {
+    for (const std::size_t i : std::set<std::size_t>(held_)) {
+      if (stops_.push(i, system(), now()) >= 0) continue;
+      held_.erase(i);
+      switch_held("leaves stop " + stops_[i].name);
+    }
+    return true;
+  }
+
+  void switch_held(const std::string& event) {
+    const auto model = stops_.held_model(*base_, held_, run_.options.eliminate_linear);
+    Handover after = hand_over(run_.trajectory.last_model(), now(), *model);
+    run_.events.push_back({event, now().t, after.energy_lost});
+    run_.trajectory.change_model(model);
+    run_.trajectory.append(std::move(after.state), StepReport{});
+    integrator_ = fresh_integrator();
   }
 
   // The step would land on the singular pose: end it a little behind instead. The grid goes on after that.
@@ -194,6 +290,7 @@ class TimeLoop {
     const auto locked = latched_model(run_.trajectory.last_model(), run_.options.eliminate_linear);
     Handover after = hand_over(run_.trajectory.last_model(), now(), *locked);
     run_.events.push_back({"latched", now().t, after.energy_lost});
+    held_.clear();  // what rests on a stop is locked there
     run_.trajectory.change_model(locked);
     run_.trajectory.append(std::move(after.state), StepReport{});
     integrator_ = fresh_integrator();
@@ -220,6 +317,9 @@ class TimeLoop {
   const Deployment& deployment_;
   VectorXd q_;
   bool deployed_ = false;
+  Stops stops_;
+  std::set<std::size_t> held_;   // stops that the structure rests on
+  const Model* base_ = nullptr;  // the model without them
   std::chrono::steady_clock::time_point last_progress_{};
 };
 

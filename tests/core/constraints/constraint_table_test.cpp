@@ -65,9 +65,9 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
     for (VectorXd* x : {&q, &v, &lambda})
       for (Index i = 0; i < x->size(); ++i) (*x)[i] = uniform(random);
     const MatrixXd G = dense_jacobian(*block, q);
-    // Central differences of quadratics are exact up to round-off / step = 1e-16 / 1e-4 = 1e-12, for kinds of
-    // higher degree up to step^2 = 1e-8.
-    const double step = 1e-4;
+    // Central differences: round-off 1e-16 / 3e-6 = 3e-11; truncation step^2 = 1e-11 times derivatives of up
+    // to 100 for angles.
+    const double step = 3e-6;
     VectorXd up(m), down(m);
     for (Index i = 0; i < n; ++i) {
       VectorXd moved = q;

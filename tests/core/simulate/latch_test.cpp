@@ -30,7 +30,8 @@ TEST_CASE("a ring that latches loses its kinetic energy and then stands still un
     CHECK(kinetic.back() <= 1e-12 * kinetic[i]);
     const VectorXd at_latch = run.trajectory.positions(i),
                    at_end = run.trajectory.positions(run.trajectory.size() - 1);
-    CHECK((at_end - at_latch).lpNorm<Eigen::Infinity>() <= 1e-12);
+    // The pose at the event is extrapolated; the first locked step brings its constraints to round-off.
+    CHECK((at_end - at_latch).lpNorm<Eigen::Infinity>() <= 1e-9);
     // The balance before it is that of the run itself; the impulse and what follows add nothing.
     const auto& balance = d.at("energy_balance_J").values;
     CHECK(std::abs(balance.back() - balance[i]) <= 1e-9 * kinetic[i]);
