@@ -83,13 +83,14 @@ constexpr List lists[] = {{"structures", structure_items},   {"methods", method_
 
 std::string default_text(const ParamSpec& spec) {
   if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";
-  if (const auto* text = std::get_if<std::string>(&spec.fallback)) return *text;
+  if (const auto* text = std::get_if<std::string>(&spec.fallback)) return text->empty() ? "none" : *text;
   if (const auto* i = std::get_if<long>(&spec.fallback)) return std::to_string(*i);
   std::ostringstream out;
   if (const auto* x = std::get_if<double>(&spec.fallback)) {
     if (std::isnan(*x)) return "as built";
     out << std::setprecision(16) << *x;
   }
+  if (const auto* v = std::get_if<std::vector<double>>(&spec.fallback); v && v->empty()) return "none";
   if (const auto* v = std::get_if<std::vector<double>>(&spec.fallback))
     for (std::size_t k = 0; k < v->size(); ++k)
       out << (k ? ", " : "[") << (*v)[k] << (k + 1 < v->size() ? "" : "]");
@@ -104,7 +105,7 @@ void print_text(const std::vector<Item>& items) {
     if (!item.params) continue;
     for (const auto& spec : *item.params)
       std::cout << "    " << std::setw(18) << spec.name << " " << spec.help << "; " << range_text(spec)
-                << "; default " << default_text(spec) << "\n";
+                << (spec.required ? "; required" : "; default " + default_text(spec)) << "\n";
   }
 }
 
