@@ -105,6 +105,7 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_option("--frames", a.frames);
   parser.add_option("--poses", a.poses)->check(CLI::Range(1, 20));
   add_short_cuts(parser, a.overrides);
+  parser.add_option("--export", a.exports)->allow_extra_args(false)->delimiter(',');
   parser.add_flag("--force", a.force);
   parser.add_flag("--quiet", a.quiet);
   parser.add_flag("--json", a.json);

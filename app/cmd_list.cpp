@@ -1,6 +1,7 @@
 // unfurl list structures|methods|figures|scenes|constraints|forces|looks|measures: what there is to choose
 // from.
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -9,8 +10,8 @@
 #include "core/forces/force.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/model/nearest_name.hpp"
+#include "core/scene/elements.hpp"
 #include "core/scene/library.hpp"
-#include "core/structures/custom.hpp"
 #include "core/structures/family.hpp"
 #include "core/study/measures.hpp"
 #include "render/plot/figures.hpp"
@@ -62,17 +63,23 @@ std::vector<Item> measure_items() {
   return items;
 }
 
+std::string element_help(std::string_view help, Members members) {
+  const std::string_view names = members_text(members);
+  return std::string(help) + (names.empty() ? "" : "; " + std::string(names));
+}
+
 std::vector<Item> constraint_items() {
   std::vector<Item> items;
-  for (const auto& kind : custom_constraint_kinds())
-    items.push_back({std::string(kind.kind), std::string(kind.help), nullptr});
+  for (const auto& kind : scene_constraints())
+    items.push_back({std::string(kind.kind), element_help(kind.help, kind.members), &kind.params()});
   return items;
 }
 
 std::vector<Item> force_items() {
   std::vector<Item> items;
   for (const auto& kind : force_kinds())
-    items.push_back({std::string(kind.kind), std::string(kind.help), nullptr});
+    items.push_back({std::string(kind.kind), element_help(kind.help, kind.members),
+                     kind.params ? &kind.params() : nullptr});
   return items;
 }
 
@@ -98,10 +105,14 @@ constexpr List lists[] = {{"structures", structure_items},
 
 std::string default_text(const ParamSpec& spec) {
   if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";
-  if (const auto* text = std::get_if<std::string>(&spec.fallback)) return *text;
+  if (const auto* text = std::get_if<std::string>(&spec.fallback)) return text->empty() ? "none" : *text;
   if (const auto* i = std::get_if<long>(&spec.fallback)) return std::to_string(*i);
   std::ostringstream out;
-  if (const auto* x = std::get_if<double>(&spec.fallback)) out << std::setprecision(16) << *x;
+  if (const auto* x = std::get_if<double>(&spec.fallback)) {
+    if (std::isnan(*x)) return "as built";
+    out << std::setprecision(16) << *x;
+  }
+  if (const auto* v = std::get_if<std::vector<double>>(&spec.fallback); v && v->empty()) return "none";
   if (const auto* v = std::get_if<std::vector<double>>(&spec.fallback))
     for (std::size_t k = 0; k < v->size(); ++k)
       out << (k ? ", " : "[") << (*v)[k] << (k + 1 < v->size() ? "" : "]");
@@ -116,7 +127,7 @@ void print_text(const std::vector<Item>& items) {
     if (!item.params) continue;
     for (const auto& spec : *item.params)
       std::cout << "    " << std::setw(18) << spec.name << " " << spec.help << "; " << range_text(spec)
-                << "; default " << default_text(spec) << "\n";
+                << (spec.required ? "; required" : "; default " + default_text(spec)) << "\n";
   }
 }
 

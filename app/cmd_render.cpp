@@ -15,6 +15,7 @@ namespace unfurl {
 
 int cmd_render(const Arguments& arguments) {
   const FigureOptions style = figure_options(arguments);
+  const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
   check_film(scene);
   auto model = build_model(scene);
@@ -33,6 +34,7 @@ int cmd_render(const Arguments& arguments) {
   if (!folder.holds_this()) clear_old_results(directory);
   folder.claim();
   const std::string summary = write_data(directory, scene, run, diagnostics);
+  write_exports(formats, directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary << std::flush;
   if (run.status == RunStatus::stopped) return exit_interrupted;

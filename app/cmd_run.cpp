@@ -12,6 +12,7 @@ namespace unfurl {
 int cmd_run(const Arguments& arguments) {
   if (arguments.output.empty() && !arguments.json)
     throw UsageError("-o DIR is missing (or --json, for the summary alone)");
+  const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
   auto model = build_model(scene);
   std::filesystem::path directory;
@@ -22,6 +23,7 @@ int cmd_run(const Arguments& arguments) {
   const Diagnostics diagnostics = diagnose(run);
   if (!directory.empty()) clear_old_results(directory);
   const std::string summary = write_data(directory, scene, run, diagnostics);
+  write_exports(formats, directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary;
   return exit_code_of(run);

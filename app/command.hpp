@@ -30,6 +30,7 @@ struct Arguments {
   std::string output;                  // -o; empty: not given
   std::string frames;                  // --frames FIRST:END; empty: all
   int poses = 5;                       // --poses
+  std::vector<std::string> exports;    // --export, split at commas
   bool force = false;
   bool quiet = false;
   bool json = false;

@@ -20,6 +20,7 @@ constexpr std::string_view common_options =
     "  --size WxH, --fps N, --look NAME, --supersample N, --transparent\n"
     "                     short for --set render.size=[W, H], render.fps=N, ...\n"
     "  --frames A:B       of a film only the frames A to B - 1, so that several machines can share one\n"
+    "  --export FORMATS   of run and render, also write vtk, gltf, csv, npy (a comma list, repeatable)\n"
     "  --force            write into a directory that holds other files, start another film there over\n"
     "  --quiet            no progress and no report\n"
     "  --json             the summary or the list as JSON on standard output\n"

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/export/atomic_file.hpp"
+#include "core/export/formats.hpp"
 #include "core/scene/text_file.hpp"
 
 namespace unfurl {
@@ -80,6 +81,11 @@ void clear_old_results(const fs::path& directory) {
   for (const char* name : {"summary.json", "series.csv", "trajectory.csv", "rod_forces.csv", "scene.toml",
                            "animation.webp", "animation.mp4", "animation.gif", "film.json"})
     fs::remove(directory / name, error);
+  for (const ExportFormat& format : export_formats()) {
+    for (const char* suffix : {".pvd", ".vtu", ".csv", ".npy"})
+      remove_matching(directory / format.result, "", suffix);
+    fs::remove(directory / format.result, error);
+  }
   remove_matching(directory / "frames", "frame_", ".png");
   for (const char* suffix : {".png", ".svg"}) remove_matching(directory / "figures", "", suffix);
   fs::remove(directory / "frames", error);  // only where it is empty now

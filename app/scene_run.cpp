@@ -12,6 +12,7 @@
 #include "core/export/atomic_file.hpp"
 #include "core/export/csv.hpp"
 #include "core/export/summary.hpp"
+#include "core/model/nearest_name.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
@@ -55,6 +56,27 @@ std::string write_data(const std::filesystem::path& directory, const Scene& scen
   write_rod_forces_csv(directory / "rod_forces.csv", run.trajectory, diagnostics);
   write_file_atomically(directory / "summary.json", summary);
   return summary;
+}
+
+std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments) {
+  std::vector<const ExportFormat*> formats;
+  std::vector<std::string_view> known;
+  for (const auto& row : export_formats()) known.push_back(row.name);
+  for (const auto& name : arguments.exports) {
+    const ExportFormat* format = find_export_format(name);
+    if (!format) throw UsageError("no export format " + in_quotes(name) + did_you_mean(name, known));
+    if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
+  }
+  if (!formats.empty() && arguments.output.empty())
+    throw UsageError("--export needs -o DIR: where the files go");
+  return formats;
+}
+
+void write_exports(const std::vector<const ExportFormat*>& formats, const std::filesystem::path& directory,
+                   const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
+  const double interval = scene.render.speed / scene.render.fps;
+  for (const ExportFormat* format : formats)
+    format->write({run, diagnostics, directory, scene.name, interval, scene.render.speed});
 }
 
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {

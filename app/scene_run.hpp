@@ -7,6 +7,7 @@
 
 #include "app/command.hpp"
 #include "core/diagnostics/diagnostics.hpp"
+#include "core/export/formats.hpp"
 #include "core/scene/scene.hpp"
 
 namespace unfurl {
@@ -21,6 +22,13 @@ Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model
 // empty directory name writes nothing.
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
                        const Diagnostics& diagnostics);
+
+// The formats that --export names, in that order; throws UsageError with the nearest name of an unknown one.
+std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments);
+
+// The run in these formats, beside the data in the directory.
+void write_exports(const std::vector<const ExportFormat*>& formats, const std::filesystem::path& directory,
+                   const Scene& scene, const Simulation& run, const Diagnostics& diagnostics);
 
 // A few lines for a person on stderr; nothing where `quiet` was asked for.
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments);

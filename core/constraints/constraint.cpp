@@ -4,6 +4,7 @@
 
 #include "core/constraints/alignment.hpp"
 #include "core/constraints/linear_rows.hpp"
+#include "core/constraints/measure_rows.hpp"
 #include "core/constraints/rod_length.hpp"
 
 namespace unfurl {
@@ -14,6 +15,7 @@ std::span<const ConstraintKind> constraint_kinds() {
       ConstraintKind{"line", "a node stays on a line; normal = its direction", line_block},
       ConstraintKind{"fixed", "a node stays where it is", fixed_block},
       ConstraintKind{"relation", "a linear relation between nodes (mirror, equality)", relation_block},
+      ConstraintKind{"measure", "a length, coordinate or angle is held or driven over time", measure_block},
       ConstraintKind{"collinear", "a node stays on the line through two others", collinear_block},
       ConstraintKind{"coplanar", "a node stays in the plane through three others", coplanar_block},
       ConstraintKind{"rod", "the length of a rod; its multiplier is the axial force", rod_length_block},

@@ -12,8 +12,17 @@
 
 namespace unfurl {
 
-// All constraints of one kind. Every row is scaled to metres. Phi(q) = 0, G = dPhi/dq, curvature = Hess Phi.
-// q: node coordinates of the solved nodes [3 n]; coordinate index of node i, axis k is 3 i + k.
+// A row that prescribes a motion: what a motor or an actuator does.
+struct Drive {
+  std::string name;
+  int row = 0;          // of the block, of the kept constraints in System::drives
+  double scale = 1.0;   // l: the row is l (s - f); effort along s = -l lambda [N] or [N m]
+  bool angle = false;   // s in radians, else in metres
+  TimeFunction target;  // f
+};
+
+// All constraints of one kind. Every row is scaled to metres. Phi(q, t) = 0, G = dPhi/dq, curvature = Hess
+// Phi. q: node coordinates of the solved nodes [3 n]; coordinate index of node i, axis k is 3 i + k.
 class ConstraintBlock {
  public:
   virtual ~ConstraintBlock() = default;
@@ -25,6 +34,12 @@ class ConstraintBlock {
   virtual std::vector<int> stencil(int row) const = 0;
 
   virtual void value(const double* q, double* phi) const = 0;
+  // A kind that prescribes values over time is Phi(q, t) = value(q) - g(t); G does not depend on t.
+  virtual bool rheonomic() const { return false; }
+  // Rows whose g moves.
+  virtual void list_drives(std::vector<Drive>& /*drives*/) const {}
+  // out[row] += scale * (derivative of g of this order, 0, 1 or 2) at t.
+  virtual void add_target(int /*order*/, double /*t*/, double /*scale*/, double* /*out*/) const {}
   // Entries of all rows one after the other, each in the order of its stencil.
   virtual void jacobian(const double* q, double* g) const = 0;
   // f += scale * G(q)^T lambda, without forming G.

@@ -1,10 +1,13 @@
 #include "core/diagnostics/diagnostics.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 
+#include "core/diagnostics/energy_flow.hpp"
 #include "core/integrators/index1.hpp"
 
 namespace unfurl {
@@ -20,10 +23,13 @@ struct Instant {
   const VectorXd& velocity_phi;   // G v of all constraints [m/s]
   const VectorXd& axial_force;    // of the solved rods [N]
   const VectorXd& acceleration;   // of the nodes; NaN where the equations have no solution [m/s^2]
-  double first_energy;            // kinetic + potential at t = 0 [J]
+  const Model& model;             // that the state belongs to
+  const EnergyFlow& flow;
+  double first_energy;  // kinetic + potential at t = 0 [J]
 
-  const System& system() const { return run.trajectory.model().system; }
+  const System& system() const { return model.system; }
   const Deployment& deployment() const { return run.trajectory.structure().deployment; }
+  double work() const { return system().load_work(q) + flow.load_work[i]; }
   double kinetic() const { return system().kinetic_energy(state.w); }
   double relative_constraint() const {
     return phi.size() ? phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() : 0.0;
@@ -34,44 +40,55 @@ double max_norm(const VectorXd& v) {
   return v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
 }
 
+// What a scene must have for a column to mean something.
+enum class Needs { nothing, fold, dampers, drives, impacts };
+
 struct Row {
   const char *name, *label, *unit;
-  bool needs_fold;
+  Needs needs;
   double (*value)(const Instant&);
 };
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
 const std::array rows{
-    Row{"kinetic_energy_J", "kinetic energy", "J", false, [](const Instant& s) { return s.kinetic(); }},
-    Row{"potential_energy_J", "potential energy", "J", false,
+    Row{"kinetic_energy_J", "kinetic energy", "J", Needs::nothing,
+        [](const Instant& s) { return s.kinetic(); }},
+    Row{"potential_energy_J", "potential energy", "J", Needs::nothing,
         [](const Instant& s) { return s.system().potential_energy(s.q); }},
-    Row{"work_J", "work of the loads", "J", false,
-        [](const Instant& s) { return s.system().load_work(s.q); }},
-    Row{"energy_balance_J", "energy balance", "J", false,
+    Row{"work_J", "work of the loads", "J", Needs::nothing, [](const Instant& s) { return s.work(); }},
+    Row{"dissipated_J", "energy taken by dampers", "J", Needs::dampers,
+        [](const Instant& s) { return s.flow.dissipated[s.i]; }},
+    Row{"drive_work_J", "work of the drives", "J", Needs::drives,
+        [](const Instant& s) { return s.flow.drive_work[s.i]; }},
+    Row{"impact_loss_J", "energy lost in impacts", "J", Needs::impacts,
+        [](const Instant& s) { return s.flow.impact_loss[s.i]; }},
+    Row{"energy_balance_J", "energy balance", "J", Needs::nothing,
         [](const Instant& s) {
-          return s.kinetic() + s.system().potential_energy(s.q) - s.first_energy - s.system().load_work(s.q);
+          return s.kinetic() + s.system().potential_energy(s.q) - s.first_energy - s.work() +
+                 s.flow.dissipated[s.i] - s.flow.drive_work[s.i] + s.flow.impact_loss[s.i];
         }},
-    Row{"constraint_max_m", "constraint error", "m", false, [](const Instant& s) { return max_norm(s.phi); }},
-    Row{"constraint_relative_max", "relative constraint error", "", false,
+    Row{"constraint_max_m", "constraint error", "m", Needs::nothing,
+        [](const Instant& s) { return max_norm(s.phi); }},
+    Row{"constraint_relative_max", "relative constraint error", "", Needs::nothing,
         [](const Instant& s) { return s.relative_constraint(); }},
-    Row{"constraint_round_off_max", "constraint error in units of round-off", "ulp", false,
+    Row{"constraint_round_off_max", "constraint error in units of round-off", "ulp", Needs::nothing,
         [](const Instant& s) { return s.relative_constraint() / ulp; }},
-    Row{"constraint_velocity_max_m_s", "velocity constraint error", "m/s", false,
+    Row{"constraint_velocity_max_m_s", "velocity constraint error", "m/s", Needs::nothing,
         [](const Instant& s) { return max_norm(s.velocity_phi); }},
-    Row{"fold_angle_rad", "fold angle", "rad", true,
+    Row{"fold_angle_rad", "fold angle", "rad", Needs::fold,
         [](const Instant& s) { return s.deployment().fold_angle(s.q); }},
-    Row{"fold_rate_rad_s", "fold rate", "rad/s", true,
+    Row{"fold_rate_rad_s", "fold rate", "rad/s", Needs::fold,
         [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v); }},
-    Row{"deployed_fraction", "deployed fraction", "", true,
+    Row{"deployed_fraction", "deployed fraction", "", Needs::fold,
         [](const Instant& s) { return s.deployment().fraction(s.q); }},
-    Row{"axial_force_max_N", "largest axial force", "N", false,
+    Row{"axial_force_max_N", "largest axial force", "N", Needs::nothing,
         [](const Instant& s) { return s.axial_force.size() ? s.axial_force.maxCoeff() : 0.0; }},
-    Row{"axial_force_min_N", "smallest axial force", "N", false,
+    Row{"axial_force_min_N", "smallest axial force", "N", Needs::nothing,
         [](const Instant& s) { return s.axial_force.size() ? s.axial_force.minCoeff() : 0.0; }},
-    Row{"step_s", "step", "s", false,
+    Row{"step_s", "step", "s", Needs::nothing,
         [](const Instant& s) { return s.i == 0 ? 0.0 : s.state.t - s.run.trajectory.time(s.i - 1); }},
-    Row{"newton_iterations", "Newton iterations", "", false,
+    Row{"newton_iterations", "Newton iterations", "", Needs::nothing,
         [](const Instant& s) { return static_cast<double>(s.run.trajectory.report(s.i).newton_iterations); }},
 };
 
@@ -98,20 +115,81 @@ void add_own_values(const Structure& structure, const Instant& s, Series* column
   if (structure.strain_along >= 0) column->values.push_back(poisson_ratio(s));
 }
 
-// Axial forces from the index-1 equations at the state: least-norm where rods are redundant, per rod of the
-// whole. At an event in a singular pose they are the extrapolated ones that the state holds.
-void axial_forces(Index1& index1, const Model& model, const State& state, bool singular_event,
-                  VectorXd& force, VectorXd& node_acceleration) {
+bool present(Needs needs, const Simulation& run) {
+  const Model& model = run.trajectory.model();
+  switch (needs) {
+    case Needs::nothing:
+      return true;
+    case Needs::fold:
+      return !model.structure.deployment.empty();
+    case Needs::dampers:
+      return model.system.has_power(true);
+    case Needs::drives:
+      return !model.system.drives().empty();
+    case Needs::impacts:
+      return std::any_of(run.events.begin(), run.events.end(),
+                         [](const Event& e) { return e.energy_lost != 0; });
+  }
+  return true;
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// Multipliers from the index-1 equations at the state: least-norm where rows are redundant. At an event in a
+// singular pose they are the extrapolated ones that the state holds. Accelerations are those of the nodes.
+VectorXd multipliers(Index1& index1, const Model& model, const State& state, bool singular_event,
+                     VectorXd& node_acceleration) {
   VectorXd acceleration(model.system.solved_coordinates()), lambda = state.lambda;
-  acceleration.setConstant(std::numeric_limits<double>::quiet_NaN());
+  acceleration.setConstant(nan);
   const bool ok = singular_event || index1.evaluate(state.t, state.z, state.w, acceleration, lambda);
+  node_acceleration.resize(model.system.coordinates());
   model.system.expand_rate(acceleration, node_acceleration);
+  return ok ? lambda : VectorXd::Constant(lambda.size(), nan);
+}
+
+// Per rod of the whole structure [N].
+void axial_forces(const Model& model, const VectorXd& lambda, VectorXd& force) {
   for (Index r = 0; r < force.size(); ++r) {
     const auto ur = static_cast<std::size_t>(r);
-    force[r] = ok ? lambda[model.system.rod_rows()[ur]] / model.structure.rods[ur].multiplicity
-                  : std::numeric_limits<double>::quiet_NaN();
+    force[r] = lambda[model.system.rod_rows()[ur]] / model.structure.rods[ur].multiplicity;
   }
 }
+
+// Three columns for each drive: what it prescribes, what the motor gives for it, and the power.
+class DriveColumns {
+ public:
+  DriveColumns(const System& system, std::vector<Series>& columns)
+      : columns_(columns), first_(columns.size()), drives_(system.drives()) {
+    for (const Drive& drive : drives_) {
+      const std::string& name = drive.name;
+      columns.push_back(
+          {name + (drive.angle ? ".angle_rad" : ".value_m"), name, drive.angle ? "rad" : "m", {}});
+      columns.push_back({name + (drive.angle ? ".torque_N_m" : ".force_N"),
+                         name + (drive.angle ? " torque" : " force"),
+                         drive.angle ? "N m" : "N",
+                         {}});
+      columns.push_back({name + ".power_W", name + " power", "W", {}});
+    }
+  }
+  // `system`: that of the state, whose rows may be others than at the start.
+  void append(const System& system, double t, const VectorXd& lambda) {
+    std::size_t column = first_;
+    for (const Drive& wanted : drives_) {
+      const Drive* drive = nullptr;
+      for (const Drive& d : system.drives())
+        if (d.name == wanted.name) drive = &d;
+      const double effort = drive ? -drive->scale * lambda[drive->row] : nan;
+      columns_[column++].values.push_back(wanted.target(t));
+      columns_[column++].values.push_back(effort);
+      columns_[column++].values.push_back(effort * wanted.target.derivative(1, t));
+    }
+  }
+
+ private:
+  std::vector<Series>& columns_;
+  std::size_t first_;
+  std::vector<Drive> drives_;
+};
 
 }  // namespace
 
@@ -135,34 +213,45 @@ std::vector<std::string_view> diagnostic_names() {
 
 Diagnostics diagnose(const Simulation& run) {
   const Trajectory& trajectory = run.trajectory;
-  const Model& model = trajectory.model();
   Diagnostics out;
   std::vector<const Row*> used;
   for (const Row& row : rows) {
-    if (row.needs_fold && trajectory.structure().deployment.empty()) continue;
+    if (!present(row.needs, run)) continue;
     used.push_back(&row);
     out.columns.push_back({row.name, row.label, row.unit, {}});
   }
+  DriveColumns drives(trajectory.model().system, out.columns);
+  const std::size_t first_own = out.columns.size();
   add_own_columns(trajectory.structure(), out);
-  const auto rods = static_cast<Index>(model.structure.rods.size());
+  const EnergyFlow flow = energy_flow(run);
+  const auto rods = static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
-  const VectorXd lengths = model.system.all_lengths();
-  VectorXd phi(model.system.all_constraints()), force(rods), velocity_phi,
-      acceleration(model.system.coordinates());
-  Index1 index1(model.system, true);
+  VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
+  const Model* model = nullptr;
+  std::unique_ptr<Index1> index1;
   double first_energy = 0;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const State& state = trajectory.state(i);
+    if (model != &trajectory.model(i)) {
+      model = &trajectory.model(i);
+      index1 = std::make_unique<Index1>(model->system, true);
+      lengths = model->system.all_lengths();
+      phi.resize(lengths.size());
+    }
+    const System& system = model->system;
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
-    model.system.all_constraint_values(q, phi);
-    velocity_phi = model.system.all_jacobian(q) * v;
-    axial_forces(index1, model, state, trajectory.report(i).singular_event, force, acceleration);
+    system.all_constraint_values(state.t, q, phi);
+    velocity_phi = system.all_jacobian(q) * v;
+    if (system.rheonomic()) velocity_phi -= system.all_target_rates(state.t);
+    const VectorXd lambda = multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
+    axial_forces(*model, lambda, force);
     out.axial_force.row(static_cast<Index>(i)) = force.transpose();
-    if (i == 0) first_energy = model.system.kinetic_energy(state.w) + model.system.potential_energy(q);
-    const Instant instant{run, i, state, q, v, phi, lengths, velocity_phi, force, acceleration, first_energy};
+    if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
+    const Instant instant{run, i, state, q, v, phi, lengths, velocity_phi, force, acceleration, *model, flow, first_energy};
     out.t.push_back(state.t);
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
-    add_own_values(trajectory.structure(), instant, out.columns.data() + used.size());
+    add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
+    drives.append(system, state.t, lambda);
   }
   return out;
 }

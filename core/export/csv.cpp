@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/export/atomic_file.hpp"
+#include "core/export/formats.hpp"
 
 namespace unfurl {
 
@@ -113,6 +114,57 @@ void write_rod_forces_csv(const std::filesystem::path& path, const Trajectory& t
     file.end_row();
   }
   file.commit();
+}
+
+namespace {
+
+void write_long_nodes(const std::filesystem::path& path, const Trajectory& trajectory) {
+  CsvFile file(path);
+  for (const char* name : {"t_s", "node", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s"}) file.cell(name);
+  file.end_row();
+  const auto& nodes = trajectory.structure().node_copies;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      file.cell(trajectory.time(i));
+      file.cell(nodes[n].name);
+      for (std::size_t k = 0; k < 3; ++k) file.cell(x[static_cast<Index>(3 * n + k)]);
+      for (std::size_t k = 0; k < 3; ++k) file.cell(v[static_cast<Index>(3 * n + k)]);
+      file.end_row();
+    }
+  }
+  file.commit();
+}
+
+void write_long_rods(const std::filesystem::path& path, const Trajectory& trajectory,
+                     const Diagnostics& diagnostics) {
+  CsvFile file(path);
+  for (const char* name : {"t_s", "rod", "node_a", "node_b", "group", "length_m", "axial_force_N"})
+    file.cell(name);
+  file.end_row();
+  const Structure& structure = trajectory.structure();
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const VectorXd x = trajectory.positions(i);
+    for (const RodCopy& rod : structure.rod_copies) {
+      file.cell(trajectory.time(i));
+      file.cell(rod.name);
+      file.cell(structure.node_copies[static_cast<std::size_t>(rod.a)].name);
+      file.cell(structure.node_copies[static_cast<std::size_t>(rod.b)].name);
+      file.cell(structure.rods[static_cast<std::size_t>(rod.source)].group);
+      file.cell((x.segment<3>(3 * rod.b) - x.segment<3>(3 * rod.a)).norm());
+      file.cell(diagnostics.axial_force(static_cast<Index>(i), rod.source));
+      file.end_row();
+    }
+  }
+  file.commit();
+}
+
+}  // namespace
+
+void export_csv(const ExportJob& job) {
+  const auto folder = export_folder(job, "csv");
+  write_long_nodes(folder / "nodes.csv", job.run.trajectory);
+  write_long_rods(folder / "rods.csv", job.run.trajectory, job.diagnostics);
 }
 
 }  // namespace unfurl

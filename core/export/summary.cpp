@@ -70,7 +70,10 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   summary["errors"]["energy_balance_max_J"] = max_abs(diagnostics, "energy_balance_J");
   if (!std::isnan(run.position_estimate)) summary["errors"]["position_estimate_m"] = run.position_estimate;
   summary["events"] = Json::array();
-  for (const auto& event : run.events) summary["events"].push_back({{"name", event.name}, {"t_s", event.t}});
+  for (const auto& event : run.events) {
+    summary["events"].push_back({{"name", event.name}, {"t_s", event.t}});
+    if (event.energy_lost != 0.0) summary["events"].back()["energy_lost_J"] = event.energy_lost;
+  }
   if (!run.trajectory.empty()) summary["final"] = final_json(run.trajectory);
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

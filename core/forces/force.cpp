@@ -3,6 +3,9 @@
 #include <array>
 
 #include "core/forces/constant_forces.hpp"
+#include "core/forces/damping.hpp"
+#include "core/forces/spring.hpp"
+#include "core/forces/varying_loads.hpp"
 
 namespace unfurl {
 
@@ -10,6 +13,17 @@ std::span<const ForceKind> force_kinds() {
   static const std::array kinds{
       ForceKind{"load", "a constant force on nodes: [[loads]] nodes, force (N)", nodal_load_block},
       ForceKind{"gravity", "weight of rods and nodes: [gravity] acceleration (m/s^2)", gravity_block},
+      ForceKind{"load_over_time", "a force on nodes that changes with time", load_over_time_block,
+                Members::each_node, load_over_time_params},
+      ForceKind{"follower", "a force along a rod that turns with it", follower_block, Members::rod,
+                follower_params},
+      ForceKind{"spring", "spring and damper between two nodes; tension_only: a cable", axial_spring_block,
+                Members::two_nodes, axial_spring_params},
+      ForceKind{"torsion_spring", "spring and damper at the hinge between two rods, or on the fold angle",
+                torsion_spring_block, Members::angle, torsion_spring_params},
+      ForceKind{"joint_damping", "viscous torque between the rods that meet at a node", joint_damping_block,
+                Members::each_node, joint_damping_params},
+      ForceKind{"drag", "viscous force on nodes", drag_block, Members::each_node, drag_params},
   };
   return kinds;
 }

@@ -35,7 +35,7 @@ class Dvm final : public Integrator {
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
     for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_}) v->setZero(n);
-    for (VectorXd* v : {&mu_, &zero_}) v->setZero(m);
+    for (VectorXd* v : {&mu_, &rate_}) v->setZero(m);
     pose_.setZero(system.coordinates());
     halfway_ = c_.basis.values(0.5);
     if (eq_.at_ends) analyse_mass();
@@ -85,7 +85,7 @@ class Dvm final : public Integrator {
   SaddleSolver saddle_;
   SparseLdlt mass_factor_;  // ends variant only
   std::vector<double> rhs_f_, rhs_g_;
-  VectorXd p1_, w1_, end_z_, pull_, mu_, zero_, pose_, halfway_;
+  VectorXd p1_, w1_, end_z_, pull_, mu_, rate_, pose_, halfway_;
   MatrixXd previous_, prolong_;
   RowMajor consistent_f_;
   double previous_h_ = 0;
@@ -266,22 +266,23 @@ void Dvm::settle_end() {
   eq_.dX.col(last) += dz;
   end_z_ = eq_.z0 + eq_.dX.col(last);
   system_.expand(end_z_, eq_.Q.col(last + 1));
-  system_.constraint(eq_.Q.col(last + 1), eq_.phi.col(last));
+  system_.constraint(eq_.t + eq_.h, eq_.Q.col(last + 1), eq_.phi.col(last));
 }
 
-// p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; 0] at the end pose, mu = h b_s
-// lambda_s. The factorisation is the one that the next step starts with.
+// p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; g'(t)] at the end pose, mu = h
+// b_s lambda_s. The factorisation is the one that the next step starts with.
 void Dvm::finish(State& state, double h, StepReport& report) {
   eq_.end_momentum(p1_);
   freeze(eq_.node(c_.s - 1), report);
-  saddle_.solve(p1_, zero_, w1_, mu_);
+  if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
+  saddle_.solve(p1_, rate_, w1_, mu_);
   report.right_hand_sides += 1;
   if (!frozen_ || !w1_.allFinite()) {
     report.status = StepStatus::not_finite;
     return;
   }
   if (!eq_.at_ends) settle_end();
-  report.constraint_norm = zero_.size() ? eq_.phi.col(c_.s - 2).lpNorm<Eigen::Infinity>() : 0.0;
+  report.constraint_norm = rate_.size() ? eq_.phi.col(c_.s - 2).lpNorm<Eigen::Infinity>() : 0.0;
   previous_ = eq_.dX;
   previous_h_ = h;
   have_history_ = true;

@@ -39,6 +39,22 @@ Scales scales_of(const StageEquations& eq, const SparseRows& G) {
   return s;
 }
 
+// h dr_k / dX_i of the forces that vary: h sum_j w_j l_k(tau_j) [h l_i(tau_j) dF/dz + l_i'(tau_j) dF/dz']
+void add_force_blocks(Entries& entries, const StageEquations& eq) {
+  const Index n = eq.dX.rows();
+  SparseRows by_z, by_w;
+  for (int j = 0; j < eq.c.s; ++j) {
+    const VectorXd q = eq.Q * eq.c.value.col(j), v = eq.Q * eq.c.slope.col(j) / eq.h;
+    eq.system.force_derivatives(eq.t + eq.c.tau[j] * eq.h, q, v, by_z, by_w);
+    for (Index k = 0; k + 1 < eq.c.s; ++k)
+      for (Index i = 1; i < eq.c.s; ++i) {
+        const double weight = eq.h * eq.c.weight[j] * eq.c.value(k, j);
+        add_block(entries, by_z, k * n, (i - 1) * n, weight * eq.h * eq.c.value(i, j), false);
+        add_block(entries, by_w, k * n, (i - 1) * n, weight * eq.c.slope(i, j), false);
+      }
+  }
+}
+
 Columns newton_matrix(const StageEquations& eq, const VectorXd& scale) {
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
   Entries entries;
@@ -57,6 +73,7 @@ Columns newton_matrix(const StageEquations& eq, const VectorXd& scale) {
     eq.system.jacobian(eq.Q.col(k + 1), G, scratch);
     add_block(entries, G, stages * n + k * m, k * n, 1.0, false);
   }
+  if (!eq.system.constant_forces()) add_force_blocks(entries, eq);
   for (auto& e : entries) e = {e.row(), e.col(), e.value() * scale[e.row()] * scale[e.col()]};
   for (Index i = stages * n; i < stages * (n + m); ++i)
     entries.emplace_back(static_cast<int>(i), static_cast<int>(i), -SaddleSolver::standard_regularisation);

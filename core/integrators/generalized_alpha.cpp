@@ -105,7 +105,7 @@ void GeneralizedAlpha::set_pose(const State& state, double h) {
 double GeneralizedAlpha::evaluate(double t) {
   system_.expand(z_, q_);
   system_.expand_rate(w_, v_);
-  system_.constraint(q_, phi_);
+  system_.constraint(t, q_, phi_);
   force_.setZero();
   system_.add_applied_force(t, q_, v_, 1.0, force_);
   system_.add_constraint_force(q_, lambda_, -1.0, force_);

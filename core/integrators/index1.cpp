@@ -22,12 +22,13 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   f_.setZero();
   system_.add_applied_force(t, q_, v_, 1.0, f_);
   system_.reduce_force(f_, force_);
-  system_.constraint_bias(q_, v_, bias_);
+  system_.constraint_bias(t, q_, v_, bias_);
   bias_ = -bias_;
   if (alpha_ > 0) {
-    phi_.noalias() = G_ * w;
+    system_.target_rate(t, phi_);
+    phi_ = G_ * w - phi_;
     bias_ -= 2.0 * alpha_ * phi_;
-    system_.constraint(q_, phi_);
+    system_.constraint(t, q_, phi_);
     bias_ -= alpha_ * alpha_ * phi_;
   }
   saddle_.solve(force_, bias_, acceleration, lambda, refinements_);

@@ -31,11 +31,11 @@ double Projection::level() {
   return worst;
 }
 
-bool Projection::positions(VectorXd& z) {
+bool Projection::positions(double t, VectorXd& z) {
   double best = std::numeric_limits<double>::infinity();
   for (iterations_ = 0;; ++iterations_) {
     system_.expand(z, q_);
-    system_.constraint(q_, phi_);
+    system_.constraint(t, q_, phi_);
     const double now = level();
     if (now <= 1.0) return true;
     if (!std::isfinite(now)) return false;
@@ -53,12 +53,12 @@ bool Projection::positions(VectorXd& z) {
   }
 }
 
-bool Projection::velocities(const VectorXd& z, VectorXd& w) {
+bool Projection::velocities(double t, const VectorXd& z, VectorXd& w) {
   system_.expand(z, q_);
   system_.jacobian(q_, G_, scratch_);
   if (!saddle_.factorise(G_)) return false;
   force_.noalias() = system_.mass() * w;
-  offset_.setZero();
+  system_.target_rate(t, offset_);
   saddle_.solve(force_, offset_, x_, y_);
   w = x_;
   return w.allFinite();

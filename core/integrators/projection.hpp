@@ -13,8 +13,8 @@ class Projection {
  public:
   explicit Projection(const System& system);
   // False where the iteration does not reach the constraints. Leaves |Phi| at round-off of the coordinates.
-  bool positions(VectorXd& z);
-  bool velocities(const VectorXd& z, VectorXd& w);
+  bool positions(double t, VectorXd& z);
+  bool velocities(double t, const VectorXd& z, VectorXd& w);
   int iterations() const { return iterations_; }  // of the last call of positions
 
  private:

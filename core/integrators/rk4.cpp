@@ -35,12 +35,12 @@ StepReport RungeKutta4::step(State& state, double h) {
   }
   z_ = state.z + h / 6.0 * (dz_[0] + 2.0 * dz_[1] + 2.0 * dz_[2] + dz_[3]);
   w_ = state.w + h / 6.0 * (dw_[0] + 2.0 * dw_[1] + 2.0 * dw_[2] + dw_[3]);
-  if (!settle(z_, w_, report)) {
+  if (!settle(state.t + h, z_, w_, report)) {
     if (report.ok()) report.status = StepStatus::stalled;
     return report;
   }
   system_.expand(z_, q_);
-  system_.constraint(q_, phi_);
+  system_.constraint(state.t + h, q_, phi_);
   report.constraint_norm = phi_.size() ? phi_.lpNorm<Eigen::Infinity>() : 0.0;
   if (!z_.allFinite() || !w_.allFinite()) {
     report.status = StepStatus::not_finite;

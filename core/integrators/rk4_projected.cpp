@@ -11,12 +11,12 @@ class ProjectedRungeKutta4 final : public RungeKutta4 {
   explicit ProjectedRungeKutta4(const System& system) : RungeKutta4(system), projection_(system) {}
 
  protected:
-  bool settle(VectorXd& z, VectorXd& w, StepReport& report) override {
-    const bool placed = projection_.positions(z);
+  bool settle(double t, VectorXd& z, VectorXd& w, StepReport& report) override {
+    const bool placed = projection_.positions(t, z);
     report.newton_iterations += projection_.iterations();
     report.right_hand_sides += projection_.iterations() + 1;
     report.factorisations += 2;
-    return placed && projection_.velocities(z, w);
+    return placed && projection_.velocities(t, z, w);
   }
 
  private:

@@ -37,8 +37,8 @@ const std::vector<ParamSpec>& solver_params() {
       real_param("tolerance", "m", fallback.tolerance, 0.0, 1e6,
                  "of node positions; stages and step are picked for it; 0: they are as given"),
       positive_param("end_time", "s", fallback.end_time, "the run ends here at the latest"),
-      choice_param("at_deployed", fallback.at_deployed, {"stop", "pass"},
-                   "what happens when the structure is fully deployed"),
+      choice_param("at_deployed", fallback.at_deployed, {"stop", "pass", "latch"},
+                   "when fully deployed: the run stops, the motion passes through, or the structure locks"),
       boolean_param("eliminate_linear", fallback.eliminate_linear,
                     "solve in coordinates that fulfil the linear constraints exactly; changes no result"),
   };

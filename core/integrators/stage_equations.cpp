@@ -34,6 +34,18 @@ void StageEquations::start(double time, const ConstVec& z, const ConstVec& w, do
     force_.setZero();
     system.add_applied_force(t, Q.col(0), v_tau_, 1.0, force_.col(0));
   }
+  if (stiffness_ < 0) find_stiffness();
+}
+
+void StageEquations::find_stiffness() {
+  stiffness_ = 0;
+  if (system.constant_forces()) return;
+  SparseRows by_z, by_w;
+  v_tau_.setZero();
+  system.force_derivatives(t, Q.col(0), v_tau_, by_z, by_w);
+  for (int r = 0; r < by_z.outerSize(); ++r)
+    for (SparseRows::InnerIterator it(by_z, r); it; ++it)
+      stiffness_ = std::max(stiffness_, std::abs(it.value()));
 }
 
 // f += h sum_j w_j l_k(tau_j) F(tau_j)
@@ -56,7 +68,8 @@ void StageEquations::evaluate() {
   const int stages = c.s - 1;
   place_nodes();
   for (int j = 0; j < stages; ++j) {
-    if (!at_ends || j == stages - 1) system.constraint(Q.col(j + 1), phi.col(j));
+    if (!at_ends || j == stages - 1)
+      system.constraint(t + c.basis.nodes()[j + 1] * h, Q.col(j + 1), phi.col(j));
     MdX_.col(j).noalias() = system.mass() * dX.col(j);
   }
   if (!system.constant_forces()) {
@@ -85,13 +98,15 @@ void StageEquations::evaluate() {
   measure();
 }
 
-// Momentum: compared with the sizes of the terms that cancel in it. Constraints: with the larger of a row's
+// Momentum: compared with the sizes of the terms that cancel in it, and with what rounding the coordinates
+// leaves of spring forces. Constraints: with the larger of a row's
 // length and the coordinates, whose rounding moves a row by that much.
 void StageEquations::measure() {
+  reach_ = Q.lpNorm<Eigen::Infinity>();
   double size = force_scale_ + p0.lpNorm<Eigen::Infinity>();
+  size = std::max(size, std::abs(h) * stiffness_ * reach_);
   size = std::max(size, MdX_.lpNorm<Eigen::Infinity>() * c.C.lpNorm<Eigen::Infinity>() / std::abs(h));
   momentum_level_ = size > 0 ? momentum.lpNorm<Eigen::Infinity>() / (4 * ulp * size) : 0.0;
-  reach_ = Q.lpNorm<Eigen::Infinity>();
   constraint_level_ = 0;
   for (Index j = 0; j < phi.cols(); ++j)
     for (Index r = 0; r < phi.rows(); ++r)

@@ -57,11 +57,13 @@ class StageEquations {
   static constexpr double ulp = std::numeric_limits<double>::epsilon();
   void add_forces(int k, MutVec f);
   void measure();
+  void find_stiffness();
 
   MatrixXd MdX_, force_;  // M dX_j; node forces at the quadrature times or (constant) one column
   VectorXd z_, f_, q_tau_, v_tau_;
   double momentum_level_ = 0, constraint_level_ = 0;
   double force_scale_ = 0, reach_ = 0;
+  double stiffness_ = -1;  // largest entry of dF/dz at the first step [N/m]; negative: not known yet
 };
 
 }  // namespace unfurl

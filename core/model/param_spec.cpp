@@ -71,7 +71,7 @@ bool acceptable(const ParamSpec& spec, const ParamValue& value) {
     case ParamKind::text:
       return text != nullptr;
     case ParamKind::vector:
-      if (!numbers || numbers->size() != spec.length) return false;
+      if (!numbers || (spec.length > 0 && numbers->size() != spec.length)) return false;
       for (const double x : *numbers)
         if (!in_range(spec, x)) return false;
       return true;
@@ -160,7 +160,8 @@ std::string range_text(const ParamSpec& spec) {
     case ParamKind::text:
       return "text";
     case ParamKind::vector: {
-      const std::string count = with_unit(std::to_string(spec.length) + " numbers", spec.unit);
+      const std::string count =
+          with_unit((spec.length > 0 ? std::to_string(spec.length) + " " : "") + "numbers", spec.unit);
       return interval.empty() ? count : count + ", each " + interval;
     }
     case ParamKind::integer:

@@ -24,7 +24,7 @@ struct ParamSpec {
   bool min_open = false;                  // true: the value must be greater than min, not equal to it
   bool max_open = false;                  // true: the value must be smaller than max
   std::vector<std::string_view> choices;  // for ParamKind::choice
-  std::size_t length = 0;                 // for ParamKind::vector: how many numbers
+  std::size_t length = 0;                 // for ParamKind::vector: how many numbers; 0: any number of them
   std::string_view help;                  // one line
   bool required = false;                  // true: there is no default, a scene must give it
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/math/types.hpp"
+#include "core/model/time_function.hpp"
 
 namespace unfurl {
 
@@ -28,6 +29,16 @@ struct Rod {
       1.0;  // how many equal rods of the whole structure this one stands for (sector models)
 };
 
+enum class MeasureKind { coordinate, length, angle, fold };
+
+// A scalar of the configuration; core/model/measure.hpp says what each kind measures.
+struct Measure {
+  MeasureKind kind = MeasureKind::length;
+  std::vector<int> nodes;  // coordinate: 1 or 2; length: 2; angle: 4; fold: none
+  Vec3 axis = Vec3::Zero();
+  double reference = 0.0;  // angles with a sign: the branch within pi of it [rad]
+};
+
 // One constraint of a kind in the constraint table (constraints/constraint.hpp says how each kind reads the
 // fields).
 struct Constraint {
@@ -36,6 +47,22 @@ struct Constraint {
   std::vector<int> nodes;     // node indices
   std::vector<Vec3> vectors;  // directions or coefficients
   double value = 0.0;         // offset or length [m]
+  Measure measure = {};       // "measure": what is held or driven
+  TimeFunction target = {};   // "measure": its value over time, in the measure's unit
+};
+
+// One force of a kind in the force table (forces/force.hpp).
+struct Force {
+  std::string kind;               // "spring", "follower", ...
+  std::string name;               // for messages and columns
+  std::vector<int> nodes;         // node indices
+  Measure measure = {};           // spring, torsion_spring: what it acts on
+  double stiffness = 0.0;         // [N/m] or [N m/rad]
+  double damping = 0.0;           // [N s/m] or [N m s/rad]
+  double rest = 0.0;              // value of the measure without a force [m] or [rad]
+  bool one_sided = false;         // pulls only: a cable
+  Vec3 direction = Vec3::Zero();  // of a load over time
+  TimeFunction size = {};         // of a load [N]
 };
 
 // A constant force on a node.
@@ -66,6 +93,10 @@ struct Deployment {
   LinearForm fold_cosine;            // [-]
   double initial_fold_angle = 0.0;   // [rad]
   double deployed_fold_angle = 0.0;  // [rad]
+
+  // Zero when deployed; what latches hold. Empty: fold_sine is held. Where several parts can move on their
+  // own in the deployed pose, each needs one.
+  std::vector<LinearForm> latches = {};
 
   bool empty() const { return fold_sine.empty(); }
   double fold_angle(const ConstVec& q) const;                    // [rad]
@@ -113,6 +144,7 @@ struct Structure {
   std::vector<Rod> rods;
   std::vector<Constraint> constraints;
   std::vector<Load> loads;
+  std::vector<Force> forces;
   Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]
   bool lumped_mass = false;     // true: half of a rod's mass at each node instead of the consistent matrix
   Deployment deployment;

@@ -25,6 +25,24 @@ std::size_t jacobian_entries(const Blocks& blocks) {
   return count;
 }
 
+// out += scale * (derivative of g of this order) over all rows.
+void add_targets(const Blocks& blocks, int order, double t, double scale, MutVec out) {
+  double* row = out.data();
+  for (const ConstraintBlock* block : blocks) {
+    if (block->rheonomic()) block->add_target(order, t, scale, row);
+    row += block->rows();
+  }
+}
+
+void values_at(const Blocks& blocks, double t, const ConstVec& q, MutVec phi) {
+  double* row = phi.data();
+  for (const ConstraintBlock* block : blocks) {
+    block->value(q.data(), row);
+    if (block->rheonomic()) block->add_target(0, t, -1.0, row);
+    row += block->rows();
+  }
+}
+
 // Jacobian of `blocks` in node coordinates at q.
 SparseRows node_jacobian(const Blocks& blocks, const double* q, Index n) {
   std::vector<Eigen::Triplet<double>> entries;
@@ -52,11 +70,12 @@ struct System::Data {
   SparseRows node_mass, mass, B;
   VectorXd q0, start;
   std::vector<int> free_coordinates;
-  bool eliminated = false;
+  bool eliminated = false, rheonomic = false;
   Index coordinates = 0, rows = 0, linear_rows = 0;
   VectorXd lengths;
   std::vector<std::string> names;
   std::vector<int> rod_rows;
+  std::vector<Drive> drives;
   // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e,
   // start_{e+1}).
   SparseRows pattern;
@@ -126,6 +145,14 @@ void System::Data::build_coordinates() {
   }
   B.makeCompressed();
   rows = total_rows(kept);
+  int first = 0;
+  for (const ConstraintBlock* block : kept) {
+    const std::size_t before = drives.size();
+    block->list_drives(drives);
+    for (std::size_t d = before; d < drives.size(); ++d) drives[d].row += first;
+    first += block->rows();
+  }
+  rheonomic = std::any_of(kept.begin(), kept.end(), [](const auto* block) { return block->rheonomic(); });
   lengths.resize(rows);
   Index row = 0;
   for (const ConstraintBlock* block : kept)
@@ -293,12 +320,17 @@ bool System::constant_forces() const {
   return data_->forces.empty();
 }
 
-void System::constraint(const ConstVec& q, MutVec phi) const {
-  double* out = phi.data();
-  for (const ConstraintBlock* block : data_->kept) {
-    block->value(q.data(), out);
-    out += block->rows();
-  }
+void System::constraint(double t, const ConstVec& q, MutVec phi) const {
+  values_at(data_->kept, t, q, phi);
+}
+
+bool System::rheonomic() const {
+  return data_->rheonomic;
+}
+
+void System::target_rate(double t, MutVec rate) const {
+  rate.setZero();
+  if (data_->rheonomic) add_targets(data_->kept, 1, t, 1.0, rate);
 }
 
 void System::add_constraint_force(const ConstVec& q, const ConstVec& lambda, double scale, MutVec f) const {
@@ -309,12 +341,13 @@ void System::add_constraint_force(const ConstVec& q, const ConstVec& lambda, dou
   }
 }
 
-void System::constraint_bias(const ConstVec& q, const ConstVec& v, MutVec phi_dd) const {
-  double* out = phi_dd.data();
+void System::constraint_bias(double t, const ConstVec& q, const ConstVec& v, MutVec bias) const {
+  double* out = bias.data();
   for (const ConstraintBlock* block : data_->kept) {
     block->bias(q.data(), v.data(), out);
     out += block->rows();
   }
+  if (data_->rheonomic) add_targets(data_->kept, 2, t, -1.0, bias);
 }
 
 SparseRows System::jacobian_pattern() const {
@@ -362,22 +395,56 @@ double System::kinetic_energy(const ConstVec& w) const {
   return 0.5 * w.dot(data_->mass * w);
 }
 double System::potential_energy(const ConstVec& q) const {
-  return -data_->gravity_force.dot(q);
+  double sum = -data_->gravity_force.dot(q);
+  for (const auto& block : data_->forces) sum += block->potential(q.data());
+  return sum;
 }
 double System::load_work(const ConstVec& q) const {
   return data_->loads.dot(q - data_->start);
+}
+
+const std::vector<Drive>& System::drives() const {
+  return data_->drives;
+}
+
+bool System::has_power(bool dissipative) const {
+  return std::any_of(data_->forces.begin(), data_->forces.end(), [&](const auto& block) {
+    return block->has_power() && block->dissipative() == dissipative;
+  });
+}
+
+double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const {
+  double sum = 0;
+  for (const auto& block : data_->forces)
+    if (block->has_power() && block->dissipative() == dissipative) sum += block->power(t, q.data(), v.data());
+  return sum;
+}
+
+void System::force_derivatives(double t, const ConstVec& q, const ConstVec& v, SparseRows& by_z,
+                               SparseRows& by_w) const {
+  ForceDerivative by_q, by_v;
+  for (const auto& block : data_->forces) block->derivatives(t, q.data(), v.data(), by_q, by_v);
+  const auto reduced = [&](const ForceDerivative& entries) {
+    SparseRows A(coordinates(), coordinates());
+    A.setFromTriplets(entries.begin(), entries.end());
+    return SparseRows(SparseRows(data_->B.transpose() * A) * data_->B);
+  };
+  by_z = reduced(by_q);
+  by_w = reduced(by_v);
 }
 
 Index System::all_constraints() const {
   return total_rows(data_->all);
 }
 
-void System::all_constraint_values(const ConstVec& q, MutVec phi) const {
-  double* out = phi.data();
-  for (const ConstraintBlock* block : data_->all) {
-    block->value(q.data(), out);
-    out += block->rows();
-  }
+void System::all_constraint_values(double t, const ConstVec& q, MutVec phi) const {
+  values_at(data_->all, t, q, phi);
+}
+
+VectorXd System::all_target_rates(double t) const {
+  VectorXd rate = VectorXd::Zero(all_constraints());
+  add_targets(data_->all, 1, t, 1.0, rate);
+  return rate;
 }
 
 SparseRows System::all_jacobian(const ConstVec& q) const {

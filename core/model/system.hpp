@@ -1,7 +1,10 @@
 // The equations of motion of a structure as an index-3 DAE (paper eq. 13-14), in the coordinates that are
 // solved for:
 //
-//     M z'' + G(z)^T lambda = F(t, z, z'),   Phi(z) = 0
+//     M z'' + G(z)^T lambda = F(t, z, z'),   Phi(z, t) = Phi(z) - g(t) = 0
+//
+// whose derivatives read G z' = g'(t) and G z'' + z'^T Hess Phi z' = g''(t); g = 0 in all rows but those that
+// prescribe a motion.
 //
 // Node coordinates are q = q_0 + B z. With elimination, B spans the null space of the linear constraints,
 // which then hold exactly and leave the equations; without it, B = I. A System is immutable and may be shared
@@ -45,12 +48,15 @@ class System {
 
   // In node coordinates (fast kernels; callers expand first).
   void add_applied_force(double t, const ConstVec& q, const ConstVec& v, double scale,
-                         MutVec f) const;                // f += scale F
-  bool constant_forces() const;                          // true: F does not depend on t, q, v
-  void constraint(const ConstVec& q, MutVec phi) const;  // [m]
+                         MutVec f) const;                          // f += scale F
+  bool constant_forces() const;                                    // true: F does not depend on t, q, v
+  void constraint(double t, const ConstVec& q, MutVec phi) const;  // Phi(q, t) [m]
+  bool rheonomic() const;                                          // some g depends on t
+  void target_rate(double t, MutVec rate) const;  // g'(t) [m/s]; zero where nothing is driven
   void add_constraint_force(const ConstVec& q, const ConstVec& lambda, double scale,
-                            MutVec f) const;                                        // f += scale G^T lambda
-  void constraint_bias(const ConstVec& q, const ConstVec& v, MutVec phi_dd) const;  // v^T Hess Phi v [m/s^2]
+                            MutVec f) const;  // f += scale G^T lambda
+  // v^T Hess Phi v - g''(t) [m/s^2]: the acceleration level is G a = -bias.
+  void constraint_bias(double t, const ConstVec& q, const ConstVec& v, MutVec bias) const;
 
   // Jacobian with respect to z [m x size of z]; `pattern` allocates it once, `jacobian` only writes values.
   // `scratch` is grown once.
@@ -60,8 +66,17 @@ class System {
   SparseRows curvature(const ConstVec& q, const ConstVec& lambda) const;
 
   double kinetic_energy(const ConstVec& w) const;    // [J]
-  double potential_energy(const ConstVec& q) const;  // gravity [J]
+  double potential_energy(const ConstVec& q) const;  // gravity and springs [J]
   double load_work(const ConstVec& q) const;         // of the constant loads since q = 0 [J]
+
+  // Power of the forces that have no potential [W]: loads that vary, or dampers (negative).
+  bool has_power(bool dissipative) const;
+  double power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const;
+  // dF/dz and dF/dz' of the forces that vary, for Newton matrices (allocates).
+  void force_derivatives(double t, const ConstVec& q, const ConstVec& v, SparseRows& by_z,
+                         SparseRows& by_w) const;
+
+  const std::vector<Drive>& drives() const;  // kept rows that prescribe a motion
 
   const VectorXd& constraint_lengths() const;                // [m] per kept row
   const std::vector<std::string>& constraint_names() const;  // per kept row
@@ -70,8 +85,9 @@ class System {
 
   // Every constraint of the structure, eliminated ones included (for check and diagnostics).
   Index all_constraints() const;
-  void all_constraint_values(const ConstVec& q, MutVec phi) const;  // [m]
-  SparseRows all_jacobian(const ConstVec& q) const;                 // of the node coordinates
+  void all_constraint_values(double t, const ConstVec& q, MutVec phi) const;  // [m]
+  VectorXd all_target_rates(double t) const;                                  // g'(t) [m/s]
+  SparseRows all_jacobian(const ConstVec& q) const;                           // of the node coordinates
   std::vector<std::string> all_names() const;
   VectorXd all_lengths() const;
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/model/consistency.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/model/structure_error.hpp"
 #include "core/structures/family.hpp"
@@ -55,6 +56,14 @@ void add_gravity(const Scene& scene, Structure& structure) {
   }
 }
 
+// An element stands for itself in the whole structure: a sector would repeat it.
+void refuse_elements(const Scene& scene) {
+  for (const auto* list : {&scene.forces, &scene.constraints})
+    if (!list->empty())
+      throw SceneError({{list->front().where, list->front().key,
+                         "cannot be used with a sector model; set structure.model to \"full\""}});
+}
+
 // A load on a solved node is a load on each of its copies.
 void add_load(Structure& structure, int node, const Vec3& force) {
   structure.loads.push_back({node, force, true});
@@ -87,6 +96,9 @@ Structure build_structure(const Scene& scene) {
   Structure structure = bare_structure(scene);
   add_gravity(scene, structure);
   add_loads(scene, structure);
+  if (is_sector(structure)) refuse_elements(scene);
+  add_forces(scene.forces, structure);
+  add_constraints(scene.constraints, structure);
   return structure;
 }
 
@@ -94,6 +106,7 @@ std::shared_ptr<const Model> build_model(const Scene& scene) {
   Structure structure = build_structure(scene);
   try {
     System system(structure, scene.solver.eliminate_linear);
+    check_consistency(structure, system);
     return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
   } catch (const StructureError& error) {
     refuse(scene, error);

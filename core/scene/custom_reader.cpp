@@ -45,21 +45,31 @@ void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
   }
 }
 
-ParamSpec kind_param() {
-  std::vector<std::string_view> kinds;
-  for (const auto& row : custom_constraint_kinds()) kinds.push_back(row.kind);
-  ParamSpec param = choice_param("kind", "", std::move(kinds), "");
-  param.required = true;
-  return param;
+bool is_custom_kind(const TomlTree& tree) {
+  const TomlTree* kind = tree.find("kind");
+  for (const auto& row : custom_constraint_kinds())
+    if (kind && kind->kind == TomlTree::Kind::text && kind->text == row.kind) return true;
+  return false;
 }
 
-void read_constraints(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
+void read_constraints(TableReader& table, const std::string& folder, CustomSpec& spec, SceneNotes& notes,
+                      std::vector<SceneElement>& general) {
+  std::size_t count = 0;
   for (const TomlTree* tree : table.tables("constraints")) {
+    if (!is_custom_kind(*tree)) {
+      SceneNotes own;  // its places must not be taken for those of an entry of spec.constraints
+      const std::string key = entry_key("constraints", count++);
+      TableReader entry(tree, key, tree->where, own);
+      general.push_back(read_element(entry, key, scene_constraints(), folder, own));
+      notes.problems.insert(notes.problems.end(), own.problems.begin(), own.problems.end());
+      continue;
+    }
+    ++count;
     const std::string key = entry_key("constraints", spec.constraints.size());
     notes.locations[key] = tree->where;
     TableReader entry(tree, key, tree->where, notes);
     CustomConstraint constraint;
-    constraint.kind = entry.read({kind_param()}).text("kind");
+    constraint.kind = entry.read({text_param("kind", "", "")}).text("kind");
     constraint.nodes = entry.names("nodes");
     for (const auto& row : custom_constraint_kinds()) {
       if (row.kind != constraint.kind || row.direction.empty()) continue;
@@ -67,7 +77,7 @@ void read_constraints(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
       direction.required = true;
       constraint.normal = vec3(entry.read({direction}), row.direction);
     }
-    if (!constraint.kind.empty()) entry.finish();
+    entry.finish();
     spec.constraints.push_back(std::move(constraint));
   }
 }
@@ -196,7 +206,8 @@ const std::vector<ParamSpec>& custom_rod_params() {
   return params;
 }
 
-CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes& notes) {
+CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes& notes,
+                       std::vector<SceneElement>& constraints) {
   const std::size_t before = notes.problems.size();
   CustomSpec spec;
   const ParamSet values = table.read(custom_params());
@@ -205,7 +216,7 @@ CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes
   read_nodes_file(table, values.text("nodes_file"), folder, spec, notes);
   read_rods(table, spec, notes);
   read_rods_file(table, values.text("rods_file"), folder, spec, notes);
-  read_constraints(table, spec, notes);
+  read_constraints(table, folder, spec, notes, constraints);
   note_problems(spec, before, table, notes);
   return spec;
 }

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/scene/elements.hpp"
 #include "core/scene/table_reader.hpp"
 #include "core/structures/custom.hpp"
 
@@ -11,7 +12,9 @@ namespace unfurl {
 
 // Reads and checks the list. `folder` is the scene's own, in which nodes_file and rods_file must lie; empty:
 // the scene did not come from a file and may not name any.
-CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes& notes);
+// Constraints of kinds that every structure may have go to `constraints`.
+CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes& notes,
+                       std::vector<SceneElement>& constraints);
 
 // Keys of the entries, also for the scene writer.
 const std::vector<ParamSpec>& custom_params();

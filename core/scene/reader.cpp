@@ -46,7 +46,7 @@ void read_structure(TableReader& root, const TomlTree& tree, const std::string& 
   if (const Family* family = find_family(scene.kind))
     scene.structure = table.read(family->params());
   else
-    scene.custom = read_custom(table, folder, notes);
+    scene.custom = read_custom(table, folder, notes, scene.constraints);
   table.finish();
 }
 
@@ -78,6 +78,16 @@ void read_loads(TableReader& root, Scene& scene, SceneNotes& notes) {
     load.where = tree->find("nodes") ? tree->find("nodes")->where : tree->where;
     entry.finish();
     scene.loads.push_back(std::move(load));
+  }
+}
+
+void read_elements(TableReader& root, std::string_view table, const std::vector<ElementKind>& kinds,
+                   const std::string& folder, std::vector<SceneElement>& elements, SceneNotes& notes) {
+  std::size_t count = 0;
+  for (const TomlTree* tree : root.tables(table)) {
+    const std::string key = std::string(table) + "[" + std::to_string(count++) + "]";
+    TableReader entry(tree, key, tree->where, notes);
+    elements.push_back(read_element(entry, key, kinds, folder, notes));
   }
 }
 
@@ -149,6 +159,8 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   read_structure(root, tree, folder, scene, notes);
   read_gravity(root, tree, scene, notes);
   read_loads(root, scene, notes);
+  read_elements(root, "forces", scene_forces(), folder, scene.forces, notes);
+  read_elements(root, "constraints", scene_constraints(), folder, scene.constraints, notes);
   read_solver(root, tree, scene, notes);
   read_render(root, tree, scene, notes);
   root.finish();

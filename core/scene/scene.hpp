@@ -9,6 +9,7 @@
 #include "core/integrators/solver_options.hpp"
 #include "core/model/structure.hpp"
 #include "core/scene/render_options.hpp"
+#include "core/scene/elements.hpp"
 #include "core/scene/scene_error.hpp"
 #include "core/structures/custom.hpp"
 
@@ -28,6 +29,7 @@ struct Scene {
   CustomSpec custom;            // for kind = "custom"
   Vec3 gravity = Vec3::Zero();  // [m/s^2]
   std::vector<SceneLoad> loads;
+  std::vector<SceneElement> forces, constraints;
   SolverOptions solver;
   RenderOptions render;
   std::map<std::string, SourceLocation> locations;  // dotted key -> where it was given, for later messages

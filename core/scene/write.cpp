@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "core/scene/custom_reader.hpp"
 #include "core/structures/family.hpp"
@@ -70,6 +71,29 @@ std::string constraint_text(const CustomConstraint& constraint) {
   return text;
 }
 
+bool worth_writing(const ParamValue& value) {
+  if (const auto* x = std::get_if<double>(&value)) return !std::isnan(*x);
+  if (const auto* text = std::get_if<std::string>(&value)) return !text->empty();
+  const auto* list = std::get_if<std::vector<double>>(&value);
+  return !list || !list->empty();
+}
+
+std::string element_text(std::string_view table, const SceneElement& element, const ElementKind& kind) {
+  std::string text = "\n[[" + std::string(table) + "]]\n" + line("kind", toml_string(element.kind));
+  text += line("name", toml_string(element.name));
+  if (!element.nodes.empty()) text += line("nodes", names_text(element.nodes));
+  if (!element.rods.empty())
+    text += line(kind.members == Members::rod ? "rod" : "rods", names_text(element.rods));
+  if (element.fold_angle) text += line("fold_angle", "true");
+  for (const auto& spec : kind.params()) {
+    const ParamValue& value = element.values.value(spec.name);
+    if (!worth_writing(value)) continue;
+    text += line(spec.name, value_text(value));
+    if (!spec.unit.empty()) text.insert(text.size() - 1, "  # " + std::string(spec.unit));
+  }
+  return text;
+}
+
 std::string structure_text(const Scene& scene) {
   std::string text = "\n[structure]\n" + line("kind", toml_string(scene.kind));
   if (const Family* family = find_family(scene.kind))
@@ -131,6 +155,10 @@ std::string scene_text(const Scene& scene) {
   text += "\n[gravity]\n" + line("acceleration", vec_text(scene.gravity));
   for (const auto& load : scene.loads)
     text += "\n[[loads]]\n" + line("nodes", names_text(load.nodes)) + line("force", vec_text(load.force));
+  for (const auto& force : scene.forces)
+    text += element_text("forces", force, *find_kind(scene_forces(), force.kind));
+  for (const auto& constraint : scene.constraints)
+    text += element_text("constraints", constraint, *find_kind(scene_constraints(), constraint.kind));
   return text + solver_text(scene) + render_text(scene.render);
 }
 

@@ -24,7 +24,10 @@ struct Sample {
 class Locator {
  public:
   Locator(const Trajectory& trajectory, Integrator& integrator, double h)
-      : trajectory_(trajectory), integrator_(integrator), h_(h), index1_(trajectory.model().system, true) {}
+      : trajectory_(trajectory),
+        integrator_(integrator),
+        h_(h),
+        index1_(trajectory.last_model().system, true) {}
 
   std::optional<State> locate() {
     const double start = sine(trajectory_.state(0));
@@ -61,7 +64,7 @@ class Locator {
     system().expand_rate(s.w, q_);
     return trajectory_.structure().deployment.remaining_rate(q_);
   }
-  const System& system() const { return trajectory_.model().system; }
+  const System& system() const { return trajectory_.last_model().system; }
 
   // One step from the last state before `target`, its length found by the secant method; any sine within 2 %
   // of the target will do: targets lie at least 5 % apart, and no two samples may coincide.

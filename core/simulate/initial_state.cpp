@@ -20,17 +20,32 @@ void project(const System& system, State& state) {
   std::vector<double> scratch;
   SaddleSolver saddle(system.mass(), G, 1, weak_modes_left_alone);
   VectorXd q(system.coordinates()), phi(system.constraints()), x(system.solved_coordinates()), y(phi.size());
-  const VectorXd no_force = VectorXd::Zero(x.size()), no_offset = VectorXd::Zero(phi.size());
+  VectorXd rate(phi.size());
+  const VectorXd no_force = VectorXd::Zero(x.size());
   for (int it = 0; it < 2; ++it) {
     system.expand(state.z, q);
-    system.constraint(q, phi);
+    system.constraint(state.t, q, phi);
     system.jacobian(q, G, scratch);
     if (!saddle.factorise(G)) return;
     saddle.solve(no_force, -phi, x, y, 0);
     state.z += x;
   }
   const VectorXd p = system.mass() * state.w;
-  saddle.solve(p, no_offset, state.w, y);
+  system.target_rate(state.t, rate);
+  saddle.solve(p, rate, state.w, y);
+}
+
+VectorXd fitted_rates(const System& system, double t, const ConstVec& q, const ConstVec& v) {
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  system.jacobian(q, G, scratch);
+  SaddleSolver saddle(system.mass(), G);
+  saddle.factorise(G);
+  VectorXd p(system.solved_coordinates()), w(p.size()), y(system.constraints()), rate(y.size());
+  system.target_rate(t, rate);
+  system.reduce_force(system.node_mass() * v, p);
+  saddle.solve(p, rate, w, y);
+  return w;
 }
 
 InitialState initial_state(const Structure& structure, const System& system) {
@@ -45,15 +60,11 @@ InitialState initial_state(const Structure& structure, const System& system) {
   s.lambda.setZero(system.constraints());
   // B w ~ v in the mass metric: exact where v fulfils the linear constraints.
   s.w = system.reduce_rate(v);
-  if (!v.isZero(0.0)) {
-    SparseRows G = system.jacobian_pattern();
-    std::vector<double> scratch;
-    system.jacobian(q, G, scratch);
-    SaddleSolver saddle(system.mass(), G);
-    saddle.factorise(G);
-    VectorXd p(system.solved_coordinates()), y(system.constraints()), back(system.coordinates());
-    system.reduce_force(system.node_mass() * v, p);
-    saddle.solve(p, VectorXd::Zero(y.size()), s.w, y);
+  VectorXd rate(system.constraints());
+  system.target_rate(0.0, rate);
+  if (!v.isZero(0.0) || !rate.isZero(0.0)) {
+    VectorXd back(system.coordinates());
+    s.w = fitted_rates(system, 0.0, q, v);
     system.expand_rate(s.w, back);
     out.velocity_change = (back - v).lpNorm<Eigen::Infinity>();
   }

@@ -19,6 +19,10 @@ InitialState initial_state(const Structure& structure, const System& system);
 // What to tell the user where the projection took away more than round-off; empty otherwise.
 std::string velocity_warning(const InitialState& start, const Structure& structure);
 
+// The rates w for which B w is nearest to the node velocities v in the mass metric and G w = g'(t): what an
+// impulse of the constraints alone makes of v.
+VectorXd fitted_rates(const System& system, double t, const ConstVec& q, const ConstVec& v);
+
 // Move z to the nearest point of Phi = 0 and w to G w = 0, both in the mass metric, leaving directions
 // without rank alone. For states that are nearly right already: one or two Newton steps.
 void project(const System& system, State& state);

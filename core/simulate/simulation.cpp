@@ -7,12 +7,15 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/simulate/latch.hpp"
 #include "core/simulate/step_control.hpp"
+#include "core/simulate/stops.hpp"
 
 namespace unfurl {
 namespace {
@@ -49,18 +52,24 @@ const char* reason(StepStatus status) {
 
 class TimeLoop {
  public:
-  TimeLoop(Simulation& run, Integrator& integrator, const SimulationHooks& hooks)
+  TimeLoop(Simulation& run, const SimulationHooks& hooks)
       : run_(run),
-        integrator_(integrator),
+        integrator_(fresh_integrator()),
         hooks_(hooks),
-        deployment_(run.trajectory.structure().deployment) {}
+        deployment_(run.trajectory.structure().deployment),
+        stops_(run.trajectory.structure()) {}
 
   void drive() {
     const SolverOptions& o = run_.options;
     if (o.adaptive) {
-      StepControl control(run_.trajectory.structure(), run_.trajectory.model().system, o);
+      std::optional<StepControl> control;
+      const System* controlled = nullptr;
       while (now().t < o.end_time) {
-        const double h = control.next(now());
+        if (controlled != &system()) {  // the first step, or the model has changed
+          controlled = &system();
+          control.emplace(run_.trajectory.structure(), *controlled, o);
+        }
+        const double h = control->next(now());
         const bool last = now().t + 1.001 * h >= o.end_time;
         if (!go_on() || !advance_to(last ? o.end_time : now().t + h)) return;
       }
@@ -73,6 +82,10 @@ class TimeLoop {
   }
 
  private:
+  const System& system() const { return run_.trajectory.last_model().system; }
+  std::unique_ptr<Integrator> fresh_integrator() const {
+    return find_method(run_.options.method)->make(system(), run_.options);
+  }
   const State& now() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
 
   bool go_on() {
@@ -99,6 +112,7 @@ class TimeLoop {
       deployed_ = true;
       run_.events.push_back({"deployed", event->t});
       if (run_.options.at_deployed == "stop") return finish_deployed(*event), false;
+      if (run_.options.at_deployed == "latch") return latch(*event, target);
       if (!report.ok() || std::abs(fold(next)) < singular_margin) return step_over(target, h);
     }
     return accept(next, target, report);
@@ -112,10 +126,103 @@ class TimeLoop {
 
   bool accept(State& next, double target, const StepReport& report) {
     if (!report.ok()) return fail(reason(report.status));
+    if (!stops_.empty())
+      if (const auto hit = first_hit(next, target)) return strike(hit->stop, hit->time, target);
     next.t = target;
     run_.trajectory.append(std::move(next), report);
     ++run_.steps;
+    return held_.empty() || release_stops();
+  }
+
+  struct Hit {
+    std::size_t stop;
+    double time;
+  };
+
+  // The first stop that the step from now to `next` runs into.
+  std::optional<Hit> first_hit(const State& next, double target) {
+    std::optional<Hit> first;
+    for (std::size_t i = 0; i < stops_.size(); ++i) {
+      if (held_.contains(i) || stops_.gap(i, system(), next) >= -stops_.touching()) continue;
+      const double time = time_of_contact(i, target - now().t);
+      if (!first || time < first->time) first = Hit{i, time};
+    }
+    return first;
+  }
+
+  // Steps of different lengths from now: the Illinois variant of regula falsi on the gap. A stop that is
+  // touched and left for less than a millionth of the step counts as touched now.
+  double time_of_contact(std::size_t i, double h) {
+    const auto fresh = fresh_integrator();
+    const auto gap_after = [&](double step) {
+      State state = now();
+      fresh->restart();
+      return fresh->step(state, step).ok() ? stops_.gap(i, system(), state) : -1.0;
+    };
+    double high = h, at_high = gap_after(high), low = h, at_low = at_high;
+    while (at_low <= 0 && low > 1e-6 * h) at_low = gap_after(low *= 0.5);
+    if (at_low <= 0) return now().t;
+    if (low < h) high = 2 * low, at_high = gap_after(high);
+    for (int it = 0; it < 60 && high - low > 1e-15 * h; ++it) {
+      const double middle = (low * at_high - high * at_low) / (at_high - at_low), at = gap_after(middle);
+      if (std::abs(at) <= 0.01 * stops_.touching()) return now().t + middle;
+      if ((at > 0) == (at_low > 0))
+        low = middle, at_low = at, at_high *= 0.5;
+      else
+        high = middle, at_high = at, at_low *= 0.5;
+    }
+    return now().t + low;
+  }
+
+  // Go to the contact, rebound or rest, and on to `target`.
+  bool strike(std::size_t i, double time, double target) {
+    if (time > now().t) {
+      State contact = now();
+      integrator_->restart();
+      const StepReport report = step(contact, time - now().t);
+      if (!report.ok()) return fail(reason(report.status));
+      run_.trajectory.append(std::move(contact), report);
+      ++run_.steps;
+    }
+    State after = now();
+    const double approach = -stops_.gap_rate(i, system(), after);
+    const bool rests = stops_[i].restitution * approach <= stops_[i].rest_speed;
+    if (rests) return hold(i) && (now().t >= target || advance_to(target));
+    const double lost = stops_.rebound(i, system(), after);
+    if (std::isnan(lost)) return fail("a drive pushes against the stop " + stops_[i].name);
+    run_.events.push_back({"stop " + stops_[i].name, after.t, lost});
+    run_.trajectory.append(std::move(after), StepReport{});
+    integrator_->restart();
+    return now().t >= target || advance_to(target);
+  }
+
+  bool hold(std::size_t i) {
+    State trial = now();
+    if (std::isnan(stops_.rebound(i, system(), trial)))
+      return fail("a drive pushes against the stop " + stops_[i].name);
+    if (held_.empty()) base_ = &run_.trajectory.last_model();
+    held_.insert(i);
+    switch_held("rests on stop " + stops_[i].name);
     return true;
+  }
+
+  // Stops that would have to pull let go.
+  bool release_stops() {
+    for (const std::size_t i : std::set<std::size_t>(held_)) {
+      if (stops_.push(i, system(), now()) >= 0) continue;
+      held_.erase(i);
+      switch_held("leaves stop " + stops_[i].name);
+    }
+    return true;
+  }
+
+  void switch_held(const std::string& event) {
+    const auto model = stops_.held_model(*base_, held_, run_.options.eliminate_linear);
+    Handover after = hand_over(run_.trajectory.last_model(), now(), *model);
+    run_.events.push_back({event, now().t, after.energy_lost});
+    run_.trajectory.change_model(model);
+    run_.trajectory.append(std::move(after.state), StepReport{});
+    integrator_ = fresh_integrator();
   }
 
   // The step would land on the singular pose: end it a little behind instead. The grid goes on after that.
@@ -132,7 +239,7 @@ class TimeLoop {
   }
 
   StepReport step(State& state, double h) {
-    const StepReport report = integrator_.step(state, h);
+    const StepReport report = integrator_->step(state, h);
     run_.newton_iterations += report.newton_iterations;
     run_.factorisations += report.factorisations;
     return report;
@@ -142,7 +249,7 @@ class TimeLoop {
   StepReport retry(State& state, double h, StepReport report) {
     for (int parts = 2; parts <= 64 && !report.ok(); parts *= 2) {
       state = now();
-      integrator_.restart();
+      integrator_->restart();
       report = StepReport{};
       for (int i = 0; i < parts && report.ok(); ++i) report = step(state, h / parts);
     }
@@ -151,8 +258,8 @@ class TimeLoop {
   }
 
   double fold(const State& state) {
-    q_.resize(run_.trajectory.model().system.coordinates());
-    run_.trajectory.model().system.expand(state.z, q_);
+    q_.resize(system().coordinates());
+    system().expand(state.z, q_);
     return deployment_.remaining_sine(q_);
   }
 
@@ -165,22 +272,39 @@ class TimeLoop {
   bool may_cross(double h) {
     if (deployment_.empty() || deployed_) return false;
     const double sine = fold(now());
-    run_.trajectory.model().system.expand_rate(now().w, q_);
+    system().expand_rate(now().w, q_);
     return sine > 0 && sine + 2.0 * h * deployment_.remaining_rate(q_) <= 0;
   }
 
   std::optional<State> locate(double h, double latest) {
-    const auto fresh = find_method(run_.options.method)->make(run_.trajectory.model().system, run_.options);
+    const auto fresh = fresh_integrator();
     std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
     if (event && event->t > latest) event.reset();
     return event;
   }
 
-  void finish_deployed(State& event) {
-    project(run_.trajectory.model().system, event);
+  void append_deployed(State& event) {
+    project(system(), event);
     while (run_.trajectory.size() > 1 && run_.trajectory.end_time() >= event.t) run_.trajectory.pop_back();
     run_.trajectory.append(std::move(event), StepReport{.singular_event = true});
     ++run_.steps;
+  }
+
+  // Lock the structure and go on with it: two states at this time, before and after the impulse.
+  bool latch(State& event, double target) {
+    append_deployed(event);
+    const auto locked = latched_model(run_.trajectory.last_model(), run_.options.eliminate_linear);
+    Handover after = hand_over(run_.trajectory.last_model(), now(), *locked);
+    run_.events.push_back({"latched", now().t, after.energy_lost});
+    held_.clear();  // what rests on a stop is locked there
+    run_.trajectory.change_model(locked);
+    run_.trajectory.append(std::move(after.state), StepReport{});
+    integrator_ = fresh_integrator();
+    return now().t < target ? advance_to(target) : true;
+  }
+
+  void finish_deployed(State& event) {
+    append_deployed(event);
     run_.status = RunStatus::deployed;
     report_progress(1.0);
   }
@@ -194,11 +318,14 @@ class TimeLoop {
   }
 
   Simulation& run_;
-  Integrator& integrator_;
+  std::unique_ptr<Integrator> integrator_;
   const SimulationHooks& hooks_;
   const Deployment& deployment_;
   VectorXd q_;
   bool deployed_ = false;
+  Stops stops_;
+  std::set<std::size_t> held_;   // stops that the structure rests on
+  const Model* base_ = nullptr;  // the model without them
   std::chrono::steady_clock::time_point last_progress_{};
 };
 
@@ -220,16 +347,14 @@ std::string_view to_string(RunStatus status) {
 
 Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
                     const SimulationHooks& hooks) {
-  const Method* method = find_method(options.method);
-  if (!method) throw std::invalid_argument("no method is called " + options.method);
+  if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);
   Simulation run{.trajectory = Trajectory(model), .options = options};
   InitialState start = initial_state(model->structure, model->system);
   if (std::string warning = velocity_warning(start, model->structure); !warning.empty())
     run.warnings.push_back(std::move(warning));
   run.trajectory.append(std::move(start.state), StepReport{});
-  const std::unique_ptr<Integrator> integrator = method->make(model->system, options);
   const double begin = thread_cpu_seconds();
-  TimeLoop(run, *integrator, hooks).drive();
+  TimeLoop(run, hooks).drive();
   run.cpu_s = thread_cpu_seconds() - begin;
   return run;
 }

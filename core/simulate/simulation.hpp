@@ -16,8 +16,9 @@ enum class RunStatus { completed, deployed, stopped, failed };  // stopped: canc
 std::string_view to_string(RunStatus status);
 
 struct Event {
-  std::string name;  // "deployed", ...
-  double t = 0.0;    // [s]
+  std::string name;          // "deployed", ...
+  double t = 0.0;            // [s]
+  double energy_lost = 0.0;  // in an impact [J]
 };
 
 struct SimulationHooks {

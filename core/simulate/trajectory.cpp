@@ -4,7 +4,17 @@
 
 namespace unfurl {
 
-Trajectory::Trajectory(std::shared_ptr<const Model> model) : model_(std::move(model)) {}
+Trajectory::Trajectory(std::shared_ptr<const Model> model) : models_{{0, std::move(model)}} {}
+
+void Trajectory::change_model(std::shared_ptr<const Model> model) {
+  models_.push_back({size(), std::move(model)});
+}
+
+const Model& Trajectory::model(std::size_t i) const {
+  std::size_t part = models_.size() - 1;
+  while (part > 0 && models_[part].first > i) --part;
+  return *models_[part].model;
+}
 
 void Trajectory::append(State state, StepReport report) {
   states_.push_back(std::move(state));
@@ -17,14 +27,16 @@ void Trajectory::pop_back() {
 }
 
 VectorXd Trajectory::node_positions(std::size_t i) const {
-  VectorXd q(model_->system.coordinates());
-  model_->system.expand(states_[i].z, q);
+  const System& system = model(i).system;
+  VectorXd q(system.coordinates());
+  system.expand(states_[i].z, q);
   return q;
 }
 
 VectorXd Trajectory::node_velocities(std::size_t i) const {
-  VectorXd v(model_->system.coordinates());
-  model_->system.expand_rate(states_[i].w, v);
+  const System& system = model(i).system;
+  VectorXd v(system.coordinates());
+  system.expand_rate(states_[i].w, v);
   return v;
 }
 

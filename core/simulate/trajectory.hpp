@@ -24,9 +24,13 @@ class Trajectory {
 
   void append(State state, StepReport report);
   void pop_back();
+  // States appended from now on belong to another model of the same nodes and rods: one that is locked, say.
+  void change_model(std::shared_ptr<const Model> model);
 
-  const Model& model() const { return *model_; }
-  const Structure& structure() const { return model_->structure; }
+  const Model& model() const { return *models_.front().model; }  // that of the start
+  const Model& model(std::size_t i) const;                       // that state i belongs to
+  const Model& last_model() const { return *models_.back().model; }
+  const Structure& structure() const { return model().structure; }
   std::size_t size() const { return states_.size(); }
   bool empty() const { return states_.empty(); }
   const State& state(std::size_t i) const { return states_[i]; }
@@ -44,7 +48,11 @@ class Trajectory {
   VectorXd positions_at(double t) const;
 
  private:
-  std::shared_ptr<const Model> model_;
+  struct Part {
+    std::size_t first;  // state
+    std::shared_ptr<const Model> model;
+  };
+  std::vector<Part> models_;
   std::vector<State> states_;
   std::vector<StepReport> reports_;
 };

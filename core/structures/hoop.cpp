@@ -72,6 +72,12 @@ void set_deployment(Structure& out, const HoopShape& s, int units) {
     }
   }
   d.initial_fold_angle = std::atan2(s.sine, s.cosine);
+  // Each hinge level with the corners beside it (in a sector the next corner is this one's image).
+  for (int k = 0; k < units; ++k)
+    for (int j = 0; j < 2; ++j)
+      d.latches.push_back({{4 * k + 2 + j, 4 * k + j, 4 * ((k + 1) % units) + j},
+                           {Vec3::UnitZ(), -0.5 * Vec3::UnitZ(), -0.5 * Vec3::UnitZ()},
+                           0.0});
 }
 
 Structure build_full(const HoopShape& s) {

@@ -65,7 +65,7 @@ class Marathon {
   }
   void look() {
     energy_error_ = std::max(energy_error_, std::abs(energy() - first_));
-    system_.all_constraint_values(q_, phi_);
+    system_.all_constraint_values(state_.t, q_, phi_);
     if (phi_.size())
       constraint_ = std::max(constraint_, phi_.cwiseQuotient(lengths_).lpNorm<Eigen::Infinity>());
   }

@@ -59,11 +59,11 @@ void measure_invariants(const Simulation& run, MeasuredRun& out) {
   double first = 0;
   for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
     const VectorXd q = run.trajectory.node_positions(i), v = run.trajectory.node_velocities(i);
-    system.all_constraint_values(q, phi);
+    system.all_constraint_values(run.trajectory.time(i), q, phi);
     out.constraint_max = std::max(out.constraint_max, max_norm(phi));
     out.constraint_relative_max =
         std::max(out.constraint_relative_max, max_norm(VectorXd(phi.cwiseQuotient(lengths))));
-    out.constraint_velocity_max = std::max(out.constraint_velocity_max, max_norm(system.all_jacobian(q) * v));
+    out.constraint_velocity_max = std::max(out.constraint_velocity_max, max_norm(system.all_jacobian(q) * v - system.all_target_rates(run.trajectory.time(i))));
     const double kinetic = system.kinetic_energy(run.trajectory.state(i).w);
     const double potential = system.potential_energy(q), work = system.load_work(q);
     const double energy = kinetic + potential - work;

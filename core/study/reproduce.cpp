@@ -47,7 +47,7 @@ void record(const std::shared_ptr<const Model>& model, SolverOptions options, co
   std::size_t k = 0;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const VectorXd q = trajectory.node_positions(i);
-    model->system.all_constraint_values(q, phi);
+    model->system.all_constraint_values(trajectory.time(i), q, phi);
     out.t.push_back(trajectory.time(i));
     out.constraint_error.push_back(phi.lpNorm<Eigen::Infinity>());
     if (k < reference.t.size() && std::abs(trajectory.time(i) - reference.t[k]) < 1e-9) {

@@ -127,3 +127,19 @@ TEST_CASE("Ctrl-C keeps what is done") {
   CHECK(summary["solver"]["steps"] > 0);
   CHECK(fs::exists(dir / "out/trajectory.csv"));
 }
+
+TEST_CASE("--export takes a comma list and repeats, and says what it does not know") {
+  const ScratchDirectory dir;
+  const auto run = quick + std::vector<std::string>{"-o", dir / "out", "--export"};
+  CHECK(run_program(run + std::vector<std::string>{"vtk,csv", "--export", "npy", "--export", "gltf"}).code ==
+        0);
+  for (const char* file : {"vtk/hoop6_sector.pvd", "vtk/hoop6_sector_000000.vtu", "csv/nodes.csv",
+                           "csv/rods.csv", "npy/t_s.npy", "animation.glb"})
+    CHECK(fs::exists(fs::path(dir / "out") / file));
+  CHECK(run_program(quick + std::vector<std::string>{"-o", dir / "out"}).code == 0);
+  CHECK(!fs::exists(dir / "out/vtk"));  // nothing of the earlier run stays
+  CHECK(!fs::exists(dir / "out/animation.glb"));
+  const ProgramResult wrong = run_program(run + std::vector<std::string>{"vkt"});
+  CHECK(wrong.code == 2);
+  CHECK(single_error(wrong) == "unfurl: no export format 'vkt'; did you mean 'vtk'?\n");
+}

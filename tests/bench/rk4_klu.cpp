@@ -97,7 +97,7 @@ class Rk4Klu final : public Integrator {
     f_.setZero();
     system_.add_applied_force(t, q_, v_, 1.0, f_);
     system_.reduce_force(f_, force_);
-    system_.constraint_bias(q_, v_, bias_);
+    system_.constraint_bias(t, q_, v_, bias_);
     b_.head(n) = force_;
     for (std::size_t k = 0; k < rows_.size(); ++k) b_[n + static_cast<Index>(k)] = -bias_[rows_[k]];
     klu_refactor(matrix_.outerIndexPtr(), matrix_.innerIndexPtr(), matrix_.valuePtr(), symbolic_, numeric_,

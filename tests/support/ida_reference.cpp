@@ -64,7 +64,7 @@ class Equations {
     system_.add_constraint_force(q_, mu_, 1.0, f_);
     system_.reduce_force(f_, r1);
     r1 += system_.mass() * (dz - w);
-    system_.constraint(q_, phi_);
+    system_.constraint(t, q_, phi_);
     system_.jacobian(q_, G_, scratch_);
     const VectorXd rate = G_ * w;
     for (Index i = 0; i < picked(); ++i) {

@@ -23,6 +23,19 @@ Structure sample() {
                    {"relation", "relation", {0, 1, 2}, {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, -1)}, 0.5},
                    {"collinear", "collinear", {0, 1, 2}, {}, 0.0},
                    {"coplanar", "coplanar", {0, 1, 2, 3}, {}, 0.0}};
+  s.deployment.fold_sine = {{0, 1}, {n, -n}, 0.3};
+  s.deployment.fold_cosine = {{1, 3}, {Vec3(0.5, 0, 1), n}, 1.2};
+  const Measure measures[] = {
+      {MeasureKind::coordinate, {2}, n, 0},           {MeasureKind::coordinate, {0, 3}, n, 0},
+      {MeasureKind::length, {1, 3}, Vec3::Zero(), 0}, {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0},
+      {MeasureKind::angle, {0, 1, 2, 3}, n, 0.5},     {MeasureKind::fold, {}, Vec3::Zero(), 0}};
+  for (const Measure& measure : measures) {
+    s.constraints.push_back({"measure", "measure", {}, {}, 0.0, measure, {}});
+    TimeFunction& target = s.constraints.back().target;
+    target.kind = TimeFunction::Kind::smooth;
+    target.rise = 0.7;
+    target.duration = 2.0;
+  }
   return s;
 }
 
@@ -52,9 +65,9 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
     for (VectorXd* x : {&q, &v, &lambda})
       for (Index i = 0; i < x->size(); ++i) (*x)[i] = uniform(random);
     const MatrixXd G = dense_jacobian(*block, q);
-    // Central differences of quadratics are exact up to round-off / step = 1e-16 / 1e-4 = 1e-12, for kinds of
-    // higher degree up to step^2 = 1e-8.
-    const double step = 1e-4;
+    // Central differences: round-off 1e-16 / 3e-6 = 3e-11; truncation step^2 = 1e-11 times derivatives of up
+    // to 100 for angles.
+    const double step = 3e-6;
     VectorXd up(m), down(m);
     for (Index i = 0; i < n; ++i) {
       VectorXd moved = q;
@@ -90,6 +103,17 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
           (2 * step);
       CHECK((H.col(i) - column).cwiseAbs().maxCoeff() <= 1e-8);
     }
-    CHECK(block->linear() == H.isZero(1e-12));
+    if (!block->rheonomic()) {
+      CHECK(block->linear() == H.isZero(1e-12));
+      continue;
+    }
+    CHECK(!block->linear());  // eliminated rows cannot move
+    for (int order : {1, 2}) {
+      VectorXd rate = VectorXd::Zero(m), later = rate, earlier = rate;
+      block->add_target(order, 0.8, 1.0, rate.data());
+      block->add_target(order - 1, 0.8 + step, 1.0, later.data());
+      block->add_target(order - 1, 0.8 - step, 1.0, earlier.data());
+      CHECK(((later - earlier) / (2 * step) - rate).cwiseAbs().maxCoeff() <= 1e-7);
+    }
   }
 }

@@ -171,7 +171,7 @@ TEST_CASE("conformance: constraints are held at the levels that are claimed") {
     s.run(100, 0.01, [&] {
       const VectorXd q = s.q();
       VectorXd phi(s.system().constraints());
-      s.system().constraint(q, phi);
+      s.system().constraint(s.state.t, q, phi);
       position = std::max(position, phi.lpNorm<Eigen::Infinity>());
       SparseRows G = s.system().jacobian_pattern();
       std::vector<double> scratch;

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/structures/family.hpp"
@@ -149,4 +150,61 @@ TEST_CASE("overrides are in the written scene") {
   const std::string text = scene_text(scene);
   CHECK(text.find("units = 9\n") != std::string::npos);
   CHECK(text.find("step = 0.125  # s\n") != std::string::npos);
+}
+
+TEST_CASE("forces, constraints and drives survive writing and reading") {
+  const Scene scene = read_scene_text(R"(
+[structure]
+kind = "hoop"
+[[forces]]
+kind = "torsion_spring"
+rods = ["B0-Mb0", "Mb0-B1"]
+stiffness = 40
+[[forces]]
+kind = "follower"
+rod = "B0-T0"
+force = 3
+times = [0, 1]
+values = [1, 0.5]
+[[constraints]]
+kind = "angle"
+name = "motor"
+fold_angle = true
+motion = "smooth"
+to = 5
+[[constraints]]
+kind = "length_stop"
+nodes = ["B0", "B3"]
+max = 11
+)",
+                                      "x");
+  const std::string text = scene_text(scene);
+  CHECK(scene_text(read_scene_text(text, "x")) == text);
+  CHECK(text.find("rods = [\"B0-Mb0\", \"Mb0-B1\"]\nstiffness = 40.0  # N m/rad\n") != std::string::npos);
+  CHECK(text.find("free_angle") == std::string::npos);  // as built
+  CHECK(build_structure(scene).forces.size() == 2);
+}
+
+TEST_CASE("entries that name what is not there say so where they stand") {
+  const auto message = [](const std::string& entry) -> std::string {
+    try {
+      build_structure(read_scene_text("[structure]\nkind = 'hoop'\n" + entry, "x.toml"));
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(message("[[forces]]\nkind = 'sprnig'\n") ==
+        "x.toml:4:8: forces[0].kind: must be one of load_over_time, follower, spring, torsion_spring, "
+        "joint_damping, drag; got 'sprnig'; did you mean 'spring'?");
+  CHECK(message("[[forces]]\nkind = 'follower'\nrod = 'B0-T9'\nforce = 1\n")
+            .starts_with("x.toml:3:1: forces[0].rods: there is no rod 'B0-T9'; did you mean 'B"));
+  CHECK(message("[[forces]]\nkind = 'torsion_spring'\n")
+            .find("must name one angle: rods = [R, S], or nodes = [A, HINGE, B], or fold_angle = true") !=
+        std::string::npos);
+  CHECK(message("[[constraints]]\nkind = 'angle'\nfold_angle = true\nmotion = 'rate'\n")
+            .find("constraints[0].rate: is missing; motion = \"rate\" needs it") != std::string::npos);
+  CHECK(message("[[constraints]]\nkind = 'length_stop'\nnodes = ['B0', 'T0']\nmax = 1\n")
+            .find("constraints[0].max: is passed already at t = 0, where the value is 1.2") !=
+        std::string::npos);
 }

@@ -39,7 +39,7 @@ TEST_CASE("a ring of n units has 12 n coordinates and 13 n constraints of rank 1
     CHECK(system.solved_coordinates() == 4 * n);
     CHECK(rank(scaled_jacobian(system, start(s))) == 12 * n - 1);
     VectorXd phi(system.all_constraints());
-    system.all_constraint_values(start(s), phi);
+    system.all_constraint_values(0.0, start(s), phi);
     CHECK(phi.lpNorm<Eigen::Infinity>() <= 1e-14);  // coordinates of some 10 m: a few ulp
   }
   const Structure deployed = hoop_structure({{"fold_angle", 0.0}});

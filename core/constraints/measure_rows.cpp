@@ -1,0 +1,104 @@
+#include "core/constraints/measure_rows.hpp"
+
+#include <cmath>
+
+#include "core/constraints/linear_rows.hpp"
+#include "core/model/measure.hpp"
+
+namespace unfurl {
+namespace {
+
+struct Row {
+  std::string name;
+  MeasureFunction measure;
+  TimeFunction target;
+  double scale;   // l
+  double length;  // that errors are relative to [m]
+};
+
+class MeasureRows final : public ConstraintBlock {
+ public:
+  explicit MeasureRows(std::vector<Row> rows) : rows_(std::move(rows)) {}
+  int rows() const override { return static_cast<int>(rows_.size()); }
+  bool linear() const override { return false; }
+  bool rheonomic() const override { return true; }
+  std::string name(int row) const override { return at(row).name; }
+  double length(int row) const override { return at(row).length; }
+  std::vector<int> stencil(int row) const override { return at(row).measure.stencil(); }
+
+  void value(const double* q, double* phi) const override {
+    for (const Row& row : rows_) *phi++ = row.scale * row.measure.value(q);
+  }
+  void list_drives(std::vector<Drive>& drives) const override {
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      if (rows_[r].target.moves())
+        drives.push_back({rows_[r].name, static_cast<int>(r), rows_[r].scale, rows_[r].measure.is_angle(),
+                          rows_[r].target});
+  }
+  void add_target(int order, double t, double scale, double* out) const override {
+    for (const Row& row : rows_) {
+      *out += scale * row.scale * row.target.derivative(order, t);
+      if (order == 0 && row.measure.is_angle()) *out = std::remainder(*out, 2 * pi * row.scale);
+      ++out;
+    }
+  }
+  void jacobian(const double* q, double* g) const override {
+    for (const Row& row : rows_) {
+      const std::size_t size = row.measure.stencil().size();
+      row.measure.value_and_gradient(q, g);
+      for (std::size_t i = 0; i < size; ++i) g[i] *= row.scale;
+      g += size;
+    }
+  }
+  void add_force(const double* q, const double* lambda, double scale, double* f) const override {
+    std::vector<double> g;
+    for (const Row& row : rows_) {
+      const auto& stencil = row.measure.stencil();
+      g.resize(stencil.size());
+      row.measure.value_and_gradient(q, g.data());
+      for (std::size_t i = 0; i < stencil.size(); ++i) f[stencil[i]] += scale * *lambda * row.scale * g[i];
+      ++lambda;
+    }
+  }
+  void bias(const double* q, const double* v, double* phi_dd) const override {
+    for (const Row& row : rows_) {
+      const auto& stencil = row.measure.stencil();
+      const auto size = static_cast<Index>(stencil.size());
+      MatrixXd hess(size, size);
+      VectorXd rates(size);
+      row.measure.hessian(q, hess.data());
+      for (Index i = 0; i < size; ++i) rates[i] = v[stencil[static_cast<std::size_t>(i)]];
+      *phi_dd++ = row.scale * rates.dot(hess * rates);
+    }
+  }
+  void curvature(const double* q, const double* lambda, double* hess) const override {
+    for (const Row& row : rows_) {
+      const std::size_t entries = row.measure.stencil().size() * row.measure.stencil().size();
+      row.measure.hessian(q, hess);
+      for (std::size_t i = 0; i < entries; ++i) hess[i] *= *lambda * row.scale;
+      hess += entries;
+      ++lambda;
+    }
+  }
+
+ private:
+  const Row& at(int row) const { return rows_[static_cast<std::size_t>(row)]; }
+  std::vector<Row> rows_;
+};
+
+}  // namespace
+
+std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure) {
+  std::vector<Row> rows;
+  const double length = reference_length(structure);
+  for (const Constraint& c : structure.constraints) {
+    if (c.kind != "measure") continue;
+    MeasureFunction measure(c.measure, structure.deployment);
+    const double scale = measure.is_angle() ? length : 1.0;
+    rows.push_back({c.name, std::move(measure), c.target, scale, length});
+  }
+  if (rows.empty()) return nullptr;
+  return std::make_unique<MeasureRows>(std::move(rows));
+}
+
+}  // namespace unfurl

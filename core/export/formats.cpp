@@ -1,0 +1,38 @@
+#include "core/export/formats.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "core/export/atomic_file.hpp"
+
+namespace unfurl {
+
+std::span<const ExportFormat> export_formats() {
+  static const std::array rows{
+      ExportFormat{"vtk", "ParaView: vtk/SCENE.pvd and a VTU per step, with rod forces and node velocities",
+                   "vtk", export_vtk},
+      ExportFormat{"gltf", "Blender and web viewers: animation.glb, glTF 2.0 with moving rods and joints",
+                   "animation.glb", export_gltf},
+      ExportFormat{"csv", "long tables, one row per step and member: csv/nodes.csv, csv/rods.csv", "csv",
+                   export_csv},
+      ExportFormat{"npy", "NumPy arrays: npy/positions_m.npy [steps, nodes, 3] and others", "npy",
+                   export_npy},
+  };
+  return rows;
+}
+
+const ExportFormat* find_export_format(std::string_view name) {
+  const auto rows = export_formats();
+  const auto it = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.name == name; });
+  return it == rows.end() ? nullptr : &*it;
+}
+
+std::filesystem::path export_folder(const ExportJob& job, std::string_view folder) {
+  const std::filesystem::path path = job.directory / folder;
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw FileError(path, error.value());
+  return path;
+}
+
+}  // namespace unfurl

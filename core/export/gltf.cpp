@@ -1,0 +1,261 @@
+// Binary glTF 2.0 (.glb): every rod an instance of one cylinder per group, every joint of one sphere, moved
+// by translation and rotation keys. glTF's y axis points up: one parent node turns the structure's z axis to
+// it.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "core/export/atomic_file.hpp"
+#include "core/export/formats.hpp"
+#include "core/export/unit_shapes.hpp"
+
+namespace unfurl {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr int float_type = 5126, ushort_type = 5123, vertex_target = 34962, index_target = 34963;
+
+// The document and its one buffer.
+class Glb {
+ public:
+  Json json;
+
+  Glb() {
+    json["asset"] = {{"version", "2.0"}, {"generator", "Unfurl " UNFURL_VERSION}};
+    json["scene"] = 0;
+    for (const char* key : {"scenes", "nodes", "materials", "meshes"}) json[key] = Json::array();
+    for (const char* key : {"accessors", "bufferViews"}) json[key] = Json::array();
+  }
+
+  // An accessor of `width` numbers an element; bounds where glTF wants them. Returns its index.
+  template <class T>
+  std::size_t add(const std::vector<T>& values, std::size_t width, int component, int target, bool bounds) {
+    static constexpr const char* types[] = {"", "SCALAR", "", "VEC3", "VEC4"};
+    buffer_.resize((buffer_.size() + 3) / 4 * 4, 0);
+    Json view = {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", values.size() * sizeof(T)}};
+    if (target) view["target"] = target;
+    const auto* bytes = reinterpret_cast<const char*>(values.data());
+    buffer_.append(bytes, values.size() * sizeof(T));
+    Json accessor = {{"bufferView", json["bufferViews"].size()},
+                     {"componentType", component},
+                     {"count", values.size() / width},
+                     {"type", types[width]}};
+    for (std::size_t k = 0; bounds && k < width; ++k) {
+      T low = values[k], high = values[k];
+      for (std::size_t i = k; i < values.size(); i += width) {
+        low = std::min(low, values[i]);
+        high = std::max(high, values[i]);
+      }
+      accessor["min"].push_back(low);
+      accessor["max"].push_back(high);
+    }
+    json["bufferViews"].push_back(std::move(view));
+    json["accessors"].push_back(std::move(accessor));
+    return json["accessors"].size() - 1;
+  }
+
+  std::string file() {
+    buffer_.resize((buffer_.size() + 3) / 4 * 4, 0);
+    json["buffers"] = {{{"byteLength", buffer_.size()}}};
+    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::string out = "glTF" + word(2) + word(12 + 8 + text.size() + 8 + buffer_.size());
+    out += word(text.size()) + "JSON" + text;
+    return out + word(buffer_.size()) + std::string("BIN\0", 4) + buffer_;
+  }
+
+ private:
+  static std::string word(std::size_t value) {
+    static_assert(std::endian::native == std::endian::little);
+    const auto x = static_cast<std::uint32_t>(value);
+    return {reinterpret_cast<const char*>(&x), sizeof x};
+  }
+  std::string buffer_;
+};
+
+std::vector<float> floats(std::initializer_list<double> values) {
+  std::vector<float> out;
+  for (const double x : values) out.push_back(static_cast<float>(x));
+  return out;
+}
+
+class GltfWriter {
+ public:
+  explicit GltfWriter(const ExportJob& job)
+      : job_(job), trajectory_(job.run.trajectory), structure_(job.run.trajectory.structure()) {
+    const double start = trajectory_.start_time(), span = trajectory_.end_time() - start;
+    const auto intervals = static_cast<long>(std::ceil(span / job.frame_interval - 1e-9));
+    for (long i = 0; i <= intervals; ++i)
+      times_.push_back(i == intervals ? trajectory_.end_time()
+                                      : start + job.frame_interval * static_cast<double>(i));
+    for (const double t : times_) poses_.push_back(trajectory_.positions_at(t));
+  }
+
+  std::string file() {
+    add_root();
+    add_meshes();
+    for (const RodCopy& rod : structure_.rod_copies) add_rod(rod);
+    for (std::size_t n = 0; n < structure_.node_copies.size(); ++n) add_joint(n);
+    if (times_.size() > 1) animate();
+    return glb_.file();
+  }
+
+ private:
+  void add_root() {
+    glb_.json["scenes"].push_back({{"name", std::string(job_.name)}, {"nodes", {0}}});
+    const double half = std::sqrt(0.5);
+    glb_.json["nodes"].push_back({{"name", std::string(job_.name)},
+                                  {"rotation", {-half, 0.0, 0.0, half}},
+                                  {"children", Json::array()}});
+  }
+
+  void add_meshes() {
+    const ShapeMesh cylinder = unit_cylinder(16), sphere = unit_sphere(16);
+    const Json rod_shape = primitive(cylinder), joint_shape = primitive(sphere);
+    for (const Rod& rod : structure_.rods) {
+      if (group_index(rod.group) < groups_.size()) continue;
+      groups_.push_back(rod.group);
+      add_mesh(rod.group, rod_shape, color(groups_.size() - 1));
+    }
+    add_mesh("joint", joint_shape, {0.12, 0.13, 0.15, 1.0});
+  }
+
+  Json primitive(const ShapeMesh& mesh) {
+    const std::size_t position = glb_.add(mesh.positions, 3, float_type, vertex_target, true);
+    const std::size_t normal = glb_.add(mesh.normals, 3, float_type, vertex_target, false);
+    const std::size_t indices = glb_.add(mesh.triangles, 1, ushort_type, index_target, false);
+    return {{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"indices", indices}};
+  }
+
+  // Blue, orange, green, purple, sky blue, vermilion: distinct for every kind of colour vision; linear RGB.
+  static std::vector<double> color(std::size_t group) {
+    static const std::vector<std::vector<double>> palette = {{0.0, 0.11, 0.39, 1},  {0.75, 0.21, 0.0, 1},
+                                                             {0.0, 0.27, 0.13, 1},  {0.48, 0.12, 0.3, 1},
+                                                             {0.05, 0.34, 0.69, 1}, {0.6, 0.07, 0.0, 1}};
+    return palette[group % palette.size()];
+  }
+
+  void add_mesh(const std::string& name, Json shape, const std::vector<double>& base) {
+    shape["material"] = glb_.json["materials"].size();
+    glb_.json["materials"].push_back(
+        {{"name", name},
+         {"pbrMetallicRoughness",
+          {{"baseColorFactor", base}, {"metallicFactor", 0.2}, {"roughnessFactor", 0.5}}}});
+    glb_.json["meshes"].push_back({{"name", name}, {"primitives", Json::array({shape})}});
+  }
+
+  std::size_t group_index(const std::string& group) const {
+    return static_cast<std::size_t>(std::find(groups_.begin(), groups_.end(), group) - groups_.begin());
+  }
+
+  // A rod's own radius where it has one, a sixtieth of its length where not.
+  static double radius(const Rod& rod) { return rod.radius > 0 ? rod.radius : rod.length / 60; }
+
+  static Vec3 point(const VectorXd& pose, int node) { return pose.segment<3>(3 * node); }
+
+  void add_node(const std::string& name, std::size_t mesh, const Json& place) {
+    Json node = {{"name", name}, {"mesh", mesh}};
+    node.update(place);
+    glb_.json["nodes"][0]["children"].push_back(glb_.json["nodes"].size());
+    glb_.json["nodes"].push_back(std::move(node));
+  }
+
+  void add_rod(const RodCopy& copy) {
+    const Rod& rod = structure_.rods[static_cast<std::size_t>(copy.source)];
+    // The shortest turn from each frame to the next: no spin about the rod's own axis between key frames.
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+    Vec3 axis = Vec3::UnitY();
+    Motion motion{glb_.json["nodes"].size(), {}, {}, {}};
+    bool stretches = false;
+    for (const VectorXd& pose : poses_) {
+      const Vec3 a = point(pose, copy.a), b = point(pose, copy.b), direction = (b - a).normalized();
+      turn = (Eigen::Quaterniond::FromTwoVectors(axis, direction) * turn).normalized();
+      axis = direction;
+      const Vec3 middle = 0.5 * (a + b);
+      const double length = (b - a).norm();
+      append(motion.translation, {middle[0], middle[1], middle[2]});
+      append(motion.rotation, {turn.x(), turn.y(), turn.z(), turn.w()});
+      append(motion.scale, {radius(rod), length, radius(rod)});
+      stretches = stretches || std::abs(length - rod.length) > 1e-3 * rod.length;
+    }
+    add_node(copy.name, group_index(rod.group),
+             {{"translation", first(motion.translation, 3)},
+              {"rotation", first(motion.rotation, 4)},
+              {"scale", first(motion.scale, 3)}});
+    if (!stretches) motion.scale.clear();
+    motions_.push_back(std::move(motion));
+    for (const int end : {copy.a, copy.b}) {
+      joint_radius_.resize(structure_.node_copies.size(), 0.0);
+      double& joint = joint_radius_[static_cast<std::size_t>(end)];
+      joint = std::max(joint, 1.5 * radius(rod));
+    }
+  }
+
+  void add_joint(std::size_t n) {
+    if (n >= joint_radius_.size() || joint_radius_[n] == 0.0) return;
+    Motion motion{glb_.json["nodes"].size(), {}, {}, {}};
+    for (const VectorXd& pose : poses_) {
+      const Vec3 p = point(pose, static_cast<int>(n));
+      append(motion.translation, {p[0], p[1], p[2]});
+    }
+    const double r = joint_radius_[n];
+    add_node(structure_.node_copies[n].name, groups_.size(),
+             {{"translation", first(motion.translation, 3)}, {"scale", {r, r, r}}});
+    motions_.push_back(std::move(motion));
+  }
+
+  void animate() {
+    std::vector<float> seconds;
+    for (const double t : times_) seconds.push_back(static_cast<float>((t - times_.front()) / job_.speed));
+    Json animation = {{"name", "deployment"}, {"channels", Json::array()}, {"samplers", Json::array()}};
+    const std::size_t input = glb_.add(seconds, 1, float_type, 0, true);
+    const auto channel = [&](std::size_t node, const char* path, const std::vector<float>& keys,
+                             std::size_t width) {
+      if (keys.empty()) return;
+      const std::size_t output = glb_.add(keys, width, float_type, 0, false);
+      animation["channels"].push_back(
+          {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+      animation["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
+    };
+    for (const Motion& motion : motions_) {
+      channel(motion.node, "translation", motion.translation, 3);
+      channel(motion.node, "rotation", motion.rotation, 4);
+      channel(motion.node, "scale", motion.scale, 3);
+    }
+    glb_.json["animations"] = Json::array({std::move(animation)});
+  }
+
+  struct Motion {
+    std::size_t node;
+    std::vector<float> translation, rotation, scale;
+  };
+
+  static void append(std::vector<float>& keys, std::initializer_list<double> values) {
+    const auto more = floats(values);
+    keys.insert(keys.end(), more.begin(), more.end());
+  }
+  static std::vector<float> first(const std::vector<float>& keys, std::ptrdiff_t width) {
+    return {keys.begin(), keys.begin() + width};
+  }
+
+  const ExportJob& job_;
+  const Trajectory& trajectory_;
+  const Structure& structure_;
+  std::vector<double> times_;
+  std::vector<VectorXd> poses_;
+  Glb glb_;
+  std::vector<std::string> groups_;
+  std::vector<double> joint_radius_;
+  std::vector<Motion> motions_;
+};
+
+}  // namespace
+
+void export_gltf(const ExportJob& job) {
+  write_file_atomically(job.directory / "animation.glb", GltfWriter(job).file());
+}
+
+}  // namespace unfurl

@@ -1,0 +1,121 @@
+// A VTK unstructured grid (VTU, XML, version 1.0) per state and a PVD file that gives each its time. Arrays
+// are inline base64 behind a 64-bit byte count: full precision, little endian as the machine is.
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+
+#include "core/export/atomic_file.hpp"
+#include "core/export/base64.hpp"
+#include "core/export/formats.hpp"
+
+namespace unfurl {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+std::string number(double x) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
+}
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+template <class T>
+std::string data_array(const char* type, const std::string& name, int components, std::span<const T> values) {
+  const std::uint64_t size = values.size_bytes();
+  const auto* head = reinterpret_cast<const std::byte*>(&size);
+  std::vector<std::byte> bytes(head, head + sizeof size);
+  const auto body = std::as_bytes(values);
+  bytes.insert(bytes.end(), body.begin(), body.end());
+  return "<DataArray type=\"" + std::string(type) + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+         std::to_string(components) + "\" format=\"binary\">" + base64(bytes) + "</DataArray>\n";
+}
+
+std::string reals(const std::string& name, int components, const VectorXd& values) {
+  return data_array<double>("Float64", name, components,
+                            {values.data(), static_cast<std::size_t>(values.size())});
+}
+
+// Rods as VTK_LINE cells; their group by number, in the order in which groups first appear.
+struct Cells {
+  std::vector<std::int64_t> connectivity, offsets, group;
+  std::vector<std::uint8_t> types;
+
+  explicit Cells(const Structure& structure) {
+    std::vector<std::string> groups;
+    for (const RodCopy& rod : structure.rod_copies) {
+      connectivity.insert(connectivity.end(), {rod.a, rod.b});
+      offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+      types.push_back(3);
+      const std::string& name = structure.rods[static_cast<std::size_t>(rod.source)].group;
+      const auto index = std::find(groups.begin(), groups.end(), name) - groups.begin();
+      if (index == std::ssize(groups)) groups.push_back(name);
+      group.push_back(index);
+    }
+  }
+};
+
+std::string grid(const ExportJob& job, const Cells& cells, std::size_t i) {
+  const Trajectory& trajectory = job.run.trajectory;
+  const auto& structure = trajectory.structure();
+  const auto rods = static_cast<Index>(structure.rod_copies.size());
+  VectorXd force(rods);
+  for (Index r = 0; r < rods; ++r)
+    force[r] = job.diagnostics.axial_force(static_cast<Index>(i),
+                                           structure.rod_copies[static_cast<std::size_t>(r)].source);
+  const VectorXd time = VectorXd::Constant(1, trajectory.time(i));
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+      "byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n"
+      "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" +
+      number(time[0]) + "</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"" +
+      std::to_string(structure.node_copies.size()) + "\" NumberOfCells=\"" + std::to_string(rods) + "\">\n";
+  text += "<PointData Vectors=\"velocity_m_s\">\n" + reals("velocity_m_s", 3, trajectory.velocities(i)) +
+          "</PointData>\n";
+  text += "<CellData Scalars=\"axial_force_N\">\n" + reals("axial_force_N", 1, force) +
+          data_array<std::int64_t>("Int64", "group", 1, cells.group) + "</CellData>\n";
+  text += "<Points>\n" + reals("Points", 3, trajectory.positions(i)) + "</Points>\n<Cells>\n" +
+          data_array<std::int64_t>("Int64", "connectivity", 1, cells.connectivity) +
+          data_array<std::int64_t>("Int64", "offsets", 1, cells.offsets) +
+          data_array<std::uint8_t>("UInt8", "types", 1, cells.types);
+  return text + "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+}
+
+}  // namespace
+
+void export_vtk(const ExportJob& job) {
+  const auto folder = export_folder(job, "vtk");
+  const Trajectory& trajectory = job.run.trajectory;
+  const Cells cells(trajectory.structure());
+  std::string collection =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+      "byte_order=\"LittleEndian\">\n<Collection>\n";
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    char suffix[32];
+    std::snprintf(suffix, sizeof suffix, "_%06zu.vtu", i);
+    const std::string name = std::string(job.name) + suffix;
+    write_file_atomically(folder / name, grid(job, cells, i));
+    collection += "<DataSet timestep=\"" + number(trajectory.time(i)) + "\" part=\"0\" file=\"" +
+                  escaped(name) + "\"/>\n";
+  }
+  write_file_atomically(folder / (std::string(job.name) + ".pvd"),
+                        collection + "</Collection>\n</VTKFile>\n");
+}
+
+}  // namespace unfurl

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+
+#include "core/forces/force.hpp"
+
+namespace unfurl {
+
+// Linear viscous dampers: F = -dR/dv with the dissipation function R = half the dissipated power.
+//   joint_damping   at every node with several rods: R = c/2 sum theta'^2 over pairs of them, theta their
+//                   angle. Rods have no inertia about their own axis and spin so as to feel no torque there:
+//                   of their relative angular velocity only theta' is left.
+//   drag            R = c/2 |v|^2 of a node
+std::unique_ptr<ForceBlock> joint_damping_block(const Structure& structure, const SparseRows& node_mass);
+std::unique_ptr<ForceBlock> drag_block(const Structure& structure, const SparseRows& node_mass);
+const std::vector<ParamSpec>& joint_damping_params();
+const std::vector<ParamSpec>& drag_params();
+
+}  // namespace unfurl

@@ -1,0 +1,119 @@
+#include "core/forces/varying_loads.hpp"
+
+#include <limits>
+
+namespace unfurl {
+namespace {
+
+std::vector<Force> forces_of(const Structure& structure, std::string_view kind) {
+  std::vector<Force> found;
+  for (const Force& f : structure.forces)
+    if (f.kind == kind) found.push_back(f);
+  return found;
+}
+
+Eigen::Map<const Vec3> at(const double* x, int node) {
+  return Eigen::Map<const Vec3>(x + 3 * static_cast<Index>(node));
+}
+
+class LoadsOverTime final : public ForceBlock {
+ public:
+  explicit LoadsOverTime(std::vector<Force> loads) : loads_(std::move(loads)) {}
+  bool constant() const override { return false; }
+  bool has_power() const override { return true; }
+  void add(double t, const double*, const double*, double scale, double* f) const override {
+    for (const Force& load : loads_)
+      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(load.nodes[0])) += scale * load.size(t) * load.direction;
+  }
+  double power(double t, const double*, const double* v) const override {
+    double sum = 0;
+    for (const Force& load : loads_) sum += load.size(t) * load.direction.dot(at(v, load.nodes[0]));
+    return sum;
+  }
+
+ private:
+  std::vector<Force> loads_;
+};
+
+class Followers final : public ForceBlock {
+ public:
+  explicit Followers(std::vector<Force> loads) : loads_(std::move(loads)) {}
+  bool constant() const override { return false; }
+  bool has_power() const override { return true; }
+  void add(double t, const double* q, const double*, double scale, double* f) const override {
+    for (const Force& load : loads_)
+      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(load.nodes[1])) += scale * load.size(t) * along(load, q);
+  }
+  double power(double t, const double* q, const double* v) const override {
+    double sum = 0;
+    for (const Force& load : loads_) sum += load.size(t) * along(load, q).dot(at(v, load.nodes[1]));
+    return sum;
+  }
+  // d/dx of the unit vector n of d: (I - n n^T) / |d|
+  void derivatives(double t, const double* q, const double*, ForceDerivative& by_q,
+                   ForceDerivative&) const override {
+    for (const Force& load : loads_) {
+      const int a = load.nodes[0], b = load.nodes[1];
+      const Vec3 n = along(load, q);
+      const double length = (at(q, b) - at(q, a)).norm();
+      const Mat3 turn = load.size(t) / length * (Mat3::Identity() - n * n.transpose());
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          by_q.emplace_back(3 * b + i, 3 * b + j, turn(i, j));
+          by_q.emplace_back(3 * b + i, 3 * a + j, -turn(i, j));
+        }
+    }
+  }
+
+ private:
+  static Vec3 along(const Force& load, const double* q) {
+    return (at(q, load.nodes[1]) - at(q, load.nodes[0])).normalized();
+  }
+  std::vector<Force> loads_;
+};
+
+ParamSpec times_param() {
+  return vector_param("times", "s", {}, "with values: the size over time, straight lines between the points");
+}
+ParamSpec values_param() {
+  return vector_param("values", "", {}, "factors of the load at the times");
+}
+ParamSpec table_param() {
+  return text_param("table", "", "CSV file beside the scene, in place of times and values: t,value");
+}
+
+}  // namespace
+
+std::unique_ptr<ForceBlock> load_over_time_block(const Structure& structure, const SparseRows&) {
+  auto loads = forces_of(structure, "load_over_time");
+  if (loads.empty()) return nullptr;
+  return std::make_unique<LoadsOverTime>(std::move(loads));
+}
+
+std::unique_ptr<ForceBlock> follower_block(const Structure& structure, const SparseRows&) {
+  auto loads = forces_of(structure, "follower");
+  if (loads.empty()) return nullptr;
+  return std::make_unique<Followers>(std::move(loads));
+}
+
+const std::vector<ParamSpec>& load_over_time_params() {
+  static const std::vector<ParamSpec> params = [] {
+    ParamSpec force = vector_param("force", "N", {0, 0, 0}, "on each node, times the factor of the time");
+    force.required = true;
+    return std::vector<ParamSpec>{force, times_param(), values_param(), table_param()};
+  }();
+  return params;
+}
+
+const std::vector<ParamSpec>& follower_params() {
+  static const std::vector<ParamSpec> params = [] {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    ParamSpec force = real_param("force", "N", 0.0, -infinity, infinity,
+                                 "on the second node of the rod, along the rod and away from the first");
+    force.required = true;
+    return std::vector<ParamSpec>{force, times_param(), values_param(), table_param()};
+  }();
+  return params;
+}
+
+}  // namespace unfurl

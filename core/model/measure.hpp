@@ -1,0 +1,55 @@
+// A scalar of the configuration that springs pull on, drives prescribe and stops bound.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/math/types.hpp"
+#include "core/model/structure.hpp"
+
+namespace unfurl {
+
+//   coordinate  s = axis . x_0                             or, with two nodes, axis . (x_1 - x_0)   [m]
+//   length      s = |x_1 - x_0|                                                                     [m]
+//   angle       from d_1 = x_1 - x_0 to d_2 = x_3 - x_2                                             [rad]
+//                 axis = 0: unsigned, in [0, pi]; its gradient is undefined at 0 and pi (taken as 0 there)
+//                 axis a: atan2(a . (d_1 x d_2), d_1 . d_2 - (a . d_1)(a . d_2)), of the projections across
+//                 a, on the branch within pi of `reference`
+//   fold        atan2(sine, cosine) of the structure's fold angle                                   [rad]
+class MeasureFunction {
+ public:
+  MeasureFunction(const Measure& measure, const Deployment& deployment);
+
+  // Coordinates that s depends on; an index may appear twice, its entries add up.
+  const std::vector<int>& stencil() const { return stencil_; }
+  double value(const double* q) const;
+  double value_and_gradient(const double* q,
+                            double* gradient) const;  // gradient: one entry per stencil entry
+  // Hess s, dense, column by column, size of stencil squared.
+  void hessian(const double* q, double* hess) const;
+  double rate(const double* gradient, const double* v) const {  // gradient . v
+    double sum = 0;
+    for (std::size_t i = 0; i < stencil_.size(); ++i) sum += gradient[i] * v[stencil_[i]];
+    return sum;
+  }
+  bool is_angle() const { return kind_ == MeasureKind::angle || kind_ == MeasureKind::fold; }
+  bool is_linear() const { return kind_ == MeasureKind::coordinate; }
+
+ private:
+  struct Angle;
+  Angle angle_terms(const double* q) const;
+  void angle_hessian(const double* q, double* hess) const;
+  void length_hessian(const double* q, double* hess) const;
+  void fold_hessian(const double* q, double* hess) const;
+  double on_branch(double angle) const;
+  double linear(const VectorXd& coefficients, double offset, const double* q) const;
+
+  MeasureKind kind_;
+  Vec3 axis_;
+  double reference_;
+  std::vector<int> stencil_;
+  VectorXd sine_, cosine_;  // fold and coordinate: coefficients in the order of the stencil
+  double sine_offset_ = 0, cosine_offset_ = 0;
+};
+
+}  // namespace unfurl

@@ -1,0 +1,39 @@
+// A number that a scene prescribes over time: the value of a drive, the size of a load.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace unfurl {
+
+// f(t) with two derivatives.
+//   constant  f = offset
+//   rate      f' rises from 0 to `rate` within `ramp` s (a cubic, f'' continuous inside), then stays
+//   smooth    from offset to offset + rise between start and start + duration: 10 u^3 - 15 u^4 + 6 u^5, twice
+//             continuously differentiable
+//   spline    natural cubic spline through the points (times, values), straight on beyond its ends: twice
+//             continuously differentiable everywhere
+//   linear    straight lines through the points, held beyond its ends: for loads; not for drives, whose
+//             velocity must not jump
+struct TimeFunction {
+  enum class Kind { constant, rate, smooth, spline, linear };
+
+  Kind kind = Kind::constant;
+  double offset = 0.0;
+  double rate = 0.0;  // [1/s]
+  double ramp = 0.0;  // [s]
+  double rise = 0.0;
+  double start = 0.0;     // [s]: rate, smooth
+  double duration = 1.0;  // [s]
+  std::vector<double> times, values;
+  std::vector<double> bends;  // f'' at the times; spline only, filled by make_spline
+
+  double operator()(double t) const { return derivative(0, t); }
+  double derivative(int order, double t) const;  // order 0, 1, 2
+  bool moves() const { return kind != Kind::constant; }
+};
+
+// times ascending, at least two; as many values.
+TimeFunction make_spline(std::vector<double> times, std::vector<double> values);
+
+}  // namespace unfurl

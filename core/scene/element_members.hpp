@@ -1,0 +1,33 @@
+// From the names in an entry of [[forces]] or [[constraints]] to the nodes and rods of a structure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/scene/elements.hpp"
+#include "core/structures/name_index.hpp"
+
+namespace unfurl {
+
+class MemberFinder {
+ public:
+  explicit MemberFinder(const Structure& structure);
+
+  // Each collects what is wrong instead of throwing; an empty result says that something was.
+  std::vector<int> nodes(const SceneElement& element, bool globs);  // in the entry's order
+  const Rod* rod(const SceneElement& element, std::size_t index);
+  // The angle that an entry names, with a sign where `axis` is not zero. False: a problem was noted.
+  bool angle(const SceneElement& element, const Vec3& axis, Measure& measure);
+
+  double initial(const Measure& measure) const;  // at the structure's start
+  void problem(const SceneElement& element, const std::string& key, std::string message);
+  void throw_problems();  // SceneError, where there are any
+
+ private:
+  const Structure& structure_;
+  NameIndex node_names_, rod_names_;
+  VectorXd start_;
+  std::vector<SceneProblem> problems_;
+};
+
+}  // namespace unfurl

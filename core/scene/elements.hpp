@@ -1,0 +1,47 @@
+// The entries of [[forces]] and [[constraints]]: a kind, the members it acts on, its parameters.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/forces/force.hpp"
+#include "core/scene/table_reader.hpp"
+
+namespace unfurl {
+
+struct SceneElement {
+  std::string kind;
+  std::string name;                // for messages and columns; made from kind and members where none is given
+  std::vector<std::string> nodes;  // names or globs
+  std::vector<std::string> rods;
+  bool fold_angle = false;  // acts on the structure's fold angle
+  ParamSet values;
+  std::string key;       // "forces[2]"
+  SourceLocation where;  // of the entry
+};
+
+// What the reader needs to know about a kind, whichever table it is from.
+struct ElementKind {
+  std::string_view kind;
+  std::string_view help;
+  Members members;
+  const std::vector<ParamSpec>& (*params)();
+};
+const std::vector<ElementKind>& scene_forces();  // kinds of [[forces]]
+const std::vector<ElementKind>&
+scene_constraints();  // kinds of [[constraints]] and [[structure.constraints]]
+const ElementKind* find_kind(const std::vector<ElementKind>& kinds, std::string_view kind);
+
+// How a kind names its members, for `unfurl list`: "nodes = [A, B]".
+std::string_view members_text(Members members);
+
+// One entry; `folder` is where its CSV table may lie. Mistakes are noted.
+SceneElement read_element(TableReader& entry, const std::string& key, const std::vector<ElementKind>& kinds,
+                          const std::string& folder, SceneNotes& notes);
+
+// Adds what the elements say to the structure. Throws SceneError with every member that is not there.
+void add_forces(const std::vector<SceneElement>& elements, Structure& structure);
+void add_constraints(const std::vector<SceneElement>& elements, Structure& structure);
+
+}  // namespace unfurl

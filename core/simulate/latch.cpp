@@ -1,0 +1,41 @@
+#include "core/simulate/latch.hpp"
+
+#include "core/integrators/index1.hpp"
+#include "core/simulate/initial_state.hpp"
+
+namespace unfurl {
+
+std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear) {
+  Structure structure = model.structure;
+  const Deployment& deployment = structure.deployment;
+  std::vector<LinearForm> latches = deployment.latches;
+  if (latches.empty()) latches.push_back(deployment.fold_sine);
+  for (const LinearForm& form : latches) {
+    const std::string name =
+        deployment.latches.empty()
+            ? "latch of the fold angle"
+            : "latch of " + structure.nodes[static_cast<std::size_t>(form.nodes[0])].name;
+    structure.constraints.push_back({"relation", name, form.nodes, form.coefficients, -form.offset, {}, {}});
+  }
+  System system(structure, eliminate_linear);
+  return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+}
+
+Handover hand_over(const Model& from, const State& state, const Model& to) {
+  VectorXd q(from.system.coordinates()), v(q.size());
+  from.system.expand(state.z, q);
+  from.system.expand_rate(state.w, v);
+  Handover out;
+  State& s = out.state;
+  s.t = state.t;
+  s.z = to.system.reduce(q);
+  s.w = fitted_rates(to.system, s.t, q, v);
+  s.lambda.setZero(to.system.constraints());
+  VectorXd acceleration(s.z.size());
+  Index1 index1(to.system);
+  if (!index1.evaluate(s.t, s.z, s.w, acceleration, s.lambda)) s.lambda.setZero();
+  out.energy_lost = from.system.kinetic_energy(state.w) - to.system.kinetic_energy(s.w);
+  return out;
+}
+
+}  // namespace unfurl

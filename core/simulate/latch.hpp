@@ -1,0 +1,23 @@
+// Locking a structure in its deployed pose.
+#pragma once
+
+#include <memory>
+
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+
+// The model with the latches of its deployment (structure.hpp) held at zero.
+std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear);
+
+// A state after the constraints have become those of another model of the same nodes: node positions stay,
+// the constraints' impulse takes the part of the velocities that they forbid and nothing else,
+//
+//     M (w+ - w-) + G^T mu = 0,   G w+ = g'(t)
+struct Handover {
+  State state;
+  double energy_lost = 0.0;  // kinetic [J]
+};
+Handover hand_over(const Model& from, const State& state, const Model& to);
+
+}  // namespace unfurl

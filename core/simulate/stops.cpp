@@ -1,0 +1,87 @@
+#include "core/simulate/stops.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/constraints/linear_rows.hpp"
+#include "core/math/saddle_solver.hpp"
+
+namespace unfurl {
+namespace {
+
+std::string held_name(const Stop& stop) {
+  return stop.name + (stop.sign > 0 ? " (held at its lower limit)" : " (held at its upper limit)");
+}
+
+}  // namespace
+
+Stops::Stops(const Structure& structure) : touching_(1e-11 * reference_length(structure)) {
+  for (const Constraint& c : structure.constraints) {
+    if (c.kind != "stop") continue;
+    for (const int side : {0, 1})
+      if (std::isfinite(c.vectors[0][side]))
+        stops_.push_back({c.name, c.measure, MeasureFunction(c.measure, structure.deployment),
+                          c.vectors[0][side], side == 0 ? 1.0 : -1.0, c.vectors[1][0], c.vectors[1][1]});
+  }
+}
+
+double Stops::gap(std::size_t i, const System& system, const State& state) const {
+  VectorXd q(system.coordinates());
+  system.expand(state.z, q);
+  return stops_[i].sign * (stops_[i].function.value(q.data()) - stops_[i].limit);
+}
+
+double Stops::gap_rate(std::size_t i, const System& system, const State& state) const {
+  VectorXd q(system.coordinates()), v(q.size());
+  system.expand(state.z, q);
+  system.expand_rate(state.w, v);
+  const MeasureFunction& s = stops_[i].function;
+  VectorXd gradient(static_cast<Index>(s.stencil().size()));
+  s.value_and_gradient(q.data(), gradient.data());
+  return stops_[i].sign * s.rate(gradient.data(), v.data());
+}
+
+double Stops::rebound(std::size_t i, const System& system, State& state) const {
+  const Stop& stop = stops_[i];
+  VectorXd q(system.coordinates()), n = VectorXd::Zero(q.size()), n_z(state.z.size());
+  system.expand(state.z, q);
+  const auto& stencil = stop.function.stencil();
+  VectorXd gradient(static_cast<Index>(stencil.size()));
+  stop.function.value_and_gradient(q.data(), gradient.data());
+  for (std::size_t k = 0; k < stencil.size(); ++k)
+    n[stencil[k]] += stop.sign * gradient[static_cast<Index>(k)];
+  system.reduce_force(n, n_z);
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  system.jacobian(q, G, scratch);
+  SaddleSolver saddle(system.mass(), G);
+  saddle.factorise(G);
+  VectorXd response(n_z.size()), mu(system.constraints());
+  saddle.solve(n_z, VectorXd::Zero(mu.size()), response, mu);
+  const double a = n_z.dot(response), free = n_z.cwiseAbs2().maxCoeff() / system.mass().diagonal().maxCoeff();
+  if (!(a > 1e-12 * free)) return std::numeric_limits<double>::quiet_NaN();
+  const double approach = -n_z.dot(state.w);
+  state.w += (1 + stop.restitution) * approach / a * response;
+  return (1 - stop.restitution * stop.restitution) * approach * approach / (2 * a);
+}
+
+std::shared_ptr<const Model> Stops::held_model(const Model& base, const std::set<std::size_t>& held,
+                                               bool eliminate_linear) const {
+  Structure structure = base.structure;
+  for (const std::size_t i : held) {
+    TimeFunction limit;
+    limit.offset = stops_[i].limit;
+    structure.constraints.push_back({"measure", held_name(stops_[i]), {}, {}, 0.0, stops_[i].measure, limit});
+  }
+  System system(structure, eliminate_linear);
+  return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+}
+
+double Stops::push(std::size_t i, const System& system, const State& state) const {
+  const auto& names = system.constraint_names();
+  const auto row = std::find(names.begin(), names.end(), held_name(stops_[i])) - names.begin();
+  return row < state.lambda.size() ? -stops_[i].sign * state.lambda[row] : 0.0;
+}
+
+}  // namespace unfurl

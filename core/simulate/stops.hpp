@@ -1,0 +1,59 @@
+// End stops: limits that a measure may touch but not pass.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/model/measure.hpp"
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+
+// One side of a stop; its gap is +(s - limit) or -(s - limit), at least 0. An impact with the approach speed
+// u = -gap' > 0 gives the impulse J along the gap's gradient n, constraints answering,
+//
+//     M (w+ - w-) + G^T mu = J n,   G w+ = g',   gap'+ = restitution u,   loss = (1 - restitution^2) u^2 / 2a
+//
+// with a the gap's rate under a unit impulse. Below rest_speed the stop is held as a constraint instead,
+// until its force would have to pull.
+struct Stop {
+  std::string name;
+  Measure measure;
+  MeasureFunction function;
+  double limit, sign;
+  double restitution, rest_speed;
+};
+
+class Stops {
+ public:
+  // Reads the structure's constraints of kind "stop": measure, vectors[0] = (min, max, 0), vectors[1] =
+  // (restitution, rest speed, 0); infinite where there is no limit.
+  explicit Stops(const Structure& structure);
+
+  bool empty() const { return stops_.empty(); }
+  std::size_t size() const { return stops_.size(); }
+  const Stop& operator[](std::size_t i) const { return stops_[i]; }
+
+  double gap(std::size_t i, const System& system, const State& state) const;
+  double gap_rate(std::size_t i, const System& system, const State& state) const;
+  // Gaps within this count as touching [m] or [rad].
+  double touching() const { return touching_; }
+
+  // Turn the approach of stop i round; the energy lost [J]. NaN: the stop cannot be moved by any impulse.
+  double rebound(std::size_t i, const System& system, State& state) const;
+
+  // `base` with these stops held.
+  std::shared_ptr<const Model> held_model(const Model& base, const std::set<std::size_t>& held,
+                                          bool eliminate_linear) const;
+  // The force with which held stop i pushes, negative where it pulls [N] or [N m].
+  double push(std::size_t i, const System& system, const State& state) const;
+
+ private:
+  std::vector<Stop> stops_;
+  double touching_;
+};
+
+}  // namespace unfurl

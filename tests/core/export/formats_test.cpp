@@ -1,0 +1,158 @@
+// Exports, read back with nothing but their specifications (tests/support/check_exports.py uses other
+// people's readers).
+#include <unistd.h>
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/export/base64.hpp"
+#include "core/export/formats.hpp"
+#include "core/export/unit_shapes.hpp"
+#include "tests/support/models.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Exported {
+  Simulation run = simulate(make_model(double_pendulum()), dvm_options(3, 0.05, 1.0));
+  Diagnostics diagnostics = diagnose(run);
+  fs::path directory = fs::temp_directory_path() / ("unfurl_export_" + std::to_string(::getpid()));
+
+  explicit Exported(const char* format) {
+    fs::create_directories(directory);
+    find_export_format(format)->write({run, diagnostics, directory, "swing", 0.1, 2.0});
+  }
+  ~Exported() { fs::remove_all(directory); }
+  std::string text(const char* file) const {
+    std::ostringstream out;
+    out << std::ifstream(directory / file, std::ios::binary).rdbuf();
+    return out.str();
+  }
+};
+
+template <class T>
+std::vector<T> as(std::string_view bytes) {
+  std::vector<T> out(bytes.size() / sizeof(T));
+  std::memcpy(out.data(), bytes.data(), out.size() * sizeof(T));
+  return out;
+}
+
+std::string plain(const std::string& text) {
+  return base64(std::as_bytes(std::span(text.data(), text.size())));
+}
+
+double volume(const ShapeMesh& mesh) {
+  const auto at = [&](std::size_t i) {
+    const float* p = &mesh.positions[3 * mesh.triangles[i]];
+    return Vec3(p[0], p[1], p[2]);
+  };
+  double sum = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) sum += at(i).dot(at(i + 1).cross(at(i + 2))) / 6;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("base64: the vectors of RFC 4648") {
+  CHECK(plain("") == "");
+  CHECK(plain("f") == "Zg==");
+  CHECK(plain("fo") == "Zm8=");
+  CHECK(plain("foo") == "Zm9v");
+  CHECK(plain("foobar") == "Zm9vYmFy");
+}
+
+TEST_CASE("exported shapes are closed and look outward: the divergence theorem gives their volume") {
+  // A regular 16-gon fills sin(2 pi / 16) / (2 pi / 16) = 0.9745 of its circle; a faceted sphere fills less.
+  CHECK(volume(unit_cylinder(16)) == Approx(8 * std::sin(pi / 8)).epsilon(1e-6));  // floats
+  CHECK(volume(unit_sphere(16)) > 0.92 * 4 * pi / 3);
+  CHECK(volume(unit_sphere(16)) < 4 * pi / 3);
+}
+
+TEST_CASE("a VTU of each state and their times in the PVD") {
+  const Exported e("vtk");
+  const std::string pvd = e.text("vtk/swing.pvd");
+  CHECK(pvd.find("<DataSet timestep=\"0.05\" part=\"0\" file=\"swing_000001.vtu\"/>") != std::string::npos);
+  const std::string vtu = e.text("vtk/swing_000020.vtu");
+  CHECK(vtu.find("NumberOfPoints=\"3\" NumberOfCells=\"2\"") != std::string::npos);
+  const VectorXd x = e.run.trajectory.positions(20);
+  const std::uint64_t size = 72;
+  std::string body(reinterpret_cast<const char*>(&size), 8);
+  body.append(reinterpret_cast<const char*>(x.data()), 72);
+  CHECK(vtu.find("Name=\"Points\" NumberOfComponents=\"3\" format=\"binary\">" + plain(body)) !=
+        std::string::npos);
+  CHECK(vtu.find("Name=\"axial_force_N\"") != std::string::npos);
+}
+
+TEST_CASE("NPY arrays hold the trajectory in C order") {
+  const Exported e("npy");
+  const std::string file = e.text("npy/positions_m.npy");
+  REQUIRE(file.size() > 10);
+  CHECK(file.substr(0, 8) == std::string("\x93NUMPY\x01\x00", 8));
+  const auto header = as<std::uint16_t>(file.substr(8, 2))[0];
+  CHECK((10 + header) % 64 == 0);
+  CHECK(file.substr(10, header)
+            .starts_with("{'descr': '<f8', 'fortran_order': False, 'shape': (21, 3, 3, ), }"));
+  const auto values = as<double>(std::string_view(file).substr(10U + header));
+  REQUIRE(values.size() == 21 * 9);
+  const VectorXd x = e.run.trajectory.positions(7);
+  for (std::size_t k = 0; k < 9; ++k) CHECK(values[7 * 9 + k] == x[static_cast<Index>(k)]);
+}
+
+TEST_CASE("long tables have a row per state and member") {
+  const Exported e("csv");
+  const std::string nodes = e.text("csv/nodes.csv"), rods = e.text("csv/rods.csv");
+  CHECK(nodes.starts_with("t_s,node,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s\n0,O,0,0,0,0,0,0\n"));
+  CHECK(std::count(nodes.begin(), nodes.end(), '\n') == 1 + 21 * 3);
+  CHECK(rods.starts_with("t_s,rod,node_a,node_b,group,length_m,axial_force_N\n0,OA,O,A,rod,1,"));
+  CHECK(std::count(rods.begin(), rods.end(), '\n') == 1 + 21 * 2);
+}
+
+TEST_CASE("glTF: keys put the ends of every rod on its nodes") {
+  const Exported e("gltf");
+  const std::string file = e.text("animation.glb");
+  const auto head = as<std::uint32_t>(file.substr(0, 20));
+  REQUIRE(file.starts_with("glTF"));
+  CHECK(head[1] == 2);
+  CHECK(head[2] == file.size());
+  const auto json = nlohmann::json::parse(file.substr(20, head[3]));
+  const std::string buffer = file.substr(20 + head[3] + 8);
+  CHECK(json["buffers"][0]["byteLength"] == buffer.size());
+  const auto keys = [&](const nlohmann::json& index) {
+    const auto& view =
+        json["bufferViews"][json["accessors"][index.get<std::size_t>()]["bufferView"].get<std::size_t>()];
+    return as<float>(std::string_view(buffer).substr(view["byteOffset"], view["byteLength"]));
+  };
+  const auto& animation = json["animations"][0];
+  const auto output = [&](std::size_t node, const std::string& path) {
+    for (const auto& channel : animation["channels"])
+      if (channel["target"]["node"] == node && channel["target"]["path"] == path)
+        return keys(animation["samplers"][channel["sampler"].get<std::size_t>()]["output"]);
+    return std::vector<float>{};
+  };
+  const auto times = keys(animation["samplers"][0]["input"]);
+  REQUIRE(times.size() == 11);                     // 1 s of motion every 0.1 s
+  CHECK(times.back() == Approx(0.5));              // at double speed
+  for (std::size_t node = 1; node <= 2; ++node) {  // the rods follow the root
+    const auto& rod = e.run.trajectory.structure().rod_copies[node - 1];
+    CHECK(json["nodes"][node]["name"] == rod.name);
+    const float length = json["nodes"][node]["scale"][1];
+    const auto p = output(node, "translation"), r = output(node, "rotation");
+    REQUIRE(r.size() == 44);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const VectorXd x = e.run.trajectory.positions_at(0.1 * static_cast<double>(i));
+      const Eigen::Quaternionf turn(r[4 * i + 3], r[4 * i], r[4 * i + 1], r[4 * i + 2]);
+      const Eigen::Vector3f end =
+          Eigen::Vector3f(p[3 * i], p[3 * i + 1], p[3 * i + 2]) + turn * Eigen::Vector3f(0, 0.5f * length, 0);
+      // The length is that at t = 0, between states the dense output stretches rods by 1e-4 at this step.
+      CHECK((end.cast<double>() - x.segment<3>(3 * rod.b)).norm() <= 1e-3);
+    }
+  }
+}

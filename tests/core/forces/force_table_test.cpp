@@ -1,0 +1,115 @@
+// Every row of the force table: derivatives, potential and power against finite differences of the force.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/forces/force.hpp"
+#include "core/model/mass_matrix.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+// A structure that has at least one force of every kind. A new kind must be added here: the test fails
+// without.
+Structure sample() {
+  Structure s;
+  s.nodes = {
+      {"a", {0.1, 0.2, 0.3}}, {"b", {1.3, -0.4, 0.6}}, {"c", {0.7, 1.9, -0.8}}, {"d", {-0.6, 0.5, 1.1}}};
+  s.rods = {{"ab", 0, 1, 1.0, 1.5, "rod", 0.01, 1.0}, {"bc", 1, 2, 1.0, 2.0, "rod", 0.01, 1.0}};
+  const Vec3 n = Vec3(1, 2, 2) / 3;
+  s.deployment.fold_sine = {{0, 1}, {n, -n}, 0.3};
+  s.deployment.fold_cosine = {{1, 3}, {Vec3(0.5, 0, 1), n}, 1.2};
+  s.gravity = {0, 1, -9.81};
+  s.loads = {{1, {3, 4, 5}}};
+  const auto add = [&](const char* kind, std::vector<int> nodes) -> Force& {
+    s.forces.push_back({});
+    s.forces.back().kind = kind;
+    s.forces.back().nodes = std::move(nodes);
+    s.forces.back().stiffness = 2.0;
+    s.forces.back().damping = 0.7;
+    return s.forces.back();
+  };
+  add("spring", {}).measure = {MeasureKind::length, {0, 3}, Vec3::Zero(), 0};
+  Force& cable = add("spring", {});
+  cable.measure = {MeasureKind::length, {0, 2}, Vec3::Zero(), 0};
+  cable.one_sided = true;
+  add("torsion_spring", {}).measure = {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0};
+  add("torsion_spring", {}).measure = {MeasureKind::angle, {0, 1, 2, 3}, n, 0.5};
+  add("torsion_spring", {}).measure = {MeasureKind::fold, {}, Vec3::Zero(), 0};
+  add("joint_damping", {1});
+  add("drag", {2});
+  Force& load = add("load_over_time", {2});
+  load.direction = n;
+  load.size.kind = TimeFunction::Kind::linear;
+  load.size.times = {0, 1, 2};
+  load.size.values = {1, 3, 2};
+  add("follower", {0, 1}).size.offset = 4.0;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("every force kind: derivatives, potential and power agree with the force") {
+  const Structure structure = sample();
+  const SparseRows mass = node_mass_matrix(structure);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const Index n = 12;
+  for (const ForceKind& kind : force_kinds()) {
+    INFO("force " << kind.kind);
+    const auto block = kind.make(structure, mass);
+    REQUIRE(block);
+    VectorXd q(n), v(n);
+    for (VectorXd* x : {&q, &v})
+      for (Index i = 0; i < n; ++i) (*x)[i] = uniform(random);
+    const double t = 0.6, step = 1e-5;
+    const auto force = [&](const VectorXd& at, const VectorXd& rate) {
+      VectorXd f = VectorXd::Zero(n);
+      block->add(t, at.data(), rate.data(), 1.0, f.data());
+      return f;
+    };
+    const auto potential = [&](const VectorXd& at) { return block->potential(at.data()); };
+    ForceDerivative by_q, by_v;
+    block->derivatives(t, q.data(), v.data(), by_q, by_v);
+    SparseRows K(n, n), D(n, n);
+    K.setFromTriplets(by_q.begin(), by_q.end());
+    D.setFromTriplets(by_v.begin(), by_v.end());
+    double rate_of_potential = 0;
+    for (Index i = 0; i < n; ++i) {
+      const VectorXd unit = VectorXd::Unit(n, i) * step;
+      // Truncation step^2 times third derivatives of order 10 to 100, round-off 1e-16 / step: 1e-8.
+      CHECK(((force(q + unit, v) - force(q - unit, v)) / (2 * step) - MatrixXd(K).col(i))
+                .cwiseAbs()
+                .maxCoeff() <= 2e-7);
+      CHECK(((force(q, v + unit) - force(q, v - unit)) / (2 * step) - MatrixXd(D).col(i))
+                .cwiseAbs()
+                .maxCoeff() <= 2e-7);
+      rate_of_potential += (potential(q + unit) - potential(q - unit)) / (2 * step) * v[i];
+    }
+    if (!block->constant())  // those are booked by System itself
+      CHECK(block->power(t, q.data(), v.data()) ==
+            Approx(force(q, v).dot(v) + rate_of_potential).margin(1e-7));
+    if (block->dissipative()) CHECK(block->power(t, q.data(), v.data()) <= 0.0);
+    if (block->constant()) CHECK((force(q, v) - force(v, q)).isZero(0.0));
+  }
+}
+
+TEST_CASE("internal forces exert no net force and no net torque") {
+  const Structure structure = sample();
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const ForceKind& kind : force_kinds()) {
+    if (kind.kind != "spring" && kind.kind != "joint_damping") continue;
+    VectorXd q(12), v(12), f = VectorXd::Zero(12);
+    for (Index i = 0; i < 12; ++i) q[i] = uniform(random), v[i] = uniform(random);
+    kind.make(structure, {})->add(0.0, q.data(), v.data(), 1.0, f.data());
+    Vec3 net = Vec3::Zero(), torque = Vec3::Zero();
+    for (Index i = 0; i < 12; i += 3) {
+      net += f.segment<3>(i);
+      torque += Vec3(q.segment<3>(i)).cross(Vec3(f.segment<3>(i)));
+    }
+    CHECK(net.norm() <= 1e-13);  // round-off of a dozen terms of size 1
+    CHECK(torque.norm() <= 1e-13);
+  }
+}

@@ -1,0 +1,232 @@
+// Driven and held measures, relations by name: motions with closed forms, power in and out.
+#include <Eigen/Geometry>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/integrators/integrator.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+Simulation run_scene(const std::string& text, const std::vector<std::string>& changes = {}) {
+  const Scene scene = read_scene_text(text, "test.toml", changes);
+  return simulate(build_model(scene), scene.solver);
+}
+
+double largest(const Diagnostics& d, const char* column) {
+  double m = 0;
+  for (const double x : d.at(column).values) m = std::max(m, std::abs(x));
+  return m;
+}
+
+std::string error_of(const std::string& text, const std::vector<std::string>& changes = {}) {
+  try {
+    build_model(read_scene_text(text, "test.toml", changes));
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A crank of 3 kg and 2 m in the plane z = 0 under gravity, turned by a motor.
+const std::string crank = R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "O"
+position = [0, 0, 0]
+fixed = true
+[[structure.nodes]]
+name = "P"
+position = [1, 0, 0]
+fixed = true
+[[structure.nodes]]
+name = "A"
+position = [0, 2, 0]
+[[structure.rods]]
+name = "crank"
+nodes = ["O", "A"]
+mass = 3
+[[structure.constraints]]
+kind = "plane"
+nodes = ["A"]
+normal = [0, 0, 1]
+[[structure.constraints]]
+kind = "angle"
+name = "motor"
+nodes = ["P", "O", "A"]
+axis = [0, 0, 1]
+motion = "smooth"
+to = 270
+duration = 2
+[gravity]
+acceleration = [0, -10, 0]
+[solver]
+stages = 4
+step = 0.02
+end_time = 2.5
+)";
+
+}  // namespace
+
+TEST_CASE("a motor turns a crank and reports the torque and power it gives") {
+  for (const char* method : {"dvm", "rk4"}) {
+    const Simulation run = run_scene(crank, {std::string("solver.method=") + method});
+    REQUIRE(run.status == RunStatus::completed);
+    const Diagnostics d = diagnose(run);
+    const auto &torque = d.at("motor.torque_N_m").values, &power = d.at("motor.power_W").values;
+    const bool drifts = std::string(method) == "rk4";  // like h^4
+    for (std::size_t i = 0; i < d.t.size(); ++i) {
+      const double u = std::min(d.t[i] / 2, 1.0), v = 1 - u;
+      const double theta = pi / 2 + pi * u * u * u * (10 + u * (-15 + 6 * u));
+      const double rate = pi / 2 * 30 * u * u * v * v, bend = pi / 4 * 60 * u * v * (v - u);
+      // I theta'' + m g l / 2 cos(theta)
+      const double wanted = 4 * bend + 30 * std::cos(theta);
+      CHECK(torque[i] == Approx(wanted).margin(drifts ? 1e-3 : 1e-9));
+      CHECK(power[i] == Approx(wanted * rate).margin(drifts ? 1e-3 : 1e-9));
+      const VectorXd x = run.trajectory.positions(i);
+      CHECK(x[6] == Approx(2 * std::cos(theta)).margin(drifts ? 1e-5 : 1e-12));
+    }
+    // From 90 to 270 degrees the weight falls by 2 m: 60 J come back through the motor.
+    CHECK(d.at("drive_work_J").values.back() == Approx(-60).epsilon(1e-6));
+    CHECK(largest(d, "energy_balance_J") <= (drifts ? 1e-3 : 2e-7));  // of 60 J, order 6
+    if (!drifts) {
+      CHECK(largest(d, "constraint_relative_max") <= 1e-14);
+      CHECK(largest(d, "constraint_velocity_max_m_s") <= 1e-13);
+    }
+  }
+}
+
+TEST_CASE("a crank at a constant rate goes round and round") {
+  const Simulation run =
+      run_scene(crank, {"structure.constraints.motor.motion=rate", "structure.constraints.motor.rate=720",
+                        "structure.constraints.motor.ramp=0.5"});
+  REQUIRE(run.status == RunStatus::completed);
+  const VectorXd x = run.trajectory.positions(run.trajectory.size() - 1);
+  const double theta = pi / 2 + 4 * pi * (2.5 - 0.25);
+  CHECK(x[6] == Approx(2 * std::cos(theta)).margin(1e-11));
+  CHECK(x[7] == Approx(2 * std::sin(theta)).margin(1e-11));
+}
+
+TEST_CASE("a table is followed through its points; one that begins elsewhere is refused") {
+  const std::vector<std::string> table = {"structure.constraints.motor.motion=table",
+                                          "structure.constraints.motor.times=[0, 1, 2]",
+                                          "structure.constraints.motor.values=[90, 120, 100]"};
+  const Simulation run = run_scene(crank, table);
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.trajectory.positions(50)[6] == Approx(2 * std::cos(120 * radians_per_degree)).margin(1e-12));
+  CHECK(run.trajectory.positions(100)[6] == Approx(2 * std::cos(100 * radians_per_degree)).margin(1e-12));
+  auto wrong = table;
+  wrong[2] = "structure.constraints.motor.values=[91, 120, 100]";
+  CHECK(error_of(crank, wrong).find("the table is at 91 when t = 0, the structure at 90: they must agree") !=
+        std::string::npos);
+}
+
+TEST_CASE("an actuator changes a length as told") {
+  const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "A"
+position = [0, 0, 0]
+mass = 1
+[[structure.nodes]]
+name = "B"
+position = [1, 0, 0]
+mass = 3
+[[constraints]]
+kind = "length"
+name = "actuator"
+nodes = ["A", "B"]
+motion = "smooth"
+to = 3
+duration = 1
+[solver]
+end_time = 1
+step = 0.01
+stages = 4
+)");
+  REQUIRE(run.status == RunStatus::completed);
+  const VectorXd x = run.trajectory.positions(run.trajectory.size() - 1);
+  CHECK(x[0] == Approx(-1.5).epsilon(1e-10));  // the centre of mass stays
+  CHECK(x[3] == Approx(1.5).epsilon(1e-10));
+  const Diagnostics d = diagnose(run);
+  // Reduced mass 3/4 kg; s'' at u = 1/4: 2 * 60 * (1/4)(3/4)(1/2).
+  CHECK(d.at("actuator.force_N").values[25] == Approx(0.75 * 11.25).epsilon(1e-9));
+  CHECK(std::abs(d.at("drive_work_J").values.back()) <= 1e-8);  // at rest before and after
+  CHECK(largest(d, "energy_balance_J") <= 1e-8);
+}
+
+TEST_CASE("mirror, equal, relation, collinear, coplanar hold by name") {
+  const std::string free = R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "A"
+position = [1, 0, 0]
+velocity = [1, 2, 3]
+mass = 1
+[[structure.nodes]]
+name = "B"
+position = [-1, 0, 0]
+mass = 2
+[[structure.nodes]]
+name = "C"
+position = [0, 0, 0]
+velocity = [0, 1, -1]
+mass = 1
+[[structure.nodes]]
+name = "D"
+position = [0, 1, 0]
+velocity = [1, 0, 2]
+mass = 1
+[solver]
+stages = 4
+step = 0.02
+end_time = 0.5
+)";
+  const auto positions = [&](const std::string& constraint) {
+    const Simulation run = run_scene(free + "[[constraints]]\n" + constraint);
+    REQUIRE(run.status == RunStatus::completed);
+    CHECK(largest(diagnose(run), "energy_balance_J") <= 1e-9);  // ideal constraints do no work
+    const VectorXd x = run.trajectory.positions(run.trajectory.size() - 1);
+    return std::array<Vec3, 4>{x.segment<3>(0), x.segment<3>(3), x.segment<3>(6), x.segment<3>(9)};
+  };
+  auto p = positions("kind = 'mirror'\nnodes = ['A', 'B']\nnormal = [1, 0, 0]");
+  CHECK((p[1] - Vec3(-p[0][0], p[0][1], p[0][2])).norm() <= 1e-13);
+  CHECK(p[0][1] == Approx(2.0 / 3.0 * 0.5));  // momentum shared by 1 + 2 kg
+  p = positions("kind = 'equal'\nnodes = ['A', 'B', 'C']\ndirection = [0, 0, 2]");
+  CHECK(std::abs(p[0][2] - p[1][2]) + std::abs(p[0][2] - p[2][2]) <= 1e-13);
+  CHECK(p[0][2] == Approx((3.0 - 1.0) / 4 * 0.5));
+  p = positions("kind = 'relation'\nnodes = ['A', 'B']\ncoefficients = [1, 0, 0, 2, 0, 0]");
+  CHECK(p[0][0] + 2 * p[1][0] == Approx(-1).epsilon(1e-13));
+  p = positions("kind = 'collinear'\nnodes = ['A', 'B', 'C']");
+  CHECK((p[1] - p[0]).cross(p[2] - p[0]).norm() <= 1e-13);
+  CHECK(std::abs(p[2][1] - 0.5) > 1e-3);  // it was not flying free
+  p = positions("kind = 'coplanar'\nnodes = ['A', 'B', 'C', 'D']");
+  CHECK(std::abs((p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0])) <= 1e-13);
+}
+
+TEST_CASE("impossible scenes are refused by the names of their members") {
+  CHECK(
+      error_of(crank +
+               "[[constraints]]\nkind = 'angle'\nname = 'lock'\nnodes = ['P', 'O', 'A']\naxis = [0, 0, 1]\n")
+          .find(
+              "the drive motor moves what other constraints hold: lock; remove the drive, or one of these") !=
+      std::string::npos);
+  const std::vector<std::string> hold = {"structure.constraints.motor.motion=hold"};
+  CHECK(error_of(crank, hold).find("nothing can move: ") != std::string::npos);
+  CHECK(error_of(crank, hold).find("motor") != std::string::npos);
+  CHECK(
+      error_of(crank +
+               "[[constraints]]\nkind = 'equal'\nname = 'level'\nnodes = ['A', 'P']\ndirection = [0, 1, 0]\n")
+          .find("the structure cannot be assembled as given: level (A, P) is violated at t = 0, by up to 2 "
+                "m") != std::string::npos);
+  CHECK(error_of(crank, {"structure.constraints.motor.nodes=['P', 'O', 'B']"}).find("there is no node 'B'") !=
+        std::string::npos);
+}

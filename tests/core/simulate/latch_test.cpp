@@ -1,0 +1,73 @@
+// Locking at the end of travel: momentum, the energy lost, and the structure that goes on.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "tests/support/models.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+TEST_CASE("a ring that latches loses its kinetic energy and then stands still under its loads") {
+  for (const char* kind : {"full", "sector"}) {
+    SolverOptions options = dvm_options(3, 0.01, 5.2);
+    options.at_deployed = "latch";
+    const Simulation run = simulate(make_model(hoop_structure({{"model", std::string(kind)}})), options);
+    INFO(kind << ": " << run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    REQUIRE(run.events.size() == 2);
+    CHECK(run.events[0].name == "deployed");
+    CHECK(run.events[1].name == "latched");
+    CHECK(run.events[1].t == run.events[0].t);
+    const Diagnostics d = diagnose(run);
+    const auto& kinetic = d.at("kinetic_energy_J").values;
+    std::size_t i = 0;
+    while (d.t[i + 1] != d.t[i]) ++i;
+    // All of it: a deployed ring cannot move as a whole between its symmetry planes.
+    CHECK(run.events[1].energy_lost == Approx(kinetic[i]).epsilon(1e-12));
+    CHECK(kinetic[i] > 1.0);
+    CHECK(d.at("impact_loss_J").values.back() == Approx(run.events[1].energy_lost).epsilon(1e-12));
+    CHECK(kinetic.back() <= 1e-12 * kinetic[i]);
+    const VectorXd at_latch = run.trajectory.positions(i),
+                   at_end = run.trajectory.positions(run.trajectory.size() - 1);
+    // The pose at the event is extrapolated; the first locked step brings its constraints to round-off.
+    CHECK((at_end - at_latch).lpNorm<Eigen::Infinity>() <= 1e-9);
+    // The balance before it is that of the run itself; the impulse and what follows add nothing.
+    const auto& balance = d.at("energy_balance_J").values;
+    CHECK(std::abs(balance.back() - balance[i]) <= 1e-9 * kinetic[i]);
+    CHECK(run.trajectory.end_time() == Approx(5.2));
+  }
+}
+
+TEST_CASE("a folding rod that latches while it flies keeps its momentum and its spin") {
+  // Two rods, hinged, free in the plane: the second turns about the hinge until it is in line with the first.
+  CustomSpec spec;
+  spec.nodes = {{"A", {-1, 0, 0}, {0, 0, 0}, 0, false},
+                {"H", {0, 0, 0}, {0, 0, 0}, 0, false},
+                {"B", {0, 1, 0}, {2, 0, 0}, 0, false}};
+  spec.rods = {{"AH", {"A", "H"}, 1.0}, {"HB", {"H", "B"}, 1.0}};
+  spec.constraints = {{"plane", {"*"}, {0, 0, 1}}};
+  Structure structure = build_custom(spec);
+  // In the frame of the first rod there is no linear measure of the angle: latch the collinear pose as the
+  // relation x_A - 2 x_H + x_B = 0 of the ends with the middle, reached by y alone.
+  structure.deployment.fold_sine = {{0, 1, 2}, {Vec3(0, 1, 0), Vec3(0, -2, 0), Vec3(0, 1, 0)}, 0.0};
+  structure.deployment.fold_cosine = {{1, 2}, {Vec3(-1, 0, 0), Vec3(1, 0, 0)}, 0.0};
+  structure.deployment.initial_fold_angle = pi / 2;
+  SolverOptions options = dvm_options(4, 0.01, 3.0);
+  options.at_deployed = "latch";
+  const Simulation run = simulate(make_model(structure), options);
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  REQUIRE(run.events.size() == 2);
+  const Model& model = run.trajectory.model();
+  std::size_t i = 0;
+  while (run.trajectory.time(i + 1) != run.trajectory.time(i)) ++i;
+  const auto momentum = [&](std::size_t k) {
+    const VectorXd p = model.system.node_mass() * run.trajectory.node_velocities(k);
+    return Vec3(p.segment<3>(0) + p.segment<3>(3) + p.segment<3>(6));
+  };
+  const double before = model.system.kinetic_energy(run.trajectory.state(i).w);
+  CHECK((momentum(i + 1) - momentum(i)).norm() <= 1e-12);  // the latch is an internal constraint
+  CHECK(run.events[1].energy_lost > 0.0);
+  CHECK(run.events[1].energy_lost < before);
+}

@@ -1,0 +1,91 @@
+// End stops: impacts, rest and release against closed forms.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+Simulation run_scene(const std::string& text, const std::vector<std::string>& changes = {}) {
+  const Scene scene = read_scene_text(text, "test.toml", changes);
+  return simulate(build_model(scene), scene.solver);
+}
+
+// A ball of 2 kg that falls 5 m at 10 m/s^2: one second to the floor.
+const std::string ball = R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "A"
+position = [0, 0, 5]
+mass = 2
+[[constraints]]
+kind = "coordinate_stop"
+name = "floor"
+nodes = ["A"]
+direction = [0, 0, 1]
+min = 0
+restitution = 0.5
+[gravity]
+acceleration = [0, 0, -10]
+[solver]
+step = 0.03
+end_time = 2.5
+)";
+
+}  // namespace
+
+TEST_CASE("a ball bounces on a stop as its restitution says") {
+  const Simulation run = run_scene(ball);
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  REQUIRE(run.events.size() >= 2);
+  // Impacts at 1 s with 10 m/s, 1 s later with 5 m/s, 0.5 s later with 2.5 m/s: the flight is a parabola,
+  // which the method follows exactly; contact is located to 1e-13 m.
+  CHECK(run.events[0].name == "stop floor");
+  CHECK(run.events[0].t == Approx(1).epsilon(1e-12));
+  CHECK(run.events[1].t == Approx(2).epsilon(1e-12));
+  CHECK(run.events[0].energy_lost == Approx(75).epsilon(1e-12));  // (1 - 1/4) of 100 J
+  CHECK(run.events[1].energy_lost == Approx(18.75).epsilon(1e-12));
+  const Diagnostics d = diagnose(run);
+  for (const double x : d.at("energy_balance_J").values) CHECK(std::abs(x) <= 1e-10);
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) CHECK(run.trajectory.positions(i)[2] >= -1e-10);
+}
+
+TEST_CASE("bounces come to rest after their geometric series, and the stop then carries the weight") {
+  const Simulation run = run_scene(ball, {"solver.end_time=4"});
+  REQUIRE(run.status == RunStatus::completed);
+  // 1 + 2 (0.5 + 0.25 + ...) = 3 s, up to the rest speed of 1 mm/s: 0.2 ms.
+  CHECK(run.events.back().name == "rests on stop floor");
+  CHECK(run.events.back().t == Approx(3).margin(5e-4));
+  CHECK(std::abs(run.trajectory.positions(run.trajectory.size() - 1)[2]) <= 1e-10);
+  CHECK(std::abs(run.trajectory.velocities(run.trajectory.size() - 1)[2]) <= 1e-12);
+  double lost = 0;
+  for (const Event& event : run.events) lost += event.energy_lost;
+  CHECK(lost == Approx(100).epsilon(1e-9));
+}
+
+TEST_CASE("a stop lets go when it would have to pull") {
+  const Simulation run = run_scene(ball + R"(
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [0, 0, 40]
+times = [1.2, 2.2]
+values = [0, 1]
+)",
+                                   {"constraints[0].restitution=0", "solver.step=0.001"});
+  REQUIRE(run.status == RunStatus::completed);
+  REQUIRE(run.events.size() == 2);
+  CHECK(run.events[0].name == "rests on stop floor");
+  CHECK(run.events[0].energy_lost == Approx(100).epsilon(1e-10));
+  CHECK(run.events[1].name == "leaves stop floor");
+  CHECK(run.events[1].t == Approx(1.7).margin(0.0011));  // 40 N (t - 1.2) = 20 N, seen at the end of a step
+  // Then z'' = 20 (t - 1.7) m/s^2 until 2.2 s: z = 20 / 6 * 0.125.
+  CHECK(run.trajectory.positions(run.trajectory.size() - 1 - 300)[2] ==
+        Approx(20.0 / 6 * 0.125).epsilon(1e-2));
+}

@@ -1,0 +1,81 @@
+#!/usr/bin/python3
+"""Reads exports with programs that we did not write: numpy, meshio, vtk, the Khronos glTF validator.
+
+    unfurl run hoop6 -o out --export vtk,gltf,csv,npy
+    /usr/bin/python3 tests/support/check_exports.py out [folder of node_modules/gltf-validator]
+
+Needs python3-numpy, python3-meshio, python3-vtk9; `npm install gltf-validator` for the glTF part.
+"""
+import csv
+import glob
+import json
+import subprocess
+import sys
+
+import meshio
+import numpy as np
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+out = sys.argv[1]
+table = list(csv.reader(open(f"{out}/trajectory.csv")))
+names = [h[:-4] for h in table[0] if h.endswith(".x_m")]
+numbers = np.array(table[1:], dtype=float)
+t, states = numbers[:, 0], numbers[:, 1:].reshape(len(numbers), len(names), 6)
+rods = list(csv.reader(open(f"{out}/rod_forces.csv")))
+forces = np.array(rods[1:], dtype=float)[:, 1:]
+
+# numpy: the same bits as the tables.
+load = lambda name: np.load(f"{out}/npy/{name}.npy")
+assert np.array_equal(load("t_s"), t)
+assert np.array_equal(load("positions_m"), states[:, :, :3])
+assert np.array_equal(load("velocities_m_s"), states[:, :, 3:])
+assert np.array_equal(load("axial_forces_N"), forces, equal_nan=True)
+ends = load("rod_nodes")
+assert ends.shape == (forces.shape[1], 2)
+print("npy: equal to trajectory.csv, bit for bit")
+
+# VTK's own reader and meshio: every tenth state, and the PVD's times.
+files = sorted(glob.glob(f"{out}/vtk/*.vtu"))
+assert len(files) == len(t)
+for i in range(0, len(t), 10):
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(files[i])
+    reader.Update()
+    grid = reader.GetOutput()
+    assert np.array_equal(vtk_to_numpy(grid.GetPoints().GetData()), states[i, :, :3])
+    assert np.array_equal(vtk_to_numpy(grid.GetPointData().GetArray("velocity_m_s")), states[i, :, 3:])
+    assert np.array_equal(vtk_to_numpy(grid.GetCellData().GetArray("axial_force_N")), forces[i], equal_nan=True)
+    assert grid.GetFieldData().GetArray("TimeValue").GetValue(0) == t[i]
+    for r in range(grid.GetNumberOfCells()):
+        cell = grid.GetCell(r)
+        assert [cell.GetPointId(0), cell.GetPointId(1)] == list(ends[r]) and cell.GetCellType() == 3
+    mesh = meshio.read(files[i])
+    assert np.array_equal(mesh.points, states[i, :, :3])
+    assert np.array_equal(mesh.cells_dict["line"], ends)
+import xml.etree.ElementTree as xml
+
+(pvd,) = glob.glob(f"{out}/vtk/*.pvd")
+sets = xml.parse(pvd).getroot().findall("Collection/DataSet")
+assert [float(s.get("timestep")) for s in sets] == list(t)
+print(f"vtu: {len(files)} states read by VTK {vtk.vtkVersion().GetVTKVersion()} and meshio {meshio.__version__}")
+
+# csv, long form.
+long = list(csv.DictReader(open(f"{out}/csv/nodes.csv")))
+assert len(long) == len(t) * len(names)
+assert float(long[len(names)]["t_s"]) == t[1] and long[-1]["node"] == names[-1]
+print("csv: complete")
+
+if len(sys.argv) > 2:
+    script = (
+        "const v=require(process.argv[1]+'/node_modules/gltf-validator'),fs=require('fs');"
+        "v.validateBytes(new Uint8Array(fs.readFileSync(process.argv[2])),{maxIssues:20})"
+        ".then(r=>console.log(JSON.stringify(r)))"
+    )
+    done = subprocess.run(["node", "-e", script, sys.argv[2], f"{out}/animation.glb"], capture_output=True, text=True, check=True)
+    report = json.loads(done.stdout)
+    assert report["issues"]["numErrors"] == 0 and report["issues"]["numWarnings"] == 0, report["issues"]
+    info = report["info"]
+    print(f"glb: no error, no warning, {report['issues']['numInfos']} notes; {info['totalTriangleCount']} triangles, {info['animationCount']} animation")
+    for message in report["issues"]["messages"][:3]:
+        print("   ", message["code"], message["message"])
