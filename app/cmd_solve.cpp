@@ -22,7 +22,7 @@ namespace unfurl {
 namespace {
 
 struct Target {
-  Measure measure;
+  RunMeasure measure;
   double value = 0;
 };
 

@@ -26,8 +26,8 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   bias_ = -bias_;
   if (alpha_ > 0) {
     system_.target_rate(t, phi_);
-    phi_ = G_ * w - phi_;
-    bias_ -= 2.0 * alpha_ * phi_;
+    phi_.noalias() -= G_ * w;
+    bias_ += 2.0 * alpha_ * phi_;
     system_.constraint(t, q_, phi_);
     bias_ -= alpha_ * alpha_ * phi_;
   }

@@ -88,7 +88,7 @@ std::string element_text(std::string_view table, const SceneElement& element, co
   for (const auto& spec : kind.params()) {
     const ParamValue& value = element.values.value(spec.name);
     if (!worth_writing(value)) continue;
-    text += line(spec.name, value_text(value));
+    text += line(spec.name, toml_value(value));
     if (!spec.unit.empty()) text.insert(text.size() - 1, "  # " + std::string(spec.unit));
   }
   return text;

@@ -231,7 +231,7 @@ class TimeLoop {
     StepReport report;
     for (const double length : {1.41, 1.73, 1.19, 2.24}) {
       next = now();
-      integrator_.restart();
+      integrator_->restart();
       report = step(next, length * h);
       if (report.ok()) return accept(next, target + (length - 1) * h, report);
     }

@@ -117,7 +117,7 @@ std::span<const NamedMeasure> named_measures() {
   return rows;
 }
 
-Measure find_measure(const std::string& name) {
+RunMeasure find_measure(const std::string& name) {
   std::vector<std::string_view> known;
   for (const NamedMeasure& row : rows) {
     if (row.name == name) return {name, name + suffix(row.unit), with_unit(row.label, row.unit), row.value};

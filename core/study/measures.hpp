@@ -10,7 +10,7 @@
 
 namespace unfurl {
 
-struct Measure {
+struct RunMeasure {
   std::string name;    // "deploy_time", or "max:kinetic_energy_J"
   std::string column;  // with the unit as suffix: "deploy_time_s"
   std::string label;   // for axes: "deployment time (s)"
@@ -26,6 +26,6 @@ std::span<const NamedMeasure> named_measures();
 
 // A row of the table, or max:, min:, final: with the name of a column of series.csv. Throws
 // std::invalid_argument with the nearest name.
-Measure find_measure(const std::string& name);
+RunMeasure find_measure(const std::string& name);
 
 }  // namespace unfurl

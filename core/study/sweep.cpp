@@ -23,7 +23,7 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const s
     if (run.status == RunStatus::stopped) return std::nullopt;
     const Diagnostics diagnostics = diagnose(run);
     row.emplace_back(to_string(run.status));
-    for (const Measure& measure : plan.measures) row.push_back(exact_number(measure.value(run, diagnostics)));
+    for (const RunMeasure& measure : plan.measures) row.push_back(exact_number(measure.value(run, diagnostics)));
   } catch (const SceneError&) {
     row.emplace_back("invalid");
     row.resize(key.size() + 1 + plan.measures.size(), "nan");

@@ -27,7 +27,7 @@ Shard parse_shard(const std::string& text);  // "2/8"; throws std::invalid_argum
 struct SweepPlan {
   SceneSource source;
   std::vector<SweepAxis> axes;
-  std::vector<Measure> measures;
+  std::vector<RunMeasure> measures;
   Shard shard;
 
   std::size_t points() const;                             // of the whole grid

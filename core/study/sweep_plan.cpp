@@ -103,7 +103,7 @@ std::vector<std::string> SweepPlan::columns() const {
   std::vector<std::string> names;
   for (const SweepAxis& axis : axes) names.push_back(axis.key);
   names.emplace_back("outcome");
-  for (const Measure& measure : measures) names.push_back(measure.column);
+  for (const RunMeasure& measure : measures) names.push_back(measure.column);
   return names;
 }
 

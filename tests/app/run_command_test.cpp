@@ -128,7 +128,7 @@ TEST_CASE("Ctrl-C keeps what is done") {
   CHECK(fs::exists(dir / "out/trajectory.csv"));
 }
 
-TEST_CASE("--export takes a comma list and repeats, and says what it does not know") {
+TEST_CASE("the option --export takes a comma list and repeats, and says what it does not know") {
   const ScratchDirectory dir;
   const auto run = quick + std::vector<std::string>{"-o", dir / "out", "--export"};
   CHECK(run_program(run + std::vector<std::string>{"vtk,csv", "--export", "npy", "--export", "gltf"}).code ==
