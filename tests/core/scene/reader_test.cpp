@@ -77,7 +77,7 @@ TEST_CASE("an error names file, line, column, key, range and the nearest name") 
   CHECK(error_of("") == "s.toml:1:1: structure: is missing; a scene needs a [structure] table");
   CHECK(error_of("structure = 3") ==
         "s.toml:1:13: structure: must be a table, [structure]; got the whole number 3");
-  CHECK(error_of("[structure]\n") == "s.toml:1:1: structure.kind: is missing; must be one of hoop, custom");
+  CHECK(error_of("[structure]\n") == "s.toml:1:1: structure.kind: is missing; must be one of hoop, four_bar_ladder, custom");
   CHECK(error_of("[structure]\nkind = 'hop'").find("did you mean 'hoop'?") != std::string::npos);
 }
 
