@@ -8,7 +8,7 @@ namespace unfurl {
 namespace {
 
 // Levels: 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
-constexpr double wanted = 1.5, wanted_constraint = 2.0, accepted = 30.0;
+constexpr double wanted = 1.5, wanted_constraint = constraint_level_wanted, accepted = 30.0;
 // A system with more unknowns than this is not given the full Newton matrix, whose factors grow too fast;
 // instead its weak modes may keep a larger constraint error.
 constexpr Index full_newton_unknowns = 2500;

@@ -34,6 +34,8 @@ const std::vector<ParamSpec>& solver_params() {
                     "method is then symmetric only"),
       positive_param("turn", "rad", fallback.turn,
                      "with `adaptive`: about how far a rod may turn, or velocities change, in a step"),
+      real_param("tolerance", "m", fallback.tolerance, 0.0, 1e6,
+                 "of node positions; stages and step are picked for it; 0: they are as given"),
       positive_param("end_time", "s", fallback.end_time, "the run ends here at the latest"),
       choice_param("at_deployed", fallback.at_deployed, {"stop", "pass"},
                    "what happens when the structure is fully deployed"),
@@ -54,6 +56,7 @@ SolverOptions solver_options(const ParamSet& values) {
   options.step = values.real("step");
   options.adaptive = values.boolean("adaptive");
   options.turn = values.real("turn");
+  options.tolerance = values.real("tolerance");
   options.end_time = values.real("end_time");
   options.at_deployed = values.text("at_deployed");
   options.eliminate_linear = values.boolean("eliminate_linear");
@@ -71,6 +74,7 @@ ParamSet solver_values(const SolverOptions& solver) {
   values.set("step", solver.step);
   values.set("adaptive", solver.adaptive);
   values.set("turn", solver.turn);
+  values.set("tolerance", solver.tolerance);
   values.set("end_time", solver.end_time);
   values.set("at_deployed", solver.at_deployed);
   values.set("eliminate_linear", solver.eliminate_linear);

@@ -17,6 +17,7 @@ struct SolverOptions {
   double step = 0.01;                    // h [s]
   bool adaptive = false;                 // steps follow the motion, none larger than h
   double turn = 0.1;                     // with `adaptive`: turn of a rod that a step may bring [rad]
+  double tolerance = 0;                  // of node positions; 0: stages and step are as given [m]
   double end_time = 1.0;                 // [s]
   std::string at_deployed = "stop";      // stop | pass
   bool eliminate_linear = true;          // solve in coordinates that fulfil the linear constraints exactly
