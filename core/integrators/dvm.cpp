@@ -35,6 +35,7 @@ class Dvm final : public Integrator {
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
     for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_}) v->setZero(n);
+    end_q_.setZero(system.coordinates());
     for (VectorXd* v : {&mu_, &rate_}) v->setZero(m);
     pose_.setZero(system.coordinates());
     halfway_ = c_.basis.values(0.5);
@@ -85,7 +86,7 @@ class Dvm final : public Integrator {
   SaddleSolver saddle_;
   SparseLdlt mass_factor_;  // ends variant only
   std::vector<double> rhs_f_, rhs_g_;
-  VectorXd p1_, w1_, end_z_, pull_, mu_, rate_, pose_, halfway_;
+  VectorXd p1_, w1_, end_z_, end_q_, pull_, mu_, rate_, pose_, halfway_;
   MatrixXd previous_, prolong_;
   RowMajor consistent_f_;
   double previous_h_ = 0;
@@ -246,27 +247,30 @@ void Dvm::correct_at_ends(StepReport& report) {
   eq_.lambda.col(0) -= y / (0.5 * h * h * c_.C_inverse(last, 0));
 }
 
-// Takes away what the iteration left of Phi at the end pose, where a motion of its own size does so. Weak
-// modes, which would move far, keep theirs.
+// Takes away what the iteration left of Phi at the end pose where it shows in relative lengths (coordinates
+// far from the origin) and a motion of about its own size does so. Weak modes, which would move far, keep
+// theirs.
 void Dvm::settle_end() {
-  constexpr double far = 1000.0, settled = 0.5;
+  constexpr double far = 1000.0, settled = 32 * std::numeric_limits<double>::epsilon();
   const Index last = c_.s - 2;
-  double level = 0, size = 0;
-  for (Index r = 0; r < eq_.phi.rows(); ++r) {
-    const double error = std::abs(eq_.phi(r, last));
-    level = std::max(level, error / eq_.constraint_noise(r));
-    size = std::max(size, error);
-    rhs_g_[static_cast<std::size_t>(r)] = -eq_.phi(r, last);
-  }
-  if (level <= settled) return;
-  std::fill_n(rhs_f_.begin(), eq_.dX.rows(), 0.0);
-  saddle_.apply(rhs_f_.data(), rhs_g_.data(), 1);
-  const Eigen::Map<const VectorXd> dz(rhs_f_.data(), eq_.dX.rows());
-  if (!(dz.lpNorm<Eigen::Infinity>() <= far * size)) return;
-  eq_.dX.col(last) += dz;
-  end_z_ = eq_.z0 + eq_.dX.col(last);
-  system_.expand(end_z_, eq_.Q.col(last + 1));
-  system_.constraint(eq_.t + eq_.h, eq_.Q.col(last + 1), eq_.phi.col(last));
+  const auto relative = [this](const ConstVec& phi) {
+    return phi.cwiseQuotient(system_.constraint_lengths()).lpNorm<Eigen::Infinity>();
+  };
+  if (eq_.phi.rows() == 0) return;
+  const double before = relative(eq_.phi.col(last));
+  if (!(before > settled)) return;
+  Eigen::Map<VectorXd> dz(rhs_f_.data(), eq_.dX.rows()), phi(rhs_g_.data(), eq_.phi.rows());
+  dz.setZero();
+  phi = -eq_.phi.col(last);
+  saddle_.apply(dz.data(), phi.data(), 1);
+  if (!(dz.lpNorm<Eigen::Infinity>() <= far * eq_.phi.col(last).lpNorm<Eigen::Infinity>())) return;
+  end_z_ = eq_.dX.col(last) + dz;
+  dz = eq_.z0 + end_z_;
+  system_.expand(dz, end_q_);
+  system_.constraint(eq_.t + eq_.h, end_q_, phi);
+  if (!(relative(phi) < before)) return;
+  eq_.dX.col(last) = end_z_;
+  eq_.phi.col(last) = phi;
 }
 
 // p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; g'(t)] at the end pose, mu = h

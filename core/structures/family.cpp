@@ -5,8 +5,8 @@
 
 #include "core/structures/bricard.hpp"
 #include "core/structures/chain.hpp"
-#include "core/structures/hoberman.hpp"
 #include "core/structures/four_bar_ladder.hpp"
+#include "core/structures/hoberman.hpp"
 #include "core/structures/hoop.hpp"
 #include "core/structures/pendulum.hpp"
 #include "core/structures/reentrant_sheet.hpp"
