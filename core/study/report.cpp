@@ -1,4 +1,4 @@
-#include "core/export/report.hpp"
+#include "core/study/report.hpp"
 
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
