@@ -35,6 +35,37 @@ void refuse_unknown_options(const CLI::App& parser) {
   }
 }
 
+// Options that are short for a key of the scene. `flag`: without a value, sets it to true.
+struct ShortCut {
+  const char *option, *key;
+  bool flag = false;
+};
+constexpr ShortCut short_cuts[] = {{"--size", "render.size"},
+                                   {"--fps", "render.fps"},
+                                   {"--look", "render.look"},
+                                   {"--supersample", "render.supersample"},
+                                   {"--transparent", "render.transparent", true}};
+
+// WIDTHxHEIGHT as the list that the key wants; anything else stays, for the key's own message.
+std::string list_of_size(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos || text.find_first_not_of("0123456789x") != std::string::npos) return text;
+  return "[" + text.substr(0, cross) + ", " + text.substr(cross + 1) + "]";
+}
+
+void add_short_cuts(CLI::App& parser, std::vector<std::string>& overrides) {
+  for (const ShortCut& s : short_cuts) {
+    const std::string key = s.key;
+    if (s.flag) {
+      parser.add_flag_callback(s.option, [key, &overrides] { overrides.push_back(key + "=true"); });
+      continue;
+    }
+    parser.add_option_function<std::string>(s.option, [key, &overrides](const std::string& value) {
+      overrides.push_back(key + "=" + (key == "render.size" ? list_of_size(value) : value));
+    });
+  }
+}
+
 struct Parsed {
   Arguments arguments;
   bool help = false;
@@ -71,10 +102,16 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_option("names", a.names);
   parser.add_option("--set", a.overrides)->allow_extra_args(false);
   parser.add_option("-o,--output", a.output);
+  parser.add_option("--frames", a.frames);
+  parser.add_option("--poses", a.poses)->check(CLI::Range(1, 20));
+  add_short_cuts(parser, a.overrides);
   parser.add_flag("--force", a.force);
   parser.add_flag("--quiet", a.quiet);
   parser.add_flag("--json", a.json);
   parser.add_option("--threads", a.threads)->check(CLI::Range(1, 1024));
+  parser.add_option("--style", a.style);
+  parser.add_option("--dpi", a.dpi)->check(CLI::Range(20.0, 2400.0));
+  parser.add_option("--ui-scale", a.ui_scale)->check(CLI::Range(0.5, 4.0));
   parser.add_flag("-h,--help", parsed.help);
   parser.add_option("--tolerance", tolerance);
   add_study_options(parser, a.study);

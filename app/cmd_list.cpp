@@ -1,4 +1,5 @@
-// unfurl list structures|methods|figures|scenes|constraints|forces|measures: what there is to choose from.
+// unfurl list structures|methods|figures|scenes|constraints|forces|looks|measures: what there is to choose
+// from.
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
@@ -13,6 +14,7 @@
 #include "core/structures/family.hpp"
 #include "core/study/measures.hpp"
 #include "render/plot/figures.hpp"
+#include "render/scene/look.hpp"
 
 namespace unfurl {
 
@@ -74,14 +76,24 @@ std::vector<Item> force_items() {
   return items;
 }
 
+std::vector<Item> look_items() {
+  std::vector<Item> items;
+  for (const auto& look : looks()) items.push_back({std::string(look.name), std::string(look.help), nullptr});
+  return items;
+}
+
 struct List {
   std::string_view name;
   std::vector<Item> (*items)();
 };
 
-constexpr List lists[] = {{"structures", structure_items},   {"methods", method_items},
-                          {"figures", figure_items},         {"scenes", scene_items},
-                          {"constraints", constraint_items}, {"forces", force_items},
+constexpr List lists[] = {{"structures", structure_items},
+                          {"methods", method_items},
+                          {"figures", figure_items},
+                          {"scenes", scene_items},
+                          {"constraints", constraint_items},
+                          {"forces", force_items},
+                          {"looks", look_items},
                           {"measures", measure_items}};
 
 std::string default_text(const ParamSpec& spec) {

@@ -28,10 +28,15 @@ struct Arguments {
   std::vector<std::string> names;      // the words behind the verb: SCENE NAME...
   std::vector<std::string> overrides;  // --set
   std::string output;                  // -o; empty: not given
+  std::string frames;                  // --frames FIRST:END; empty: all
+  int poses = 5;                       // --poses
   bool force = false;
   bool quiet = false;
   bool json = false;
-  int threads = 0;  // 0: as many as the machine has
+  double ui_scale = 0;  // --ui-scale of the window; 0: the monitor's
+  int threads = 0;    // 0: as many as the machine has
+  std::string style;  // --style, of figures; empty: screen
+  double dpi = 0;     // --dpi, of figures; 0: the style's
   StudyArguments study;
 };
 
@@ -49,6 +54,7 @@ std::span<const Command> commands();
 
 int cmd_run(const Arguments& arguments);
 int cmd_render(const Arguments& arguments);
+int cmd_poster(const Arguments& arguments);
 int cmd_figure(const Arguments& arguments);
 int cmd_check(const Arguments& arguments);
 int cmd_study(const Arguments& arguments);
@@ -56,6 +62,7 @@ int cmd_stress(const Arguments& arguments);
 int cmd_sweep(const Arguments& arguments);
 int cmd_solve(const Arguments& arguments);
 int cmd_reproduce(const Arguments& arguments);
+int cmd_view(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 
 }  // namespace unfurl

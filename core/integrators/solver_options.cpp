@@ -23,6 +23,11 @@ const std::vector<ParamSpec>& solver_params() {
                    "where the interpolation nodes lie on a step (dvm)"),
       choice_param("constraints_at", fallback.constraints_at, {"nodes", "ends"},
                    "constraints hold at every interpolation node, or at step ends only (dvm)"),
+      positive_param("baumgarte", "1/s", fallback.baumgarte,
+                     "rate at which constraint errors decay; stable below 2.7 / step (rk4_baumgarte)"),
+      real_param(
+          "rho_inf", "", fallback.rho_inf, 0.0, 1.0,
+          "what is left of the fastest oscillations after a step; 1 damps nothing (generalized_alpha)"),
       positive_param("step", "s", fallback.step, "time step h"),
       boolean_param("adaptive", fallback.adaptive,
                     "steps follow the motion, time-symmetrically and none larger than `step`; a symplectic "
@@ -46,6 +51,8 @@ SolverOptions solver_options(const ParamSet& values) {
   options.stages = static_cast<int>(values.integer("stages"));
   options.nodes = values.text("nodes");
   options.constraints_at = values.text("constraints_at");
+  options.baumgarte = values.real("baumgarte");
+  options.rho_inf = values.real("rho_inf");
   options.step = values.real("step");
   options.adaptive = values.boolean("adaptive");
   options.turn = values.real("turn");
@@ -62,6 +69,8 @@ ParamSet solver_values(const SolverOptions& solver) {
   values.set("stages", static_cast<long>(solver.stages));
   values.set("nodes", solver.nodes);
   values.set("constraints_at", solver.constraints_at);
+  values.set("baumgarte", solver.baumgarte);
+  values.set("rho_inf", solver.rho_inf);
   values.set("step", solver.step);
   values.set("adaptive", solver.adaptive);
   values.set("turn", solver.turn);

@@ -18,23 +18,8 @@ std::string real_text(double x) {
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
-std::string value_text(const ParamValue& value) {
-  struct Writer {
-    std::string operator()(bool b) const { return b ? "true" : "false"; }
-    std::string operator()(long i) const { return std::to_string(i); }
-    std::string operator()(double x) const { return real_text(x); }
-    std::string operator()(const std::string& s) const { return toml_string(s); }
-    std::string operator()(const std::vector<double>& v) const {
-      std::string text;
-      for (const double x : v) text += (text.empty() ? "" : ", ") + real_text(x);
-      return "[" + text + "]";
-    }
-  };
-  return std::visit(Writer{}, value);
-}
-
 std::string vec_text(const Vec3& v) {
-  return value_text(std::vector<double>{v[0], v[1], v[2]});
+  return toml_value(std::vector<double>{v[0], v[1], v[2]});
 }
 
 std::string names_text(const std::vector<std::string>& names) {
@@ -50,7 +35,7 @@ std::string line(std::string_view key, const std::string& value) {
 std::string params_text(const std::vector<ParamSpec>& specs, const ParamSet& values) {
   std::string text;
   for (const auto& spec : specs) {
-    text += line(spec.name, value_text(values.value(spec.name)));
+    text += line(spec.name, toml_value(values.value(spec.name)));
     if (!spec.unit.empty()) text.insert(text.size() - 1, "  # " + std::string(spec.unit));
   }
   return text;
@@ -100,11 +85,13 @@ std::string solver_text(const Scene& scene) {
   return "\n[solver]\n" + params_text(solver_params(), solver_values(scene.solver));
 }
 
-std::string render_text(const Scene& scene) {
-  const RenderOptions& render = scene.render;
-  return "\n[render]\n" +
-         line("size", "[" + std::to_string(render.width) + ", " + std::to_string(render.height) + "]") +
-         line("fps", real_text(render.fps)) + line("speed", real_text(render.speed));
+std::string render_text(const RenderOptions& render) {
+  std::string text = "\n[render]\n" + params_text(render_params(), render_values(render));
+  for (const CameraKey& key : render.camera_keys)
+    text += "\n[[render.camera_keys]]\n" + line("time", real_text(key.time)) +
+            line("azimuth", real_text(key.azimuth)) + line("elevation", real_text(key.elevation)) +
+            line("zoom", real_text(key.zoom));
+  return text;
 }
 
 }  // namespace
@@ -124,12 +111,27 @@ std::string toml_string(std::string_view text) {
   return result + '"';
 }
 
+std::string toml_value(const ParamValue& value) {
+  struct Writer {
+    std::string operator()(bool b) const { return b ? "true" : "false"; }
+    std::string operator()(long i) const { return std::to_string(i); }
+    std::string operator()(double x) const { return real_text(x); }
+    std::string operator()(const std::string& s) const { return toml_string(s); }
+    std::string operator()(const std::vector<double>& v) const {
+      std::string text;
+      for (const double x : v) text += (text.empty() ? "" : ", ") + real_text(x);
+      return "[" + text + "]";
+    }
+  };
+  return std::visit(Writer{}, value);
+}
+
 std::string scene_text(const Scene& scene) {
   std::string text = line("title", toml_string(scene.title)) + structure_text(scene);
   text += "\n[gravity]\n" + line("acceleration", vec_text(scene.gravity));
   for (const auto& load : scene.loads)
     text += "\n[[loads]]\n" + line("nodes", names_text(load.nodes)) + line("force", vec_text(load.force));
-  return text + solver_text(scene) + render_text(scene);
+  return text + solver_text(scene) + render_text(scene.render);
 }
 
 }  // namespace unfurl

@@ -10,6 +10,9 @@ namespace unfurl {
 // files inline, numbers with all their digits. Reading it back gives an equal scene.
 std::string scene_text(const Scene& scene);
 
+// A parameter's value as TOML, numbers with all their digits.
+std::string toml_value(const ParamValue& value);
+
 // Text as a TOML basic string, quotes included.
 std::string toml_string(std::string_view text);
 

@@ -1,7 +1,9 @@
 #include "core/study/report.hpp"
 
+#include <fstream>
+#include <iterator>
+
 #include "core/export/atomic_file.hpp"
-#include "core/scene/text_file.hpp"
 
 namespace unfurl {
 namespace {
@@ -76,11 +78,12 @@ std::string html_table(const Table& table) {
 
 std::string html_picture(const ReportBlock& block, const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / block.file;
-  const TextFile file = read_text_file(path.string());
-  if (!file.error.empty()) throw FileError(path, file.error);
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file) throw FileError(path, "cannot be read");
   const std::string type = path.extension() == ".svg" ? "svg+xml" : "png";
   return "<figure><img alt=\"" + escaped(block.text) + "\" src=\"data:image/" + type + ";base64," +
-         base64(file.text) + "\"><figcaption>" + html_text(block.text) + "</figcaption></figure>\n";
+         base64(bytes) + "\"><figcaption>" + html_text(block.text) + "</figcaption></figure>\n";
 }
 
 }  // namespace

@@ -77,6 +77,31 @@ void Framebuffer::resolve() const {
   gl::BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer);
 }
 
+void Framebuffer::fill(float r, float g, float b) const {
+  gl::BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer);
+  gl::Viewport(0, 0, width_, height_);
+  gl::Disable(GL_SCISSOR_TEST);
+  gl::ClearColor(r, g, b, 1);
+  gl::Clear(GL_COLOR_BUFFER_BIT);
+}
+
+void Framebuffer::copy(unsigned target, int target_height, int x, int y) const {
+  gl::Disable(GL_SCISSOR_TEST);
+  gl::BindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.framebuffer);
+  gl::BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+  const int low = target_height - y - height_;
+  gl::BlitFramebuffer(0, 0, width_, height_, x, low, x + width_, low + height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl::BindFramebuffer(GL_FRAMEBUFFER, target);
+}
+
+void Framebuffer::copy_to(const Framebuffer& target, int x, int y) const {
+  copy(target.resolved_.framebuffer, target.height_, x, y);
+}
+
+void Framebuffer::copy_to_window(int window_height) const {
+  copy(0, window_height, 0, 0);
+}
+
 Image Framebuffer::read() const {
   Image image{width_, height_, {}};
   const auto row = 4 * static_cast<std::size_t>(width_);

@@ -21,12 +21,19 @@ class Framebuffer {
 
   void bind() const;     // draw into the (multi-sampled) picture; sets the viewport
   void resolve() const;  // average the samples, then draw without multi-sampling: for text and panels
+  // Fill with one colour (0..1, no depth) and leave it bound for drawing without multi-sampling.
+  void fill(float r, float g, float b) const;
+  // The resolved picture into another one, or into the window's own surface of that height: its upper left
+  // corner at (x, y) from the top left there. Leaves the target bound.
+  void copy_to(const Framebuffer& target, int x, int y) const;
+  void copy_to_window(int window_height) const;
   Image read() const;    // what was drawn since, of the resolved picture; top row first, alpha as drawn
 
  private:
   struct Surface {
     unsigned framebuffer = 0, color = 0, depth = 0;
   };
+  void copy(unsigned target, int target_height, int x, int y) const;
   static bool make_surface(Surface& surface, int width, int height, int samples);
   static void destroy_surface(Surface& surface);
 

@@ -1,0 +1,309 @@
+#include "app/panel/control_panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/panel/panes.hpp"
+#include "app/panel/shortcuts.hpp"
+#include "render/plot/imgui_canvas.hpp"
+#include "render/plot/style.hpp"
+#include "render/ui/fonts.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr float bar_height = 46, timeline_height = 58;  // [points]
+
+// One pane: an ImGui window that fills a rectangle.
+struct Pane {
+  Pane(const char* name, float x, float y, float width, float height, ImGuiWindowFlags flags = 0) {
+    ImGui::SetNextWindowPos({x, y});
+    ImGui::SetNextWindowSize({std::max(1.0f, width), std::max(1.0f, height)});
+    ImGui::Begin(name, nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
+  }
+  ~Pane() { ImGui::End(); }
+  Pane(const Pane&) = delete;
+  Pane& operator=(const Pane&) = delete;
+};
+
+}  // namespace
+
+ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOptions options)
+    : context_(context),
+      options_(std::move(options)),
+      state_(std::move(document)),
+      view_(context),
+      export_(options_.wake),
+      simulator_(options_.wake) {
+  state_.dark = options_.settings.dark;
+  state_.left_open = options_.settings.left_open;
+  state_.right_open = options_.settings.right_open;
+  const auto& open = options_.settings.open_figures;
+  for (FigureCard& card : cards_.cards())
+    card.open = std::find(open.begin(), open.end(), card.kind->name) != open.end();
+  state_.sections = param_sections(base_scene(state_.history.now()));
+  context_.make_current();
+  make_context();
+  painter_ = std::make_unique<ImguiPainter>();
+  make_fonts();
+  resize(options_.width, options_.height);
+  follow_document();
+}
+
+ControlPanel::~ControlPanel() {
+  context_.make_current();
+  ImGui::DestroyContext(imgui_);
+}
+
+PanelSettings ControlPanel::settings() {
+  PanelSettings now = options_.settings;
+  now.dark = state_.dark;
+  now.left_open = state_.left_open;
+  now.right_open = state_.right_open;
+  now.open_figures.clear();
+  for (const FigureCard& card : cards_.cards())
+    if (card.open) now.open_figures.emplace_back(card.kind->name);
+  return now;
+}
+
+void ControlPanel::make_context() {
+  imgui_ = ImGui::CreateContext();
+  ImGui::SetCurrentContext(imgui_);
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.MousePos = {-FLT_MAX, -FLT_MAX};
+  ImguiPainter::announce(io);
+  map_keys(io);
+  io.ClipboardUserData = this;
+  io.SetClipboardTextFn = [](void* self, const char* text) {
+    auto& panel = *static_cast<ControlPanel*>(self);
+    panel.clipboard_ = text;
+    if (panel.options_.set_clipboard) panel.options_.set_clipboard(text);
+  };
+  io.GetClipboardTextFn = [](void* self) {
+    auto& panel = *static_cast<ControlPanel*>(self);
+    if (panel.options_.get_clipboard) panel.clipboard_ = panel.options_.get_clipboard();
+    return panel.clipboard_.c_str();
+  };
+  ui_.scale = options_.scale;
+  ui_.theme = apply_theme(state_.dark, ui_.scale);
+  dark_drawn_ = state_.dark;
+}
+
+void ControlPanel::make_fonts() {
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  ui_.regular = add_font(atlas, std::round(ui_.px(15)));
+  ui_.bold = add_font(atlas, std::round(ui_.px(15)), true);
+  ui_.small = add_font(atlas, std::round(ui_.px(12)));
+  for (const double size : plot::text_sizes) {
+    const float pixels = plot::ImguiCanvas::font_pixels(size, figure_pixels_per_point * ui_.scale);
+    figure_fonts_[static_cast<int>(std::lround(64 * pixels))] = add_font(atlas, pixels);
+  }
+  ui_.figure_font = [this](float pixels) {
+    const auto it = figure_fonts_.lower_bound(static_cast<int>(std::lround(64 * pixels)));
+    return it == figure_fonts_.end() ? figure_fonts_.rbegin()->second : it->second;
+  };
+  atlas.Build();
+  painter_->upload_fonts(atlas);
+}
+
+void ControlPanel::resize(int width, int height) {
+  options_.width = std::max(width, 64);
+  options_.height = std::max(height, 64);
+  context_.make_current();
+  picture_.reset();
+  picture_ =
+      std::make_unique<Framebuffer>(options_.width, options_.height, 0);  // ImGui smooths its own edges
+  settling_ = 3;
+}
+
+void ControlPanel::apply(const InputEvent& event) {
+  ImGuiIO& io = ImGui::GetIO();
+  using Kind = InputEvent::Kind;
+  switch (event.kind) {
+    case Kind::move:
+      io.MousePos = {event.x, event.y};
+      break;
+    case Kind::button:
+      if (event.button >= 0 && event.button < 3) io.MouseDown[event.button] = event.down;
+      break;
+    case Kind::wheel:
+      io.MouseWheelH += event.x;
+      io.MouseWheel += event.y;
+      break;
+    case Kind::key:
+      io.KeysDown[static_cast<int>(event.key)] = event.down;
+      io.KeyCtrl = event.control;
+      io.KeyShift = event.shift;
+      io.KeyAlt = event.alt;
+      if (event.down && !io.WantTextInput) press(state_, event);
+      break;
+    case Kind::text:
+      io.AddInputCharactersUTF8(event.text.c_str());
+      if (event.text == "?" && !io.WantTextInput) state_.help_open = !state_.help_open;
+      break;
+    case Kind::focus_lost:
+      std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+      std::fill(std::begin(io.MouseDown), std::end(io.MouseDown), false);
+      io.KeyCtrl = io.KeyShift = io.KeyAlt = false;
+      break;
+  }
+}
+
+// Up to the next press or release of a button or key, so that a click shorter than a frame is seen.
+void ControlPanel::take_events() {
+  using Kind = InputEvent::Kind;
+  while (!events_.empty()) {
+    const InputEvent event = std::move(events_.front());
+    events_.pop_front();
+    apply(event);
+    settling_ = std::max(settling_, 2);
+    if (event.kind == Kind::button || event.kind == Kind::key) break;
+  }
+}
+
+void ControlPanel::take_results() {
+  const auto outcome = simulator_.take();
+  state_.progress = simulator_.progress();
+  if (outcome) {
+    settling_ = std::max(settling_, 2);
+    state_.problems = outcome->problems;
+    state_.message = outcome->message;
+    if (outcome->run && !outcome->run->simulation.trajectory.empty()) {
+      const bool first = !state_.shown;
+      state_.shown = outcome->run;
+      const Trajectory& trajectory = state_.shown->simulation.trajectory;
+      if (first) state_.playback.t = trajectory.start_time();
+      state_.playback.t = std::clamp(state_.playback.t, trajectory.start_time(), trajectory.end_time());
+    }
+  }
+  state_.pending = simulator_.busy();
+}
+
+// A change of the scene asks for its simulation.
+void ControlPanel::follow_document() {
+  const SceneDocument& now = state_.history.now();
+  if (state_.wants_stop) {
+    simulator_.cancel();
+    state_.wants_stop = false;
+  }
+  if (submitted_ && *submitted_ == now) return;
+  if (!submitted_ || *submitted_->text != *now.text || submitted_->overrides != now.overrides) {
+    try {
+      state_.sections = param_sections(base_scene(now));
+    } catch (const SceneError& error) {
+      if (!submitted_) throw;
+      state_.problems = error.problems();
+    }
+  }
+  submitted_ = now;
+  simulator_.submit(now);
+  state_.pending = true;
+  settling_ = std::max(settling_, 2);
+}
+
+// The edge between two panes, to drag. `way`: of a wider pane.
+void ControlPanel::draw_splitter(const char* name, float x, float top, float bottom, float& width,
+                                 float way) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+  const float thick = std::round(ui_.px(6));
+  const Pane pane(name, x - thick / 2, top, thick, bottom - top, ImGuiWindowFlags_NoBackground);
+  ImGui::PopStyleVar(2);
+  ImGui::InvisibleButton(name, {thick, std::max(1.0f, bottom - top)});
+  ui_.note(name);
+  const bool held = ImGui::IsItemActive();
+  const float line = held || ImGui::IsItemHovered() ? ui_.px(3) : 1.0f;
+  ImGui::GetWindowDrawList()->AddRectFilled(
+      {x - line / 2, top}, {x + line / 2, bottom},
+      ui_.color(held || ImGui::IsItemHovered() ? ui_.theme.accent : ui_.theme.rule));
+  if (held) width = std::clamp(width + way * ImGui::GetIO().MouseDelta.x / ui_.scale, 200.0f, 900.0f);
+}
+
+void ControlPanel::draw_panes() {
+  const auto width = static_cast<float>(options_.width), height = static_cast<float>(options_.height);
+  const float top = std::round(ui_.px(bar_height)), bottom = height - std::round(ui_.px(timeline_height));
+  const float left =
+      state_.left_open ? std::min(std::round(ui_.px(options_.settings.left_width)), 0.4f * width) : 0;
+  const float right =
+      state_.right_open ? std::min(std::round(ui_.px(options_.settings.right_width)), 0.4f * width) : 0;
+  {
+    const Pane pane("bar", 0, 0, width, top, ImGuiWindowFlags_NoScrollWithMouse);
+    draw_top_bar(ui_, state_);
+  }
+  if (left > 0) {
+    const Pane pane("scene", 0, top, left, bottom - top, ImGuiWindowFlags_AlwaysVerticalScrollbar);
+    draw_scene_pane(ui_, state_);
+  }
+  view_place_ = {left, top, width - right, bottom};
+  view_.prepare(static_cast<int>(view_place_.width()), static_cast<int>(view_place_.height()), state_,
+                state_.dark);
+  {
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    const Pane pane("view", left, top, width - right - left, bottom - top,
+                    ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollWithMouse);
+    ImGui::PopStyleVar();
+    draw_view_pane(ui_, state_, view_);
+  }
+  if (right > 0) {
+    const Pane pane("figures", width - right, top, right, bottom - top,
+                    ImGuiWindowFlags_AlwaysVerticalScrollbar);
+    draw_figure_pane(ui_, state_, cards_);
+  }
+  {
+    const Pane pane("timeline", 0, bottom, width, height - bottom, ImGuiWindowFlags_NoScrollWithMouse);
+    draw_timeline(ui_, state_);
+  }
+  if (left > 0) draw_splitter("left edge", left, top, bottom, options_.settings.left_width, 1);
+  if (right > 0) draw_splitter("right edge", width - right, top, bottom, options_.settings.right_width, -1);
+  draw_help(ui_, state_);
+  draw_export(ui_, state_, export_);
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddRectFilled({0, 0}, {width, top}, ui_.color(ui_.theme.window));
+}
+
+void ControlPanel::paint() {
+  view_.paint(state_);
+  const ImVec4& ground = ui_.theme.window;
+  picture_->fill(ground.x, ground.y, ground.z);
+  view_.copy_to(*picture_, static_cast<int>(view_place_.x0), static_cast<int>(view_place_.y0));
+  painter_->draw(*ImGui::GetDrawData());
+}
+
+bool ControlPanel::frame(double seconds, bool visible) {
+  context_.make_current();
+  ImGui::SetCurrentContext(imgui_);
+  take_events();
+  take_results();
+  if (state_.shown) {
+    const Trajectory& trajectory = state_.shown->simulation.trajectory;
+    if (state_.playback.playing && seconds > 0) {
+      const double rate = 1 / seconds, before = state_.frames_per_second;
+      state_.frames_per_second = before > 0 ? before + 0.1 * (rate - before) : rate;
+    }
+    state_.playback = advanced(state_.playback, seconds, trajectory.start_time(), trajectory.end_time());
+  }
+  if (state_.dark != dark_drawn_) {
+    ui_.theme = apply_theme(state_.dark, ui_.scale);
+    dark_drawn_ = state_.dark;
+  }
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(options_.width), static_cast<float>(options_.height)};
+  io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 0.25));
+  ui_.places.clear();
+  ImGui::NewFrame();
+  ImGui::PushFont(ui_.regular);
+  draw_panes();
+  ImGui::PopFont();
+  ImGui::Render();
+  follow_document();
+  if (visible) paint();
+  settling_ = std::max(0, settling_ - 1);
+  return settling_ > 0 || !events_.empty() || state_.playback.playing || io.WantTextInput;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,87 @@
+// The interactive panel: scene, view, figures and timeline in one picture. Knows no window: events come in,
+// pictures go out, so that a test can drive it without a display.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+
+#include "app/panel/export_job.hpp"
+#include "app/panel/figure_cards.hpp"
+#include "app/panel/input_event.hpp"
+#include "app/panel/panel_state.hpp"
+#include "app/panel/scene_view.hpp"
+#include "app/panel/settings.hpp"
+#include "app/panel/ui.hpp"
+#include "render/gl/framebuffer.hpp"
+#include "render/ui/imgui_painter.hpp"
+
+namespace unfurl {
+
+struct PanelOptions {
+  int width = 1280, height = 720;  // [pixels]
+  float scale = 1;                 // pixels per point of a screen with 96 dpi
+  PanelSettings settings;          // window size aside
+  std::function<void()> wake;      // called by the simulating thread when there is news
+  std::function<void(const char*)> set_clipboard;
+  std::function<std::string()> get_clipboard;
+};
+
+class ControlPanel {
+ public:
+  // The context must outlive the panel and be current. Throws SceneError where the scene is not sound at the
+  // start, GraphicsError.
+  ControlPanel(GlContext& context, SceneDocument document, PanelOptions options);
+  ~ControlPanel();
+  ControlPanel(const ControlPanel&) = delete;
+  ControlPanel& operator=(const ControlPanel&) = delete;
+
+  void resize(int width, int height);
+  void handle(const InputEvent& event) { events_.push_back(event); }
+  // Take input, move on by `seconds`, draw. Returns whether another frame is wanted without further input:
+  // the motion plays, events wait, or widgets settle.
+  // A panel that nobody can see is not painted.
+  bool frame(double seconds, bool visible = true);
+  const Framebuffer& picture() const { return *picture_; }
+
+  PanelState& state() { return state_; }
+  PanelSettings settings();  // as they are now, to be remembered
+  // Where a widget was drawn in the last frame, by its key; throws std::out_of_range.
+  const plot::Rect& place(const std::string& key) const { return ui_.places.at(key); }
+  bool has_place(const std::string& key) const { return ui_.places.contains(key); }
+  bool simulating() const { return simulator_.busy(); }
+  long simulations() const { return simulator_.started(); }
+  long view_paints() const { return view_.paints(); }
+
+ private:
+  void make_context();
+  void make_fonts();
+  void take_events();
+  void apply(const InputEvent& event);
+  void take_results();
+  void follow_document();
+  void draw_panes();
+  void draw_splitter(const char* name, float x, float top, float bottom, float& width, float way);
+  void paint();
+
+  GlContext& context_;
+  PanelOptions options_;
+  PanelState state_;
+  ImGuiContext* imgui_ = nullptr;
+  std::unique_ptr<ImguiPainter> painter_;
+  std::unique_ptr<Framebuffer> picture_;
+  Ui ui_;
+  std::map<int, ImFont*> figure_fonts_;  // by size in 1/64 pixels
+  SceneView view_;
+  FigureCards cards_;
+  std::deque<InputEvent> events_;
+  plot::Rect view_place_;  // [pixels]
+  bool dark_drawn_ = false;
+  int settling_ = 3;  // frames until new widgets have their sizes
+  std::optional<SceneDocument> submitted_;
+  std::string clipboard_;
+  ExportJob export_;
+  Simulator simulator_;  // last: ends before what it wakes
+};
+
+}  // namespace unfurl

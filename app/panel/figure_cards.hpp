@@ -1,0 +1,45 @@
+// The figures of the run shown, as the command line draws them, in the size of a pane.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/panel/simulator.hpp"
+#include "render/plot/figures.hpp"
+#include "render/plot/layout.hpp"
+
+namespace unfurl {
+
+// The figure of the present run with the curves of a pinned one behind it, dashed.
+Figure with_pinned(Figure present, const Figure& pinned);
+
+struct FigureCard {
+  const FigureKind* kind = nullptr;
+  bool open = false;
+  // Made when they are looked at.
+  std::unique_ptr<Figure> figure;  // at a fixed address: the layout points into it
+  plot::FigureLayout layout;
+};
+
+// Of figures at scale 1: small text has 10.5 pixels.
+inline constexpr double figure_pixels_per_point = 1.5;
+
+class FigureCards {
+ public:
+  FigureCards();
+
+  std::vector<FigureCard>& cards() { return cards_; }
+  // Call each frame: forgets figures of other runs and of other widths. `width`: of the pane [points].
+  void show(const std::shared_ptr<const LiveRun>& run, const std::shared_ptr<const LiveRun>& pinned,
+            double width);
+  bool applies(const FigureCard& card) const;
+  void make(FigureCard& card) const;  // figure and layout, where they are missing
+
+ private:
+  std::vector<FigureCard> cards_;
+  std::shared_ptr<const LiveRun> run_, pinned_;
+  double width_ = 0;
+};
+
+}  // namespace unfurl

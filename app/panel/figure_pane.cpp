@@ -1,0 +1,92 @@
+// The right pane: the run's figures, with the present time as a line.
+#include <algorithm>
+#include <cmath>
+
+#include "app/panel/panes.hpp"
+#include "app/panel/themed_canvas.hpp"
+#include "render/plot/imgui_canvas.hpp"
+#include "render/plot/painter.hpp"
+
+namespace unfurl {
+
+namespace {
+
+bool over_time(const Panel& panel) {
+  return panel.x.label.starts_with("time") || (!panel.x.shown && panel.x.label.empty());
+}
+
+struct Placed {  // a figure in the window
+  ImVec2 origin;
+  double scale;
+  float x(double points) const { return origin.x + static_cast<float>(points * scale); }
+  float y(double points) const { return origin.y + static_cast<float>(points * scale); }
+};
+
+// The line at the present time; dragging in the panel moves it.
+void draw_cursor(Ui& ui, PanelState& state, const plot::PanelLayout& panel, const Placed& place,
+                 const std::string& key) {
+  const plot::Rect& frame = panel.frame;
+  const double t = state.playback.t;
+  const double at = panel.x.scale(t);
+  if (at >= frame.x0 - 0.5 && at <= frame.x1 + 0.5)
+    ImGui::GetWindowDrawList()->AddLine({std::floor(place.x(at)), place.y(frame.y0)},
+                                        {std::floor(place.x(at)), place.y(frame.y1)},
+                                        ui.color(ui.theme.error, 0.9f), std::max(1.0f, ui.px(1.2f)));
+  ImGui::SetCursorScreenPos({place.x(frame.x0), place.y(frame.y0)});
+  ImGui::InvisibleButton(key.c_str(),
+                         {place.x(frame.x1) - place.x(frame.x0), place.y(frame.y1) - place.y(frame.y0)});
+  ui.note(key);
+  if (!ImGui::IsItemActive()) return;
+  const double points = (ImGui::GetIO().MousePos.x - place.origin.x) / place.scale;
+  const double share = std::clamp((points - frame.x0) / frame.width(), 0.0, 1.0);
+  state.playback.playing = false;
+  state.playback.t = std::clamp(panel.x.scale.lo + share * (panel.x.scale.hi - panel.x.scale.lo),
+                                state.shown->simulation.trajectory.start_time(),
+                                state.shown->simulation.trajectory.end_time());
+}
+
+void draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
+  const Placed place{ImGui::GetCursorScreenPos(), figure_pixels_per_point * ui.scale};
+  const ImVec2 size(static_cast<float>(card.layout.width * place.scale),
+                    static_cast<float>(card.layout.height * place.scale));
+  const ImVec2 high(place.origin.x + size.x, place.origin.y + size.y);
+  if (ImGui::IsRectVisible(place.origin, high)) {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(place.origin, high, ui.color(figure_paper(ui.theme.dark)), ui.px(4));
+    plot::ImguiCanvas canvas(list, ui.figure_font, place.scale, {place.origin.x, place.origin.y});
+    ThemedCanvas themed(canvas, ui.theme.dark);
+    plot::paint(*card.figure, card.layout, themed);
+    if (state.pending) list.AddRectFilled(place.origin, high, ui.color(ui.theme.window, 0.45f));
+  }
+  const std::string name(card.kind->name);
+  for (std::size_t i = 0; i < card.layout.panels.size(); ++i)
+    if (over_time(card.figure->panels[i]))
+      draw_cursor(ui, state, card.layout.panels[i], place, "figure " + name + " " + std::to_string(i));
+  ImGui::SetCursorScreenPos({place.origin.x, high.y + ui.px(4)});
+  ImGui::Dummy({0, 0});
+}
+
+}  // namespace
+
+void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards) {
+  const double width = ImGui::GetContentRegionAvail().x / (figure_pixels_per_point * ui.scale);
+  cards.show(state.shown, state.pinned, width);
+  for (FigureCard& card : cards.cards()) {
+    if (!cards.applies(card)) continue;
+    std::string title(card.kind->name);
+    std::replace(title.begin(), title.end(), '_', ' ');
+    title[0] = static_cast<char>(std::toupper(title[0]));
+    ImGui::SetNextItemOpen(card.open);
+    ImGui::PushFont(ui.bold);
+    card.open = ImGui::CollapsingHeader((title + "##card").c_str());
+    ImGui::PopFont();
+    ui.note("card " + std::string(card.kind->name));
+    tooltip(ui,
+            card.figure ? card.figure->title + "\n" + card.figure->caption : std::string(card.kind->help));
+    if (!card.open) continue;
+    cards.make(card);
+    draw_figure(ui, state, card);
+  }
+}
+
+}  // namespace unfurl

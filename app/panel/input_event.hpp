@@ -1,0 +1,70 @@
+// What a person does, independent of who reports it: a window or a test.
+#pragma once
+
+#include <string>
+
+namespace unfurl {
+
+enum class Key {
+  none,
+  tab,
+  left,
+  right,
+  up,
+  down,
+  page_up,
+  page_down,
+  home,
+  end,
+  insert,
+  del,
+  backspace,
+  space,
+  enter,
+  escape,
+  f1,
+  a,
+  b,
+  c,
+  d,
+  e,
+  f,
+  g,
+  h,
+  i,
+  j,
+  k,
+  l,
+  m,
+  n,
+  o,
+  p,
+  q,
+  r,
+  s,
+  t,
+  u,
+  v,
+  w,
+  x,
+  y,
+  z,
+  one,
+  two,
+  three,
+  four,
+  count
+};
+
+struct InputEvent {
+  enum class Kind { move, button, wheel, key, text, focus_lost };
+  Kind kind = Kind::move;
+  float x = 0, y = 0;  // move: pixels from the top left; wheel: steps to the right and up
+  int button = 0;      // 0 left, 1 right, 2 middle
+  bool down = false;   // button, key
+  Key key = Key::none;
+  bool control = false, shift = false, alt = false;  // key
+  std::string text = {};                             // text: UTF-8
+};
+
+}  // namespace unfurl

@@ -1,0 +1,54 @@
+// Everything that the panel knows; plain data that tests may look at and change.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/panel/edit_history.hpp"
+#include "app/panel/orbit_camera.hpp"
+#include "app/panel/param_rows.hpp"
+#include "app/panel/picking.hpp"
+#include "app/panel/playback.hpp"
+#include "app/panel/simulator.hpp"
+
+namespace unfurl {
+
+struct ViewOptions {
+  bool labels = false;  // the film's own title, time and legend
+  bool loads = true;    // arrows
+  bool ghost = true;    // the pinned run behind the present one
+
+  bool operator==(const ViewOptions&) const = default;
+};
+
+struct PanelState {
+  explicit PanelState(SceneDocument document) : history(std::move(document)) {}
+
+  EditHistory history;
+  std::vector<ParamSection> sections;  // of the scene without edits
+
+  std::shared_ptr<const LiveRun> shown;   // the latest run that finished; null at first
+  std::shared_ptr<const LiveRun> pinned;  // A of the comparison; null: none
+  bool pending = false;                   // a newer run is being made
+  double progress = 0;                    // of that, 0..1
+  std::vector<SceneProblem> problems;     // of the scene as edited; empty: it is sound
+  std::string message;                    // other trouble, or what was done, in a line
+
+  Playback playback;
+  double frames_per_second = 0;  // while it plays, smoothed
+  ViewOptions view;
+  std::optional<OrbitCamera> orbit;  // none: the camera that frames the motion
+  Selection selected, hovered;
+
+  bool dark = false;
+  bool help_open = false, export_open = false;
+  std::string export_path;            // of the scene's file; empty: not thought of yet
+  std::string export_output = "out";  // directory of film and figures
+  bool left_open = true, right_open = true;
+  // What others are asked to do, once.
+  bool wants_screenshot = false, wants_quit = false, wants_stop = false;
+};
+
+}  // namespace unfurl

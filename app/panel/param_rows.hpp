@@ -1,0 +1,39 @@
+// What the panel can change of a scene: a row for every declared parameter, in sections as in the scene file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.hpp"
+
+namespace unfurl {
+
+struct ParamRow {
+  std::string key;    // dotted, as in `--set`
+  std::string label;  // "chord rod length"
+  ParamSpec spec;
+  ParamValue value;  // of the scene without edits
+};
+
+struct ParamSection {
+  std::string title;
+  std::vector<ParamRow> rows;
+};
+
+// `base`: the scene without the panel's edits.
+std::vector<ParamSection> param_sections(const Scene& base);
+
+// What a slider spans. Where the declared range is wide or endless, around the scene's own value.
+struct SliderRange {
+  double low = 0, high = 1;
+  bool logarithmic = false;
+};
+SliderRange slider_range(const ParamSpec& spec, const ParamValue& base);
+
+// "help text. [0.1, 8] m; default 3": what a tooltip says of a parameter.
+std::string param_tooltip(const ParamRow& row);
+// A value as people read it, with the unit: "0.01 s", "true", "0, 0, -9.81 m/s²".
+std::string value_caption(const ParamValue& value, std::string_view unit);
+std::string unit_caption(std::string_view unit);  // "kg/m^3" -> "kg/m³", "deg" -> "°"
+
+}  // namespace unfurl

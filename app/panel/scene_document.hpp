@@ -1,0 +1,44 @@
+// The scene that the panel shows: a file's text, and what was changed since, as `--set` would change it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.hpp"
+
+namespace unfurl {
+
+// Plain data; two that are equal mean the same scene.
+struct SceneDocument {
+  std::string path;    // of the file; empty: it was never saved
+  std::string name;    // what messages call it: the path, or "untitled"
+  std::string folder;  // where files that the scene names lie
+  std::shared_ptr<const std::string> text;
+  std::vector<std::string> overrides;       // from the command line
+  std::map<std::string, ParamValue> edits;  // from the panel: dotted key -> value, valid or not
+
+  bool operator==(const SceneDocument& o) const {
+    return path == o.path && name == o.name && *text == *o.text && overrides == o.overrides &&
+           edits == o.edits;
+  }
+};
+
+// The file or built-in scene of that name. Throws UnreadableScene.
+SceneDocument open_document(const std::string& scene, std::vector<std::string> overrides);
+// A scene of a family: the library's first one of that kind, or the family's defaults.
+SceneDocument document_of_family(const std::string& kind);
+
+// All overrides as "key=value", the panel's behind the command line's.
+std::vector<std::string> overrides_of(const SceneDocument& document);
+// The scene that the document means. Throws SceneError.
+Scene read_document(const SceneDocument& document);
+// The scene without the panel's edits: what widgets show where nothing was edited. Throws SceneError.
+Scene base_scene(const SceneDocument& document);
+
+// "unfurl render hoop6 -o out --set solver.step=0.02", quoted for a shell.
+std::string command_line(const SceneDocument& document, const std::string& verb, const std::string& output);
+std::string shell_word(const std::string& word);
+
+}  // namespace unfurl

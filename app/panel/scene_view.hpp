@@ -1,0 +1,56 @@
+// The 3-D view of a run: the film's own pictures, with a camera led by hand.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "app/panel/panel_state.hpp"
+#include "render/scene/frame_builder.hpp"
+#include "render/scene/renderer.hpp"
+
+namespace unfurl {
+
+class SceneView {
+ public:
+  explicit SceneView(GlContext& context) : context_(context) {}
+
+  // Before anything else of a frame. Cheap where nothing changed.
+  void prepare(int width, int height, const PanelState& state, bool dark);
+  bool ready() const { return builder_ != nullptr; }
+  // Paint where something changed since the last time; returns whether.
+  bool paint(const PanelState& state);
+  void copy_to(const Framebuffer& target, int x, int y) const;
+
+  Camera camera(const PanelState& state) const;
+  OrbitCamera framed() const { return orbit_of(builder_->camera()); }
+  PickView pick_view(const PanelState& state) const;
+  // The sphere around the whole motion.
+  Vec3f center() const { return still_.center; }
+  float radius() const { return still_.radius; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  long paints() const { return paints_; }
+
+ private:
+  struct Painted {  // what the last picture showed
+    const LiveRun *run = nullptr, *ghost = nullptr;
+    double t = 0;
+    Camera camera;
+    bool dark = false;
+    bool operator==(const Painted& o) const;
+  };
+  DrawList list_of(const PanelState& state) const;
+
+  GlContext& context_;
+  std::unique_ptr<Renderer> renderer_;
+  std::shared_ptr<const LiveRun> run_, ghost_run_;
+  std::unique_ptr<FrameBuilder> builder_, ghost_;
+  ViewOptions options_;
+  DrawList still_;
+  Painted painted_;
+  int width_ = 0, height_ = 0;
+  bool dark_ = false;
+  long paints_ = 0;
+};
+
+}  // namespace unfurl

@@ -1,0 +1,23 @@
+#include "app/panel/ui.hpp"
+
+namespace unfurl {
+
+void tooltip(const Ui& ui, const std::string& text) {
+  if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ui.px(340));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+bool button(Ui& ui, const std::string& key, const std::string& label, const std::string& help, bool enabled) {
+  ImGui::BeginDisabled(!enabled);
+  const bool pressed = ImGui::Button((label + "##" + key).c_str());
+  ImGui::EndDisabled();
+  ui.note(key);
+  tooltip(ui, help);
+  return pressed && enabled;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,11 @@
+// A build without SDL2 (cmake -DUNFURL_WINDOW=OFF).
+#include "app/window/window.hpp"
+#include "render/gl/graphics_error.hpp"
+
+namespace unfurl {
+
+int show_window(SceneDocument, const WindowOptions&) {
+  throw GraphicsError(no_window_message("this unfurl was built without one (UNFURL_WINDOW=OFF)"));
+}
+
+}  // namespace unfurl

@@ -1,0 +1,232 @@
+// The window: events in, finished pictures out, redrawn only when something changes.
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <thread>
+#include <tuple>
+
+#include "app/exit_code.hpp"
+#include "app/interrupt.hpp"
+#include "app/panel/control_panel.hpp"
+#include "app/window/sdl_events.hpp"
+#include "app/window/sdl_library.hpp"
+#include "app/window/window.hpp"
+#include "render/gl/functions.hpp"
+#include "render/gl/graphics_error.hpp"
+#include "render/image/png.hpp"
+
+namespace unfurl {
+
+namespace {
+
+class SdlWindow final : public GlContext {
+ public:
+  SdlWindow(int width, int height);
+  ~SdlWindow() override;
+  SdlWindow(const SdlWindow&) = delete;
+  SdlWindow& operator=(const SdlWindow&) = delete;
+
+  void make_current() override {
+    if (sdl().GL_MakeCurrent(window_, context_) != 0) fail(sdl().GetError());
+    if (loaded_) return;
+    const auto find = [](const char* name) {
+      return reinterpret_cast<gl::AnyFunction>(sdl().GL_GetProcAddress(name));
+    };
+    if (gl::load(find) > 0) fail("its OpenGL is older than 3.3");
+    loaded_ = true;
+  }
+  std::string description() const override {
+    return std::string("SDL2, OpenGL ") + reinterpret_cast<const char*>(gl::GetString(GL_VERSION));
+  }
+  std::pair<int, int> pixels() const {
+    int width = 0, height = 0;
+    sdl().GL_GetDrawableSize(window_, &width, &height);
+    return {width, height};
+  }
+  std::pair<int, int> units() const {  // of the desktop
+    int width = 0, height = 0;
+    sdl().GetWindowSize(window_, &width, &height);
+    return {width, height};
+  }
+  float pixels_per_unit() const {
+    const int width = units().first;
+    return width > 0 ? static_cast<float>(pixels().first) / static_cast<float>(width) : 1.0f;
+  }
+  // Of the monitor: 1 at 96 dpi, in quarters.
+  float scale() const {
+    float dpi = 0;
+    const int index = sdl().GetWindowDisplayIndex(window_);
+    const float fine = pixels_per_unit();
+    if (index < 0 || sdl().GetDisplayDPI(index, nullptr, &dpi, nullptr) != 0 || dpi < 48 || dpi > 800)
+      return fine;
+    return std::max(1.0f, std::round(4 * std::max(fine, dpi / 96)) / 4);
+  }
+  bool visible() const {
+    return (sdl().GetWindowFlags(window_) & (SDL_WINDOW_MINIMIZED | SDL_WINDOW_HIDDEN)) == 0;
+  }
+  void show(const Framebuffer& picture) {
+    picture.copy_to_window(pixels().second);
+    sdl().GL_SwapWindow(window_);
+  }
+
+ private:
+  [[noreturn]] static void fail(const std::string& cause) { throw GraphicsError(no_window_message(cause)); }
+
+  SDL_Window* window_ = nullptr;
+  SDL_GLContext context_ = nullptr;
+  bool loaded_ = false;
+};
+
+// SDL takes an invisible window where there is no display, which nobody wants to wait for.
+bool has_display() {
+  const char* driver = sdl().GetCurrentVideoDriver();
+  return driver != nullptr && std::strcmp(driver, "offscreen") != 0 && std::strcmp(driver, "dummy") != 0 &&
+         std::strcmp(driver, "evdev") != 0;
+}
+
+SdlWindow::SdlWindow(int width, int height) {
+  const std::string nowhere = "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)";
+  const auto named = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr && *value != '\0';
+  };
+  const bool x11 = named("DISPLAY"), wayland = named("WAYLAND_DISPLAY");
+  if (!x11 && !wayland) fail(nowhere);
+  // Only what the environment names: the libraries of the other would complain on their own.
+  sdl().SetHint(SDL_HINT_VIDEODRIVER, x11 && wayland ? "x11,wayland" : x11 ? "x11" : "wayland");
+  sdl().SetHint("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2");
+  if (sdl().Init(SDL_INIT_VIDEO) != 0 || !has_display()) {
+    const std::string cause = std::string("the display does not answer: ") + sdl().GetError();
+    sdl().Quit();
+    fail(cause);
+  }
+  sdl().GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 3);
+  sdl().GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 3);
+  sdl().GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK, SDL_GL_CONTEXT_PROFILE_CORE);
+  sdl().GL_SetAttribute(SDL_GL_DEPTH_SIZE, 0);
+  constexpr int anywhere = static_cast<int>(SDL_WINDOWPOS_UNDEFINED);
+  window_ = sdl().CreateWindow("Unfurl", anywhere, anywhere, width, height,
+                               SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
+  if (window_ != nullptr) context_ = sdl().GL_CreateContext(window_);
+  if (context_ == nullptr) {
+    const std::string cause = sdl().GetError();
+    if (window_ != nullptr) sdl().DestroyWindow(window_);
+    sdl().Quit();
+    fail("no OpenGL 3.3 there: " + cause);
+  }
+  sdl().SetWindowMinimumSize(window_, 640, 400);
+  sdl().GL_SetSwapInterval(1);
+  sdl().StartTextInput();
+  make_current();
+}
+
+SdlWindow::~SdlWindow() {
+  sdl().GL_DeleteContext(context_);
+  sdl().DestroyWindow(window_);
+  sdl().Quit();
+}
+
+// The loop of one window.
+class Host {
+ public:
+  Host(SceneDocument document, const WindowOptions& options)
+      : remembered_(load_settings(settings_file())),
+        window_(remembered_.width, remembered_.height),
+        wake_event_(sdl().RegisterEvents(1)) {
+    const auto [width, height] = window_.pixels();
+    PanelOptions panel;
+    panel.settings = remembered_;
+    panel.width = width;
+    panel.height = height;
+    panel.scale = options.ui_scale > 0 ? options.ui_scale : window_.scale();
+    panel.wake = [type = wake_event_] {
+      SDL_Event event{};
+      event.type = type;
+      sdl().PushEvent(&event);
+    };
+    panel.set_clipboard = [](const char* text) { sdl().SetClipboardText(text); };
+    panel.get_clipboard = [] {
+      char* text = sdl().GetClipboardText();
+      std::string copy = text != nullptr ? text : "";
+      sdl().free(text);
+      return copy;
+    };
+    panel_ = std::make_unique<ControlPanel>(window_, std::move(document), std::move(panel));
+  }
+
+  int run() {
+    using Clock = std::chrono::steady_clock;
+    auto last = Clock::now();
+    bool more = true;
+    while (!panel_->state().wants_quit && !interrupted()) {
+      if (!wait(more)) break;
+      const auto now = Clock::now();
+      const double seconds = std::chrono::duration<double>(now - last).count();
+      last = now;
+      more = panel_->frame(more ? seconds : 0.0, window_.visible());
+      if (window_.visible())
+        window_.show(panel_->picture());
+      else
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      take_screenshot();
+    }
+    PanelSettings now = panel_->settings();
+    std::tie(now.width, now.height) = window_.units();
+    if (!(now == remembered_)) save_settings(settings_file(), now);
+    return exit_ok;
+  }
+
+ private:
+  void take_screenshot() {
+    PanelState& state = panel_->state();
+    if (!state.wants_screenshot) return;
+    state.wants_screenshot = false;
+    try {
+      std::string name = "unfurl.png";
+      for (int i = 1; std::filesystem::exists(name); ++i) name = "unfurl_" + std::to_string(i) + ".png";
+      write_png(name, panel_->picture().read());
+      state.message = "screenshot: " + name;
+    } catch (const std::exception& error) {
+      state.message = error.what();
+    }
+  }
+
+  // Until there is a reason to draw; false: the window is to close.
+  bool wait(bool more) {
+    SDL_Event event;
+    bool open = true, drawn = more;
+    while (open && !drawn && !interrupted()) {
+      if (sdl().WaitEventTimeout(&event, 500) == 0) continue;  // Ctrl-C is looked for twice a second
+      drawn = true;
+      open = take(event);
+    }
+    while (open && sdl().PollEvent(&event) != 0) open = take(event);
+    return open;
+  }
+
+  bool take(const SDL_Event& event) {
+    if (event.type == SDL_QUIT) return false;
+    if (event.type == SDL_WINDOWEVENT && event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
+      const auto [width, height] = window_.pixels();
+      panel_->resize(width, height);
+    }
+    if (const auto input = input_event(event, window_.pixels_per_unit())) panel_->handle(*input);
+    return true;
+  }
+
+  PanelSettings remembered_;
+  SdlWindow window_;
+  Uint32 wake_event_;
+  std::unique_ptr<ControlPanel> panel_;
+};
+
+}  // namespace
+
+int show_window(SceneDocument document, const WindowOptions& options) {
+  const InterruptGuard guard;
+  return Host(std::move(document), options).run();
+}
+
+}  // namespace unfurl

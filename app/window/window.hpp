@@ -1,0 +1,22 @@
+// The one place where the program meets a desktop. A backend is another .cpp, chosen by CMake.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "app/panel/scene_document.hpp"
+
+namespace unfurl {
+
+struct WindowOptions {
+  float ui_scale = 0;  // 0: the monitor's
+};
+
+// Shows the panel in a window until it is closed. Returns an ExitCode. Throws GraphicsError where there is no
+// display.
+int show_window(SceneDocument document, const WindowOptions& options);
+
+// What to say where no window can be had, and why.
+std::string no_window_message(const std::string& cause);
+
+}  // namespace unfurl

@@ -1,0 +1,174 @@
+#include "core/scene/write_back.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "core/scene/reader.hpp"
+#include "core/scene/toml_tree.hpp"
+#include "core/scene/write.hpp"
+
+namespace unfurl {
+
+namespace {
+
+struct Replacement {
+  std::size_t begin, end;  // bytes
+  std::string text;
+};
+
+// The byte of a line and column (in characters, from 1).
+std::size_t offset_of(std::string_view text, const SourceLocation& where) {
+  std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+  for (int line = 1; line < where.line && at < text.size(); ++line) at = text.find('\n', at) + 1;
+  for (int column = 1; column < where.column && at < text.size(); ++column) do
+      ++at;
+    while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U);
+  return at;
+}
+
+// Behind a string that begins at `at`.
+std::size_t string_end(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const bool lengthy = text.substr(at, 3) == std::string(3, quote);
+  const std::string close(lengthy ? 3 : 1, quote);
+  for (at += close.size(); at < text.size(); ++at) {
+    if (quote == '"' && text[at] == '\\')
+      ++at;
+    else if (text.substr(at, close.size()) == close)
+      return at + close.size();
+  }
+  return text.size();
+}
+
+// Behind the TOML value that begins at `at`; the text is known to be TOML.
+std::size_t value_end(std::string_view text, std::size_t at) {
+  int depth = 0;
+  std::size_t end = at;
+  while (at < text.size()) {
+    const char c = text[at];
+    if (c == '"' || c == '\'') {
+      at = end = string_end(text, at);
+      if (depth == 0) return end;
+      continue;
+    }
+    if (c == '#' && depth == 0) return end;
+    if (c == '#') {
+      at = std::min(text.find('\n', at), text.size());
+      continue;
+    }
+    if (depth == 0 && (c == '\n' || c == ',' || c == ']' || c == '}')) return end;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    ++at;
+    if (c != ' ' && c != '\t' && c != '\r') end = at;
+    if (depth == 0 && (c == ']' || c == '}')) return end;
+  }
+  return end;
+}
+
+// A member of a table, or an item of an array: "loads[0]" is two steps.
+struct Step {
+  std::string name;
+  std::optional<std::size_t> index;
+};
+
+std::vector<Step> steps_of(std::string_view key) {
+  std::vector<Step> steps;
+  while (!key.empty()) {
+    const std::size_t end = std::min(key.find_first_of(".["), key.size());
+    if (end > 0) steps.push_back({std::string(key.substr(0, end)), {}});
+    if (end < key.size() && key[end] == '[') {
+      std::size_t index = 0;
+      std::from_chars(key.data() + end + 1, key.data() + key.size(), index);
+      steps.push_back({"", index});
+      key.remove_prefix(std::min(key.find(']', end), key.size() - 1) + 1);
+    } else {
+      key.remove_prefix(end);
+    }
+    if (key.starts_with(".")) key.remove_prefix(1);
+  }
+  return steps;
+}
+
+const TomlTree* member(const TomlTree& tree, const Step& step) {
+  if (step.index) return *step.index < tree.items.size() ? &tree.items[*step.index] : nullptr;
+  return tree.find(step.name);
+}
+
+// Behind the last line of a table's own values.
+std::optional<std::size_t> end_of_table(std::string_view text, const TomlTree& table) {
+  std::optional<std::size_t> end;
+  for (const auto& [name, value] : table.entries) {
+    if (value.kind == TomlTree::Kind::table) continue;
+    if (value.kind == TomlTree::Kind::array && !value.items.empty() &&
+        value.items.front().kind == TomlTree::Kind::table)
+      continue;
+    const std::size_t line = text.find('\n', value_end(text, offset_of(text, value.where)));
+    end = std::max(end.value_or(0), line == text.npos ? text.size() : line + 1);
+  }
+  return end;
+}
+
+// What makes the key have the value; nullopt where the text has no place for it.
+std::optional<Replacement> replacement(std::string_view text, const TomlTree& root, std::string_view key,
+                                       const std::string& value) {
+  const auto steps = steps_of(key);
+  if (steps.empty()) return std::nullopt;
+  const TomlTree* table = &root;
+  for (std::size_t i = 0; i + 1 < steps.size() && table; ++i) table = member(*table, steps[i]);
+  if (table) {
+    if (const TomlTree* found = member(*table, steps.back())) {
+      const std::size_t begin = offset_of(text, found->where);
+      return Replacement{begin, value_end(text, begin), value};
+    }
+  }
+  const std::string line = steps.back().name + " = " + value + "\n";
+  if (table) {
+    const auto end = end_of_table(text, *table);
+    if (!end) return std::nullopt;
+    const bool broken = *end > 0 && text[*end - 1] != '\n';
+    return Replacement{*end, *end, (broken ? "\n" : "") + line};
+  }
+  if (steps.size() != 2 || steps[1].index) return std::nullopt;
+  const char* gap = text.empty() || text.ends_with('\n') ? "\n" : "\n\n";
+  return Replacement{text.size(), text.size(), gap + ("[" + steps[0].name + "]\n") + line};
+}
+
+// As TOML: a bare word becomes a string.
+std::string toml_text(const std::string& value) {
+  try {
+    parse_toml("value = " + value + "\n", "");
+    return value;
+  } catch (const SceneError&) {
+    return toml_string(value);
+  }
+}
+
+std::optional<std::string> edited(std::string text, const std::string& name,
+                                  const std::vector<std::string>& overrides) {
+  for (const std::string& entry : overrides) {  // one by one: each sees what the ones before it made
+    const std::size_t equals = entry.find('=');
+    if (equals == entry.npos) return std::nullopt;
+    const auto change = replacement(text, parse_toml(text, name), std::string_view(entry).substr(0, equals),
+                                    toml_text(entry.substr(equals + 1)));
+    if (!change) return std::nullopt;
+    text.replace(change->begin, change->end - change->begin, change->text);
+  }
+  return text;
+}
+
+}  // namespace
+
+WrittenBack write_back(std::string_view text, const std::string& name,
+                       const std::vector<std::string>& overrides, const std::string& folder) {
+  const std::string meant = scene_text(read_scene_text(text, name, overrides, folder));
+  try {
+    if (auto result = edited(std::string(text), name, overrides))
+      if (scene_text(read_scene_text(*result, name, {}, folder)) == meant) return {*std::move(result), false};
+  } catch (const SceneError&) {  // the text has the key in a way that the search above does not know
+  }
+  return {meant, true};
+}
+
+}  // namespace unfurl

@@ -1,0 +1,107 @@
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+
+#include "app/panel/orbit_camera.hpp"
+#include "app/panel/picking.hpp"
+#include "render/scene/frame_builder.hpp"
+#include "render/scene/view.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+std::shared_ptr<const LiveRun> hoop_run() {
+  Simulator simulator;
+  SceneDocument document = open_document("hoop6", {});
+  document.edits["solver.step"] = 0.05;
+  simulator.submit(document);
+  for (int i = 0; i < 60000; ++i) {
+    if (auto outcome = simulator.take()) return outcome->run;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("an orbit camera is the camera that it was made of") {
+  Camera camera;
+  camera.eye = {3, -8, 5};
+  camera.target = {1, 0.5f, -1};
+  const Camera again = camera_of(orbit_of(camera), Vec3f::Zero(), 4);
+  // Single precision, through sines and cosines.
+  CHECK((again.eye - camera.eye).norm() < 1e-5f * camera.eye.norm());
+  CHECK((again.target - camera.target).norm() == 0.0f);
+}
+
+TEST_CASE("orbiting keeps the distance and never tips over") {
+  OrbitCamera orbit;
+  for (int i = 0; i < 1000; ++i) orbit = orbited(orbit, 37, 91, 600);
+  const Camera camera = camera_of(orbit, Vec3f::Zero(), 1);
+  CHECK((camera.eye - camera.target).norm() == Approx(orbit.distance).epsilon(1e-5));
+  CHECK(std::abs(orbit.elevation) < 1.5708f);
+}
+
+TEST_CASE("panning moves what is at the target by as many pixels") {
+  const OrbitCamera before;
+  const OrbitCamera after = panned(before, 30, -20, 600);
+  const Vec3f at = project(camera_of(after, Vec3f::Zero(), 1), 800, 600, before.target);
+  CHECK(at.x() == Approx(430).margin(0.01));  // of rounding in single precision
+  CHECK(at.y() == Approx(280).margin(0.01));
+}
+
+TEST_CASE("zooming keeps what is under the pointer there") {
+  const OrbitCamera before;
+  const Camera camera = camera_of(before, Vec3f::Zero(), 1);
+  const Vec3f ray = ray_through(camera, 700, 150, 800, 600);
+  const Vec3f forward = (camera.target - camera.eye).normalized();
+  const Vec3f point = camera.eye + ray * (before.distance / ray.dot(forward));
+  const Vec3f at = project(camera_of(zoomed(before, 3, ray), Vec3f::Zero(), 1), 800, 600, point);
+  CHECK(at.x() == Approx(700).margin(0.05));
+  CHECK(at.y() == Approx(150).margin(0.05));
+}
+
+TEST_CASE("presets see the whole sphere") {
+  for (const ViewPreset preset :
+       {ViewPreset::front, ViewPreset::side, ViewPreset::top, ViewPreset::three_quarter})
+    for (const float aspect : {0.5f, 2.0f}) {
+      const Vec3f center(1, 2, 3);
+      const Camera camera = camera_of(preset_view(preset, center, 2, aspect, 0.5f), center, 2);
+      const int height = 400, width = static_cast<int>(400 * aspect);
+      const Vec3f forward = (camera.target - camera.eye).normalized(),
+                  right = forward.cross(camera.up).normalized();
+      for (const Vec3f& way : {right, Vec3f(-right), Vec3f(right.cross(forward))}) {
+        const Vec3f at = project(camera, width, height, center + 2 * way);
+        CHECK(at.x() >= 0);
+        CHECK(at.x() <= static_cast<float>(width));
+        CHECK(at.y() >= 0);
+        CHECK(at.y() <= static_cast<float>(height));
+      }
+    }
+}
+
+TEST_CASE("every rod and node is found where it is drawn, and reads its own numbers") {
+  const auto run = hoop_run();
+  REQUIRE(run);
+  FrameStyle style;
+  const FrameBuilder builder(run->simulation.trajectory, style);
+  const double t = run->simulation.trajectory.end_time();
+  const PickView view{builder.camera(), style.width, style.height, builder.upright()};
+  const Structure& structure = run->simulation.trajectory.structure();
+  int found = 0;
+  for (const NodeCopy& node : structure.node_copies) {
+    const Selection wanted{Selection::Kind::node, node.name};
+    const PickedPlace at = place_of(wanted, *run, t, view);
+    REQUIRE(at.found);
+    found += pick(*run, t, view, at.a.x(), at.a.y(), 6) == wanted ? 1 : 0;
+  }
+  // At full deployment the hinges of a face meet in the picture with others: the nearer one is meant.
+  CHECK(found >= static_cast<int>(structure.node_copies.size()) - 6);
+  const Selection rod{Selection::Kind::rod, structure.rod_copies[0].name};
+  const auto rows = readings(rod, *run, t);
+  REQUIRE(rows.size() == 4);
+  CHECK(rows[1].label == "length");
+  CHECK(rows[1].value == "3 m");  // a chord rod of the scene
+  CHECK(readings({Selection::Kind::rod, "nobody"}, *run, t).empty());
+  CHECK(pick(*run, t, view, -500, -500, 6).kind == Selection::Kind::none);
+}

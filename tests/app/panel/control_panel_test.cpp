@@ -1,0 +1,227 @@
+// The panel driven without a display, by mouse and keyboard.
+#include "app/panel/control_panel.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/app/panel/panel_driver.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+std::size_t differing_pixels(const Image& a, const Image& b, const plot::Rect& in) {
+  std::size_t count = 0;
+  for (int y = static_cast<int>(in.y0); y < static_cast<int>(in.y1); ++y)
+    for (int x = static_cast<int>(in.x0); x < static_cast<int>(in.x1); ++x) {
+      const auto at =
+          4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) + static_cast<std::size_t>(x));
+      count +=
+          a.rgba[at] != b.rgba[at] || a.rgba[at + 1] != b.rgba[at + 1] || a.rgba[at + 2] != b.rgba[at + 2];
+    }
+  return count;
+}
+
+double real_edit(PanelDriver& driver, const std::string& key) {
+  return std::get<double>(driver.state().history.now().edits.at(key));
+}
+
+}  // namespace
+
+TEST_CASE("dragging a slider of the panel changes the scene, its simulation and the picture") {
+  PanelDriver driver;
+  REQUIRE(driver.state().shown);
+  driver.key(Key::end);
+  const auto before = driver.state().shown;
+  const Image old = driver.picture();
+  driver.drag("structure.post_length", 0.5, 0.9);
+  CHECK(real_edit(driver, "structure.post_length") > 1.3);
+  driver.settle();
+  REQUIRE(driver.state().shown != before);
+  CHECK(driver.state().shown->scene.structure.real("post_length") ==
+        real_edit(driver, "structure.post_length"));
+  // The longer posts are seen: more than a hundredth of the view is another colour.
+  const plot::Rect view = driver.panel().place("view");
+  CHECK(static_cast<double>(differing_pixels(old, driver.picture(), view)) >
+        0.01 * view.width() * view.height());
+  driver.key(Key::z, true);
+  driver.settle();
+  CHECK(driver.state().history.now().edits.empty());
+  CHECK(driver.state().shown->scene.structure.real("post_length") == 1.2);
+}
+
+TEST_CASE(
+    "a slider takes a typed value, and one out of range is an error at the widget, as on the command line") {
+  PanelDriver driver;
+  const auto type_into = [&](const std::string& key, const std::string& text) {
+    InputEvent control;
+    control.kind = InputEvent::Kind::key;
+    control.control = true;
+    control.down = true;
+    driver.panel().handle(control);
+    driver.click(key);
+    control.control = control.down = false;
+    driver.panel().handle(control);
+    driver.frame();
+    driver.type(text);
+    driver.key(Key::enter);
+    driver.settle();
+  };
+  type_into("structure.fold_angle", "60");
+  CHECK(real_edit(driver, "structure.fold_angle") == 60.0);
+  CHECK(driver.state().shown->scene.structure.real("fold_angle") == 60.0);
+  const auto sound = driver.state().shown;
+  type_into("structure.fold_angle", "95");
+  CHECK(driver.state().shown == sound);  // the old result stays
+  REQUIRE(driver.state().problems.size() == 1);
+  CHECK(driver.state().problems[0].key == "structure.fold_angle");
+  SceneDocument document = driver.state().history.now();
+  try {
+    read_document(document);
+    FAIL("the command line takes 95 degrees");
+  } catch (const SceneError& error) {
+    CHECK(error.problems()[0].message == driver.state().problems[0].message);
+  }
+  driver.key(Key::r);
+  driver.settle();
+  CHECK(driver.state().problems.empty());
+}
+
+TEST_CASE("the right mouse button resets a parameter") {
+  PanelDriver driver;
+  driver.drag("structure.density", 0.6, 0.3);
+  REQUIRE(driver.state().history.now().edits.size() == 1);
+  driver.click("structure.density", 1);
+  driver.frame();
+  driver.click("reset structure.density");
+  CHECK(driver.state().history.now().edits.empty());
+}
+
+TEST_CASE("the timeline scrubs, plays and steps") {
+  PanelDriver driver;
+  const Trajectory& run = driver.state().shown->simulation.trajectory;
+  const double end = run.end_time();
+  driver.drag("timeline", 0.1, 0.5);
+  // Within a pixel of the bar, which is several hundred long.
+  CHECK(driver.state().playback.t == Approx(0.5 * end).margin(0.005 * end));
+  driver.key(Key::home);
+  CHECK(driver.state().playback.t == 0.0);
+  driver.key(Key::right);
+  CHECK(driver.state().playback.t == run.time(1));
+  driver.key(Key::left);
+  CHECK(driver.state().playback.t == 0.0);
+  driver.key(Key::end);
+  CHECK(driver.state().playback.t == end);
+  driver.key(Key::home);
+  driver.click("play");
+  CHECK(driver.state().playback.playing);
+  const double before = driver.state().playback.t;
+  driver.frame(0.25);
+  CHECK(driver.state().playback.t == Approx(before + 0.25));
+  driver.key(Key::space);
+  CHECK_FALSE(driver.state().playback.playing);
+}
+
+TEST_CASE("dragging in a figure moves the time") {
+  PanelDriver driver;
+  const double end = driver.state().shown->simulation.trajectory.end_time();
+  driver.drag("figure deployment 0", 0.1, 0.6);
+  CHECK(driver.state().playback.t > 0.4 * end);
+  CHECK(driver.state().playback.t < 0.8 * end);
+}
+
+TEST_CASE("the view turns, moves and zooms; F frames it again") {
+  PanelDriver driver;
+  driver.drag("view", 0.3, 0.6);
+  REQUIRE(driver.state().orbit);
+  const OrbitCamera turned = *driver.state().orbit;
+  InputEvent wheel;
+  wheel.kind = InputEvent::Kind::wheel;
+  wheel.y = 2;
+  driver.panel().handle(wheel);
+  driver.frame();
+  CHECK(driver.state().orbit->distance < turned.distance);
+  driver.key(Key::f);
+  CHECK_FALSE(driver.state().orbit);
+  driver.click("view Top");
+  REQUIRE(driver.state().orbit);
+  CHECK(driver.state().orbit->elevation > 1.5f);
+}
+
+TEST_CASE("a click in the view reads a rod") {
+  PanelDriver driver;
+  driver.key(Key::end);
+  const Structure& structure = driver.state().shown->simulation.trajectory.structure();
+  const plot::Rect view = driver.panel().place("view");
+  // The middle of a rod in the picture, by the film's own camera.
+  FrameStyle style;
+  style.width = static_cast<int>(view.width());
+  style.height = static_cast<int>(view.height());
+  const FrameBuilder builder(driver.state().shown->simulation.trajectory, style);
+  const PickView pick_view{builder.camera(), style.width, style.height, builder.upright()};
+  const Selection rod{Selection::Kind::rod, structure.rod_copies[0].name};
+  const PickedPlace at = place_of(rod, *driver.state().shown, driver.state().playback.t, pick_view);
+  driver.move(view.x0 + 0.5 * (at.a.x() + at.b.x()), view.y0 + 0.5 * (at.a.y() + at.b.y()));
+  CHECK(driver.state().hovered.kind == Selection::Kind::rod);
+  driver.press(true);
+  driver.press(false);
+  CHECK(driver.state().selected == driver.state().hovered);
+  driver.key(Key::escape);
+  CHECK(driver.state().selected.kind == Selection::Kind::none);
+}
+
+TEST_CASE("a pinned run is compared with the present one") {
+  PanelDriver driver;
+  driver.key(Key::p);
+  REQUIRE(driver.state().pinned);
+  driver.drag("structure.hinge_force", 0.6, 0.65);
+  driver.settle();
+  CHECK(driver.panel().has_place("comparison"));
+  CHECK(driver.state().pinned != driver.state().shown);
+  // More force deploys sooner.
+  REQUIRE(driver.state().shown->simulation.events.size() == 1);
+  CHECK(driver.state().shown->simulation.events.at(0).t < driver.state().pinned->simulation.events.at(0).t);
+  driver.key(Key::p);
+  CHECK_FALSE(driver.state().pinned);
+}
+
+TEST_CASE("keys and buttons open and close what they say") {
+  PanelDriver driver;
+  driver.key(Key::f1);
+  CHECK(driver.panel().has_place("help box"));
+  driver.key(Key::escape);
+  CHECK_FALSE(driver.panel().has_place("help box"));
+  driver.type("?");
+  CHECK(driver.state().help_open);
+  driver.key(Key::escape);
+  driver.key(Key::t);
+  CHECK(driver.state().dark);
+  driver.key(Key::e);
+  CHECK(driver.state().export_open);
+}
+
+TEST_CASE("nothing is painted again where nothing changed") {
+  PanelDriver driver;
+  const long before = driver.panel().view_paints();
+  for (int i = 0; i < 5; ++i) driver.frame(0);
+  CHECK(driver.panel().view_paints() == before);
+  CHECK_FALSE(driver.panel().frame(0));  // and no further frame is asked for
+}
+
+TEST_CASE("the panel fits pictures from small to large") {
+  const auto [width, height, scale] = GENERATE(
+      table<int, int, float>({{640, 400, 1.f}, {1280, 720, 1.f}, {1920, 1080, 1.f}, {1600, 900, 2.f}}));
+  PanelOptions options;
+  options.width = width;
+  options.height = height;
+  options.scale = scale;
+  PanelDriver driver(options);
+  for (const char* key : {"undo", "export", "help", "theme", "play", "timeline", "view", "scene"}) {
+    INFO(key << " at " << width << " x " << height);
+    const plot::Rect r = driver.panel().place(key);
+    CHECK(r.x0 >= 0);
+    CHECK(r.y0 >= 0);
+    CHECK(r.x1 <= width);
+    CHECK(r.y1 <= height);
+    CHECK(r.width() > 0);
+  }
+}

@@ -1,0 +1,53 @@
+#include <catch2/catch.hpp>
+
+#include "app/panel/export_job.hpp"
+#include "core/scene/reader.hpp"
+#include "core/scene/write.hpp"
+#include "tests/app/panel/panel_driver.hpp"
+#include "tests/app/run_program.hpp"
+
+using namespace unfurl;
+
+TEST_CASE("a saved document is the scene as edited, with its comments") {
+  const ScratchDirectory scratch;
+  SceneDocument document = open_document("hoop6", {"solver.stages=4"});
+  document.edits["solver.step"] = 0.025;
+  const std::string path = scratch / "mine.toml";
+  bool anew = true;
+  const SceneDocument saved = save_document(document, path, anew);
+  CHECK_FALSE(anew);
+  CHECK(saved.edits.empty());
+  CHECK(saved.path == path);
+  CHECK(scene_text(read_scene_file(path)) == scene_text(read_document(document)));
+  CHECK(file_text(path).find("# Data of the example") != std::string::npos);
+}
+
+TEST_CASE("an export from the panel is what the command line makes") {
+  const ScratchDirectory scratch;
+  SceneDocument document = open_document("hoop6", {});
+  document.edits["solver.step"] = 0.05;
+  ExportJob job({});
+  job.start(UNFURL_PROGRAM, export_words(document, "run", scratch / "panel"));
+  std::string report;
+  for (int i = 0; i < 60000 && report.empty(); ++i) {
+    report = job.take_report();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  CHECK(report == "exported to " + (scratch / "panel"));
+  REQUIRE(run_program({"run", "hoop6", "-o", scratch / "shell", "--set", "solver.step=0.05"}).code == 0);
+  CHECK(file_text(scratch / "panel/trajectory.csv") == file_text(scratch / "shell/trajectory.csv"));
+  CHECK_FALSE(file_text(scratch / "panel/trajectory.csv").empty());
+}
+
+TEST_CASE("an export that fails says why in one line") {
+  const ScratchDirectory scratch;
+  const std::string file = scratch.write("taken", "a file");
+  ExportJob job({});
+  job.start(UNFURL_PROGRAM, export_words(open_document("hoop6", {}), "run", file));
+  std::string report;
+  for (int i = 0; i < 60000 && report.empty(); ++i) {
+    report = job.take_report();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  CHECK(report.find("is a file") != std::string::npos);
+}

@@ -1,0 +1,78 @@
+#include "app/panel/simulator.hpp"
+
+#include <catch2/catch.hpp>
+#include <chrono>
+
+using namespace unfurl;
+
+namespace {
+
+// What comes of the newest request; gives up after a minute.
+std::optional<SimulationOutcome> outcome_of(Simulator& simulator) {
+  for (int i = 0; i < 60000; ++i) {
+    if (auto outcome = simulator.take()) return outcome;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return std::nullopt;
+}
+
+SceneDocument hoop(double step, double end_time = 6.0) {
+  SceneDocument document = open_document("hoop6", {});
+  document.edits["solver.step"] = step;
+  document.edits["solver.end_time"] = end_time;
+  return document;
+}
+
+}  // namespace
+
+TEST_CASE("a background simulation is the command line's") {
+  Simulator simulator;
+  const long id = simulator.submit(hoop(0.02));
+  const auto outcome = outcome_of(simulator);
+  REQUIRE(outcome);
+  REQUIRE(outcome->run);
+  CHECK(outcome->id == id);
+  CHECK(outcome->run->simulation.status == RunStatus::deployed);
+  // The paper's ring deploys after 4.92 s, printed to two decimals.
+  CHECK(outcome->run->simulation.events.at(0).t == Approx(4.92).margin(0.005));
+  CHECK_FALSE(simulator.busy());
+}
+
+TEST_CASE("only the newest of many requests comes out, and stale work is not finished") {
+  Simulator simulator;
+  long last = 0;
+  // Each alone would take far longer than all together may: half a million steps.
+  for (int i = 0; i < 50; ++i) last = simulator.submit(hoop(1e-5 * (1 + 0.001 * i)));
+  last = simulator.submit(hoop(0.05));
+  const auto outcome = outcome_of(simulator);
+  REQUIRE(outcome);
+  CHECK(outcome->id == last);
+  REQUIRE(outcome->run);
+  CHECK(outcome->run->scene.solver.step == 0.05);
+  CHECK_FALSE(simulator.take());
+  CHECK(simulator.started() <= 51);
+}
+
+TEST_CASE("a scene at fault comes back with the command line's message at its key") {
+  Simulator simulator;
+  SceneDocument document = open_document("hoop6", {});
+  document.edits["structure.units"] = 2L;
+  simulator.submit(document);
+  const auto outcome = outcome_of(simulator);
+  REQUIRE(outcome);
+  CHECK_FALSE(outcome->run);
+  REQUIRE(outcome->problems.size() == 1);
+  CHECK(outcome->problems[0].key == "structure.units");
+  CHECK(outcome->problems[0].message.find("[3, 100000]") != std::string::npos);
+}
+
+TEST_CASE("a cancelled simulation leaves nothing behind, and its end is not waited for") {
+  Simulator simulator;
+  simulator.submit(hoop(1e-5));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  simulator.cancel();
+  for (int i = 0; i < 10000 && simulator.busy(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  CHECK_FALSE(simulator.busy());
+  CHECK_FALSE(simulator.take());
+}

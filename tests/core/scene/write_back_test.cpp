@@ -1,0 +1,90 @@
+#include "core/scene/write_back.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "core/scene/text_file.hpp"
+#include "core/scene/write.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+constexpr const char* hoop = R"(# ünïcode before everything
+title = "Ring" # a title
+
+[structure]
+kind = "hoop"        # the family
+units   =   6
+post_length = 1.2    # m
+
+# between the tables
+[solver]
+step = 0.01          # s
+method = 'dvm'
+
+[[loads]]
+nodes = ["B0", # first
+         "B1"]
+force = [0, 0, -1.0]   # N
+)";
+
+std::string back(const std::vector<std::string>& overrides) {
+  const WrittenBack result = write_back(hoop, "ring.toml", overrides, "");
+  CHECK_FALSE(result.anew);
+  return result.text;
+}
+
+std::string with(std::string from, const std::string& to) {
+  std::string text = hoop;
+  const auto at = text.find(from);
+  REQUIRE(at != text.npos);
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("written back, a changed value changes nothing else of a scene file") {
+  CHECK(back({}) == hoop);
+  CHECK(back({"solver.step=0.02"}) == with("step = 0.01 ", "step = 0.02 "));
+  CHECK(back({"structure.units=8"}) == with("units   =   6", "units   =   8"));
+  CHECK(back({"solver.method=rk4"}) == with("'dvm'", "\"rk4\""));
+  CHECK(back({"loads[0].force=[1.0, 2.0, 3.0]"}) == with("[0, 0, -1.0]", "[1.0, 2.0, 3.0]"));
+  CHECK(back({"title=\"Other\""}) == with("\"Ring\"", "\"Other\""));
+}
+
+TEST_CASE("written back, a new key stands behind the others of its table, a new table at the end") {
+  CHECK(back({"solver.end_time=2.5"}) == with("method = 'dvm'\n", "method = 'dvm'\nend_time = 2.5\n"));
+  std::string with_gravity = hoop;
+  with_gravity.append("\n[gravity]\nacceleration = [0.0, 0.0, -9.81]\n");
+  CHECK(back({"gravity.acceleration=[0.0, 0.0, -9.81]"}) == with_gravity);
+}
+
+TEST_CASE("what cannot be written into the text is written anew and means the same") {
+  const std::string text = "structure = { kind = \"hoop\", units = 6 }\n";
+  const WrittenBack result = write_back(text, "x.toml", {"structure.post_length=2.0"}, "");
+  CHECK(scene_text(read_scene_text(result.text, "x.toml")) ==
+        scene_text(read_scene_text(text, "x.toml", {"structure.post_length=2.0"})));
+}
+
+TEST_CASE("every scene of the library takes changes in place") {
+  for (const LibraryScene& row : library_scenes()) {
+    INFO(row.name);
+    const std::string text = read_text_file(row.path).text, folder = row.path.substr(0, row.path.rfind('/'));
+    const WrittenBack result =
+        write_back(text, row.path, {"solver.step=0.0123", "gravity.acceleration=[0.0, 0.0, -1.5]"}, folder);
+    CHECK_FALSE(result.anew);
+    const Scene scene = read_scene_text(result.text, row.path, {}, folder);
+    CHECK(scene.solver.step == 0.0123);
+    CHECK(scene.gravity.z() == -1.5);
+    // No comment is lost.
+    CHECK(std::count(result.text.begin(), result.text.end(), '#') ==
+          std::count(text.begin(), text.end(), '#'));
+  }
+}
+
+TEST_CASE("overrides that make no sound scene are refused, not written") {
+  CHECK_THROWS_AS(write_back(hoop, "ring.toml", {"structure.units=2"}, ""), SceneError);
+  CHECK_THROWS_AS(write_back(hoop, "ring.toml", {"structure.unit=8"}, ""), SceneError);
+}
