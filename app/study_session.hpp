@@ -6,8 +6,8 @@
 
 #include "app/command.hpp"
 #include "app/progress.hpp"
-#include "core/export/report.hpp"
 #include "core/study/reference.hpp"
+#include "core/study/report.hpp"
 #include "render/plot/figure.hpp"
 #include "render/plot/write_figure.hpp"
 

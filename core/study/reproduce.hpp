@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/export/report.hpp"
 #include "core/study/measured_run.hpp"
 #include "core/study/order_fit.hpp"
+#include "core/study/report.hpp"
 
 namespace unfurl {
 

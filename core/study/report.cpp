@@ -1,4 +1,4 @@
-#include "core/export/report.hpp"
+#include "core/study/report.hpp"
 
 #include <fstream>
 #include <iterator>

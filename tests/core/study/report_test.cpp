@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "core/export/atomic_file.hpp"
-#include "core/export/report.hpp"
+#include "core/study/report.hpp"
 
 using namespace unfurl;
 namespace fs = std::filesystem;
