@@ -7,6 +7,7 @@
 #include "app/command.hpp"
 #include "app/failure.hpp"
 #include "app/help.hpp"
+#include "app/own_options.hpp"
 #include "core/model/nearest_name.hpp"
 
 namespace unfurl {
@@ -34,32 +35,94 @@ void refuse_unknown_options(const CLI::App& parser) {
   }
 }
 
+// Options that are short for a key of the scene. `flag`: without a value, sets it to true.
+struct ShortCut {
+  const char *option, *key;
+  bool flag = false;
+};
+constexpr ShortCut short_cuts[] = {{"--size", "render.size"},
+                                   {"--fps", "render.fps"},
+                                   {"--look", "render.look"},
+                                   {"--supersample", "render.supersample"},
+                                   {"--transparent", "render.transparent", true}};
+
+// WIDTHxHEIGHT as the list that the key wants; anything else stays, for the key's own message.
+std::string list_of_size(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos || text.find_first_not_of("0123456789x") != std::string::npos) return text;
+  return "[" + text.substr(0, cross) + ", " + text.substr(cross + 1) + "]";
+}
+
+void add_short_cuts(CLI::App& parser, std::vector<std::string>& overrides) {
+  for (const ShortCut& s : short_cuts) {
+    const std::string key = s.key;
+    if (s.flag) {
+      parser.add_flag_callback(s.option, [key, &overrides] { overrides.push_back(key + "=true"); });
+      continue;
+    }
+    parser.add_option_function<std::string>(s.option, [key, &overrides](const std::string& value) {
+      overrides.push_back(key + "=" + (key == "render.size" ? list_of_size(value) : value));
+    });
+  }
+}
+
 struct Parsed {
   Arguments arguments;
   bool help = false;
 };
 
-Parsed parse(const std::vector<std::string>& words) {
+// An option of another verb.
+void refuse_foreign_options(const CLI::App& parser, const Command& command) {
+  for (const OwnOption& own : own_options())
+    if (parser.count(std::string(own.name)) > 0 && !takes(command, own.name))
+      throw UsageError("unfurl " + std::string(command.name) + " has no option " + in_quotes(own.name));
+}
+
+void add_study_options(CLI::App& parser, StudyArguments& study) {
+  parser.add_option("--steps", study.ladder);
+  parser.add_option("--repeats", study.repeats)->check(CLI::Range(1, 1000));
+  parser.add_flag("--models", study.models);
+  parser.add_option("--extreme", study.extremes)->allow_extra_args(false);
+  parser.add_option("--vary", study.vary)->allow_extra_args(false);
+  parser.add_option("--measure", study.measure);
+  parser.add_option("--shard", study.shard);
+  parser.add_option("--merge", study.merge)->allow_extra_args(false);
+  parser.add_option("--find", study.find);
+  parser.add_option("--target", study.target);
+  parser.add_option("--between", study.between);
+}
+
+Parsed parse(const Command& command, const std::vector<std::string>& words) {
   Parsed parsed;
   Arguments& a = parsed.arguments;
+  std::string tolerance;
   CLI::App parser;
   parser.set_help_flag();
   parser.allow_extras();
   parser.add_option("names", a.names);
   parser.add_option("--set", a.overrides)->allow_extra_args(false);
   parser.add_option("-o,--output", a.output);
+  parser.add_option("--frames", a.frames);
+  parser.add_option("--poses", a.poses)->check(CLI::Range(1, 20));
+  add_short_cuts(parser, a.overrides);
   parser.add_flag("--force", a.force);
   parser.add_flag("--quiet", a.quiet);
   parser.add_flag("--json", a.json);
   parser.add_option("--threads", a.threads)->check(CLI::Range(1, 1024));
+  parser.add_option("--style", a.style);
+  parser.add_option("--dpi", a.dpi)->check(CLI::Range(20.0, 2400.0));
   parser.add_option("--ui-scale", a.ui_scale)->check(CLI::Range(0.5, 4.0));
   parser.add_flag("-h,--help", parsed.help);
+  parser.add_option("--tolerance", tolerance);
+  add_study_options(parser, a.study);
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   }
+  if (!tolerance.empty()) a.overrides.push_back("solver.tolerance=" + tolerance);
   refuse_unknown_options(parser);
+  refuse_foreign_options(parser, command);
   for (const auto& word : parser.remaining()) a.names.push_back(word);
   return parsed;
 }
@@ -90,7 +153,7 @@ int dispatch(const std::vector<std::string>& words) {
   }
   if (first.starts_with("-")) throw UsageError("a command comes first, then its options; see unfurl --help");
   const Command& command = find_command(first);
-  const Parsed parsed = parse({words.begin() + 1, words.end()});
+  const Parsed parsed = parse(command, {words.begin() + 1, words.end()});
   if (parsed.help) {
     std::cout << command_help(command);
     return exit_ok;

@@ -33,7 +33,9 @@ void print_json(const Scene& scene, const Model& model, const Mobility& mobility
                                  {"constraints", mobility.constraints},
                                  {"rank", mobility.rank},
                                  {"redundant", mobility.redundant},
-                                 {"degrees_of_freedom", mobility.degrees_of_freedom}};
+                                 {"degrees_of_freedom", mobility.degrees_of_freedom},
+                                 {"rigid_motions", mobility.rigid_motions},
+                                 {"maxwell_count", mobility.count}};
   json["smallest_singular_value"] = mobility.smallest_singular_value;
   std::cout << json.dump(2) << "\n";
 }
@@ -53,6 +55,8 @@ void print_table(const Scene& scene, const Model& model, const Mobility& mobilit
   print_row("redundant", static_cast<Index>(mobility.redundant.size()));
   for (const auto& name : mobility.redundant) std::cout << "  " << name << "\n";
   print_row("degrees of freedom", mobility.degrees_of_freedom);
+  if (mobility.rigid_motions > 0) print_row("  as one rigid body", mobility.rigid_motions);
+  print_row("by Maxwell's count", mobility.count);
   if (!std::isnan(mobility.smallest_singular_value))
     std::cout << std::left << std::setw(24) << "smallest singular value" << std::right << std::setw(8)
               << std::setprecision(3) << mobility.smallest_singular_value << "\n";

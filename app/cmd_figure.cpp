@@ -1,5 +1,5 @@
-// unfurl figure SCENE NAME... -o FILE: one figure, PNG or SVG by extension; several, or `all`, into a
-// directory.
+// unfurl figure SCENE NAME... -o FILE: one figure, PNG, SVG or PDF by extension; several, or `all`,
+// into a directory. Beside each its numbers and its caption.
 #include <iostream>
 
 #include "app/command.hpp"
@@ -9,6 +9,7 @@
 #include "app/scene_run.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/scene/build.hpp"
+#include "render/plot/figure_data.hpp"
 
 namespace unfurl {
 
@@ -27,13 +28,13 @@ std::vector<const FigureKind*> chosen_figures(const Arguments& arguments) {
 bool single_file(const std::filesystem::path& output, const Arguments& arguments) {
   const std::string extension = output.extension().string();
   const bool one = arguments.names.size() == 2 && arguments.names[1] != "all";
-  if (extension == ".png" || extension == ".svg") {
+  if (extension == ".png" || extension == ".svg" || extension == ".pdf") {
     if (!one)
       throw UsageError("several figures go into a directory; " + in_quotes(output.string()) + " is one file");
     return true;
   }
   if (one && !extension.empty())
-    throw UsageError("a figure is written as .png or .svg, not " + in_quotes(extension));
+    throw UsageError("a figure is written as .png, .svg or .pdf, not " + in_quotes(extension));
   return false;
 }
 
@@ -47,25 +48,27 @@ void require_data(const FigureKind& kind, const Scene& scene, const Simulation& 
 
 int cmd_figure(const Arguments& arguments) {
   const auto kinds = chosen_figures(arguments);
+  const FigureOptions options = figure_options(arguments);
   const std::filesystem::path output(arguments.output);
   const bool file = single_file(output, arguments);
   const Scene scene = scene_of(arguments);
   auto model = build_model(scene);
   if (file) require_writable(output);
   std::unique_ptr<GlContext> context;
-  if (output.extension() != ".svg") context = make_offscreen_context();
+  if (!file || output.extension() == ".png") context = make_offscreen_context();
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
   const Diagnostics diagnostics = diagnose(run);
   if (arguments.names.size() == 2 && kinds.size() == 1) require_data(*kinds[0], scene, run, diagnostics);
-  if (file && context)
-    FigureWriter(*context).write(kinds[0]->make(run, diagnostics), output);
-  else if (file)
-    FigureWriter().write(kinds[0]->make(run, diagnostics), output);
-  else {
-    FigureWriter writer(*context);
-    if (!write_figures(output, kinds, run, diagnostics, writer, arguments)) return exit_interrupted;
+  const auto writer =
+      context ? std::make_unique<FigureWriter>(*context, options) : std::make_unique<FigureWriter>(options);
+  if (file) {
+    const Figure figure = kinds[0]->make(run, diagnostics);
+    writer->write(figure, output);
+    write_figure_data(figure, output);
+  } else if (!write_figures(output, kinds, run, diagnostics, *writer, arguments)) {
+    return exit_interrupted;
   }
   report_run(run, diagnostics, arguments);
   return exit_code_of(run);

@@ -1,4 +1,5 @@
-// unfurl list structures|methods|figures|scenes|constraints|forces: what there is to choose from.
+// unfurl list structures|methods|figures|scenes|constraints|forces|looks|measures: what there is to choose
+// from.
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
@@ -11,7 +12,9 @@
 #include "core/scene/library.hpp"
 #include "core/structures/custom.hpp"
 #include "core/structures/family.hpp"
+#include "core/study/measures.hpp"
 #include "render/plot/figures.hpp"
+#include "render/scene/look.hpp"
 
 namespace unfurl {
 
@@ -51,6 +54,14 @@ std::vector<Item> scene_items() {
   return items;
 }
 
+std::vector<Item> measure_items() {
+  std::vector<Item> items;
+  for (const auto& measure : named_measures())
+    items.push_back({std::string(measure.name), std::string(measure.help), nullptr});
+  items.push_back({"max:COLUMN", "largest value of a column of series.csv; also min: and final:", nullptr});
+  return items;
+}
+
 std::vector<Item> constraint_items() {
   std::vector<Item> items;
   for (const auto& kind : custom_constraint_kinds())
@@ -65,14 +76,25 @@ std::vector<Item> force_items() {
   return items;
 }
 
+std::vector<Item> look_items() {
+  std::vector<Item> items;
+  for (const auto& look : looks()) items.push_back({std::string(look.name), std::string(look.help), nullptr});
+  return items;
+}
+
 struct List {
   std::string_view name;
   std::vector<Item> (*items)();
 };
 
-constexpr List lists[] = {{"structures", structure_items},   {"methods", method_items},
-                          {"figures", figure_items},         {"scenes", scene_items},
-                          {"constraints", constraint_items}, {"forces", force_items}};
+constexpr List lists[] = {{"structures", structure_items},
+                          {"methods", method_items},
+                          {"figures", figure_items},
+                          {"scenes", scene_items},
+                          {"constraints", constraint_items},
+                          {"forces", force_items},
+                          {"looks", look_items},
+                          {"measures", measure_items}};
 
 std::string default_text(const ParamSpec& spec) {
   if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";

@@ -3,33 +3,44 @@
 
 #include "app/command.hpp"
 #include "app/film.hpp"
+#include "app/frame_range.hpp"
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
 #include "app/run_figures.hpp"
 #include "app/scene_run.hpp"
+#include "core/export/atomic_file.hpp"
 #include "core/scene/build.hpp"
 
 namespace unfurl {
 
 int cmd_render(const Arguments& arguments) {
+  const FigureOptions style = figure_options(arguments);
   const Scene scene = scene_of(arguments);
   check_film(scene);
   auto model = build_model(scene);
   const auto directory = open_output_directory(arguments.output, arguments.force);
-  const auto context = make_offscreen_context();  // missing graphics are found before the work
+  const FilmFolder folder(directory, scene);
+  if (folder.holds_another() && !arguments.force)
+    throw FileError(directory,
+                    "holds frames of another film (the scene, its settings or the program changed); "
+                    "use --force to start over, or another -o");
+  if (!arguments.frames.empty()) frame_range(arguments.frames, 100000);
+  const auto context = make_offscreen_context(arguments.threads);  // missing graphics are found before the work
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
   const Diagnostics diagnostics = diagnose(run);
-  clear_old_results(directory);
+  if (!folder.holds_this()) clear_old_results(directory);
+  folder.claim();
   const std::string summary = write_data(directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary << std::flush;
   if (run.status == RunStatus::stopped) return exit_interrupted;
 
-  FigureWriter writer(*context);
-  if (!write_film(directory, scene, run, *context, arguments) ||
-      !write_figures(directory / "figures", all_figures(), run, diagnostics, writer, arguments)) {
+  FigureWriter writer(*context, style);
+  if (!draw_frames(folder, scene, run, diagnostics, *context, arguments) ||
+      !write_figures(directory / "figures", all_figures(), run, diagnostics, writer, arguments) ||
+      !encode_films(directory, folder, scene, run, arguments)) {
     std::cerr << "unfurl: interrupted; what is finished is kept\n";
     return exit_interrupted;
   }

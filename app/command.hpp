@@ -10,16 +10,34 @@
 
 namespace unfurl {
 
+// What only the verbs that measure take; empty or 0: not given.
+struct StudyArguments {
+  std::string ladder;                 // --steps LARGEST:SMALLEST
+  int repeats = 0;                    // --repeats
+  bool models = false;                // --models
+  std::vector<std::string> extremes;  // --extreme NAME
+  std::vector<std::string> vary;      // --vary KEY=FROM:TO:COUNT
+  std::string measure;                // --measure NAME,NAME
+  std::string shard;                  // --shard I/N
+  std::vector<std::string> merge;     // --merge DIR
+  std::string find, target, between;  // --find KEY --target NAME=VALUE --between LOW:HIGH
+};
+
 // What the command line says, the same for every verb.
 struct Arguments {
   std::vector<std::string> names;      // the words behind the verb: SCENE NAME...
   std::vector<std::string> overrides;  // --set
   std::string output;                  // -o; empty: not given
+  std::string frames;                  // --frames FIRST:END; empty: all
+  int poses = 5;                       // --poses
   bool force = false;
   bool quiet = false;
   bool json = false;
   double ui_scale = 0;  // --ui-scale of the window; 0: the monitor's
-  int threads = 0;  // 0: as many as the machine has
+  int threads = 0;    // 0: as many as the machine has
+  std::string style;  // --style, of figures; empty: screen
+  double dpi = 0;     // --dpi, of figures; 0: the style's
+  StudyArguments study;
 };
 
 struct Command {
@@ -28,15 +46,22 @@ struct Command {
   std::string_view help;   // one line
   std::size_t min_names, max_names;
   bool needs_output;
-  int (*run)(const Arguments&);  // returns an ExitCode
+  int (*run)(const Arguments&);   // returns an ExitCode
+  std::string_view options = {};  // of its own, beside the common ones: "--steps --repeats" (own_options.hpp)
 };
 
 std::span<const Command> commands();
 
 int cmd_run(const Arguments& arguments);
 int cmd_render(const Arguments& arguments);
+int cmd_poster(const Arguments& arguments);
 int cmd_figure(const Arguments& arguments);
 int cmd_check(const Arguments& arguments);
+int cmd_study(const Arguments& arguments);
+int cmd_stress(const Arguments& arguments);
+int cmd_sweep(const Arguments& arguments);
+int cmd_solve(const Arguments& arguments);
+int cmd_reproduce(const Arguments& arguments);
 int cmd_view(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 

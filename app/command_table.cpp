@@ -5,16 +5,29 @@ namespace unfurl {
 namespace {
 
 constexpr Command table[] = {
-    {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run},
-    {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render},
+    {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run, "--tolerance"},
+    {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
+     "--tolerance"},
     {"figure", "SCENE NAME... -o FILE",
-     "one figure, PNG or SVG by extension; NAME all: every figure, into a directory", 2, 100, true,
-     cmd_figure},
+     "one figure, PNG, SVG or PDF by extension; NAME all: every figure, into a directory", 2, 100, true,
+     cmd_figure, "--tolerance"},
+    {"study", "SCENE -o DIR", "speed against accuracy: every method over a ladder of steps", 1, 1, true,
+     cmd_study, "--steps --repeats --models"},
+    {"stress", "SCENE -o DIR", "stability at the extremes: every method and step", 1, 1, true, cmd_stress,
+     "--extreme"},
+    {"sweep", "SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR",
+     "measures of the scene over a grid of parameters", 1, 1, true, cmd_sweep,
+     "--vary --measure --shard --merge"},
+    {"solve", "SCENE --find KEY --target NAME=VALUE", "the parameter for which a measure takes a value", 1, 1,
+     false, cmd_solve, "--find --target --between"},
+    {"reproduce", "-o DIR", "the paper's tables and figures, beside ours", 0, 0, true, cmd_reproduce},
+    {"poster", "SCENE -o FILE.png", "a strip of poses side by side, from start to end (--poses N)", 1, 1,
+     true, cmd_poster},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
      1, 1, false, cmd_check},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view},
-    {"list", "structures|methods|figures|scenes|constraints|forces", "what there is to choose from", 1, 1,
-     false, cmd_list},
+    {"list", "structures|methods|figures|scenes|constraints|forces|looks|measures",
+     "what there is to choose from", 1, 1, false, cmd_list},
 };
 
 }  // namespace

@@ -1,18 +1,20 @@
 #include "app/film.hpp"
 
-#include <array>
-#include <cstdio>
-#include <future>
+#include <algorithm>
 #include <iostream>
 #include <memory>
-#include <optional>
+#include <thread>
+#include <utility>
 
+#include "app/frame_range.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
 #include "core/export/atomic_file.hpp"
-#include "render/image/mp4_pipe.hpp"
+#include "core/model/nearest_name.hpp"
+#include "core/structures/name_index.hpp"
+#include "render/image/image_scale.hpp"
 #include "render/image/png.hpp"
-#include "render/image/webp_animation.hpp"
+#include "render/image/task_queue.hpp"
 #include "render/scene/frame_builder.hpp"
 #include "render/scene/renderer.hpp"
 
@@ -22,86 +24,99 @@ namespace {
 
 constexpr double max_frames = 99999;  // five digits in the name, and more than a day of drawing
 
-std::string frame_name(std::size_t index) {
-  std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "frame_%05zu.png", index);
-  return name.data();
+// PNG files are compressed beside the drawing of the next pictures.
+int writer_threads(const Arguments& arguments) {
+  const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int threads = arguments.threads > 0 ? arguments.threads : cores;
+  return threads == 1 ? 0 : std::min(threads, 16);
 }
 
-// Takes frames in order and compresses them beside the drawing of the next one.
-class FilmSink {
- public:
-  FilmSink(const std::filesystem::path& directory, const RenderOptions& options, bool parallel)
-      : frames_(directory / "frames"),
-        webp_(directory / "animation.webp", options.width, options.height, options.fps),
-        policy_(parallel ? std::launch::async : std::launch::deferred) {
-    std::error_code error;
-    std::filesystem::create_directories(frames_, error);
-    if (error) throw FileError(frames_, error.value());
-    if (ffmpeg_available())
-      mp4_.emplace(directory / "animation.mp4", options.width, options.height, options.fps);
-  }
+SourceLocation place_of(const Scene& scene, const std::string& key) {
+  const auto it = scene.locations.find(key);
+  return it == scene.locations.end() ? SourceLocation{scene.name, 0, 0} : it->second;
+}
 
-  void add(std::size_t index, Image image) {
-    wait();
-    auto shared = std::make_shared<const Image>(std::move(image));
-    png_ = std::async(policy_, [this, index, shared] { write_png(frames_ / frame_name(index), *shared); });
-    film_ = std::async(policy_, [this, shared] {
-      webp_.add(*shared);
-      if (mp4_) mp4_->add(*shared);
-    });
-  }
+// The inset's column is one that only the run can tell to be there.
+void check_inset(const Scene& scene, const Diagnostics& diagnostics) {
+  const std::string& inset = scene.render.inset;
+  if (inset.empty() || diagnostics.find(inset)) return;
+  std::vector<std::string_view> names;
+  for (const Series& series : diagnostics.columns) names.push_back(series.name);
+  throw SceneError({{place_of(scene, "render.inset"), "render.inset",
+                     "no column " + in_quotes(inset) + did_you_mean(inset, names)}});
+}
 
-  void finish() {
-    wait();
-    webp_.finish();
-    const std::string warning = mp4_ ? mp4_->finish() : "";
-    if (!warning.empty()) std::cerr << "unfurl: warning: " << warning << "\n";
-  }
-
- private:
-  void wait() {
-    if (png_.valid()) png_.get();
-    if (film_.valid()) film_.get();
-  }
-
-  std::filesystem::path frames_;
-  WebpAnimation webp_;
-  std::optional<Mp4Pipe> mp4_;
-  std::launch policy_;
-  std::future<void> png_, film_;  // last: they use the members above, and end before those do
-};
+std::vector<int> trail_nodes(const Scene& scene, const Structure& structure) {
+  const std::string& pattern = scene.render.trails;
+  if (pattern.empty()) return {};
+  NameIndex nodes;
+  for (const NodeCopy& copy : structure.node_copies) nodes.add(copy.name);
+  std::vector<int> found = nodes.matching(pattern);
+  if (found.empty())
+    throw SceneError({{place_of(scene, "render.trails"), "render.trails",
+                       "no node matches " + in_quotes(pattern) + did_you_mean(pattern, nodes.names())}});
+  return found;
+}
 
 }  // namespace
 
+FrameStyle film_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
+  const RenderOptions& options = scene.render;
+  FrameStyle style;
+  style.width = options.width * options.supersample;
+  style.height = options.height * options.supersample;
+  style.title = scene.title;
+  check_inset(scene, diagnostics);
+  style.options = options;
+  style.trails = trail_nodes(scene, run.trajectory.structure());
+  style.run = &run;
+  style.diagnostics = &diagnostics;
+  return style;
+}
+
 void check_film(const Scene& scene) {
   const RenderOptions& render = scene.render;
-  if (scene.solver.end_time / render.speed * render.fps <= max_frames) return;
-  const auto it = scene.locations.find("render.fps");
-  const auto where = it == scene.locations.end() ? SourceLocation{scene.name, 0, 0} : it->second;
-  throw SceneError({{where, "render.fps",
+  if (most_shots(scene.solver.end_time, render) <= max_frames) return;
+  throw SceneError({{place_of(scene, "render.fps"), "render.fps",
                      "the film would have more than 99999 frames; take fewer per second, a larger "
                      "render.speed or an earlier solver.end_time"}});
 }
 
-bool write_film(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
-                GlContext& context, const Arguments& arguments) {
-  FrameStyle style;
-  style.width = scene.render.width;
-  style.height = scene.render.height;
-  style.title = scene.title;
+bool has_alpha(const RenderOptions& options) {
+  const Look* look = find_look(options.look);
+  return options.transparent || (look != nullptr && look->transparent);
+}
+
+bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
+                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments) {
+  const RenderOptions& options = scene.render;
+  const std::vector<Shot> shots = film_shots(run.trajectory, options);
+  const FrameRange range = frame_range(arguments.frames, shots.size());
+  std::vector<std::size_t> missing;
+  for (std::size_t k = range.first; k < range.end; ++k)
+    if (!folder.finished(k)) missing.push_back(k);
+  if (missing.empty()) return true;
+  folder.set_encoded(false);
+  const bool alpha = has_alpha(options);
+  const FrameStyle style = film_style(scene, run, diagnostics);
   const FrameBuilder builder(run.trajectory, style);
   Renderer renderer(context, style.width, style.height);
-  const auto times = frame_times(run.trajectory, scene.render.fps, scene.render.speed);
-  FilmSink sink(directory, scene.render, arguments.threads != 1);
+  TaskQueue writers(writer_threads(arguments));
   Progress progress("drawing", arguments.quiet);
-  std::size_t drawn = 0;
-  for (; drawn < times.size() && !interrupted(); ++drawn) {
-    progress.show(static_cast<double>(drawn) / static_cast<double>(times.size()));
-    sink.add(drawn, renderer.draw(builder.build(times[drawn])));
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    if (interrupted()) {
+      writers.finish();
+      return false;
+    }
+    progress.show(static_cast<double>(i) / static_cast<double>(missing.size()));
+    auto image = std::make_shared<const Image>(renderer.draw(builder.build(shots[missing[i]])));
+    writers.add([image = std::move(image), path = folder.frame(missing[i]), &options, alpha] {
+      if (options.supersample == 1) return write_png(path, *image, alpha);
+      write_png(path, scaled_down(*image, options.width, options.height), alpha);
+    });
   }
-  sink.finish();
-  return drawn == times.size();
+  writers.finish();
+  return true;
 }
 
 }  // namespace unfurl

@@ -1,12 +1,15 @@
-// The pictures of a run: a PNG per frame, an animated WebP, and an MP4 where ffmpeg is.
+// The pictures of a run: a PNG per frame, and films made of the finished frames.
 #pragma once
 
 #include <filesystem>
 
 #include "app/command.hpp"
+#include "app/film_folder.hpp"
+#include "core/diagnostics/diagnostics.hpp"
 #include "core/scene/scene.hpp"
 #include "core/simulate/simulation.hpp"
 #include "render/gl/context.hpp"
+#include "render/scene/frame_builder.hpp"
 
 namespace unfurl {
 
@@ -14,9 +17,21 @@ namespace unfurl {
 // reason.
 void check_film(const Scene& scene);
 
-// Writes DIR/frames/frame_00000.png ..., DIR/animation.webp and, where ffmpeg is, DIR/animation.mp4. Stops at
-// Ctrl-C and keeps what is finished. Returns whether all frames were drawn. Throws FileError, GraphicsError.
-bool write_film(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
-                GlContext& context, const Arguments& arguments);
+// What the scene says about its pictures, for a FrameBuilder. Points to run and diagnostics. Throws
+// SceneError where a name in it is none of this run's.
+FrameStyle film_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics);
+
+// Do the frames have transparent pixels: because the scene says so, or its look?
+bool has_alpha(const RenderOptions& options);
+
+// Draws the frames that the folder lacks, or those of them that --frames asks for. Stops at Ctrl-C. Returns
+// whether all that were asked for are there. Throws FileError, GraphicsError, UsageError.
+bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
+                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments);
+
+// Makes animation.webp, animation.gif and, where ffmpeg is, animation.mp4 in the directory, once all frames
+// of the film are there; a note on stderr where they are not. Stops at Ctrl-C; returns whether it did not.
+bool encode_films(const std::filesystem::path& directory, const FilmFolder& folder, const Scene& scene,
+                  const Simulation& run, const Arguments& arguments);
 
 }  // namespace unfurl

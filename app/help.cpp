@@ -1,5 +1,7 @@
 #include "app/help.hpp"
 
+#include "app/own_options.hpp"
+
 namespace unfurl {
 
 namespace {
@@ -15,10 +17,15 @@ constexpr std::string_view common_options =
     "string:\n"
     "                     --set solver.step=0.005 --set structure.model=sector --set "
     "structure.nodes.B0.mass=2\n"
-    "  --force            write into a directory that holds other files\n"
+    "  --size WxH, --fps N, --look NAME, --supersample N, --transparent\n"
+    "                     short for --set render.size=[W, H], render.fps=N, ...\n"
+    "  --frames A:B       of a film only the frames A to B - 1, so that several machines can share one\n"
+    "  --force            write into a directory that holds other files, start another film there over\n"
     "  --quiet            no progress and no report\n"
     "  --json             the summary or the list as JSON on standard output\n"
     "  --threads N        at most N threads\n"
+    "  --style NAME       of figures: screen, single-column (89 mm), double-column (183 mm), slide\n"
+    "  --dpi N            pixels per inch of figures as PNG\n"
     "  --ui-scale X       size of the window's text and widgets, 0.5 to 4; else the monitor's\n"
     "  --help, --version\n";
 
@@ -29,8 +36,13 @@ std::string usage_line(const Command& command) {
 }
 
 std::string command_help(const Command& command) {
-  return "usage: " + usage_line(command) + " [options]\n" + std::string(command.help) + "\n\n" +
-         std::string(common_options);
+  std::string text = "usage: " + usage_line(command) + " [options]\n" + std::string(command.help) + "\n\n";
+  if (!command.options.empty()) text += "options of its own:\n";
+  for (const OwnOption& own : own_options())
+    if (takes(command, own.name))
+      text += "  " + padded(std::string(own.name) + " " + std::string(own.value), 30) +
+              std::string(own.help) + "\n";
+  return text + (command.options.empty() ? "" : "\n") + std::string(common_options);
 }
 
 std::string program_help() {

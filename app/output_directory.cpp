@@ -78,7 +78,7 @@ void require_writable(const fs::path& file) {
 void clear_old_results(const fs::path& directory) {
   std::error_code error;
   for (const char* name : {"summary.json", "series.csv", "trajectory.csv", "rod_forces.csv", "scene.toml",
-                           "animation.webp", "animation.mp4", "animation.gif"})
+                           "animation.webp", "animation.mp4", "animation.gif", "film.json"})
     fs::remove(directory / name, error);
   remove_matching(directory / "frames", "frame_", ".png");
   for (const char* suffix : {".png", ".svg"}) remove_matching(directory / "figures", "", suffix);

@@ -4,6 +4,7 @@
 #include "app/progress.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/model/nearest_name.hpp"
+#include "render/plot/figure_data.hpp"
 
 namespace unfurl {
 
@@ -13,6 +14,16 @@ const FigureKind& figure_named(const std::string& name) {
   for (const auto& kind : figure_kinds()) names.push_back(kind.name);
   names.push_back("all");
   throw UsageError("no figure " + in_quotes(name) + did_you_mean(name, names));
+}
+
+FigureOptions figure_options(const Arguments& arguments) {
+  FigureOptions options{.dpi = arguments.dpi};
+  if (arguments.style.empty()) return options;
+  options.style = find_figure_style(arguments.style);
+  if (options.style) return options;
+  std::vector<std::string_view> names;
+  for (const FigureStyle& style : figure_styles()) names.push_back(style.name);
+  throw UsageError("no style " + in_quotes(arguments.style) + did_you_mean(arguments.style, names));
 }
 
 std::vector<const FigureKind*> all_figures() {
@@ -34,8 +45,9 @@ bool write_figures(const std::filesystem::path& directory, const std::vector<con
     if (!kinds[i]->applies(run, diagnostics)) continue;
     const Figure figure = kinds[i]->make(run, diagnostics);
     const std::string name(kinds[i]->name);
-    writer.write(figure, directory / (name + ".svg"));
-    writer.write(figure, directory / (name + ".png"));
+    for (const char* extension : {".svg", ".pdf", ".png"})
+      writer.write(figure, directory / (name + extension));
+    write_figure_data(figure, directory / (name + ".png"));
   }
   return true;
 }

@@ -15,9 +15,12 @@ namespace unfurl {
 // The figure of that name; throws UsageError with the nearest one.
 const FigureKind& figure_named(const std::string& name);
 
-// Writes these figures, those that the scene has data for, as NAME.png and NAME.svg into the directory, which
-// is made where it is missing. Stops at Ctrl-C; returns whether all were written. Throws FileError,
-// GraphicsError.
+// --style and --dpi; throws UsageError with the nearest name.
+FigureOptions figure_options(const Arguments& arguments);
+
+// Writes these figures, those that the scene has data for, as NAME.png, NAME.svg and NAME.pdf into the
+// directory, with NAME.csv and NAME.caption.txt beside; the directory is made where it is missing. Stops at
+// Ctrl-C; returns whether all were written. Throws FileError, GraphicsError.
 bool write_figures(const std::filesystem::path& directory, const std::vector<const FigureKind*>& kinds,
                    const Simulation& run, const Diagnostics& diagnostics, FigureWriter& writer,
                    const Arguments& arguments);

@@ -16,6 +16,7 @@
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
+#include "core/study/tolerance.hpp"
 
 namespace unfurl {
 
@@ -39,7 +40,7 @@ Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model
   SimulationHooks hooks;
   hooks.progress = [&](double fraction) { progress.show(fraction); };
   hooks.cancelled = interrupted;
-  return simulate(std::move(model), scene.solver, hooks);
+  return simulate_as_asked(model, scene.solver, hooks);
 }
 
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,

@@ -102,7 +102,7 @@ SliderRange slider_range(const ParamSpec& spec, const ParamValue& base) {
   const double value = number_of(base), fallback = number_of(spec.fallback);
   const double typical = std::abs(value) > 0 ? std::abs(value) : std::abs(fallback);
   const double room = typical > 0 ? typical : 1.0;
-  if (bounded && spec.max - spec.min <= 1000 * std::max(room, std::abs(spec.min))) {
+  if (bounded && spec.max - spec.min <= 1000 * std::max(room, 1.0)) {
     double low = spec.min, high = spec.max;
     const double margin = 1e-3 * (high - low);  // an open end cannot be reached
     if (spec.min_open) low += margin;
@@ -114,7 +114,8 @@ SliderRange slider_range(const ParamSpec& spec, const ParamValue& base) {
             std::min(spec.max, std::max(12.0, rounded_up(4 * room))), false};
   if (spec.min >= 0) {  // sizes and masses: factors rather than differences
     const double high = std::min(spec.max, rounded_up(10 * room));
-    return {std::max(spec.min_open ? 0.0 : spec.min, high / 1000), high, true};
+    return {value < high / 1000 ? spec.min : std::max(spec.min_open ? 0.0 : spec.min, high / 1000), high,
+            true};
   }
   const double reach = rounded_up(4 * room);
   return {std::max(spec.min, -reach), std::min(spec.max, reach), false};

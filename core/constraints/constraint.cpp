@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/constraints/alignment.hpp"
 #include "core/constraints/linear_rows.hpp"
 #include "core/constraints/rod_length.hpp"
 
@@ -13,6 +14,8 @@ std::span<const ConstraintKind> constraint_kinds() {
       ConstraintKind{"line", "a node stays on a line; normal = its direction", line_block},
       ConstraintKind{"fixed", "a node stays where it is", fixed_block},
       ConstraintKind{"relation", "a linear relation between nodes (mirror, equality)", relation_block},
+      ConstraintKind{"collinear", "a node stays on the line through two others", collinear_block},
+      ConstraintKind{"coplanar", "a node stays in the plane through three others", coplanar_block},
       ConstraintKind{"rod", "the length of a rod; its multiplier is the axial force", rod_length_block},
   };
   return kinds;

@@ -53,14 +53,6 @@ class LinearRows final : public ConstraintBlock {
   std::vector<Row> rows_;
 };
 
-// The length that a linear row's error is compared with: the mean rod length, a metre where there are no
-// rods.
-double reference_length(const Structure& structure) {
-  double sum = 0;
-  for (const Rod& rod : structure.rods) sum += rod.length;
-  return structure.rods.empty() ? 1.0 : sum / static_cast<double>(structure.rods.size());
-}
-
 void append(Row& row, int node, const Vec3& direction) {
   for (int k = 0; k < 3; ++k) {
     if (direction[k] == 0.0) continue;
@@ -93,6 +85,12 @@ Row held(const Structure& structure, const Constraint& c, const Vec3& direction,
 }
 
 }  // namespace
+
+double reference_length(const Structure& structure) {
+  double sum = 0;
+  for (const Rod& rod : structure.rods) sum += rod.length;
+  return structure.rods.empty() ? 1.0 : sum / static_cast<double>(structure.rods.size());
+}
 
 std::unique_ptr<ConstraintBlock> plane_block(const Structure& structure) {
   return block_of(structure, "plane", [](const Constraint& c, double length, std::vector<Row>& rows) {

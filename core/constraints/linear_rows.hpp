@@ -13,6 +13,10 @@ namespace unfurl {
 //   line      the two directions across `vectors[0]` are held  two rows; the line passes through the node at
 //   t = 0 fixed     the node stays where it is at t = 0              three rows relation  sum_i vectors[i] .
 //   x_{nodes[i]} = value          one row: mirror, equality, any affine relation
+// The length that an error is compared with where a row has none of its own: the mean rod length, a metre
+// where there are no rods.
+double reference_length(const Structure& structure);
+
 std::unique_ptr<ConstraintBlock> plane_block(const Structure& structure);
 std::unique_ptr<ConstraintBlock> line_block(const Structure& structure);
 std::unique_ptr<ConstraintBlock> fixed_block(const Structure& structure);

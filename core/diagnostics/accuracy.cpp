@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/integrators/stage_equations.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -43,6 +45,14 @@ std::vector<std::string> accuracy_warnings(const Diagnostics& d) {
     warnings.push_back(text.str());
   }
   return warnings;
+}
+
+double constraint_tolerance(const Simulation& run) {
+  const VectorXd& lengths = run.trajectory.model().system.constraint_lengths();
+  if (run.options.method != "dvm" || lengths.size() == 0 || run.trajectory.empty()) return 0.0;
+  const double reach = run.trajectory.node_positions(run.trajectory.size() - 1).lpNorm<Eigen::Infinity>();
+  const double length = lengths.minCoeff();
+  return constraint_level_wanted * constraint_noise(length, reach) / length;
 }
 
 }  // namespace unfurl

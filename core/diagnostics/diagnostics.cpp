@@ -19,6 +19,7 @@ struct Instant {
   const VectorXd &phi, &lengths;  // of all constraints [m]
   const VectorXd& velocity_phi;   // G v of all constraints [m/s]
   const VectorXd& axial_force;    // of the solved rods [N]
+  const VectorXd& acceleration;   // of the nodes; NaN where the equations have no solution [m/s^2]
   double first_energy;            // kinetic + potential at t = 0 [J]
 
   const System& system() const { return run.trajectory.model().system; }
@@ -74,12 +75,37 @@ const std::array rows{
         [](const Instant& s) { return static_cast<double>(s.run.trajectory.report(s.i).newton_iterations); }},
 };
 
+// -(across'/across) / (along'/along): the ratio of the strain increments of the motion that goes on, which at
+// rest is the one that begins.
+double poisson_ratio(const Instant& s) {
+  const Structure& structure = s.run.trajectory.structure();
+  const LinearForm& along = structure.lengths[static_cast<std::size_t>(structure.strain_along)].value;
+  const LinearForm& across = structure.lengths[static_cast<std::size_t>(structure.strain_across)].value;
+  const VectorXd& motion = s.v.isZero(0.0) ? s.acceleration : s.v;
+  const double stretch = along.rate(motion) / along(s.q);
+  return stretch == 0.0 ? std::numeric_limits<double>::quiet_NaN()
+                        : -(across.rate(motion) / across(s.q)) / stretch;
+}
+
+// The columns that only this structure has, at the end.
+void add_own_columns(const Structure& structure, Diagnostics& out) {
+  for (const ReportedLength& m : structure.lengths) out.columns.push_back({m.name, m.label, "m", {}});
+  if (structure.strain_along >= 0) out.columns.push_back({"poisson_ratio", "Poisson's ratio", "", {}});
+}
+
+void add_own_values(const Structure& structure, const Instant& s, Series* column) {
+  for (const ReportedLength& m : structure.lengths) (column++)->values.push_back(m.value(s.q));
+  if (structure.strain_along >= 0) column->values.push_back(poisson_ratio(s));
+}
+
 // Axial forces from the index-1 equations at the state: least-norm where rods are redundant, per rod of the
 // whole. At an event in a singular pose they are the extrapolated ones that the state holds.
 void axial_forces(Index1& index1, const Model& model, const State& state, bool singular_event,
-                  VectorXd& force) {
+                  VectorXd& force, VectorXd& node_acceleration) {
   VectorXd acceleration(model.system.solved_coordinates()), lambda = state.lambda;
+  acceleration.setConstant(std::numeric_limits<double>::quiet_NaN());
   const bool ok = singular_event || index1.evaluate(state.t, state.z, state.w, acceleration, lambda);
+  model.system.expand_rate(acceleration, node_acceleration);
   for (Index r = 0; r < force.size(); ++r) {
     const auto ur = static_cast<std::size_t>(r);
     force[r] = ok ? lambda[model.system.rod_rows()[ur]] / model.structure.rods[ur].multiplicity
@@ -101,6 +127,12 @@ const Series& Diagnostics::at(std::string_view name) const {
   return *s;
 }
 
+std::vector<std::string_view> diagnostic_names() {
+  std::vector<std::string_view> names;
+  for (const Row& row : rows) names.emplace_back(row.name);
+  return names;
+}
+
 Diagnostics diagnose(const Simulation& run) {
   const Trajectory& trajectory = run.trajectory;
   const Model& model = trajectory.model();
@@ -111,10 +143,12 @@ Diagnostics diagnose(const Simulation& run) {
     used.push_back(&row);
     out.columns.push_back({row.name, row.label, row.unit, {}});
   }
+  add_own_columns(trajectory.structure(), out);
   const auto rods = static_cast<Index>(model.structure.rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   const VectorXd lengths = model.system.all_lengths();
-  VectorXd phi(model.system.all_constraints()), force(rods), velocity_phi;
+  VectorXd phi(model.system.all_constraints()), force(rods), velocity_phi,
+      acceleration(model.system.coordinates());
   Index1 index1(model.system, true);
   double first_energy = 0;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
@@ -122,12 +156,13 @@ Diagnostics diagnose(const Simulation& run) {
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
     model.system.all_constraint_values(q, phi);
     velocity_phi = model.system.all_jacobian(q) * v;
-    axial_forces(index1, model, state, trajectory.report(i).singular_event, force);
+    axial_forces(index1, model, state, trajectory.report(i).singular_event, force, acceleration);
     out.axial_force.row(static_cast<Index>(i)) = force.transpose();
     if (i == 0) first_energy = model.system.kinetic_energy(state.w) + model.system.potential_energy(q);
-    const Instant instant{run, i, state, q, v, phi, lengths, velocity_phi, force, first_energy};
+    const Instant instant{run, i, state, q, v, phi, lengths, velocity_phi, force, acceleration, first_energy};
     out.t.push_back(state.t);
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
+    add_own_values(trajectory.structure(), instant, out.columns.data() + used.size());
   }
   return out;
 }

@@ -29,7 +29,10 @@ struct Diagnostics {
 // Column names: kinetic_energy_J potential_energy_J work_J energy_balance_J constraint_max_m
 // constraint_relative_max constraint_round_off_max constraint_velocity_max_m_s fold_angle_rad fold_rate_rad_s
 // deployed_fraction axial_force_max_N axial_force_min_N step_s newton_iterations; fold columns only where the
-// structure has a fold angle.
+// structure has a fold angle. Then the structure's own lengths and, where it names strains, poisson_ratio.
 Diagnostics diagnose(const Simulation& run);
+
+// Names of all columns that a scene may have.
+std::vector<std::string_view> diagnostic_names();
 
 }  // namespace unfurl

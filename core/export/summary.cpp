@@ -68,6 +68,7 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   for (const char* name : {"constraint_max_m", "constraint_relative_max", "constraint_velocity_max_m_s"})
     summary["errors"][name] = max_abs(diagnostics, name);
   summary["errors"]["energy_balance_max_J"] = max_abs(diagnostics, "energy_balance_J");
+  if (!std::isnan(run.position_estimate)) summary["errors"]["position_estimate_m"] = run.position_estimate;
   summary["events"] = Json::array();
   for (const auto& event : run.events) summary["events"].push_back({{"name", event.name}, {"t_s", event.t}});
   if (!run.trajectory.empty()) summary["final"] = final_json(run.trajectory);

@@ -8,7 +8,7 @@ namespace unfurl {
 namespace {
 
 // Levels: 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
-constexpr double wanted = 1.5, wanted_constraint = 2.0, accepted = 30.0;
+constexpr double wanted = 1.5, wanted_constraint = constraint_level_wanted, accepted = 30.0;
 // A system with more unknowns than this is not given the full Newton matrix, whose factors grow too fast;
 // instead its weak modes may keep a larger constraint error.
 constexpr Index full_newton_unknowns = 2500;
@@ -34,7 +34,7 @@ class Dvm final : public Integrator {
     const Index n = system.solved_coordinates(), m = system.constraints();
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
-    for (VectorXd* v : {&p1_, &w1_}) v->setZero(n);
+    for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_}) v->setZero(n);
     for (VectorXd* v : {&mu_, &zero_}) v->setZero(m);
     pose_.setZero(system.coordinates());
     halfway_ = c_.basis.values(0.5);
@@ -74,6 +74,7 @@ class Dvm final : public Integrator {
   bool frozen_iterations(StepReport& report);
   void correct(StepReport& report);
   void correct_at_ends(StepReport& report);
+  void settle_end();
   void finish(State& state, double h, StepReport& report);
 
   const System& system_;
@@ -84,7 +85,7 @@ class Dvm final : public Integrator {
   SaddleSolver saddle_;
   SparseLdlt mass_factor_;  // ends variant only
   std::vector<double> rhs_f_, rhs_g_;
-  VectorXd p1_, w1_, mu_, zero_, pose_, halfway_;
+  VectorXd p1_, w1_, end_z_, pull_, mu_, zero_, pose_, halfway_;
   MatrixXd previous_, prolong_;
   RowMajor consistent_f_;
   double previous_h_ = 0;
@@ -229,22 +230,43 @@ void Dvm::correct(StepReport& report) {
 void Dvm::correct_at_ends(StepReport& report) {
   const Index last = c_.s - 2, n = eq_.dX.rows();
   const double h = eq_.h;
-  const auto column = [&](Index j) -> VectorXd {
-    return -h * (eq_.momentum * c_.C_inverse.row(j).transpose());
-  };
   Eigen::Map<VectorXd> f(rhs_f_.data(), n), y(rhs_g_.data(), eq_.lambda.rows());
-  f = column(last);
+  f.noalias() = -h * (eq_.momentum * c_.C_inverse.row(last).transpose());
   y = -eq_.phi.col(last);
   saddle_.apply(rhs_f_.data(), rhs_g_.data(), 1);
   eq_.dX.col(last) += f;
-  const VectorXd pull = G_.transpose() * y;
+  pull_.noalias() = G_.transpose() * y;
   for (Index j = 0; j < last; ++j) {
-    VectorXd r = column(j) - (c_.C_inverse(j, 0) / c_.C_inverse(last, 0)) * pull;
-    mass_factor_.solve(r.data(), 1);
-    eq_.dX.col(j) += r;
+    f.noalias() = -h * (eq_.momentum * c_.C_inverse.row(j).transpose());
+    f -= (c_.C_inverse(j, 0) / c_.C_inverse(last, 0)) * pull_;
+    mass_factor_.solve(f.data(), 1);
+    eq_.dX.col(j) += f;
   }
   report.right_hand_sides += static_cast<int>(c_.s - 1);
   eq_.lambda.col(0) -= y / (0.5 * h * h * c_.C_inverse(last, 0));
+}
+
+// Takes away what the iteration left of Phi at the end pose, where a motion of its own size does so. Weak
+// modes, which would move far, keep theirs.
+void Dvm::settle_end() {
+  constexpr double far = 1000.0, settled = 0.5;
+  const Index last = c_.s - 2;
+  double level = 0, size = 0;
+  for (Index r = 0; r < eq_.phi.rows(); ++r) {
+    const double error = std::abs(eq_.phi(r, last));
+    level = std::max(level, error / eq_.constraint_noise(r));
+    size = std::max(size, error);
+    rhs_g_[static_cast<std::size_t>(r)] = -eq_.phi(r, last);
+  }
+  if (level <= settled) return;
+  std::fill_n(rhs_f_.begin(), eq_.dX.rows(), 0.0);
+  saddle_.apply(rhs_f_.data(), rhs_g_.data(), 1);
+  const Eigen::Map<const VectorXd> dz(rhs_f_.data(), eq_.dX.rows());
+  if (!(dz.lpNorm<Eigen::Infinity>() <= far * size)) return;
+  eq_.dX.col(last) += dz;
+  end_z_ = eq_.z0 + eq_.dX.col(last);
+  system_.expand(end_z_, eq_.Q.col(last + 1));
+  system_.constraint(eq_.Q.col(last + 1), eq_.phi.col(last));
 }
 
 // p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; 0] at the end pose, mu = h b_s
@@ -258,6 +280,7 @@ void Dvm::finish(State& state, double h, StepReport& report) {
     report.status = StepStatus::not_finite;
     return;
   }
+  if (!eq_.at_ends) settle_end();
   report.constraint_norm = zero_.size() ? eq_.phi.col(c_.s - 2).lpNorm<Eigen::Infinity>() : 0.0;
   previous_ = eq_.dX;
   previous_h_ = h;
@@ -275,7 +298,8 @@ Claims dvm_claims(const SolverOptions& options) {
                 .symmetric = true,
                 .implicit = true,
                 .holds_positions = true,
-                .holds_velocities = true};
+                .holds_velocities = true,
+                .conserves_momentum_maps = true};
   const int s = options.stages;
   if (options.constraints_at == "ends")
     claims.order = 2;

@@ -11,7 +11,8 @@ Index1::Index1(const System& system, bool clean_multipliers)
       v_(system.coordinates()),
       f_(system.coordinates()),
       force_(system.solved_coordinates()),
-      bias_(system.constraints()) {}
+      bias_(system.constraints()),
+      phi_(system.constraints()) {}
 
 bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda) {
   system_.expand(z, q_);
@@ -23,6 +24,12 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   system_.reduce_force(f_, force_);
   system_.constraint_bias(q_, v_, bias_);
   bias_ = -bias_;
+  if (alpha_ > 0) {
+    phi_.noalias() = G_ * w;
+    bias_ -= 2.0 * alpha_ * phi_;
+    system_.constraint(q_, phi_);
+    bias_ -= alpha_ * alpha_ * phi_;
+  }
   saddle_.solve(force_, bias_, acceleration, lambda, refinements_);
   return acceleration.allFinite() && lambda.allFinite();
 }

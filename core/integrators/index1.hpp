@@ -8,15 +8,18 @@ namespace unfurl {
 // Accelerations and multipliers from the equations of motion with the constraints differentiated twice (index
 // 1):
 //
-//     [ M  G^T ] [w']     [ F(t, q, v)       ]
-//     [ G   0  ] [lambda] [ -v^T Hess Phi v  ]
+//     [ M  G^T ] [w']     [ F(t, q, v)                                  ]
+//     [ G   0  ] [lambda] [ -v^T Hess Phi v - 2 alpha G v - alpha^2 Phi ]
 //
-// Multipliers that are not unique come with least scaled norm. One evaluation is one factorisation.
+// The terms with alpha vanish where the constraints hold; alpha = 0 unless stabilise() sets it. Multipliers
+// that are not unique come with least scaled norm. One evaluation is one factorisation.
 class Index1 {
  public:
   // clean_multipliers: for reporting forces rather than for stepping; slower, with round-off in redundant
   // multipliers held at 1e-9 of their size instead of 1e-6.
   explicit Index1(const System& system, bool clean_multipliers = false);
+  // Let constraint errors decay at the rate alpha [1/s] (Baumgarte 1972).
+  void stabilise(double alpha) { alpha_ = alpha; }
   // False where the factorisation broke down or the result is not finite.
   bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda);
 
@@ -26,7 +29,8 @@ class Index1 {
   std::vector<double> scratch_;
   SaddleSolver saddle_;
   int refinements_;
-  VectorXd q_, v_, f_, force_, bias_;
+  double alpha_ = 0;
+  VectorXd q_, v_, f_, force_, bias_, phi_;
 };
 
 }  // namespace unfurl

@@ -26,8 +26,9 @@ struct Claims {
   bool symplectic = false;
   bool symmetric = false;  // a step back with -h undoes a step
   bool implicit = false;
-  bool holds_positions = false;   // |Phi| at round-off after every step
-  bool holds_velocities = false;  // |G v| at round-off after every step
+  bool holds_positions = false;          // |Phi| at round-off after every step
+  bool holds_velocities = false;         // |G v| at round-off after every step
+  bool conserves_momentum_maps = false;  // (angular) momenta of a symmetric motion, to round-off
 };
 
 struct Method {

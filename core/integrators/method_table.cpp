@@ -2,8 +2,11 @@
 #include <array>
 
 #include "core/integrators/dvm.hpp"
+#include "core/integrators/generalized_alpha.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/integrators/rk4.hpp"
+#include "core/integrators/rk4_baumgarte.hpp"
+#include "core/integrators/rk4_projected.hpp"
 
 namespace unfurl {
 
@@ -13,6 +16,12 @@ std::span<const Method> methods() {
              make_dvm},
       Method{"rk4", "classical Runge-Kutta on the index-1 equations; constraints drift", rk4_claims,
              make_rk4},
+      Method{"rk4_baumgarte", "rk4 with constraint errors that decay at the rate `baumgarte`",
+             rk4_baumgarte_claims, make_rk4_baumgarte},
+      Method{"rk4_projected", "rk4 with positions and velocities projected on the constraints every step",
+             rk4_projected_claims, make_rk4_projected},
+      Method{"generalized_alpha", "generalized-alpha on the index-3 equations, damped by `rho_inf`",
+             generalized_alpha_claims, make_generalized_alpha},
   };
   return rows;
 }

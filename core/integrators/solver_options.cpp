@@ -23,12 +23,19 @@ const std::vector<ParamSpec>& solver_params() {
                    "where the interpolation nodes lie on a step (dvm)"),
       choice_param("constraints_at", fallback.constraints_at, {"nodes", "ends"},
                    "constraints hold at every interpolation node, or at step ends only (dvm)"),
+      positive_param("baumgarte", "1/s", fallback.baumgarte,
+                     "rate at which constraint errors decay; stable below 2.7 / step (rk4_baumgarte)"),
+      real_param(
+          "rho_inf", "", fallback.rho_inf, 0.0, 1.0,
+          "what is left of the fastest oscillations after a step; 1 damps nothing (generalized_alpha)"),
       positive_param("step", "s", fallback.step, "time step h"),
       boolean_param("adaptive", fallback.adaptive,
                     "steps follow the motion, time-symmetrically and none larger than `step`; a symplectic "
                     "method is then symmetric only"),
       positive_param("turn", "rad", fallback.turn,
                      "with `adaptive`: about how far a rod may turn, or velocities change, in a step"),
+      real_param("tolerance", "m", fallback.tolerance, 0.0, 1e6,
+                 "of node positions; stages and step are picked for it; 0: they are as given"),
       positive_param("end_time", "s", fallback.end_time, "the run ends here at the latest"),
       choice_param("at_deployed", fallback.at_deployed, {"stop", "pass"},
                    "what happens when the structure is fully deployed"),
@@ -44,9 +51,12 @@ SolverOptions solver_options(const ParamSet& values) {
   options.stages = static_cast<int>(values.integer("stages"));
   options.nodes = values.text("nodes");
   options.constraints_at = values.text("constraints_at");
+  options.baumgarte = values.real("baumgarte");
+  options.rho_inf = values.real("rho_inf");
   options.step = values.real("step");
   options.adaptive = values.boolean("adaptive");
   options.turn = values.real("turn");
+  options.tolerance = values.real("tolerance");
   options.end_time = values.real("end_time");
   options.at_deployed = values.text("at_deployed");
   options.eliminate_linear = values.boolean("eliminate_linear");
@@ -59,9 +69,12 @@ ParamSet solver_values(const SolverOptions& solver) {
   values.set("stages", static_cast<long>(solver.stages));
   values.set("nodes", solver.nodes);
   values.set("constraints_at", solver.constraints_at);
+  values.set("baumgarte", solver.baumgarte);
+  values.set("rho_inf", solver.rho_inf);
   values.set("step", solver.step);
   values.set("adaptive", solver.adaptive);
   values.set("turn", solver.turn);
+  values.set("tolerance", solver.tolerance);
   values.set("end_time", solver.end_time);
   values.set("at_deployed", solver.at_deployed);
   values.set("eliminate_linear", solver.eliminate_linear);

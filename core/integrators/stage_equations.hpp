@@ -9,6 +9,14 @@
 
 namespace unfurl {
 
+// The level of the constraints (in units of their noise, see below) at which the iteration of a step ends.
+inline constexpr double constraint_level_wanted = 2.0;
+
+// What rounding the coordinates, as large as `reach`, leaves of a constraint of this length [m].
+inline double constraint_noise(double length, double reach) {
+  return 2 * std::numeric_limits<double>::epsilon() * std::max(length, reach);
+}
+
 // Unknowns and residuals of one variational step; allocated once per model.
 //   dX [nz x s-1]: increments of the nodes 2..s from the step's start;  lambda [m x s-1]: multipliers of
 //   nodes 1..s-1 momentum [nz x s-1]: D_k S (+ p_0 for k = 1), kg m/s;  phi [m x s-1]: Phi(Q_j), j = 2..s, m
@@ -31,7 +39,7 @@ class StageEquations {
   // What rounding the coordinates leaves of row r of Phi [m]. A residual below it carries no information; in
   // redundant rows it would be answered with multipliers of size (residual / regularisation).
   double constraint_noise(Index r) const {
-    return 2 * ulp * std::max(system.constraint_lengths()[r], reach_);
+    return unfurl::constraint_noise(system.constraint_lengths()[r], reach_);
   }
 
   double multiplier_weight(int k) const;           // b_k, or 1/2 for the ends variant; k = 0..s-1

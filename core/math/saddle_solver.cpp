@@ -3,6 +3,7 @@
 #include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace unfurl {
 
@@ -124,6 +125,11 @@ double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVe
                            int max_refinements) const {
   const double size =
       std::max((f.cwiseProduct(column_scale_)).norm() + (g.cwiseProduct(row_scale_)).norm(), 1e-300);
+  if (!std::isfinite(size)) {
+    x.setConstant(std::numeric_limits<double>::quiet_NaN());
+    y.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return size;
+  }
   double* const b = packed_.data();
   best_x_.setZero();
   best_y_.setZero();

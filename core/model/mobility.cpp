@@ -1,6 +1,8 @@
 #include "core/model/mobility.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <limits>
 
 #include "core/math/linear_elimination.hpp"
@@ -18,7 +20,8 @@ constexpr double tolerance = 1e-11;
 // Beyond this the dense analysis takes seconds (its cost is cubic): the sparse one finds the same rows.
 constexpr Index max_dense_coordinates = 900;
 
-// The Jacobian with every row scaled to length 1; rows of zeros stay.
+}  // namespace
+
 SparseRows unit_rows(const System& system, const ConstVec& q) {
   SparseRows G = system.all_jacobian(q);
   for (Index row = 0; row < G.rows(); ++row) {
@@ -28,9 +31,11 @@ SparseRows unit_rows(const System& system, const ConstVec& q) {
   return G;
 }
 
+namespace {
+
 // Gram-Schmidt over the rows from the first to the last, each row projected twice so that the basis stays
 // orthogonal to round-off.
-std::vector<int> dependent_rows(const MatrixXd& G) {
+std::vector<int> dependent_rows(const MatrixXd& G, double negligible) {
   std::vector<int> dependent;
   MatrixXd basis(G.cols(), std::min(G.rows(), G.cols()));  // orthonormal columns
   Index size = 0;
@@ -41,10 +46,42 @@ std::vector<int> dependent_rows(const MatrixXd& G) {
       rest.noalias() -= basis.leftCols(size) * shares;
     }
     const double norm = rest.norm();
-    if (norm <= tolerance || size == basis.cols())
+    if (norm <= negligible || size == basis.cols())
       dependent.push_back(static_cast<int>(row));
     else
       basis.col(size++) = rest / norm;
+  }
+  return dependent;
+}
+
+// How many of the six rigid-body motions violate no constraint, of a structure that is not on one line: six
+// less the rank of G R, R = [translations, rotations].
+Index rigid_motions(const SparseRows& G, const ConstVec& q) {
+  const Index n = q.size() / 3;
+  MatrixXd R(q.size(), 6);
+  const double size = std::max(q.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
+  for (Index i = 0; i < n; ++i) {
+    const Vec3 x = q.segment<3>(3 * i) / size;
+    for (int k = 0; k < 3; ++k) {
+      R.block<3, 1>(3 * i, k) = Vec3::Unit(k);
+      R.block<3, 1>(3 * i, 3 + k) = Vec3::Unit(k).cross(x);
+    }
+  }
+  // Rows of G have the length 1 and entries of R are below 1: round-off is 1e-15, a motion that a row forbids
+  // 1e-3 and more.
+  const auto rank = [](const MatrixXd& A) { return (A.jacobiSvd().singularValues().array() > 1e-9).count(); };
+  return rank(R) - (G.rows() > 0 ? rank(G * R) : 0);
+}
+
+// Rows before a row may nearly depend on each other although all rows together do not; then round-off in what
+// is left of a dependent row exceeds the tolerance. The singular values do not suffer from this: they say how
+// many rows depend.
+std::vector<int> dependent_rows(const MatrixXd& G, const VectorXd& singular_values) {
+  const Index wanted = G.rows() - (singular_values.array() > tolerance).count();
+  std::vector<int> dependent;
+  for (double negligible = tolerance; negligible < 1e-4; negligible *= 10) {
+    dependent = dependent_rows(G, negligible);
+    if (static_cast<Index>(dependent.size()) >= wanted) break;
   }
   return dependent;
 }
@@ -60,15 +97,18 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
 
   const bool dense = G.cols() <= max_dense_coordinates;
   const MatrixXd full = dense ? MatrixXd(G) : MatrixXd();
-  const std::vector<int> dependent =
-      dense ? dependent_rows(full) : eliminate(G, VectorXd::Zero(G.rows()), tolerance).redundant;
+  const VectorXd singular_values =
+      dense && full.size() > 0 ? VectorXd(full.bdcSvd().singularValues()) : VectorXd();
+  const std::vector<int> dependent = dense ? dependent_rows(full, singular_values)
+                                           : eliminate(G, VectorXd::Zero(G.rows()), tolerance).redundant;
 
   mobility.rank = G.rows() - static_cast<Index>(dependent.size());
   mobility.degrees_of_freedom = mobility.coordinates - mobility.rank;
+  mobility.count = mobility.coordinates - mobility.constraints;
+  mobility.rigid_motions = rigid_motions(G, q);
   const auto names = system.all_names();
   for (const int row : dependent) mobility.redundant.push_back(names[static_cast<std::size_t>(row)]);
-  if (dense && mobility.rank > 0)
-    mobility.smallest_singular_value = full.bdcSvd().singularValues()[mobility.rank - 1];
+  if (dense && mobility.rank > 0) mobility.smallest_singular_value = singular_values[mobility.rank - 1];
   return mobility;
 }
 

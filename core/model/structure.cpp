@@ -25,7 +25,16 @@ double Deployment::fold_rate(const ConstVec& q, const ConstVec& v) const {
 
 double Deployment::fraction(const ConstVec& q) const {
   const double folded = std::cos(initial_fold_angle);
-  return (std::cos(fold_angle(q)) - folded) / (1.0 - folded);
+  return (std::cos(fold_angle(q)) - folded) / (std::cos(deployed_fold_angle) - folded);
+}
+
+double Deployment::remaining_sine(const ConstVec& q) const {
+  return std::cos(deployed_fold_angle) * fold_sine(q) - std::sin(deployed_fold_angle) * fold_cosine(q);
+}
+
+double Deployment::remaining_rate(const ConstVec& v) const {
+  return std::cos(deployed_fold_angle) * fold_sine.rate(v) -
+         std::sin(deployed_fold_angle) * fold_cosine.rate(v);
 }
 
 void show_as_solved(Structure& structure) {

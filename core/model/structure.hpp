@@ -58,18 +58,31 @@ struct LinearForm {
   double rate(const ConstVec& v) const;
 };
 
-// How far the structure has unfolded. The fold angle is atan2(fold_sine, fold_cosine); it is 0 when fully
-// deployed. A structure that has no such measure leaves both empty: no deployed event, no fold angle.
+// How far the structure has unfolded. The fold angle atan2(fold_sine, fold_cosine) falls from its initial to
+// its deployed value. A structure that has no such measure leaves both forms empty: no deployed event, no
+// fold angle.
 struct Deployment {
-  LinearForm fold_sine;    // [-]
-  LinearForm fold_cosine;  // [-]
-  double initial_fold_angle =
-      0.0;  // [rad]; the deployed fraction is (cos fold - cos initial) / (1 - cos initial)
+  LinearForm fold_sine;              // [-]
+  LinearForm fold_cosine;            // [-]
+  double initial_fold_angle = 0.0;   // [rad]
+  double deployed_fold_angle = 0.0;  // [rad]
 
   bool empty() const { return fold_sine.empty(); }
   double fold_angle(const ConstVec& q) const;                    // [rad]
   double fold_rate(const ConstVec& q, const ConstVec& v) const;  // [rad/s]
-  double fraction(const ConstVec& q) const;                      // 0 folded, 1 deployed
+  // (cos fold - cos initial) / (cos deployed - cos initial): 0 folded, 1 deployed.
+  double fraction(const ConstVec& q) const;
+  // sin(fold - deployed), of which the deployed event is the zero, and its rate [1/s]; both are linear.
+  double remaining_sine(const ConstVec& q) const;
+  double remaining_rate(const ConstVec& v) const;
+};
+
+// A length of the whole that is reported where a structure has it: `name` with its unit is a column of the
+// series.
+struct ReportedLength {
+  std::string name;   // "column_pitch_m"
+  std::string label;  // "column pitch"
+  LinearForm value;   // [m]
 };
 
 // A node of the whole structure: map * (position of the solved node `source`) + offset.
@@ -103,6 +116,10 @@ struct Structure {
   Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]
   bool lumped_mass = false;     // true: half of a rod's mass at each node instead of the consistent matrix
   Deployment deployment;
+  std::vector<ReportedLength> lengths;
+  // Indices of the lengths along and across a stretch; their strain increments give Poisson's ratio,
+  // -(across'/across) / (along'/along). -1: the structure has none.
+  int strain_along = -1, strain_across = -1;
   // What is shown and exported: the whole structure (equal to the solved one unless a sector model replicates
   // it).
   std::vector<NodeCopy> node_copies;

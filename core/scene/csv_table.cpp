@@ -120,6 +120,13 @@ void read_number(const std::string& cell, const CsvColumn& column, CsvRow& row, 
 
 }  // namespace
 
+std::vector<std::vector<std::string>> csv_records(std::string_view text) {
+  Splitter splitter(text);
+  std::vector<std::vector<std::string>> rows;
+  for (Record record; splitter.next(record);) rows.push_back(std::move(record.cells));
+  return rows;
+}
+
 std::vector<CsvRow> read_csv(std::string_view text, const std::string& file,
                              const std::vector<CsvColumn>& columns, SceneNotes& notes) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);

@@ -31,4 +31,7 @@ struct CsvRow {
 std::vector<CsvRow> read_csv(std::string_view text, const std::string& file,
                              const std::vector<CsvColumn>& columns, SceneNotes& notes);
 
+// The cells of every line, the header's too, unjudged.
+std::vector<std::vector<std::string>> csv_records(std::string_view text);
+
 }  // namespace unfurl

@@ -92,18 +92,31 @@ void read_solver(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
                   "end_time / step would be more than 1e9 steps; take a larger step or an earlier end_time");
 }
 
+void read_camera_keys(const std::vector<const TomlTree*>& trees, RenderOptions& render, SceneNotes& notes) {
+  for (const TomlTree* tree : trees) {
+    const std::string name = "render.camera_keys[" + std::to_string(render.camera_keys.size()) + "]";
+    TableReader entry(tree, name, tree->where, notes);
+    const ParamSet values = entry.read(camera_key_params());
+    entry.finish();
+    const CameraKey key{values.real("time"), values.real("azimuth"), values.real("elevation"),
+                        values.real("zoom")};
+    if (!render.camera_keys.empty() && key.time <= render.camera_keys.back().time)
+      entry.problem("time", "must be later than the key before it");
+    render.camera_keys.push_back(key);
+  }
+}
+
 void read_render(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
   const TomlTree* found = root.table("render");
   TableReader table(found, "render", place(found, tree), notes);
   const ParamSet values = table.read(render_params());
+  const auto keys = table.tables("camera_keys");
   table.finish();
   const auto& size = values.vector("size");
   if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]))
     table.problem("size", "must be whole numbers of pixels");
-  scene.render.width = static_cast<int>(size[0]);
-  scene.render.height = static_cast<int>(size[1]);
-  scene.render.fps = values.real("fps");
-  scene.render.speed = values.real("speed");
+  scene.render = render_options(values);
+  read_camera_keys(keys, scene.render, notes);
 }
 
 void read_title(TableReader& root, Scene& scene) {

@@ -8,6 +8,7 @@
 
 #include "core/integrators/solver_options.hpp"
 #include "core/model/structure.hpp"
+#include "core/scene/render_options.hpp"
 #include "core/scene/scene_error.hpp"
 #include "core/structures/custom.hpp"
 
@@ -17,12 +18,6 @@ struct SceneLoad {
   std::vector<std::string> nodes;  // names or globs
   Vec3 force = Vec3::Zero();       // [N]
   SourceLocation where;
-};
-
-struct RenderOptions {
-  int width = 1280, height = 720;  // [pixels]
-  double fps = 30.0;               // frames per second of the film
-  double speed = 1.0;              // seconds of motion per second of film
 };
 
 struct Scene {
@@ -37,7 +32,5 @@ struct Scene {
   RenderOptions render;
   std::map<std::string, SourceLocation> locations;  // dotted key -> where it was given, for later messages
 };
-
-const std::vector<ParamSpec>& render_params();
 
 }  // namespace unfurl

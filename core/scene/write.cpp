@@ -85,11 +85,13 @@ std::string solver_text(const Scene& scene) {
   return "\n[solver]\n" + params_text(solver_params(), solver_values(scene.solver));
 }
 
-std::string render_text(const Scene& scene) {
-  const RenderOptions& render = scene.render;
-  return "\n[render]\n" +
-         line("size", "[" + std::to_string(render.width) + ", " + std::to_string(render.height) + "]") +
-         line("fps", real_text(render.fps)) + line("speed", real_text(render.speed));
+std::string render_text(const RenderOptions& render) {
+  std::string text = "\n[render]\n" + params_text(render_params(), render_values(render));
+  for (const CameraKey& key : render.camera_keys)
+    text += "\n[[render.camera_keys]]\n" + line("time", real_text(key.time)) +
+            line("azimuth", real_text(key.azimuth)) + line("elevation", real_text(key.elevation)) +
+            line("zoom", real_text(key.zoom));
+  return text;
 }
 
 }  // namespace
@@ -129,7 +131,7 @@ std::string scene_text(const Scene& scene) {
   text += "\n[gravity]\n" + line("acceleration", vec_text(scene.gravity));
   for (const auto& load : scene.loads)
     text += "\n[[loads]]\n" + line("nodes", names_text(load.nodes)) + line("force", vec_text(load.force));
-  return text + solver_text(scene) + render_text(scene);
+  return text + solver_text(scene) + render_text(scene.render);
 }
 
 }  // namespace unfurl

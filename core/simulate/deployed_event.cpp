@@ -54,12 +54,12 @@ class Locator {
   double sine(const State& s) {
     q_.resize(system().coordinates());
     system().expand(s.z, q_);
-    return trajectory_.structure().deployment.fold_sine(q_);
+    return trajectory_.structure().deployment.remaining_sine(q_);
   }
   double sine_rate(const State& s) {
     q_.resize(system().coordinates());
     system().expand_rate(s.w, q_);
-    return trajectory_.structure().deployment.fold_sine.rate(q_);
+    return trajectory_.structure().deployment.remaining_rate(q_);
   }
   const System& system() const { return trajectory_.model().system; }
 

@@ -121,8 +121,14 @@ class TimeLoop {
   // The step would land on the singular pose: end it a little behind instead. The grid goes on after that.
   bool step_over(double target, double h) {
     State next = now();
-    const StepReport report = step(next, 1.41 * h);
-    return accept(next, target + 0.41 * h, report);
+    StepReport report;
+    for (const double length : {1.41, 1.73, 1.19, 2.24}) {
+      next = now();
+      integrator_.restart();
+      report = step(next, length * h);
+      if (report.ok()) return accept(next, target + (length - 1) * h, report);
+    }
+    return accept(next, target, report);
   }
 
   StepReport step(State& state, double h) {
@@ -147,7 +153,7 @@ class TimeLoop {
   double fold(const State& state) {
     q_.resize(run_.trajectory.model().system.coordinates());
     run_.trajectory.model().system.expand(state.z, q_);
-    return deployment_.fold_sine(q_);
+    return deployment_.remaining_sine(q_);
   }
 
   bool crosses(const State& next) {
@@ -160,7 +166,7 @@ class TimeLoop {
     if (deployment_.empty() || deployed_) return false;
     const double sine = fold(now());
     run_.trajectory.model().system.expand_rate(now().w, q_);
-    return sine > 0 && sine + 2.0 * h * deployment_.fold_sine.rate(q_) <= 0;
+    return sine > 0 && sine + 2.0 * h * deployment_.remaining_rate(q_) <= 0;
   }
 
   std::optional<State> locate(double h, double latest) {

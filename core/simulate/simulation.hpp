@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,8 @@ struct Simulation {
   std::vector<std::string> warnings = {};
   std::vector<Event> events = {};
   SolverOptions options = {};
+  // Estimated error of the node positions, from a second solution [m]; NaN: none was made (study/tolerance.hpp).
+  double position_estimate = std::numeric_limits<double>::quiet_NaN();
   long steps = 0;
   long newton_iterations = 0;
   long factorisations = 0;

@@ -3,13 +3,36 @@
 #include <algorithm>
 #include <array>
 
+#include "core/structures/bricard.hpp"
+#include "core/structures/chain.hpp"
+#include "core/structures/hoberman.hpp"
+#include "core/structures/four_bar_ladder.hpp"
 #include "core/structures/hoop.hpp"
+#include "core/structures/pendulum.hpp"
+#include "core/structures/reentrant_sheet.hpp"
+#include "core/structures/scissor_mast.hpp"
+#include "core/structures/scissor_ring.hpp"
 
 namespace unfurl {
 
 std::span<const Family> families() {
   static const std::array rows{
       Family{"hoop", "ring antenna of n re-entrant units that share their posts", hoop_params, build_hoop},
+      Family{"scissor_mast", "mast of crossed rods pinned at their middles, planar or with 3 and more sides",
+             scissor_mast_params, build_scissor_mast},
+      Family{"scissor_ring", "closed ring of crossed rods pinned at their middles, which opens from a bundle",
+             scissor_ring_params, build_scissor_ring},
+      Family{"hoberman", "Hoberman's ring of angulated elements, which grows in its plane", hoberman_params,
+             build_hoberman},
+      Family{"reentrant_sheet", "sheet of re-entrant units: a negative Poisson's ratio",
+             reentrant_sheet_params, build_reentrant_sheet},
+      Family{"bricard",
+             "overconstrained loop of six bars and six hinges, which opens from a bundle to a triangle",
+             bricard_params, build_bricard},
+      Family{"chain", "rigid links in a row, hanging, falling or free", chain_params, build_chain},
+      Family{"pendulum", "a rod with a bob, swinging from a fixed point", pendulum_params, build_pendulum},
+      Family{"four_bar_ladder", "row of four-bar windows that passes poses with all rods collinear",
+             four_bar_ladder_params, build_four_bar_ladder},
   };
   return rows;
 }

@@ -3,46 +3,12 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/structures/hoop_joints.hpp"
+#include "core/structures/hoop_shape.hpp"
+#include "core/structures/ring.hpp"
+
 namespace unfurl {
 namespace {
-
-struct HoopShape {
-  int n;
-  double l1, l2, sine, cosine;  // chord rod, post; of the fold angle
-  double chord_mass, post_mass, radius, hinge_force;
-
-  double half_angle() const { return pi / n; }
-  double ring_radius() const { return l1 * cosine / std::sin(half_angle()); }
-};
-
-HoopShape shape_of(const ParamSet& p) {
-  HoopShape s{};
-  s.n = static_cast<int>(p.integer("units"));
-  s.l1 = p.real("chord_rod_length");
-  s.l2 = p.real("post_length");
-  const double degrees = p.real("fold_angle");
-  s.sine = std::sin(degrees * radians_per_degree);
-  s.cosine = std::sin((90.0 - degrees) * radians_per_degree);  // keeps its digits near 90 degrees
-  const double per_length = p.real("density") * p.real("section_area");
-  s.chord_mass = per_length * s.l1;
-  s.post_mass = per_length * s.l2;
-  s.radius = std::sqrt(p.real("section_area") / pi);
-  s.hinge_force = p.real("hinge_force");
-  return s;
-}
-
-Vec3 radial(double angle) {
-  return {std::cos(angle), std::sin(angle), 0.0};
-}
-Vec3 tangential(double angle) {
-  return {-std::sin(angle), std::cos(angle), 0.0};
-}
-double corner_angle(const HoopShape& s, int k) {
-  return 2.0 * pi * k / s.n;
-}
-double hinge_angle(const HoopShape& s, int k) {
-  return 2.0 * pi * (k + 0.5) / s.n;
-}
 
 // Nodes of unit k are 4 k + these.
 enum : int { bottom_corner = 0, top_corner = 1, bottom_hinge = 2, top_hinge = 3 };
@@ -50,8 +16,8 @@ enum : int { bottom_corner = 0, top_corner = 1, bottom_hinge = 2, top_hinge = 3 
 void add_nodes(Structure& out, const HoopShape& s, int k) {
   const std::string i = std::to_string(k);
   const Vec3 up = Vec3::UnitZ();
-  const Vec3 corner = s.ring_radius() * radial(corner_angle(s, k));
-  const Vec3 hinge = s.ring_radius() * std::cos(s.half_angle()) * radial(hinge_angle(s, k));
+  const Vec3 corner = s.ring_radius() * radial(s.corner_angle(k));
+  const Vec3 hinge = s.ring_radius() * std::cos(s.half_angle()) * radial(s.hinge_angle(k));
   const double height = s.l1 * s.sine - s.l2 / 2;
   out.nodes.push_back({"B" + i, corner - s.l2 / 2 * up});
   out.nodes.push_back({"T" + i, corner + s.l2 / 2 * up});
@@ -65,14 +31,14 @@ void add_nodes(Structure& out, const HoopShape& s, int k) {
 void add_symmetry(Structure& out, const HoopShape& s, int k) {
   const int first = 4 * k;
   for (int j = 0; j < 4; ++j) {
-    const double angle = j < 2 ? corner_angle(s, k) : hinge_angle(s, k);
+    const double angle = j < 2 ? s.corner_angle(k) : s.hinge_angle(k);
     out.constraints.push_back({"plane",
                                "plane of " + out.nodes[static_cast<std::size_t>(first + j)].name,
                                {first + j},
                                {tangential(angle)},
                                0.0});
   }
-  const Vec3 r = radial(corner_angle(s, k));
+  const Vec3 r = radial(s.corner_angle(k));
   const int b = first + bottom_corner, t = first + top_corner;
   const std::string post = "B" + std::to_string(k) + "-T" + std::to_string(k);
   out.constraints.push_back({"relation", "vertical post " + post, {b, t}, {-r, r}, 0.0});
@@ -102,7 +68,7 @@ void set_deployment(Structure& out, const HoopShape& s, int units) {
     }
     for (int j = 0; j < 2; ++j) {
       d.fold_cosine.nodes.push_back(4 * k + j);
-      d.fold_cosine.coefficients.push_back(c * std::sin(s.half_angle()) * radial(corner_angle(s, k)));
+      d.fold_cosine.coefficients.push_back(c * std::sin(s.half_angle()) * radial(s.corner_angle(k)));
     }
   }
   d.initial_fold_angle = std::atan2(s.sine, s.cosine);
@@ -114,7 +80,7 @@ Structure build_full(const HoopShape& s) {
   for (int k = 0; k < s.n; ++k) {
     add_symmetry(out, s, k);
     const int first = 4 * k, next = 4 * ((k + 1) % s.n);
-    const Vec3 e = radial(hinge_angle(s, k));
+    const Vec3 e = radial(s.hinge_angle(k));
     for (int level : {0, 1}) {
       const int a = first + level, m = first + bottom_hinge + level, b = next + level;
       out.constraints.push_back({"relation",
@@ -137,7 +103,7 @@ Structure build_full(const HoopShape& s) {
 void replicate(Structure& out, const HoopShape& s) {
   const char* names[4] = {"B", "T", "Mb", "Mt"};
   for (int k = 0; k < s.n; ++k) {
-    const Mat3 turn = Eigen::AngleAxisd(corner_angle(s, k), Vec3::UnitZ()).toRotationMatrix();
+    const Mat3 turn = Eigen::AngleAxisd(s.corner_angle(k), Vec3::UnitZ()).toRotationMatrix();
     for (int j = 0; j < 4; ++j)
       out.node_copies.push_back({names[j] + std::to_string(k), j, turn, Vec3::Zero()});
     for (const Load& load : out.loads) out.load_copies.push_back({4 * k + load.node, turn * load.force});
@@ -162,7 +128,7 @@ Structure build_sector(const HoopShape& s) {
   Structure out;
   add_nodes(out, s, 0);
   add_symmetry(out, s, 0);
-  const Vec3 e = radial(hinge_angle(s, 0));
+  const Vec3 e = radial(s.hinge_angle(0));
   for (int level : {0, 1}) {
     const int m = bottom_hinge + level;
     // The next corner is the mirror image of this one in the hinge's plane: their mean along e is this one's.
@@ -191,19 +157,30 @@ const std::vector<ParamSpec>& hoop_params() {
                    "fold angle at t = 0; 0 is fully deployed"),
         real_param("hinge_force", "N", 200.0, -1e12, 1e12,
                    "the paper's f: -f along z on each bottom hinge, +f on each top hinge"),
-        choice_param("model", "full", {"full", "sector"},
-                     "full: every unit is solved; sector: one, replicated"),
+        choice_param(
+            "model", "full", {"full", "sector", "joints"},
+            "full: every unit is solved, with planes of symmetry; sector: one, replicated; joints: every "
+            "unit, floating free, symmetric or not"),
         choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"),
+        boolean_param("closed", true, "true: a ring; false: an open arc (model joints)"),
+        real_param("arc_angle", "deg", 180.0, 0.0, 360.0, "angle that the units of an open arc span"),
+        integer_param("perturbed_unit", -1, -1, 99999,
+                      "the unit, from 0, whose hinges perturbed_force drives (model joints); -1: none"),
+        real_param("perturbed_force", "N", 0.0, -1e12, 1e12, "force on the hinges of perturbed_unit"),
     };
     p[5].max_open = true;
+    p[10].min_open = p[10].max_open = true;
     return p;
   }();
   return params;
 }
 
 Structure build_hoop(const ParamSet& params) {
-  const HoopShape s = shape_of(params);
-  Structure out = params.text("model") == "sector" ? build_sector(s) : build_full(s);
+  const HoopShape s = hoop_shape(params);
+  const std::string& model = params.text("model");
+  Structure out = model == "sector"   ? build_sector(s)
+                  : model == "joints" ? build_hoop_joints(s)
+                                      : build_full(s);
   out.kind = "hoop";
   out.lumped_mass = params.text("mass") == "lumped";
   return out;

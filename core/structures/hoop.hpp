@@ -14,7 +14,8 @@ namespace unfurl {
 //
 // The full model has 12 n coordinates and 13 n constraints of rank 12 n - 1: planes of symmetry (4 n),
 // vertical posts (n), mirror symmetry (n), hinges in the plane of their face (2 n), rods (5 n). The sector
-// model solves one sector: nodes B0, T0, Mb0, Mt0, whose chord rods count twice.
+// model solves one sector: nodes B0, T0, Mb0, Mt0, whose chord rods count twice. The joints model
+// (hoop_joints.hpp) has no planes of symmetry; it alone may be an open arc or have a unit driven differently.
 const std::vector<ParamSpec>& hoop_params();
 Structure build_hoop(const ParamSet& params);
 

@@ -20,7 +20,8 @@ class GlContext {
 };
 
 // A context without a display; current on return. Draw into a Framebuffer of any size.
+// threads: how many may draw, 0 for as many as the machine has; the first context of a process decides.
 // Throws GraphicsError, naming the package to install, where there is none.
-std::unique_ptr<GlContext> make_offscreen_context();
+std::unique_ptr<GlContext> make_offscreen_context(int threads = 0);
 
 }  // namespace unfurl

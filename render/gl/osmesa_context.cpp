@@ -115,7 +115,9 @@ class OsmesaContext final : public GlContext {
 
 }  // namespace
 
-std::unique_ptr<GlContext> make_offscreen_context() {
+std::unique_ptr<GlContext> make_offscreen_context(int threads) {
+  // Mesa's own setting, read once; 0 draws on the calling thread. What the user set stays.
+  if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads == 1 ? 0 : threads).c_str(), 0);
   return std::make_unique<OsmesaContext>();
 }
 

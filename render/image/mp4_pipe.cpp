@@ -32,6 +32,7 @@ std::vector<std::string> ffmpeg_arguments(const std::string& file, int width, in
           "-i",        "pipe:0",     "-vf",        "pad=ceil(iw/2)*2:ceil(ih/2)*2",
           "-c:v",      "libx264",    "-preset",    "veryfast",
           "-crf",      "18",         "-pix_fmt",   "yuv420p",
+          "-threads",  "2",  // x264's result depends on how many it uses
           "-movflags", "+faststart", "-f",         "mp4",
           file};
 }

@@ -2,7 +2,10 @@
 
 #include <zlib.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -30,6 +33,11 @@ unsigned char* deflate_for_stb(unsigned char* data, int size, int* out_size, int
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #include <stb_image_write.h>
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#include <stb_image.h>
 
 namespace unfurl {
 namespace {
@@ -72,8 +80,39 @@ std::vector<std::byte> encode_png(const Image& image, bool alpha) {
   return {first, first + size};
 }
 
+std::vector<std::byte> with_resolution(std::vector<std::byte> png, double dpi) {
+  constexpr std::size_t behind_header = 8 + 25;  // signature and IHDR
+  std::vector<std::uint8_t> chunk{0, 0, 0, 9, 'p', 'H', 'Y', 's'};
+  const auto put = [&](std::uint32_t v) {
+    for (const int shift : {24, 16, 8, 0}) chunk.push_back(static_cast<std::uint8_t>(v >> shift & 255));
+  };
+  const auto per_metre = static_cast<std::uint32_t>(std::lround(dpi / 0.0254));
+  put(per_metre), put(per_metre);
+  chunk.push_back(1);  // the unit is the metre
+  put(static_cast<std::uint32_t>(crc32(0, chunk.data() + 4, static_cast<uInt>(chunk.size() - 4))));
+  const auto* first = reinterpret_cast<const std::byte*>(chunk.data());
+  png.insert(png.begin() + behind_header, first, first + chunk.size());
+  return png;
+}
+
 void write_png(const std::filesystem::path& path, const Image& image, bool alpha) {
   write_file_atomically(path, encode_png(image, alpha));
+}
+
+Image read_png(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw FileError(path, "cannot be read");
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  Image image;
+  int channels = 0;
+  const std::unique_ptr<unsigned char, decltype(&stbi_image_free)> pixels(
+      stbi_load_from_memory(reinterpret_cast<const unsigned char*>(bytes.data()),
+                            static_cast<int>(bytes.size()), &image.width, &image.height, &channels, 4),
+      &stbi_image_free);
+  if (!pixels) throw FileError(path, "is not a whole PNG file");
+  const std::size_t size = 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  image.rgba.assign(pixels.get(), pixels.get() + size);
+  return image;
 }
 
 }  // namespace unfurl

@@ -11,7 +11,13 @@ namespace unfurl {
 // The picture as the bytes of a PNG file, RGB or with its alpha RGBA. May run on several threads at once.
 std::vector<std::byte> encode_png(const Image& image, bool alpha = false);
 
+// The file, saying that so many of its pixels are an inch long (chunk pHYs).
+std::vector<std::byte> with_resolution(std::vector<std::byte> png, double dpi);
+
 // The file appears whole or not at all. Throws FileError.
 void write_png(const std::filesystem::path& path, const Image& image, bool alpha = false);
+
+// Any PNG. Throws FileError where there is none or it cannot be read.
+Image read_png(const std::filesystem::path& path);
 
 }  // namespace unfurl

@@ -18,12 +18,13 @@ struct WebpAnimation::Encoder {
   std::filesystem::path target;
   int width, height;
   double fps;
+  bool alpha;
   long frames = 0;
   WebPConfig config{};
   WebPAnimEncoder* handle = nullptr;
 
-  Encoder(std::filesystem::path target_, int width_, int height_, double fps_)
-      : target(std::move(target_)), width(width_), height(height_), fps(fps_) {
+  Encoder(std::filesystem::path target_, int width_, int height_, double fps_, bool alpha_)
+      : target(std::move(target_)), width(width_), height(height_), fps(fps_), alpha(alpha_) {
     // The encoder itself would complain only at the first frame.
     const bool fits = width <= WEBP_MAX_DIMENSION && height <= WEBP_MAX_DIMENSION;
     WebPAnimEncoderOptions options;
@@ -54,8 +55,8 @@ struct WebpAnimation::Encoder {
   }
 };
 
-WebpAnimation::WebpAnimation(std::filesystem::path target, int width, int height, double fps)
-    : encoder_(std::make_unique<Encoder>(std::move(target), width, height, fps)) {}
+WebpAnimation::WebpAnimation(std::filesystem::path target, int width, int height, double fps, bool alpha)
+    : encoder_(std::make_unique<Encoder>(std::move(target), width, height, fps, alpha)) {}
 WebpAnimation::~WebpAnimation() = default;
 WebpAnimation::WebpAnimation(WebpAnimation&&) noexcept = default;
 WebpAnimation& WebpAnimation::operator=(WebpAnimation&&) noexcept = default;
@@ -70,7 +71,8 @@ void WebpAnimation::add(const Image& frame) {
   picture.use_argb = 1;  // the encoder compares frames in this form
   picture.width = e.width;
   picture.height = e.height;
-  const bool good = WebPPictureImportRGBX(&picture, frame.rgba.data(), 4 * e.width) &&
+  const auto import = e.alpha ? WebPPictureImportRGBA : WebPPictureImportRGBX;
+  const bool good = import(&picture, frame.rgba.data(), 4 * e.width) &&
                     WebPAnimEncoderAdd(e.handle, &picture, e.time_ms(e.frames), &e.config);
   WebPPictureFree(&picture);
   if (!good) e.fail();

@@ -13,7 +13,7 @@ class WebpAnimation {
  public:
   // fps: frames per second; a file holds whole milliseconds, so the times of the frames are rounded, not
   // their gaps. Throws FileError where the format does not allow the size (16383 pixels on a side).
-  WebpAnimation(std::filesystem::path target, int width, int height, double fps);
+  WebpAnimation(std::filesystem::path target, int width, int height, double fps, bool alpha = false);
   ~WebpAnimation();
   WebpAnimation(WebpAnimation&&) noexcept;
   WebpAnimation& operator=(WebpAnimation&&) noexcept;

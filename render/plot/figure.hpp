@@ -65,9 +65,16 @@ struct Dot {
   float radius = 1.0f;  // [points]
 };
 
+// A filled rectangle in data units, below everything else: of maps and atlases.
+struct Cell {
+  double x0, y0, x1, y1;
+  FigureColor fill;
+};
+
 struct Panel {
   std::string title;
   Axis x, y, y2;
+  std::vector<Cell> cells;  // give the axes limits of their own: cells do not count for them
   std::vector<Band> bands;
   std::vector<Curve> curves;
   std::vector<ReferenceLine> lines;
@@ -93,5 +100,9 @@ struct Figure {
 // 6 ink, 7 grey: told apart with every kind of colour blindness, each with a contrast of 3 or more on white.
 FigureColor palette(int i);
 inline constexpr int palette_size = 8;
+
+// A colour for u in [0, 1] on a map of values: from dark blue over green to yellow, evenly in lightness
+// ("viridis").
+FigureColor map_color(double u);
 
 }  // namespace unfurl

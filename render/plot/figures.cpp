@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/diagnostics/jacobian_spectrum.hpp"
 #include "render/plot/figures/kinds.hpp"
 
 namespace unfurl {
@@ -16,6 +17,12 @@ bool has_rods(const Simulation& run, const Diagnostics&) {
 bool has_fold_angle(const Simulation&, const Diagnostics& d) {
   return d.find("fold_angle_rad") != nullptr;
 }
+bool has_poisson_ratio(const Simulation&, const Diagnostics& d) {
+  return d.find("poisson_ratio") != nullptr;
+}
+bool has_spectrum(const Simulation& run, const Diagnostics&) {
+  return spectrum_applies(run);
+}
 
 constexpr std::array kinds{
     FigureKind{"deployment", "fold angle and deployed fraction over time", has_fold_angle, deployment_figure},
@@ -25,6 +32,13 @@ constexpr std::array kinds{
                energy_figure},
     FigureKind{"rod_forces", "axial forces of the rods by group, tension positive", has_rods,
                rod_forces_figure},
+    FigureKind{"poisson", "lengths along and across a stretch, Poisson's ratio", has_poisson_ratio,
+               poisson_figure},
+    FigureKind{"phase", "fold rate over fold angle", has_fold_angle, phase_figure},
+    FigureKind{"steps", "how long the steps are and how many Newton iterations they take", always,
+               steps_figure},
+    FigureKind{"jacobian", "smallest singular values of the constraints' Jacobian over time", has_spectrum,
+               jacobian_figure},
     FigureKind{"poses", "the configuration at six times", has_rods, poses_figure},
 };
 

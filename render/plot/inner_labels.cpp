@@ -64,7 +64,7 @@ void say_no_data(const Panel& panel, PanelLayout& out) {
   const bool drawn =
       std::any_of(out.curves.begin(), out.curves.end(), [](const auto& pieces) { return !pieces.empty(); }) ||
       std::any_of(out.bands.begin(), out.bands.end(), [](const BandTrace& b) { return !b.lower.empty(); });
-  if (drawn || panel.bare || !panel.segments.empty() || !panel.dots.empty()) return;
+  if (drawn || panel.bare || !panel.cells.empty() || !panel.segments.empty() || !panel.dots.empty()) return;
   const Point middle{(out.frame.x0 + out.frame.x1) / 2,
                      (out.frame.y0 + out.frame.y1) / 2 + cap_height * small_size / 2};
   out.labels.push_back({middle, "no data", {small_size, caption_color, Anchor::middle}, true});

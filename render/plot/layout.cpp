@@ -130,8 +130,9 @@ bool place_legends(const Figure& figure, std::vector<PanelLayout>& panels, std::
 
 FigureLayout lay_out(const Figure& figure, const LayoutOptions& options) {
   FigureLayout out;
-  out.width = figure.width_mm * points_per_mm;
-  out.height = figure.height_mm * points_per_mm;
+  out.width = (options.width_mm > 0 ? options.width_mm : figure.width_mm) * points_per_mm;
+  out.height = (options.height_mm > 0 ? options.height_mm : figure.height_mm) * points_per_mm;
+  out.scale = options.scale;
   const Rect area = lay_out_page(figure, options, out);
   out.panels.resize(figure.panels.size());
   if (figure.panels.empty()) return out;

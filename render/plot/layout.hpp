@@ -53,12 +53,15 @@ struct PanelLayout {
 
 struct FigureLayout {
   double width = 0, height = 0;     // [points]
+  double scale = 1;                 // of everything on its way to paper
   std::vector<PanelLayout> panels;  // as many as the figure has
   std::vector<Label> labels;        // title and caption
 };
 
 struct LayoutOptions {
   bool title = true, caption = true;
+  double width_mm = 0, height_mm = 0;  // 0: the figure's own
+  double scale = 1;  // the page is so many times as large as laid out, with all that is on it
 };
 
 // The figure must outlive the layout.

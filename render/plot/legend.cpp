@@ -60,7 +60,8 @@ std::optional<Legend> inside_legend(const Panel& panel, const PanelLayout& layou
   width += 2 * padding;
   const double height = static_cast<double>(out.entries.size()) * legend_row_height + padding;
   const Rect region = layout.frame.grown(-3);
-  if (width > 0.7 * region.width() || height > 0.7 * region.height()) return std::nullopt;
+  const double share = panel.bare ? 1.0 : 0.7;  // a bare panel may hold nothing but the legend
+  if (width > share * region.width() || height > share * region.height()) return std::nullopt;
   const Spot spot = free_spot(obstacles_of(panel, layout), region, width, height);
   if (spot.hidden > 0) return std::nullopt;
   out.box = spot.box;

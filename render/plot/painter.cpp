@@ -17,10 +17,11 @@ class PanelPainter {
       : panel_(panel), layout_(layout), canvas_(canvas), frame_(layout.frame) {}
 
   void paint() {
-    if (!panel_.bare) grid();
+    if (!panel_.bare && panel_.cells.empty()) grid();
     const bool marked = std::any_of(panel_.curves.begin(), panel_.curves.end(),
                                     [](const Curve& c) { return c.marker != Marker::none; });
     canvas_.begin_clip(frame_.grown(panel_.bare ? 4 : marked ? 3 : 1.2));
+    cells();
     bands();
     curves();
     references();
@@ -37,6 +38,18 @@ class PanelPainter {
     const Pen pen{grid_color, grid_width};
     for (const double v : layout_.x.ticks.major) vertical(layout_.x.scale(v), pen);
     for (const double v : layout_.y.ticks.major) horizontal(layout_.y.scale(v), pen);
+  }
+
+  // Each a little over its right and lower neighbour, so that no seam of the ground shows between them.
+  void cells() {
+    constexpr double overlap = 0.3;
+    for (const Cell& c : panel_.cells) {
+      const double x0 = layout_.x.scale(c.x0), x1 = layout_.x.scale(c.x1);
+      const double y0 = layout_.y.scale(c.y0), y1 = layout_.y.scale(c.y1);
+      canvas_.rectangle(
+          {std::min(x0, x1), std::min(y0, y1), std::max(x0, x1) + overlap, std::max(y0, y1) + overlap},
+          c.fill);
+    }
   }
 
   void bands() {
@@ -92,7 +105,8 @@ class PanelPainter {
       for (const double v : axis.ticks.major) draw(axis.scale(v), tick_length);
     };
     ticks(layout_.x, [&](double x, double length) { canvas_.line({x, f.y1}, {x, f.y1 + length}, pen); });
-    ticks(layout_.y, [&](double y, double length) { canvas_.line({f.x0, y}, {f.x0 - length, y}, pen); });
+    if (panel_.y.shown)
+      ticks(layout_.y, [&](double y, double length) { canvas_.line({f.x0, y}, {f.x0 - length, y}, pen); });
     if (layout_.y2.used)
       ticks(layout_.y2, [&](double y, double length) { canvas_.line({f.x1, y}, {f.x1 + length, y}, pen); });
   }

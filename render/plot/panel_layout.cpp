@@ -112,11 +112,15 @@ void add_x_labels(const Panel& panel, const Rect& cell, PanelLayout& out) {
   const std::string& note = out.x.ticks.note;
   if (!note.empty())
     out.labels.push_back({{out.frame.x1, label_base}, note, {small_size, axis_color, Anchor::end}});
-  const double room = out.frame.width() - 2 * (note.empty() ? 0 : text_width(note, small_size) + 6);
-  const std::string label = shorten_text(panel.x.label, label_size, std::max(room, 20.0));
+  const double note_room = note.empty() ? 0 : text_width(note, small_size) + 6;
+  // In the middle, or from the left where the note leaves no room there.
+  const bool middle = text_width(panel.x.label, label_size) <= out.frame.width() - 2 * note_room;
+  const std::string label =
+      shorten_text(panel.x.label, label_size, std::max(out.frame.width() - note_room, 20.0));
+  const double at = middle ? (out.frame.x0 + out.frame.x1) / 2 : out.frame.x0;
   if (!label.empty())
     out.labels.push_back(
-        {{(out.frame.x0 + out.frame.x1) / 2, label_base}, label, {label_size, ink, Anchor::middle}});
+        {{at, label_base}, label, {label_size, ink, middle ? Anchor::middle : Anchor::start}});
 }
 
 void add_y_labels(const Panel& panel, const Rect& cell, bool right, PanelLayout& out) {

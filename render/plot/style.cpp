@@ -1,5 +1,6 @@
 #include "render/plot/style.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -22,6 +23,18 @@ constexpr std::array<FigureColor, palette_size> colors{hex(0x0B5FA5), hex(0xC840
 FigureColor palette(int i) {
   const int k = (i % palette_size + palette_size) % palette_size;
   return colors[static_cast<std::size_t>(k)];
+}
+
+FigureColor map_color(double u) {
+  constexpr std::array<FigureColor, 10> stops{hex(0x440154), hex(0x482878), hex(0x3E4A89), hex(0x31688E),
+                                              hex(0x26828E), hex(0x1F9E89), hex(0x35B779), hex(0x6DCD59),
+                                              hex(0xB4DE2C), hex(0xFDE725)};
+  const double at = (u > 0 ? std::min(u, 1.0) : 0.0) * static_cast<double>(stops.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(at), stops.size() - 2);
+  const auto share = static_cast<float>(at - static_cast<double>(i));
+  const auto mix = [share](float a, float b) { return a + (b - a) * share; };
+  const FigureColor &a = stops[i], &b = stops[i + 1];
+  return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b), 1.0f};
 }
 
 FigureColor plot::lighter(FigureColor c, float share) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "core/export/atomic_file.hpp"
@@ -9,8 +11,11 @@
 #include "render/image/png.hpp"
 #include "render/plot/imgui_canvas.hpp"
 #include "render/plot/painter.hpp"
+#include "render/plot/pdf_canvas.hpp"
+#include "render/plot/scaled_canvas.hpp"
 #include "render/plot/style.hpp"
 #include "render/plot/svg_canvas.hpp"
+#include "render/ui/font_file.hpp"
 #include "render/ui/sheet.hpp"
 
 namespace unfurl {
@@ -33,10 +38,10 @@ FigureWriter::FigureWriter(GlContext& context, FigureOptions options) : options_
 FigureWriter::~FigureWriter() = default;
 
 Image FigureWriter::paint(const Figure& figure) {
-  const plot::FigureLayout layout = plot::lay_out(figure, options_.layout);
+  const plot::FigureLayout layout = plot::lay_out(figure, layout_options(figure, *options_.style));
   if (!painter_) painter_ = std::make_unique<Painter>(given_);
   painter_->context->make_current();
-  const double scale = options_.dpi / 72.0;
+  const double scale = layout.scale * dpi() / 72.0;
   const int width = std::max(1, static_cast<int>(std::lround(layout.width * scale)));
   const int height = std::max(1, static_cast<int>(std::lround(layout.height * scale)));
   const Framebuffer picture(width, height, 0);  // ImGui smooths its own edges
@@ -55,12 +60,18 @@ Image FigureWriter::paint(const Figure& figure) {
   return image;
 }
 
+double FigureWriter::dpi() const {
+  return options_.dpi > 0 ? options_.dpi : options_.style->dpi;
+}
+
 void FigureWriter::write(const Figure& figure, const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
-  if (extension == ".svg") return write_file_atomically(path, figure_svg(figure, options_.layout));
-  if (extension == ".png") return write_png(path, paint(figure));
-  throw std::invalid_argument("a figure is written as .png or .svg, not as '" + path.filename().string() +
-                              "'");
+  if (extension == ".svg") return write_file_atomically(path, figure_svg(figure, *options_.style));
+  if (extension == ".pdf") return write_file_atomically(path, figure_pdf(figure, *options_.style));
+  if (extension == ".png")
+    return write_file_atomically(path, with_resolution(encode_png(paint(figure)), dpi()));
+  throw std::invalid_argument("a figure is written as .png, .svg or .pdf, not as '" +
+                              path.filename().string() + "'");
 }
 
 void write_figure(const Figure& figure, const std::filesystem::path& path, FigureOptions options) {
@@ -72,11 +83,24 @@ void write_figure(const Figure& figure, const std::filesystem::path& path, GlCon
   FigureWriter(context, options).write(figure, path);
 }
 
-std::string figure_svg(const Figure& figure, const plot::LayoutOptions& options) {
-  const plot::FigureLayout layout = plot::lay_out(figure, options);
-  plot::SvgCanvas canvas(layout.width, layout.height, figure.title, figure.caption);
-  plot::paint(figure, layout, canvas);
+std::string figure_svg(const Figure& figure, const FigureStyle& style) {
+  const plot::FigureLayout layout = plot::lay_out(figure, layout_options(figure, style));
+  plot::SvgCanvas canvas(layout.scale * layout.width, layout.scale * layout.height, figure.title,
+                         figure.caption);
+  plot::ScaledCanvas page(canvas, layout.scale);
+  plot::paint(figure, layout, page);
   return canvas.finish();
+}
+
+std::string figure_pdf(const Figure& figure, const FigureStyle& style) {
+  std::ifstream file(font_file(), std::ios::binary);
+  if (!file) throw FileError(font_file(), "the font of figures is missing; install fonts-dejavu-core");
+  const plot::TrueType font(std::string(std::istreambuf_iterator<char>(file), {}));
+  const plot::FigureLayout layout = plot::lay_out(figure, layout_options(figure, style));
+  plot::PdfCanvas canvas(layout.scale * layout.width, layout.scale * layout.height, font);
+  plot::ScaledCanvas page(canvas, layout.scale);
+  plot::paint(figure, layout, page);
+  return canvas.finish(figure.title, figure.caption);
 }
 
 }  // namespace unfurl

@@ -1,4 +1,4 @@
-// Figures to files: PNG through OpenGL, SVG without.
+// Figures to files: PNG through OpenGL, SVG and PDF without.
 #pragma once
 
 #include <filesystem>
@@ -7,13 +7,14 @@
 
 #include "render/gl/context.hpp"
 #include "render/image/image.hpp"
+#include "render/plot/figure_style.hpp"
 #include "render/plot/layout.hpp"
 
 namespace unfurl {
 
 struct FigureOptions {
-  double dpi = 300;  // pixels per inch of a PNG: 160 mm are 1890 pixels
-  plot::LayoutOptions layout;
+  double dpi = 0;  // pixels per inch of a PNG; 0: the style's
+  const FigureStyle* style = &figure_styles().front();
 };
 
 // Paints figures; what that needs (a context, a font atlas) is made once, at the first PNG.
@@ -26,12 +27,14 @@ class FigureWriter {
   FigureWriter(const FigureWriter&) = delete;
   FigureWriter& operator=(const FigureWriter&) = delete;
 
-  // By extension, .png or .svg; throws std::invalid_argument for another one, FileError where it cannot be
-  // written, GraphicsError where there is no OpenGL for a PNG. The file appears whole or not at all.
+  // By extension, .png, .svg or .pdf; throws std::invalid_argument for another one, FileError where it cannot
+  // be written, GraphicsError where there is no OpenGL for a PNG. The file appears whole or not at all.
   void write(const Figure& figure, const std::filesystem::path& path);
   Image paint(const Figure& figure);
 
  private:
+  double dpi() const;
+
   struct Painter;
   FigureOptions options_;
   GlContext* given_ = nullptr;
@@ -43,6 +46,8 @@ void write_figure(const Figure& figure, const std::filesystem::path& path, GlCon
                   FigureOptions options = {});
 
 // The figure as an SVG document: text as text, no OpenGL involved.
-std::string figure_svg(const Figure& figure, const plot::LayoutOptions& options = {});
+std::string figure_svg(const Figure& figure, const FigureStyle& style = figure_styles().front());
+// The figure as a PDF document with its font embedded. Throws FileError where the font is not installed.
+std::string figure_pdf(const Figure& figure, const FigureStyle& style = figure_styles().front());
 
 }  // namespace unfurl

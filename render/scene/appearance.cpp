@@ -1,7 +1,9 @@
 #include "render/scene/appearance.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+
+#include "render/scene/look.hpp"
 
 namespace unfurl {
 namespace {
@@ -30,23 +32,45 @@ int group_index(std::vector<std::string>& groups, const std::string& group) {
   return static_cast<int>(index);
 }
 
+// Nodes at which no rod ends but that lie on rods, the pins of scissors: a little smaller than a joint.
+void add_pins(const Structure& s, Appearance& looks) {
+  std::vector<double> on_rods(s.nodes.size(), 0.0);
+  for (const Constraint& c : s.constraints) {
+    if (c.kind != "relation" || c.nodes.empty()) continue;
+    for (const int node : c.nodes) on_rods[static_cast<std::size_t>(node)] = 1.0;
+  }
+  const double thickest = looks.rod_radius.empty() ? 0.0 : *std::ranges::max_element(looks.rod_radius);
+  for (std::size_t i = 0; i < s.node_copies.size(); ++i)
+    if (looks.joint_radius[i] <= 0)
+      looks.joint_radius[i] = 1.5 * thickest * on_rods[static_cast<std::size_t>(s.node_copies[i].source)];
+}
+
+// Nodes with a mass of their own, bobs and payloads, have larger balls: by the cube root of it, up to two and
+// a half times.
+void enlarge_masses(const Structure& s, Appearance& looks) {
+  double rods = 0;
+  for (const Rod& rod : s.rods) rods += rod.mass / static_cast<double>(s.rods.size());
+  for (std::size_t i = 0; i < s.node_copies.size(); ++i) {
+    const double mass = s.nodes[static_cast<std::size_t>(s.node_copies[i].source)].mass;
+    if (mass > 0) looks.joint_radius[i] *= 1.0 + std::min(1.5, std::cbrt(mass / std::max(rods, 1e-3 * mass)));
+  }
+}
+
 }  // namespace
 
 Color group_color(std::size_t index) {
-  static constexpr std::array<Color, 6> palette{{{0.00f, 0.37f, 0.66f, 1},    // blue
-                                                 {0.88f, 0.50f, 0.02f, 1},    // orange
-                                                 {0.00f, 0.55f, 0.40f, 1},    // bluish green
-                                                 {0.72f, 0.38f, 0.58f, 1},    // reddish purple
-                                                 {0.25f, 0.62f, 0.85f, 1},    // sky blue
-                                                 {0.80f, 0.30f, 0.00f, 1}}};  // vermilion
-  return palette[index % palette.size()];
+  return looks().front().group(index);
 }
 
 Appearance appearance_of(const Structure& s, double size) {
   Appearance out;
   const double median = median_length(s);
-  for (const Rod& rod : s.rods) {
-    out.rod_group.push_back(group_index(out.groups, rod.group));
+  std::vector<bool> shown(s.rods.size(), false);
+  for (const RodCopy& copy : s.rod_copies) shown[static_cast<std::size_t>(copy.source)] = true;
+  for (std::size_t i = 0; i < s.rods.size(); ++i) {
+    const Rod& rod = s.rods[i];
+    out.rod_group.push_back(shown[i] ? group_index(out.groups, rod.group)
+                                     : 0);  // hidden: no colour of its own
     out.rod_radius.push_back(drawn_radius(rod, median, size));
   }
   out.joint_radius.assign(s.node_copies.size(), 0.0);
@@ -56,6 +80,8 @@ Appearance appearance_of(const Structure& s, double size) {
       joint = std::max(joint, 1.75 * out.rod_radius[static_cast<std::size_t>(rod.source)]);
     }
   }
+  add_pins(s, out);
+  enlarge_masses(s, out);
   std::vector<bool> held(s.nodes.size(), false);
   for (const Constraint& c : s.constraints) {
     if (c.kind != "fixed") continue;

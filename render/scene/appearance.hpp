@@ -9,7 +9,7 @@
 
 namespace unfurl {
 
-// Colours that people with any colour vision tell apart (Okabe and Ito 2008), darkened for a pale background.
+// Of a group of rods in the first look (render/scene/look.hpp).
 Color group_color(std::size_t index);
 
 struct Appearance {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "render/plot/figure.hpp"
 
 namespace unfurl {
 
@@ -15,6 +18,10 @@ struct Color {
 
 // How light meets a surface; the colour is the rest.
 enum class Finish { paint, anodised, metal };
+
+// How a picture is painted: lit as in a room, by a hard light in the dark, as a line drawing with hidden
+// lines, or in flat colours.
+enum class Shading { studio, space, outline, flat };
 
 struct Tube {  // a round rod with round ends
   Vec3f a, b;
@@ -43,10 +50,12 @@ struct Arrow {  // from tail to head
   Color color;
 };
 
+// Perspective, or parallel where parallel_height > 0.
 struct Camera {
   Vec3f eye = Vec3f(0, -10, 3), target = Vec3f::Zero(), up = Vec3f::UnitZ();
   float vertical_field_of_view = 0.5f;  // [rad]
   float near_plane = 0.1f, far_plane = 100.0f;
+  float parallel_height = 0;  // what a parallel projection shows from the lower edge to the upper one [m]
 };
 
 struct TextLabel {     // drawn over the picture, in pixels from the top left
@@ -56,13 +65,32 @@ struct TextLabel {     // drawn over the picture, in pixels from the top left
   std::string text;
   float align = 0;  // 0 left, 0.5 centre, 1 right
   bool bold = false;
+  Color backing{0, 0, 0, 0};  // of a box behind the text
+};
+
+struct OverlayLine {  // drawn over the picture, under the labels [pixels]
+  float x0, y0, x1, y1;
+  float width;
+  Color color;
+};
+
+struct OverlayArea {  // a filled rectangle over the picture, under the lines [pixels]
+  float x0, y0, x1, y1;
+  Color color;
+};
+
+struct Inset {  // a figure over the picture; null: none
+  std::shared_ptr<const Figure> figure;
+  float x = 0, y = 0, width = 0, height = 0;  // [pixels]
+  double pixels_per_point = 1;
 };
 
 struct Ground {
   bool shown = true;
-  float z = 0;      // height [m]
-  float cell = 1;   // grid spacing [m]
-  float fade = 20;  // distance from the centre at which the grid has faded out [m]
+  bool grid = true;  // else only the shadow tells where it is
+  float z = 0;       // height [m]
+  float cell = 1;    // grid spacing [m]
+  float fade = 20;   // distance from the centre at which the grid has faded out [m]
   Vec3f center = Vec3f::Zero();
 };
 
@@ -72,13 +100,24 @@ struct DrawList {
   std::vector<Sleeve> sleeves;
   std::vector<Ball> balls;
   std::vector<Arrow> arrows;
+  std::vector<Tube> ghosts;  // as transparent as their colour says; without shadow
+  std::vector<OverlayArea> areas;
+  std::vector<OverlayLine> lines;
   std::vector<TextLabel> labels;
+  Inset inset;
   Ground ground;
   // A sphere around everything that casts a shadow. Keep it still through a film, or the shadows' edges
   // crawl.
   Vec3f center = Vec3f::Zero();
   float radius = 1;                          // [m]
   Vec3f light_direction{0.4f, -0.5f, 1.0f};  // towards the light
+  Shading shading = Shading::studio;
+  bool transparent = false;  // no background; shadows are as transparent as they are light
+  float stars = 0;           // brightness of stars in the background, 0..1
+  // The share of the background in what is as far as the far side of the sphere; none at its near side.
+  float depth_fade = 0;
+  float hidden_gap =
+      0;  // a line is hidden where something is nearer by more than this [m] (Shading::outline)
   Color background_top{0.80f, 0.85f, 0.90f, 1}, background_bottom{0.95f, 0.96f, 0.97f, 1};
 };
 

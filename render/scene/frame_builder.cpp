@@ -3,14 +3,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
+
+#include "render/scene/frame_overlay.hpp"
+#include "render/scene/pose_times.hpp"
 
 namespace unfurl {
 namespace {
 
-constexpr Color ink{0.13f, 0.17f, 0.22f, 1}, fitting{0.62f, 0.64f, 0.67f, 1}, joint{0.30f, 0.33f, 0.37f, 1},
-    anchor{0.16f, 0.18f, 0.21f, 1}, load_color{0.78f, 0.08f, 0.22f, 1};
+constexpr std::size_t trail_points = 160;  // of a trail at most
 
 // The rotation that turns gravity downwards; none without gravity.
 Mat3 upright_rotation(const Vec3& gravity) {
@@ -27,85 +28,135 @@ double round_length(double x) {
   return power;
 }
 
-std::string time_text(double t, double span) {
-  char text[64];
-  std::snprintf(text, sizeof text, "t = %.*f s", span < 0.5 ? 4 : 2, t);
-  return text;
-}
-
-std::string deployed_text(double fraction) {
-  char text[64];
-  std::snprintf(text, sizeof text, "deployed %.0f %%", std::max(0.0, std::round(100 * fraction)));
-  return text;
-}
-
-// The width of a text in pixels, roughly; enough to space out a legend.
-float about_width(const std::string& text, float height) {
-  const auto letters = std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; });  // of UTF-8
-  return 0.56f * height * static_cast<float>(letters);
+Color mixed(const Color& a, const Color& b, float u) {
+  return {a.r + u * (b.r - a.r), a.g + u * (b.g - a.g), a.b + u * (b.b - a.b), a.a};
 }
 
 }  // namespace
 
 FrameBuilder::FrameBuilder(const Trajectory& trajectory, FrameStyle style)
-    : trajectory_(trajectory), style_(std::move(style)) {
+    : trajectory_(trajectory), style_(std::move(style)), look_(find_look(style_.options.look)) {
+  if (look_ == nullptr) throw std::invalid_argument("FrameBuilder: no look '" + style_.options.look + "'");
   if (trajectory_.empty()) throw std::invalid_argument("FrameBuilder: the trajectory has no state");
   upright_ = upright_rotation(trajectory_.structure().gravity);
-  prepare_still();
+  const RenderOptions& options = style_.options;
+  if (options.colour_by != "group" && style_.run && style_.diagnostics)
+    field_ = std::make_unique<RodField>(
+        rod_field(options.colour_by, options.colour_range, *style_.run, *style_.diagnostics));
+  prepare_still(prepare_camera());
+  prepare_ghosts();
+  prepare_trails();
+  overlay_ = std::make_unique<FrameOverlay>(trajectory_, style_, *look_, looks_, field_.get(), upright_);
+}
+FrameBuilder::~FrameBuilder() = default;
+FrameBuilder::FrameBuilder(FrameBuilder&&) noexcept = default;
+
+double FrameBuilder::prepare_camera() {
+  const Structure& s = trajectory_.structure();
+  std::vector<std::vector<Vec3>> poses;
+  std::vector<double> times;
+  for (std::size_t i = 0; i < trajectory_.size(); ++i) {
+    const VectorXd whole = trajectory_.positions(i);
+    poses.emplace_back();
+    for (Index k = 0; k < whole.size() / 3; ++k) poses.back().push_back(node(whole, static_cast<int>(k)));
+    times.push_back(trajectory_.time(i));
+  }
+  bounds_ = motion_bounds([&](const std::function<void(const Vec3&)>& visit) {
+    for (const auto& pose : poses)
+      for (const Vec3& p : pose) visit(p);
+  });
+  if (bounds_.radius <= 0) bounds_.radius = 1;  // a single node that rests
+  looks_ = appearance_of(s, bounds_.radius);
+  const double thickest = looks_.joint_radius.empty() ? 0.0 : *std::ranges::max_element(looks_.joint_radius);
+  Framing framing;
+  framing.around = thickest + (style_.loads && !s.load_copies.empty() ? 0.5 * looks_.arrow_length : 0.0);
+  if (look_->dimensions || style_.options.dimensions) framing.around += 0.08 * bounds_.radius;
+  framing.aspect = static_cast<double>(style_.width) / style_.height;
+  if (!style_.options.inset.empty() && style_.diagnostics) framing.margins.right = 0.27;
+  path_ = std::make_unique<CameraPath>(std::move(poses), std::move(times), bounds_, framing, style_.options);
+  return thickest;
 }
 
-void FrameBuilder::prepare_still() {
-  const Structure& s = trajectory_.structure();
-  const auto node_points = [this](const std::function<void(const Vec3&)>& visit) {
-    for (std::size_t i = 0; i < trajectory_.size(); ++i) {
-      const VectorXd whole = trajectory_.positions(i);
-      for (Index k = 0; k < whole.size() / 3; ++k) visit(node(whole, static_cast<int>(k)));
-    }
-  };
-  MotionBounds bounds = motion_bounds(node_points);
-  if (bounds.radius <= 0) bounds.radius = 1;  // a single node that rests
-  looks_ = appearance_of(s, bounds.radius);
-  const double thickest = looks_.joint_radius.empty() ? 0.0 : *std::ranges::max_element(looks_.joint_radius);
+void FrameBuilder::prepare_still(double thickest) {
+  still_.camera = path_->at({trajectory_.start_time(), 0, 0});
+  still_.shading = look_->shading;
+  still_.background_top = look_->background_top;
+  still_.background_bottom = look_->background_bottom;
+  still_.transparent = style_.options.transparent || look_->transparent;
+  still_.stars = look_->stars;
+  still_.depth_fade = look_->depth_fade;
+  still_.hidden_gap = static_cast<float>(3 * thickest);
+  still_.center = bounds_.center.cast<float>();
+  still_.radius = static_cast<float>(bounds_.radius + looks_.arrow_length + thickest);
 
-  const double around = thickest + (style_.loads && !s.load_copies.empty() ? 0.5 * looks_.arrow_length : 0.0);
-  const double aspect = static_cast<double>(style_.width) / style_.height;
-  still_.camera = frame_motion(node_points, bounds, around, aspect, Margins{});
-  still_.center = bounds.center.cast<float>();
-  still_.radius = static_cast<float>(bounds.radius + looks_.arrow_length + thickest);
-
-  still_.ground.z = static_cast<float>(bounds.low.z() - thickest - 0.01 * bounds.radius);
+  still_.ground.shown = look_->ground;
+  still_.ground.z = static_cast<float>(bounds_.low.z() - thickest - 0.01 * bounds_.radius);
   still_.ground.center = still_.center;
-  still_.ground.cell = static_cast<float>(round_length(bounds.radius / 5));
-  still_.ground.fade = static_cast<float>(3.2 * bounds.radius);
+  still_.ground.cell = static_cast<float>(round_length(bounds_.radius / 5));
+  still_.ground.fade = static_cast<float>(3.2 * bounds_.radius);
   // The key light comes from above the viewer's left shoulder.
-  const Vec3 side = Vec3::UnitZ().cross(view_direction(bounds)).normalized();
-  still_.light_direction = (0.70 * view_direction(bounds) - 0.42 * side + 1.15 * Vec3::UnitZ()).cast<float>();
+  ViewAngles view = path_->first_view();
+  view.elevation = std::min(view.elevation, 0.9);
+  still_.light_direction =
+      (0.70 * view.direction() - 0.42 * view.right() + 1.15 * Vec3::UnitZ()).cast<float>();
+}
+
+void FrameBuilder::prepare_ghosts() {
+  if (style_.options.ghosts <= 0) return;
+  for (const std::size_t i : equal_steps(trajectory_, static_cast<std::size_t>(style_.options.ghosts)))
+    ghosts_.push_back({trajectory_.time(i), trajectory_.positions(i)});
+}
+
+void FrameBuilder::prepare_trails() {
+  if (style_.trails.empty()) return;
+  for (const int k : style_.trails) trails_.push_back({k, {}, {}});
+  for (const std::size_t i : equal_steps(trajectory_, trail_points)) {
+    const VectorXd whole = trajectory_.positions(i);
+    for (Trail& trail : trails_) {
+      trail.t.push_back(trajectory_.time(i));
+      trail.points.push_back(node(whole, trail.node));
+    }
+  }
 }
 
 DrawList FrameBuilder::build(double t) const {
-  const double inside = std::clamp(t, trajectory_.start_time(), trajectory_.end_time());
+  const double span = trajectory_.end_time() - trajectory_.start_time();
+  const double progress = span > 0 ? std::clamp((t - trajectory_.start_time()) / span, 0.0, 1.0) : 0.0;
+  return build(Shot{t, progress, 0});
+}
+
+DrawList FrameBuilder::build(const Shot& shot) const {
+  const double inside = std::clamp(shot.t, trajectory_.start_time(), trajectory_.end_time());
   const VectorXd whole = trajectory_.positions_at(inside);
   DrawList list = still_;
-  add_rods(whole, list);
+  list.camera = path_->at({inside, shot.progress, shot.turn});
+  add_rods(inside, whole, list);
   add_joints(whole, list);
-  if (style_.loads) add_loads(whole, list);
-  if (style_.labels) add_labels(inside, whole, list);
+  if (style_.loads && style_.options.loads) add_loads(whole, list);
+  add_ghosts(inside, list);
+  add_trails(inside, whole, list);
+  if (style_.labels) overlay_->add(inside, whole, list);
   return list;
 }
 
-void FrameBuilder::add_rods(const VectorXd& whole, DrawList& list) const {
+Color FrameBuilder::rod_color(double t, const RodCopy& rod) const {
+  if (field_) return field_->color(field_->at(t, rod.source));
+  return look_->group(static_cast<std::size_t>(looks_.rod_group[static_cast<std::size_t>(rod.source)]));
+}
+
+void FrameBuilder::add_rods(double t, const VectorXd& whole, DrawList& list) const {
   for (const RodCopy& rod : trajectory_.structure().rod_copies) {
-    const auto source = static_cast<std::size_t>(rod.source);
-    const double radius = looks_.rod_radius[source];
+    const double radius = looks_.rod_radius[static_cast<std::size_t>(rod.source)];
     const Vec3 a = node(whole, rod.a), b = node(whole, rod.b);
     const double length = (b - a).norm();
     const auto thick = static_cast<float>(radius);
-    const auto group = static_cast<std::size_t>(looks_.rod_group[source]);
-    list.tubes.push_back({a.cast<float>(), b.cast<float>(), thick, group_color(group)});
+    // What a colour stands for must not be tinted by metal's reflections, nor be left out of a line drawing.
+    list.tubes.push_back({a.cast<float>(), b.cast<float>(), thick, rod_color(t, rod),
+                          field_ ? Finish::paint : Finish::anodised});
     if (length <= 0) continue;
     const Vec3 fitted = (b - a) * (std::min(6.5 * radius, 0.2 * length) / length);  // from the joint's centre
-    list.sleeves.push_back({a.cast<float>(), (a + fitted).cast<float>(), 1.32f * thick, fitting});
-    list.sleeves.push_back({b.cast<float>(), (b - fitted).cast<float>(), 1.32f * thick, fitting});
+    list.sleeves.push_back({a.cast<float>(), (a + fitted).cast<float>(), 1.32f * thick, look_->fitting});
+    list.sleeves.push_back({b.cast<float>(), (b - fitted).cast<float>(), 1.32f * thick, look_->fitting});
   }
 }
 
@@ -115,7 +166,8 @@ void FrameBuilder::add_joints(const VectorXd& whole, DrawList& list) const {
     const double scale = looks_.fixed[i] ? 1.5 : 1.0;
     const Vec3 at = node(whole, static_cast<int>(i));
     list.balls.push_back({at.cast<float>(), static_cast<float>(scale * looks_.joint_radius[i]),
-                          looks_.fixed[i] ? anchor : joint, looks_.fixed[i] ? Finish::paint : Finish::metal});
+                          looks_.fixed[i] ? look_->anchor : look_->joint,
+                          looks_.fixed[i] ? Finish::paint : Finish::metal});
   }
 }
 
@@ -125,55 +177,46 @@ void FrameBuilder::add_loads(const VectorXd& whole, DrawList& list) const {
     const Vec3 tail = node(whole, load.node);
     const Vec3 head = tail + upright_ * load.force * (looks_.arrow_length / looks_.largest_force);
     list.arrows.push_back(
-        {tail.cast<float>(), head.cast<float>(), static_cast<float>(looks_.arrow_radius), load_color});
+        {tail.cast<float>(), head.cast<float>(), static_cast<float>(looks_.arrow_radius), look_->load});
   }
 }
 
-// The solved nodes' coordinates, read off any of their copies.
-VectorXd FrameBuilder::solved(const VectorXd& whole) const {
-  const Structure& s = trajectory_.structure();
-  VectorXd q = VectorXd::Zero(3 * static_cast<Index>(s.nodes.size()));
-  for (std::size_t i = s.node_copies.size(); i-- > 0;) {  // backwards: the first copy has the last word
-    const NodeCopy& copy = s.node_copies[i];
-    q.segment<3>(3 * copy.source) =
-        copy.map.inverse() * (whole.segment<3>(3 * static_cast<Index>(i)) - copy.offset);
-  }
-  return q;
-}
-
-void FrameBuilder::add_labels(double t, const VectorXd& whole, DrawList& list) const {
-  const auto width = static_cast<float>(style_.width), height = static_cast<float>(style_.height);
-  const float unit = std::max(0.55f, std::min(height / 720.0f, width / 1280.0f));
-  const float edge = 30 * unit, small = std::round(21 * unit), large = std::round(28 * unit);
-  const float low = height - edge - small;
-  if (!style_.title.empty()) list.labels.push_back({edge, 0.8f * edge, large, ink, style_.title, 0, true});
-  std::string status = time_text(t, trajectory_.end_time() - trajectory_.start_time());
-  const Deployment& deployment = trajectory_.structure().deployment;
-  if (!deployment.empty()) status += "    " + deployed_text(deployment.fraction(solved(whole)));
-  list.labels.push_back({edge, low, small, ink, status});
-
-  std::vector<std::pair<std::string, Color>> legend;
-  if (looks_.groups.size() > 1) {
-    for (std::size_t i = 0; i < looks_.groups.size(); ++i) {
-      legend.emplace_back("\u25A0 " + looks_.groups[i], group_color(i));
+void FrameBuilder::add_ghosts(double t, DrawList& list) const {
+  for (const Ghost& ghost : ghosts_) {
+    if (ghost.t >= t) break;
+    for (const RodCopy& rod : trajectory_.structure().rod_copies) {
+      Color color = mixed(rod_color(ghost.t, rod), look_->background_bottom, 0.25f);
+      color.a = 0.30f;
+      list.ghosts.push_back(
+          {node(ghost.whole, rod.a).cast<float>(), node(ghost.whole, rod.b).cast<float>(),
+           0.7f * static_cast<float>(looks_.rod_radius[static_cast<std::size_t>(rod.source)]), color});
     }
   }
-  if (!list.arrows.empty()) legend.emplace_back("\u2192 load", load_color);
-  float right = width - edge;
-  for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry) {
-    list.labels.push_back({right, low, small, entry->second, entry->first, 1});
-    right -= about_width(entry->first, small) + 1.2f * small;
+}
+
+void FrameBuilder::add_trails(double t, const VectorXd& whole, DrawList& list) const {
+  for (const Trail& trail : trails_) {
+    const double joint = looks_.joint_radius[static_cast<std::size_t>(trail.node)];
+    const auto thick = static_cast<float>(0.3 * (joint > 0 ? joint : 0.01 * bounds_.radius));
+    Color color = mixed(look_->load, look_->background_bottom, 0.15f);
+    color.a = 0.85f;
+    Vec3 last = trail.points.front();
+    for (std::size_t i = 1; i <= trail.points.size(); ++i) {
+      const bool ends = i == trail.points.size() || trail.t[i] >= t;
+      const Vec3 next = ends ? node(whole, trail.node) : trail.points[i];
+      list.ghosts.push_back({last.cast<float>(), next.cast<float>(), thick, color});
+      if (ends) break;
+      last = next;
+    }
   }
 }
 
 std::vector<double> frame_times(const Trajectory& trajectory, double fps, double speed) {
-  const double start = trajectory.start_time(), end = trajectory.end_time(), gap = speed / fps;
+  RenderOptions options;
+  options.fps = fps;
+  options.speed = speed;
   std::vector<double> times;
-  // A frame within a thousandth of a gap of the end would be the same picture twice.
-  for (long k = 0; start + static_cast<double>(k) * gap < end - 1e-3 * gap; ++k) {
-    times.push_back(start + static_cast<double>(k) * gap);
-  }
-  times.push_back(end);
+  for (const Shot& shot : film_shots(trajectory, options)) times.push_back(shot.t);
   return times;
 }
 

@@ -1,50 +1,87 @@
 // A moment of a run becomes a picture as data, by what the run and the structure say; no solver is asked.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "core/simulate/trajectory.hpp"
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/scene/render_options.hpp"
 #include "render/scene/appearance.hpp"
+#include "render/scene/camera_path.hpp"
 #include "render/scene/draw_list.hpp"
 #include "render/scene/framing.hpp"
+#include "render/scene/look.hpp"
+#include "render/scene/rod_field.hpp"
 
 namespace unfurl {
 
 struct FrameStyle {
   int width = 1280, height = 720;  // [pixels]
   std::string title;               // top left; empty: none
-  bool labels = true;              // title, time, deployed fraction, legend
+  bool labels = true;              // title, time, deployed fraction, legend and all else that is written
   bool loads = true;               // arrows
+  RenderOptions options = {};      // look, colours, overlays, camera; its size is not used
+  // What colours by a quantity, errors, method and inset are read from; without them those are left out.
+  const Simulation* run = nullptr;
+  const Diagnostics* diagnostics = nullptr;
+  std::vector<int> trails = {};  // the copied nodes that leave one (options.trails is their pattern)
 };
 
-// All pictures of a run share one still camera that sees the whole motion. Gravity, where there is some,
-// points down in the picture; else the scene's z axis points up.
+class FrameOverlay;
+
+// Pictures of a run. Gravity, where there is some, points down in the picture; else the scene's z axis points
+// up. The camera sees the whole motion and stands still unless the options move it.
 class FrameBuilder {
  public:
-  // The trajectory must outlive the builder and have at least one state (else std::invalid_argument).
+  // The trajectory (and what the style points to) must outlive the builder and have at least one state, and
+  // the options must be known names (else std::invalid_argument).
   FrameBuilder(const Trajectory& trajectory, FrameStyle style);
+  ~FrameBuilder();
+  FrameBuilder(FrameBuilder&&) noexcept;
 
   // At any time [s]; outside the run its nearest end.
   DrawList build(double t) const;
-  const Camera& camera() const { return still_.camera; }
+  DrawList build(const Shot& shot) const;
+  const Camera& camera() const { return still_.camera; }  // of the first picture
   // The scene's coordinates to the picture's (a rotation; z is up in the picture).
   const Mat3& upright() const { return upright_; }
 
  private:
   Vec3 node(const VectorXd& whole, int i) const { return upright_ * whole.segment<3>(3 * i); }
-  VectorXd solved(const VectorXd& whole) const;
-  void prepare_still();
-  void add_rods(const VectorXd& whole, DrawList& list) const;
+  double prepare_camera();  // returns the radius of the thickest joint [m]
+  void prepare_still(double thickest);
+  void prepare_ghosts();
+  void prepare_trails();
+  Color rod_color(double t, const RodCopy& rod) const;
+  void add_rods(double t, const VectorXd& whole, DrawList& list) const;
   void add_joints(const VectorXd& whole, DrawList& list) const;
   void add_loads(const VectorXd& whole, DrawList& list) const;
-  void add_labels(double t, const VectorXd& whole, DrawList& list) const;
+  void add_ghosts(double t, DrawList& list) const;
+  void add_trails(double t, const VectorXd& whole, DrawList& list) const;
+
+  struct Ghost {
+    double t;
+    VectorXd whole;
+  };
+  struct Trail {
+    int node;
+    std::vector<double> t;
+    std::vector<Vec3> points;
+  };
 
   const Trajectory& trajectory_;
   FrameStyle style_;
   Mat3 upright_ = Mat3::Identity();
+  const Look* look_;
   Appearance looks_;
-  DrawList still_;  // what all pictures share: camera, floor, light
+  MotionBounds bounds_;
+  std::unique_ptr<RodField> field_;  // null: coloured by group
+  std::unique_ptr<CameraPath> path_;
+  std::unique_ptr<FrameOverlay> overlay_;
+  std::vector<Ghost> ghosts_;
+  std::vector<Trail> trails_;
+  DrawList still_;  // what all pictures share: floor, light, colours
 };
 
 // The times of a film's frames [s]: k * speed / fps from the start of the run, and its end as the last one.

@@ -11,12 +11,6 @@ namespace {
 
 constexpr double field_of_view = 28 * radians_per_degree;  // vertical
 
-// The unit vector at an azimuth from +x and an elevation above the floor [rad].
-Vec3 towards(double azimuth, double elevation) {
-  return {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
-          std::sin(elevation)};
-}
-
 // The normal of the plane that holds all points, or zero. `moments`: sum of (x - c)(x - c)^T.
 Vec3 plane_normal(const Mat3& moments) {
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(moments);
@@ -41,6 +35,10 @@ struct Extremes {
   void add(double along, double depth, double around) {
     high = std::max(high, along - tan_high * depth + around * std::hypot(1.0, tan_high));
     low = std::max(low, -along - tan_low * depth + around * std::hypot(1.0, tan_low));
+  }
+  // The same for an eye that stands at `along` itself.
+  double farthest_at(double along) const {
+    return std::min((along - high) / tan_high, (-along - low) / tan_low);
   }
   double farthest() const { return -(high + low) / (tan_low + tan_high); }  // the largest e.f that fits
   double middle(double eye_depth) const {
@@ -75,40 +73,111 @@ MotionBounds motion_bounds(const PointSource& points) {
   return out;
 }
 
-Vec3 view_direction(const MotionBounds& bounds) {
-  const Vec3& n = bounds.plane_normal;
-  if (n.isZero()) return towards(-62 * radians_per_degree, 24 * radians_per_degree);
-  if (std::abs(n.z()) > 0.7) return towards(-70 * radians_per_degree, 48 * radians_per_degree);
-  // From the side that has x to the right, or y where the plane is that of y and z.
-  const Vec3 front = n.dot(Vec3(0.3, -1, 0)) > 0 ? n : Vec3(-n);
-  return towards(std::atan2(front.y(), front.x()) + 20 * radians_per_degree, 12 * radians_per_degree);
+Vec3 ViewAngles::direction() const {
+  return {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
+          std::sin(elevation)};
+}
+Vec3 ViewAngles::up() const {  // d direction / d elevation: also where the view is straight from above
+  return {-std::cos(azimuth) * std::sin(elevation), -std::sin(azimuth) * std::sin(elevation),
+          std::cos(elevation)};
+}
+Vec3 ViewAngles::right() const {
+  return {-std::sin(azimuth), std::cos(azimuth), 0};
 }
 
-Camera frame_motion(const PointSource& points, const MotionBounds& bounds, double around, double aspect,
-                    const Margins& margins) {
-  const Vec3 forward = -view_direction(bounds);
-  const Vec3 right = forward.cross(Vec3::UnitZ()).normalized(), up = right.cross(forward);
-  const double tan_y = std::tan(0.5 * field_of_view), tan_x = aspect * tan_y;
-  Extremes x{tan_x * (1 - 2 * margins.left), tan_x * (1 - 2 * margins.right)};
-  Extremes y{tan_y * (1 - 2 * margins.bottom), tan_y * (1 - 2 * margins.top)};
-  double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
-  points([&](const Vec3& p) {
-    const double depth = forward.dot(p);
-    x.add(right.dot(p), depth, around);
-    y.add(up.dot(p), depth, around);
-    nearest = std::min(nearest, depth);
-    farthest = std::max(farthest, depth);
-  });
-  const double depth = std::min(x.farthest(), y.farthest());
-  const Vec3 eye = x.middle(depth) * right + y.middle(depth) * up + depth * forward;
+ViewAngles automatic_view(const MotionBounds& bounds) {
+  const Vec3& n = bounds.plane_normal;
+  if (n.isZero()) return {-62 * radians_per_degree, 24 * radians_per_degree};
+  if (std::abs(n.z()) > 0.7) return {-70 * radians_per_degree, 48 * radians_per_degree};
+  // From the side that has x to the right, or y where the plane is that of y and z.
+  const Vec3 front = n.dot(Vec3(0.3, -1, 0)) > 0 ? n : Vec3(-n);
+  return {std::atan2(front.y(), front.x()) + 20 * radians_per_degree, 12 * radians_per_degree};
+}
+
+namespace {
+
+// The two directions of a picture, filled with points. A parallel projection is one without tangents.
+struct Sight {
+  Vec3 right, up, forward;
+  double tan_y;
+  Extremes x, y;
+  double share_x, share_y;  // of the picture's width and height that are inside the margins
+
+  Sight(const PointSource& points, const ViewAngles& view, const Framing& f)
+      : right(view.right()),
+        up(view.up()),
+        forward(-view.direction()),
+        tan_y(f.parallel ? 0.0 : std::tan(0.5 * field_of_view)),
+        x{tan_y * f.aspect * (1 - 2 * f.margins.left), tan_y * f.aspect * (1 - 2 * f.margins.right)},
+        y{tan_y * (1 - 2 * f.margins.bottom), tan_y * (1 - 2 * f.margins.top)},
+        share_x(1 - f.margins.left - f.margins.right),
+        share_y(1 - f.margins.bottom - f.margins.top) {
+    points([&](const Vec3& p) {
+      const double depth = forward.dot(p);
+      x.add(right.dot(p), depth, f.around);
+      y.add(up.dot(p), depth, f.around);
+    });
+  }
+};
+
+Camera looking(const Vec3& eye, const MotionBounds& bounds, const ViewAngles& view, const Framing& f,
+               double parallel_height) {
+  const Vec3 forward = -view.direction();
+  const double depth = forward.dot(bounds.center - eye), reach = bounds.radius + f.around;
   Camera camera;
   camera.eye = eye.cast<float>();
-  camera.target = (eye + forward * (forward.dot(bounds.center) - depth)).cast<float>();
+  camera.target = (eye + forward * depth).cast<float>();
+  camera.up = view.up().cast<float>();
   camera.vertical_field_of_view = static_cast<float>(field_of_view);
-  camera.near_plane = static_cast<float>(0.25 * (nearest - around - depth));
-  camera.far_plane =
-      static_cast<float>(farthest - depth + 12 * (bounds.radius + around));  // and the floor behind
+  camera.parallel_height = static_cast<float>(parallel_height);
+  camera.near_plane = static_cast<float>(std::max(0.02 * depth, 0.8 * (depth - 1.05 * reach)));
+  camera.far_plane = static_cast<float>(depth + 13 * reach);  // and the floor behind
   return camera;
+}
+
+constexpr double parallel_distance = 8;  // of the eye of a parallel picture, in radii of the motion
+
+}  // namespace
+
+Camera frame_points(const PointSource& points, const MotionBounds& bounds, const ViewAngles& view,
+                    const Framing& f) {
+  const Sight sight(points, view, f);
+  const double center = sight.forward.dot(bounds.center);
+  if (f.parallel) {
+    const double height = std::max((sight.y.high + sight.y.low) / sight.share_y,
+                                   (sight.x.high + sight.x.low) / (sight.share_x * f.aspect)) /
+                          f.zoom;
+    // The margins' middle lies beside the picture's.
+    const double x = sight.x.middle(0) + 0.5 * (f.margins.right - f.margins.left) * height * f.aspect;
+    const double y = sight.y.middle(0) + 0.5 * (f.margins.top - f.margins.bottom) * height;
+    const double depth = center - parallel_distance * (bounds.radius + f.around);
+    return looking(x * sight.right + y * sight.up + depth * sight.forward, bounds, view, f, height);
+  }
+  const double fitted = std::min(sight.x.farthest(), sight.y.farthest());
+  const double depth = center - (center - fitted) / f.zoom;
+  return looking(
+      sight.x.middle(fitted) * sight.right + sight.y.middle(fitted) * sight.up + depth * sight.forward,
+      bounds, view, f, 0);
+}
+
+double centered_distance(const PointSource& points, const Vec3& center, const ViewAngles& view,
+                         const Framing& f) {
+  const Sight sight(points, view, f);
+  const double x = sight.right.dot(center), y = sight.up.dot(center);
+  if (f.parallel) {
+    const double half_x = std::max(sight.x.high - x, sight.x.low + x),
+                 half_y = std::max(sight.y.high - y, sight.y.low + y);
+    return 2 * std::max(half_y / (1 - 2 * std::max(f.margins.top, f.margins.bottom)),
+                        half_x / (f.aspect * (1 - 2 * std::max(f.margins.left, f.margins.right))));
+  }
+  return sight.forward.dot(center) - std::min(sight.x.farthest_at(x), sight.y.farthest_at(y));
+}
+
+Camera centered_camera(const MotionBounds& bounds, const Vec3& center, double distance,
+                       const ViewAngles& view, const Framing& f) {
+  if (!f.parallel) return looking(center + distance / f.zoom * view.direction(), bounds, view, f, 0);
+  const double back = parallel_distance * (bounds.radius + f.around);
+  return looking(center + back * view.direction(), bounds, view, f, distance / f.zoom);
 }
 
 }  // namespace unfurl

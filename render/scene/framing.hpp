@@ -26,13 +26,38 @@ struct Margins {
   double left = 0.05, right = 0.05, top = 0.10, bottom = 0.10;
 };
 
-// Where the camera stands, as seen from what it looks at: three-quarter view for a motion in space; a little
-// aside of the normal for one in a plane.
-Vec3 view_direction(const MotionBounds& bounds);
+// Where the camera stands, as seen from what it looks at [rad].
+struct ViewAngles {
+  double azimuth = 0;    // from +x towards +y
+  double elevation = 0;  // above the floor, -pi/2 .. pi/2
 
-// The nearest camera in that direction that has all points, each with `around` metres of room, inside the
-// margins.
-Camera frame_motion(const PointSource& points, const MotionBounds& bounds, double around, double aspect,
-                    const Margins& margins);
+  Vec3 direction() const;  // unit, towards the camera
+  Vec3 up() const;         // unit, upwards in the picture
+  Vec3 right() const;
+};
+
+// Three-quarter view for a motion in space; a little aside of the normal for one in a plane.
+ViewAngles automatic_view(const MotionBounds& bounds);
+
+// What a camera has to show, and how.
+struct Framing {
+  double around = 0;  // room for every point [m]
+  double aspect = 16.0 / 9;
+  Margins margins;
+  bool parallel = false;  // no perspective
+  double zoom = 1;
+};
+
+// The nearest camera in that direction that has all points, each with its room, inside the margins.
+Camera frame_points(const PointSource& points, const MotionBounds& bounds, const ViewAngles& view,
+                    const Framing& framing);
+
+// How far such a camera must be from `center` at least (or how high its parallel picture) if it looks
+// straight at it [m].
+double centered_distance(const PointSource& points, const Vec3& center, const ViewAngles& view,
+                         const Framing& framing);
+// The camera at that distance.
+Camera centered_camera(const MotionBounds& bounds, const Vec3& center, double distance,
+                       const ViewAngles& view, const Framing& framing);
 
 }  // namespace unfurl

@@ -15,8 +15,11 @@ layout(location = 5) in vec2 radii;
 layout(location = 6) in vec3 color;
 layout(location = 7) in vec2 surface;
 uniform mat4 view_projection;
+uniform vec4 eye;      // the camera, or (w = 0) the direction to it
+uniform float nearer;  // how much nearer than it is everything is taken to be when depths are compared
 out vec3 world;
 out vec3 normal;
+flat out vec3 axis;  // unit; zero for a ball
 flat out vec3 albedo;
 flat out vec2 metal_roughness;
 void main() {
@@ -30,24 +33,39 @@ void main() {
   normal = x * axis_normal.x + y * axis_normal.y + z * (axis_normal.z + tilt * length(axis_normal.xy));
   albedo = pow(color, vec3(2.2));
   metal_roughness = surface;
+  axis = span > 0.0 ? z : vec3(0.0);
   gl_Position = view_projection * vec4(world, 1.0);
+  vec4 moved = view_projection * vec4(world + nearer * normalize(eye.xyz - eye.w * world), 1.0);
+  gl_Position.z = moved.z / moved.w * gl_Position.w;
 })";
 
 inline constexpr const char* depth_fragment = R"(#version 330 core
 void main() {})";
 
-// A key light with a soft shadow, the light of a bright room from everywhere, its reflection, and the floor's
-// darkening from below.
-inline constexpr const char* solid_fragment = R"(#version 330 core
+// What the fragment stages of all looks begin with: inputs, shadow, and the mist that tells near from far.
+inline constexpr const char* solid_head = R"(#version 330 core
 in vec3 world;
 in vec3 normal;
+flat in vec3 axis;
 flat in vec3 albedo;
 flat in vec2 metal_roughness;
-uniform vec3 eye, to_light;
+uniform vec4 eye;
+uniform vec3 to_light;
 uniform vec2 floor_height_reach;  // darkens what is nearer to the floor than `reach`
+uniform vec4 background_top, background_bottom;
+uniform float picture_height;
+uniform vec3 fade_center;
+uniform vec2 fade;  // radius, share of the background at the far side
 uniform mat4 light_projection;
 uniform sampler2DShadow shadow_map;
 layout(location = 0) out vec4 color;
+
+vec3 misty(vec3 c) {
+  vec3 forward = normalize(fade_center * eye.w - eye.xyz);
+  float behind = dot(world - fade_center, forward) / fade.x;
+  vec3 mist = mix(background_bottom, background_top, gl_FragCoord.y / picture_height).rgb;
+  return mix(c, mist, fade.y * smoothstep(-1.0, 1.0, behind));
+}
 
 float lit(vec3 p, vec3 n, float texel) {
   vec3 at = (light_projection * vec4(p + n * 1.5 * texel, 1.0)).xyz * 0.5 + 0.5;
@@ -56,13 +74,18 @@ float lit(vec3 p, vec3 n, float texel) {
   return 0.5 * (texture(shadow_map, at + vec3(step, step, 0.0)) + texture(shadow_map, at - vec3(step, step, 0.0)));
 }
 
+)";
+
+// A key light with a soft shadow, the light of a bright room from everywhere, its reflection, and the floor's
+// darkening from below.
+inline constexpr const char* studio_fragment = R"(
 vec3 room(vec3 d) {  // what a mirror would show: a pale floor, a bright horizon, a lamp overhead
   vec3 c = mix(vec3(0.40, 0.41, 0.43), vec3(0.78, 0.84, 0.92), smoothstep(-0.35, 0.25, d.z));
   return c + vec3(1.3) * smoothstep(0.80, 0.98, dot(d, normalize(to_light + vec3(0.0, 0.0, 0.6))));
 }
 
 void main() {
-  vec3 n = normalize(normal), v = normalize(eye - world);
+  vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
   float metal = metal_roughness.x, roughness = metal_roughness.y;
   float texel = 2.0 / (length(light_projection[0].xyz) * float(textureSize(shadow_map, 0).x));
   float n_l = dot(n, to_light), n_v = max(dot(n, v), 0.02);
@@ -82,7 +105,67 @@ void main() {
   light += fresnel * room(reflect(-v, n)) * mix(0.6, 1.0, occlusion);
   light += f0 * min(highlight, 6.0) * key;
   light = light / (1.0 + 0.18 * light) * 1.12;  // rolls off what is brighter than paper
-  color = vec4(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);
+  color = vec4(misty(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2))), 1.0);
+})";
+
+// Sunlight in the dark: a hard key light, hardly anything from elsewhere, and a bright rim against the night.
+inline constexpr const char* space_fragment = R"(
+void main() {
+  vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
+  float metal = metal_roughness.x, roughness = metal_roughness.y;
+  float texel = 2.0 / (length(light_projection[0].xyz) * float(textureSize(shadow_map, 0).x));
+  float n_l = dot(n, to_light), n_v = max(dot(n, v), 0.02);
+  float key = n_l > 0.0 ? n_l * lit(world, n, texel) : 0.0;
+  vec3 f0 = mix(vec3(0.04), albedo, metal);
+  vec3 h = normalize(v + to_light);
+  float a2 = pow(roughness, 4.0), n_h = max(dot(n, h), 0.0);
+  float d = n_h * n_h * (a2 - 1.0) + 1.0;
+  float highlight = a2 / (3.14159 * d * d) * 0.25 / mix(n_v, 1.0, 0.5);
+  vec3 planet = mix(vec3(0.05, 0.06, 0.09), vec3(0.10, 0.20, 0.38), 0.5 - 0.5 * n.z);
+  vec3 light = albedo * (planet + 1.7 * key * vec3(1.0, 0.97, 0.93));
+  light += f0 * min(highlight, 8.0) * key * 1.5;
+  float behind = max(dot(n, normalize(vec3(-to_light.xy, 0.6))), 0.0);  // a second sun's glow at the edge
+  light += (0.25 + 0.75 * behind) * pow(1.0 - n_v, 3.0) * mix(vec3(0.45, 0.70, 1.0), albedo, 0.3);
+  light = light / (1.0 + 0.15 * light);
+  color = vec4(misty(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2))), 1.0);
+})";
+
+// Flat colours in two tones, as if printed.
+inline constexpr const char* flat_fragment = R"(
+void main() {
+  vec3 n = normalize(normal);
+  float tone = mix(0.62, 1.0, smoothstep(-0.05, 0.20, dot(n, to_light)));
+  color = vec4(misty(pow(albedo * tone, vec3(1.0 / 2.2))), 1.0);
+})";
+
+// A line along both sides of what is round. Where `hidden`, only that line, pale; else also the paper inside.
+inline constexpr const char* outline_fragment = R"(
+uniform int hidden;
+uniform float line_width;  // [pixels]
+void main() {
+  vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
+  vec3 across = normalize(v - axis * dot(axis, v) + 1e-6 * n);
+  float facing = clamp(dot(n, across), 0.0, 1.0);
+  float inside = 1.0 - sqrt(max(1.0 - facing * facing, 0.0));  // 0 at the side, 1 in the middle
+  if (abs(dot(n, axis)) > 0.3) inside = 1.0;                   // the flat end of a fitting
+  float line = 1.0 - smoothstep(line_width - 0.5, line_width + 0.5, inside / max(fwidth(inside), 1e-6));
+  vec3 hue = pow(albedo, vec3(1.0 / 2.2));
+  vec3 ink = hue * 0.62;
+  if (hidden == 1) {
+    if (line < 0.02) discard;
+    color = vec4(misty(mix(ink, vec3(1.0), 0.55)), 0.75 * line);
+  } else {
+    float filled = metal_roughness.x > 0.0 ? 0.10 : 1.0;  // what is painted is so here
+    color = vec4(misty(mix(mix(vec3(1.0), hue, filled), ink, line)), 1.0);
+  }
+})";
+
+// What is seen through: ghosts of other poses.
+inline constexpr const char* ghost_fragment = R"(
+void main() {
+  vec3 n = normalize(normal);
+  float opacity = metal_roughness.x;
+  color = vec4(misty(pow(albedo, vec3(1.0 / 2.2)) * mix(0.85, 1.0, 0.5 + 0.5 * n.z)), opacity);
 })";
 
 // Two passes of a blur. Across: of the depth map, whatever is nearer to the light than the floor. Then along.
@@ -116,9 +199,21 @@ void main() {  // one triangle over the whole picture, behind everything
 
 inline constexpr const char* background_fragment = R"(#version 330 core
 uniform vec4 background_top, background_bottom;
-uniform float picture_height;
+uniform float picture_height, stars;
 layout(location = 0) out vec4 color;
-void main() { color = mix(background_bottom, background_top, gl_FragCoord.y / picture_height); })";
+float scatter(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }
+void main() {
+  color = mix(background_bottom, background_top, gl_FragCoord.y / picture_height);
+  if (stars > 0.0) {  // at most one in each cell of a grid
+    float unit = picture_height / 720.0;
+    vec2 at = gl_FragCoord.xy / (36.0 * unit), cell = floor(at);
+    float luck = scatter(cell);
+    vec2 place = vec2(scatter(cell + 17.0), scatter(cell + 43.0)) * 0.8 + 0.1;
+    float away = length(at - cell - place) * 36.0;
+    float bright = stars * smoothstep(0.45, 1.0, luck) * smoothstep(1.3, 0.2, away);
+    color.rgb += bright * mix(vec3(0.75, 0.85, 1.0), vec3(1.0, 0.92, 0.8), scatter(cell + 5.0));
+  }
+})";
 
 inline constexpr const char* ground_vertex = R"(#version 330 core
 uniform mat4 view_projection;
@@ -137,7 +232,8 @@ in vec2 world;
 uniform vec4 background_top, background_bottom;
 uniform float picture_height;
 uniform vec3 center;
-uniform float reach, cell;
+uniform float reach, cell, grid_strength;
+uniform int transparent;
 uniform mat4 light_projection;
 uniform sampler2D shade;
 layout(location = 0) out vec4 color;
@@ -156,9 +252,16 @@ float lines(vec2 p, float pixels) {  // 1 on the lines of the unit grid
 void main() {
   float fade = 1.0 - smoothstep(0.35, 1.0, length(world - center.xy) / reach);
   vec3 paper = mix(background_bottom, background_top, gl_FragCoord.y / picture_height).rgb;
-  float grid = max(0.20 * lines(world / cell, 1.1), 0.34 * lines(world / (5.0 * cell), 1.3));
-  paper = mix(paper, vec3(0.36, 0.44, 0.54), grid * fade);
-  if (fade > 0.0) paper *= mix(vec3(1.0), mix(vec3(0.60, 0.63, 0.68), vec3(1.0), lit(vec3(world, center.z))), fade);
+  float finer = max(1.0, picture_height / 720.0);  // lines as wide for the eye in pictures of any size
+  float grid = max(0.20 * lines(world / cell, 1.1 * finer), 0.34 * lines(world / (5.0 * cell), 1.3 * finer)) * grid_strength * fade;
+  float shadow = fade > 0.0 ? fade * (1.0 - lit(vec3(world, center.z))) : 0.0;
+  if (transparent == 1) {  // multiplied by its own opacity
+    float ink = max(grid, 0.40 * shadow);
+    color = vec4(mix(vec3(0.36, 0.44, 0.54), vec3(0.10, 0.12, 0.16), shadow) * ink, ink);
+    return;
+  }
+  paper = mix(paper, vec3(0.36, 0.44, 0.54), grid);
+  paper *= mix(vec3(1.0), vec3(0.60, 0.63, 0.68), shadow);
   color = vec4(paper, 1.0);
 })";
 

@@ -101,10 +101,15 @@ Mesh cylinder_mesh(int sides) {
                  sides);
 }
 
+std::vector<SolidInstance> tubes_of(const std::vector<Tube>& tubes) {
+  std::vector<SolidInstance> out;
+  for (const Tube& t : tubes) out.push_back(solid(t.a, t.b, t.radius, t.radius, t.color, t.finish));
+  return out;
+}
+
 Solids solids_of(const DrawList& list) {
   Solids out;
-  for (const Tube& t : list.tubes)
-    out.capsules.push_back(solid(t.a, t.b, t.radius, t.radius, t.color, t.finish));
+  out.capsules = tubes_of(list.tubes);
   for (const Sleeve& s : list.sleeves)
     out.cylinders.push_back(solid(s.a, s.b, s.radius, s.radius, s.color, s.finish));
   for (const Ball& b : list.balls) {

@@ -37,5 +37,6 @@ struct Solids {
   std::vector<SolidInstance> capsules, balls, cylinders;
 };
 Solids solids_of(const DrawList& list);
+std::vector<SolidInstance> tubes_of(const std::vector<Tube>& tubes);
 
 }  // namespace unfurl

@@ -28,6 +28,14 @@ Matrix4f camera_view(const Camera& camera) {
 
 Matrix4f view_projection(const Camera& camera, float aspect) {
   const float n = camera.near_plane, f = camera.far_plane;
+  if (camera.parallel_height > 0) {
+    Matrix4f p = Matrix4f::Identity();
+    p(1, 1) = 2.0f / camera.parallel_height;
+    p(0, 0) = p(1, 1) / aspect;
+    p(2, 2) = 2.0f / (n - f);
+    p(2, 3) = (f + n) / (n - f);
+    return p * camera_view(camera);
+  }
   const float scale = 1.0f / std::tan(0.5f * camera.vertical_field_of_view);
   Matrix4f p = Matrix4f::Zero();
   p(0, 0) = scale / aspect;
@@ -50,7 +58,8 @@ Matrix4f light_projection(const Vec3f& direction, const Vec3f& center, float rad
 Vec3f project(const Camera& camera, int width, int height, const Vec3f& point) {
   const auto w = static_cast<float>(width), h = static_cast<float>(height);
   const Eigen::Vector4f clip = view_projection(camera, w / h) * point.homogeneous();
-  return {0.5f * w * (1 + clip.x() / clip.w()), 0.5f * h * (1 - clip.y() / clip.w()), clip.w()};
+  const float depth = (point - camera.eye).dot((camera.target - camera.eye).normalized());
+  return {0.5f * w * (1 + clip.x() / clip.w()), 0.5f * h * (1 - clip.y() / clip.w()), depth};
 }
 
 }  // namespace unfurl

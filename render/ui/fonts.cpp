@@ -1,7 +1,8 @@
 #include "render/ui/fonts.hpp"
 
 #include <filesystem>
-#include <string>
+
+#include "render/ui/font_file.hpp"
 
 namespace unfurl {
 namespace {
@@ -17,16 +18,13 @@ constexpr ImWchar glyph_ranges[] = {0x0020, 0x017F,  // Latin, Latin-1, Latin Ex
                                     0x25A0, 0x25FF,  // shapes
                                     0};
 
-// Debian's fonts-dejavu-core.
-constexpr const char* folder = "/usr/share/fonts/truetype/dejavu/";
-
 }  // namespace
 
 ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold) {
-  const std::string file = std::string(folder) + (bold ? "DejaVuSans-Bold.ttf" : "DejaVuSans.ttf");
+  const char* file = font_file(bold);
   std::error_code error;  // ImGui aborts on a file that is not there
   if (std::filesystem::is_regular_file(file, error)) {
-    if (ImFont* font = atlas.AddFontFromFileTTF(file.c_str(), pixels, nullptr, glyph_ranges)) return font;
+    if (ImFont* font = atlas.AddFontFromFileTTF(file, pixels, nullptr, glyph_ranges)) return font;
   }
   ImFontConfig config;
   config.SizePixels = pixels;

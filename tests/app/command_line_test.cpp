@@ -54,7 +54,8 @@ TEST_CASE("invalid scenes") {
               "--set structure.units: must be a whole number in [3, 100000]; got 2");
   check_error({"check", "hoop6", "--set", "solver.step=0"}, 3, "--set solver.step: must be > 0 s; got 0");
   check_error({"check", "hoop6", "--set", "solver.method=dvn"}, 3,
-              "--set solver.method: must be one of dvm, rk4; got 'dvn'; did you mean 'dvm'?");
+              "--set solver.method: must be one of dvm, rk4, rk4_baumgarte, rk4_projected, generalized_alpha; "
+              "got 'dvn'; did you mean 'dvm'?");
   check_error({"check", "hoop6", "--set", "structure.post_length=-1", "--set", "solver.stpe=1"}, 3,
               "--set structure.post_length: must be > 0 m; got -1\n"
               "--set solver.stpe: unknown key; did you mean 'step'?");

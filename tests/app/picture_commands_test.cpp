@@ -57,9 +57,12 @@ TEST_CASE("render writes data, frames, an animation and every figure twice") {
   const std::string animation = file_text(dir / "out/animation.webp");
   CHECK(animation.starts_with("RIFF"));
   CHECK(animation.substr(8, 4) == "WEBP");
-  for (const char* name : {"deployment", "constraint_error", "energy", "rod_forces", "poses"}) {
+  for (const char* name :
+       {"deployment", "constraint_error", "energy", "rod_forces", "phase", "steps", "jacobian", "poses"}) {
     CHECK(is_png(dir / "out/figures/" + std::string(name) + ".png"));
     CHECK(file_text(dir / "out/figures/" + std::string(name) + ".svg").find("<svg") != std::string::npos);
+    for (const char* extension : {".pdf", ".csv", ".caption.txt"})
+      CHECK(fs::exists(dir / "out/figures/" + std::string(name) + extension));
   }
   CHECK(nlohmann::json::parse(file_text(dir / "out/summary.json"))["status"] == "completed");
   CHECK(fs::exists(dir / "out/trajectory.csv"));
@@ -69,7 +72,7 @@ TEST_CASE("frames of an earlier, longer film do not survive") {
   const ScratchDirectory dir;
   const auto command = with({"render"}, with(small, {"-o", dir / "out"}));
   CHECK(run_program(command).code == 0);
-  CHECK(run_program(with(command, {"--set", "solver.end_time=0.05"})).code == 0);
+  CHECK(run_program(with(command, {"--set", "solver.end_time=0.05", "--force"})).code == 0);
   CHECK(files_in(dir / "out/frames") == std::vector<std::string>{"frame_00000.png", "frame_00001.png"});
 }
 
@@ -90,7 +93,6 @@ TEST_CASE("Ctrl-C while drawing keeps the finished frames") {
   REQUIRE_FALSE(frames.empty());
   for (const auto& frame : frames) CHECK(is_png(dir / "out/frames/" + frame));
   CHECK(fs::exists(dir / "out/summary.json"));
-  CHECK(fs::exists(dir / "out/animation.webp"));
 }
 
 TEST_CASE("without OSMesa pictures end before the work, SVG and data do not need it") {
@@ -114,7 +116,19 @@ TEST_CASE("one figure goes into the file that -o names") {
   CHECK(file_text(dir / "e.svg").find("<svg") != std::string::npos);
   CHECK(run_program(with(scene, {"-o", dir / "e.png"})).code == 0);
   CHECK(is_png(dir / "e.png"));
-  CHECK(files_in(dir / "") == std::vector<std::string>{"e.png", "e.svg"});
+  CHECK(run_program(with(scene, {"-o", dir / "e.pdf", "--style", "single-column"})).code == 0);
+  CHECK(file_text(dir / "e.pdf").starts_with("%PDF-"));
+  CHECK(file_text(dir / "e.caption.txt").starts_with("Energy. "));
+  CHECK(run_program(with(scene, {"-o", dir / "slide.png", "--style", "slide"})).code == 0);
+  CHECK(png_size(dir / "slide.png") == std::pair(1920, 1080));
+  CHECK(run_program(with(scene, {"-o", dir / "small.png", "--dpi", "72"})).code == 0);
+  CHECK(png_size(dir / "small.png").first == 454);  // 160 mm at 72 dpi: 453.5
+  const std::vector<std::string> files = files_in(dir / "");
+  CHECK(std::vector<std::string>(files.begin(), files.begin() + 5) ==
+        std::vector<std::string>{"e.caption.txt", "e.csv", "e.pdf", "e.png", "e.svg"});
+  const ProgramResult r = run_program(with(scene, {"-o", dir / "x.png", "--style", "slides"}));
+  CHECK(r.code == 2);
+  CHECK(r.err == "unfurl: no style 'slides'; did you mean 'slide'?\n");
 }
 
 TEST_CASE("all figures go into a directory, those that the scene has data for") {
@@ -132,9 +146,9 @@ TEST_CASE("figures that cannot be made say why") {
   ProgramResult r = error({"figure", "hoop6", "energi", "-o", dir / "x.png"});
   CHECK(r.code == 2);
   CHECK(r.err == "unfurl: no figure 'energi'; did you mean 'energy'?\n");
-  r = error({"figure", "hoop6", "energy", "-o", dir / "x.pdf"});
+  r = error({"figure", "hoop6", "energy", "-o", dir / "x.eps"});
   CHECK(r.code == 2);
-  CHECK(r.err == "unfurl: a figure is written as .png or .svg, not '.pdf'\n");
+  CHECK(r.err == "unfurl: a figure is written as .png, .svg or .pdf, not '.eps'\n");
   r = error({"figure", "hoop6", "energy", "poses", "-o", dir / "x.png"});
   CHECK(r.code == 2);
   r = error({"figure", "four_bar", "deployment", "-o", dir / "x.png"});

@@ -7,6 +7,7 @@
 
 #include "core/simulate/simulation.hpp"
 #include "core/structures/custom.hpp"
+#include "core/structures/four_bar_ladder.hpp"
 #include "core/structures/hoop.hpp"
 #include "tests/support/hoop_exact.hpp"
 
@@ -44,6 +45,15 @@ inline Structure double_pendulum() {
   spec.rods = {{"OA", {"O", "A"}, 2.0}, {"AB", {"A", "B"}, 1.0}};
   Structure structure = build_custom(spec);
   structure.gravity = {0, 0, -9.81};
+  return structure;
+}
+
+inline Structure ladder_structure(int windows, double speed) {
+  ParamSet params(four_bar_ladder_params());
+  params.set("windows", static_cast<long>(windows));
+  params.set("speed", speed);
+  Structure structure = build_four_bar_ladder(params);
+  structure.gravity = {0, -9.81, 0};
   return structure;
 }
 

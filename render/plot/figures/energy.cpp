@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "render/plot/figures/kinds.hpp"
@@ -17,6 +18,18 @@ constexpr Share shares[] = {{"kinetic_energy_J", "kinetic energy", 0, Dash::soli
                             {"potential_energy_J", "potential energy", 2, Dash::dash_dot},
                             {"work_J", "work of the loads", 1, Dash::dashed}};
 
+// Energies that hardly change are shown from zero on: their ripple is the lower panel's business.
+void show_from_zero(Panel& p) {
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  for (const Curve& c : p.curves)
+    for (const double v : c.y)
+      if (std::isfinite(v)) lo = std::min(lo, v), hi = std::max(hi, v);
+  const double size = std::max(std::abs(lo), std::abs(hi));
+  if (!(size > 0 && hi - lo < 0.01 * size)) return;
+  p.y.min = lo < 0 ? -1.15 * size : 0;
+  p.y.max = hi > 0 ? 1.15 * size : 0;
+}
+
 }  // namespace
 
 Figure energy_figure(const Simulation& run, const Diagnostics& diagnostics) {
@@ -30,6 +43,7 @@ Figure energy_figure(const Simulation& run, const Diagnostics& diagnostics) {
     top.curves.push_back(over_time(diagnostics, values, s.label, s.color));
     top.curves.back().dash = s.dash;
   }
+  show_from_zero(top);
 
   const std::vector<double> error = magnitudes(diagnostics.at("energy_balance_J").values);
   Panel bottom = time_panel(run, "error of balance (J)");

@@ -13,13 +13,16 @@ namespace {
 // without.
 Structure sample() {
   Structure s;
-  s.nodes = {{"a", {0.1, 0.2, 0.3}}, {"b", {1.3, -0.4, 0.6}}, {"c", {0.7, 1.9, -0.8}}};
+  s.nodes = {
+      {"a", {0.1, 0.2, 0.3}}, {"b", {1.3, -0.4, 0.6}}, {"c", {0.7, 1.9, -0.8}}, {"d", {-0.6, 0.5, 1.1}}};
   s.rods = {{"ab", 0, 1, 1.0, 1.5, "rod", 0.01, 1.0}, {"bc", 1, 2, 1.0, 2.0, "rod", 0.01, 1.0}};
   const Vec3 n = Vec3(1, 2, 2) / 3;
   s.constraints = {{"plane", "plane", {0}, {n}, 0.25},
                    {"line", "line", {1}, {n}, 0.0},
                    {"fixed", "fixed", {2}, {}, 0.0},
-                   {"relation", "relation", {0, 1, 2}, {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, -1)}, 0.5}};
+                   {"relation", "relation", {0, 1, 2}, {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, -1)}, 0.5},
+                   {"collinear", "collinear", {0, 1, 2}, {}, 0.0},
+                   {"coplanar", "coplanar", {0, 1, 2, 3}, {}, 0.0}};
   return s;
 }
 
@@ -44,7 +47,7 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
     const auto block = kind.make(structure);
     INFO("constraint " << kind.kind);
     REQUIRE(block);
-    const Index n = 9, m = block->rows();
+    const Index n = 12, m = block->rows();
     VectorXd q(n), v(n), lambda(m);
     for (VectorXd* x : {&q, &v, &lambda})
       for (Index i = 0; i < x->size(); ++i) (*x)[i] = uniform(random);

@@ -60,10 +60,7 @@ void check_equal(const Scene& a, const Scene& b) {
   CHECK(a.solver.end_time == b.solver.end_time);
   CHECK(a.solver.at_deployed == b.solver.at_deployed);
   CHECK(a.solver.eliminate_linear == b.solver.eliminate_linear);
-  CHECK(a.render.width == b.render.width);
-  CHECK(a.render.height == b.render.height);
-  CHECK(a.render.fps == b.render.fps);
-  CHECK(a.render.speed == b.render.speed);
+  CHECK((a.render == b.render));
 }
 
 // Doubles of every size, whole numbers among them, none that a TOML file cannot hold.
@@ -114,7 +111,15 @@ Scene random_custom_scene(unsigned seed) {
   scene.solver.step = 0.01 * (1 + std::abs(std::fmod(random.any(), 1.0)));
   scene.solver.end_time = 1.0 / 3.0;
   scene.solver.eliminate_linear = random.pick(2) == 0;
-  scene.render = {16 + static_cast<int>(random.pick(1000)), 480, 29.97, 1.0 / 7.0};
+  scene.render.width = 16 + static_cast<int>(random.pick(1000));
+  scene.render.fps = 29.97;
+  scene.render.speed = 1.0 / 7.0;
+  scene.render.look = "print";
+  scene.render.gif = false;
+  scene.render.colour_range = {-2.5, 1.0 / 3.0};
+  scene.render.trails = "B*";
+  scene.render.camera_keys = {{0.0, -60.0, 20.0, 1.0}, {1.0 / 3.0, 10.0, 45.0, 2.5}};
+  scene.render.supersample = 2;
   return scene;
 }
 

@@ -14,6 +14,50 @@ TEST_CASE("no figure has text outside, overlapping, pale or out of size", "[figu
   for (const Figure& figure : sample_figures()) CHECK(faults(figure) == std::vector<std::string>{});
 }
 
+TEST_CASE("figures of any data are in order in every style", "[figure]") {
+  for (const FigureStyle& style : figure_styles())
+    for (const Figure& figure : sample_figures()) {
+      // Nine panels with titles and labels of their own, or ten legends, are more than a slide or a column
+      // holds.
+      if (figure.panels.size() > 6 && style.width_mm > 0) continue;
+      if (figure.name == "crowded" && style.name == "slide") continue;
+      CAPTURE(style.name);
+      CHECK(faults(figure, style) == std::vector<std::string>{});
+    }
+}
+
+TEST_CASE("styles differ in what they say they differ in", "[figure]") {
+  const Figure figure = sample_figures().front();
+  const auto texts = [&](const char* style) {
+    plot::RecordingCanvas canvas;
+    plot::paint(figure, plot::lay_out(figure, layout_options(figure, *find_figure_style(style))), canvas);
+    std::vector<std::string> out;
+    for (const auto& t : canvas.texts) out.push_back(t.text);
+    return out;
+  };
+  const auto has_title = [&](const char* style) {
+    const auto all = texts(style);
+    return std::find(all.begin(), all.end(), figure.title) != all.end();
+  };
+  CHECK(has_title("screen"));
+  CHECK(has_title("slide"));
+  CHECK_FALSE(has_title("single-column"));
+  CHECK(texts("screen").size() > texts("slide").size());  // the caption's lines
+  CHECK(find_figure_style("poster") == nullptr);
+}
+
+TEST_CASE("curves alike but for their colour are found", "[figure]") {
+  Figure figure;
+  figure.name = "alike";
+  figure.panels.resize(1);
+  Curve c;
+  c.x = {0, 1}, c.y = {0, 1}, c.label = "one";
+  figure.panels[0].curves = {c, c};
+  CHECK(plot::twins(figure).size() == 1);
+  figure.panels[0].curves[1].dash = Dash::dotted;
+  CHECK(plot::twins(figure).empty());
+}
+
 TEST_CASE("figures stay in order at other sizes", "[figure]") {
   for (Figure figure : sample_figures()) {
     figure.width_mm *= 0.75;

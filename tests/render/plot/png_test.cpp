@@ -100,7 +100,7 @@ TEST_CASE("a noisy line of 40 000 points is painted where it belongs and nowhere
 }
 
 TEST_CASE("one writer paints figures of several sizes", "[png]") {
-  FigureWriter writer({.dpi = 72, .layout = {}});
+  FigureWriter writer({.dpi = 72});
   for (const Figure& figure : sample_figures()) {
     const Image image = writer.paint(figure);
     CHECK(image.width == std::lround(figure.width_mm * plot::points_per_mm));

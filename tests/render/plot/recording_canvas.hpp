@@ -6,6 +6,7 @@
 
 #include "render/plot/canvas.hpp"
 #include "render/plot/figure.hpp"
+#include "render/plot/figure_style.hpp"
 
 namespace unfurl::plot {
 
@@ -26,6 +27,7 @@ class RecordingCanvas final : public Canvas {
   void end_clip() override;
 
   std::vector<Text> texts;
+  std::vector<double> widths;    // of strokes
   std::vector<Point> unclipped;  // points drawn outside a clip region
   std::size_t points = 0;
   bool finite = true;  // every coordinate
@@ -35,8 +37,12 @@ class RecordingCanvas final : public Canvas {
   void see(Point p);
 };
 
-// What is wrong with a figure as painted, one line a fault: text outside, text over text, text too small or
-// large or pale, empty text, coordinates that are not finite, strokes off the page.
-std::vector<std::string> faults(const Figure& figure);
+// What is wrong with a figure as painted in a style, one line a fault: a page of another size than the style
+// asks for, text outside, text over text, text too small or large for the style or pale, empty text, strokes
+// too thin to print, coordinates that are not finite, strokes off the page.
+std::vector<std::string> faults(const Figure& figure, const FigureStyle& style = figure_styles().front());
+
+// What makes curves of a panel hard to tell apart without colour: two named ones of the same dash and marker.
+std::vector<std::string> twins(const Figure& figure);
 
 }  // namespace unfurl::plot

@@ -113,7 +113,9 @@ TEST_CASE("labels are aligned to the left, the middle or the right of their plac
   const Paper paper;
   TextOverlay overlay;
   const float align = GENERATE(0.0f, 0.5f, 1.0f);
-  overlay.draw({{100, 40, 16, {0, 0, 0, 1}, "label", align}}, 200, 100);
+  DrawList list;
+  list.labels = {{100, 40, 16, {0, 0, 0, 1}, "label", align}};
+  overlay.draw(list, 200, 100);
   const auto box = inked(paper.frame.read());
   const double width = box[2] - box[0] + 1;
   CHECK(width > 30);

@@ -1,0 +1,36 @@
+// unfurl reproduce -o DIR: the paper's tables and figures, beside ours.
+#include <iostream>
+
+#include "app/command.hpp"
+#include "app/interrupt.hpp"
+#include "app/study_session.hpp"
+#include "core/study/reproduce_report.hpp"
+#include "render/plot/figures/reproduce_figures.hpp"
+
+namespace unfurl {
+
+int cmd_reproduce(const Arguments& arguments) {
+  const InterruptGuard guard;
+  StudySession session(arguments, "reproducing", "", "runs.csv");
+  Reproduction r;
+  try {
+    r = reproduce_paper(session.hooks());
+  } catch (const Cancelled&) {
+    std::cerr << "unfurl: interrupted before there was anything to write\n";
+    return exit_interrupted;
+  }
+  const ReproductionPictures pictures{session.write(reproduced_poses_figure(r)),
+                                      session.write(reproduced_constraint_figure(r)),
+                                      session.write(reproduced_trajectory_figure(r))};
+  const Report report = reproduction_report(r, pictures);
+  session.write("runs.csv", csv_text(runs_table(r)));
+  session.write("report.md", report_markdown(report));
+  session.write("report.html", report_html(report, session.directory()));
+  for (const Check& check : r.checks)
+    if (!check.holds)
+      std::cerr << "unfurl: does not hold: " << check.claim << "; found " << check.found << "\n";
+  const int code = finish(true, arguments, "written: " + (session.directory() / "report.html").string());
+  return r.verified() ? code : exit_verification_failed;
+}
+
+}  // namespace unfurl

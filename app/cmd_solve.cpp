@@ -1,0 +1,126 @@
+// unfurl solve SCENE --find KEY --target NAME=VALUE: the parameter for which a measure takes a value.
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "app/command.hpp"
+#include "app/interrupt.hpp"
+#include "app/scene_run.hpp"
+#include "app/study_session.hpp"
+#include "core/model/nearest_name.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/write.hpp"
+#include "core/study/measures.hpp"
+#include "core/study/scene_variation.hpp"
+#include "core/study/solve_for.hpp"
+#include "core/study/tolerance.hpp"
+
+namespace unfurl {
+
+namespace {
+
+struct Target {
+  Measure measure;
+  double value = 0;
+};
+
+Target target_of(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  const double value =
+      equals == std::string::npos ? NAN : number_of(std::string_view(text).substr(equals + 1));
+  if (!std::isfinite(value)) throw UsageError("--target is NAME=VALUE with a number; got " + in_quotes(text));
+  return {find_measure(text.substr(0, equals)), value};
+}
+
+SolveOptions options_of(const Arguments& arguments, const SceneSource& source, const Scene& scene) {
+  const StudyArguments& study = arguments.study;
+  SolveOptions options;
+  if (!study.between.empty()) {
+    const std::size_t colon = study.between.find(':');
+    if (colon != std::string::npos) {
+      options.low = number_of(std::string_view(study.between).substr(0, colon));
+      options.high = number_of(std::string_view(study.between).substr(colon + 1));
+    }
+    if (!(options.low < options.high))
+      throw UsageError("--between is LOW:HIGH with LOW < HIGH; got " + in_quotes(study.between));
+    return options;
+  }
+  const auto start = scene_number(scene, study.find);
+  if (!start) source.read({study.find + "=1"});  // an unknown key has a better message
+  if (!start)
+    throw UsageError(in_quotes(study.find) +
+                     " is no number of this scene; --between LOW:HIGH says where to look");
+  options.start = *start;
+  return options;
+}
+
+std::string result_json(const StudyArguments& study, const Target& target, const Solved& solved) {
+  nlohmann::ordered_json json = {{"key", study.find},
+                                 {"value", solved.x},
+                                 {"measure", target.measure.name},
+                                 {"target", target.value},
+                                 {"reached", solved.value},
+                                 {"bracket", {solved.low, solved.high}},
+                                 {"runs", solved.evaluations.size()}};
+  return json.dump(2) + "\n";
+}
+
+void write_results(const Arguments& arguments, const SceneSource& source, const Target& target,
+                   const Solved& solved) {
+  if (arguments.output.empty()) return;
+  const Scene scene = source.read({arguments.study.find + "=" + exact_number(solved.x)});
+  StudySession session(arguments, "", scene_text(scene), "solve.csv");
+  Table table{{arguments.study.find, target.measure.column}, {}};
+  for (const Evaluation& e : solved.evaluations)
+    table.rows.push_back({exact_number(e.x), exact_number(e.value)});
+  session.write("solve.csv", csv_text(table));
+}
+
+}  // namespace
+
+int cmd_solve(const Arguments& arguments) {
+  const StudyArguments& study = arguments.study;
+  if (study.find.empty()) throw UsageError("--find KEY is missing");
+  if (study.target.empty()) throw UsageError("--target NAME=VALUE is missing");
+  const Target target = as_usage([&] { return target_of(study.target); });
+  const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
+  const Scene scene = source.read();
+  const SolveOptions options = options_of(arguments, source, scene);
+  source.read({study.find + "=" + exact_number(options.low < options.high ? options.low : options.start)});
+
+  const InterruptGuard guard;
+  SimulationHooks hooks;
+  hooks.cancelled = interrupted;
+  const Objective objective = [&](double x) {
+    try {
+      const Scene changed = source.read({study.find + "=" + exact_number(x)});
+      const Simulation run = simulate_as_asked(build_model(changed), changed.solver, hooks);
+      return target.measure.value(run, diagnose(run));
+    } catch (const SceneError&) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  StudyHooks asking;
+  asking.cancelled = interrupted;
+  try {
+    const Solved solved = solve_for(objective, target.value, options, asking);
+    write_results(arguments, source, target, solved);
+    if (arguments.json)
+      std::cout << result_json(study, target, solved);
+    else
+      std::cout << study.find << " = " << exact_number(solved.x) << "\n";
+    return finish(true, arguments,
+                  target.measure.name + " is " + short_number(solved.value, 12) + " there, after " +
+                      std::to_string(solved.evaluations.size()) + " runs");
+  } catch (const Cancelled&) {
+    std::cerr << "unfurl: interrupted before the parameter was found\n";
+    return exit_interrupted;
+  } catch (const NotFound& error) {
+    std::cerr << "unfurl: " << error.what() << "\n";
+    return exit_solver_failed;
+  }
+}
+
+}  // namespace unfurl

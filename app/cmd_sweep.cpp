@@ -1,0 +1,102 @@
+// unfurl sweep SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR: measures over a grid of parameters.
+#include <algorithm>
+#include <utility>
+
+#include "app/command.hpp"
+#include "app/interrupt.hpp"
+#include "app/scene_run.hpp"
+#include "app/study_session.hpp"
+#include "core/export/atomic_file.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/write.hpp"
+#include "core/study/sweep.hpp"
+#include "render/plot/figures/sweep_figures.hpp"
+
+namespace unfurl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+SweepPlan plan_of(const Arguments& arguments) {
+  SweepPlan plan{{find_scene(arguments.names.front()), arguments.overrides}, {}, {}, {}};
+  for (const auto& text : arguments.study.vary) plan.axes.push_back(parse_axis(text));
+  std::string name;
+  for (const char c : arguments.study.measure + ",") {
+    if (c != ',')
+      name += c;
+    else if (!name.empty())
+      plan.measures.push_back(find_measure(std::exchange(name, "")));
+  }
+  if (!arguments.study.shard.empty()) plan.shard = parse_shard(arguments.study.shard);
+  check_plan(plan);
+  return plan;
+}
+
+std::string journal_name(const Shard& shard) {
+  if (shard.count == 1) return "sweep.csv";
+  return "sweep_" + std::to_string(shard.index) + "_of_" + std::to_string(shard.count) + ".csv";
+}
+
+// The scene, and what was asked of it as comments: what the points in a directory belong to.
+std::string identity(const Scene& scene, const SweepPlan& plan) {
+  std::string text = "# A sweep over";
+  for (const auto& axis : plan.axes) text += " " + axis.key;
+  return text + "\n" + scene_text(scene);
+}
+
+std::vector<fs::path> journals_in(const std::vector<std::string>& directories) {
+  std::vector<fs::path> found;
+  for (const auto& directory : directories) {
+    std::error_code error;
+    const std::size_t before = found.size();
+    for (const auto& entry : fs::directory_iterator(directory, error)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("sweep") && name.ends_with(".csv")) found.push_back(entry.path());
+    }
+    if (error) throw FileError(directory, error.value());
+    if (found.size() == before) throw FileError(directory, "holds no points of a sweep (sweep*.csv)");
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+Sweep compute(const SweepPlan& plan, const StudySession& session, const StudyHooks& hooks,
+              const Arguments& arguments) {
+  try {
+    if (!arguments.study.merge.empty()) return merge_sweep(plan, journals_in(arguments.study.merge));
+    Journal journal(session.journal(), plan.columns(), plan.axes.size());
+    return run_sweep(plan, journal, hooks);
+  } catch (const JournalMismatch& error) {
+    throw FileError(session.directory(), std::string(error.what()) + "; other --vary or --measure than now?");
+  }
+}
+
+}  // namespace
+
+int cmd_sweep(const Arguments& arguments) {
+  const SweepPlan plan = as_usage([&] { return plan_of(arguments); });
+  const Scene scene = scene_of(arguments);
+  const InterruptGuard guard;
+  StudySession session(arguments, "sweeping", identity(scene, plan), journal_name(plan.shard));
+  const Sweep sweep = compute(plan, session, session.hooks(), arguments);
+  session.write(journal_name(plan.shard), csv_text(sweep.table));
+  const std::string count = std::to_string(sweep.table.rows.size()) + " points in " +
+                            (session.directory() / journal_name(plan.shard)).string();
+  if (plan.shard.count > 1) return finish(sweep.missing == 0, arguments, count);
+  std::vector<std::string> pictures;
+  for (const Figure& figure : sweep_figures(plan, sweep, scene.title))
+    pictures.push_back(session.write(figure));
+  Report report{"Sweep: " + scene.title};
+  report.paragraph(count + ".");
+  for (const auto& picture : pictures) report.picture(picture, picture);
+  if (sweep.table.rows.size() <= 1000) report.add(sweep.table);
+  session.write("sweep.md", report_markdown(report));
+  if (sweep.missing > 0 && !arguments.study.merge.empty())
+    throw FileError(session.directory(), std::to_string(sweep.missing) + " of " +
+                                             std::to_string(plan.points()) +
+                                             " points are missing; what there is was merged");
+  return finish(sweep.missing == 0, arguments, count);
+}
+
+}  // namespace unfurl

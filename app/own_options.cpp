@@ -1,0 +1,39 @@
+#include "app/own_options.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr OwnOption rows[] = {
+    {"--tolerance", "METRES", "pick stages and step for this error of node positions (solver.tolerance)"},
+    {"--steps", "LARGEST:SMALLEST", "the ladder of steps [s], each half the one before"},
+    {"--repeats", "N", "timed runs per point, at most (5)"},
+    {"--extreme", "NAME", "only this one: mass_ratio, force, fold_angle, units, stiffness (repeatable)"},
+    {"--vary", "KEY=FROM:TO:COUNT",
+     "a key of the scene and its values (repeatable); also FROM:TO:COUNT:log or A,B,C"},
+    {"--measure", "NAME,...", "what to measure of every run (unfurl list measures)"},
+    {"--shard", "I/N", "only every N-th point, from the I-th: N jobs share a sweep"},
+    {"--merge", "DIR", "take the points of this directory instead of computing (repeatable)"},
+    {"--find", "KEY", "the key of the scene that is solved for"},
+    {"--target", "NAME=VALUE", "the measure (unfurl list measures) and what it shall be"},
+    {"--between", "LOW:HIGH", "look for the key between these (default: around its value in the scene)"},
+    {"--models", "", "compare models of the scene instead of methods"},
+};
+
+}  // namespace
+
+std::span<const OwnOption> own_options() {
+  return rows;
+}
+
+bool takes(const Command& command, std::string_view option) {
+  std::string_view rest = command.options;
+  while (!rest.empty()) {
+    const std::size_t end = rest.find(' ');
+    if (rest.substr(0, end) == option) return true;
+    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+  }
+  return false;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,209 @@
+#include "core/constraints/alignment.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "core/constraints/linear_rows.hpp"
+
+namespace unfurl {
+namespace {
+
+using Vec9 = Eigen::Matrix<double, 9, 1>;
+
+struct Entry {
+  std::string name;
+  std::vector<int> nodes;
+};
+
+Eigen::Map<const Vec3> at(const double* x, int node) {
+  return Eigen::Map<const Vec3>(x + 3 * static_cast<Index>(node));
+}
+
+// The three numbers at x, to be written.
+Eigen::Map<Vec3> three(double* x) {
+  return Eigen::Map<Vec3>(x);
+}
+
+Mat3 cross_matrix(const Vec3& a) {
+  Mat3 m;
+  m << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return m;
+}
+
+std::vector<int> coordinates_of(const std::vector<int>& nodes) {
+  std::vector<int> stencil;
+  for (const int node : nodes)
+    for (int k = 0; k < 3; ++k) stencil.push_back(3 * node + k);
+  return stencil;
+}
+
+class Alignment : public ConstraintBlock {
+ public:
+  Alignment(const Structure& structure, std::string_view kind) : length_(reference_length(structure)) {
+    for (const Constraint& c : structure.constraints)
+      if (c.kind == kind) entries_.push_back({c.name, c.nodes});
+  }
+  bool empty() const { return entries_.empty(); }
+  bool linear() const override { return false; }
+  double length(int) const override { return length_; }
+
+ protected:
+  std::vector<Entry> entries_;
+  double length_;
+};
+
+// With u = b - a, w = c - a: du x w + u x dw; by a: -(d/du + d/dw).
+class Collinear final : public Alignment {
+ public:
+  using Alignment::Alignment;
+  int rows() const override { return 3 * static_cast<int>(entries_.size()); }
+  std::string name(int row) const override {
+    return entries_[static_cast<std::size_t>(row / 3)].name + " " + "xyz"[row % 3];
+  }
+  std::vector<int> stencil(int row) const override {
+    return coordinates_of(entries_[static_cast<std::size_t>(row / 3)].nodes);
+  }
+  void value(const double* q, double* phi) const override {
+    for (const Entry& e : entries_) {
+      three(phi) = edge(e, 1, q).cross(edge(e, 2, q)) / length_;
+      phi += 3;
+    }
+  }
+  void jacobian(const double* q, double* g) const override {
+    for (const Entry& e : entries_) {
+      Eigen::Map<Eigen::Matrix<double, 3, 9, Eigen::RowMajor>> rows(g);
+      rows.middleCols<3>(3) = -cross_matrix(edge(e, 2, q)) / length_;
+      rows.middleCols<3>(6) = cross_matrix(edge(e, 1, q)) / length_;
+      rows.leftCols<3>() = -rows.middleCols<3>(3) - rows.middleCols<3>(6);
+      g += 27;
+    }
+  }
+  // lambda . (u x w): gradient w x lambda by u, lambda x u by w.
+  void add_force(const double* q, const double* lambda, double scale, double* f) const override {
+    for (const Entry& e : entries_) {
+      const Vec3 l = scale / length_ * Eigen::Map<const Vec3>(lambda);
+      const Vec3 by_u = edge(e, 2, q).cross(l), by_w = l.cross(edge(e, 1, q));
+      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[0])) -= by_u + by_w;
+      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[1])) += by_u;
+      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[2])) += by_w;
+      lambda += 3;
+    }
+  }
+  void bias(const double*, const double* v, double* phi_dd) const override {
+    for (const Entry& e : entries_) {
+      three(phi_dd) = 2 / length_ * edge(e, 1, v).cross(edge(e, 2, v));
+      phi_dd += 3;
+    }
+  }
+  // Row k of u x w: d^2/du dw = -[e_k]_x, spread over a, b, c.
+  void curvature(const double*, const double* lambda, double* hess) const override {
+    for (std::size_t row = 0; row < 3 * entries_.size(); ++row) {
+      const Mat3 B = -lambda[row] / length_ * cross_matrix(Vec3::Unit(static_cast<Index>(row % 3)));
+      Eigen::Matrix<double, 9, 9> H;
+      H << B + B.transpose(), -B.transpose(), -B, -B, Mat3::Zero(), B, -B.transpose(), B.transpose(),
+          Mat3::Zero();
+      hess = std::copy_n(H.data(), 81, hess);
+    }
+  }
+
+ private:
+  static Vec3 edge(const Entry& e, std::size_t k, const double* x) {
+    return at(x, e.nodes[k]) - at(x, e.nodes[0]);
+  }
+};
+
+// det(u, w, r) with u = b - a, w = c - a, r = d - a: gradients w x r, r x u, u x w.
+class Coplanar final : public Alignment {
+ public:
+  using Alignment::Alignment;
+  int rows() const override { return static_cast<int>(entries_.size()); }
+  std::string name(int row) const override { return entries_[static_cast<std::size_t>(row)].name; }
+  std::vector<int> stencil(int row) const override {
+    return coordinates_of(entries_[static_cast<std::size_t>(row)].nodes);
+  }
+  void value(const double* q, double* phi) const override {
+    for (const Entry& e : entries_) {
+      const Mat3 edges = edges_of(e, q);
+      *phi++ = edges.determinant() / (length_ * length_);
+    }
+  }
+  void jacobian(const double* q, double* g) const override {
+    for (const Entry& e : entries_) {
+      const Vec9 by_edges = gradient(edges_of(e, q));
+      std::copy(by_edges.begin(), by_edges.end(), g + 3);
+      Eigen::Map<Vec3> first(g);
+      first.setZero();
+      for (int k = 1; k < 4; ++k) first -= Eigen::Map<Vec3>(g + 3 * k);
+      g += 12;
+    }
+  }
+  void add_force(const double* q, const double* lambda, double scale, double* f) const override {
+    for (const Entry& e : entries_) {
+      const Vec9 g = scale * *lambda++ * gradient(edges_of(e, q));
+      for (Index k = 0; k < 3; ++k) {
+        Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[static_cast<std::size_t>(k + 1)])) +=
+            g.segment<3>(3 * k);
+        Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[0])) -= g.segment<3>(3 * k);
+      }
+    }
+  }
+  void bias(const double* q, const double* v, double* phi_dd) const override {
+    for (const Entry& e : entries_) {
+      const Mat3 x = edges_of(e, q), y = edges_of(e, v);
+      double sum = 0;
+      for (Index k = 0; k < 3; ++k) sum += x.col(k).dot(y.col((k + 1) % 3).cross(y.col((k + 2) % 3)));
+      *phi_dd++ = 2 * sum / (length_ * length_);
+    }
+  }
+  void curvature(const double* q, const double* lambda, double* hess) const override {
+    for (const Entry& e : entries_) {
+      const Mat3 x = edges_of(e, q);
+      Eigen::Matrix<double, 9, 9> H = Eigen::Matrix<double, 9, 9>::Zero();
+      for (Index k = 0; k < 3; ++k) {  // gradient by edge k+1 of x_k . (x_{k+1} x x_{k+2})
+        const Index i = (k + 1) % 3, j = (k + 2) % 3;
+        H.block<3, 3>(3 * i, 3 * j) = -cross_matrix(x.col(k));
+        H.block<3, 3>(3 * j, 3 * i) = cross_matrix(x.col(k));
+      }
+      H *= *lambda++ / (length_ * length_);
+      Eigen::Matrix<double, 9, 12> from_nodes = Eigen::Matrix<double, 9, 12>::Zero();
+      for (Index k = 0; k < 3; ++k) {
+        from_nodes.block<3, 3>(3 * k, 0) = -Mat3::Identity();
+        from_nodes.block<3, 3>(3 * k, 3 * k + 3) = Mat3::Identity();
+      }
+      const Eigen::Matrix<double, 12, 12> by_nodes = from_nodes.transpose() * H * from_nodes;
+      hess = std::copy_n(by_nodes.data(), 144, hess);
+    }
+  }
+
+ private:
+  static Mat3 edges_of(const Entry& e, const double* x) {
+    Mat3 edges;
+    for (Index k = 0; k < 3; ++k)
+      edges.col(k) = at(x, e.nodes[static_cast<std::size_t>(k + 1)]) - at(x, e.nodes[0]);
+    return edges;
+  }
+  Vec9 gradient(const Mat3& x) const {
+    Vec9 g;
+    g << x.col(1).cross(x.col(2)), x.col(2).cross(x.col(0)), x.col(0).cross(x.col(1));
+    return g / (length_ * length_);
+  }
+};
+
+template <class Block>
+std::unique_ptr<ConstraintBlock> block_of(const Structure& structure, std::string_view kind) {
+  auto block = std::make_unique<Block>(structure, kind);
+  if (block->empty()) return nullptr;
+  return block;
+}
+
+}  // namespace
+
+std::unique_ptr<ConstraintBlock> collinear_block(const Structure& structure) {
+  return block_of<Collinear>(structure, "collinear");
+}
+
+std::unique_ptr<ConstraintBlock> coplanar_block(const Structure& structure) {
+  return block_of<Coplanar>(structure, "coplanar");
+}
+
+}  // namespace unfurl

@@ -1,0 +1,135 @@
+#include "core/export/report.hpp"
+
+#include <fstream>
+#include <iterator>
+
+#include "core/export/atomic_file.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr const char* style = R"(
+body { font: 16px/1.55 system-ui, "DejaVu Sans", sans-serif; color: #222; max-width: 52rem; margin: 2rem auto; padding: 0 1rem }
+h1 { font-size: 1.7rem; line-height: 1.25 } h2 { font-size: 1.25rem; margin-top: 2.2rem }
+table { border-collapse: collapse; font-size: .88rem; margin: 1rem 0; display: block; overflow-x: auto }
+th, td { padding: .3rem .7rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
+th { border-bottom: 2px solid #888 } td.n { text-align: right; font-variant-numeric: tabular-nums }
+figure { margin: 1.5rem 0 } img { max-width: 100%; height: auto } figcaption, .caption { font-size: .88rem; color: #555 }
+code { background: #f2f2f2; padding: .1em .3em; border-radius: 3px }
+)";
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+// Pairs of a mark become an element.
+std::string replace_pairs(std::string text, std::string_view mark, const std::string& element) {
+  for (std::size_t begin = 0; (begin = text.find(mark, begin)) != std::string::npos;) {
+    const std::size_t end = text.find(mark, begin + mark.size());
+    if (end == std::string::npos) break;
+    text.replace(end, mark.size(), "</" + element + ">");
+    text.replace(begin, mark.size(), "<" + element + ">");
+  }
+  return text;
+}
+
+std::string html_text(std::string_view text) {
+  return replace_pairs(replace_pairs(replace_pairs(escaped(text), "**", "strong"), "*", "em"), "`", "code");
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += i + k > bytes.size() ? '=' : letters[group >> (18 - 6 * k) & 63U];
+  }
+  return out;
+}
+
+std::string html_table(const Table& table) {
+  std::string text = "<table>\n<tr>";
+  for (const auto& name : table.columns) text += "<th>" + html_text(name) + "</th>";
+  text += "</tr>\n";
+  for (const auto& row : table.rows) {
+    text += "<tr>";
+    for (const auto& cell : row)
+      text += (is_number(cell) ? "<td class=\"n\">" : "<td>") + html_text(cell) + "</td>";
+    text += "</tr>\n";
+  }
+  return text + "</table>\n";
+}
+
+std::string html_picture(const ReportBlock& block, const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / block.file;
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file) throw FileError(path, "cannot be read");
+  const std::string type = path.extension() == ".svg" ? "svg+xml" : "png";
+  return "<figure><img alt=\"" + escaped(block.text) + "\" src=\"data:image/" + type + ";base64," +
+         base64(bytes) + "\"><figcaption>" + html_text(block.text) + "</figcaption></figure>\n";
+}
+
+}  // namespace
+
+void Report::heading(std::string text) {
+  blocks.push_back({ReportBlock::Kind::heading, std::move(text)});
+}
+void Report::paragraph(std::string text) {
+  blocks.push_back({ReportBlock::Kind::paragraph, std::move(text)});
+}
+void Report::add(Table table, std::string caption) {
+  blocks.push_back({ReportBlock::Kind::table, std::move(caption), std::move(table)});
+}
+void Report::picture(std::string file, std::string caption) {
+  blocks.push_back({ReportBlock::Kind::picture, std::move(caption), {}, std::move(file)});
+}
+
+std::string report_markdown(const Report& report) {
+  std::string text = "# " + report.title + "\n";
+  for (const ReportBlock& block : report.blocks) {
+    text += "\n";
+    if (block.kind == ReportBlock::Kind::heading) text += "## " + block.text + "\n";
+    if (block.kind == ReportBlock::Kind::paragraph) text += block.text + "\n";
+    if (block.kind == ReportBlock::Kind::table)
+      text += (block.text.empty() ? "" : block.text + "\n\n") + markdown_text(block.table);
+    if (block.kind == ReportBlock::Kind::picture) text += "![" + block.text + "](" + block.file + ")\n";
+  }
+  return text;
+}
+
+std::string report_html(const Report& report, const std::filesystem::path& folder) {
+  std::string text =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width\"><title>" +
+      escaped(report.title) + "</title><style>" + style + "</style></head><body>\n<h1>" +
+      html_text(report.title) + "</h1>\n";
+  for (const ReportBlock& block : report.blocks) {
+    if (block.kind == ReportBlock::Kind::heading) text += "<h2>" + html_text(block.text) + "</h2>\n";
+    if (block.kind == ReportBlock::Kind::paragraph) text += "<p>" + html_text(block.text) + "</p>\n";
+    if (block.kind == ReportBlock::Kind::table) {
+      if (!block.text.empty()) text += "<p class=\"caption\">" + html_text(block.text) + "</p>\n";
+      text += html_table(block.table);
+    }
+    if (block.kind == ReportBlock::Kind::picture) text += html_picture(block, folder);
+  }
+  return text + "</body></html>\n";
+}
+
+}  // namespace unfurl

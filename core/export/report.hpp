@@ -1,0 +1,35 @@
+// A report as data: headings, paragraphs, tables and pictures, written as Markdown or as one HTML file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/study/table.hpp"
+
+namespace unfurl {
+
+struct ReportBlock {
+  enum class Kind { heading, paragraph, table, picture };
+  Kind kind = Kind::paragraph;
+  std::string text;  // of a picture: its caption
+  Table table = {};
+  std::string file = {};  // of a picture, relative to the report: "figures/poses.png"
+};
+
+// Text may hold `code`, *emphasis* and **strong emphasis**; everything else is plain.
+struct Report {
+  std::string title;
+  std::vector<ReportBlock> blocks = {};
+
+  void heading(std::string text);
+  void paragraph(std::string text);
+  void add(Table table, std::string caption = "");
+  void picture(std::string file, std::string caption);
+};
+
+std::string report_markdown(const Report& report);
+// Self-contained: pictures (PNG or SVG in `folder`) are embedded. Throws FileError where one cannot be read.
+std::string report_html(const Report& report, const std::filesystem::path& folder);
+
+}  // namespace unfurl

@@ -1,0 +1,119 @@
+#include "core/structures/assembly.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "core/model/structure_error.hpp"
+
+namespace unfurl {
+
+RodSection rod_section(const ParamSet& params) {
+  const double area = params.real("section_area");
+  return {params.real("density") * area, std::sqrt(area / pi)};
+}
+
+ParamSpec density_param() {
+  return positive_param("density", "kg/m^3", 2700.0, "density of the rods");
+}
+
+ParamSpec section_area_param(double fallback) {
+  return positive_param("section_area", "m^2", fallback, "cross section of the rods");
+}
+
+void require_unfolding(double fold_angle, double deployed_angle) {
+  if (!(deployed_angle < fold_angle))
+    throw StructureError("deployed_angle",
+                         "deployed_angle must be smaller than fold_angle, at which the motion starts");
+}
+
+void hide_braces(Structure& structure) {
+  std::erase_if(structure.rod_copies, [&](const RodCopy& copy) {
+    return structure.rods[static_cast<std::size_t>(copy.source)].group == "brace";
+  });
+}
+
+int Assembly::node(std::string name, const Vec3& position, double mass, const Vec3& velocity) {
+  structure.nodes.push_back({std::move(name), position, velocity, mass});
+  return static_cast<int>(structure.nodes.size()) - 1;
+}
+
+int Assembly::rod(int a, int b, double length, double mass, std::string_view group, double radius) {
+  structure.rods.push_back({name(a) + "-" + name(b), a, b, mass, length, std::string(group), radius, 1.0});
+  return static_cast<int>(structure.rods.size()) - 1;
+}
+
+int Assembly::brace(int a, int b, double length) {
+  const int index = rod(a, b, length, 0.0, "brace", 0.0);
+  structure.rods.back().name.insert(0, "brace ");
+  return index;
+}
+
+void Assembly::constrain(const char* kind, int node, const Vec3& direction) {
+  Constraint constraint{kind, std::string(kind) + " of " + name(node), {node}, {}, 0.0};
+  if (!direction.isZero(0.0)) {
+    constraint.vectors = {direction};
+    constraint.value = direction.dot(position(node));
+  }
+  structure.constraints.push_back(std::move(constraint));
+}
+
+void Assembly::fix(int node) {
+  constrain("fixed", node, Vec3::Zero());
+}
+
+void Assembly::plane(int node, const Vec3& normal) {
+  constrain("plane", node, normal);
+}
+
+void Assembly::line(int node, const Vec3& direction) {
+  constrain("line", node, direction);
+}
+
+void Assembly::relation(std::string name, std::vector<int> nodes, std::vector<Vec3> vectors) {
+  double value = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) value += vectors[i].dot(position(nodes[i]));
+  structure.constraints.push_back({"relation", std::move(name), std::move(nodes), std::move(vectors), value});
+}
+
+void Assembly::point_of_rod(int point, int a, int b, double share) {
+  constexpr const char* axes[] = {" x", " y", " z"};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 e = Vec3::Unit(k);
+    structure.constraints.push_back({"relation",
+                                     name(point) + " on rod " + name(a) + "-" + name(b) + axes[k],
+                                     {point, a, b},
+                                     {e, -(1.0 - share) * e, -share * e},
+                                     0.0});
+  }
+}
+
+void Assembly::pin_middles(int pin, int a, int b, int c, int d) {
+  constexpr const char* axes[] = {" x", " y", " z"};
+  point_of_rod(pin, a, b);
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 half = 0.5 * Vec3::Unit(k);
+    structure.constraints.push_back({"relation",
+                                     name(pin) + " on rod " + name(c) + "-" + name(d) + axes[k],
+                                     {a, b, c, d},
+                                     {half, half, -half, -half},
+                                     0.0});
+  }
+}
+
+void Assembly::coplanar(std::vector<int> nodes, std::string name) {
+  structure.constraints.push_back({"coplanar", std::move(name), std::move(nodes), {}, 0.0});
+}
+
+void Assembly::load(int node, const Vec3& force) {
+  if (!force.isZero(0.0)) structure.loads.push_back({node, force, true});
+}
+
+const Vec3& Assembly::position(int node) const {
+  return structure.nodes[static_cast<std::size_t>(node)].position;
+}
+
+const std::string& Assembly::name(int node) const {
+  return structure.nodes[static_cast<std::size_t>(node)].name;
+}
+
+}  // namespace unfurl

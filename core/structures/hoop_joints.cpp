@@ -1,0 +1,97 @@
+#include "core/structures/hoop_joints.hpp"
+
+#include "core/structures/assembly.hpp"
+#include "core/structures/ring.hpp"
+
+namespace unfurl {
+
+namespace {
+
+// Nodes of unit k are 4 k + these; the last post of an arc follows behind all units.
+enum : int { bottom_corner = 0, top_corner = 1, bottom_hinge = 2, top_hinge = 3 };
+
+int posts(const HoopShape& s) {
+  return s.closed() ? s.n : s.n + 1;
+}
+int next_post(const HoopShape& s, int k) {
+  return 4 * (s.closed() ? (k + 1) % s.n : k + 1);
+}
+
+void add_post(Assembly& a, const HoopShape& s, int k) {
+  const std::string i = std::to_string(k);
+  const Vec3 at = s.ring_radius() * radial(s.corner_angle(k)), half = 0.5 * s.l2 * Vec3::UnitZ();
+  a.node("B" + i, at - half);
+  a.node("T" + i, at + half);
+}
+
+void add_hinges(Assembly& a, const HoopShape& s, int k) {
+  const std::string i = std::to_string(k);
+  const Vec3 at = s.ring_radius() * std::cos(s.half_angle()) * radial(s.hinge_angle(k));
+  const Vec3 height = (s.l1 * s.sine - 0.5 * s.l2) * Vec3::UnitZ();
+  const double force = k == s.perturbed_unit ? s.perturbed_force : s.hinge_force;
+  a.load(a.node("Mb" + i, at + height), -force * Vec3::UnitZ());
+  a.load(a.node("Mt" + i, at - height), force * Vec3::UnitZ());
+}
+
+void add_face(Assembly& a, const HoopShape& s, int k) {
+  const int first = 4 * k, next = next_post(s, k);
+  for (const int level : {bottom_corner, top_corner}) {
+    const int corner = first + level, hinge = first + bottom_hinge + level, other = next + level;
+    a.rod(corner, hinge, s.l1, s.chord_mass, "chord", s.radius);
+    a.rod(hinge, other, s.l1, s.chord_mass, "chord", s.radius);
+    a.coplanar({corner, other, first + (1 - level), hinge}, "face of " + a.name(hinge));
+  }
+}
+
+void make_parallel(Assembly& a, int post) {
+  constexpr const char* axes[] = {" x", " y", " z"};
+  const std::string name = a.name(post) + "-" + a.name(post + 1);
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 e = Vec3::Unit(k);
+    a.relation("post " + name + " parallel to B0-T0" + axes[k], {post, post + 1, 0, 1}, {-e, e, e, -e});
+  }
+}
+
+// Means over the units: of the heights of the hinges in their chords, and of the chords along their
+// directions at the start. Where units deploy unlike each other it is their mean fold angle.
+void set_deployment(Structure& out, const HoopShape& s) {
+  Deployment& d = out.deployment;
+  const Vec3 up = Vec3::UnitZ() / (2.0 * s.n * s.l1);
+  for (int k = 0; k < s.n; ++k) {
+    const int first = 4 * k, next = next_post(s, k);
+    const Vec3 along = tangential(s.hinge_angle(k)) / (4.0 * s.n * s.l1);
+    for (const int level : {0, 1}) {
+      const Vec3 sign = level == 0 ? up : Vec3(-up);
+      for (const int node : {first + level, next + level}) {
+        d.fold_sine.nodes.push_back(node);
+        d.fold_sine.coefficients.push_back(-0.5 * sign);
+        d.fold_cosine.nodes.push_back(node);
+        d.fold_cosine.coefficients.push_back(node == first + level ? Vec3(-along) : along);
+      }
+      d.fold_sine.nodes.push_back(first + bottom_hinge + level);
+      d.fold_sine.coefficients.push_back(sign);
+    }
+  }
+  d.initial_fold_angle = std::atan2(s.sine, s.cosine);
+}
+
+}  // namespace
+
+Structure build_hoop_joints(const HoopShape& s) {
+  Assembly a;
+  for (int k = 0; k < s.n; ++k) {
+    add_post(a, s, k);
+    add_hinges(a, s, k);
+  }
+  if (!s.closed()) add_post(a, s, s.n);
+  for (int k = 0; k < s.n; ++k) add_face(a, s, k);
+  for (int k = 0; k < posts(s); ++k) {
+    a.rod(4 * k, 4 * k + 1, s.l2, s.post_mass, "post", s.radius);
+    if (k > 0) make_parallel(a, 4 * k);
+  }
+  set_deployment(a.structure, s);
+  show_as_solved(a.structure);
+  return a.structure;
+}
+
+}  // namespace unfurl

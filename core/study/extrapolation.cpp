@@ -1,0 +1,56 @@
+#include "core/study/extrapolation.hpp"
+
+#include "core/simulate/initial_state.hpp"
+
+namespace unfurl {
+
+Extrapolation::Extrapolation(const System& system)
+    : system_(system), index1_(system, true), n_(system.solved_coordinates()) {
+  for (VectorXd* v : {&y0_, &before_, &now_, &after_, &f_, &f0_}) v->setZero(2 * n_);
+  lambda_.setZero(system.constraints());
+}
+
+bool Extrapolation::rate(double t, const VectorXd& y, VectorXd& f) {
+  f.head(n_) = y.tail(n_);
+  return index1_.evaluate(t, y.head(n_), y.tail(n_), f.tail(n_), lambda_);
+}
+
+// y_1 = y_0 + h f_0,  y_{m+1} = y_{m-1} + 2 h f_m,  S = (y_n + y_{n-1} + h f_n) / 2
+bool Extrapolation::midpoint(const State& state, double H, int n, VectorXd& out) {
+  const double h = H / n;
+  before_ = y0_;
+  now_ = y0_ + h * f0_;
+  for (int m = 1; m < n; ++m) {
+    if (!rate(state.t + m * h, now_, f_)) return false;
+    after_ = before_ + 2 * h * f_;
+    before_.swap(now_);
+    now_.swap(after_);
+  }
+  if (!rate(state.t + H, now_, f_)) return false;
+  out = 0.5 * (now_ + before_ + h * f_);
+  return out.allFinite();
+}
+
+bool Extrapolation::step(State& state, double H) {
+  y0_ << state.z, state.w;
+  if (!rate(state.t, y0_, f0_)) return false;
+  for (int j = 0; j < columns; ++j) {
+    VectorXd next;
+    if (!midpoint(state, H, 2 * (j + 1), next)) return false;
+    // T_{j,k+1} = T_{j,k} + (T_{j,k} - T_{j-1,k}) / ((n_j / n_{j-k-1})^2 - 1); the row is kept in place.
+    for (int k = 0; k < j; ++k) {
+      const double ratio = static_cast<double>(j + 1) / (j - k);
+      VectorXd better = next + (next - tableau_[k]) / (ratio * ratio - 1);
+      tableau_[k] = std::move(next);
+      next = std::move(better);
+    }
+    tableau_[j] = std::move(next);
+  }
+  state.t += H;
+  state.z = tableau_[columns - 1].head(n_);
+  state.w = tableau_[columns - 1].tail(n_);
+  project(system_, state);
+  return state.z.allFinite() && state.w.allFinite();
+}
+
+}  // namespace unfurl

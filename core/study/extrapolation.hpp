@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/integrators/index1.hpp"
+#include "core/model/state.hpp"
+#include "core/model/system.hpp"
+
+namespace unfurl {
+
+// Gragg-Bulirsch-Stoer extrapolation on the index-1 equations, order 16: what references are solved with,
+// because it shares neither discretisation nor order with any method of the table. (Hairer, Norsett, Wanner
+// 1993, section II.9: modified midpoint rule with n = 2, 4, ..., 16 substeps, Aitken-Neville extrapolation in
+// h^2.) Each basic step ends with a projection on the constraints and their rates.
+class Extrapolation {
+ public:
+  explicit Extrapolation(const System& system);
+  // Advance by H [s]. False where the equations cannot be solved or a value is not finite.
+  bool step(State& state, double H);
+
+ private:
+  static constexpr int columns = 8;
+  bool midpoint(const State& state, double H, int n, VectorXd& out);
+  bool rate(double t, const VectorXd& y, VectorXd& f);
+
+  const System& system_;
+  Index1 index1_;
+  Index n_;
+  VectorXd y0_, before_, now_, after_, f_, f0_, lambda_;
+  VectorXd tableau_[columns];
+};
+
+}  // namespace unfurl

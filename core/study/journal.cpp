@@ -1,0 +1,59 @@
+#include "core/study/journal.hpp"
+
+#include <cerrno>
+
+#include "core/export/atomic_file.hpp"
+#include "core/scene/csv_table.hpp"
+#include "core/scene/text_file.hpp"
+
+namespace unfurl {
+
+Journal::Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys)
+    : path_(std::move(path)), columns_(std::move(columns)), keys_(keys) {
+  if (path_.empty()) return;
+  read();
+  std::string text = csv_line(columns_);
+  for (const auto& [key, row] : rows_) text += csv_line(row);
+  write_file_atomically(path_, text);  // without what was torn
+  file_ = std::fopen(path_.c_str(), "ab");
+  if (!file_) throw FileError(path_, errno);
+}
+
+Journal::~Journal() {
+  if (file_) std::fclose(file_);
+}
+
+void Journal::read() {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path_, ignored)) return;
+  const TextFile file = read_text_file(path_.string());
+  if (!file.error.empty()) throw FileError(path_, file.error);
+  const std::size_t whole = file.text.rfind('\n');
+  if (whole == std::string::npos) return;
+  auto records = csv_records(std::string_view(file.text).substr(0, whole + 1));
+  if (records.empty()) return;
+  if (records.front() != columns_)
+    throw JournalMismatch(path_.string() + ": holds results with other columns");
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    auto& row = records[i];
+    if (row.size() != columns_.size()) continue;
+    rows_[{row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_)}] = row;
+  }
+}
+
+const std::vector<std::string>* Journal::find(const std::vector<std::string>& key) const {
+  const auto it = rows_.find(key);
+  return it == rows_.end() ? nullptr : &it->second;
+}
+
+void Journal::append(std::vector<std::string> row) {
+  if (file_) {
+    const std::string line = csv_line(row);
+    if (std::fwrite(line.data(), 1, line.size(), file_) != line.size() || std::fflush(file_) != 0)
+      throw FileError(path_, errno);
+  }
+  std::vector<std::string> key(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_));
+  rows_[std::move(key)] = std::move(row);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,42 @@
+// Finished results on disk, one line each, written as they come: what is in the file need not be computed
+// again.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <map>
+
+#include "core/study/table.hpp"
+
+namespace unfurl {
+
+// The file holds other results than asked for: another scene or other settings.
+struct JournalMismatch : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// A CSV file of rows whose first `keys` cells say which result it is. Lines are appended whole; one that a
+// kill or a full disk left torn is dropped at the next opening. An empty path keeps nothing.
+class Journal {
+ public:
+  // Reads what is there. Throws JournalMismatch where its columns are others, FileError.
+  Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  const std::vector<std::string>* find(const std::vector<std::string>& key) const;
+  void append(std::vector<std::string> row);  // throws FileError
+  std::size_t size() const { return rows_.size(); }
+
+ private:
+  void read();
+
+  std::filesystem::path path_;
+  std::vector<std::string> columns_;
+  std::size_t keys_;
+  std::map<std::vector<std::string>, std::vector<std::string>> rows_;
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace unfurl

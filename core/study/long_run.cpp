@@ -1,0 +1,98 @@
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "core/integrators/integrator.hpp"
+#include "core/scene/build.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "core/study/stress.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double seconds_each = 15.0;
+
+// Steps without keeping them; looks at every step's energy and constraints, and writes down the largest so
+// far at some three hundred counts, spaced by equal factors.
+class Marathon {
+ public:
+  Marathon(const Model& model, const Setting& setting) : system_(model.system) {
+    state_ = initial_state(model.structure, system_).state;
+    method_ = find_method(setting.options.method)->make(system_, setting.options);
+    out_.setting = setting.name;
+    out_.step = setting.options.step;
+    q_.resize(system_.coordinates());
+    phi_.resize(system_.all_constraints());
+    lengths_ = system_.all_lengths();
+    first_ = energy();
+  }
+
+  LongRun run(long steps, const StudyHooks& hooks) {
+    const auto begin = std::chrono::steady_clock::now();
+    out_.end = "done";
+    double next = 1;
+    for (long k = 1; k <= steps; ++k) {
+      if (k % 256 == 0 && !may_go_on(begin, hooks)) break;
+      if (!method_->step(state_, out_.step).ok()) {
+        out_.end = "solver failed";
+        break;
+      }
+      look();
+      out_.steps = k;
+      if (!(constraint_ < 0.1)) {
+        sample(k);
+        out_.end = "constraints lost";
+        break;
+      }
+      if (static_cast<double>(k) < next && k != steps) continue;
+      sample(k);
+      next *= 1.05;
+    }
+    return std::move(out_);
+  }
+
+ private:
+  bool may_go_on(std::chrono::steady_clock::time_point begin, const StudyHooks& hooks) {
+    if (hooks.stopped()) throw Cancelled();
+    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (spent > seconds_each) out_.end = "time is up";
+    return spent <= seconds_each;
+  }
+  double energy() {
+    system_.expand(state_.z, q_);
+    kinetic_ = std::max(kinetic_, system_.kinetic_energy(state_.w));
+    return system_.kinetic_energy(state_.w) + system_.potential_energy(q_) - system_.load_work(q_);
+  }
+  void look() {
+    energy_error_ = std::max(energy_error_, std::abs(energy() - first_));
+    system_.all_constraint_values(q_, phi_);
+    if (phi_.size())
+      constraint_ = std::max(constraint_, phi_.cwiseQuotient(lengths_).lpNorm<Eigen::Infinity>());
+  }
+  void sample(long k) {
+    out_.step_count.push_back(static_cast<double>(k));
+    out_.energy_error.push_back(energy_error_ / kinetic_);
+    out_.constraint.push_back(constraint_);
+  }
+
+  const System& system_;
+  State state_;
+  std::unique_ptr<Integrator> method_;
+  LongRun out_;
+  VectorXd q_, phi_, lengths_;
+  double first_ = 0, kinetic_ = 0, energy_error_ = 0, constraint_ = 0;
+};
+
+}  // namespace
+
+std::vector<LongRun> long_runs(const StressPlan& plan, const StudyHooks& hooks) {
+  std::vector<LongRun> out;
+  if (plan.long_steps == 0) return out;
+  const Scene scene = plan.source.read();
+  const auto model = build_model(scene);
+  for (const Setting& setting : plan.settings)
+    out.push_back(Marathon(*model, setting).run(plan.long_steps, hooks));
+  return out;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,121 @@
+#include "core/study/measured_run.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace unfurl {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double max_norm(const VectorXd& v) {
+  return v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
+}
+
+// One run that is given up after `limit` seconds of CPU time: how busy the machine is shall not matter.
+Simulation run_once(const std::shared_ptr<const Model>& model, const SolverOptions& options, double limit,
+                    const StudyHooks& hooks, bool& too_slow) {
+  const double begin = thread_cpu_seconds();
+  too_slow = false;
+  SimulationHooks own;
+  own.cancelled = [&] {
+    too_slow = thread_cpu_seconds() - begin > limit;
+    return too_slow || hooks.stopped();
+  };
+  Simulation run = simulate(model, options, own);
+  if (run.status == RunStatus::stopped && !too_slow) throw Cancelled();
+  return run;
+}
+
+void count_work(const Simulation& run, MeasuredRun& out) {
+  out.newton_iterations = run.newton_iterations;
+  out.factorisations = run.factorisations;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i)
+    out.linear_solves += run.trajectory.report(i).right_hand_sides;
+}
+
+std::string outcome_of(const Simulation& run, bool too_slow, double error) {
+  if (too_slow) return "too slow";
+  if (run.status == RunStatus::failed) return "solver failed";
+  if (!std::isfinite(error)) return "other motion";  // it reached the deployed pose before the reference
+  return "ok";
+}
+
+}  // namespace
+
+double thread_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+void measure_invariants(const Simulation& run, MeasuredRun& out) {
+  const System& system = run.trajectory.model().system;
+  const VectorXd lengths = system.all_lengths();
+  VectorXd phi(system.all_constraints());
+  double first = 0;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+    const VectorXd q = run.trajectory.node_positions(i), v = run.trajectory.node_velocities(i);
+    system.all_constraint_values(q, phi);
+    out.constraint_max = std::max(out.constraint_max, max_norm(phi));
+    out.constraint_relative_max =
+        std::max(out.constraint_relative_max, max_norm(VectorXd(phi.cwiseQuotient(lengths))));
+    out.constraint_velocity_max = std::max(out.constraint_velocity_max, max_norm(system.all_jacobian(q) * v));
+    const double kinetic = system.kinetic_energy(run.trajectory.state(i).w);
+    const double potential = system.potential_energy(q), work = system.load_work(q);
+    const double energy = kinetic + potential - work;
+    out.energy_scale = std::max({out.energy_scale, kinetic, std::abs(potential), std::abs(work)});
+    out.kinetic_energy_max = std::max(out.kinetic_energy_max, kinetic);
+    if (i == 0) first = energy;
+    out.energy_error = std::max(out.energy_error, std::abs(energy - first));
+  }
+}
+
+double position_error(const Trajectory& trajectory, const Reference& reference) {
+  double largest = 0;
+  std::size_t i = 0;
+  const double near = 1e-9 * reference.t.back();
+  for (std::size_t k = 0; k < reference.t.size(); ++k) {
+    while (i < trajectory.size() && trajectory.time(i) < reference.t[k] - near) ++i;
+    if (i == trajectory.size() || trajectory.time(i) > reference.t[k] + near) return nan;
+    largest = std::max(largest, node_distance(trajectory.node_positions(i), reference.q[k]));
+  }
+  return largest;
+}
+
+MeasuredRun measure_run(const std::shared_ptr<const Model>& model, SolverOptions options, long steps,
+                        const Reference& reference, const TimingOptions& timing, const StudyHooks& hooks) {
+  options.end_time = reference.t.back();
+  options.step = options.end_time / static_cast<double>(steps);
+  MeasuredRun out;
+  out.steps = steps;
+  out.step = options.step;
+  std::vector<double> times;
+  double spent = 0;
+  while (static_cast<int>(times.size()) < timing.repeats) {
+    bool too_slow = false;
+    const Simulation run = run_once(model, options, timing.limit, hooks, too_slow);
+    if (times.empty()) {
+      out.position_error = position_error(run.trajectory, reference);
+      out.outcome = outcome_of(run, too_slow, out.position_error);
+      out.message = run.message;
+      measure_invariants(run, out);
+      count_work(run, out);
+    }
+    times.push_back(run.cpu_s);
+    spent += run.cpu_s;
+    const double enough = times.size() < 3 ? 3 * timing.patience : timing.patience;
+    if (!out.ok() || spent > enough) break;
+  }
+  std::sort(times.begin(), times.end());
+  out.cpu_min = times.front();
+  out.cpu_max = times.back();
+  out.cpu_median = times[times.size() / 2];
+  out.repeats = static_cast<int>(times.size());
+  return out;
+}
+
+}  // namespace unfurl

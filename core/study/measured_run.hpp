@@ -1,0 +1,50 @@
+// One run of a study: its errors against a reference, what it cost.
+#pragma once
+
+#include <optional>
+
+#include "core/simulate/simulation.hpp"
+#include "core/study/reference.hpp"
+
+namespace unfurl {
+
+struct MeasuredRun {
+  std::string outcome;  // "ok", or in a word or two why there is no answer: "solver failed", "too slow"
+  std::string message = {};
+  long steps = 0;
+  double step = 0;            // [s]
+  double position_error = 0;  // largest distance of a node from the reference at the comparison times [m]
+  double constraint_max = 0;  // over all states and constraints [m]
+  double constraint_relative_max = 0;  // relative to rod length
+  double constraint_velocity_max = 0;  // [m/s]
+  double energy_error = 0;             // largest |kinetic + potential - work - start| [J]
+  double kinetic_energy_max = 0;       // [J]
+  double energy_scale = 0;  // largest kinetic or potential energy or work: what round-off goes by [J]
+  long newton_iterations = 0, factorisations = 0, linear_solves = 0;
+  double cpu_median = 0, cpu_min = 0, cpu_max = 0;  // of the stepping loop [s]
+  int repeats = 0;
+
+  bool ok() const { return outcome == "ok"; }
+};
+
+struct TimingOptions {
+  int repeats = 5;  // timed runs at most ...
+  double patience =
+      1.0;  // ... and no further one after so much CPU time in sum [s]; three at least below 3 times it
+  double limit = 30.0;  // a run that takes longer is given up [s]
+};
+
+// Runs alone and one after another; the answers of repeated runs are equal, only their times differ. `end`
+// and `steps` replace the options' own.
+MeasuredRun measure_run(const std::shared_ptr<const Model>& model, SolverOptions options, long steps,
+                        const Reference& reference, const TimingOptions& timing, const StudyHooks& hooks);
+
+double thread_cpu_seconds();  // of the calling thread so far
+
+// Errors that a run shows about itself, written into `out`.
+void measure_invariants(const Simulation& run, MeasuredRun& out);
+
+// Largest distance of a node from the reference [m]; NaN where the run lacks a state at a comparison time.
+double position_error(const Trajectory& trajectory, const Reference& reference);
+
+}  // namespace unfurl

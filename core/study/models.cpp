@@ -1,0 +1,177 @@
+#include "core/study/models.hpp"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/integrators/integrator.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/toml_tree.hpp"
+#include "core/scene/write.hpp"
+#include "core/simulate/simulation.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::string text_at(const TomlTree& root, const char* table, const char* key) {
+  const TomlTree* found = root.find(table);
+  const TomlTree* value = found ? found->find(key) : nullptr;
+  if (!value) return {};
+  return value->kind == TomlTree::Kind::boolean ? (value->boolean ? "true" : "false") : value->text;
+}
+
+// Every number of the scene whose name tells of damping and is not zero.
+void damping_keys(const TomlTree& tree, const std::string& path, std::vector<std::string>& out) {
+  for (const auto& [name, value] : tree.entries) {
+    const std::string key = path.empty() ? name : path + "." + name;
+    const double number =
+        value.kind == TomlTree::Kind::real ? value.real : static_cast<double>(value.integer);
+    if ((value.kind == TomlTree::Kind::real || value.kind == TomlTree::Kind::integer) && number != 0 &&
+        name.find("damping") != std::string::npos)
+      out.push_back(key);
+    if (value.kind == TomlTree::Kind::table) damping_keys(value, key, out);
+    for (std::size_t i = 0; i < value.items.size(); ++i)
+      damping_keys(value.items[i], key + "[" + std::to_string(i) + "]", out);
+  }
+}
+
+// Bytes that are in use on the heap now, mapped blocks included.
+double heap_in_use() {
+  const auto info = ::mallinfo2();
+  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
+double deployment_time(const Simulation& run) {
+  for (const Event& event : run.events)
+    if (event.name == "deployed") return event.t;
+  return nan;
+}
+
+// Of the whole structure, at every time that both have.
+double difference(const Trajectory& a, const Trajectory& b) {
+  if (a.structure().node_copies.size() != b.structure().node_copies.size()) return nan;
+  double largest = 0;
+  for (std::size_t i = 0, k = 0; i < a.size(); ++i) {
+    while (k < b.size() && b.time(k) < a.time(i) - 1e-9) ++k;
+    if (k == b.size()) break;
+    if (b.time(k) < a.time(i) + 1e-9)
+      largest = std::max(largest, node_distance(a.positions(i), b.positions(k)));
+  }
+  return largest;
+}
+
+// The first run of a choice, and its model's cost.
+Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hooks, MeasuredModel& out) {
+  const Scene scene = source.read(out.choice.changes);
+  const double before = heap_in_use();
+  auto model = build_model(scene);
+  const auto method = find_method(scene.solver.method)->make(model->system, scene.solver);
+  out.memory = heap_in_use() - before;
+  out.solved_coordinates = model->system.solved_coordinates();
+  out.constraints = model->system.constraints();
+  SimulationHooks own;
+  own.cancelled = hooks.cancelled;
+  std::optional<Simulation> first;
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i) {
+    Simulation run = simulate(model, scene.solver, own);
+    if (run.status == RunStatus::stopped) throw Cancelled();
+    times.push_back(run.cpu_s);
+    if (!first) first = std::move(run);
+  }
+  std::sort(times.begin(), times.end());
+  out.cpu_min = times.front();
+  out.cpu_median = times[times.size() / 2];
+  out.cpu_max = times.back();
+  out.outcome = to_string(first->status);
+  out.deployment_time = deployment_time(*first);
+  return std::move(*first);
+}
+
+}  // namespace
+
+std::vector<ModelChoice> model_choices(const SceneSource& source) {
+  const Scene scene = source.read();
+  const TomlTree root = parse_toml(scene_text(scene), scene.name);
+  std::vector<ModelChoice> out{{"as the scene says", {}}};
+  const auto add = [&](const char* table, const char* key, const char* value, const char* name) {
+    const std::string now = text_at(root, table, key);
+    if (!now.empty() && now != value) out.push_back({name, {std::string(table) + "." + key + "=" + value}});
+  };
+  add("structure", "model", "full", "full: every unit solved");
+  add("structure", "model", "sector", "sector: one sector solved, all shown");
+  add("solver", "eliminate_linear", "true", "linear constraints eliminated");
+  add("solver", "eliminate_linear", "false", "linear constraints kept as equations");
+  add("structure", "mass", "consistent", "consistent mass: rigid uniform rods");
+  add("structure", "mass", "lumped", "lumped mass: half of a rod at each node");
+  std::vector<std::string> keys;
+  damping_keys(root, "", keys);
+  if (!keys.empty()) {
+    for (std::string& key : keys) key += "=0";
+    out.push_back({"without damping", keys});
+  }
+  return out;
+}
+
+std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats, const StudyHooks& hooks) {
+  std::vector<MeasuredModel> out;
+  std::optional<Simulation> base;
+  const auto choices = model_choices(source);
+  for (const ModelChoice& choice : choices) {
+    hooks.tell(static_cast<double>(out.size()) / static_cast<double>(choices.size()));
+    MeasuredModel m;
+    m.choice = choice;
+    m.difference = m.deployment_time = nan;
+    try {
+      Simulation run = measure(source, repeats, hooks, m);
+      if (!base)
+        base = std::move(run), m.difference = 0;
+      else
+        m.difference = difference(base->trajectory, run.trajectory);
+    } catch (const SceneError& error) {
+      if (!base) throw;
+      m.outcome = "not possible: " + error.problems().front().message;
+    }
+    out.push_back(std::move(m));
+  }
+  hooks.tell(1);
+  return out;
+}
+
+Table models_table(const std::vector<MeasuredModel>& models) {
+  Table table{{"model", "outcome", "solved_coordinates", "constraints", "cpu_median_s", "cpu_min_s",
+               "cpu_max_s", "memory_bytes", "difference_m", "deployment_time_s"},
+              {}};
+  for (const MeasuredModel& m : models) {
+    std::vector<std::string> row{m.choice.name, m.outcome, std::to_string(m.solved_coordinates),
+                                 std::to_string(m.constraints)};
+    for (const double x : {m.cpu_median, m.cpu_min, m.cpu_max, m.memory, m.difference, m.deployment_time})
+      row.push_back(exact_number(x));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table models_summary(const std::vector<MeasuredModel>& models) {
+  Table table{{"model", "coordinates", "constraints", "CPU (ms)", "CPU (times)", "memory (kB)",
+               "difference in the answer (m)", "deployed at (s)"},
+              {}};
+  for (const MeasuredModel& m : models) {
+    if (m.solved_coordinates == 0) {
+      table.rows.push_back({m.choice.name + " (" + m.outcome + ")", "", "", "", "", "", "", ""});
+      continue;
+    }
+    table.rows.push_back({m.choice.name, std::to_string(m.solved_coordinates), std::to_string(m.constraints),
+                          short_number(1e3 * m.cpu_median),
+                          short_number(m.cpu_median / models.front().cpu_median),
+                          short_number(m.memory / 1e3), short_number(m.difference),
+                          std::isnan(m.deployment_time) ? "" : short_number(m.deployment_time, 8)});
+  }
+  return table;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,35 @@
+// What each modelling choice of a scene costs and changes.
+#pragma once
+
+#include "core/study/reference.hpp"
+#include "core/study/scene_variation.hpp"
+#include "core/study/table.hpp"
+
+namespace unfurl {
+
+struct ModelChoice {
+  std::string name;                  // "sector: one sector solved, all shown"
+  std::vector<std::string> changes;  // to the scene; empty: the scene as it stands
+};
+
+// The scene as it stands, then every choice that it allows and does not make: full or sector, linear
+// constraints eliminated or kept, consistent or lumped mass, without damping.
+std::vector<ModelChoice> model_choices(const SceneSource& source);
+
+struct MeasuredModel {
+  ModelChoice choice;
+  std::string outcome;  // the run's status, or why there is none
+  Index solved_coordinates = 0, constraints = 0;
+  double cpu_median = 0, cpu_min = 0, cpu_max = 0;  // [s]
+  double memory = 0;      // of the model and the solver, without the trajectory [bytes]
+  double difference = 0;  // largest distance of a node from the scene as it stands, at the times of both [m]
+  double deployment_time = 0;  // NaN: none [s]
+};
+
+// One after another, timed alone. Throws Cancelled; SceneError where the scene itself is wrong.
+std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats, const StudyHooks& hooks);
+
+Table models_table(const std::vector<MeasuredModel>& models);    // exact
+Table models_summary(const std::vector<MeasuredModel>& models);  // for a person, with ratios to the first
+
+}  // namespace unfurl

@@ -1,0 +1,144 @@
+#include "core/study/reference.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/integrators/integrator.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "core/study/extrapolation.hpp"
+#include "core/study/table.hpp"
+
+namespace unfurl {
+namespace {
+
+using Solution = std::optional<std::vector<VectorXd>>;
+using Stepper = std::function<bool(State&, double h)>;
+
+// Node coordinates at the comparison times, with so many equal steps between two of them.
+Solution solve(const Model& model, const Stepper& step, double end, int intervals, int parts,
+               const StudyHooks& hooks) {
+  State state = initial_state(model.structure, model.system).state;
+  VectorXd q(model.system.coordinates());
+  model.system.expand(state.z, q);
+  std::vector<VectorXd> out{q};
+  const double H = end / intervals;
+  for (int i = 0; i < intervals; ++i) {
+    for (int k = 0; k < parts; ++k) {
+      if (hooks.stopped()) throw Cancelled();
+      if (!step(state, H / parts)) return std::nullopt;
+      state.t = H * (i + static_cast<double>(k + 1) / parts);
+    }
+    model.system.expand(state.z, q);
+    out.push_back(q);
+  }
+  return out;
+}
+
+double difference(const std::vector<VectorXd>& a, const std::vector<VectorXd>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, node_distance(a[i], b[i]));
+  return largest;
+}
+
+// A family of solutions, tighter with every level; `steps` says how many steps a level takes.
+struct Ladder {
+  std::function<Solution(int level)> solve;
+  int levels;
+};
+
+struct Best {
+  Solution solution;
+  double uncertainty = std::numeric_limits<double>::infinity();
+  int level = 0;
+};
+
+Best tighten(const Ladder& ladder, double goal) {
+  Best best;
+  Solution last = ladder.solve(0);
+  int worse = 0;
+  for (int level = 1; level < ladder.levels && worse < 2; ++level) {
+    Solution next = ladder.solve(level);
+    if (last && next) {
+      const double apart = difference(*last, *next);
+      worse = apart < best.uncertainty ? 0 : worse + 1;
+      if (apart < best.uncertainty) best = {next, apart, level};
+      if (apart <= goal) break;
+    }
+    last = std::move(next);
+  }
+  return best;
+}
+
+Ladder extrapolated(const Model& model, double end, int intervals, const StudyHooks& hooks) {
+  return {[&, end, intervals](int level) {
+            Extrapolation method(model.system);
+            return solve(
+                model, [&](State& s, double h) { return method.step(s, h); }, end, intervals, 1 << level,
+                hooks);
+          },
+          7};
+}
+
+// Odd levels with 7 nodes, even ones with 8, so that neighbours differ in more than the step.
+Ladder variational(const Model& model, double end, int intervals, const StudyHooks& hooks) {
+  return {[&, end, intervals](int level) {
+            SolverOptions options;
+            options.stages = level % 2 ? 7 : 8;
+            const auto method = find_method("dvm")->make(model.system, options);
+            return solve(
+                model, [&](State& s, double h) { return method->step(s, h).ok(); }, end, intervals,
+                2 << level, hooks);
+          },
+          6};
+}
+
+}  // namespace
+
+double node_distance(const ConstVec& a, const ConstVec& b) {
+  double largest = 0;
+  for (Index i = 0; i + 2 < a.size(); i += 3) {
+    const double distance = (a.segment<3>(i) - b.segment<3>(i)).norm();
+    if (!(distance <= largest)) largest = distance;  // keeps a NaN
+  }
+  return largest;
+}
+
+double structure_size(const Model& model) {
+  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
+  for (const Node& node : model.structure.nodes) {
+    lo = lo.cwiseMin(node.position);
+    hi = hi.cwiseMax(node.position);
+  }
+  return model.structure.nodes.empty() ? 0.0 : (hi - lo).maxCoeff();
+}
+
+Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
+                          const StudyHooks& hooks, double goal) {
+  const double size = structure_size(*model);
+  goal = std::max(goal, 64 * std::numeric_limits<double>::epsilon() * size);
+  Best best = tighten(extrapolated(*model, end, intervals, hooks), goal);
+  Reference out;
+  out.how = "Bulirsch-Stoer extrapolation of order 16 on the index-1 equations with " +
+            std::to_string(intervals << best.level) + " basic steps";
+  if (!(best.uncertainty <= std::max(goal, 1e-9 * size))) {
+    Best other = tighten(variational(*model, end, intervals, hooks), goal);
+    if (other.uncertainty < best.uncertainty) {
+      best = std::move(other);
+      out.how = "dvm with " + std::string(best.level % 2 ? "7" : "8") + " nodes and " +
+                std::to_string(intervals << (best.level + 1)) +
+                " steps, because the index-1 equations do not pass this motion";
+    }
+  }
+  if (!(best.uncertainty < 1e-6 * size))
+    throw ReferenceError(
+        "the reference does not converge: its best two solutions differ by " +
+        short_number(best.uncertainty) +
+        " m; give the motion an earlier solver.end_time, before it becomes chaotic or singular");
+  for (int i = 0; i <= intervals; ++i) out.t.push_back(end * i / intervals);
+  out.q = std::move(*best.solution);
+  out.uncertainty = best.uncertainty;
+  return out;
+}
+
+}  // namespace unfurl

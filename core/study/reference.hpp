@@ -1,0 +1,54 @@
+// The motion that errors are measured against.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+
+// What long work asks and tells while it runs.
+struct StudyHooks {
+  std::function<void(double fraction)> progress = {};  // 0..1
+  std::function<bool()> cancelled = {};
+  int threads = 1;
+
+  bool stopped() const { return cancelled && cancelled(); }
+  void tell(double fraction) const {
+    if (progress) progress(fraction);
+  }
+};
+
+struct Cancelled : std::runtime_error {
+  Cancelled() : std::runtime_error("cancelled") {}
+};
+
+// No two solutions agree well enough to judge anything by.
+struct ReferenceError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Reference {
+  std::vector<double> t;    // comparison times [s], equally spaced from 0 to the end
+  std::vector<VectorXd> q;  // node coordinates there [3 n]
+  double uncertainty = 0;   // largest distance of a node between the last two solutions [m]
+  std::string how;          // "Bulirsch-Stoer extrapolation of order 16 with 120 steps"
+};
+
+// Solved with step after halved step until two solutions agree to round-off or come no closer: by
+// extrapolation of the index-1 equations, and where singular poses stop those, by dvm with 8 nodes against 7.
+// Throws ReferenceError where no two solutions agree to a millionth of the structure's size, Cancelled.
+// `goal`: an agreement that is enough [m]; 0: round-off.
+Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
+                          const StudyHooks& hooks, double goal = 0);
+
+// Largest distance between equal nodes of two configurations [m].
+double node_distance(const ConstVec& a, const ConstVec& b);
+// Largest distance between two nodes' coordinates along an axis at the start: what "size" means [m].
+double structure_size(const Model& model);
+
+}  // namespace unfurl

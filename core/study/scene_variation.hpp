@@ -1,0 +1,26 @@
+// A scene with some of its keys changed, again and again.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.hpp"
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+
+// Where the scene comes from: its file and the overrides of the command line.
+struct SceneSource {
+  std::string path;
+  std::vector<std::string> overrides = {};
+
+  // With these "key=value" behind the overrides. Throws SceneError, UnreadableScene.
+  Scene read(const std::vector<std::string>& changes = {}) const;
+};
+
+// The number at a dotted key, written out in the scene or a default; nothing where there is none.
+std::optional<double> scene_number(const Scene& scene, const std::string& key);
+
+}  // namespace unfurl

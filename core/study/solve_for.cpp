@@ -1,0 +1,148 @@
+#include "core/study/solve_for.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/study/table.hpp"
+
+namespace unfurl {
+namespace {
+
+class Search {
+ public:
+  Search(const Objective& f, double target, const SolveOptions& options, const StudyHooks& hooks)
+      : f_(f), target_(target), o_(options), hooks_(hooks) {}
+
+  Solved run() {
+    if (o_.low < o_.high)
+      bracket_given();
+    else
+      bracket_around();
+    refine();
+    refuse_jump();
+    return {best_.x, best_.value, a_.x, b_.x, std::move(seen_)};
+  }
+
+ private:
+  Evaluation at(double x) {
+    if (hooks_.stopped()) throw Cancelled();
+    if (static_cast<int>(seen_.size()) >= o_.most)
+      give_up("no answer after " + std::to_string(o_.most) + " runs");
+    const Evaluation e{x, f_(x)};
+    seen_.push_back(e);
+    if (!std::isnan(e.value) && (seen_.size() == 1 || off(e) < off(best_) || std::isnan(best_.value)))
+      best_ = e;
+    return e;
+  }
+  double off(const Evaluation& e) const { return std::abs(e.value - target_); }
+  bool valid(const Evaluation& e) const { return !std::isnan(e.value); }
+  bool exact(const Evaluation& e) const { return valid(e) && off(e) <= o_.f_tolerance; }
+  bool opposite(const Evaluation& a, const Evaluation& b) const {
+    return valid(a) && valid(b) && (a.value < target_) != (b.value < target_);
+  }
+
+  [[noreturn]] void give_up(const std::string& why) const {
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo, x0 = lo, x1 = -lo;
+    for (const Evaluation& e : seen_)
+      if (valid(e)) {
+        lo = std::min(lo, e.value), hi = std::max(hi, e.value);
+        x0 = std::min(x0, e.x), x1 = std::max(x1, e.x);
+      }
+    if (lo > hi) throw NotFound(why + "; no parameter that was tried gave a run with this measure");
+    throw NotFound(why + "; for parameters from " + short_number(x0, 9) + " to " + short_number(x1, 9) +
+                   " the measure runs from " + short_number(lo, 9) + " to " + short_number(hi, 9));
+  }
+
+  void bracket_given() {
+    a_ = at(o_.low);
+    b_ = at(o_.high);
+    if (!opposite(a_, b_)) give_up("the target does not lie between the ends of --between");
+  }
+
+  // Outwards to both sides in turn. An invalid x is a wall that is approached by halving.
+  void bracket_around() {
+    const Evaluation start = at(o_.start);
+    if (!valid(start)) give_up("the scene as it stands has no such measure");
+    a_ = b_ = start;
+    if (exact(start)) return;
+    const double first = o_.start != 0 ? 0.02 * std::abs(o_.start) : 0.02;
+    Side up{start, first}, down{start, -first};
+    while (up.open || down.open)
+      if (advance(up) || advance(down)) return;
+    give_up("the target is not reached on either side of " + short_number(o_.start, 9));
+  }
+
+  struct Side {
+    Evaluation last;
+    double stride;
+    bool open = true, walled = false;
+  };
+
+  bool advance(Side& side) {
+    if (!side.open) return false;
+    const Evaluation next = at(side.last.x + side.stride);
+    if (!valid(next)) {
+      side.walled = true;
+      side.stride /= 2;
+      side.open = std::abs(side.stride) > 1e-9 * std::max(std::abs(side.last.x), 1e-3);
+      return false;
+    }
+    if (opposite(side.last, next)) {
+      a_ = side.last, b_ = next;
+      return true;
+    }
+    side.last = next;
+    side.stride *= side.walled ? 0.5 : 2;
+    const double far = std::abs(side.last.x - o_.start), unit = std::max(std::abs(o_.start), 1.0);
+    side.open = std::abs(side.stride) > 1e-9 * std::max(std::abs(side.last.x), 1e-3) && far < 1e9 * unit;
+    return false;
+  }
+
+  void refine() {
+    int side = 0;  // which end stayed last time (Illinois)
+    double fa = a_.value - target_, fb = b_.value - target_;
+    while (a_.x != b_.x && !exact(best_)) {
+      const double width = std::abs(b_.x - a_.x);
+      if (width <= o_.x_tolerance * std::max(std::abs(a_.x), std::abs(b_.x))) return;
+      double x = (a_.x * fb - b_.x * fa) / (fb - fa);
+      if (!std::isfinite(x) || (x - a_.x) * (x - b_.x) >= 0 || ++slow_ % 4 == 0) x = 0.5 * (a_.x + b_.x);
+      const Evaluation e = at(x);
+      if (!valid(e)) give_up("the measure is not there for a parameter of " + short_number(x, 9));
+      const double fe = e.value - target_;
+      if ((fe < 0) == (fa < 0)) {
+        a_ = e, fa = fe;
+        if (side == 1) fb /= 2;
+        side = 1;
+      } else {
+        b_ = e, fb = fe;
+        if (side == -1) fa /= 2;
+        side = -1;
+      }
+    }
+  }
+
+  // A bracket that closed on a jump holds no root.
+  void refuse_jump() const {
+    const double jump = std::abs(b_.value - a_.value);
+    if (off(best_) <= 1e-6 * std::max(std::abs(target_), 1e-300) || jump < 1e-4 * std::abs(target_)) return;
+    throw NotFound("the measure jumps over the target at " + short_number(b_.x, 9) + ", from " +
+                   short_number(a_.value, 9) + " to " + short_number(b_.value, 9) +
+                   (std::isinf(jump) ? "; a later solver.end_time may help" : ""));
+  }
+
+  const Objective& f_;
+  double target_;
+  const SolveOptions& o_;
+  const StudyHooks& hooks_;
+  Evaluation a_, b_, best_;
+  std::vector<Evaluation> seen_;
+  int slow_ = 0;
+};
+
+}  // namespace
+
+Solved solve_for(const Objective& f, double target, const SolveOptions& options, const StudyHooks& hooks) {
+  return Search(f, target, options, hooks).run();
+}
+
+}  // namespace unfurl

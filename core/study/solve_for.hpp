@@ -1,0 +1,43 @@
+// One parameter of a scene, so that a run gives what is wanted.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/study/reference.hpp"
+
+namespace unfurl {
+
+// f(x); NaN where x is no valid parameter or the run failed; may be infinite ("not within the run").
+using Objective = std::function<double(double x)>;
+
+struct SolveOptions {
+  double start = 0;            // where the search begins
+  double low = 0, high = 0;    // --between; equal: not given, the search looks around `start`
+  double x_tolerance = 1e-12;  // relative
+  double f_tolerance = 0;      // absolute
+  int most = 200;              // evaluations
+};
+
+struct Evaluation {
+  double x = 0, value = 0;  // f(x) - target is what has a root
+};
+
+struct Solved {
+  double x = 0, value = 0;
+  double low = 0, high = 0;  // the last bracket
+  std::vector<Evaluation> evaluations;
+};
+
+// The parameter could not be found; what() says what was tried.
+struct NotFound : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// A root of f - target by bracketing: from `start` outwards, steps doubled, halved again where x becomes
+// invalid, until the sign changes; then regula falsi with bisection as safeguard (ITP-like: never slower than
+// bisection by more than a factor of two). Throws NotFound, Cancelled.
+Solved solve_for(const Objective& f, double target, const SolveOptions& options, const StudyHooks& hooks);
+
+}  // namespace unfurl

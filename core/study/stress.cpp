@@ -1,0 +1,229 @@
+#include "core/study/stress.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <thread>
+
+namespace unfurl {
+namespace {
+
+// A scene at one value of an extreme, with its reference.
+struct Site {
+  const Extreme* extreme = nullptr;
+  double value = 0;
+  std::shared_ptr<const Model> model = nullptr;
+  std::optional<Reference> reference = std::nullopt;
+  std::string trouble = {};  // why there is none
+};
+
+constexpr double probing_seconds = 3.0;
+
+// When the structure is deployed, looked for up to `end`; NaN where it is not.
+double deployment_by(const Site& site, SolverOptions options, double end, const StudyHooks& hooks) {
+  options.end_time = end;
+  options.step = end / 4000;
+  const double begin = thread_cpu_seconds();
+  SimulationHooks bounded;
+  bounded.cancelled = [&] { return hooks.stopped() || thread_cpu_seconds() - begin > probing_seconds; };
+  const Simulation run = simulate(site.model, options, bounded);
+  if (hooks.stopped()) throw Cancelled();
+  for (const Event& event : run.events)
+    if (event.name == "deployed") return event.t;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+// How long the motion is: to 99 % of the deployment where there is one, however late; else to the scene's
+// end, which moves with the square root of the forces. Found with the first of these methods that gets there.
+// NaN: it never deploys.
+double duration(const Site& site, SolverOptions options, const StudyHooks& hooks) {
+  double end = options.end_time;
+  if (site.extreme->name == "force") end /= std::sqrt(site.value);
+  if (site.model->structure.deployment.empty()) return end;
+  options.nodes = "lobatto";
+  options.constraints_at = "nodes";
+  for (const double factor : {2.0, 20.0, 400.0, 8000.0, 160000.0})
+    for (const auto& [method, stages] : {std::pair{"dvm", 4}, {"dvm", 3}, {"rk4", 3}}) {
+      options.method = method;
+      options.stages = stages;
+      const double t = deployment_by(site, options, factor * end, hooks);
+      if (!std::isnan(t)) return 0.99 * t;
+    }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+void prepare(Site& site, int intervals, const StudyHooks& hooks) {
+  try {
+    SolverOptions options;
+    site.model = site.extreme->build(site.value, options);
+    const double enough = 1e-6 * structure_size(*site.model);
+    const double end = duration(site, options, hooks);
+    if (std::isnan(end))
+      site.trouble = "it does not deploy";
+    else
+      site.reference = solve_reference(site.model, end, intervals, hooks, enough);
+  } catch (const ReferenceError& error) {
+    site.trouble = error.what();
+  } catch (const SceneError& error) {
+    site.trouble = error.what();
+  }
+}
+
+Verdict judge(const MeasuredRun& run, double size, const StressLimits& limits) {
+  if (run.outcome == "solver failed") return Verdict::solver_failed;
+  if (run.outcome == "too slow") return Verdict::too_slow;
+  if (!(run.constraint_relative_max <= limits.constraint)) return Verdict::constraint_lost;
+  const double round_off = 1e-12 * run.energy_scale;
+  if (!(run.energy_error <= limits.energy * run.kinetic_energy_max + round_off))
+    return Verdict::energy_growth;
+  if (!(run.position_error <= limits.branch * size)) return Verdict::wrong_branch;
+  return run.position_error <= limits.right * size ? Verdict::right : Verdict::inaccurate;
+}
+
+std::vector<std::string> row_of(const StressCell& c) {
+  std::vector<std::string> row{c.extreme, exact_number(c.value), c.setting, std::to_string(c.steps),
+                               std::string(to_string(c.verdict))};
+  for (const double x : {c.run.step, c.run.position_error, c.run.constraint_relative_max, c.run.energy_error,
+                         c.run.kinetic_energy_max, c.run.cpu_median})
+    row.push_back(exact_number(x));
+  row.push_back(c.run.message);
+  return row;
+}
+
+StressCell cell_of(const std::vector<std::string>& row) {
+  StressCell c;
+  c.extreme = row[0];
+  c.value = number_of(row[1]);
+  c.setting = row[2];
+  c.steps = std::lround(number_of(row[3]));
+  for (const Verdict v : verdicts())
+    if (to_string(v) == row[4]) c.verdict = v;
+  c.run.step = number_of(row[5]);
+  c.run.position_error = number_of(row[6]);
+  c.run.constraint_relative_max = number_of(row[7]);
+  c.run.energy_error = number_of(row[8]);
+  c.run.kinetic_energy_max = number_of(row[9]);
+  c.run.cpu_median = number_of(row[10]);
+  c.run.message = row[11];
+  return c;
+}
+
+// Jobs 0 .. count-1 on so many threads; the first exception is thrown here.
+void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& job) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < count;) try {
+        job(i);
+      } catch (...) {
+        next = count;
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+      }
+  };
+  std::vector<std::thread> team;
+  for (int i = 1; i < threads; ++i) team.emplace_back(work);
+  work();
+  for (auto& member : team) member.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+std::vector<std::string> key_of(const Site& site, const Setting& setting, long steps) {
+  return {site.extreme->name, exact_number(site.value), setting.name, std::to_string(steps)};
+}
+
+// All cells of a site that the journal lacks.
+void fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mutex, const StudyHooks& hooks) {
+  const TimingOptions once{.repeats = 1, .patience = 0, .limit = plan.limits.seconds};
+  for (const Setting& setting : plan.settings)
+    for (const long steps : plan.steps) {
+      const auto key = key_of(site, setting, steps);
+      {
+        const std::lock_guard lock(mutex);
+        if (journal.find(key)) continue;
+      }
+      if (!site.model) prepare(site, static_cast<int>(plan.steps.front()), hooks);
+      if (!site.reference) return;
+      if (hooks.stopped()) throw Cancelled();
+      StressCell cell{key[0], site.value, setting.name, steps, {}, {}};
+      cell.run = measure_run(site.model, setting.options, steps, *site.reference, once, hooks);
+      cell.verdict = judge(cell.run, structure_size(*site.model), plan.limits);
+      const std::lock_guard lock(mutex);
+      journal.append(row_of(cell));
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> stress_columns() {
+  return {"extreme",
+          "value",
+          "setting",
+          "steps",
+          "verdict",
+          "step_s",
+          "position_error_m",
+          "constraint_relative_max",
+          "energy_error_max_J",
+          "kinetic_energy_max_J",
+          "cpu_s",
+          "message"};
+}
+
+Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& hooks) {
+  std::vector<Site> sites;
+  for (const Extreme& extreme : plan.extremes)
+    for (const double value : extreme.values) sites.push_back({&extreme, value});
+  Stress stress;
+  std::mutex mutex;
+  std::size_t done = 0;
+  try {
+    in_parallel(sites.size(), hooks.threads, [&](std::size_t i) {
+      fill(plan, sites[i], journal, mutex, hooks);
+      const std::lock_guard lock(mutex);
+      hooks.tell(static_cast<double>(++done) / static_cast<double>(sites.size() + 2));
+    });
+    stress.long_runs = long_runs(plan, hooks);
+  } catch (const Cancelled&) {
+    stress.complete = false;
+  }
+  for (const Site& site : sites) {
+    if (!site.trouble.empty())
+      stress.notes.push_back(site.extreme->name + " = " + short_number(site.value) + ": " + site.trouble);
+    for (const Setting& setting : plan.settings)
+      for (const long steps : plan.steps)
+        if (const auto* row = journal.find(key_of(site, setting, steps)))
+          stress.cells.push_back(cell_of(*row));
+  }
+  return stress;
+}
+
+Table cells_table(const Stress& stress) {
+  Table table{stress_columns(), {}};
+  for (const StressCell& cell : stress.cells) table.rows.push_back(row_of(cell));
+  return table;
+}
+
+Table summary_table(const StressPlan& plan, const Stress& stress) {
+  Table table{{"setting", "cells"}, {}};
+  for (const Verdict v : verdicts()) table.columns.emplace_back(to_string(v));
+  for (const Setting& setting : plan.settings) {
+    std::vector<long> count(verdicts().size());
+    long all = 0;
+    for (const StressCell& cell : stress.cells)
+      if (cell.setting == setting.name) {
+        ++all;
+        const auto at = std::find(verdicts().begin(), verdicts().end(), cell.verdict) - verdicts().begin();
+        ++count[static_cast<std::size_t>(at)];
+      }
+    std::vector<std::string> row{setting.name, std::to_string(all)};
+    for (const long n : count) row.push_back(std::to_string(n));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace unfurl

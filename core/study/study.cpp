@@ -1,0 +1,205 @@
+#include "core/study/study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace unfurl {
+namespace {
+
+// A run's row and back; exact, so that a journal and a fresh run say the same.
+std::vector<std::string> row_of(const Setting& setting, const MeasuredRun& r) {
+  const SolverOptions& o = setting.options;
+  std::vector<std::string> row{setting.name, std::to_string(r.steps), o.method, std::to_string(o.stages),
+                               o.nodes,      o.constraints_at,        r.outcome};
+  for (const double x : {r.step, r.position_error, r.constraint_max, r.constraint_relative_max,
+                         r.constraint_velocity_max, r.energy_error})
+    row.push_back(exact_number(x));
+  for (const long n : {r.newton_iterations, r.factorisations, r.linear_solves})
+    row.push_back(std::to_string(n));
+  for (const double x : {r.cpu_median, r.cpu_min, r.cpu_max}) row.push_back(exact_number(x));
+  row.push_back(std::to_string(r.repeats));
+  return row;
+}
+
+MeasuredRun run_of(const std::vector<std::string>& row) {
+  MeasuredRun r;
+  const auto real = [&](std::size_t i) { return number_of(row[i]); };
+  const auto whole = [&](std::size_t i) { return std::lround(number_of(row[i])); };
+  r.steps = whole(1);
+  r.outcome = row[6];
+  r.step = real(7);
+  r.position_error = real(8);
+  r.constraint_max = real(9);
+  r.constraint_relative_max = real(10);
+  r.constraint_velocity_max = real(11);
+  r.energy_error = real(12);
+  r.newton_iterations = whole(13);
+  r.factorisations = whole(14);
+  r.linear_solves = whole(15);
+  r.cpu_median = real(16);
+  r.cpu_min = real(17);
+  r.cpu_max = real(18);
+  r.repeats = static_cast<int>(whole(19));
+  return r;
+}
+
+bool gains(const MeasuredRun& now, const MeasuredRun& before) {
+  return !now.ok() || !before.ok() || now.position_error < 0.8 * before.position_error;
+}
+
+// Errors below this are not the methods' own: the reference's, those of rounded coordinates, and the largest
+// that any method is left with where smaller steps gain nothing.
+double floor_of(const Study& study) {
+  double floor = std::max(10 * study.reference_uncertainty, 1e-14 * study.size);
+  for (const StudyCurve& curve : study.curves)
+    for (std::size_t i = 1; i < curve.runs.size(); ++i) {
+      const MeasuredRun& run = curve.runs[i];
+      if (!gains(run, curve.runs[i - 1]) && run.position_error < 1e-9 * study.size)
+        floor = std::max(floor, 2 * run.position_error);
+    }
+  return floor;
+}
+
+// Where error ~ step^p: answers that are right to a hundredth of the structure and above the floor; the five
+// smallest such steps.
+ObservedOrder order_of(const StudyCurve& curve, double floor, double size) {
+  std::vector<double> step, error;
+  for (const MeasuredRun& r : curve.runs) {
+    if (!r.ok() || r.position_error > 1e-2 * size) continue;
+    if (r.position_error < floor) break;
+    step.push_back(r.step);
+    error.push_back(r.position_error);
+  }
+  const auto skip = static_cast<std::ptrdiff_t>(step.size() > 5 ? step.size() - 5 : 0);
+  return fit_order({step.begin() + skip, step.end()}, {error.begin() + skip, error.end()});
+}
+
+// Two steps in a row that gain nothing: smaller ones would only cost more.
+bool exhausted(const std::vector<MeasuredRun>& runs, double size) {
+  const std::size_t n = runs.size();
+  return n >= 3 && !gains(runs[n - 1], runs[n - 2]) && !gains(runs[n - 2], runs[n - 3]) &&
+         runs[n - 1].position_error < 1e-9 * size;
+}
+
+}  // namespace
+
+std::vector<std::string> study_columns() {
+  return {"setting",
+          "steps",
+          "method",
+          "stages",
+          "nodes",
+          "constraints_at",
+          "outcome",
+          "step_s",
+          "position_error_m",
+          "constraint_max_m",
+          "constraint_relative_max",
+          "constraint_velocity_max_m_s",
+          "energy_error_max_J",
+          "newton_iterations",
+          "factorisations",
+          "linear_solves",
+          "cpu_median_s",
+          "cpu_min_s",
+          "cpu_max_s",
+          "repeats"};
+}
+
+Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks) {
+  Study study;
+  study.end = plan.end;
+  study.early = plan.early;
+  study.size = structure_size(*plan.model);
+  for (const Setting& setting : plan.settings) study.curves.push_back({setting, {}, {}});
+  try {
+    const Reference reference =
+        solve_reference(plan.model, plan.end, static_cast<int>(plan.ladder.grid), hooks);
+    study.reference = reference.how;
+    study.reference_uncertainty = reference.uncertainty;
+    double done = 0;
+    double all = 0;
+    for (const long steps : plan.ladder.steps)
+      all += static_cast<double>(steps * static_cast<long>(plan.settings.size()));
+    for (StudyCurve& curve : study.curves) {
+      for (const long steps : plan.ladder.steps) {
+        hooks.tell(done / all);
+        done += static_cast<double>(steps);
+        if (exhausted(curve.runs, study.size)) continue;
+        if (const auto* row = journal.find({curve.setting.name, std::to_string(steps)})) {
+          curve.runs.push_back(run_of(*row));
+          continue;
+        }
+        if (hooks.stopped()) throw Cancelled();
+        curve.runs.push_back(
+            measure_run(plan.model, curve.setting.options, steps, reference, plan.timing, hooks));
+        journal.append(row_of(curve.setting, curve.runs.back()));
+      }
+    }
+    hooks.tell(1);
+  } catch (const Cancelled&) {
+    study.complete = false;
+  }
+  const double floor = floor_of(study);
+  for (StudyCurve& curve : study.curves) curve.order = order_of(curve, floor, study.size);
+  return study;
+}
+
+Table points_table(const Study& study) {
+  Table table{study_columns(), {}};
+  for (const StudyCurve& curve : study.curves)
+    for (const MeasuredRun& run : curve.runs) table.rows.push_back(row_of(curve.setting, run));
+  return table;
+}
+
+Table orders_table(const Study& study) {
+  Table table{{"setting", "claimed order", "observed order", "95 % interval", "from points", "best error (m)",
+               "its step (s)", "its CPU (s)", "constraint error (m)", "energy error (J)"},
+              {}};
+  for (const StudyCurve& curve : study.curves) {
+    const MeasuredRun* best = nullptr;
+    for (const MeasuredRun& r : curve.runs)
+      if (r.ok() && (!best || r.position_error < best->position_error)) best = &r;
+    const ObservedOrder& o = curve.order;
+    std::vector<std::string> row{curve.setting.name, std::to_string(curve.setting.claimed_order)};
+    if (std::isfinite(o.order))
+      row.insert(row.end(), {short_number(o.order), short_number(o.low) + " to " + short_number(o.high)});
+    else
+      row.insert(row.end(), {"too few points", ""});
+    row.push_back(std::to_string(o.points));
+    if (best)
+      for (const double x :
+           {best->position_error, best->step, best->cpu_median, best->constraint_max, best->energy_error})
+        row.push_back(short_number(x));
+    row.resize(table.columns.size());
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Cheapest cheapest(const Study& study, double error) {
+  Cheapest best;
+  for (const StudyCurve& curve : study.curves)
+    for (const MeasuredRun& run : curve.runs)
+      if (run.ok() && run.position_error <= error && (!best.run || run.cpu_median < best.run->cpu_median))
+        best = {&curve, &run};
+  return best;
+}
+
+std::string cheapest_sentence(const Study& study) {
+  std::string text;
+  for (const double error : {1e-3, 1e-6, 1e-9}) {
+    const Cheapest best = cheapest(study, error);
+    text += (text.empty() ? "The cheapest setting for " : ", for ") + short_number(error, 1) + " m ";
+    if (best.run)
+      text += (text.find(" is ") == std::string::npos ? "is " : "") + best.curve->setting.name +
+              " with a step of " + short_number(best.run->step) + " s (" +
+              short_number(1e3 * best.run->cpu_median) + " ms)";
+    else
+      text += "was not found on this ladder";
+  }
+  return text + ".";
+}
+
+}  // namespace unfurl

@@ -1,0 +1,101 @@
+#include "core/study/sweep.hpp"
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include "core/scene/build.hpp"
+#include "core/study/tolerance.hpp"
+
+namespace unfurl {
+namespace {
+
+// One point; nothing where it was cancelled.
+std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const std::vector<std::string>& key,
+                                                  const StudyHooks& hooks) {
+  std::vector<std::string> changes, row = key;
+  for (std::size_t a = 0; a < key.size(); ++a) changes.push_back(plan.axes[a].key + "=" + key[a]);
+  try {
+    const Scene scene = plan.source.read(changes);
+    SimulationHooks own;
+    own.cancelled = hooks.cancelled;
+    const Simulation run = simulate_as_asked(build_model(scene), scene.solver, own);
+    if (run.status == RunStatus::stopped) return std::nullopt;
+    const Diagnostics diagnostics = diagnose(run);
+    row.emplace_back(to_string(run.status));
+    for (const Measure& measure : plan.measures) row.push_back(exact_number(measure.value(run, diagnostics)));
+  } catch (const SceneError&) {
+    row.emplace_back("invalid");
+    row.resize(key.size() + 1 + plan.measures.size(), "nan");
+  }
+  return row;
+}
+
+Sweep collect(const SweepPlan& plan, const std::function<const std::vector<std::string>*(std::size_t)>& row) {
+  Sweep sweep{{plan.columns(), {}}};
+  for (std::size_t i = 0; i < plan.points(); ++i) {
+    if (const auto* found = row(i))
+      sweep.table.rows.push_back(*found);
+    else
+      ++sweep.missing;
+  }
+  return sweep;
+}
+
+bool in_shard(const SweepPlan& plan, std::size_t point) {
+  return point % static_cast<std::size_t>(plan.shard.count) == static_cast<std::size_t>(plan.shard.index - 1);
+}
+
+}  // namespace
+
+Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks) {
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < plan.points(); ++i)
+    if (in_shard(plan, i) && !journal.find(plan.key(i))) open.push_back(i);
+  std::atomic<std::size_t> next = 0;
+  std::size_t done = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    try {
+      while (!hooks.stopped()) {
+        const std::size_t at = next++;
+        if (at >= open.size()) return;
+        auto row = run_point(plan, plan.key(open[at]), hooks);
+        if (!row) return;
+        const std::lock_guard lock(mutex);
+        journal.append(std::move(*row));
+        hooks.tell(static_cast<double>(++done) / static_cast<double>(open.size()));
+      }
+    } catch (...) {
+      next = open.size();
+      const std::lock_guard lock(mutex);
+      failure = std::current_exception();
+    }
+  };
+  std::vector<std::thread> team;
+  for (int i = 1; i < hooks.threads && static_cast<std::size_t>(i) < open.size(); ++i)
+    team.emplace_back(work);
+  work();
+  for (auto& member : team) member.join();
+  if (failure) std::rethrow_exception(failure);
+  Sweep sweep =
+      collect(plan, [&](std::size_t i) { return in_shard(plan, i) ? journal.find(plan.key(i)) : nullptr; });
+  sweep.missing = 0;
+  for (std::size_t i = 0; i < plan.points(); ++i)
+    if (in_shard(plan, i) && !journal.find(plan.key(i))) ++sweep.missing;
+  return sweep;
+}
+
+Sweep merge_sweep(const SweepPlan& plan, const std::vector<std::filesystem::path>& journals) {
+  std::vector<std::unique_ptr<Journal>> open;
+  for (const auto& path : journals)
+    open.push_back(std::make_unique<Journal>(path, plan.columns(), plan.axes.size()));
+  return collect(plan, [&](std::size_t i) -> const std::vector<std::string>* {
+    for (const auto& journal : open)
+      if (const auto* row = journal->find(plan.key(i))) return row;
+    return nullptr;
+  });
+}
+
+}  // namespace unfurl

@@ -1,0 +1,54 @@
+// A scene over a grid of parameters: measures of every run.
+#pragma once
+
+#include "core/study/journal.hpp"
+#include "core/study/measures.hpp"
+#include "core/study/reference.hpp"
+#include "core/study/scene_variation.hpp"
+
+namespace unfurl {
+
+struct SweepAxis {
+  std::string key;                  // "structure.fold_angle"
+  std::vector<std::string> values;  // as TOML
+  std::vector<double> numbers;      // the same; empty where one is no number
+  bool log = false;
+};
+
+// "key=from:to:count", evenly spaced; "key=from:to:count:log", by equal factors; "key=a,b,c". Throws
+// std::invalid_argument.
+SweepAxis parse_axis(const std::string& text);
+
+struct Shard {
+  int index = 1, count = 1;  // 1 <= index <= count: every count-th point
+};
+Shard parse_shard(const std::string& text);  // "2/8"; throws std::invalid_argument
+
+struct SweepPlan {
+  SceneSource source;
+  std::vector<SweepAxis> axes;
+  std::vector<Measure> measures;
+  Shard shard;
+
+  std::size_t points() const;                             // of the whole grid
+  std::vector<std::string> key(std::size_t point) const;  // its values; the last axis runs fastest
+  std::vector<std::string> columns() const;               // keys, outcome, measures
+};
+
+// Throws std::invalid_argument (no axis, no measure, a key twice, too many points), SceneError where a value
+// is refused by the scene.
+void check_plan(const SweepPlan& plan);
+
+// Points in the grid's order; those that are not there are missing. Outcome: the run's status, or "invalid"
+// where the parameters, each fine, make no structure.
+struct Sweep {
+  Table table;
+  std::size_t missing = 0;
+};
+
+// What the journal lacks of the shard's points is computed on hooks.threads cores, each kept as it finishes.
+Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks);
+// All points that these journals hold.
+Sweep merge_sweep(const SweepPlan& plan, const std::vector<std::filesystem::path>& journals);
+
+}  // namespace unfurl

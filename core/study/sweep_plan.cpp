@@ -1,0 +1,123 @@
+#include <cmath>
+#include <stdexcept>
+
+#include "core/model/nearest_name.hpp"
+#include "core/study/sweep.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr std::size_t max_points = 10'000'000;
+constexpr long max_count = 1'000'000;
+
+[[noreturn]] void refuse(const std::string& text, const std::string& why) {
+  throw std::invalid_argument(in_quotes(text) + ": " + why);
+}
+
+std::vector<std::string> split(const std::string& text, char mark) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == mark)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+void fill_range(const std::string& text, const std::vector<std::string>& parts, SweepAxis& axis) {
+  const double from = number_of(parts[0]), to = number_of(parts[1]), count = number_of(parts[2]);
+  if (!std::isfinite(from) || !std::isfinite(to))
+    refuse(text, "a range runs from one finite number to another");
+  if (!(count >= 1) || count != std::floor(count) || count > static_cast<double>(max_count))
+    refuse(text, "the count must be a whole number from 1 to 1000000; got " + in_quotes(parts[2]));
+  if (parts.size() == 4 && parts[3] != "log") refuse(text, "only 'log' may follow the count");
+  axis.log = parts.size() == 4;
+  if (axis.log && (!(from > 0) || !(to > 0))) refuse(text, "a log range needs numbers > 0");
+  if (count > 1 && from == to) refuse(text, "the range is empty; its ends are equal");
+  for (long i = 0; i < static_cast<long>(count); ++i) {
+    const double u = count > 1 ? static_cast<double>(i) / (count - 1) : 0.0;
+    double x = axis.log ? from * std::pow(to / from, u) : from + (to - from) * u;
+    if (i + 1 == static_cast<long>(count) && i > 0) x = to;
+    axis.numbers.push_back(x);
+    axis.values.push_back(exact_number(x));
+  }
+}
+
+}  // namespace
+
+SweepAxis parse_axis(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    refuse(text, "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C");
+  SweepAxis axis;
+  axis.key = text.substr(0, equals);
+  const std::string values = text.substr(equals + 1);
+  const auto parts = split(values, ':');
+  if (parts.size() >= 3 && parts.size() <= 4) {
+    fill_range(text, parts, axis);
+    return axis;
+  }
+  if (parts.size() != 1) refuse(text, "a range is FROM:TO:COUNT");
+  axis.values = split(values, ',');
+  for (const auto& value : axis.values) {
+    if (value.empty()) refuse(text, "the list has an empty entry");
+    if (std::count(axis.values.begin(), axis.values.end(), value) > 1)
+      refuse(text, in_quotes(value) + " is there twice");
+    axis.numbers.push_back(number_of(value));
+  }
+  for (const double x : axis.numbers)
+    if (!std::isfinite(x)) {
+      axis.numbers.clear();
+      break;
+    }
+  return axis;
+}
+
+Shard parse_shard(const std::string& text) {
+  const auto parts = split(text, '/');
+  const double index = parts.size() == 2 ? number_of(parts[0]) : 0,
+               count = parts.size() == 2 ? number_of(parts[1]) : 0;
+  if (!(count >= 1 && count <= 1e6 && index >= 1 && index <= count) || index != std::floor(index) ||
+      count != std::floor(count))
+    throw std::invalid_argument("a shard is I/N with 1 <= I <= N; got " + in_quotes(text));
+  return {static_cast<int>(index), static_cast<int>(count)};
+}
+
+std::size_t SweepPlan::points() const {
+  std::size_t n = 1;
+  for (const SweepAxis& axis : axes) n = std::min(n * axis.values.size(), max_points + 1);
+  return n;
+}
+
+std::vector<std::string> SweepPlan::key(std::size_t point) const {
+  std::vector<std::string> values(axes.size());
+  for (std::size_t a = axes.size(); a-- > 0;) {
+    values[a] = axes[a].values[point % axes[a].values.size()];
+    point /= axes[a].values.size();
+  }
+  return values;
+}
+
+std::vector<std::string> SweepPlan::columns() const {
+  std::vector<std::string> names;
+  for (const SweepAxis& axis : axes) names.push_back(axis.key);
+  names.emplace_back("outcome");
+  for (const Measure& measure : measures) names.push_back(measure.column);
+  return names;
+}
+
+void check_plan(const SweepPlan& plan) {
+  if (plan.axes.empty()) throw std::invalid_argument("nothing to vary; give --vary KEY=FROM:TO:COUNT");
+  if (plan.measures.empty()) throw std::invalid_argument("nothing to measure; give --measure NAME,...");
+  if (plan.points() > max_points) throw std::invalid_argument("the grid has more than 1e7 points");
+  for (std::size_t a = 0; a < plan.axes.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (plan.axes[a].key == plan.axes[b].key)
+        throw std::invalid_argument("the key " + in_quotes(plan.axes[a].key) + " is varied twice");
+  for (const SweepAxis& axis : plan.axes)
+    for (const auto* value : {&axis.values.front(), &axis.values.back()})
+      plan.source.read({axis.key + "=" + *value});
+}
+
+}  // namespace unfurl

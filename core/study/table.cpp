@@ -1,0 +1,73 @@
+#include "core/study/table.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+#include "core/export/csv.hpp"
+
+namespace unfurl {
+
+std::size_t Table::column(std::string_view name) const {
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (columns[i] == name) return i;
+  throw std::out_of_range("no column " + std::string(name));
+}
+
+std::string csv_line(const std::vector<std::string>& cells) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) line += (i ? "," : "") + csv_cell(cells[i]);
+  return line + "\n";
+}
+
+std::string csv_text(const Table& table) {
+  std::string text = csv_line(table.columns);
+  for (const auto& row : table.rows) text += csv_line(row);
+  return text;
+}
+
+std::string markdown_text(const Table& table) {
+  std::string text = "|", rule = "|";
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    bool numeric = !table.rows.empty();
+    for (const auto& row : table.rows) numeric = numeric && (row[c].empty() || is_number(row[c]));
+    text += " " + table.columns[c] + " |";
+    rule += numeric ? "---:|" : "---|";
+  }
+  text += "\n" + rule + "\n";
+  for (const auto& row : table.rows) {
+    text += "|";
+    for (const auto& cell : row) text += " " + cell + " |";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string exact_number(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0).ptr;
+  return {buffer.data(), end};
+}
+
+std::string short_number(double value, int digits) {
+  std::array<char, 40> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, value + 0.0);
+  return buffer.data();
+}
+
+double number_of(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size())
+    return std::numeric_limits<double>::quiet_NaN();
+  return value;
+}
+
+bool is_number(std::string_view text) {
+  return text == "nan" || !std::isnan(number_of(text));
+}
+
+}  // namespace unfurl

@@ -1,0 +1,30 @@
+// Results as plain text cells: what CSV files, Markdown tables and journals are made of.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace unfurl {
+
+struct Table {
+  std::vector<std::string> columns;  // names with unit suffix: "cpu_median_s"
+  std::vector<std::vector<std::string>> rows;
+
+  // Index of a column; throws std::out_of_range.
+  std::size_t column(std::string_view name) const;
+};
+
+std::string csv_line(const std::vector<std::string>& cells);  // ends with a line break
+std::string csv_text(const Table& table);
+std::string markdown_text(const Table& table);  // a pipe table; numbers to the right
+
+// Shortest text that reads back as the same double; "nan" and "inf" where it is none.
+std::string exact_number(double value);
+// With so many significant digits: "4.92", "1.2e-09".
+std::string short_number(double value, int digits = 3);
+// Back from either; NaN where the text is no number.
+double number_of(std::string_view text);
+bool is_number(std::string_view text);
+
+}  // namespace unfurl

@@ -1,0 +1,19 @@
+// Accuracy as the input: stages and step are picked for a tolerance.
+#pragma once
+
+#include "core/simulate/simulation.hpp"
+
+namespace unfurl {
+
+// As simulate(), but where options.tolerance > 0 m, stages (of a method whose order depends on them) and step
+// are picked first, so that the error of the node positions is estimated below it. The estimate comes from a
+// second solution, with one stage more or else with half the step: the largest distance of a node at the
+// times that both have. It is in position_estimate of the result; where it is not below the tolerance, a
+// warning says so.
+//
+// The choice is the same on every machine: work is counted (a factorisation as much as eight solves), not
+// timed.
+Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const SolverOptions& options,
+                             const SimulationHooks& hooks = {});
+
+}  // namespace unfurl

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "render/image/image.hpp"
+
+namespace unfurl {
+
+// The picture at another size, not larger than it is: every pixel is the mean of the area that it covers,
+// weighted by alpha.
+Image scaled_down(const Image& image, int width, int height);
+
+// The picture before a white wall, without transparency.
+Image on_white(Image image);
+
+// Pictures of one height, from left to right.
+Image side_by_side(const std::vector<Image>& images);
+
+}  // namespace unfurl

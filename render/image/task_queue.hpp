@@ -1,0 +1,39 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace unfurl {
+
+// Runs tasks on threads of its own, in any order. The first exception of a task comes out of add() or
+// finish(); tasks that have not begun by then are dropped.
+class TaskQueue {
+ public:
+  explicit TaskQueue(int threads);  // 0: a task runs inside add()
+  ~TaskQueue();                     // waits for the tasks that have begun
+  TaskQueue(const TaskQueue&) = delete;
+  TaskQueue& operator=(const TaskQueue&) = delete;
+
+  // Waits while two tasks a thread are waiting already, so that what they hold stays bounded.
+  void add(std::function<void()> task);
+  void finish();  // wait for all
+
+ private:
+  void work();
+  void rethrow();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> waiting_;
+  std::size_t running_ = 0;
+  bool closed_ = false;
+  std::exception_ptr failure_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace unfurl

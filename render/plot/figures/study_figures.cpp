@@ -1,0 +1,134 @@
+#include "render/plot/figures/study_figures.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "render/plot/ticks.hpp"
+
+namespace unfurl {
+namespace {
+
+using plot::format_number;
+
+// Colours, dashes and markers by the setting's place, so that a setting looks the same in every panel.
+Curve curve_of(const Study& study, std::size_t i, bool labelled, double MeasuredRun::*x,
+               double MeasuredRun::*y) {
+  constexpr std::array markers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond};
+  constexpr std::array dashes{Dash::solid, Dash::dashed, Dash::dotted};
+  const StudyCurve& from = study.curves[i];
+  Curve c;
+  if (labelled) c.label = from.setting.name;
+  c.color = static_cast<int>(i % (palette_size - 1));
+  c.marker = markers[i % markers.size()];
+  c.dash = dashes[i / (palette_size - 1) % dashes.size()];
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const MeasuredRun& run : from.runs) {
+    c.x.push_back(run.*x);
+    c.y.push_back(run.ok() ? run.*y : nan);
+  }
+  return c;
+}
+
+Panel log_panel(std::string x, std::string y) {
+  Panel p;
+  p.x.label = std::move(x);
+  p.y.label = std::move(y);
+  p.x.log = p.y.log = true;
+  return p;
+}
+
+// The key to all panels, in one of its own.
+Panel key_panel(const Study& study) {
+  Panel p;
+  p.bare = true;
+  for (std::size_t i = 0; i < study.curves.size(); ++i) {
+    p.curves.push_back(curve_of(study, i, true, &MeasuredRun::step, &MeasuredRun::step));
+    p.curves.back().x.clear();
+    p.curves.back().y.clear();
+  }
+  return p;
+}
+
+// From the fastest to the slowest of the repeated runs, as a thin line.
+void add_spread(const StudyCurve& from, int color, Panel& panel) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Curve c;
+  c.color = color;
+  c.width = 0.6f;
+  for (const MeasuredRun& run : from.runs) {
+    if (!run.ok()) continue;
+    c.x.insert(c.x.end(), {run.cpu_min, run.cpu_max, nan});
+    c.y.insert(c.y.end(), {run.position_error, run.position_error, nan});
+  }
+  panel.curves.push_back(std::move(c));
+}
+
+void add_floor(const Study& study, Panel& panel) {
+  if (study.reference_uncertainty > 0)
+    panel.lines.push_back({study.reference_uncertainty, true, "uncertainty of the reference", 7});
+}
+
+std::string span_sentence(const Study& study) {
+  return "Motion from 0 to " + format_number(study.end, 4) + " s" +
+         (study.early ? ", just before the deployed pose" : "") + ". Reference: " + study.reference +
+         ", certain to " + format_number(study.reference_uncertainty, 2) + " m.";
+}
+
+}  // namespace
+
+Figure work_precision_figure(const Study& study, const std::string& scene) {
+  Figure f;
+  f.name = "work_precision";
+  f.title = "Speed against accuracy: " + scene;
+  f.columns = 3;
+  f.width_mm = 215;
+  f.height_mm = 95;
+  f.caption =
+      "Largest error of a node's position against CPU time (median of repeated runs; a thin line from "
+      "the fastest to the slowest) and against the number of linear solves. " +
+      span_sentence(study);
+  Panel time = log_panel("CPU time (s)", "position error (m)");
+  Panel solves = log_panel("linear solves", "position error (m)");
+  for (std::size_t i = 0; i < study.curves.size(); ++i) {
+    time.curves.push_back(curve_of(study, i, false, &MeasuredRun::cpu_median, &MeasuredRun::position_error));
+    add_spread(study.curves[i], time.curves.back().color, time);
+    solves.curves.push_back(
+        curve_of(study, i, false, &MeasuredRun::cpu_median, &MeasuredRun::position_error));
+    Curve& c = solves.curves.back();
+    for (std::size_t k = 0; k < c.x.size(); ++k)
+      c.x[k] = static_cast<double>(study.curves[i].runs[k].linear_solves);
+  }
+  add_floor(study, time);
+  f.panels = {std::move(time), std::move(solves), key_panel(study)};
+  return f;
+}
+
+Figure convergence_figure(const Study& study, const std::string& scene) {
+  Figure f;
+  f.name = "convergence";
+  f.title = "Errors against the step: " + scene;
+  f.rows = f.columns = 2;
+  f.width_mm = 180;
+  f.height_mm = 160;
+  f.caption =
+      "Position error against the reference, and what a run shows without one: the error of the "
+      "constraints relative to rod length, and of the energy balance. " +
+      span_sentence(study);
+  Panel position = log_panel("step (s)", "position error (m)");
+  Panel constraint = log_panel("step (s)", "constraint error (relative)");
+  Panel energy = log_panel("step (s)", "energy error (J)");
+  constraint.y.zeros_at_floor = energy.y.zeros_at_floor = true;
+  for (std::size_t i = 0; i < study.curves.size(); ++i) {
+    position.curves.push_back(curve_of(study, i, false, &MeasuredRun::step, &MeasuredRun::position_error));
+    constraint.curves.push_back(
+        curve_of(study, i, false, &MeasuredRun::step, &MeasuredRun::constraint_relative_max));
+    energy.curves.push_back(curve_of(study, i, false, &MeasuredRun::step, &MeasuredRun::energy_error));
+  }
+  add_floor(study, position);
+  constraint.lines.push_back({std::numeric_limits<double>::epsilon(), true, "round-off", 7});
+  f.panels = {std::move(position), std::move(constraint), std::move(energy), key_panel(study)};
+  return f;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,200 @@
+#include "render/plot/figures/sweep_figures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "render/plot/contours.hpp"
+#include "render/plot/ticks.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// Values of a measure by the numbers of the row's axes; finite ones only.
+double value_of(const SweepPlan& plan, const std::vector<std::string>& row, std::size_t measure) {
+  const double x = number_of(row[plan.axes.size() + 1 + measure]);
+  return std::isfinite(x) ? x : nan;
+}
+
+std::string count_sentence(const SweepPlan& plan, const Sweep& sweep) {
+  const std::size_t outcome = plan.axes.size();
+  const auto bad = std::count_if(sweep.table.rows.begin(), sweep.table.rows.end(), [&](const auto& row) {
+    return row[outcome] == "failed" || row[outcome] == "invalid";
+  });
+  std::string text = std::to_string(sweep.table.rows.size()) + " runs";
+  if (bad > 0) text += ", " + std::to_string(bad) + " of them without an answer (left out)";
+  if (sweep.missing > 0) text += ", " + std::to_string(sweep.missing) + " more not done yet";
+  return text + ".";
+}
+
+std::string file_name(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == ':' || c == '/'; }, '_');
+  return text;
+}
+
+// Curves over axis `across`, one per value of the other axis where there is one.
+Panel curve_panel(const SweepPlan& plan, const Sweep& sweep, std::size_t measure, std::size_t across) {
+  constexpr std::array markers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond};
+  const SweepAxis& axis = plan.axes[across];
+  Panel p;
+  p.x.label = axis.key;
+  p.x.log = axis.log;
+  p.y.label = plan.measures[measure].label;
+  const std::size_t families = plan.axes.size() == 2 ? plan.axes[1 - across].values.size() : 1;
+  for (std::size_t f = 0; f < families; ++f) {
+    Curve c;
+    c.color = static_cast<int>(f);
+    c.marker = markers[f % markers.size()];
+    if (families > 1) c.label = plan.axes[1 - across].key + " = " + plan.axes[1 - across].values[f];
+    for (std::size_t i = 0; i < axis.values.size(); ++i) {
+      const auto row = std::find_if(sweep.table.rows.begin(), sweep.table.rows.end(), [&](const auto& r) {
+        return r[across] == axis.values[i] &&
+               (families == 1 || r[1 - across] == plan.axes[1 - across].values[f]);
+      });
+      c.x.push_back(axis.numbers[i]);
+      c.y.push_back(row == sweep.table.rows.end() ? nan : value_of(plan, *row, measure));
+    }
+    p.curves.push_back(std::move(c));
+  }
+  return p;
+}
+
+plot::Field field_of(const SweepPlan& plan, const Sweep& sweep, std::size_t measure) {
+  plot::Field field{plan.axes[0].numbers, plan.axes[1].numbers, {}};
+  std::sort(field.x.begin(), field.x.end());
+  std::sort(field.y.begin(), field.y.end());
+  field.values.assign(field.x.size() * field.y.size(), nan);
+  for (const auto& row : sweep.table.rows) {
+    const auto at = [&](const std::vector<double>& axis, double x) {
+      return static_cast<std::size_t>(std::lower_bound(axis.begin(), axis.end(), x) - axis.begin());
+    };
+    const std::size_t i = at(field.x, number_of(row[0])), j = at(field.y, number_of(row[1]));
+    if (i < field.x.size() && j < field.y.size())
+      field.values[i * field.y.size() + j] = value_of(plan, row, measure);
+  }
+  return field;
+}
+
+struct ValueRange {
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  double share(double v) const { return hi > lo ? (v - lo) / (hi - lo) : 0.5; }
+};
+
+ValueRange range_of(const plot::Field& field) {
+  ValueRange range;
+  for (const double v : field.values)
+    if (!std::isnan(v)) range.lo = std::min(range.lo, v), range.hi = std::max(range.hi, v);
+  return range;
+}
+
+// Every square of the grid in so many parts that the map looks smooth.
+void add_cells(const plot::Field& field, const ValueRange& range, Panel& p) {
+  const auto parts = [](std::size_t n) {
+    return std::max<std::size_t>(1, 64 / std::max<std::size_t>(1, n - 1));
+  };
+  const std::size_t px = parts(field.x.size()), py = parts(field.y.size());
+  for (std::size_t i = 0; i + 1 < field.x.size(); ++i)
+    for (std::size_t j = 0; j + 1 < field.y.size(); ++j)
+      for (std::size_t a = 0; a < px; ++a)
+        for (std::size_t b = 0; b < py; ++b) {
+          const auto u = [&](double k) { return k / static_cast<double>(px); };
+          const auto v = [&](double k) { return k / static_cast<double>(py); };
+          const auto da = static_cast<double>(a), db = static_cast<double>(b);
+          const double value = plot::interpolate(field, i, j, u(da + 0.5), v(db + 0.5));
+          if (std::isnan(value)) continue;
+          const double wx = field.x[i + 1] - field.x[i], wy = field.y[j + 1] - field.y[j];
+          p.cells.push_back({field.x[i] + wx * u(da), field.y[j] + wy * v(db), field.x[i] + wx * u(da + 1),
+                             field.y[j] + wy * v(db + 1), map_color(range.share(value))});
+        }
+}
+
+Panel color_bar(const ValueRange& range, const std::vector<double>& levels, std::string label) {
+  Panel bar;
+  bar.height = 0.07;
+  bar.x.label = std::move(label);
+  bar.x.min = range.lo;
+  bar.x.max = range.hi;
+  bar.y.min = 0;
+  bar.y.max = 1;
+  bar.y.shown = false;
+  constexpr int parts = 128;
+  const double width = (range.hi - range.lo) / parts;
+  for (int i = 0; i < parts; ++i)
+    bar.cells.push_back(
+        {range.lo + width * i, 0, range.lo + width * (i + 1), 1, map_color((i + 0.5) / parts)});
+  for (const double level : levels) {
+    Curve c;
+    c.x = {level, level};
+    c.y = {0, 1};
+    c.color = 6;
+    c.width = 0.6f;
+    bar.curves.push_back(std::move(c));
+  }
+  return bar;
+}
+
+Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure) {
+  const plot::Field field = field_of(plan, sweep, measure);
+  const ValueRange range = range_of(field);
+  Figure f;
+  f.rows = 2;
+  f.width_mm = 140;
+  f.height_mm = 125;
+  Panel map;
+  map.x = {.label = plan.axes[0].key, .log = plan.axes[0].log, .min = field.x.front(), .max = field.x.back()};
+  map.y = {.label = plan.axes[1].key, .log = plan.axes[1].log, .min = field.y.front(), .max = field.y.back()};
+  std::vector<double> levels;
+  if (range.lo < range.hi) {
+    add_cells(field, range, map);
+    levels = plot::linear_ticks(range.lo, range.hi, 9).major;
+  }
+  for (const double level : levels) {
+    plot::Segments lines = plot::contour(field, level);
+    Curve c;
+    c.x = std::move(lines.x);
+    c.y = std::move(lines.y);
+    c.color = 6;
+    c.width = 0.6f;
+    map.curves.push_back(std::move(c));
+  }
+  f.panels = {std::move(map)};
+  if (range.lo < range.hi) f.panels.push_back(color_bar(range, levels, plan.measures[measure].label));
+  if (f.panels.size() == 1) f.rows = 1;
+  return f;
+}
+
+}  // namespace
+
+std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, const std::string& scene) {
+  std::vector<Figure> figures;
+  const auto numeric = [&](std::size_t a) { return plan.axes[a].numbers.size() > 1; };
+  const std::size_t axes = plan.axes.size();
+  if (axes > 2 || sweep.table.rows.empty()) return figures;
+  const bool map = axes == 2 && numeric(0) && numeric(1) &&
+                   std::min(plan.axes[0].values.size(), plan.axes[1].values.size()) > 4;
+  const std::size_t across =
+      axes == 2 && (!numeric(0) || (numeric(1) && plan.axes[1].values.size() > plan.axes[0].values.size()))
+          ? 1
+          : 0;
+  if (!map && (!numeric(across) || (axes == 2 && plan.axes[1 - across].values.size() > 12))) return figures;
+  for (std::size_t m = 0; m < plan.measures.size(); ++m) {
+    Figure f;
+    if (map) {
+      f = map_figure(plan, sweep, m);
+      f.caption = "Colour and contour lines: " + plan.measures[m].label + ". ";
+    } else {
+      f.panels.push_back(curve_panel(plan, sweep, m, across));
+    }
+    f.name = "sweep_" + file_name(plan.measures[m].name);
+    f.title = plan.measures[m].label + ": " + scene;
+    f.caption += count_sentence(plan, sweep);
+    figures.push_back(std::move(f));
+  }
+  return figures;
+}
+
+}  // namespace unfurl

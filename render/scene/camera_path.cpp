@@ -1,0 +1,159 @@
+#include "render/scene/camera_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace unfurl {
+namespace {
+
+constexpr int follow_samples = 64;  // of the camera's path
+constexpr int follow_window = 6;    // samples before and behind a moment that its picture has room for
+constexpr int directions = 24;      // around, that a moving camera is tried from
+
+PointSource source_of(const std::vector<std::vector<Vec3>>& poses, std::size_t first, std::size_t end) {
+  return [&poses, first, end](const std::function<void(const Vec3&)>& visit) {
+    for (std::size_t i = first; i < end; ++i)
+      for (const Vec3& p : poses[i]) visit(p);
+  };
+}
+
+ViewAngles preset(const std::string& name, const MotionBounds& bounds) {
+  if (name == "iso") return {-pi / 4, std::asin(1 / std::sqrt(3.0))};
+  if (name == "front") return {-pi / 2, 0};
+  if (name == "side") return {0, 0};
+  if (name == "top") return {-pi / 2, pi / 2};
+  return automatic_view(bounds);
+}
+
+// A value of the keys at a time: through each key with the mean slope there (Catmull-Rom), constant outside.
+double between(const std::vector<CameraKey>& keys, double CameraKey::*value, double t) {
+  if (t <= keys.front().time) return keys.front().*value;
+  if (t >= keys.back().time) return keys.back().*value;
+  std::size_t i = 0;
+  while (keys[i + 1].time <= t) ++i;
+  const auto slope = [&](std::size_t k) {
+    const std::size_t a = k == 0 ? k : k - 1, b = std::min(k + 1, keys.size() - 1);
+    if (k == a || k == b) return 0.0;  // starts and ends at rest
+    return (keys[b].*value - keys[a].*value) / (keys[b].time - keys[a].time);
+  };
+  const double h = keys[i + 1].time - keys[i].time, u = (t - keys[i].time) / h, w = 1 - u;
+  return keys[i].*value * (1 + 2 * u) * w * w + slope(i) * h * u * w * w +
+         keys[i + 1].*value * (3 - 2 * u) * u * u - slope(i + 1) * h * w * u * u;
+}
+
+Camera mixed(const Camera& a, const Camera& b, float u) {
+  Camera c = a;
+  c.eye += u * (b.eye - a.eye);
+  c.target += u * (b.target - a.target);
+  c.near_plane += u * (b.near_plane - a.near_plane);
+  c.far_plane += u * (b.far_plane - a.far_plane);
+  c.parallel_height += u * (b.parallel_height - a.parallel_height);
+  return c;
+}
+
+}  // namespace
+
+double most_shots(double end_time, const RenderOptions& o) {
+  return (end_time / o.speed + o.turntable + o.hold) * o.fps;
+}
+
+std::vector<Shot> film_shots(const Trajectory& trajectory, const RenderOptions& o) {
+  const double start = trajectory.start_time(), end = trajectory.end_time(), gap = o.speed / o.fps;
+  std::vector<Shot> shots;
+  // A frame within a thousandth of a gap of the end would be the same picture twice.
+  for (long k = 0; start + static_cast<double>(k) * gap < end - 1e-3 * gap; ++k) {
+    const double t = start + static_cast<double>(k) * gap;
+    shots.push_back({t, (t - start) / (end - start), 0});
+  }
+  shots.push_back({end, 1, 0});
+  const auto turning = static_cast<long>(std::lround(o.turntable * o.fps));
+  for (long k = 1; k <= turning; ++k)
+    shots.push_back({end, 1, static_cast<double>(k) / static_cast<double>(turning)});
+  const Shot last = shots.back();
+  shots.insert(shots.end(), static_cast<std::size_t>(std::lround(o.hold * o.fps)), last);
+  return shots;
+}
+
+CameraPath::CameraPath(std::vector<std::vector<Vec3>> poses, std::vector<double> times, MotionBounds bounds,
+                       Framing framing, const RenderOptions& options)
+    : poses_(std::move(poses)),
+      times_(std::move(times)),
+      bounds_(bounds),
+      framing_(framing),
+      start_(preset(options.camera, bounds)),
+      orbit_(options.orbit * radians_per_degree),
+      turntable_(options.turntable > 0),
+      follow_(options.follow),
+      keys_(options.camera_keys) {
+  framing_.parallel = options.projection == "orthographic";
+  framing_.zoom = options.zoom;
+  const PointSource all = source_of(poses_, 0, poses_.size());
+  still_ = frame_points(all, bounds_, start_, framing_);
+  if (follow_) prepare_follow();
+  std::vector<double> elevations{start_.elevation};
+  for (const CameraKey& key : keys_) elevations.push_back(key.elevation * radians_per_degree);
+  if (keys_.empty() && orbit_ == 0 && !turntable_) return;
+  for (const double elevation : elevations)
+    for (int k = 0; k < directions; ++k)
+      distance_ = std::max(
+          distance_, centered_distance(all, bounds_.center,
+                                       {start_.azimuth + 2 * pi * k / directions, elevation}, framing_));
+}
+
+// Each sample frames all that moves within the window around it. A moment's camera is the mean of those whose
+// window has that moment; the condition of being in the picture is linear in the camera's place, so the mean
+// fulfils it as they do.
+void CameraPath::prepare_follow() {
+  const double start = times_.front(), span = times_.back() - start;
+  std::vector<Camera> fitted;
+  for (int k = 0; k < follow_samples; ++k) {
+    const auto time = [&](int i) {
+      return start + span * std::clamp(i, 0, follow_samples - 1) / (follow_samples - 1);
+    };
+    const auto first =
+        std::lower_bound(times_.begin(), times_.end(), time(k - follow_window)) - times_.begin();
+    const auto end = std::upper_bound(times_.begin(), times_.end(), time(k + follow_window)) - times_.begin();
+    const auto low = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, first - 1));
+    const std::size_t high = std::min(poses_.size(), static_cast<std::size_t>(end) + 1);
+    fitted.push_back(frame_points(source_of(poses_, low, high), bounds_, start_, framing_));
+  }
+  for (int k = 0; k < follow_samples; ++k) {
+    Camera mean = fitted[static_cast<std::size_t>(k)];
+    float count = 1;
+    for (int i = k - follow_window + 1; i < k + follow_window; ++i) {
+      if (i == k || i < 0 || i >= follow_samples) continue;
+      mean = mixed(mean, fitted[static_cast<std::size_t>(i)], 1 / ++count);
+    }
+    follow_path_.push_back(mean);
+  }
+}
+
+Camera CameraPath::following(double t) const {
+  const double span = times_.back() - times_.front();
+  const double at = span > 0 ? std::clamp((t - times_.front()) / span, 0.0, 1.0) * (follow_samples - 1) : 0.0;
+  const auto i = std::min(static_cast<std::size_t>(at), follow_path_.size() - 2);
+  return mixed(follow_path_[i], follow_path_[i + 1], static_cast<float>(at - static_cast<double>(i)));
+}
+
+ViewAngles CameraPath::angles(const Shot& shot) const {
+  ViewAngles view = start_;
+  if (!keys_.empty()) {
+    view.azimuth = between(keys_, &CameraKey::azimuth, shot.t) * radians_per_degree;
+    view.elevation =
+        std::clamp(between(keys_, &CameraKey::elevation, shot.t), -90.0, 90.0) * radians_per_degree;
+  }
+  view.azimuth += orbit_ * shot.progress + 2 * pi * shot.turn;
+  return view;
+}
+
+Camera CameraPath::at(const Shot& shot) const {
+  const bool turning = orbit_ != 0 || turntable_ || !keys_.empty();
+  if (follow_ && !turning) return following(shot.t);
+  if (!turning) return still_;
+  Framing framing = framing_;
+  if (!keys_.empty()) framing.zoom *= std::max(0.01, between(keys_, &CameraKey::zoom, shot.t));
+  return centered_camera(bounds_, bounds_.center, distance_, angles(shot), framing);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,55 @@
+// Where the camera is at every moment of a film.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/scene/render_options.hpp"
+#include "core/simulate/trajectory.hpp"
+#include "render/scene/framing.hpp"
+
+namespace unfurl {
+
+// A picture of a film: which moment of the motion, and how far the film has come.
+struct Shot {
+  double t = 0;         // [s]
+  double progress = 0;  // of the motion part of the film, 0..1
+  double turn = 0;      // of the turntable, 0..1
+};
+
+// The pictures of a film: k speed / fps from the start of the run, its end, then a turntable and a hold where
+// the options have them.
+std::vector<Shot> film_shots(const Trajectory& trajectory, const RenderOptions& options);
+
+// How many there would be at most for a run to this end time [s].
+double most_shots(double end_time, const RenderOptions& options);
+
+class CameraPath {
+ public:
+  // poses: the points of the motion, z up, of each state; times of the states [s], ascending.
+  CameraPath(std::vector<std::vector<Vec3>> poses, std::vector<double> times, MotionBounds bounds,
+             Framing framing, const RenderOptions& options);
+
+  Camera at(const Shot& shot) const;
+  ViewAngles first_view() const { return angles({}); }
+
+ private:
+  ViewAngles angles(const Shot& shot) const;
+  double zoom(double t) const;
+  void prepare_follow();
+  Camera following(double t) const;
+
+  std::vector<std::vector<Vec3>> poses_;
+  std::vector<double> times_;
+  MotionBounds bounds_;
+  Framing framing_;
+  ViewAngles start_;
+  double orbit_ = 0;  // [rad]
+  bool turntable_ = false, follow_ = false;
+  std::vector<CameraKey> keys_;
+  Camera still_;
+  double distance_ = 0;              // of the moving cameras from the centre [m]
+  std::vector<Camera> follow_path_;  // at equal steps of the time
+};
+
+}  // namespace unfurl

@@ -1,0 +1,55 @@
+// The part of the overlay that is a figure: one column of the run's series, drawn as far as the film has
+// come.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/model/nearest_name.hpp"
+#include "render/plot/limits.hpp"
+#include "render/plot/style.hpp"
+#include "render/scene/frame_overlay.hpp"
+
+namespace unfurl {
+
+void FrameOverlay::prepare_inset() {
+  const std::string& column = style_.options.inset;
+  if (column.empty() || !style_.diagnostics) return;
+  const Series* series = style_.diagnostics->find(column);
+  if (series == nullptr) throw std::invalid_argument("FrameBuilder: no column '" + column + "'");
+  inset_ = std::make_shared<Figure>();
+  Panel panel;
+  panel.x.label = "time (s)";
+  panel.y.label = series->label + (series->unit.empty() ? "" : " (" + series->unit + ")");
+  Curve curve;
+  curve.x = style_.diagnostics->t;
+  curve.y = series->values;
+  curve.width = 1.6f;
+  panel.curves.push_back(std::move(curve));
+  const plot::Limits x = plot::axis_limits(panel, plot::AxisOf::x),
+                     y = plot::axis_limits(panel, plot::AxisOf::y);
+  panel.x.min = x.lo, panel.x.max = x.hi, panel.y.min = y.lo, panel.y.max = y.hi;
+  inset_->panels.push_back(std::move(panel));
+}
+
+void FrameOverlay::add_inset(double t, DrawList& list) const {
+  if (!inset_) return;
+  const float wide = std::round(330 * unit_), high = std::round(200 * unit_);
+  const double pixels_per_point = 1.75 * static_cast<double>(unit_);
+  auto figure = std::make_shared<Figure>(*inset_);
+  figure->width_mm = static_cast<double>(wide) / pixels_per_point / plot::points_per_mm;
+  figure->height_mm = static_cast<double>(high) / pixels_per_point / plot::points_per_mm;
+  Curve& curve = figure->panels[0].curves[0];
+  const auto shown =
+      static_cast<std::size_t>(std::upper_bound(curve.x.begin(), curve.x.end(), t + 1e-12) - curve.x.begin());
+  curve.x.resize(shown), curve.y.resize(shown);
+  if (shown > 0) {  // a dot where the film is
+    Curve here;
+    here.x = {curve.x.back()}, here.y = {curve.y.back()};
+    here.color = 1;
+    here.marker = Marker::circle;
+    figure->panels[0].curves.push_back(std::move(here));
+  }
+  list.inset = {std::move(figure), width_ - edge_ - wide, 0.8f * edge_, wide, high, pixels_per_point};
+}
+
+}  // namespace unfurl

@@ -1,0 +1,164 @@
+// The part of the overlay that measures and names: scale bar, axes, dimensions, names of nodes and rods.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "render/scene/frame_overlay.hpp"
+#include "render/scene/view.hpp"
+
+namespace unfurl {
+namespace {
+
+std::string length_text(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, metres < 0.01 ? "%.2g m" : metres < 10 ? "%.2f m" : "%.1f m", metres);
+  return text;
+}
+
+double round_length(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  for (const double step : {5.0, 2.0})
+    if (step * power <= x) return step * power;
+  return power;
+}
+
+// The axes of the picture in the world.
+struct Screen {
+  Vec3f forward, right, up;
+  explicit Screen(const Camera& c)
+      : forward((c.target - c.eye).normalized()),
+        right(forward.cross(c.up).normalized()),
+        up(right.cross(forward)) {}
+};
+
+Color clear_backing(const Look& look) {
+  Color c = look.background_bottom;
+  c.a = 0.75f;
+  return c;
+}
+
+}  // namespace
+
+// As long as it is at the middle of the motion.
+void FrameOverlay::add_scale_bar(DrawList& list) const {
+  const Screen screen(list.camera);
+  const Vec3f a = project(list.camera, style_.width, style_.height, list.center);
+  const Vec3f b = project(list.camera, style_.width, style_.height, list.center + screen.right);
+  const float pixels = std::abs(b.x() - a.x());  // of a metre
+  if (!(pixels > 0)) return;
+  const double metres = round_length(0.16 * static_cast<double>(width_ / pixels));
+  const auto length = pixels * static_cast<float>(metres);
+  const float x = 0.5f * (width_ - length), y = height_ - edge_, tick = 5 * unit_, thick = 2 * unit_;
+  list.lines.push_back({x, y, x + length, y, thick, look_.ink});
+  for (const float end : {x, x + length})
+    list.lines.push_back({end, y - tick, end, y + tick, thick, look_.ink});
+  char text[32];
+  std::snprintf(text, sizeof text, "%g m", metres);
+  list.labels.push_back({x + 0.5f * length, y - 1.35f * small_, small_, look_.ink, text, 0.5f});
+}
+
+void FrameOverlay::add_axes(DrawList& list) const {
+  const Screen screen(list.camera);
+  const float length = 42 * unit_, line = std::round(0.8f * small_);
+  const float x = edge_ + 1.2f * length, y = height_ - edge_ - 2.2f * small_ - 1.2f * length;
+  const Color colors[] = {{0.80f, 0.30f, 0.00f, 1}, {0.00f, 0.58f, 0.42f, 1}, {0.15f, 0.50f, 0.85f, 1}};
+  const char* names[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3f axis = upright_.col(k).cast<float>();
+    const float dx = length * axis.dot(screen.right), dy = -length * axis.dot(screen.up);
+    list.lines.push_back({x, y, x + dx, y + dy, 2.5f * unit_, colors[k]});
+    list.labels.push_back({x + 1.28f * dx, y + 1.28f * dy - 0.5f * line, line, look_.ink, names[k], 0.5f});
+  }
+}
+
+// A line beside a and b, moved by `away`, with a slash at its ends and its length in the middle.
+void FrameOverlay::add_dimension(const Vec3& a, const Vec3& b, const Vec3& away, DrawList& list) const {
+  const double metres = (b - a).norm();
+  const auto place = [&](const Vec3& p) {
+    return project(list.camera, style_.width, style_.height, p.cast<float>());
+  };
+  const Vec3f p = place(a + away), q = place(b + away);
+  const float length = (q - p).head<2>().norm(), line = std::round(0.8f * small_);
+  if (p.z() <= 0 || q.z() <= 0 || length < 3 * line) return;
+  const float thick = 1.2f * unit_, tick = 5 * unit_;
+  list.lines.push_back({p.x(), p.y(), q.x(), q.y(), thick, look_.ink});
+  for (const auto& [end, at] : {std::pair(p, a), std::pair(q, b)}) {
+    list.lines.push_back(
+        {end.x() - tick, end.y() + tick, end.x() + tick, end.y() - tick, 1.4f * thick, look_.ink});
+    const Vec3f from = place(at + 0.25 * away), to = place(at + 1.15 * away);
+    Color pale = look_.ink;
+    pale.a = 0.45f;
+    list.lines.push_back({from.x(), from.y(), to.x(), to.y(), 0.8f * thick, pale});
+  }
+  list.labels.push_back({0.5f * (p.x() + q.x()), 0.5f * (p.y() + q.y()) - 0.5f * line, line, look_.ink,
+                         length_text(metres), 0.5f, false, clear_backing(look_)});
+}
+
+// Of the box around what there is, in the axes of the picture: the two lower edges towards the viewer, and
+// the leftmost upright one.
+void FrameOverlay::add_dimensions(const VectorXd& whole, DrawList& list) const {
+  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+  for (Index k = 0; k < whole.size() / 3; ++k) {
+    const Vec3 p = upright_ * whole.segment<3>(3 * k);
+    low = low.cwiseMin(p), high = high.cwiseMax(p);
+  }
+  const Vec3 back = (list.camera.eye - list.camera.target).cast<double>().normalized();
+  const double gap = 0.09 * static_cast<double>(list.radius);
+  const Vec3 near(back.x() > 0 ? high.x() : low.x(), back.y() > 0 ? high.y() : low.y(), low.z());
+  const Vec3 outward_x(back.x() > 0 ? gap : -gap, 0, 0), outward_y(0, back.y() > 0 ? gap : -gap, 0);
+  const double flat = 0.02 * static_cast<double>(list.radius);
+  if (high.x() - low.x() > flat)
+    add_dimension({low.x(), near.y(), low.z()}, {high.x(), near.y(), low.z()}, outward_y, list);
+  if (high.y() - low.y() > flat)
+    add_dimension({near.x(), low.y(), low.z()}, {near.x(), high.y(), low.z()}, outward_x, list);
+  if (high.z() - low.z() <= flat) return;
+  const Vec3 right = Screen(list.camera).right.cast<double>();
+  const Vec3 left(right.x() > 0 ? low.x() : high.x(), right.y() > 0 ? low.y() : high.y(), low.z());
+  add_dimension(left, {left.x(), left.y(), high.z()}, -gap * right, list);
+}
+
+void FrameOverlay::add_names(const VectorXd& whole, DrawList& list) const {
+  const Structure& s = trajectory_.structure();
+  const auto node = [&](int i) { return Vec3(upright_ * whole.segment<3>(3 * i)); };
+  std::vector<std::pair<const std::string*, Vec3>> names;
+  if (style_.options.node_labels)
+    for (std::size_t i = 0; i < s.node_copies.size(); ++i)
+      names.emplace_back(&s.node_copies[i].name, node(static_cast<int>(i)));
+  if (style_.options.rod_labels)
+    for (const RodCopy& rod : s.rod_copies) names.emplace_back(&rod.name, 0.5 * (node(rod.a) + node(rod.b)));
+  // What is nearer chooses its place first.
+  const Vec3 back = (list.camera.eye - list.camera.target).cast<double>();
+  std::stable_sort(names.begin(), names.end(),
+                   [&](const auto& a, const auto& b) { return back.dot(a.second) > back.dot(b.second); });
+  std::vector<Box> taken{{0, 0, width_, edge_ + 1.3f * large_},
+                         {0, height_ - edge_ - 1.5f * small_, width_, height_}};
+  for (const auto& [name, at] : names) add_name(*name, at, taken, list);
+}
+
+// At the first of eight places around the point that is free; left out where none is.
+void FrameOverlay::add_name(const std::string& name, const Vec3& at, std::vector<Box>& taken,
+                            DrawList& list) const {
+  const Vec3f p = project(list.camera, style_.width, style_.height, at.cast<float>());
+  const float line = std::round(0.72f * small_), wide = 0.66f * line * static_cast<float>(name.size());
+  if (p.z() <= 0) return;
+  for (const float reach : {14 * unit_, 26 * unit_}) {
+    for (int k = 0; k < 8; ++k) {
+      const float angle = 0.7854f * static_cast<float>(k + 1);
+      const float dx = std::cos(angle), dy = -std::sin(angle);
+      const float x = p.x() + reach * dx + 0.5f * wide * dx, y = p.y() + reach * dy;
+      const Box box{x - 0.5f * wide, y - 0.5f * line, x + 0.5f * wide, y + 0.5f * line};
+      const bool inside = box.x0 > 0 && box.y0 > 0 && box.x1 < width_ && box.y1 < height_;
+      if (!inside || std::ranges::any_of(taken, [&](const Box& b) { return b.overlaps(box); })) continue;
+      taken.push_back(box);
+      Color pale = look_.ink;
+      pale.a = 0.5f;
+      list.lines.push_back(
+          {p.x(), p.y(), p.x() + 0.85f * reach * dx, p.y() + 0.85f * reach * dy, unit_, pale});
+      list.labels.push_back({x, box.y0, line, look_.ink, name, 0.5f, false, clear_backing(look_)});
+      return;
+    }
+  }
+}
+
+}  // namespace unfurl

@@ -1,0 +1,50 @@
+// What is written and drawn over a picture: labels, legend, colour bar, scale bar, axes, dimensions, inset.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/scene/frame_builder.hpp"
+
+namespace unfurl {
+
+class FrameOverlay {
+ public:
+  // Everything given must outlive the overlay. field: null where rods are coloured by group.
+  FrameOverlay(const Trajectory& trajectory, const FrameStyle& style, const Look& look,
+               const Appearance& looks, const RodField* field, const Mat3& upright);
+
+  // whole: the positions of all nodes at the time t.
+  void add(double t, const VectorXd& whole, DrawList& list) const;
+
+ private:
+  struct Box {  // a place that is taken [pixels]
+    float x0, y0, x1, y1;
+    bool overlaps(const Box& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
+  };
+  VectorXd solved(const VectorXd& whole) const;
+  void prepare_inset();
+  void add_heading(double t, DrawList& list) const;
+  void add_status(double t, const VectorXd& whole, DrawList& list) const;
+  void add_legend(DrawList& list) const;
+  void add_color_bar(DrawList& list) const;
+  void add_scale_bar(DrawList& list) const;
+  void add_axes(DrawList& list) const;
+  void add_dimensions(const VectorXd& whole, DrawList& list) const;
+  void add_dimension(const Vec3& a, const Vec3& b, const Vec3& away, DrawList& list) const;
+  void add_names(const VectorXd& whole, DrawList& list) const;
+  void add_name(const std::string& name, const Vec3& at, std::vector<Box>& taken, DrawList& list) const;
+  void add_inset(double t, DrawList& list) const;
+
+  const Trajectory& trajectory_;
+  const FrameStyle& style_;
+  const Look& look_;
+  const Appearance& looks_;
+  const RodField* field_;
+  const Mat3& upright_;
+  float width_, height_, unit_, edge_, small_, large_;  // [pixels]
+  std::shared_ptr<Figure> inset_;                       // of the whole run
+};
+
+}  // namespace unfurl

@@ -1,0 +1,34 @@
+// The looks that pictures can have. To add one: a row in look.cpp and its name in the key render.look.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "render/scene/draw_list.hpp"
+
+namespace unfurl {
+
+// Colours that people with any colour vision tell apart (Okabe and Ito 2008): one per group of rods.
+using GroupColors = std::array<Color, 6>;
+
+struct Look {
+  std::string_view name, help;
+  Shading shading = Shading::studio;
+  Color background_top, background_bottom;
+  Color ink;                     // of text and lines
+  Color load;                    // of arrows
+  Color fitting, joint, anchor;  // of rod ends, hinges, held nodes
+  const GroupColors* groups = nullptr;
+  bool ground = false;  // with grid and shadow
+  bool dimensions = false;
+  bool transparent = false;
+  float stars = 0, depth_fade = 0;
+
+  const Color& group(std::size_t index) const { return (*groups)[index % groups->size()]; }
+};
+
+std::span<const Look> looks();
+const Look* find_look(std::string_view name);  // nullptr where there is none
+
+}  // namespace unfurl

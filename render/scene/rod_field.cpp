@@ -1,0 +1,109 @@
+#include "render/scene/rod_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "render/scene/color_map.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double typical = 0.98;  // share of all values that the colours must tell apart
+constexpr double round_off = 1e-17;
+
+// The smallest of 1, 2, 5, 10, ... (any power of ten) that is not below x > 0.
+double rounded_up(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (step * power >= x * (1 - 1e-9)) return step * power;
+  return 10 * power;
+}
+
+// The value that so large a share of the finite magnitudes lies below; 0 where there are none.
+double quantile(const MatrixXd& values, double share) {
+  std::vector<double> all;
+  for (Index i = 0; i < values.size(); ++i)
+    if (std::isfinite(values.data()[i])) all.push_back(std::abs(values.data()[i]));
+  if (all.empty()) return 0;
+  const auto at = all.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(all.size() - 1));
+  std::nth_element(all.begin(), at, all.end());
+  return *at;
+}
+
+template <class Value>  // of the nodes' positions, their velocities, and a rod
+MatrixXd over_run(const Trajectory& run, Value value) {
+  const std::vector<Rod>& rods = run.structure().rods;
+  MatrixXd out(static_cast<Index>(run.size()), static_cast<Index>(rods.size()));
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    const VectorXd q = run.node_positions(i), v = run.node_velocities(i);
+    for (std::size_t r = 0; r < rods.size(); ++r)
+      out(static_cast<Index>(i), static_cast<Index>(r)) = value(q, v, rods[r]);
+  }
+  return out;
+}
+
+double middle_speed(const VectorXd&, const VectorXd& v, const Rod& rod) {
+  return 0.5 * (v.segment<3>(3 * rod.a) + v.segment<3>(3 * rod.b)).norm();
+}
+
+double length_error(const VectorXd& q, const VectorXd&, const Rod& rod) {
+  return std::abs((q.segment<3>(3 * rod.b) - q.segment<3>(3 * rod.a)).norm() - rod.length);
+}
+
+// The run's own range. Forces blow up for an instant where a mechanism is straight: what is rare saturates.
+void choose_range(RodField& field) {
+  const double most = quantile(field.values, 1.0), usual = quantile(field.values, typical);
+  const double high = rounded_up(
+      std::max(most > 2 * usual && usual > 0 ? usual : most, std::numeric_limits<double>::min() * 1e20));
+  field.high =
+      field.log ? std::max(std::pow(10.0, std::ceil(std::log10(std::max(most, 1e-16)))), 1e-15) : high;
+  field.low = field.diverging ? -field.high : field.log ? 1e-4 * field.high : 0;
+}
+
+}  // namespace
+
+double RodField::at(double time, int rod) const {
+  const auto after = std::upper_bound(t.begin(), t.end(), time);
+  if (after == t.begin()) return values(0, rod);
+  if (after == t.end()) return values(values.rows() - 1, rod);
+  const auto i = after - t.begin() - 1;
+  const double u = (time - *(after - 1)) / (*after - *(after - 1));
+  return (1 - u) * values(i, rod) + u * values(i + 1, rod);
+}
+
+double RodField::position(double value) const {
+  if (!log) return std::clamp((value - low) / (high - low), 0.0, 1.0);
+  return std::clamp(std::log(std::max(value, round_off) / low) / std::log(high / low), 0.0, 1.0);
+}
+
+Color RodField::color(double value) const {
+  if (!std::isfinite(value)) return {0.5f, 0.5f, 0.5f, 1};
+  return diverging ? diverging_color(2 * position(value) - 1) : sequential_color(position(value));
+}
+
+RodField rod_field(const std::string& by, std::array<double, 2> range, const Simulation& run,
+                   const Diagnostics& diagnostics) {
+  RodField field;
+  field.t = diagnostics.t;
+  if (by == "axial_force") {
+    field.label = "axial force (N), tension > 0";
+    field.values = diagnostics.axial_force;
+    field.diverging = true;
+  } else if (by == "speed") {
+    field.label = "speed (m/s)";
+    field.values = over_run(run.trajectory, middle_speed);
+  } else if (by == "constraint_error") {
+    field.label = "error of length (m)";
+    field.values = over_run(run.trajectory, length_error);
+    field.log = true;
+  } else {
+    throw std::invalid_argument("rod_field: no quantity '" + by + "'");
+  }
+  choose_range(field);
+  if (range[0] < range[1] && (!field.log || range[0] > 0)) field.low = range[0], field.high = range[1];
+  return field;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,31 @@
+// A quantity of every rod over time, as colours over a range that stays the same through a film.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "render/scene/draw_list.hpp"
+
+namespace unfurl {
+
+struct RodField {
+  std::string label;      // with its unit: "axial force (N), tension > 0"
+  std::vector<double> t;  // of the rows [s]
+  MatrixXd values;        // [states x solved rods]; NaN where it is not known
+  double low = 0, high = 1;
+  bool diverging = false;  // around zero
+  bool log = false;
+
+  double at(double time, int rod) const;  // linear between the states
+  Color color(double value) const;        // grey where it is not finite
+  double position(double value) const;    // along the colour bar, 0..1
+};
+
+// by: "axial_force", "speed" (of the rod's middle) or "constraint_error" (|distance of the ends - length|).
+// range: low and high, or equal ends for the run's own range. Throws std::invalid_argument for another name.
+RodField rod_field(const std::string& by, std::array<double, 2> range, const Simulation& run,
+                   const Diagnostics& diagnostics);
+
+}  // namespace unfurl

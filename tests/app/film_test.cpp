@@ -1,0 +1,128 @@
+// Slices, resuming and whose frames they are.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/app/run_program.hpp"
+
+using namespace unfurl;
+namespace fs = std::filesystem;
+
+namespace {
+
+// Five small frames of a short run.
+std::vector<std::string> film(const std::string& out, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> words = {"render",  "hoop6_sector", "--set", "solver.end_time=0.2",
+                                    "--size",  "96x64",        "--fps", "20",
+                                    "--quiet", "-o",           out};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+std::size_t frames_in(const std::string& out) {
+  std::error_code error;
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(out + "/frames", error), fs::directory_iterator()));
+}
+
+std::string frame(const std::string& out, int k) {
+  return out + "/frames/frame_0000" + std::to_string(k) + ".png";
+}
+
+}  // namespace
+
+TEST_CASE("slices share one film, and the last one makes the animations") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  CHECK(run_program(film(out, {"--frames", "0:2"})).code == 0);
+  CHECK(frames_in(out) == 2);
+  CHECK_FALSE(fs::exists(out + "/animation.gif"));
+  CHECK(run_program(film(out, {"--frames", "4:9"})).code == 0);  // up to the film's end
+  CHECK(frames_in(out) == 3);
+  CHECK(run_program(film(out, {"--frames", "2:4"})).code == 0);
+  CHECK(frames_in(out) == 5);
+  CHECK(file_text(out + "/animation.gif").starts_with("GIF89a"));
+  CHECK(fs::exists(out + "/animation.webp"));
+}
+
+TEST_CASE("a second run draws only what is missing, and the same as before") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  REQUIRE(run_program(film(out)).code == 0);
+  const std::string lost = file_text(frame(out, 1)), cut = file_text(frame(out, 3));
+  std::ofstream(frame(out, 0)) << file_text(frame(out, 4));  // a whole PNG, only not ours: must stay
+  fs::remove(frame(out, 1));
+  fs::resize_file(frame(out, 3), 100);  // as by a broken copy
+  CHECK(run_program(film(out)).code == 0);
+  CHECK(file_text(frame(out, 0)) == file_text(frame(out, 4)));
+  CHECK(file_text(frame(out, 1)) == lost);
+  CHECK(file_text(frame(out, 3)) == cut);
+}
+
+TEST_CASE("frames of another scene are never mixed in; --force starts over") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  REQUIRE(run_program(film(out)).code == 0);
+  const std::string before = file_text(frame(out, 4));
+  const auto changed = film(out, {"--set", "structure.hinge_force=400"});
+  const ProgramResult r = run_program(changed);
+  CHECK(r.code == 5);
+  CHECK(r.err == "unfurl: " + out +
+                     ": holds frames of another film (the scene, its settings or the program changed); use "
+                     "--force to start over, or another -o\n");
+  CHECK(file_text(frame(out, 4)) == before);
+  auto forced = changed;
+  forced.insert(forced.end(), {"--force", "--frames", "0:1"});
+  CHECK(run_program(forced).code == 0);
+  CHECK(frames_in(out) == 1);
+  CHECK_FALSE(fs::exists(out + "/animation.gif"));
+}
+
+TEST_CASE("what changes no frame is no other film") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  REQUIRE(run_program(film(out)).code == 0);
+  const auto drawn = fs::last_write_time(frame(out, 2));
+  const std::string gif = file_text(out + "/animation.gif");
+  CHECK(run_program(film(out, {"--set", "render.gif_width=48"})).code == 0);
+  CHECK(fs::last_write_time(frame(out, 2)) == drawn);
+  CHECK(file_text(out + "/animation.gif").size() < gif.size());
+}
+
+TEST_CASE("the number of threads changes no byte of any picture or film") {
+  const ScratchDirectory dir;
+  REQUIRE(run_program(film(dir / "one", {"--threads", "1"})).code == 0);
+  REQUIRE(run_program(film(dir / "four", {"--threads", "4"})).code == 0);
+  for (int k = 0; k < 5; ++k) CHECK(file_text(frame(dir / "one", k)) == file_text(frame(dir / "four", k)));
+  for (const char* name : {"/animation.webp", "/animation.gif", "/animation.mp4"})
+    CHECK(file_text((dir / "one") + name) == file_text((dir / "four") + name));
+}
+
+TEST_CASE("options of pictures that are wrong say so") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  const auto error = [&](const std::vector<std::string>& more) { return run_program(film(out, more)); };
+  CHECK(error({"--frames", "3-4"}).err ==
+        "unfurl: --frames must be FIRST:END, two whole numbers (END itself is left out); got '3-4'\n");
+  CHECK(error({"--frames", "4:4"}).err == "unfurl: --frames 4:4 names no frame\n");
+  CHECK(error({"--frames", "7:9"}).err ==
+        "unfurl: --frames 7:9 begins behind the film's end: it has 5 frames, from 0\n");
+  CHECK(error({"--look", "studyo"}).err.find("render.look") != std::string::npos);
+  CHECK(error({"--set", "render.inset=deployed_fractoin"}).err.find("did you mean 'deployed_fraction'?") !=
+        std::string::npos);
+  CHECK(error({"--set", "render.trails=Q*"}).code == 3);
+}
+
+TEST_CASE("a poster is its poses side by side") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> words = {
+      "poster", "hoop6_sector", "--size", "192x96", "--quiet", "--poses", "4", "-o", dir / "p.png"};
+  CHECK(run_program(words).code == 0);
+  const std::string bytes = file_text(dir / "p.png");
+  REQUIRE(bytes.size() > 24);
+  CHECK(static_cast<unsigned char>(bytes[18]) * 256 + static_cast<unsigned char>(bytes[19]) == 4 * 64);
+  CHECK(static_cast<unsigned char>(bytes[23]) == 48);
+  CHECK(run_program({"poster", "hoop6_sector", "-o", dir / "p.jpg"}).err ==
+        "unfurl: a poster is written as .png, not '.jpg'\n");
+}

@@ -1,0 +1,48 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "core/study/journal.hpp"
+
+using namespace unfurl;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct File {
+  fs::path path = fs::temp_directory_path() / "unfurl_journal_test.csv";
+  File() { fs::remove(path); }
+  ~File() { fs::remove(path); }
+};
+
+}  // namespace
+
+TEST_CASE("a journal finds what an earlier one wrote") {
+  const File file;
+  {
+    Journal journal(file.path, {"name", "n", "value"}, 2);
+    journal.append({"a, b", "1", "0.5"});
+    journal.append({"a, b", "2", "0.25"});
+  }
+  const Journal again(file.path, {"name", "n", "value"}, 2);
+  CHECK(again.size() == 2);
+  REQUIRE(again.find({"a, b", "2"}));
+  CHECK((*again.find({"a, b", "2"}))[2] == "0.25");
+  CHECK(again.find({"a, b", "3"}) == nullptr);
+}
+
+TEST_CASE("a line that a kill left torn is dropped") {
+  const File file;
+  { Journal(file.path, {"n", "value"}, 1).append({"1", "0.5"}); }
+  std::ofstream(file.path, std::ios::app) << "2,0.2";  // no line break
+  Journal journal(file.path, {"n", "value"}, 1);
+  CHECK(journal.size() == 1);
+  journal.append({"2", "0.25"});
+  CHECK((*Journal(file.path, {"n", "value"}, 1).find({"2"}))[1] == "0.25");
+}
+
+TEST_CASE("a journal of other columns is refused") {
+  const File file;
+  { Journal(file.path, {"n", "value"}, 1).append({"1", "0.5"}); }
+  CHECK_THROWS_AS(Journal(file.path, {"n", "other"}, 1), JournalMismatch);
+}

@@ -1,0 +1,50 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/simulate/initial_state.hpp"
+#include "core/study/extrapolation.hpp"
+#include "core/study/reference.hpp"
+#include "tests/support/models.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+TEST_CASE("the reference of the ring is the quadrature of its energy") {
+  const auto model = make_model(hoop_structure({{"model", std::string("sector")}}));
+  const Reference reference = solve_reference(model, 4.9, 49, {});
+  const exact::Hoop exact = exact_hoop();
+  // An angle of 1e-11 rad is 3e-11 m on a chord of 3 m; the quadrature is good to 1e-13 in time, times some 5
+  // rad/s.
+  for (const std::size_t k : {std::size_t{20}, std::size_t{40}, std::size_t{49}})
+    CHECK(std::abs(model->structure.deployment.fold_angle(reference.q[k]) - exact.angle(reference.t[k])) <
+          1e-11);
+  CHECK(reference.uncertainty < 1e-11);
+}
+
+TEST_CASE("extrapolation is of order 16") {
+  const auto model = make_model(double_pendulum());
+  const Reference truth = solve_reference(model, 0.8, 8, {});
+  const auto error = [&](int steps) {
+    State state = initial_state(model->structure, model->system).state;
+    Extrapolation method(model->system);
+    for (int i = 0; i < steps; ++i) REQUIRE(method.step(state, 0.8 / steps));
+    VectorXd q(model->system.coordinates());
+    model->system.expand(state.z, q);
+    return node_distance(q, truth.q.back());
+  };
+  // From steps of 0.2 s to 0.1 s, large enough for errors far above round-off (3e-6 m to 2e-10 m), so not yet
+  // asymptotic.
+  CHECK(std::log2(error(4) / error(8)) > 13);
+}
+
+TEST_CASE("a motion that no two solutions agree on has no reference") {
+  // The pendulum is chaotic: after a minute the smallest differences have grown to its own size.
+  const auto model = make_model(double_pendulum());
+  CHECK_THROWS_WITH(solve_reference(model, 60, 10, {}), Catch::Contains("the reference does not converge"));
+}
+
+TEST_CASE("a reference can be cancelled") {
+  StudyHooks hooks;
+  hooks.cancelled = [] { return true; };
+  CHECK_THROWS_AS(solve_reference(make_model(double_pendulum()), 1, 4, hooks), Cancelled);
+}

@@ -1,0 +1,37 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "core/study/solve_for.hpp"
+
+using namespace unfurl;
+
+namespace {
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+}
+
+TEST_CASE("a root is bracketed from where the search starts") {
+  const Solved s = solve_for([](double x) { return x * x * x; }, 27, {.start = 1}, {});
+  CHECK(s.x == Approx(3).epsilon(1e-11));
+  CHECK(s.evaluations.size() < 40);
+}
+
+TEST_CASE("the search approaches a wall behind which parameters are invalid") {
+  // Like the deployment time near dead centre: it grows without end towards 90.
+  const auto f = [](double x) { return x < 90 ? -std::log(90 - x) : none; };
+  const Solved s = solve_for(f, std::log(1e6), {.start = 60}, {});
+  CHECK(90 - s.x == Approx(1e-6).epsilon(1e-5));  // x is good to 1e-12 of 90
+}
+
+TEST_CASE("a target out of reach is told with what was reached") {
+  CHECK_THROWS_WITH(solve_for([](double x) { return 1 / (1 + x * x); }, 2, {.start = 1}, {}),
+                    Catch::Contains("the target is not reached on either side of 1"));
+  CHECK_THROWS_WITH(solve_for([](double x) { return x; }, 9, {.low = 0, .high = 1}, {}),
+                    Catch::Contains("does not lie between the ends of --between"));
+  CHECK_THROWS_AS(solve_for([](double) { return none; }, 9, {.start = 1}, {}), NotFound);
+}
+
+TEST_CASE("a jump over the target is no root") {
+  CHECK_THROWS_WITH(solve_for([](double x) { return x < 2 ? 0.0 : 10.0; }, 5, {.start = 1}, {}),
+                    Catch::Contains("jumps over the target at 2"));
+}

@@ -1,0 +1,99 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/integrators/integrator.hpp"
+#include "core/study/study.hpp"
+#include "tests/support/models.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace {
+
+StudyPlan small_plan() {
+  SolverOptions scene = dvm_options(3, 0.01, 0.6);
+  StudyPlan plan = plan_study(make_model(double_pendulum()), scene, 0.05, 0.005, {});
+  plan.timing.repeats = 1;
+  return plan;
+}
+
+}  // namespace
+
+TEST_CASE("every method has its place in a study, with stages where they change its order") {
+  const auto settings = study_settings({});
+  for (const Method& method : methods()) {
+    const auto count = std::count_if(settings.begin(), settings.end(),
+                                     [&](const Setting& s) { return s.options.method == method.name; });
+    INFO(method.name);
+    CHECK(count == (method.name == "dvm" ? 6 : 1));
+  }
+}
+
+TEST_CASE("a study observes the orders that methods claim") {
+  Journal nowhere({}, study_columns(), study_key_columns);
+  const Study study = run_study(small_plan(), nowhere, {});
+  CHECK(study.complete);
+  int judged = 0;
+  for (const StudyCurve& curve : study.curves) {
+    if (curve.setting.claimed_order > 4 || !(curve.order.points >= 4)) continue;  // round-off comes too soon
+    INFO(curve.setting.name << " " << curve.order.order);
+    CHECK(std::abs(curve.order.order - curve.setting.claimed_order) < 0.4);
+    ++judged;
+  }
+  CHECK(judged >= 4);
+}
+
+TEST_CASE("a second study takes its points from the journal") {
+  StudyPlan plan = small_plan();
+  plan.settings.resize(2);
+  Journal journal({}, study_columns(), study_key_columns);
+  const Study first = run_study(plan, journal, {});
+  const Study second = run_study(plan, journal, {});
+  // CPU times never repeat to the last digit: equal ones were not measured again.
+  CHECK(points_table(first).rows == points_table(second).rows);
+}
+
+TEST_CASE("a cancelled study keeps its points") {
+  StudyPlan plan = small_plan();
+  Journal journal({}, study_columns(), study_key_columns);
+  StudyHooks hooks;
+  hooks.cancelled = [&] { return journal.size() >= 3; };
+  const Study study = run_study(plan, journal, hooks);
+  CHECK_FALSE(study.complete);
+  CHECK(points_table(study).rows.size() == 3);
+}
+
+TEST_CASE("the cheapest of the runs that are accurate enough is named") {
+  Study study;
+  study.curves.resize(2);
+  const auto run = [](double error, double cpu) {
+    MeasuredRun r;
+    r.outcome = "ok";
+    r.position_error = error;
+    r.cpu_median = cpu;
+    r.step = 0.5;
+    return r;
+  };
+  study.curves[0].setting.name = "slow";
+  study.curves[0].runs = {run(1e-4, 2), run(1e-7, 4)};
+  study.curves[1].setting.name = "fast";
+  study.curves[1].runs = {run(1e-2, 0.1), run(1e-4, 1)};
+  CHECK(cheapest(study, 1e-3).curve == &study.curves[1]);
+  CHECK(cheapest(study, 1e-6).curve == &study.curves[0]);
+  CHECK(cheapest(study, 1e-9).run == nullptr);
+  CHECK(cheapest_sentence(study) ==
+        "The cheapest setting for 0.001 m is fast with a step of 0.5 s (1e+03 ms), for 1e-06 m slow with a "
+        "step of "
+        "0.5 s (4e+03 ms), for 1e-09 m was not found on this ladder.");
+}
+
+TEST_CASE("a ladder falls by halves and two thirds, and all its runs meet") {
+  const StepLadder ladder = make_ladder(8, 0.01, 0.08, 0.005);
+  CHECK(ladder.grid == 50);
+  CHECK(ladder.steps == std::vector<long>{100, 150, 200, 300, 400, 600, 800, 1600});
+  for (const long steps : ladder.steps) CHECK(steps % ladder.grid == 0);
+  CHECK_THROWS_WITH(make_ladder(8, 0.01, 0.01, 0.02),
+                    Catch::Contains("falls from a larger to a smaller step"));
+  CHECK_THROWS_WITH(make_ladder(8, 0.01, 5, 0.02), Catch::Contains("must fit twice"));
+  CHECK_THROWS_WITH(make_ladder(8, 0.01, 1, 1e-9), Catch::Contains("at most a factor"));
+}

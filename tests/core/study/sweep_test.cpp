@@ -1,0 +1,65 @@
+#include <catch2/catch.hpp>
+
+#include "core/scene/library.hpp"
+#include "core/study/sweep.hpp"
+#include "tests/support/hoop_exact.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+SweepPlan ring_plan() {
+  SweepPlan plan{{find_scene("hoop6_sector"), {}}, {parse_axis("structure.fold_angle=40:80:3")}, {}, {}};
+  plan.measures.push_back(find_measure("deploy_time"));
+  return plan;
+}
+
+}  // namespace
+
+TEST_CASE("axes are ranges, log ranges or lists") {
+  CHECK(parse_axis("a.b=1:3:5").numbers == std::vector<double>{1, 1.5, 2, 2.5, 3});
+  CHECK(parse_axis("a=1:100:3:log").numbers == std::vector<double>{1, 10, 100});
+  CHECK(parse_axis("solver.method=dvm,rk4").values == std::vector<std::string>{"dvm", "rk4"});
+  CHECK(parse_axis("solver.method=dvm,rk4").numbers.empty());
+  for (const char* bad : {"a", "a=", "=1:2:3", "a=1:2", "a=1:2:0", "a=1:2:2.5", "a=1:1:3", "a=0:1:3:log",
+                          "a=1:2:3:lin", "a=x:2:3", "a=1,,2", "a=1,1"})
+    CHECK_THROWS_AS(parse_axis(bad), std::invalid_argument);
+}
+
+TEST_CASE("shards part the points and nothing else is one") {
+  CHECK(parse_shard("2/8").index == 2);
+  for (const char* bad : {"0/8", "9/8", "1/0", "1", "a/b", "1.5/3"})
+    CHECK_THROWS_WITH(parse_shard(bad), Catch::Contains("a shard is I/N"));
+}
+
+TEST_CASE("a sweep finds the deployment times of the exact ring, on any number of threads and shards") {
+  SweepPlan plan = ring_plan();
+  check_plan(plan);
+  Journal journal({}, plan.columns(), plan.axes.size());
+  StudyHooks two;
+  two.threads = 2;
+  const Sweep sweep = run_sweep(plan, journal, two);
+  REQUIRE(sweep.table.rows.size() == 3);
+  for (const auto& row : sweep.table.rows) {
+    exact::Hoop exact;
+    exact.fold_angle_deg = number_of(row[0]);
+    // Three Lobatto nodes at h = 0.01 s: 1e-7 s at the deployment in the six-unit ring's own tests.
+    CHECK(number_of(row[2]) == Approx(exact.time(0)).margin(1e-6));
+  }
+  plan.shard = {2, 2};
+  Journal other({}, plan.columns(), plan.axes.size());
+  const Sweep shard = run_sweep(plan, other, {});
+  REQUIRE(shard.table.rows.size() == 1);
+  CHECK(shard.missing == 0);
+  CHECK(shard.table.rows[0] == sweep.table.rows[1]);
+}
+
+TEST_CASE("unknown measures and keys are named") {
+  CHECK_THROWS_WITH(find_measure("deploytime"), Catch::Contains("did you mean 'deploy_time'"));
+  CHECK_THROWS_WITH(find_measure("max:kinetic_energy"), Catch::Contains("did you mean 'kinetic_energy_J'"));
+  SweepPlan plan = ring_plan();
+  plan.axes[0].key = "structure.fold_angl";
+  CHECK_THROWS_WITH(check_plan(plan), Catch::Contains("did you mean 'fold_angle'"));
+  plan.axes.clear();
+  CHECK_THROWS_WITH(check_plan(plan), Catch::Contains("nothing to vary"));
+}

@@ -1,0 +1,145 @@
+#include "render/scene/camera_path.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/simulate/simulation.hpp"
+#include "render/scene/frame_builder.hpp"
+#include "render/scene/view.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+constexpr int width = 640, height = 360;
+
+Simulation ring(int units = 6) {
+  const Scene scene =
+      read_scene_text("structure.kind = \"hoop\"\nstructure.units = " + std::to_string(units) +
+                          "\nstructure.model = \"sector\"\nstructure.fold_angle = 85.0\n"
+                          "structure.hinge_force = 200.0\nsolver.step = 0.02\nsolver.end_time = 30.0\n",
+                      "ring.toml");
+  return simulate(build_model(scene), scene.solver);
+}
+
+FrameBuilder builder(const Simulation& run, const RenderOptions& options) {
+  FrameStyle style;
+  style.width = width, style.height = height;
+  style.options = options;
+  return {run.trajectory, style};
+}
+
+// The smallest distance [pixels] of any joint from an edge in this picture.
+double margin(const DrawList& list) {
+  double least = 1e9;
+  for (const Ball& ball : list.balls) {
+    const Vec3f p = project(list.camera, width, height, ball.center);
+    if (p.z() <= list.camera.near_plane || p.z() >= list.camera.far_plane) return -1;
+    least = std::min<double>({least, p.x(), width - p.x(), p.y(), height - p.y()});
+  }
+  return least;
+}
+
+Vec3f direction(const Camera& camera) {
+  return (camera.eye - camera.target).normalized();
+}
+
+}  // namespace
+
+TEST_CASE("a preset looks from where it says, with all of the motion in the picture") {
+  const Simulation run = ring(GENERATE(3, 6, 24));
+  const auto [name, x, y, z] = GENERATE(table<std::string, float, float, float>(
+      {{"front", 0.f, -1.f, 0.f}, {"side", 1.f, 0.f, 0.f}, {"top", 0.f, 0.f, 1.f}, {"iso", 1.f, -1.f, 1.f}}));
+  RenderOptions options;
+  options.camera = name;
+  options.projection = GENERATE("perspective", "orthographic");
+  const FrameBuilder frames = builder(run, options);
+  CHECK((direction(frames.camera()) - Vec3f(x, y, z).normalized()).norm() < 1e-5f);
+  INFO(name << " " << options.projection);
+  for (const double share : {0.0, 0.5, 0.8, 1.0})
+    CHECK(margin(frames.build(share * run.trajectory.end_time())) > 0.03 * height);
+  // And they fill it: folded it is tall, unfolded it is wide.
+  CHECK(std::min(margin(frames.build(0)), margin(frames.build(run.trajectory.end_time()))) < 0.25 * height);
+}
+
+TEST_CASE("in a parallel projection a length has the same pixels everywhere") {
+  Camera camera;
+  camera.eye = {0, -10, 4};
+  camera.target = {0, 0, 0};
+  camera.parallel_height = 5;
+  const Vec3f right(1, 0, 0);
+  for (const Vec3f& p : {Vec3f(0, 0, 0), Vec3f(1, 7, -2), Vec3f(-2, -5, 1)}) {
+    const Vec3f a = project(camera, width, height, p), b = project(camera, width, height, p + right);
+    CHECK((b - a).head<2>().norm() == Approx(height / 5.0).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("an orbit turns by its angle, keeps its distance and the motion in the picture") {
+  const Simulation run = ring();
+  RenderOptions options;
+  options.orbit = 360;
+  const FrameBuilder frames = builder(run, options);
+  const double end = run.trajectory.end_time();
+  const auto camera = [&](double u) { return frames.build(Shot{u * end, u, 0}).camera; };
+  CHECK((camera(0).eye - camera(1).eye).norm() < 1e-4f * camera(0).eye.norm());
+  Vec3f quarter = direction(camera(0));
+  quarter = Vec3f(-quarter.y(), quarter.x(), quarter.z());
+  CHECK((direction(camera(0.25)) - quarter).norm() < 1e-5f);
+  for (double u = 0; u <= 1; u += 0.1) CHECK(margin(frames.build(Shot{u * end, u, 0})) > 0.03 * height);
+}
+
+TEST_CASE("a camera that follows has every pose in the picture, larger than one that stands still") {
+  const Simulation run = ring();
+  RenderOptions options;
+  const FrameBuilder still = builder(run, options);
+  options.follow = true;
+  const FrameBuilder frames = builder(run, options);
+  const double end = run.trajectory.end_time();
+  for (double u = 0; u <= 1; u += 0.04) CHECK(margin(frames.build(u * end)) > 0.03 * height);
+  const auto tall = [&](const FrameBuilder& b) {
+    const DrawList list = b.build(0);
+    float low = 1e9f, high = -1e9f;
+    for (const Ball& ball : list.balls) {
+      const float y = project(list.camera, width, height, ball.center).y();
+      low = std::min(low, y), high = std::max(high, y);
+    }
+    return high - low;
+  };
+  CHECK(tall(frames) > 1.2f * tall(still));
+}
+
+TEST_CASE("camera keys are passed at their times") {
+  const Simulation run = ring();
+  RenderOptions options;
+  options.camera_keys = {{0.5, -90, 0, 1}, {1.5, 0, 30, 2}, {2.0, 90, 60, 1}};
+  const FrameBuilder frames = builder(run, options);
+  const Vec3f center = frames.build(0).camera.target;
+  for (const CameraKey& key : options.camera_keys) {
+    const Camera camera = frames.build(key.time).camera;
+    const double azimuth = key.azimuth * radians_per_degree, elevation = key.elevation * radians_per_degree;
+    const Vec3f wanted(static_cast<float>(std::cos(azimuth) * std::cos(elevation)),
+                       static_cast<float>(std::sin(azimuth) * std::cos(elevation)),
+                       static_cast<float>(std::sin(elevation)));
+    CHECK((direction(camera) - wanted).norm() < 1e-5f);
+  }
+  const float plain = (frames.build(0.5).camera.eye - center).norm();
+  CHECK((frames.build(1.5).camera.eye - center).norm() == Approx(plain / 2).epsilon(1e-4));
+  CHECK((frames.build(0.0).camera.eye - frames.build(0.5).camera.eye).norm() <
+        1e-5f);  // rests before the first
+}
+
+TEST_CASE("turntable and hold come after the motion") {
+  const Simulation run = ring();
+  RenderOptions options;
+  options.fps = 10;
+  const auto motion = film_shots(run.trajectory, options);
+  options.turntable = 2;
+  options.hold = 0.5;
+  const auto shots = film_shots(run.trajectory, options);
+  REQUIRE(shots.size() == motion.size() + 20 + 5);
+  CHECK(shots[motion.size() + 9].turn == Approx(0.5));
+  CHECK(shots.back().turn == 1.0);
+  CHECK(shots.back().t == run.trajectory.end_time());
+}

@@ -1,0 +1,136 @@
+#include "render/scene/rod_field.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "render/scene/color_map.hpp"
+#include "render/scene/frame_builder.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+// A rod of 2 m and 3 kg that turns about its fixed end at 5 rad/s, without gravity.
+const char* const spinning = R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "P"
+position = [0, 0, 0]
+fixed = true
+[[structure.nodes]]
+name = "E"
+position = [2, 0, 0]
+velocity = [0, 10, 0]
+[[structure.rods]]
+nodes = ["P", "E"]
+mass = 3.0
+[solver]
+stages = 4
+step = 0.01
+end_time = 0.5
+)";
+
+struct Run {
+  Scene scene = read_scene_text(spinning, "spin.toml");
+  Simulation run = simulate(build_model(scene), scene.solver);
+  Diagnostics diagnostics = diagnose(run);
+};
+
+}  // namespace
+
+TEST_CASE("a rod's speed is that of its middle") {
+  const Run r;
+  const RodField field = rod_field("speed", {0, 0}, r.run, r.diagnostics);
+  // omega L / 2; the method keeps the energy of this motion to much better than 1e-6.
+  for (const double t : {0.0, 0.123, 0.5}) CHECK(field.at(t, 0) == Approx(5.0).epsilon(1e-6));
+  CHECK(field.low == 0);
+  CHECK(field.high == Approx(5));  // a round number at or above all values
+}
+
+TEST_CASE("a rod's force is the centripetal one, and tension is red") {
+  const Run r;
+  const RodField field = rod_field("axial_force", {0, 0}, r.run, r.diagnostics);
+  // With half of the coupling mass of the consistent matrix at each end, (m/3) omega^2 L.
+  CHECK(field.at(0.25, 0) == Approx(3.0 / 3 * 25 * 2).epsilon(1e-5));
+  CHECK(field.diverging);
+  CHECK(field.low == -field.high);
+  const Color tension = field.color(field.high), compression = field.color(field.low);
+  CHECK(tension.r > tension.b + 0.3f);
+  CHECK(compression.b > compression.r + 0.3f);
+  const Color none = field.color(0.0);
+  CHECK(std::abs(none.r - none.b) < 0.02f);
+}
+
+TEST_CASE("constraint errors are at round-off and drawn on a logarithmic scale") {
+  const Run r;
+  const RodField field = rod_field("constraint_error", {0, 0}, r.run, r.diagnostics);
+  CHECK(field.log);
+  CHECK(field.at(0.5, 0) < 1e-13);
+  CHECK(field.low > 0);
+  CHECK(field.position(std::sqrt(field.low * field.high)) == Approx(0.5));
+}
+
+TEST_CASE("a given range is kept; beyond it the colour is that of its end, and grey where nothing is known") {
+  const Run r;
+  const RodField field = rod_field("speed", {1, 3}, r.run, r.diagnostics);
+  CHECK(field.low == 1);
+  CHECK(field.high == 3);
+  CHECK(field.color(99).g == sequential_color(1).g);
+  CHECK(field.color(-1).b == sequential_color(0).b);
+  const Color unknown = field.color(std::nan(""));
+  CHECK((unknown.r == unknown.g && unknown.g == unknown.b));
+  CHECK_THROWS_AS(rod_field("mood", {0, 0}, r.run, r.diagnostics), std::invalid_argument);
+}
+
+TEST_CASE("colour maps grow lighter or run from blue to red without a jump") {
+  const auto light = [](const Color& c) { return 0.21f * c.r + 0.72f * c.g + 0.07f * c.b; };
+  for (int k = 0; k < 100; ++k) {
+    CHECK(light(sequential_color((k + 1) / 100.0)) > light(sequential_color(k / 100.0)));
+    const Color a = diverging_color(k / 50.0 - 1), b = diverging_color((k + 1) / 50.0 - 1);
+    CHECK(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b) < 0.06f);
+  }
+}
+
+TEST_CASE("the picture of a run shows the field's colour, its bar and what else is asked for") {
+  const Run r;
+  FrameStyle style;
+  style.options.colour_by = "speed";
+  style.options.colour_range = {0, 10};
+  style.options.inset = "kinetic_energy_J";
+  style.options.method = style.options.errors = style.options.axes = style.options.scale_bar = true;
+  style.options.node_labels = style.options.rod_labels = true;
+  style.run = &r.run;
+  style.diagnostics = &r.diagnostics;
+  const FrameBuilder builder(r.run.trajectory, style);
+  const DrawList list = builder.build(0.25);
+  CHECK(list.tubes[0].color.g == Approx(sequential_color(0.5).g).margin(1e-4));
+  CHECK(list.areas.size() == 64);
+  std::string texts = "|";
+  for (const TextLabel& label : list.labels) texts += label.text + "|";
+  for (const char* text :
+       {"speed (m/s)|", "dvm, s = 4, h = 0.01 s|", "so far: constraints ", "|x|", "|P|", "|E|", "P-E"})
+    CHECK_THAT(texts, Catch::Contains(text));
+  REQUIRE(list.inset.figure);
+  CHECK(list.inset.figure->panels[0].curves[0].x.size() == 26);  // of 51 states
+  style.options.inset = "no_such_column";
+  CHECK_THROWS_AS(FrameBuilder(r.run.trajectory, style), std::invalid_argument);
+}
+
+TEST_CASE("ghosts are earlier poses, trails end at their node") {
+  const Run r;
+  FrameStyle style;
+  style.options.ghosts = 4;
+  DrawList list = FrameBuilder(r.run.trajectory, style).build(0.3);
+  CHECK(list.ghosts.size() ==
+        3);  // of the poses at 0, 1/4, 1/2 and 3/4 of the way, those before 0.3 of 0.5 s
+  style.options.ghosts = 0;
+  style.trails = {1};
+  list = FrameBuilder(r.run.trajectory, style).build(0.3);
+  REQUIRE(list.ghosts.size() > 5);
+  CHECK((list.ghosts.back().b.cast<double>() - r.run.trajectory.positions_at(0.3).segment<3>(3)).norm() <
+        1e-6);
+  CHECK((list.ghosts.front().a - Vec3f(2, 0, 0)).norm() < 1e-6f);
+}
