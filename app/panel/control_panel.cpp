@@ -13,6 +13,7 @@ namespace unfurl {
 
 namespace {
 
+constexpr std::size_t most_trade_points = 200;
 constexpr float bar_height = 46, timeline_height = 58;  // [points]
 
 // One pane: an ImGui window that fills a rectangle.
@@ -42,8 +43,11 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
   state_.left_open = options_.settings.left_open;
   state_.right_open = options_.settings.right_open;
   const auto& open = options_.settings.open_figures;
-  for (FigureCard& card : cards_.cards())
-    card.open = std::find(open.begin(), open.end(), card.kind->name) != open.end();
+  const auto is_open = [&](std::string_view name) {
+    return std::find(open.begin(), open.end(), name) != open.end();
+  };
+  cards_.trade().open = is_open("trade");
+  for (FigureCard& card : cards_.cards()) card.open = is_open(card.kind->name);
   state_.sections = param_sections(base_scene(state_.history.now()));
   context_.make_current();
   make_context();
@@ -64,6 +68,7 @@ PanelSettings ControlPanel::settings() {
   now.left_open = state_.left_open;
   now.right_open = state_.right_open;
   now.open_figures.clear();
+  if (cards_.trade().open) now.open_figures.emplace_back("trade");
   for (const FigureCard& card : cards_.cards())
     if (card.open) now.open_figures.emplace_back(card.kind->name);
   return now;
@@ -176,12 +181,28 @@ void ControlPanel::take_results() {
     if (outcome->run && !outcome->run->simulation.trajectory.empty()) {
       const bool first = !state_.shown;
       state_.shown = outcome->run;
+      state_.trade.push_back(trade_point(*state_.shown));
+      if (state_.trade.size() > most_trade_points) state_.trade.erase(state_.trade.begin());
+      if (state_.shown->document == state_.history.now())
+        state_.picture = state_.shown->scene.render;
+      else
+        update_picture();
       const Trajectory& trajectory = state_.shown->simulation.trajectory;
       if (first) state_.playback.t = trajectory.start_time();
       state_.playback.t = std::clamp(state_.playback.t, trajectory.start_time(), trajectory.end_time());
     }
   }
   state_.pending = simulator_.busy();
+}
+
+// How things look needs no simulation.
+void ControlPanel::update_picture() {
+  try {
+    state_.picture = read_document(state_.history.now()).render;
+    state_.problems.clear();
+  } catch (const SceneError& error) {
+    state_.problems = error.problems();
+  }
 }
 
 // A change of the scene asks for its simulation.
@@ -200,9 +221,14 @@ void ControlPanel::follow_document() {
       state_.problems = error.problems();
     }
   }
+  const bool same_run = submitted_ && simulated_part(*submitted_) == simulated_part(now);
   submitted_ = now;
-  simulator_.submit(now);
-  state_.pending = true;
+  if (same_run) {
+    update_picture();
+  } else {
+    simulator_.submit(now);
+    state_.pending = true;
+  }
   settling_ = std::max(settling_, 2);
 }
 
@@ -240,8 +266,7 @@ void ControlPanel::draw_panes() {
     draw_scene_pane(ui_, state_);
   }
   view_place_ = {left, top, width - right, bottom};
-  view_.prepare(static_cast<int>(view_place_.width()), static_cast<int>(view_place_.height()), state_,
-                state_.dark);
+  view_.prepare(static_cast<int>(view_place_.width()), static_cast<int>(view_place_.height()), state_);
   {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     const Pane pane("view", left, top, width - right - left, bottom - top,

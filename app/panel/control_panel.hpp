@@ -60,6 +60,7 @@ class ControlPanel {
   void apply(const InputEvent& event);
   void take_results();
   void follow_document();
+  void update_picture();
   void draw_panes();
   void draw_splitter(const char* name, float x, float top, float bottom, float& width, float way);
   void paint();

@@ -59,6 +59,7 @@ void FigureCards::show(const std::shared_ptr<const LiveRun>& run,
   pinned_ = pinned;
   width_ = width;
   for (FigureCard& card : cards_) card.figure.reset();
+  trade_.figure.reset();
 }
 
 bool FigureCards::applies(const FigureCard& card) const {
@@ -70,6 +71,14 @@ void FigureCards::make(FigureCard& card) const {
   Figure figure = card.kind->make(run_->simulation, run_->diagnostics);
   if (pinned_ && pinned_ != run_ && card.kind->applies(pinned_->simulation, pinned_->diagnostics))
     figure = with_pinned(std::move(figure), card.kind->make(pinned_->simulation, pinned_->diagnostics));
+  place(card, std::move(figure));
+}
+
+void FigureCards::make_trade(const std::vector<TradePoint>& points) {
+  if (!trade_.figure) place(trade_, trade_figure(points));
+}
+
+void FigureCards::place(FigureCard& card, Figure figure) const {
   stack(figure, width_);
   card.figure = std::make_unique<Figure>(std::move(figure));
   plot::LayoutOptions options;

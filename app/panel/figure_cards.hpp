@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/panel/simulator.hpp"
+#include "app/panel/trade.hpp"
 #include "render/plot/figures.hpp"
 #include "render/plot/layout.hpp"
 
@@ -30,6 +31,9 @@ class FigureCards {
   FigureCards();
 
   std::vector<FigureCard>& cards() { return cards_; }
+  // Speed against accuracy: of every run so far. Its figure is made where `points` are new.
+  FigureCard& trade() { return trade_; }
+  void make_trade(const std::vector<TradePoint>& points);
   // Call each frame: forgets figures of other runs and of other widths. `width`: of the pane [points].
   void show(const std::shared_ptr<const LiveRun>& run, const std::shared_ptr<const LiveRun>& pinned,
             double width);
@@ -37,7 +41,10 @@ class FigureCards {
   void make(FigureCard& card) const;  // figure and layout, where they are missing
 
  private:
+  void place(FigureCard& card, Figure figure) const;  // lays it out for the pane
+
   std::vector<FigureCard> cards_;
+  FigureCard trade_;
   std::shared_ptr<const LiveRun> run_, pinned_;
   double width_ = 0;
 };

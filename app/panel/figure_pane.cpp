@@ -58,7 +58,7 @@ void draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
     plot::paint(*card.figure, card.layout, themed);
     if (state.pending) list.AddRectFilled(place.origin, high, ui.color(ui.theme.window, 0.45f));
   }
-  const std::string name(card.kind->name);
+  const std::string name = card.figure->name;
   for (std::size_t i = 0; i < card.layout.panels.size(); ++i)
     if (over_time(card.figure->panels[i]))
       draw_cursor(ui, state, card.layout.panels[i], place, "figure " + name + " " + std::to_string(i));
@@ -66,24 +66,38 @@ void draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
   ImGui::Dummy({0, 0});
 }
 
+// A header that opens and closes; returns whether it is open.
+bool draw_header(Ui& ui, FigureCard& card, std::string title, const std::string& key,
+                 const std::string& help) {
+  std::replace(title.begin(), title.end(), '_', ' ');
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  ImGui::SetNextItemOpen(card.open);
+  ImGui::PushFont(ui.bold);
+  card.open = ImGui::CollapsingHeader((title + "##" + key).c_str());
+  ImGui::PopFont();
+  ui.note("card " + key);
+  tooltip(ui, card.figure ? card.figure->title + "\n" + card.figure->caption : help);
+  return card.open;
+}
+
+void draw_trade(Ui& ui, PanelState& state, FigureCards& cards) {
+  if (state.trade.empty()) return;
+  const char* help = "CPU time and energy error of every run of this session";
+  if (!draw_header(ui, cards.trade(), "Speed against accuracy", "trade", help)) return;
+  cards.make_trade(state.trade);
+  draw_figure(ui, state, cards.trade());
+}
+
 }  // namespace
 
 void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards) {
   const double width = ImGui::GetContentRegionAvail().x / (figure_pixels_per_point * ui.scale);
   cards.show(state.shown, state.pinned, width);
+  draw_trade(ui, state, cards);
   for (FigureCard& card : cards.cards()) {
     if (!cards.applies(card)) continue;
-    std::string title(card.kind->name);
-    std::replace(title.begin(), title.end(), '_', ' ');
-    title[0] = static_cast<char>(std::toupper(title[0]));
-    ImGui::SetNextItemOpen(card.open);
-    ImGui::PushFont(ui.bold);
-    card.open = ImGui::CollapsingHeader((title + "##card").c_str());
-    ImGui::PopFont();
-    ui.note("card " + std::string(card.kind->name));
-    tooltip(ui,
-            card.figure ? card.figure->title + "\n" + card.figure->caption : std::string(card.kind->help));
-    if (!card.open) continue;
+    const std::string name(card.kind->name);
+    if (!draw_header(ui, card, name, name, std::string(card.kind->help))) continue;
     cards.make(card);
     draw_figure(ui, state, card);
   }

@@ -12,11 +12,12 @@
 #include "app/panel/picking.hpp"
 #include "app/panel/playback.hpp"
 #include "app/panel/simulator.hpp"
+#include "app/panel/trade.hpp"
 
 namespace unfurl {
 
 struct ViewOptions {
-  bool labels = false;  // the film's own title, time and legend
+  bool labels = false;  // the film's own title and time
   bool loads = true;    // arrows
   bool ghost = true;    // the pinned run behind the present one
 
@@ -29,12 +30,15 @@ struct PanelState {
   EditHistory history;
   std::vector<ParamSection> sections;  // of the scene without edits
 
-  std::shared_ptr<const LiveRun> shown;   // the latest run that finished; null at first
-  std::shared_ptr<const LiveRun> pinned;  // A of the comparison; null: none
-  bool pending = false;                   // a newer run is being made
-  double progress = 0;                    // of that, 0..1
-  std::vector<SceneProblem> problems;     // of the scene as edited; empty: it is sound
-  std::string message;                    // other trouble, or what was done, in a line
+  std::shared_ptr<const LiveRun> shown;        // the latest run that finished; null at first
+  std::shared_ptr<const LiveRun> pinned;       // A of the comparison; null: none
+  bool pending = false;                        // a newer run is being made
+  double progress = 0;                         // of that, 0..1
+  std::vector<SceneProblem> problems;          // of the scene as edited; empty: it is sound
+  RenderOptions picture;                       // how the view looks, as edited
+  std::vector<SceneProblem> picture_problems;  // of that: names that this run does not know
+  std::vector<TradePoint> trade;               // of every run so far
+  std::string message;                         // other trouble, or what was done, in a line
 
   Playback playback;
   double frames_per_second = 0;  // while it plays, smoothed

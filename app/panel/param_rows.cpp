@@ -93,6 +93,7 @@ std::vector<ParamSection> param_sections(const Scene& base) {
   sections.push_back({"Structure", structure_rows(base)});
   sections.push_back({"Gravity and loads", load_rows(base)});
   sections.push_back({"Solver", rows_of("solver.", solver_params(), solver_values(base.solver))});
+  sections.push_back({"Picture", rows_of("render.", render_params(), render_values(base.render)), false});
   std::erase_if(sections, [](const ParamSection& s) { return s.rows.empty(); });
   return sections;
 }

@@ -18,6 +18,7 @@ struct ParamRow {
 struct ParamSection {
   std::string title;
   std::vector<ParamRow> rows;
+  bool open = true;  // at first
 };
 
 // `base`: the scene without the panel's edits.

@@ -36,6 +36,11 @@ SceneDocument document_of_family(const std::string& kind) {
   return document;
 }
 
+SceneDocument simulated_part(SceneDocument document) {
+  std::erase_if(document.edits, [](const auto& edit) { return edit.first.starts_with("render."); });
+  return document;
+}
+
 std::vector<std::string> overrides_of(const SceneDocument& document) {
   std::vector<std::string> all = document.overrides;
   for (const auto& [key, value] : document.edits) all.push_back(key + "=" + toml_value(value));

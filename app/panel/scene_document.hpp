@@ -30,6 +30,9 @@ SceneDocument open_document(const std::string& scene, std::vector<std::string> o
 // A scene of a family: the library's first one of that kind, or the family's defaults.
 SceneDocument document_of_family(const std::string& kind);
 
+// The document without edits that change only pictures: where it is the same, so is the run.
+SceneDocument simulated_part(SceneDocument document);
+
 // All overrides as "key=value", the panel's behind the command line's.
 std::vector<std::string> overrides_of(const SceneDocument& document);
 // The scene that the document means. Throws SceneError.

@@ -23,6 +23,8 @@ const SceneProblem* problem_of(const PanelState& state, const std::string& key) 
   for (const SceneProblem& problem : state.problems)
     if (problem.key == key || problem.key.starts_with(key + "[") || problem.key.starts_with(key + "."))
       return &problem;
+  for (const SceneProblem& problem : state.picture_problems)
+    if (problem.key == key) return &problem;
   return nullptr;
 }
 
@@ -114,7 +116,8 @@ void draw_scene_pane(Ui& ui, PanelState& state) {
   const auto sections = state.sections;
   for (const ParamSection& section : sections) {
     ImGui::PushFont(ui.bold);
-    const bool open = ImGui::CollapsingHeader(section.title.c_str(), ImGuiTreeNodeFlags_DefaultOpen);
+    const bool open = ImGui::CollapsingHeader(
+        section.title.c_str(), section.open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
     ImGui::PopFont();
     ui.note("section " + section.title);
     if (!open) continue;

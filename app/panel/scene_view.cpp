@@ -1,5 +1,10 @@
 #include "app/panel/scene_view.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "app/film.hpp"
+
 namespace unfurl {
 
 namespace {
@@ -18,9 +23,38 @@ void add_ghost(const DrawList& other, DrawList& list) {
   }
 }
 
+float lightness(const Color& c) {
+  return 0.3f * c.r + 0.6f * c.g + 0.1f * c.b;
+}
+
+// The studio at night: what is written over the picture changes its lightness with the background.
+void darken(DrawList& list) {
+  list.background_top = {0.16f, 0.19f, 0.23f, 1};
+  list.background_bottom = {0.27f, 0.31f, 0.36f, 1};
+  const auto light = [](Color& c) {
+    if (lightness(c) < 0.5f) c = mixed(c, {1, 1, 1, 1}, 0.75f);
+  };
+  const auto dark = [](Color& c) {
+    const float alpha = c.a;
+    if (lightness(c) > 0.5f) c = {0.14f, 0.17f, 0.20f, alpha};
+  };
+  for (TextLabel& label : list.labels) {
+    light(label.color);
+    dark(label.backing);
+  }
+  for (OverlayLine& line : list.lines) light(line.color);
+  for (OverlayArea& area : list.areas) dark(area.color);
+}
+
 bool same(const Camera& a, const Camera& b) {
   return a.eye == b.eye && a.target == b.target && a.vertical_field_of_view == b.vertical_field_of_view &&
-         a.near_plane == b.near_plane && a.far_plane == b.far_plane;
+         a.near_plane == b.near_plane && a.far_plane == b.far_plane && a.parallel_height == b.parallel_height;
+}
+
+FrameStyle style_of(const LiveRun& run, const RenderOptions& picture) {
+  Scene scene = run.scene;
+  scene.render = picture;
+  return film_style(scene, run.simulation, run.diagnostics);
 }
 
 }  // namespace
@@ -29,60 +63,88 @@ bool SceneView::Painted::operator==(const Painted& o) const {
   return run == o.run && ghost == o.ghost && t == o.t && dark == o.dark && same(camera, o.camera);
 }
 
-void SceneView::prepare(int width, int height, const PanelState& state, bool dark) {
+void SceneView::rebuild(PanelState& state) {
+  run_ = state.shown;
+  options_ = state.view;
+  picture_ = state.picture;
+  painted_ = {};
+  RenderOptions shown = picture_;
+  shown.transparent = false;
+  shown.supersample = 1;
+  if (!options_.labels) shown.title = shown.time = false;
+  FrameStyle style;
+  state.picture_problems.clear();
+  try {
+    style = style_of(*run_, shown);
+  } catch (const SceneError& error) {  // a name that this run does not know
+    state.picture_problems = error.problems();
+    shown.inset = shown.trails = "";
+    style = style_of(*run_, shown);
+  }
+  style.width = width_;
+  style.height = height_;
+  style.loads = style.loads && options_.loads;
+  builder_ = std::make_unique<FrameBuilder>(run_->simulation.trajectory, style);
+  ghost_.reset();
+  if (ghost_run_) {
+    FrameStyle plain;
+    plain.width = width_;
+    plain.height = height_;
+    plain.labels = plain.loads = false;
+    ghost_ = std::make_unique<FrameBuilder>(ghost_run_->simulation.trajectory, plain);
+  }
+  list_ = builder_->build(state.playback.t);
+  t_ = state.playback.t;
+}
+
+void SceneView::prepare(int width, int height, PanelState& state) {
   if (width < 1 || height < 1) return;
   const bool resized = width != width_ || height != height_;
-  dark_ = dark;
+  dark_ = state.dark;
   if (resized || !renderer_) {
     renderer_.reset();  // its memory first
     renderer_ = std::make_unique<Renderer>(context_, width, height);
+    width_ = width;
+    height_ = height;
   }
   if (!state.shown || state.shown->simulation.trajectory.empty()) return;
-  const auto wanted_ghost = state.view.ghost ? state.pinned : nullptr;
-  if (!resized && builder_ && run_ == state.shown && ghost_run_ == wanted_ghost && options_ == state.view)
-    return;
-  width_ = width;
-  height_ = height;
-  run_ = state.shown;
-  ghost_run_ = wanted_ghost;
-  options_ = state.view;
-  painted_ = {};
-  FrameStyle style;
-  style.width = width;
-  style.height = height;
-  style.title = run_->scene.title;
-  style.labels = options_.labels;
-  style.loads = options_.loads;
-  builder_ = std::make_unique<FrameBuilder>(run_->simulation.trajectory, style);
-  style.labels = style.loads = false;
-  ghost_ = ghost_run_ ? std::make_unique<FrameBuilder>(ghost_run_->simulation.trajectory, style) : nullptr;
-  still_ = builder_->build(run_->simulation.trajectory.start_time());
+  const auto ghost = state.view.ghost ? state.pinned : nullptr;
+  const bool changed =
+      run_ != state.shown || ghost_run_ != ghost || !(options_ == state.view) || !(picture_ == state.picture);
+  if (resized || !builder_ || changed) {
+    ghost_run_ = ghost;
+    rebuild(state);
+  } else if (t_ != state.playback.t) {
+    list_ = builder_->build(state.playback.t);
+    t_ = state.playback.t;
+  }
 }
 
 Camera SceneView::camera(const PanelState& state) const {
-  return state.orbit ? camera_of(*state.orbit, still_.center, still_.radius) : builder_->camera();
+  if (!state.orbit) return list_.camera;
+  Camera camera = camera_of(*state.orbit, list_.center, list_.radius);
+  if (list_.camera.parallel_height > 0)
+    camera.parallel_height = 2 * state.orbit->distance * std::tan(0.5f * state.orbit->field_of_view);
+  return camera;
 }
 
 PickView SceneView::pick_view(const PanelState& state) const {
   return {camera(state), width_, height_, builder_->upright()};
 }
 
-DrawList SceneView::list_of(const PanelState& state) const {
-  DrawList list = builder_->build(state.playback.t);
+DrawList SceneView::decorated(const PanelState& state) const {
+  DrawList list = list_;
   list.camera = camera(state);
-  if (dark_) {
-    list.background_top = {0.16f, 0.19f, 0.23f, 1};
-    list.background_bottom = {0.27f, 0.31f, 0.36f, 1};
-  }
+  if (dark_ && picture_.look == "studio") darken(list);
   if (ghost_) add_ghost(ghost_->build(state.playback.t), list);
   return list;
 }
 
 bool SceneView::paint(const PanelState& state) {
   if (!builder_) return false;
-  const Painted wanted{run_.get(), ghost_run_.get(), state.playback.t, camera(state), dark_};
+  const Painted wanted{run_.get(), ghost_run_.get(), t_, camera(state), dark_};
   if (wanted == painted_) return false;
-  renderer_->paint(list_of(state));
+  renderer_->paint(decorated(state));
   painted_ = wanted;
   ++paints_;
   return true;

@@ -15,18 +15,18 @@ class SceneView {
   explicit SceneView(GlContext& context) : context_(context) {}
 
   // Before anything else of a frame. Cheap where nothing changed.
-  void prepare(int width, int height, const PanelState& state, bool dark);
+  void prepare(int width, int height, PanelState& state);
   bool ready() const { return builder_ != nullptr; }
   // Paint where something changed since the last time; returns whether.
   bool paint(const PanelState& state);
   void copy_to(const Framebuffer& target, int x, int y) const;
 
   Camera camera(const PanelState& state) const;
-  OrbitCamera framed() const { return orbit_of(builder_->camera()); }
+  OrbitCamera framed() const { return orbit_of(list_.camera); }  // the film's own camera
   PickView pick_view(const PanelState& state) const;
   // The sphere around the whole motion.
-  Vec3f center() const { return still_.center; }
-  float radius() const { return still_.radius; }
+  Vec3f center() const { return list_.center; }
+  float radius() const { return list_.radius; }
   int width() const { return width_; }
   int height() const { return height_; }
   long paints() const { return paints_; }
@@ -39,14 +39,17 @@ class SceneView {
     bool dark = false;
     bool operator==(const Painted& o) const;
   };
-  DrawList list_of(const PanelState& state) const;
+  void rebuild(PanelState& state);
+  DrawList decorated(const PanelState& state) const;
 
   GlContext& context_;
   std::unique_ptr<Renderer> renderer_;
   std::shared_ptr<const LiveRun> run_, ghost_run_;
   std::unique_ptr<FrameBuilder> builder_, ghost_;
   ViewOptions options_;
-  DrawList still_;
+  RenderOptions picture_;
+  DrawList list_;  // at the time t_
+  double t_ = 0;
   Painted painted_;
   int width_ = 0, height_ = 0;
   bool dark_ = false;

@@ -11,7 +11,7 @@ struct PanelSettings {
   int width = 1280, height = 720;             // of the window [units of the desktop]
   float left_width = 300, right_width = 360;  // of the panes [points]
   bool left_open = true, right_open = true, dark = false;
-  std::vector<std::string> open_figures = {"deployment", "constraint_error", "energy"};
+  std::vector<std::string> open_figures = {"deployment", "trade", "constraint_error"};
 
   bool operator==(const PanelSettings&) const = default;
 };

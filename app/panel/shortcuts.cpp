@@ -85,7 +85,7 @@ std::span<const Shortcut> shortcuts() {
       {Key::s, false, false, "S", "screenshot, a PNG in the current directory",
        [](PanelState& s) { s.wants_screenshot = true; }},
       {Key::e, false, false, "E", "export", [](PanelState& s) { s.export_open = !s.export_open; }},
-      {Key::l, false, false, "L", "the film's title, time and legend",
+      {Key::l, false, false, "L", "the film's title and time",
        [](PanelState& s) { s.view.labels = !s.view.labels; }},
       {Key::t, false, false, "T", "light or dark", [](PanelState& s) { s.dark = !s.dark; }},
       {Key::one, false, false, "1, 2", "hide or show the left, the right pane",

@@ -175,7 +175,7 @@ void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const F
   if (!ImGui::BeginPopup("view options")) return;
   ImGui::Checkbox("loads as arrows", &state.view.loads);
   ui.note("view.loads");
-  ImGui::Checkbox("title, time and legend of the film", &state.view.labels);
+  ImGui::Checkbox("title and time of the film", &state.view.labels);
   ui.note("view.labels");
   ImGui::Checkbox("the pinned run as a ghost", &state.view.ghost);
   ui.note("view.ghost");

@@ -199,6 +199,44 @@ TEST_CASE("keys and buttons open and close what they say") {
   CHECK(driver.state().export_open);
 }
 
+TEST_CASE("looks change the picture without a new simulation") {
+  PanelDriver driver;
+  driver.key(Key::end);
+  const long runs = driver.panel().simulations();
+  const Image before = driver.picture();
+  driver.state().history.edit("render.look", std::string("blueprint"));
+  driver.settle();
+  CHECK(driver.panel().simulations() == runs);
+  CHECK(driver.state().picture.look == "blueprint");
+  const plot::Rect view = driver.panel().place("view");
+  // A blueprint has another ground everywhere.
+  CHECK(static_cast<double>(differing_pixels(before, driver.picture(), view)) >
+        0.5 * view.width() * view.height());
+  driver.state().history.edit("render.inset", std::string("no_such_column"));
+  driver.settle();
+  REQUIRE(driver.state().picture_problems.size() == 1);
+  CHECK(driver.state().picture_problems[0].key == "render.inset");
+  driver.state().history.edit("render.look", std::string("nolook"));
+  driver.settle();
+  REQUIRE(driver.state().problems.size() == 1);
+  CHECK(driver.state().problems[0].key == "render.look");
+}
+
+TEST_CASE("every run of a session is a point of speed against accuracy") {
+  PanelDriver driver;
+  REQUIRE(driver.state().trade.size() == 1);
+  driver.state().history.edit("solver.stages", 2L);
+  driver.settle();
+  driver.state().history.edit("solver.method", std::string("rk4"));
+  driver.settle();
+  REQUIRE(driver.state().trade.size() == 3);
+  CHECK(driver.state().trade[1].error > driver.state().trade[0].error);  // order 2 against order 4
+  const Figure figure = trade_figure(driver.state().trade);
+  REQUIRE(figure.panels.at(0).curves.size() == 3);  // two methods, and the present point
+  CHECK(figure.panels[0].curves[2].y.at(0) == driver.state().trade[2].error);
+  CHECK(driver.panel().has_place("card trade"));
+}
+
 TEST_CASE("nothing is painted again where nothing changed") {
   PanelDriver driver;
   const long before = driver.panel().view_paints();

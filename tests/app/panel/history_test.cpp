@@ -3,6 +3,7 @@
 #include "app/panel/edit_history.hpp"
 #include "app/panel/param_rows.hpp"
 #include "app/panel/playback.hpp"
+#include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 
 using namespace unfurl;
@@ -50,8 +51,9 @@ TEST_CASE("a drag is one step of undo, redo brings it back, a new change forgets
 }
 
 TEST_CASE("every declared parameter of a scene has a row, and its value is in the slider's range") {
-  for (const char* name : {"hoop6"}) {
-    const Scene scene = base_scene(open_document(name, {}));
+  for (const LibraryScene& library_scene : library_scenes()) {
+    INFO(library_scene.name);
+    const Scene scene = base_scene(open_document(library_scene.path, {}));
     std::size_t rows = 0;
     for (const ParamSection& section : param_sections(scene)) {
       for (const ParamRow& row : section.rows) {
@@ -72,7 +74,7 @@ TEST_CASE("every declared parameter of a scene has a row, and its value is in th
         }
       }
     }
-    CHECK(rows >= solver_params().size() + 9 + 1);  // the solver's, the ring's, gravity
+    CHECK(rows >= solver_params().size() + render_params().size() + 2);  // and gravity, a structure
   }
 }
 
