@@ -47,7 +47,7 @@ Between between(const Trajectory& trajectory, double t) {
   return {low, high, span > 0 ? std::clamp((t - trajectory.time(low)) / span, 0.0, 1.0) : 0.0};
 }
 
-std::string number(double x, const char* unit) {
+std::string quantity(double x, const char* unit) {
   return plot::format_number(x, 6) + " " + unit;
 }
 
@@ -62,14 +62,14 @@ std::vector<Reading> rod_readings(int index, const LiveRun& run, double t) {
   const VectorXd solved = trajectory.positions(nearest);
   const double length = (solved.segment<3>(3 * copy.b) - solved.segment<3>(3 * copy.a)).norm();
   std::vector<Reading> rows{
-      {"length", number((whole.segment<3>(3 * copy.b) - whole.segment<3>(3 * copy.a)).norm(), "m")},
-      {"length error", number(length - rod.length, "m")},
-      {"mass", number(rod.mass, "kg")}};
+      {"length", quantity((whole.segment<3>(3 * copy.b) - whole.segment<3>(3 * copy.a)).norm(), "m")},
+      {"length error", quantity(length - rod.length, "m")},
+      {"mass", quantity(rod.mass, "kg")}};
   const MatrixXd& force = run.diagnostics.axial_force;
   if (force.rows() > static_cast<Index>(at.j) && force.cols() > copy.source) {
     const double f = (1 - at.share) * force(static_cast<Index>(at.i), copy.source) +
                      at.share * force(static_cast<Index>(at.j), copy.source);
-    rows.insert(rows.begin(), {f < 0 ? "compression" : "tension", number(std::abs(f), "N")});
+    rows.insert(rows.begin(), {f < 0 ? "compression" : "tension", quantity(std::abs(f), "N")});
   }
   return rows;
 }
@@ -81,10 +81,10 @@ std::vector<Reading> node_readings(int index, const LiveRun& run, double t) {
   const Vec3 v = (1 - at.share) * trajectory.velocities(at.i).segment<3>(3 * index) +
                  at.share * trajectory.velocities(at.j).segment<3>(3 * index);
   const Vec3 x = whole.segment<3>(3 * index);
-  return {{"speed", number(v.norm(), "m/s")},
-          {"x", number(x.x(), "m")},
-          {"y", number(x.y(), "m")},
-          {"z", number(x.z(), "m")}};
+  return {{"speed", quantity(v.norm(), "m/s")},
+          {"x", quantity(x.x(), "m")},
+          {"y", quantity(x.y(), "m")},
+          {"z", quantity(x.z(), "m")}};
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace unfurl {
 namespace {
 
-struct Row {
+struct Measured {
   std::string name;
   MeasureFunction measure;
   TimeFunction target;
@@ -18,7 +18,7 @@ struct Row {
 
 class MeasureRows final : public ConstraintBlock {
  public:
-  explicit MeasureRows(std::vector<Row> rows) : rows_(std::move(rows)) {}
+  explicit MeasureRows(std::vector<Measured> rows) : rows_(std::move(rows)) {}
   int rows() const override { return static_cast<int>(rows_.size()); }
   bool linear() const override { return false; }
   bool rheonomic() const override { return true; }
@@ -27,7 +27,7 @@ class MeasureRows final : public ConstraintBlock {
   std::vector<int> stencil(int row) const override { return at(row).measure.stencil(); }
 
   void value(const double* q, double* phi) const override {
-    for (const Row& row : rows_) *phi++ = row.scale * row.measure.value(q);
+    for (const Measured& row : rows_) *phi++ = row.scale * row.measure.value(q);
   }
   void list_drives(std::vector<Drive>& drives) const override {
     for (std::size_t r = 0; r < rows_.size(); ++r)
@@ -36,14 +36,14 @@ class MeasureRows final : public ConstraintBlock {
                           rows_[r].target});
   }
   void add_target(int order, double t, double scale, double* out) const override {
-    for (const Row& row : rows_) {
+    for (const Measured& row : rows_) {
       *out += scale * row.scale * row.target.derivative(order, t);
       if (order == 0 && row.measure.is_angle()) *out = std::remainder(*out, 2 * pi * row.scale);
       ++out;
     }
   }
   void jacobian(const double* q, double* g) const override {
-    for (const Row& row : rows_) {
+    for (const Measured& row : rows_) {
       const std::size_t size = row.measure.stencil().size();
       row.measure.value_and_gradient(q, g);
       for (std::size_t i = 0; i < size; ++i) g[i] *= row.scale;
@@ -52,7 +52,7 @@ class MeasureRows final : public ConstraintBlock {
   }
   void add_force(const double* q, const double* lambda, double scale, double* f) const override {
     std::vector<double> g;
-    for (const Row& row : rows_) {
+    for (const Measured& row : rows_) {
       const auto& stencil = row.measure.stencil();
       g.resize(stencil.size());
       row.measure.value_and_gradient(q, g.data());
@@ -61,7 +61,7 @@ class MeasureRows final : public ConstraintBlock {
     }
   }
   void bias(const double* q, const double* v, double* phi_dd) const override {
-    for (const Row& row : rows_) {
+    for (const Measured& row : rows_) {
       const auto& stencil = row.measure.stencil();
       const auto size = static_cast<Index>(stencil.size());
       MatrixXd hess(size, size);
@@ -72,7 +72,7 @@ class MeasureRows final : public ConstraintBlock {
     }
   }
   void curvature(const double* q, const double* lambda, double* hess) const override {
-    for (const Row& row : rows_) {
+    for (const Measured& row : rows_) {
       const std::size_t entries = row.measure.stencil().size() * row.measure.stencil().size();
       row.measure.hessian(q, hess);
       for (std::size_t i = 0; i < entries; ++i) hess[i] *= *lambda * row.scale;
@@ -82,14 +82,14 @@ class MeasureRows final : public ConstraintBlock {
   }
 
  private:
-  const Row& at(int row) const { return rows_[static_cast<std::size_t>(row)]; }
-  std::vector<Row> rows_;
+  const Measured& at(int row) const { return rows_[static_cast<std::size_t>(row)]; }
+  std::vector<Measured> rows_;
 };
 
 }  // namespace
 
 std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure) {
-  std::vector<Row> rows;
+  std::vector<Measured> rows;
   const double length = reference_length(structure);
   for (const Constraint& c : structure.constraints) {
     if (c.kind != "measure") continue;

@@ -1,8 +1,8 @@
 #include "core/diagnostics/jacobian_spectrum.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 
+#include "core/math/singular_values.hpp"
 #include "core/model/mobility.hpp"
 
 namespace unfurl {
@@ -43,7 +43,7 @@ JacobianSpectrum jacobian_spectrum(const Simulation& run, int count) {
   for (const std::size_t i : chosen_states(run)) {
     const MatrixXd G(unit_rows(system, run.trajectory.node_positions(i)));
     if (!G.allFinite()) continue;
-    values.push_back(G.bdcSvd().singularValues());
+    values.push_back(singular_values(G));
     out.t.push_back(run.trajectory.time(i));
     out.largest.push_back(values.back()[0]);
     out.rank = std::max(out.rank, Index((values.back().array() > round_off * values.back()[0]).count()));

@@ -7,10 +7,6 @@
 namespace unfurl {
 namespace {
 
-Eigen::Map<const Vec3> at(const double* x, int node) {
-  return Eigen::Map<const Vec3>(x + 3 * static_cast<Index>(node));
-}
-
 class Drag final : public ForceBlock {
  public:
   explicit Drag(const Structure& structure) {
@@ -23,11 +19,11 @@ class Drag final : public ForceBlock {
   bool dissipative() const override { return true; }
   void add(double, const double*, const double* v, double scale, double* f) const override {
     for (const auto& [node, c] : points_)
-      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(node)) -= scale * c * at(v, node);
+      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(node)) -= scale * c * node_vector(v, node);
   }
   double power(double, const double*, const double* v) const override {
     double sum = 0;
-    for (const auto& [node, c] : points_) sum -= c * at(v, node).squaredNorm();
+    for (const auto& [node, c] : points_) sum -= c * node_vector(v, node).squaredNorm();
     return sum;
   }
   void derivatives(double, const double*, const double*, ForceDerivative&,

@@ -13,6 +13,11 @@ namespace unfurl {
 // dF/dq or dF/dv as entries of a sparse matrix.
 using ForceDerivative = std::vector<Eigen::Triplet<double>>;
 
+// The three numbers of a node in node coordinates.
+inline Eigen::Map<const Vec3> node_vector(const double* x, int node) {
+  return Eigen::Map<const Vec3>(x + 3 * static_cast<Index>(node));
+}
+
 class ForceBlock {
  public:
   virtual ~ForceBlock() = default;

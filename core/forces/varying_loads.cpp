@@ -12,10 +12,6 @@ std::vector<Force> forces_of(const Structure& structure, std::string_view kind) 
   return found;
 }
 
-Eigen::Map<const Vec3> at(const double* x, int node) {
-  return Eigen::Map<const Vec3>(x + 3 * static_cast<Index>(node));
-}
-
 class LoadsOverTime final : public ForceBlock {
  public:
   explicit LoadsOverTime(std::vector<Force> loads) : loads_(std::move(loads)) {}
@@ -27,7 +23,7 @@ class LoadsOverTime final : public ForceBlock {
   }
   double power(double t, const double*, const double* v) const override {
     double sum = 0;
-    for (const Force& load : loads_) sum += load.size(t) * load.direction.dot(at(v, load.nodes[0]));
+    for (const Force& load : loads_) sum += load.size(t) * load.direction.dot(node_vector(v, load.nodes[0]));
     return sum;
   }
 
@@ -46,7 +42,7 @@ class Followers final : public ForceBlock {
   }
   double power(double t, const double* q, const double* v) const override {
     double sum = 0;
-    for (const Force& load : loads_) sum += load.size(t) * along(load, q).dot(at(v, load.nodes[1]));
+    for (const Force& load : loads_) sum += load.size(t) * along(load, q).dot(node_vector(v, load.nodes[1]));
     return sum;
   }
   // d/dx of the unit vector n of d: (I - n n^T) / |d|
@@ -55,7 +51,7 @@ class Followers final : public ForceBlock {
     for (const Force& load : loads_) {
       const int a = load.nodes[0], b = load.nodes[1];
       const Vec3 n = along(load, q);
-      const double length = (at(q, b) - at(q, a)).norm();
+      const double length = (node_vector(q, b) - node_vector(q, a)).norm();
       const Mat3 turn = load.size(t) / length * (Mat3::Identity() - n * n.transpose());
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
@@ -67,7 +63,7 @@ class Followers final : public ForceBlock {
 
  private:
   static Vec3 along(const Force& load, const double* q) {
-    return (at(q, load.nodes[1]) - at(q, load.nodes[0])).normalized();
+    return (node_vector(q, load.nodes[1]) - node_vector(q, load.nodes[0])).normalized();
   }
   std::vector<Force> loads_;
 };

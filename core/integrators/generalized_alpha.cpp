@@ -11,8 +11,9 @@ namespace unfurl {
 namespace {
 
 constexpr int max_iterations = 40, frozen_iterations = 8;
-// Residual levels: 1 is what round-off leaves. Up to `accepted` a stalled iteration counts as converged.
-constexpr double wanted = 2.0, accepted = 100.0;
+// Residual levels: 1 is what round-off leaves. Up to `accepted_level` a stalled iteration counts as
+// converged.
+constexpr double wanted_level = 2.0, accepted_level = 100.0;
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
 class GeneralizedAlpha final : public Integrator {
@@ -140,10 +141,10 @@ void GeneralizedAlpha::iterate(const State& state, double h, StepReport& report)
     const double level = evaluate(state.t + h);
     report.residual = level;
     report.constraint_norm = phi_.size() ? phi_.lpNorm<Eigen::Infinity>() : 0.0;
-    if (level <= wanted) return;
+    if (level <= wanted_level) return;
     without_gain = level < 0.5 * best ? 0 : without_gain + 1;
     best = std::min(best, level);
-    if (without_gain >= 3 && level <= accepted) return;
+    if (without_gain >= 3 && level <= accepted_level) return;
     if (it == max_iterations || !std::isfinite(level)) break;
     if (it % frozen_iterations == 0) {
       system_.jacobian(q_, G_, scratch_);

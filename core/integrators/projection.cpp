@@ -7,8 +7,9 @@
 namespace unfurl {
 namespace {
 
-constexpr int max_iterations = 20, refreeze_after = 6;
-constexpr double accepted = 30.0;  // level of constraint error at which a stalled iteration counts as done
+constexpr int max_projections = 20, refreeze_after = 6;
+constexpr double accepted_error =
+    30.0;  // level of constraint error at which a stalled iteration counts as done
 
 }  // namespace
 
@@ -39,8 +40,8 @@ bool Projection::positions(double t, VectorXd& z) {
     const double now = level();
     if (now <= 1.0) return true;
     if (!std::isfinite(now)) return false;
-    if (now > 0.5 * best && now <= accepted) return true;
-    if (iterations_ == max_iterations) return false;
+    if (now > 0.5 * best && now <= accepted_error) return true;
+    if (iterations_ == max_projections) return false;
     best = std::min(best, now);
     if (iterations_ % refreeze_after == 0) {
       system_.jacobian(q_, G_, scratch_);

@@ -1,11 +1,11 @@
 #include "core/model/mobility.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 
 #include "core/math/linear_elimination.hpp"
+#include "core/math/singular_values.hpp"
 
 namespace unfurl {
 
@@ -69,15 +69,15 @@ Index rigid_motions(const SparseRows& G, const ConstVec& q) {
   }
   // Rows of G have the length 1 and entries of R are below 1: round-off is 1e-15, a motion that a row forbids
   // 1e-3 and more.
-  const auto rank = [](const MatrixXd& A) { return (A.jacobiSvd().singularValues().array() > 1e-9).count(); };
+  const auto rank = [](const MatrixXd& A) { return (singular_values(A).array() > 1e-9).count(); };
   return rank(R) - (G.rows() > 0 ? rank(G * R) : 0);
 }
 
 // Rows before a row may nearly depend on each other although all rows together do not; then round-off in what
 // is left of a dependent row exceeds the tolerance. The singular values do not suffer from this: they say how
 // many rows depend.
-std::vector<int> dependent_rows(const MatrixXd& G, const VectorXd& singular_values) {
-  const Index wanted = G.rows() - (singular_values.array() > tolerance).count();
+std::vector<int> dependent_rows(const MatrixXd& G, const VectorXd& values) {
+  const Index wanted = G.rows() - (values.array() > tolerance).count();
   std::vector<int> dependent;
   for (double negligible = tolerance; negligible < 1e-4; negligible *= 10) {
     dependent = dependent_rows(G, negligible);
@@ -97,9 +97,8 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
 
   const bool dense = G.cols() <= max_dense_coordinates;
   const MatrixXd full = dense ? MatrixXd(G) : MatrixXd();
-  const VectorXd singular_values =
-      dense && full.size() > 0 ? VectorXd(full.bdcSvd().singularValues()) : VectorXd();
-  const std::vector<int> dependent = dense ? dependent_rows(full, singular_values)
+  const VectorXd values = dense && full.size() > 0 ? singular_values(full) : VectorXd();
+  const std::vector<int> dependent = dense ? dependent_rows(full, values)
                                            : eliminate(G, VectorXd::Zero(G.rows()), tolerance).redundant;
 
   mobility.rank = G.rows() - static_cast<Index>(dependent.size());
@@ -108,7 +107,7 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
   mobility.rigid_motions = rigid_motions(G, q);
   const auto names = system.all_names();
   for (const int row : dependent) mobility.redundant.push_back(names[static_cast<std::size_t>(row)]);
-  if (dense && mobility.rank > 0) mobility.smallest_singular_value = singular_values[mobility.rank - 1];
+  if (dense && mobility.rank > 0) mobility.smallest_singular_value = values[mobility.rank - 1];
   return mobility;
 }
 

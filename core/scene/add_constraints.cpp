@@ -10,11 +10,6 @@ namespace unfurl {
 
 namespace {
 
-Vec3 vec3(const ParamSet& values, std::string_view name) {
-  const auto& v = values.vector(name);
-  return {v[0], v[1], v[2]};
-}
-
 class ConstraintAdder {
  public:
   explicit ConstraintAdder(Structure& structure) : structure_(structure), find_(structure) {}

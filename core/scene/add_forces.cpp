@@ -7,11 +7,6 @@ namespace unfurl {
 
 namespace {
 
-Vec3 vec3(const ParamSet& values, std::string_view name) {
-  const auto& v = values.vector(name);
-  return {v[0], v[1], v[2]};
-}
-
 // The factor over time, 1 where no table is given.
 TimeFunction factor(const ParamSet& values, double size) {
   TimeFunction f;

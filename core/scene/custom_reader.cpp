@@ -4,16 +4,12 @@
 
 #include "core/model/nearest_name.hpp"
 #include "core/scene/csv_table.hpp"
+#include "core/scene/element_members.hpp"
 #include "core/scene/text_file.hpp"
 
 namespace unfurl {
 
 namespace {
-
-Vec3 vec3(const ParamSet& values, std::string_view name) {
-  const auto& v = values.vector(name);
-  return {v[0], v[1], v[2]};
-}
 
 std::string entry_key(std::string_view table, std::size_t index) {
   return "structure." + std::string(table) + "[" + std::to_string(index) + "]";

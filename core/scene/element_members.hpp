@@ -9,6 +9,12 @@
 
 namespace unfurl {
 
+// A vector parameter of three numbers.
+inline Vec3 vec3(const ParamSet& values, std::string_view name) {
+  const auto& v = values.vector(name);
+  return {v[0], v[1], v[2]};
+}
+
 class MemberFinder {
  public:
   explicit MemberFinder(const Structure& structure);

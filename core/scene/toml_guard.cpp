@@ -8,6 +8,25 @@
 
 namespace unfurl {
 
+std::size_t string_end(std::string_view text, std::size_t i) {
+  const char quote = text[i];
+  const std::array<char, 3> three = {quote, quote, quote};
+  const std::string_view triple(three.data(), three.size());
+  const bool multi = text.substr(i).starts_with(triple);
+  for (i += multi ? 3 : 1; i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (!multi && (text[i] == quote || text[i] == '\n')) {
+      return i + (text[i] == quote ? 1 : 0);
+    } else if (multi && text.substr(i).starts_with(triple)) {
+      i += 3;
+      for (int extra = 0; extra < 2 && i < text.size() && text[i] == quote; ++extra) ++i;
+      return i;
+    }
+  }
+  return text.size();
+}
+
 namespace {
 
 constexpr std::size_t max_brackets = 64;  // a scene needs 3
@@ -32,27 +51,6 @@ std::size_t utf8_length(std::string_view text, std::size_t i) {
   if ((lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) > 0x9F)) return 0;
   if ((lead == 0xF0 && byte(1) < 0x90) || (lead == 0xF4 && byte(1) > 0x8F)) return 0;
   return length;
-}
-
-// End of the string that opens at i: one past its closing quotes, or the line's end where a one-line string
-// stays open.
-std::size_t string_end(std::string_view text, std::size_t i) {
-  const char quote = text[i];
-  const std::array<char, 3> three = {quote, quote, quote};
-  const std::string_view triple(three.data(), three.size());
-  const bool multi = text.substr(i).starts_with(triple);
-  for (i += multi ? 3 : 1; i < text.size(); ++i) {
-    if (quote == '"' && text[i] == '\\') {
-      ++i;
-    } else if (!multi && (text[i] == quote || text[i] == '\n')) {
-      return i + (text[i] == quote ? 1 : 0);
-    } else if (multi && text.substr(i).starts_with(triple)) {
-      i += 3;
-      for (int extra = 0; extra < 2 && i < text.size() && text[i] == quote; ++extra) ++i;
-      return i;
-    }
-  }
-  return text.size();
 }
 
 TextObstacle find_deep_nesting(std::string_view text) {

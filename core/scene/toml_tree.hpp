@@ -44,4 +44,8 @@ TextObstacle find_toml_obstacle(std::string_view text);  // these, and keys or b
 // Line and column (in characters, from 1) of a byte of the text.
 SourceLocation locate(std::string_view text, std::size_t offset, const std::string& file);
 
+// End of the string that opens at i: one past its closing quotes, or the line's end where a one-line string
+// stays open.
+std::size_t string_end(std::string_view text, std::size_t i);
+
 }  // namespace unfurl

@@ -27,20 +27,6 @@ std::size_t offset_of(std::string_view text, const SourceLocation& where) {
   return at;
 }
 
-// Behind a string that begins at `at`.
-std::size_t string_end(std::string_view text, std::size_t at) {
-  const char quote = text[at];
-  const bool lengthy = text.substr(at, 3) == std::string(3, quote);
-  const std::string close(lengthy ? 3 : 1, quote);
-  for (at += close.size(); at < text.size(); ++at) {
-    if (quote == '"' && text[at] == '\\')
-      ++at;
-    else if (text.substr(at, close.size()) == close)
-      return at + close.size();
-  }
-  return text.size();
-}
-
 // Behind the TOML value that begins at `at`; the text is known to be TOML.
 std::size_t value_end(std::string_view text, std::size_t at) {
   int depth = 0;
@@ -68,13 +54,13 @@ std::size_t value_end(std::string_view text, std::size_t at) {
 }
 
 // A member of a table, or an item of an array: "loads[0]" is two steps.
-struct Step {
+struct KeyPart {
   std::string name;
   std::optional<std::size_t> index;
 };
 
-std::vector<Step> steps_of(std::string_view key) {
-  std::vector<Step> steps;
+std::vector<KeyPart> steps_of(std::string_view key) {
+  std::vector<KeyPart> steps;
   while (!key.empty()) {
     const std::size_t end = std::min(key.find_first_of(".["), key.size());
     if (end > 0) steps.push_back({std::string(key.substr(0, end)), {}});
@@ -91,7 +77,7 @@ std::vector<Step> steps_of(std::string_view key) {
   return steps;
 }
 
-const TomlTree* member(const TomlTree& tree, const Step& step) {
+const TomlTree* member(const TomlTree& tree, const KeyPart& step) {
   if (step.index) return *step.index < tree.items.size() ? &tree.items[*step.index] : nullptr;
   return tree.find(step.name);
 }

@@ -47,7 +47,7 @@ double least_opening(double twist) {
 
 // theta_2 from the closure: with R sin(delta) = cos(alpha) C_1, R cos(delta) = S_1 it reads R sin(theta_2/2 -
 // delta) = 1/2.
-BricardShape shape_of(const ParamSet& p) {
+BricardShape bricard_shape(const ParamSet& p) {
   BricardShape s{};
   s.L = p.real("bar_length");
   s.pin = p.real("pin_length");
@@ -116,7 +116,7 @@ const std::vector<ParamSpec>& bricard_params() {
 }
 
 Structure build_bricard(const ParamSet& params) {
-  const BricardShape s = shape_of(params);
+  const BricardShape s = bricard_shape(params);
   const RodSection section = rod_section(params);
   Assembly a;
   for (int i = 0; i < 6; ++i) {

@@ -23,7 +23,7 @@ struct HobermanShape {
   Vec3 outer(int k) const { return scale() * std::sin(gamma + 0.5 * pitch()) * radial(pitch() * (k + 0.5)); }
 };
 
-HobermanShape shape_of(const ParamSet& p) {
+HobermanShape hoberman_shape(const ParamSet& p) {
   HobermanShape s{};
   s.n = static_cast<int>(p.integer("units"));
   s.p = p.real("bar_length");
@@ -86,7 +86,7 @@ const std::vector<ParamSpec>& hoberman_params() {
 }
 
 Structure build_hoberman(const ParamSet& params) {
-  const HobermanShape s = shape_of(params);
+  const HobermanShape s = hoberman_shape(params);
   Assembly a;
   for (int k = 0; k < s.n; ++k) {
     const std::string i = std::to_string(k);

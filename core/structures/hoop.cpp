@@ -11,7 +11,6 @@ namespace unfurl {
 namespace {
 
 // Nodes of unit k are 4 k + these.
-enum : int { bottom_corner = 0, top_corner = 1, bottom_hinge = 2, top_hinge = 3 };
 
 void add_nodes(Structure& out, const HoopShape& s, int k) {
   const std::string i = std::to_string(k);

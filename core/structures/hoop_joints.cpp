@@ -8,7 +8,6 @@ namespace unfurl {
 namespace {
 
 // Nodes of unit k are 4 k + these; the last post of an arc follows behind all units.
-enum : int { bottom_corner = 0, top_corner = 1, bottom_hinge = 2, top_hinge = 3 };
 
 int posts(const HoopShape& s) {
   return s.closed() ? s.n : s.n + 1;

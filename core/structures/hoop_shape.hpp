@@ -7,6 +7,9 @@
 
 namespace unfurl {
 
+// Nodes of a unit, in this order.
+enum HoopNode : int { bottom_corner = 0, top_corner = 1, bottom_hinge = 2, top_hinge = 3 };
+
 // The numbers behind every model of a hoop (hoop.hpp has the geometry).
 struct HoopShape {
   int n = 0;              // units

@@ -25,7 +25,7 @@ struct SheetShape {
   }
 };
 
-SheetShape shape_of(const ParamSet& p) {
+SheetShape sheet_shape(const ParamSet& p) {
   SheetShape s{};
   s.rows = static_cast<int>(p.integer("rows"));
   s.columns = static_cast<int>(p.integer("columns"));
@@ -125,7 +125,7 @@ const std::vector<ParamSpec>& reentrant_sheet_params() {
 }
 
 Structure build_reentrant_sheet(const ParamSet& params) {
-  const SheetShape s = shape_of(params);
+  const SheetShape s = sheet_shape(params);
   Assembly a;
   const Vec3 pull = params.real("stretch_force") / (s.rows + 1) * Vec3::UnitX();
   for (int j = 0; j <= s.rows; ++j)

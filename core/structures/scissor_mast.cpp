@@ -30,7 +30,7 @@ struct MastShape {
   }
 };
 
-MastShape shape_of(const ParamSet& p) {
+MastShape mast_shape(const ParamSet& p) {
   MastShape s{};
   s.cells = static_cast<int>(p.integer("cells"));
   s.sides = static_cast<int>(p.integer("sides"));
@@ -114,7 +114,7 @@ const std::vector<ParamSpec>& scissor_mast_params() {
 }
 
 Structure build_scissor_mast(const ParamSet& params) {
-  const MastShape s = shape_of(params);
+  const MastShape s = mast_shape(params);
   Assembly a;
   const double share = 1.0 / s.corners();
   for (int level = 0; level <= s.cells; ++level) {

@@ -20,7 +20,7 @@ struct RingShape {
 };
 
 // Nodes of unit k are 3 k + these.
-enum : int { bottom = 0, top = 1, pin = 2 };
+enum : int { bottom = 0, top = 1, crossing = 2 };
 
 int node_of(const RingShape& s, int k, int role) {
   return 3 * (k % s.n) + role;
@@ -28,7 +28,7 @@ int node_of(const RingShape& s, int k, int role) {
 
 void add_unit(Assembly& a, const RingShape& s, int k) {
   const int low = node_of(s, k, bottom), low_next = node_of(s, k + 1, bottom);
-  const int high = node_of(s, k, top), high_next = node_of(s, k + 1, top), middle = node_of(s, k, pin);
+  const int high = node_of(s, k, top), high_next = node_of(s, k + 1, top), middle = node_of(s, k, crossing);
   const double mass = s.section.mass_per_length * s.l;
   a.rod(low, high_next, s.l, mass, "right arm", s.section.radius);
   a.rod(low_next, high, s.l, mass, "left arm", s.section.radius);

@@ -9,8 +9,6 @@
 namespace unfurl {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 double max_norm(const VectorXd& v) {
   return v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
 }
@@ -63,7 +61,9 @@ void measure_invariants(const Simulation& run, MeasuredRun& out) {
     out.constraint_max = std::max(out.constraint_max, max_norm(phi));
     out.constraint_relative_max =
         std::max(out.constraint_relative_max, max_norm(VectorXd(phi.cwiseQuotient(lengths))));
-    out.constraint_velocity_max = std::max(out.constraint_velocity_max, max_norm(system.all_jacobian(q) * v - system.all_target_rates(run.trajectory.time(i))));
+    out.constraint_velocity_max =
+        std::max(out.constraint_velocity_max,
+                 max_norm(system.all_jacobian(q) * v - system.all_target_rates(run.trajectory.time(i))));
     const double kinetic = system.kinetic_energy(run.trajectory.state(i).w);
     const double potential = system.potential_energy(q), work = system.load_work(q);
     const double energy = kinetic + potential - work;
@@ -116,6 +116,12 @@ MeasuredRun measure_run(const std::shared_ptr<const Model>& model, SolverOptions
   out.cpu_median = times[times.size() / 2];
   out.repeats = static_cast<int>(times.size());
   return out;
+}
+
+double deployment_time(const Simulation& run) {
+  for (const Event& event : run.events)
+    if (event.name == "deployed") return event.t;
+  return nan;
 }
 
 }  // namespace unfurl

@@ -1,12 +1,15 @@
 // One run of a study: its errors against a reference, what it cost.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "core/simulate/simulation.hpp"
 #include "core/study/reference.hpp"
 
 namespace unfurl {
+
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct MeasuredRun {
   std::string outcome;  // "ok", or in a word or two why there is no answer: "solver failed", "too slow"
@@ -39,7 +42,8 @@ struct TimingOptions {
 MeasuredRun measure_run(const std::shared_ptr<const Model>& model, SolverOptions options, long steps,
                         const Reference& reference, const TimingOptions& timing, const StudyHooks& hooks);
 
-double thread_cpu_seconds();  // of the calling thread so far
+double deployment_time(const Simulation& run);  // of the event "deployed" [s]; NaN: there was none
+double thread_cpu_seconds();                    // of the calling thread so far
 
 // Errors that a run shows about itself, written into `out`.
 void measure_invariants(const Simulation& run, MeasuredRun& out);

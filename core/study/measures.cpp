@@ -7,11 +7,10 @@
 #include <stdexcept>
 
 #include "core/model/nearest_name.hpp"
+#include "core/study/measured_run.hpp"
 
 namespace unfurl {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double largest(const std::vector<double>& values) {
   double m = -std::numeric_limits<double>::infinity();

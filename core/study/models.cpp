@@ -11,11 +11,10 @@
 #include "core/scene/toml_tree.hpp"
 #include "core/scene/write.hpp"
 #include "core/simulate/simulation.hpp"
+#include "core/study/measured_run.hpp"
 
 namespace unfurl {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string text_at(const TomlTree& root, const char* table, const char* key) {
   const TomlTree* found = root.find(table);
@@ -43,12 +42,6 @@ void damping_keys(const TomlTree& tree, const std::string& path, std::vector<std
 double heap_in_use() {
   const auto info = ::mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
-}
-
-double deployment_time(const Simulation& run) {
-  for (const Event& event : run.events)
-    if (event.name == "deployed") return event.t;
-  return nan;
 }
 
 // Of the whole structure, at every time that both have.

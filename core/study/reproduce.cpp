@@ -12,7 +12,6 @@
 namespace unfurl {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t printed = 0, runge_kutta = 1, nodes3 = 2, nodes4 = 3;
 
 ReproducedScheme scheme(SolverOptions o, const char* name, const char* what, const char* method, int stages,
@@ -55,12 +54,6 @@ void record(const std::shared_ptr<const Model>& model, SolverOptions options, co
       out.position_error.push_back(node_distance(q, reference.q[k++]));
     }
   }
-}
-
-double deployment_time(const Simulation& run) {
-  for (const Event& event : run.events)
-    if (event.name == "deployed") return event.t;
-  return nan;
 }
 
 const MeasuredRun& at(const Reproduction& r, std::size_t scheme, std::size_t step) {

@@ -10,7 +10,7 @@
 namespace unfurl::plot {
 namespace {
 
-constexpr double sample_gap = 4.0, padding = 3.0, column_gap = 14.0;
+constexpr double sample_gap = 4.0, padding = 3.0, entry_gap = 14.0;
 
 std::vector<LegendEntry> entries_of(const Panel& panel) {
   std::vector<LegendEntry> entries;
@@ -39,7 +39,7 @@ std::vector<std::vector<LegendEntry>> rows_of(const Panel& panel, double width) 
     e.label.text = shorten_text(e.label.text, small_size, std::max(10.0, width - legend_sample - sample_gap));
     const double w = entry_width(e);
     if (rows.empty() || x + w > width) rows.emplace_back(), x = 0;
-    x += w + column_gap;
+    x += w + entry_gap;
     rows.back().push_back(std::move(e));
   }
   return rows;
@@ -80,7 +80,7 @@ Legend legend_above(const Panel& panel, const Rect& frame, double bottom) {
     double x = frame.x0;
     for (LegendEntry& e : row) {
       put(e, x, middle);
-      x += entry_width(e) + column_gap;
+      x += entry_width(e) + entry_gap;
       out.entries.push_back(std::move(e));
     }
     middle += legend_row_height;

@@ -10,12 +10,6 @@
 namespace unfurl::plot {
 namespace {
 
-std::string hex4(unsigned v) {
-  char text[8];
-  std::snprintf(text, sizeof text, "%04X", v & 0xFFFF);
-  return text;
-}
-
 // Six letters that tell this subset of the font from others (ISO 32000-1, 9.6.4).
 std::string subset_tag(const std::map<int, char32_t>& used) {
   std::uint64_t hash = 1469598103934665603u;  // FNV-1a

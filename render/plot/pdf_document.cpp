@@ -22,12 +22,6 @@ std::string compressed(std::string_view data) {
   return out;
 }
 
-std::string hex4(unsigned v) {
-  char text[8];
-  std::snprintf(text, sizeof text, "%04X", v & 0xFFFF);
-  return text;
-}
-
 }  // namespace
 
 int PdfDocument::reserve() {
@@ -71,6 +65,12 @@ std::string pdf_number(double value) {
   char text[64];
   const double rounded = std::round(value * 1000) / 1000 + 0.0;  // no "-0"
   return {text, std::to_chars(text, text + sizeof text, rounded, std::chars_format::fixed).ptr};
+}
+
+std::string hex4(unsigned v) {
+  char text[8];
+  std::snprintf(text, sizeof text, "%04X", v & 0xFFFF);
+  return text;
 }
 
 std::string pdf_string(std::string_view utf8) {

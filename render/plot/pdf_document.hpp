@@ -21,6 +21,7 @@ class PdfDocument {
   std::vector<std::string> objects_;
 };
 
+std::string hex4(unsigned v);          // four hexadecimal digits
 std::string pdf_number(double value);  // three decimals at most, as few digits as can be
 // As a string of any language: UTF-16 in hexadecimal.
 std::string pdf_string(std::string_view utf8);

@@ -8,7 +8,7 @@
 namespace unfurl::plot {
 namespace {
 
-constexpr double edge = 0.9;  // of white on each side of a rod where it passes in front of another [points]
+constexpr double halo = 0.9;  // of white on each side of a rod where it passes in front of another [points]
 constexpr float farthest = 0.45f;       // share of white in the colour of what lies farthest
 constexpr std::size_t most_rods = 600;  // crossings of more are not looked for: they are too small to see
 
@@ -35,7 +35,7 @@ void part(const Stroke& front, const Stroke& behind, Canvas& canvas) {
   const double half = (behind.width / 2 + 0.3) / sine / length;
   if (u < half || u > 1 - half || v < 0.02 || v > 0.98) return;
   canvas.line({front.a.x + (u - half) * dx, front.a.y + (u - half) * dy},
-              {front.a.x + (u + half) * dx, front.a.y + (u + half) * dy}, {white, front.width + 2 * edge});
+              {front.a.x + (u + half) * dx, front.a.y + (u + half) * dy}, {white, front.width + 2 * halo});
 }
 
 }  // namespace

@@ -19,15 +19,6 @@ Mat3 upright_rotation(const Vec3& gravity) {
   return Eigen::Quaterniond::FromTwoVectors(-gravity, Vec3::UnitZ()).toRotationMatrix();
 }
 
-// The largest of 1, 2, 5, 10, ... (any power of ten) that is not above x > 0.
-double round_length(double x) {
-  const double power = std::pow(10.0, std::floor(std::log10(x)));
-  for (const double step : {5.0, 2.0}) {
-    if (step * power <= x) return step * power;
-  }
-  return power;
-}
-
 Color mixed(const Color& a, const Color& b, float u) {
   return {a.r + u * (b.r - a.r), a.g + u * (b.g - a.g), a.b + u * (b.b - a.b), a.a};
 }

@@ -8,19 +8,19 @@
 #include "render/scene/view.hpp"
 
 namespace unfurl {
+double round_length(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  for (const double step : {5.0, 2.0})
+    if (step * power <= x) return step * power;
+  return power;
+}
+
 namespace {
 
 std::string length_text(double metres) {
   char text[32];
   std::snprintf(text, sizeof text, metres < 0.01 ? "%.2g m" : metres < 10 ? "%.2f m" : "%.1f m", metres);
   return text;
-}
-
-double round_length(double x) {
-  const double power = std::pow(10.0, std::floor(std::log10(x)));
-  for (const double step : {5.0, 2.0})
-    if (step * power <= x) return step * power;
-  return power;
 }
 
 // The axes of the picture in the world.

@@ -47,4 +47,7 @@ class FrameOverlay {
   std::shared_ptr<Figure> inset_;                       // of the whole run
 };
 
+// The largest of 1, 2 and 5 times a power of ten that is not above x.
+double round_length(double x);
+
 }  // namespace unfurl

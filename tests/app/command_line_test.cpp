@@ -6,6 +6,8 @@
 
 using namespace unfurl;
 
+namespace command_line_test {
+
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -53,9 +55,10 @@ TEST_CASE("invalid scenes") {
   check_error({"check", "hoop6", "--set", "structure.units=2"}, 3,
               "--set structure.units: must be a whole number in [3, 100000]; got 2");
   check_error({"check", "hoop6", "--set", "solver.step=0"}, 3, "--set solver.step: must be > 0 s; got 0");
-  check_error({"check", "hoop6", "--set", "solver.method=dvn"}, 3,
-              "--set solver.method: must be one of dvm, rk4, rk4_baumgarte, rk4_projected, generalized_alpha; "
-              "got 'dvn'; did you mean 'dvm'?");
+  check_error(
+      {"check", "hoop6", "--set", "solver.method=dvn"}, 3,
+      "--set solver.method: must be one of dvm, rk4, rk4_baumgarte, rk4_projected, generalized_alpha; "
+      "got 'dvn'; did you mean 'dvm'?");
   check_error({"check", "hoop6", "--set", "structure.post_length=-1", "--set", "solver.stpe=1"}, 3,
               "--set structure.post_length: must be > 0 m; got -1\n"
               "--set solver.stpe: unknown key; did you mean 'step'?");
@@ -111,3 +114,5 @@ TEST_CASE("standard output that cannot be written is a file error") {
   CHECK(r.code == 5);
   CHECK(r.err == "unfurl: cannot write to standard output\n");
 }
+
+}  // namespace command_line_test

@@ -9,6 +9,8 @@
 using namespace unfurl;
 namespace fs = std::filesystem;
 
+namespace film_test {
+
 namespace {
 
 // Five small frames of a short run.
@@ -126,3 +128,5 @@ TEST_CASE("a poster is its poses side by side") {
   CHECK(run_program({"poster", "hoop6_sector", "-o", dir / "p.jpg"}).err ==
         "unfurl: a poster is written as .png, not '.jpg'\n");
 }
+
+}  // namespace film_test

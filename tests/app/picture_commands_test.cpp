@@ -9,6 +9,8 @@
 using namespace unfurl;
 namespace fs = std::filesystem;
 
+namespace picture_commands_test {
+
 namespace {
 
 // Three small frames of a short run.
@@ -162,3 +164,5 @@ TEST_CASE("figures that cannot be made say why") {
   CHECK(r.err == "unfurl: -o is missing; usage: unfurl figure SCENE NAME... -o FILE\n");
   CHECK(files_in(dir / "").empty());
 }
+
+}  // namespace picture_commands_test

@@ -10,6 +10,8 @@
 using namespace unfurl;
 namespace fs = std::filesystem;
 
+namespace run_command_test {
+
 namespace {
 
 const std::vector<std::string> quick = {"run", "hoop6_sector", "--set", "solver.end_time=0.1", "--quiet"};
@@ -143,3 +145,5 @@ TEST_CASE("the option --export takes a comma list and repeats, and says what it 
   CHECK(wrong.code == 2);
   CHECK(single_error(wrong) == "unfurl: no export format 'vkt'; did you mean 'vtk'?\n");
 }
+
+}  // namespace run_command_test

@@ -9,6 +9,8 @@
 using namespace unfurl;
 namespace fs = std::filesystem;
 
+namespace study_commands_test {
+
 namespace {
 
 std::size_t lines(const std::string& text) {
@@ -135,3 +137,5 @@ TEST_CASE("reproduce holds what the paper claims, in a page that stands alone") 
   CHECK(html.find("src=\"figures/") == std::string::npos);
   CHECK(lines(file_text(dir / "out/runs.csv")) == 17);
 }
+
+}  // namespace study_commands_test

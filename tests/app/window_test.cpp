@@ -14,6 +14,8 @@
 
 using namespace unfurl;
 
+namespace window_test {
+
 namespace {
 
 bool installed(const char* program) {
@@ -136,3 +138,5 @@ TEST_CASE("a person opens the window, drags a slider, scrubs, saves, and closes 
   CHECK(end_of(window, 10) == 0);
   CHECK(file_text(scratch / "log") == "");
 }
+
+}  // namespace window_test

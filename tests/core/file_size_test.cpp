@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+namespace file_size_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -55,3 +57,5 @@ TEST_CASE("no file has a name that says nothing") {
       CHECK(stem.find(empty) == std::string::npos);
   }
 }
+
+}  // namespace file_size_test

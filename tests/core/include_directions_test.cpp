@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+namespace include_directions_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -130,3 +132,5 @@ TEST_CASE("libraries with one door have one") {
         "");
   CHECK(elsewhere({"imgui"}, {"render/ui/", "render/plot/", "app/panel"}) == "");
 }
+
+}  // namespace include_directions_test

@@ -8,6 +8,8 @@
 
 using namespace unfurl;
 
+namespace camera_test {
+
 namespace {
 
 std::shared_ptr<const LiveRun> hoop_run() {
@@ -105,3 +107,5 @@ TEST_CASE("every rod and node is found where it is drawn, and reads its own numb
   CHECK(readings({Selection::Kind::rod, "nobody"}, *run, t).empty());
   CHECK(pick(*run, t, view, -500, -500, 6).kind == Selection::Kind::none);
 }
+
+}  // namespace camera_test

@@ -7,6 +7,8 @@
 
 using namespace unfurl;
 
+namespace control_panel_test {
+
 namespace {
 
 std::size_t differing_pixels(const Image& a, const Image& b, const plot::Rect& in) {
@@ -263,3 +265,5 @@ TEST_CASE("the panel fits pictures from small to large") {
     CHECK(r.width() > 0);
   }
 }
+
+}  // namespace control_panel_test

@@ -6,6 +6,8 @@
 
 using namespace unfurl;
 
+namespace random_events_test {
+
 namespace {
 
 InputEvent random_event(std::mt19937& random, int width, int height) {
@@ -78,3 +80,5 @@ TEST_CASE("ten thousand random events harm nothing, and undo leads back to the s
   CHECK(simulated_part(driver.state().shown->document) == start);
   CHECK(driver.state().picture == read_document(start).render);
 }
+
+}  // namespace random_events_test

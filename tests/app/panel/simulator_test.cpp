@@ -5,6 +5,8 @@
 
 using namespace unfurl;
 
+namespace simulator_test {
+
 namespace {
 
 // What comes of the newest request; gives up after a minute.
@@ -76,3 +78,5 @@ TEST_CASE("a cancelled simulation leaves nothing behind, and its end is not wait
   CHECK_FALSE(simulator.busy());
   CHECK_FALSE(simulator.take());
 }
+
+}  // namespace simulator_test

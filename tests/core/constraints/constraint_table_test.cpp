@@ -7,6 +7,8 @@
 
 using namespace unfurl;
 
+namespace constraint_table_test {
+
 namespace {
 
 // A structure that has at least one constraint of every kind. A new kind must be added here: the test fails
@@ -117,3 +119,5 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
     }
   }
 }
+
+}  // namespace constraint_table_test

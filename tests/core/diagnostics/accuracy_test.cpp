@@ -7,6 +7,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace accuracy_test {
+
 namespace {
 
 std::vector<std::string> warnings_of(const std::string& method, int stages, double h) {
@@ -28,3 +30,5 @@ TEST_CASE("accurate runs have nothing to say against themselves, coarse ones do"
   REQUIRE_FALSE(drifting.empty());
   CHECK(drifting.back().find("constraints are violated") != std::string::npos);
 }
+
+}  // namespace accuracy_test

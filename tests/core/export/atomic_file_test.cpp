@@ -10,6 +10,8 @@
 using namespace unfurl;
 namespace fs = std::filesystem;
 
+namespace atomic_file_test {
+
 namespace {
 
 struct ScratchFolder {
@@ -93,3 +95,5 @@ TEST_CASE("a full disk is reported by its cause and the old file stays") {
   CHECK(kept == "old");
   CHECK(count == 1);
 }
+
+}  // namespace atomic_file_test

@@ -15,6 +15,8 @@
 
 using namespace unfurl;
 
+namespace csv_test {
+
 namespace {
 
 struct TemporaryFile {
@@ -103,3 +105,5 @@ TEST_CASE("a directory that is not there is a file error") {
   const Simulation run = short_run("double_pendulum", {"solver.end_time=0.02"});
   CHECK_THROWS_AS(write_trajectory_csv("/nowhere/t.csv", run.trajectory), FileError);
 }
+
+}  // namespace csv_test

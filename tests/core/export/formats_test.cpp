@@ -19,6 +19,8 @@ using namespace unfurl;
 using namespace unfurl::testing;
 namespace fs = std::filesystem;
 
+namespace formats_test {
+
 namespace {
 
 struct Exported {
@@ -156,3 +158,5 @@ TEST_CASE("glTF: keys put the ends of every rod on its nodes") {
     }
   }
 }
+
+}  // namespace formats_test

@@ -9,6 +9,8 @@
 
 using namespace unfurl;
 
+namespace summary_test {
+
 namespace {
 
 nlohmann::ordered_json summary_of(const std::string& scene, const std::vector<std::string>& overrides) {
@@ -74,3 +76,5 @@ TEST_CASE("odd node names survive") {
       summary_json("x", run, diagnose(run), analyse_mobility(run.trajectory.model().system, Vec3::Zero())));
   CHECK(json["final"]["positions_m"].contains("q\"\n\xC3\xB6"));
 }
+
+}  // namespace summary_test

@@ -8,6 +8,8 @@
 
 using namespace unfurl;
 
+namespace force_table_test {
+
 namespace {
 
 // A structure that has at least one force of every kind. A new kind must be added here: the test fails
@@ -113,3 +115,5 @@ TEST_CASE("internal forces exert no net force and no net torque") {
     CHECK(torque.norm() <= 1e-13);
   }
 }
+
+}  // namespace force_table_test

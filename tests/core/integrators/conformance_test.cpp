@@ -13,6 +13,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace conformance_test {
+
 namespace {
 
 // The methods with the options that give them different claims.
@@ -241,3 +243,5 @@ TEST_CASE("conformance: a step that fails leaves the state as it was") {
     CHECK(state.w == before.w);
   }
 }
+
+}  // namespace conformance_test

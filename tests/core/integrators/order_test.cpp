@@ -8,6 +8,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace order_test {
+
 namespace {
 
 VectorXd end_position(SolverOptions options, double h) {
@@ -68,3 +70,5 @@ TEST_CASE("between the step ends the paper's scheme flies free: more stages chan
     CHECK((end_position(options, 0.01) - two).norm() <= 1e-11);
   }
 }
+
+}  // namespace order_test

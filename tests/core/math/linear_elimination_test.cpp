@@ -4,6 +4,8 @@
 
 using namespace unfurl;
 
+namespace linear_elimination_test {
+
 namespace {
 
 SparseRows rows(const MatrixXd& A) {
@@ -35,3 +37,5 @@ TEST_CASE("elimination spans exactly the solutions and names dependent rows") {
               .row(e.free_coordinates[static_cast<std::size_t>(i)])
               .isApprox(VectorXd::Unit(3, i).transpose()));
 }
+
+}  // namespace linear_elimination_test

@@ -6,6 +6,8 @@
 
 using namespace unfurl;
 
+namespace saddle_solver_test {
+
 namespace {
 
 SparseRows sparse(const MatrixXd& A) {
@@ -94,3 +96,5 @@ TEST_CASE("several right-hand sides at once give what each gives alone") {
       CHECK(f[static_cast<std::size_t>(i * columns + c)] ==
             Approx((c + 1) * f1[i]).epsilon(1e-10).margin(1e-12));
 }
+
+}  // namespace saddle_solver_test

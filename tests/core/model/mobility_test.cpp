@@ -9,6 +9,8 @@
 
 using namespace unfurl;
 
+namespace mobility_test {
+
 namespace {
 
 Mobility mobility_of(const std::string& scene, const std::vector<std::string>& overrides = {}) {
@@ -71,3 +73,5 @@ TEST_CASE("a constraint that is listed twice is redundant, the second time") {
   CHECK(m.redundant[0].find("line of A") == 0);
   CHECK(m.smallest_singular_value > 0.1);
 }
+
+}  // namespace mobility_test

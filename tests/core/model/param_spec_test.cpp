@@ -5,6 +5,8 @@
 
 using namespace unfurl;
 
+namespace param_spec_test {
+
 namespace {
 
 const double nan_value = std::nan("");
@@ -71,3 +73,5 @@ TEST_CASE("a set of parameters starts at the defaults and knows its kinds") {
   CHECK_THROWS_AS(set.real("x"), std::logic_error);
   CHECK_THROWS_AS(set.text("l"), std::logic_error);
 }
+
+}  // namespace param_spec_test

@@ -7,6 +7,8 @@
 
 using namespace unfurl;
 
+namespace build_test {
+
 namespace {
 
 std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -84,3 +86,5 @@ TEST_CASE("what only the equations of motion can tell is located as well") {
     CHECK(error.problems()[0].message.find("tip") != std::string::npos);
   }
 }
+
+}  // namespace build_test

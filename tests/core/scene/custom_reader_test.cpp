@@ -10,6 +10,8 @@
 
 using namespace unfurl;
 
+namespace custom_reader_test {
+
 namespace {
 
 // A folder of its own for a test's files, gone with it.
@@ -147,3 +149,5 @@ TEST_CASE("files outside the scene's folder are not read") {
   CHECK(error_of(head + "nodes_file = 'n.csv'") ==
         "s.toml:3:14: structure.nodes_file: a scene that is not a file cannot name other files");
 }
+
+}  // namespace custom_reader_test

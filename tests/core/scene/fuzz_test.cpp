@@ -8,6 +8,8 @@
 
 using namespace unfurl;
 
+namespace fuzz_test {
+
 namespace {
 
 const std::vector<std::string>& morsels() {
@@ -125,3 +127,5 @@ TEST_CASE("mutated overrides give a scene or errors") {
     }
   }
 }
+
+}  // namespace fuzz_test

@@ -6,6 +6,8 @@
 
 using namespace unfurl;
 
+namespace overrides_test {
+
 namespace {
 
 constexpr const char* document =
@@ -87,3 +89,5 @@ TEST_CASE("one bad override does not hide another") {
   CHECK(std::count(r.problems.begin(), r.problems.end(), '\n') == 2);
   CHECK(r.tree.find("solver")->find("step")->real == 0.5);
 }
+
+}  // namespace overrides_test

@@ -4,6 +4,8 @@
 
 using namespace unfurl;
 
+namespace reader_test {
+
 namespace {
 
 std::string error_of(std::string_view text, const std::vector<std::string>& overrides = {}) {
@@ -132,3 +134,5 @@ TEST_CASE("a scene file that is not there is named") {
   CHECK_THROWS_WITH(read_scene_file("/"), "cannot read scene /: is a directory");
   CHECK_THROWS_WITH(read_scene_file("/dev/zero"), "cannot read scene /dev/zero: is larger than 64 MB");
 }
+
+}  // namespace reader_test

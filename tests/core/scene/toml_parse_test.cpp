@@ -4,6 +4,8 @@
 
 using namespace unfurl;
 
+namespace toml_parse_test {
+
 namespace {
 
 std::string error_of(std::string_view text) {
@@ -107,3 +109,5 @@ TEST_CASE("dots and brackets in strings and comments do not count") {
   CHECK(error_of("a = \"................................\"").empty());
   CHECK(error_of("a = \"\"\"x\"\"\"\"\"\nb = 1\n").empty());
 }
+
+}  // namespace toml_parse_test

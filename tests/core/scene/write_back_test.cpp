@@ -9,6 +9,8 @@
 
 using namespace unfurl;
 
+namespace write_back_test {
+
 namespace {
 
 constexpr const char* hoop = R"(# ünïcode before everything
@@ -88,3 +90,5 @@ TEST_CASE("overrides that make no sound scene are refused, not written") {
   CHECK_THROWS_AS(write_back(hoop, "ring.toml", {"structure.units=2"}, ""), SceneError);
   CHECK_THROWS_AS(write_back(hoop, "ring.toml", {"structure.unit=8"}, ""), SceneError);
 }
+
+}  // namespace write_back_test

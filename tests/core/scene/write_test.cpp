@@ -11,6 +11,8 @@
 
 using namespace unfurl;
 
+namespace write_test {
+
 namespace {
 
 void check_equal(const CustomSpec& a, const CustomSpec& b) {
@@ -208,3 +210,5 @@ TEST_CASE("entries that name what is not there say so where they stand") {
             .find("constraints[0].max: is passed already at t = 0, where the value is 1.2") !=
         std::string::npos);
 }
+
+}  // namespace write_test

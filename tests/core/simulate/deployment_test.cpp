@@ -10,6 +10,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace deployment_test {
+
 namespace {
 
 double largest(const Series& series) {
@@ -223,3 +225,5 @@ TEST_CASE("adaptive steps are the same there and back") {
   }
   CHECK((state.z - start.z).lpNorm<Eigen::Infinity>() < 1e-11);
 }
+
+}  // namespace deployment_test

@@ -11,6 +11,8 @@
 
 using namespace unfurl;
 
+namespace drive_test {
+
 namespace {
 
 Simulation run_scene(const std::string& text, const std::vector<std::string>& changes = {}) {
@@ -230,3 +232,5 @@ TEST_CASE("impossible scenes are refused by the names of their members") {
   CHECK(error_of(crank, {"structure.constraints.motor.nodes=['P', 'O', 'B']"}).find("there is no node 'B'") !=
         std::string::npos);
 }
+
+}  // namespace drive_test

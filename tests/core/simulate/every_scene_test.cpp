@@ -13,6 +13,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace every_scene_test {
+
 namespace {
 
 // A longer run is cut: what goes wrong in a scene does so within this many steps, and the suite stays fast.
@@ -99,3 +101,5 @@ TEST_CASE("every scene's mobility is counted, and its redundant members are name
     for (const std::string& name : m.redundant) CHECK_FALSE(name.empty());
   }
 }
+
+}  // namespace every_scene_test

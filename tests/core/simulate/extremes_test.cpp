@@ -11,6 +11,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace extremes_test {
+
 namespace {
 
 struct Outcome {
@@ -174,3 +176,5 @@ TEST_CASE("extremes: many steps keep rods and energy") {
   CHECK((out.q.segment<3>(3) - Vec3(std::sin(phi), std::cos(phi), 0)).norm() <= 1e-8);
   CHECK(out.energy <= 1e-9);
 }
+
+}  // namespace extremes_test

@@ -7,6 +7,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace initial_state_test {
+
 namespace {
 
 // A point of 1 kg on a massless rod of 1 m, pinned at a massless node, released level.
@@ -53,3 +55,5 @@ TEST_CASE("velocities along the rods are taken away with a warning, those that f
   stretched.nodes[1].velocity.x() = 1e-3;
   CHECK(warning_of(stretched).find("0.001 m/s") != std::string::npos);
 }
+
+}  // namespace initial_state_test

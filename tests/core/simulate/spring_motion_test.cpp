@@ -8,6 +8,8 @@
 
 using namespace unfurl;
 
+namespace spring_motion_test {
+
 namespace {
 
 Simulation run_scene(const std::string& text, const std::vector<std::string>& changes = {}) {
@@ -211,3 +213,5 @@ TEST_CASE("stiff springs are solved with the full Newton matrix") {
       {"forces[0].stiffness=5e7", "structure.nodes.A.position=[1.0001, 0, 0]", "solver.end_time=0.2"});
   CHECK(run.status == RunStatus::completed);
 }
+
+}  // namespace spring_motion_test

@@ -8,6 +8,8 @@
 
 using namespace unfurl;
 
+namespace stop_test {
+
 namespace {
 
 Simulation run_scene(const std::string& text, const std::vector<std::string>& changes = {}) {
@@ -89,3 +91,5 @@ values = [0, 1]
   CHECK(run.trajectory.positions(run.trajectory.size() - 1 - 300)[2] ==
         Approx(20.0 / 6 * 0.125).epsilon(1e-2));
 }
+
+}  // namespace stop_test

@@ -10,6 +10,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace chain_test {
+
 namespace {
 
 constexpr double g = 9.81;
@@ -87,3 +89,5 @@ TEST_CASE("a chain that cannot hang is refused by the parameter at fault") {
             .starts_with("span: a span of 0.2 m is too small"));
   CHECK(refusal("chain", {{"links", 1L}, {"held", std::string("both")}}).starts_with("held: a single link"));
 }
+
+}  // namespace chain_test

@@ -8,6 +8,8 @@
 
 using namespace unfurl;
 
+namespace custom_test {
+
 namespace {
 
 CustomNode node(const char* name, Vec3 position, double mass = 1.0) {
@@ -187,3 +189,5 @@ TEST_CASE("a list that is wrong everywhere ends its report") {
   for (int i = 0; i < 10000; ++i) spec.rods.push_back(rod("A", "X"));
   CHECK(check_custom(spec).size() == 100);
 }
+
+}  // namespace custom_test

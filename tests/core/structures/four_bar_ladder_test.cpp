@@ -12,6 +12,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace four_bar_ladder_test {
+
 namespace {
 
 struct Errors {
@@ -97,3 +99,5 @@ TEST_CASE("a fast ladder keeps its branch through 97 collinear poses") {
     CHECK(e.constraint <= 1e-14);
   }
 }
+
+}  // namespace four_bar_ladder_test

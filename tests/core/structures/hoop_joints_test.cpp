@@ -12,6 +12,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace hoop_joints_test {
+
 namespace {
 
 const std::string joints = "joints";
@@ -97,3 +99,5 @@ TEST_CASE("what only joints allow is refused to the symmetric models") {
   CHECK(refusal("hoop", {{"model", joints}, {"perturbed_unit", 6L}}) ==
         "perturbed_unit: perturbed_unit = 6 is none of the 6 units, which count from 0");
 }
+
+}  // namespace hoop_joints_test

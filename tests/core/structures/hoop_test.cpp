@@ -8,6 +8,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace hoop_test {
+
 namespace {
 
 MatrixXd scaled_jacobian(const System& system, const VectorXd& q) {
@@ -90,3 +92,5 @@ TEST_CASE("kinetic energy of the ring is the closed form") {
     CHECK(system.kinetic_energy(system.reduce_rate(v)) == Approx(expected).epsilon(1e-14));
   }
 }
+
+}  // namespace hoop_test

@@ -10,6 +10,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace pendulum_test {
+
 namespace {
 
 constexpr double g = 9.81;
@@ -66,3 +68,5 @@ TEST_CASE("a pendulum without mass is refused") {
   CHECK(refusal("pendulum", {{"rod_mass", 0.0}}) ==
         "rod_mass: rod_mass and bob_mass are both 0: give one of them a mass");
 }
+
+}  // namespace pendulum_test

@@ -11,6 +11,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace rings_test {
+
 namespace {
 
 double mass_of(const ParamSet& p, const char* length) {
@@ -82,3 +84,5 @@ TEST_CASE("a Hoberman ring folded beyond its centre is refused") {
   CHECK(refusal("scissor_ring", {{"fold_angle", 10.0}})
             .starts_with("deployed_angle: deployed_angle must be smaller"));
 }
+
+}  // namespace rings_test

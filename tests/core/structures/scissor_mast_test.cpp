@@ -11,6 +11,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace scissor_mast_test {
+
 namespace {
 
 exact::ScissorMast exact_mast(long cells, long sides, const ParamSet& p) {
@@ -62,3 +64,5 @@ TEST_CASE("a scissor mast that cannot be is refused by the parameter at fault") 
   CHECK(refusal("scissor_mast", {{"fold_angle", 30.0}, {"deployed_angle", 30.0}}) ==
         "deployed_angle: deployed_angle must be smaller than fold_angle, at which the motion starts");
 }
+
+}  // namespace scissor_mast_test

@@ -7,6 +7,8 @@
 using namespace unfurl;
 namespace fs = std::filesystem;
 
+namespace journal_test {
+
 namespace {
 
 struct File {
@@ -46,3 +48,5 @@ TEST_CASE("a journal of other columns is refused") {
   { Journal(file.path, {"n", "value"}, 1).append({"1", "0.5"}); }
   CHECK_THROWS_AS(Journal(file.path, {"n", "other"}, 1), JournalMismatch);
 }
+
+}  // namespace journal_test

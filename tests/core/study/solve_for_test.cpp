@@ -6,6 +6,8 @@
 
 using namespace unfurl;
 
+namespace solve_for_test {
+
 namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 }
@@ -35,3 +37,5 @@ TEST_CASE("a jump over the target is no root") {
   CHECK_THROWS_WITH(solve_for([](double x) { return x < 2 ? 0.0 : 10.0; }, 5, {.start = 1}, {}),
                     Catch::Contains("jumps over the target at 2"));
 }
+
+}  // namespace solve_for_test

@@ -8,6 +8,8 @@
 using namespace unfurl;
 using namespace unfurl::testing;
 
+namespace study_test {
+
 namespace {
 
 StudyPlan small_plan() {
@@ -97,3 +99,5 @@ TEST_CASE("a ladder falls by halves and two thirds, and all its runs meet") {
   CHECK_THROWS_WITH(make_ladder(8, 0.01, 5, 0.02), Catch::Contains("must fit twice"));
   CHECK_THROWS_WITH(make_ladder(8, 0.01, 1, 1e-9), Catch::Contains("at most a factor"));
 }
+
+}  // namespace study_test

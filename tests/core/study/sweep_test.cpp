@@ -6,6 +6,8 @@
 
 using namespace unfurl;
 
+namespace sweep_test {
+
 namespace {
 
 SweepPlan ring_plan() {
@@ -63,3 +65,5 @@ TEST_CASE("unknown measures and keys are named") {
   plan.axes.clear();
   CHECK_THROWS_WITH(check_plan(plan), Catch::Contains("nothing to vary"));
 }
+
+}  // namespace sweep_test

@@ -11,6 +11,8 @@
 
 using namespace unfurl;
 
+namespace context_test {
+
 namespace {
 
 struct OsmesaVariable {  // put back at the end
@@ -112,3 +114,5 @@ TEST_CASE("a shader that does not compile is told with its name and stage") {
   CHECK_THROWS_WITH(Program("lamp", good, "#version 330 core\nvoid main() { nonsense; }"),
                     Catch::Contains("'lamp, fragment stage'") && Catch::Contains("nonsense"));
 }
+
+}  // namespace context_test

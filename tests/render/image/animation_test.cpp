@@ -15,6 +15,8 @@
 using namespace unfurl;
 namespace fs = std::filesystem;
 
+namespace animation_test {
+
 namespace {
 
 struct ScratchFolder {
@@ -134,3 +136,5 @@ TEST_CASE("an MP4 that fails is a warning and leaves nothing behind") {
   }
   CHECK(std::distance(fs::directory_iterator(scratch.path), fs::directory_iterator()) == 1);
 }
+
+}  // namespace animation_test

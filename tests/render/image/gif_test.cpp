@@ -13,6 +13,8 @@
 using namespace unfurl;
 namespace fs = std::filesystem;
 
+namespace gif_test {
+
 namespace {
 
 struct ScratchFolder {
@@ -149,3 +151,5 @@ TEST_CASE("a GIF that cannot be written is a file error, one without frames is n
   GifAnimation(scratch.path / "empty.gif", 64, 48, 25).finish();
   CHECK(fs::is_empty(scratch.path));
 }
+
+}  // namespace gif_test

@@ -7,6 +7,8 @@
 
 using namespace unfurl;
 
+namespace png_test {
+
 namespace {
 
 std::uint32_t big_endian(const std::vector<std::byte>& bytes, std::size_t at) {
@@ -51,3 +53,5 @@ TEST_CASE("a picture whose size does not fit its pixels is refused") {
   CHECK_THROWS_AS(encode_png(Image{}), std::invalid_argument);
   CHECK_THROWS_AS(encode_png(Image{2, 2, {1, 2, 3, 4}}), std::invalid_argument);
 }
+
+}  // namespace png_test

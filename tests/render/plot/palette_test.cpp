@@ -6,6 +6,8 @@
 #include "render/plot/style.hpp"
 
 namespace unfurl::plot {
+namespace palette_test {
+
 namespace {
 
 using Rgb = std::array<double, 3>;  // linear
@@ -73,5 +75,7 @@ TEST_CASE("palette indices go round", "[palette]") {
   CHECK(palette(palette_size).r == palette(0).r);
   CHECK(palette(-1).g == palette(palette_size - 1).g);
 }
+
+}  // namespace palette_test
 
 }  // namespace unfurl::plot

@@ -9,6 +9,8 @@
 
 namespace unfurl::plot {
 
+namespace trace_test {
+
 namespace {
 const double nan = std::nan("");
 Scale linear(double lo, double hi, double length) {
@@ -136,5 +138,7 @@ TEST_CASE("a legend goes where nothing is hidden", "[placement]") {
   obstacles.add_box({0, 0, 100, 100});
   CHECK(free_spot(obstacles, {0, 0, 100, 100}, 30, 20).hidden >= touches_text);
 }
+
+}  // namespace trace_test
 
 }  // namespace unfurl::plot

@@ -11,6 +11,8 @@
 
 using namespace unfurl;
 
+namespace camera_path_test {
+
 namespace {
 
 constexpr int width = 640, height = 360;
@@ -143,3 +145,5 @@ TEST_CASE("turntable and hold come after the motion") {
   CHECK(shots.back().turn == 1.0);
   CHECK(shots.back().t == run.trajectory.end_time());
 }
+
+}  // namespace camera_path_test

@@ -11,6 +11,8 @@
 
 using namespace unfurl;
 
+namespace frame_builder_test {
+
 namespace {
 
 const std::string ring = R"(
@@ -186,3 +188,5 @@ TEST_CASE("frames come at the film's rate and the last one shows the end") {
   CHECK(slow.back() == result.trajectory.end_time());
   CHECK(slow[slow.size() - 2] < slow.back());
 }
+
+}  // namespace frame_builder_test

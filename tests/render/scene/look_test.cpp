@@ -11,6 +11,8 @@
 
 using namespace unfurl;
 
+namespace look_test {
+
 namespace {
 
 constexpr int width = 320, height = 180;
@@ -173,3 +175,5 @@ TEST_CASE("a ghost lets through what its colour says") {
   CHECK(at(image, -3, 0.1f).r > 80);
   CHECK(at(image, -3, 2).r == 255);
 }
+
+}  // namespace look_test

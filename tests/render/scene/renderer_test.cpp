@@ -8,6 +8,8 @@
 
 using namespace unfurl;
 
+namespace renderer_test {
+
 namespace {
 
 constexpr int width = 320, height = 180;
@@ -189,3 +191,5 @@ TEST_CASE("the same list gives the same bytes, also after another picture and in
   CHECK(other.renderer.draw(list).rgba == first.rgba);
   studio.context->make_current();  // it goes last, and needs its context
 }
+
+}  // namespace renderer_test

@@ -12,6 +12,8 @@
 
 using namespace unfurl;
 
+namespace rod_colors_test {
+
 namespace {
 
 constexpr int width = 960, height = 540;
@@ -81,3 +83,5 @@ TEST_CASE("every rod has the hue of its group wherever it is seen alone") {
   }
   CHECK(looked > 25 * 30 * 5);  // most of the rods' middles are free
 }
+
+}  // namespace rod_colors_test

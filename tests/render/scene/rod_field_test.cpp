@@ -10,6 +10,8 @@
 
 using namespace unfurl;
 
+namespace rod_field_test {
+
 namespace {
 
 // A rod of 2 m and 3 kg that turns about its fixed end at 5 rad/s, without gravity.
@@ -134,3 +136,5 @@ TEST_CASE("ghosts are earlier poses, trails end at their node") {
         1e-6);
   CHECK((list.ghosts.front().a - Vec3f(2, 0, 0)).norm() < 1e-6f);
 }
+
+}  // namespace rod_field_test

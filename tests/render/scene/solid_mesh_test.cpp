@@ -9,6 +9,8 @@
 
 using namespace unfurl;
 
+namespace solid_mesh_test {
+
 namespace {
 
 // The corners of a mesh between a = (0,0,0) and b = (0,0,length), with radius 1.
@@ -78,3 +80,5 @@ TEST_CASE("an arrow is a shaft and a cone whose tip is its head; one without len
   CHECK(solids.cylinders[1].radius_b == 0);
   CHECK(solids.cylinders[1].radius_a > solids.cylinders[0].radius_a);
 }
+
+}  // namespace solid_mesh_test

@@ -6,6 +6,8 @@
 
 using namespace unfurl;
 
+namespace view_test {
+
 namespace {
 
 // Ten metres in front of the origin, looking along +y; 90 degrees high.
@@ -45,3 +47,5 @@ TEST_CASE("the light sees its whole sphere and nothing outside") {
   }
   CHECK(at(center + 2 * direction.normalized()).z() == Approx(-0.4).margin(1e-5));  // nearer to the light
 }
+
+}  // namespace view_test

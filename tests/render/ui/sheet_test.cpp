@@ -9,6 +9,8 @@
 
 using namespace unfurl;
 
+namespace sheet_test {
+
 namespace {
 
 constexpr ImU32 black = IM_COL32(0, 0, 0, 255), red = IM_COL32(255, 0, 0, 255);
@@ -124,3 +126,5 @@ TEST_CASE("labels are aligned to the left, the middle or the right of their plac
   CHECK(box[1] >= 40);
   CHECK(box[3] < 40 + 20);
 }
+
+}  // namespace sheet_test
