@@ -219,7 +219,7 @@ class TimeLoop {
   void switch_held(const std::string& event) {
     const auto model = stops_.held_model(*base_, held_, run_.options.eliminate_linear);
     Handover after = hand_over(run_.trajectory.last_model(), now(), *model);
-    run_.events.push_back({event, now().t, after.energy_lost});
+    run_.events.push_back({event, now().t, after.energy_lost * run_.trajectory.structure().sectors});
     run_.trajectory.change_model(model);
     run_.trajectory.append(std::move(after.state), StepReport{});
     integrator_ = fresh_integrator();
@@ -295,7 +295,7 @@ class TimeLoop {
     append_deployed(event);
     const auto locked = latched_model(run_.trajectory.last_model(), run_.options.eliminate_linear);
     Handover after = hand_over(run_.trajectory.last_model(), now(), *locked);
-    run_.events.push_back({"latched", now().t, after.energy_lost});
+    run_.events.push_back({"latched", now().t, after.energy_lost * run_.trajectory.structure().sectors});
     held_.clear();  // what rests on a stop is locked there
     run_.trajectory.change_model(locked);
     run_.trajectory.append(std::move(after.state), StepReport{});
