@@ -111,6 +111,8 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
   add("structure", "model", "sector", "sector: one sector solved, all shown");
   add("solver", "eliminate_linear", "true", "linear constraints eliminated");
   add("solver", "eliminate_linear", "false", "linear constraints kept as equations");
+  add("solver", "sparse", "true", "sparse matrices");
+  add("solver", "sparse", "false", "dense matrices");
   add("structure", "mass", "consistent", "consistent mass: rigid uniform rods");
   add("structure", "mass", "lumped", "lumped mass: half of a rod at each node");
   std::vector<std::string> keys;
