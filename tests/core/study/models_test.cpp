@@ -25,7 +25,6 @@ TEST_CASE("modelling choices that promise the same answer give it") {
     CHECK(m.outcome == "completed");
     CHECK(m.difference <= 1e-10);
   }
-  CHECK(named("dense matrices").memory > named("as the scene says").memory);
   CHECK(named("lumped mass").difference > 1e-3);
   // Coordinates up to 6 m in single precision: half a unit in the last place of [4, 8) is 2.4e-7.
   const double rounding = named("single precision").difference;
