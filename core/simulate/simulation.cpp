@@ -253,12 +253,12 @@ class TimeLoop {
     return fold(now()) > singular_margin && fold(next) <= singular_margin;
   }
 
-  // Could the fold angle reach zero within a step? Its rate may double on the way.
+  // Could the fold angle reach zero within a step? Where sine * rate is constant it does so after sine / 2 rate.
   bool may_cross(double h) {
     if (deployment_.empty() || deployed_) return false;
     const double sine = fold(now());
     system().expand_rate(now().w, q_);
-    return sine > 0 && sine + 2.0 * h * deployment_.remaining_rate(q_) <= 0;
+    return sine > 0 && sine + 3.0 * h * deployment_.remaining_rate(q_) <= 0;
   }
 
   std::optional<State> locate(double h, double latest) {

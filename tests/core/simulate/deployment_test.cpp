@@ -101,6 +101,27 @@ TEST_CASE("other rings agree with their quadrature") {
     }
 }
 
+TEST_CASE("rings of many units deploy at their time, full and sector") {
+  // Near the end theta theta' is nearly constant until theta ~ sin(pi/n): a thousandth of the time is far too
+  // long a step for the last of the way, which the location of the event resolves by itself.
+  struct Case {
+    long units;
+    const char* model;
+    double steps;
+  };
+  for (const Case& c : {Case{200, "sector", 1e3}, Case{200, "sector", 1e4}, Case{1000, "sector", 1e3},
+                        Case{200, "full", 1e3}}) {
+    const exact::Hoop hoop = exact_hoop({{"units", c.units}});
+    const double end = hoop.time(0);
+    const Structure ring = hoop_structure({{"units", c.units}, {"model", std::string(c.model)}});
+    const Simulation run = simulate(make_model(ring), dvm_options(4, end / c.steps, 1.1 * end));
+    INFO(c.units << " units, " << c.model << ", " << c.steps << " steps: " << run.message);
+    REQUIRE(run.status == RunStatus::deployed);
+    // Order 6 with a thousand steps leaves 1e-9 of the time at its end; the event adds less.
+    CHECK(std::abs(run.events[0].t - end) <= 3e-9 * end);
+  }
+}
+
 TEST_CASE("constraints hold to round-off at every step size") {
   for (double h : {0.1, 0.02, 0.005, 0.0005}) {
     const Simulation run = simulate(make_model(hoop_structure()), dvm_options(3, h, 6));
