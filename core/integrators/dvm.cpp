@@ -30,7 +30,7 @@ class Dvm final : public Integrator {
         G_(system.jacobian_pattern()),
         saddle_(system.mass(), G_, c_.s - 1,
                 is_small(system, c_.s) ? SaddleSolver::standard_regularisation
-                                       : 0.1 * SaddleSolver::standard_regularisation) {
+                                       : 0.02 * SaddleSolver::standard_regularisation) {
     const Index n = system.solved_coordinates(), m = system.constraints();
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
