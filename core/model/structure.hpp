@@ -158,6 +158,7 @@ struct Structure {
   std::vector<RodCopy> rod_copies;
   std::vector<LoadCopy> load_copies;
   std::vector<std::string> notes = {};  // what was changed of the given: warnings for whoever runs it
+  double sectors = 1.0;  // how many times what is solved makes the whole: energies are reported of the whole
 };
 
 // Fill the copies with the solved nodes, rods and loads themselves.

@@ -68,18 +68,30 @@ void Framebuffer::bind() const {
   gl::Viewport(0, 0, width_, height_);
 }
 
-void Framebuffer::resolve() const {
-  if (samples_ > 0) {
-    gl::BindFramebuffer(GL_READ_FRAMEBUFFER, drawn_.framebuffer);
-    gl::BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.framebuffer);
-    gl::BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  }
+void Framebuffer::bind_resolved() const {
   gl::BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer);
+  gl::Viewport(0, 0, width_, height_);
+}
+
+void Framebuffer::blit(const Surface& from, const Surface& to, const PixelRect& p) const {
+  if (samples_ == 0 || p.empty()) return;
+  gl::BindFramebuffer(GL_READ_FRAMEBUFFER, from.framebuffer);
+  gl::BindFramebuffer(GL_DRAW_FRAMEBUFFER, to.framebuffer);
+  gl::BlitFramebuffer(p.x0, p.y0, p.x1, p.y1, p.x0, p.y0, p.x1, p.y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+void Framebuffer::spread(const PixelRect& part) const {
+  blit(resolved_, drawn_, part);
+  bind();
+}
+
+void Framebuffer::resolve(const PixelRect& part) const {
+  blit(drawn_, resolved_, part);
+  bind_resolved();
 }
 
 void Framebuffer::fill(float r, float g, float b) const {
-  gl::BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer);
-  gl::Viewport(0, 0, width_, height_);
+  bind_resolved();
   gl::Disable(GL_SCISSOR_TEST);
   gl::ClearColor(r, g, b, 1);
   gl::Clear(GL_COLOR_BUFFER_BIT);
@@ -90,7 +102,8 @@ void Framebuffer::copy(unsigned target, int target_height, int x, int y) const {
   gl::BindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.framebuffer);
   gl::BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   const int low = target_height - y - height_;
-  gl::BlitFramebuffer(0, 0, width_, height_, x, low, x + width_, low + height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl::BlitFramebuffer(0, 0, width_, height_, x, low, x + width_, low + height_, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
   gl::BindFramebuffer(GL_FRAMEBUFFER, target);
 }
 

@@ -5,6 +5,12 @@
 
 namespace unfurl {
 
+// Of a picture [pixels] from its lower left corner, as OpenGL counts: x0 <= x < x1.
+struct PixelRect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  bool empty() const { return x0 >= x1 || y0 >= y1; }
+};
+
 // RGBA8 colour and 24-bit depth of one size. Needs a current context from construction to destruction.
 class Framebuffer {
  public:
@@ -19,20 +25,27 @@ class Framebuffer {
   int height() const { return height_; }
   int samples() const { return samples_; }
 
-  void bind() const;     // draw into the (multi-sampled) picture; sets the viewport
-  void resolve() const;  // average the samples, then draw without multi-sampling: for text and panels
+  void bind() const;           // draw into the (multi-sampled) picture; sets the viewport
+  void bind_resolved() const;  // draw without multi-sampling: text, panels, what has no edges
+  // Inside a part of the picture, give every sample the colour of the resolved pixel, then draw with
+  // multi-sampling; and average the samples, then draw without.
+  void spread(const PixelRect& part) const;
+  void resolve(const PixelRect& part) const;
+  void resolve() const { resolve(whole()); }
+  PixelRect whole() const { return {0, 0, width_, height_}; }
   // Fill with one colour (0..1, no depth) and leave it bound for drawing without multi-sampling.
   void fill(float r, float g, float b) const;
   // The resolved picture into another one, or into the window's own surface of that height: its upper left
   // corner at (x, y) from the top left there. Leaves the target bound.
   void copy_to(const Framebuffer& target, int x, int y) const;
   void copy_to_window(int window_height) const;
-  Image read() const;    // what was drawn since, of the resolved picture; top row first, alpha as drawn
+  Image read() const;  // what was drawn since, of the resolved picture; top row first, alpha as drawn
 
  private:
   struct Surface {
     unsigned framebuffer = 0, color = 0, depth = 0;
   };
+  void blit(const Surface& from, const Surface& to, const PixelRect& part) const;
   void copy(unsigned target, int target_height, int x, int y) const;
   static bool make_surface(Surface& surface, int width, int height, int samples);
   static void destroy_surface(Surface& surface);

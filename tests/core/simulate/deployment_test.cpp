@@ -51,6 +51,9 @@ TEST_CASE("five stages at h = 0.01 give the deployment time to 1e-8 s, full and 
     CHECK(std::abs(d.at("fold_angle_rad").values.back()) <= 1e-12);
     CHECK(d.at("deployed_fraction").values.back() == Approx(1.0).epsilon(1e-12));
     CHECK(d.at("fold_rate_rad_s").values.back() == Approx(exact_hoop().rate(0)).epsilon(1e-9));
+    // Of the whole ring in both models: 200 N on each of twelve hinges, which come down by 3 m sin(fold angle).
+    CHECK(d.at("work_J").values.back() ==
+          Approx(12 * 200.0 * 3.0 * std::sin(d.at("fold_angle_rad").values.front())).epsilon(1e-9));
     CHECK(largest(d.at("energy_balance_J")) <=
           1e-6);  // of 7200 J: order 8 at h = 0.01 and the event's extrapolation
   }
