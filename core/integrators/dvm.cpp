@@ -10,7 +10,8 @@ namespace {
 // Levels: 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
 constexpr double wanted = 1.5, wanted_constraint = constraint_level_wanted, accepted = 30.0;
 // A system with more unknowns than this is not given the full Newton matrix, whose factors grow too fast;
-// instead its weak modes may keep a larger constraint error.
+// instead its weak modes may keep a larger constraint error. Its regularisation is below the
+// sigma^2 of those, 1e-14 in a folded ring of a thousand units, and near round-off in what is redundant.
 constexpr Index full_newton_unknowns = 2500;
 constexpr int max_frozen_iterations = 30;
 constexpr int slow_iterations = 8;
