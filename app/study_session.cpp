@@ -7,6 +7,7 @@
 #include "app/output_directory.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
+#include "render/plot/figure_data.hpp"
 
 namespace unfurl {
 
@@ -46,8 +47,9 @@ void StudySession::write(const std::string& name, const std::string& text) const
 
 std::string StudySession::write(const Figure& figure) {
   const std::string stem = "figures/" + figure.name;
-  writer_.write(figure, directory_ / (stem + ".svg"));
-  writer_.write(figure, directory_ / (stem + ".png"));
+  for (const char* extension : {".svg", ".pdf", ".png"})
+    writer_.write(figure, directory_ / (stem + extension));
+  write_figure_data(figure, directory_ / (stem + ".png"));
   return stem + ".png";
 }
 

@@ -80,7 +80,8 @@ TEST_CASE("shards of a sweep merge into the whole") {
   const std::string merged = file_text(dir / "out/sweep.csv");
   CHECK(merged.starts_with("structure.fold_angle,outcome,deploy_time_s,peak_rod_force_N\n40,deployed,"));
   CHECK(lines(merged) == 6);
-  CHECK(fs::exists(dir / "out/figures/sweep_deploy_time.svg"));
+  for (const char* end : {".svg", ".pdf", ".png", ".csv", ".caption.txt"})
+    CHECK(fs::exists(dir / "out/figures/sweep_deploy_time" + end));
 
   fs::remove(dir / "out/sweep_2_of_2.csv");
   fs::remove(dir / "out/sweep.csv");
