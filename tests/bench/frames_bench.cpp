@@ -1,4 +1,5 @@
-// Frames a second, split into simulate, build, draw, read back and encode; then all of it with files on disk.
+// ./dev bench: frames a second, split into simulate, build, draw, read back and encode; then all of it with
+// files on disk. Printed and written as CSV (first argument, else bench_frames.csv).
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -34,7 +35,7 @@ double seconds(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void bench(const char* name, const std::vector<std::string>& overrides) {
+void bench(std::FILE* csv, const char* name, const std::vector<std::string>& overrides) {
   const Scene scene = read_scene_file(find_scene("hoop6"), overrides);
   auto model = build_model(scene);
   std::unique_ptr<Simulation> run;
@@ -77,19 +78,31 @@ void bench(const char* name, const std::vector<std::string>& overrides) {
   std::printf("%-10s %9.3f %9.3f %7.2f %7.2f %9.2f %7.2f %9.1f %9.1f\n", name, simulating, preparing,
               ms * building, ms * drawing, ms * reading, ms * encoding, frames / whole, ms * cpu);
   std::fflush(stdout);
+  std::fprintf(csv, "%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", name, simulating, preparing,
+               ms * building, ms * drawing, ms * reading, ms * encoding, frames / whole, ms * cpu);
 }
 
 }  // namespace
 
-int main() {
+int main(int count, char** words) {
+  const char* path = count > 1 ? words[1] : "bench_frames.csv";
+  std::FILE* csv = std::fopen(path, "w");
+  if (!csv) {
+    std::fprintf(stderr, "cannot write %s\n", path);
+    return 5;
+  }
+  std::fprintf(csv,
+               "units,simulate_s,prepare_s,build_ms,draw_ms,read_back_ms,encode_ms,all_fps,all_cpu_ms\n");
   std::printf(
       "1280 x 720, 4 samples a pixel, shadows; CPU time of all threads\n%-10s %9s %9s %7s %7s %9s %7s %9s "
       "%9s\n",
       "", "simulate", "prepare", "build", "draw", "read back", "encode", "all, with", "all, CPU");
   std::printf("%-10s %9s %9s %7s %7s %9s %7s %9s %9s\n", "units", "(s)", "(s)", "(ms)", "(ms)", "(ms)",
               "(ms)", "files (fps)", "(ms)");
-  bench("6", {});
-  bench("24", {"structure.units=24", "structure.fold_angle=85"});
-  bench("100",
+  bench(csv, "6", {});
+  bench(csv, "24", {"structure.units=24", "structure.fold_angle=85"});
+  bench(csv, "100",
         {"structure.units=100", "structure.fold_angle=85", "structure.model=sector", "solver.end_time=40"});
+  if (std::fclose(csv) != 0) return 5;
+  std::printf("\n%s\n", path);
 }
