@@ -5,6 +5,7 @@
 
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
+#include "app/run_figures.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
 #include "render/plot/figure_data.hpp"
@@ -18,7 +19,8 @@ StudySession::StudySession(const Arguments& arguments, std::string task, const s
     : arguments_(arguments),
       directory_(open_output_directory(arguments.output, arguments.force)),
       journal_(std::move(journal)),
-      progress_(std::move(task), arguments.quiet) {
+      progress_(std::move(task), arguments.quiet),
+      writer_(figure_options(arguments)) {
   const fs::path scene = directory_ / "scene.toml", results = directory_ / journal_;
   std::error_code error;
   const bool begun = fs::exists(results, error);

@@ -72,6 +72,7 @@ TEST_CASE("shards of a sweep merge into the whole") {
   const std::vector<std::string> sweep = {"sweep",     "hoop6_sector",
                                           "--vary",    "structure.fold_angle=40:60:5",
                                           "--measure", "deploy_time,peak_rod_force",
+                                          "--dpi",     "100",
                                           "-o",        dir / "out"};
   for (const char* shard : {"1/2", "2/2"})
     CHECK(run_program(sweep + std::vector<std::string>{"--shard", shard}).code == 0);
