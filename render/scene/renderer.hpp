@@ -53,7 +53,7 @@ class Renderer {
   void draw_solids(const DrawList& list, const View& view);
   void draw_outlines(const DrawList& list, const View& view);
   void draw_ghosts(const DrawList& list, const View& view);
-  void draw_bodies() const;
+  void draw_bodies(const Program& program) const;
   static void begin_blending();
   static void end_blending();
   void set_background(const Program& program, const DrawList& list) const;
