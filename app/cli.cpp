@@ -92,6 +92,13 @@ void add_study_options(CLI::App& parser, StudyArguments& study) {
   parser.add_option("--between", study.between);
 }
 
+void add_view_options(CLI::App& parser, ViewArguments& view) {
+  parser.add_option("--picture", view.picture);
+  parser.add_option("--at", view.at)->check(CLI::Range(0.0, 1e9));
+  parser.add_flag("--dark", view.dark);
+  parser.add_flag("--bench", view.bench);
+}
+
 Parsed parse(const Command& command, const std::vector<std::string>& words) {
   Parsed parsed;
   Arguments& a = parsed.arguments;
@@ -116,6 +123,7 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_flag("-h,--help", parsed.help);
   parser.add_option("--tolerance", tolerance);
   add_study_options(parser, a.study);
+  add_view_options(parser, a.view);
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {

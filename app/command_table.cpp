@@ -25,7 +25,8 @@ constexpr Command table[] = {
      true, cmd_poster},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
      1, 1, false, cmd_check},
-    {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view},
+    {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
+     "--picture --at --dark --bench"},
     {"list", "structures|methods|figures|scenes|constraints|forces|looks|measures",
      "what there is to choose from", 1, 1, false, cmd_list},
 };

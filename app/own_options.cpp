@@ -17,6 +17,10 @@ constexpr OwnOption rows[] = {
     {"--find", "KEY", "the key of the scene that is solved for"},
     {"--target", "NAME=VALUE", "the measure (unfurl list measures) and what it shall be"},
     {"--between", "LOW:HIGH", "look for the key between these (default: around its value in the scene)"},
+    {"--picture", "FILE.png", "no window: the panel as it opens, as large as --size says"},
+    {"--at", "SECONDS", "of the motion: where it stands at first"},
+    {"--dark", "", "light text on a dark ground"},
+    {"--bench", "", "no person: frames per second, where their time goes, and the price of idling"},
     {"--models", "", "compare models of the scene instead of methods"},
 };
 

@@ -1,7 +1,9 @@
 #include "app/panel/control_panel.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "app/panel/panes.hpp"
 #include "app/panel/shortcuts.hpp"
@@ -188,7 +190,7 @@ void ControlPanel::take_results() {
       else
         update_picture();
       const Trajectory& trajectory = state_.shown->simulation.trajectory;
-      if (first) state_.playback.t = trajectory.start_time();
+      if (first) state_.playback.t = options_.at;
       state_.playback.t = std::clamp(state_.playback.t, trajectory.start_time(), trajectory.end_time());
     }
   }
@@ -232,6 +234,16 @@ void ControlPanel::follow_document() {
   settling_ = std::max(settling_, 2);
 }
 
+template <class Part>
+void ControlPanel::timed(double& sum, const Part& part) {
+  if (!options_.measured) return part();
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  part();
+  picture_->finish();
+  sum += std::chrono::duration<double>(Clock::now() - start).count();
+}
+
 // The edge between two panes, to drag. `way`: of a wider pane.
 void ControlPanel::draw_splitter(const char* name, float x, float top, float bottom, float& width,
                                  float way) {
@@ -266,7 +278,9 @@ void ControlPanel::draw_panes() {
     draw_scene_pane(ui_, state_);
   }
   view_place_ = {left, top, width - right, bottom};
-  view_.prepare(static_cast<int>(view_place_.width()), static_cast<int>(view_place_.height()), state_);
+  timed(times_.scene, [&] {
+    view_.prepare(static_cast<int>(view_place_.width()), static_cast<int>(view_place_.height()), state_);
+  });
   {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     const Pane pane("view", left, top, width - right - left, bottom - top,
@@ -277,7 +291,7 @@ void ControlPanel::draw_panes() {
   if (right > 0) {
     const Pane pane("figures", width - right, top, right, bottom - top,
                     ImGuiWindowFlags_AlwaysVerticalScrollbar);
-    draw_figure_pane(ui_, state_, cards_);
+    timed(times_.figures, [&] { draw_figure_pane(ui_, state_, cards_); });
   }
   {
     const Pane pane("timeline", 0, bottom, width, height - bottom, ImGuiWindowFlags_NoScrollWithMouse);
@@ -292,11 +306,22 @@ void ControlPanel::draw_panes() {
 }
 
 void ControlPanel::paint() {
-  view_.paint(state_);
-  const ImVec4& ground = ui_.theme.window;
-  picture_->fill(ground.x, ground.y, ground.z);
-  view_.copy_to(*picture_, static_cast<int>(view_place_.x0), static_cast<int>(view_place_.y0));
-  painter_->draw(*ImGui::GetDrawData());
+  timed(times_.scene, [&] {
+    view_.paint(state_);
+    const ImVec4& ground = ui_.theme.window;
+    picture_->fill(ground.x, ground.y, ground.z);
+    view_.copy_to(*picture_, static_cast<int>(view_place_.x0), static_cast<int>(view_place_.y0));
+  });
+  timed(times_.painting, [&] { painter_->draw(*ImGui::GetDrawData()); });
+}
+
+void ControlPanel::settle() {
+  frame(0);
+  while (simulating() || state_.pending) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    frame(0, false);
+  }
+  for (int i = 0; i < 4; ++i) frame(0);
 }
 
 bool ControlPanel::frame(double seconds, bool visible) {
@@ -320,11 +345,16 @@ bool ControlPanel::frame(double seconds, bool visible) {
   io.DisplaySize = {static_cast<float>(options_.width), static_cast<float>(options_.height)};
   io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 0.25));
   ui_.places.clear();
-  ImGui::NewFrame();
-  ImGui::PushFont(ui_.regular);
-  draw_panes();
-  ImGui::PopFont();
-  ImGui::Render();
+  times_ = {};
+  double building = 0;
+  timed(building, [&] {
+    ImGui::NewFrame();
+    ImGui::PushFont(ui_.regular);
+    draw_panes();
+    ImGui::PopFont();
+    ImGui::Render();
+  });
+  times_.widgets = building - times_.scene - times_.figures;
   follow_document();
   if (visible) paint();
   settling_ = std::max(0, settling_ - 1);

@@ -45,7 +45,7 @@ void draw_cursor(Ui& ui, PanelState& state, const plot::PanelLayout& panel, cons
                                 state.shown->simulation.trajectory.end_time());
 }
 
-void draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
+Placed draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
   const Placed place{ImGui::GetCursorScreenPos(), figure_pixels_per_point * ui.scale};
   const ImVec2 size(static_cast<float>(card.layout.width * place.scale),
                     static_cast<float>(card.layout.height * place.scale));
@@ -64,6 +64,7 @@ void draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
       draw_cursor(ui, state, card.layout.panels[i], place, "figure " + name + " " + std::to_string(i));
   ImGui::SetCursorScreenPos({place.origin.x, high.y + ui.px(4)});
   ImGui::Dummy({0, 0});
+  return place;
 }
 
 // A header that opens and closes; returns whether it is open.
@@ -80,12 +81,32 @@ bool draw_header(Ui& ui, FigureCard& card, std::string title, const std::string&
   return card.open;
 }
 
+// Says which settings the point under the pointer had.
+void name_point(Ui& ui, const PanelState& state, const FigureCard& card, const Placed& place) {
+  const plot::PanelLayout& panel = card.layout.panels.front();
+  ui.places["trade points"] = {place.x(panel.frame.x0), place.y(panel.frame.y0), place.x(panel.frame.x1),
+                               place.y(panel.frame.y1)};
+  const plot::Point now = mark_of(state.trade.back(), panel);
+  ui.places["trade now"] = {place.x(now.x) - 1, place.y(now.y) - 1, place.x(now.x) + 1, place.y(now.y) + 1};
+  if (!ImGui::IsWindowHovered()) return;
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const plot::Point at{(mouse.x - place.origin.x) / place.scale, (mouse.y - place.origin.y) / place.scale};
+  const std::size_t i = nearest_point(state.trade, panel, at, 6);
+  if (i == state.trade.size()) return;
+  const plot::Point mark = mark_of(state.trade[i], panel);
+  ImGui::GetWindowDrawList()->AddCircle({place.x(mark.x), place.y(mark.y)}, ui.px(7),
+                                        ui.color(ui.theme.accent), 0, ui.px(2));
+  ImGui::SetTooltip("%s", point_caption(state.trade[i]).c_str());
+  ui.places["trade point"] = ui.places["trade now"];
+}
+
 void draw_trade(Ui& ui, PanelState& state, FigureCards& cards) {
   if (state.trade.empty()) return;
   const char* help = "CPU time and energy error of every run of this session";
   if (!draw_header(ui, cards.trade(), "Speed against accuracy", "trade", help)) return;
   cards.make_trade(state.trade);
-  draw_figure(ui, state, cards.trade());
+  const Placed place = draw_figure(ui, state, cards.trade());
+  name_point(ui, state, cards.trade(), place);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/scene/build.hpp"
+#include "core/study/tolerance.hpp"
 
 namespace unfurl {
 
@@ -60,7 +61,7 @@ SimulationOutcome Simulator::run(long id, const SceneDocument& document) {
     SimulationHooks hooks;
     hooks.progress = [this](double fraction) { notify(fraction); };
     hooks.cancelled = [this, id] { return stale(id); };
-    Simulation simulation = simulate(build_model(scene), scene.solver, hooks);
+    Simulation simulation = simulate_as_asked(build_model(scene), scene.solver, hooks);
     if (stale(id)) return outcome;
     Diagnostics diagnostics = diagnose(simulation);
     std::vector<std::string> warnings = simulation.warnings;

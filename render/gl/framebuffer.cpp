@@ -102,6 +102,10 @@ void Framebuffer::copy_to_window(int window_height) const {
   copy(0, window_height, 0, 0);
 }
 
+void Framebuffer::finish() const {
+  gl::Finish();
+}
+
 Image Framebuffer::read() const {
   Image image{width_, height_, {}};
   const auto row = 4 * static_cast<std::size_t>(width_);

@@ -27,6 +27,7 @@ class Framebuffer {
   // corner at (x, y) from the top left there. Leaves the target bound.
   void copy_to(const Framebuffer& target, int x, int y) const;
   void copy_to_window(int window_height) const;
+  void finish() const;  // wait until everything so far is drawn: for clocks
   Image read() const;    // what was drawn since, of the resolved picture; top row first, alpha as drawn
 
  private:

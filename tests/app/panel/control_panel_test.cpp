@@ -234,9 +234,26 @@ TEST_CASE("every run of a session is a point of speed against accuracy") {
   REQUIRE(driver.state().trade.size() == 3);
   CHECK(driver.state().trade[1].error > driver.state().trade[0].error);  // order 2 against order 4
   const Figure figure = trade_figure(driver.state().trade);
-  REQUIRE(figure.panels.at(0).curves.size() == 3);  // two methods, and the present point
-  CHECK(figure.panels[0].curves[2].y.at(0) == driver.state().trade[2].error);
-  CHECK(driver.panel().has_place("card trade"));
+  REQUIRE(figure.panels.at(0).curves.size() == 4);  // the trail, two methods, and the present point
+  CHECK(figure.panels[0].curves[0].x.size() == 3);
+  CHECK(figure.panels[0].curves[3].y.at(0) == driver.state().trade[2].error);
+  CHECK(driver.state().trade[0].setting == "dvm, 3 stages, step 0.05 s");
+  CHECK(driver.state().trade[2].setting == "rk4, step 0.05 s");
+  REQUIRE(driver.panel().has_place("trade now"));
+  driver.move_to("trade now");
+  CHECK(driver.panel().has_place("trade point"));  // named
+  driver.move_to("trade points", 0.999, 0.001);
+  CHECK_FALSE(driver.panel().has_place("trade point"));
+}
+
+TEST_CASE("the panel picks stages and step for a tolerance as the command line does") {
+  PanelDriver driver;
+  driver.state().history.edit("solver.tolerance", 1e-4);
+  driver.settle();
+  const Simulation& run = driver.state().shown->simulation;
+  CHECK(run.position_estimate <= 1e-4);
+  CHECK(run.options.step != 0.05);
+  CHECK(driver.state().trade.back().position_error == run.position_estimate);
 }
 
 TEST_CASE("nothing is painted again where nothing changed") {

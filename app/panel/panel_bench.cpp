@@ -1,0 +1,68 @@
+#include "app/panel/panel_bench.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <tuple>
+
+namespace unfurl {
+
+namespace {
+
+struct Sums {
+  double wall = 0, cpu = 0, showing = 0;
+  FrameTimes times;
+};
+
+Sums run_frames(ControlPanel& panel, const std::function<void()>& show, int frames, bool turns, bool plays) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point t) {
+    return std::chrono::duration<double>(Clock::now() - t).count();
+  };
+  PanelState& state = panel.state();
+  Sums sums;
+  const std::clock_t cpu = std::clock();  // of all threads: software OpenGL draws with several
+  const auto start = Clock::now();
+  for (int i = 0; i < frames; ++i) {
+    if (turns) state.orbit->azimuth += 0.03f;
+    state.playback.playing = plays;
+    panel.frame(1.0 / 30);
+    const auto drawn = Clock::now();
+    show();
+    sums.showing += since(drawn);
+    const FrameTimes& t = panel.frame_times();
+    sums.times.scene += t.scene;
+    sums.times.figures += t.figures;
+    sums.times.widgets += t.widgets;
+    sums.times.painting += t.painting;
+  }
+  sums.wall = since(start);
+  sums.cpu = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+  state.playback.playing = false;
+  return sums;
+}
+
+}  // namespace
+
+std::string measure_panel(ControlPanel& panel, const std::function<void()>& show, int frames) {
+  panel.settle();
+  char line[256];
+  std::snprintf(line, sizeof line, "%-18s %9s %9s %9s | %7s %8s %8s %9s %8s  (ms a frame)\n", "", "frames/s",
+                "wall ms", "CPU ms", "scene", "figures", "widgets", "painting", "showing");
+  std::string text = line;
+  panel.state().orbit = panel.framed();
+  for (const auto& [name, turns, plays] :
+       {std::tuple("the view turns", true, false), std::tuple("the motion plays", false, true),
+        std::tuple("both", true, true)}) {
+    run_frames(panel, show, 5, turns, plays);  // shaders are compiled, buffers made
+    const Sums s = run_frames(panel, show, frames, turns, plays);
+    const double ms = 1000.0 / frames;
+    std::snprintf(line, sizeof line, "%-18s %9.1f %9.2f %9.2f | %7.2f %8.2f %8.2f %9.2f %8.2f\n", name,
+                  frames / s.wall, ms * s.wall, ms * s.cpu, ms * s.times.scene, ms * s.times.figures,
+                  ms * s.times.widgets, ms * s.times.painting, ms * s.showing);
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace unfurl
