@@ -16,6 +16,9 @@ namespace unfurl {
 namespace {
 
 constexpr std::size_t most_trade_points = 200;
+// Fewer frames a second than 30, and that so many times in a row.
+constexpr double slow_frame = 1.0 / 30;
+constexpr int slow_enough = 3;
 constexpr float bar_height = 46, timeline_height = 58;  // [points]
 
 // One pane: an ImGui window that fills a rectangle.
@@ -125,6 +128,7 @@ void ControlPanel::resize(int width, int height) {
   picture_.reset();
   picture_ =
       std::make_unique<Framebuffer>(options_.width, options_.height, 0);  // ImGui smooths its own edges
+  damage_.forget();
   settling_ = 3;
 }
 
@@ -291,7 +295,13 @@ void ControlPanel::draw_panes() {
   if (right > 0) {
     const Pane pane("figures", width - right, top, right, bottom - top,
                     ImGuiWindowFlags_AlwaysVerticalScrollbar);
+    ui_.cursors.clear();
     timed(times_.figures, [&] { draw_figure_pane(ui_, state_, cards_); });
+  }
+  if (right > 0) {
+    const Pane pane("cursors", width - right, top, right, bottom - top,
+                    ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoBackground);
+    draw_cursors(ui_);
   }
   {
     const Pane pane("timeline", 0, bottom, width, height - bottom, ImGuiWindowFlags_NoScrollWithMouse);
@@ -305,14 +315,32 @@ void ControlPanel::draw_panes() {
   list.AddRectFilled({0, 0}, {width, top}, ui_.color(ui_.theme.window));
 }
 
-void ControlPanel::paint() {
-  timed(times_.scene, [&] {
-    view_.paint(state_);
-    const ImVec4& ground = ui_.theme.window;
-    picture_->fill(ground.x, ground.y, ground.z);
-    view_.copy_to(*picture_, static_cast<int>(view_place_.x0), static_cast<int>(view_place_.y0));
-  });
-  timed(times_.painting, [&] { painter_->draw(*ImGui::GetDrawData()); });
+// While something moves and frames take long, smooth edges wait until it rests.
+bool ControlPanel::coarse_view(double seconds) {
+  const bool moves = state_.playback.playing || view_.moved(state_) || ImGui::IsAnyMouseDown();
+  if (slow_frames_ < slow_enough && moves && seconds > 0)
+    slow_frames_ = seconds > slow_frame ? slow_frames_ + 1 : 0;
+  return moves && slow_frames_ >= slow_enough;
+}
+
+// What is as it was stays; the view's picture goes below whatever lies over it.
+void ControlPanel::paint(bool coarse) {
+  const plot::Rect& v = view_place_;
+  std::vector<plot::Rect> parts = damage_.update(*ImGui::GetDrawData());
+  bool copied = false;
+  timed(times_.scene, [&] { copied = view_.paint(state_, coarse); });
+  const auto below = [&](const plot::Rect& part) { return part.overlaps(v); };
+  if (copied || std::any_of(parts.begin(), parts.end(), below)) parts.push_back(v);
+  const ImVec4& ground = ui_.theme.window;
+  for (const plot::Rect& part : merged(std::move(parts))) {
+    const int x = static_cast<int>(part.x0), y = static_cast<int>(part.y0);
+    timed(times_.scene, [&] {
+      picture_->fill(ground.x, ground.y, ground.z, x, y, static_cast<int>(part.width()),
+                     static_cast<int>(part.height()));
+      if (below(part)) view_.copy_to(*picture_, static_cast<int>(v.x0), static_cast<int>(v.y0));
+    });
+    timed(times_.painting, [&] { painter_->draw(*ImGui::GetDrawData(), part); });
+  }
 }
 
 void ControlPanel::settle() {
@@ -356,9 +384,10 @@ bool ControlPanel::frame(double seconds, bool visible) {
   });
   times_.widgets = building - times_.scene - times_.figures;
   follow_document();
-  if (visible) paint();
+  if (visible) paint(coarse_view(seconds));
   settling_ = std::max(0, settling_ - 1);
-  return settling_ > 0 || !events_.empty() || state_.playback.playing || io.WantTextInput;
+  return settling_ > 0 || !events_.empty() || state_.playback.playing || io.WantTextInput ||
+         (visible && view_.coarse());
 }
 
 }  // namespace unfurl

@@ -14,6 +14,7 @@
 #include "app/panel/settings.hpp"
 #include "app/panel/ui.hpp"
 #include "render/gl/framebuffer.hpp"
+#include "render/ui/draw_damage.hpp"
 #include "render/ui/imgui_painter.hpp"
 
 namespace unfurl {
@@ -74,7 +75,8 @@ class ControlPanel {
   void update_picture();
   void draw_panes();
   void draw_splitter(const char* name, float x, float top, float bottom, float& width, float way);
-  void paint();
+  bool coarse_view(double seconds);
+  void paint(bool coarse);
   // Runs a part of a frame and adds its time to `sum`.
   template <class Part>
   void timed(double& sum, const Part& part);
@@ -83,6 +85,8 @@ class ControlPanel {
   PanelOptions options_;
   PanelState state_;
   ImGuiContext* imgui_ = nullptr;
+  DrawDamage damage_;
+  int slow_frames_ = 0;  // in a row, while something moves
   std::unique_ptr<ImguiPainter> painter_;
   std::unique_ptr<Framebuffer> picture_;
   Ui ui_;

@@ -29,9 +29,8 @@ void draw_cursor(Ui& ui, PanelState& state, const plot::PanelLayout& panel, cons
   const double t = state.playback.t;
   const double at = panel.x.scale(t);
   if (at >= frame.x0 - 0.5 && at <= frame.x1 + 0.5)
-    ImGui::GetWindowDrawList()->AddLine({std::floor(place.x(at)), place.y(frame.y0)},
-                                        {std::floor(place.x(at)), place.y(frame.y1)},
-                                        ui.color(ui.theme.error, 0.9f), std::max(1.0f, ui.px(1.2f)));
+    ui.cursors.push_back(
+        {std::floor(place.x(at)), place.y(frame.y0), std::floor(place.x(at)), place.y(frame.y1)});
   ImGui::SetCursorScreenPos({place.x(frame.x0), place.y(frame.y0)});
   ImGui::InvisibleButton(key.c_str(),
                          {place.x(frame.x1) - place.x(frame.x0), place.y(frame.y1) - place.y(frame.y0)});
@@ -122,6 +121,13 @@ void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards) {
     cards.make(card);
     draw_figure(ui, state, card);
   }
+}
+
+void draw_cursors(const Ui& ui) {
+  for (const plot::Rect& line : ui.cursors)
+    ImGui::GetWindowDrawList()->AddLine({static_cast<float>(line.x0), static_cast<float>(line.y0)},
+                                        {static_cast<float>(line.x1), static_cast<float>(line.y1)},
+                                        ui.color(ui.theme.error, 0.9f), std::max(1.0f, ui.px(1.2f)));
 }
 
 }  // namespace unfurl

@@ -4,17 +4,20 @@
 #include <cstdio>
 #include <ctime>
 #include <tuple>
+#include <utility>
 
 namespace unfurl {
 
 namespace {
 
 struct Sums {
+  int frames = 0;
   double wall = 0, cpu = 0, showing = 0;
   FrameTimes times;
 };
 
-Sums run_frames(ControlPanel& panel, const std::function<void()>& show, int frames, bool turns, bool plays) {
+Sums run_frames(ControlPanel& panel, const std::function<void()>& show, double seconds, bool turns,
+                bool plays) {
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point t) {
     return std::chrono::duration<double>(Clock::now() - t).count();
@@ -23,10 +26,13 @@ Sums run_frames(ControlPanel& panel, const std::function<void()>& show, int fram
   Sums sums;
   const std::clock_t cpu = std::clock();  // of all threads: software OpenGL draws with several
   const auto start = Clock::now();
-  for (int i = 0; i < frames; ++i) {
+  double last = 0;
+  while (last < seconds) {
+    ++sums.frames;
+    const double now = since(start);
     if (turns) state.orbit->azimuth += 0.03f;
     state.playback.playing = plays;
-    panel.frame(1.0 / 30);
+    panel.frame(now - std::exchange(last, now));
     const auto drawn = Clock::now();
     show();
     sums.showing += since(drawn);
@@ -44,25 +50,22 @@ Sums run_frames(ControlPanel& panel, const std::function<void()>& show, int fram
 
 }  // namespace
 
-std::string measure_panel(ControlPanel& panel, const std::function<void()>& show, int frames) {
+void measure_panel(ControlPanel& panel, const std::function<void()>& show, double seconds) {
   panel.settle();
-  char line[256];
-  std::snprintf(line, sizeof line, "%-18s %9s %9s %9s | %7s %8s %8s %9s %8s  (ms a frame)\n", "", "frames/s",
-                "wall ms", "CPU ms", "scene", "figures", "widgets", "painting", "showing");
-  std::string text = line;
+  std::printf("%-17s %9s %8s %8s | %6s %8s %8s %9s %8s\n", "", "frames/s", "wall", "CPU", "scene", "figures",
+              "widgets", "painting", "showing");
   panel.state().orbit = panel.framed();
   for (const auto& [name, turns, plays] :
        {std::tuple("the view turns", true, false), std::tuple("the motion plays", false, true),
         std::tuple("both", true, true)}) {
-    run_frames(panel, show, 5, turns, plays);  // shaders are compiled, buffers made
-    const Sums s = run_frames(panel, show, frames, turns, plays);
-    const double ms = 1000.0 / frames;
-    std::snprintf(line, sizeof line, "%-18s %9.1f %9.2f %9.2f | %7.2f %8.2f %8.2f %9.2f %8.2f\n", name,
-                  frames / s.wall, ms * s.wall, ms * s.cpu, ms * s.times.scene, ms * s.times.figures,
-                  ms * s.times.widgets, ms * s.times.painting, ms * s.showing);
-    text += line;
+    run_frames(panel, show, 0.2, turns, plays);  // shaders are compiled, buffers made
+    const Sums s = run_frames(panel, show, seconds, turns, plays);
+    const double ms = 1000.0 / s.frames;
+    std::printf("%-17s %9.1f %8.2f %8.2f | %6.2f %8.2f %8.2f %9.2f %8.2f  ms a frame\n", name,
+                s.frames / s.wall, ms * s.wall, ms * s.cpu, ms * s.times.scene, ms * s.times.figures,
+                ms * s.times.widgets, ms * s.times.painting, ms * s.showing);
+    std::fflush(stdout);
   }
-  return text;
 }
 
 }  // namespace unfurl

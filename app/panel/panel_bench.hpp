@@ -2,14 +2,13 @@
 #pragma once
 
 #include <functional>
-#include <string>
 
 #include "app/panel/control_panel.hpp"
 
 namespace unfurl {
 
-// A line for a person for each of: the view turns, the motion plays, both. The panel must have been made with
-// PanelOptions::measured. `show` brings a picture to the screen; its time counts.
-std::string measure_panel(ControlPanel& panel, const std::function<void()>& show, int frames = 60);
+// Prints a line for each of: the view turns, the motion plays, both, each for so many seconds. The panel must
+// have been made with PanelOptions::measured. `show` brings a picture to the screen; its time counts.
+void measure_panel(ControlPanel& panel, const std::function<void()>& show, double seconds = 3);
 
 }  // namespace unfurl

@@ -13,6 +13,7 @@ void draw_top_bar(Ui& ui, PanelState& state);
 void draw_scene_pane(Ui& ui, PanelState& state);                       // left
 void draw_view_pane(Ui& ui, PanelState& state, SceneView& view);       // centre
 void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards);  // right
+void draw_cursors(const Ui& ui);                                       // over the figures
 void draw_timeline(Ui& ui, PanelState& state);                         // bottom
 void draw_help(Ui& ui, PanelState& state);
 void draw_export(Ui& ui, PanelState& state, ExportProcess& job);

@@ -60,7 +60,8 @@ FrameStyle style_of(const LiveRun& run, const RenderOptions& picture) {
 }  // namespace
 
 bool SceneView::Painted::operator==(const Painted& o) const {
-  return run == o.run && ghost == o.ghost && t == o.t && dark == o.dark && same(camera, o.camera);
+  return run == o.run && ghost == o.ghost && t == o.t && dark == o.dark && coarse == o.coarse &&
+         same(camera, o.camera);
 }
 
 void SceneView::rebuild(PanelState& state) {
@@ -140,11 +141,15 @@ DrawList SceneView::decorated(const PanelState& state) const {
   return list;
 }
 
-bool SceneView::paint(const PanelState& state) {
+bool SceneView::moved(const PanelState& state) const {
+  return builder_ && (t_ != painted_.t || !same(camera(state), painted_.camera));
+}
+
+bool SceneView::paint(const PanelState& state, bool coarse) {
   if (!builder_) return false;
-  const Painted wanted{run_.get(), ghost_run_.get(), t_, camera(state), dark_};
+  const Painted wanted{run_.get(), ghost_run_.get(), t_, camera(state), dark_, coarse};
   if (wanted == painted_) return false;
-  renderer_->paint(decorated(state));
+  renderer_->paint(decorated(state), coarse);
   painted_ = wanted;
   ++paints_;
   return true;

@@ -17,8 +17,12 @@ class SceneView {
   // Before anything else of a frame. Cheap where nothing changed.
   void prepare(int width, int height, PanelState& state);
   bool ready() const { return builder_ != nullptr; }
-  // Paint where something changed since the last time; returns whether.
-  bool paint(const PanelState& state);
+  // Paint where something changed since the last time; returns whether. `coarse`: with jagged edges, in half
+  // the time; again, once it is not asked for.
+  bool paint(const PanelState& state, bool coarse);
+  bool coarse() const { return painted_.coarse; }
+  // Does it show another time or stand elsewhere than in the last picture?
+  bool moved(const PanelState& state) const;
   void copy_to(const Framebuffer& target, int x, int y) const;
 
   Camera camera(const PanelState& state) const;
@@ -36,7 +40,7 @@ class SceneView {
     const LiveRun *run = nullptr, *ghost = nullptr;
     double t = 0;
     Camera camera;
-    bool dark = false;
+    bool dark = false, coarse = false;
     bool operator==(const Painted& o) const;
   };
   void rebuild(PanelState& state);

@@ -186,7 +186,7 @@ class Host {
     sdl().GL_SetSwapInterval(0);
     std::printf("%s, %d x %d pixels\n", window_.description().c_str(), panel_->picture().width(),
                 panel_->picture().height());
-    std::printf("%s", measure_panel(*panel_, [this] { window_.show(panel_->picture()); }).c_str());
+    measure_panel(*panel_, [this] { window_.show(panel_->picture()); });
     panel_->settle();
     constexpr double idle = 10;  // [s]
     SDL_Event event;

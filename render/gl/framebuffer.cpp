@@ -63,8 +63,8 @@ Framebuffer::~Framebuffer() {
   destroy_surface(resolved_);
 }
 
-void Framebuffer::bind() const {
-  gl::BindFramebuffer(GL_FRAMEBUFFER, samples_ > 0 ? drawn_.framebuffer : resolved_.framebuffer);
+void Framebuffer::bind(bool coarse) const {
+  gl::BindFramebuffer(GL_FRAMEBUFFER, samples_ > 0 && !coarse ? drawn_.framebuffer : resolved_.framebuffer);
   gl::Viewport(0, 0, width_, height_);
 }
 
@@ -77,12 +77,14 @@ void Framebuffer::resolve() const {
   gl::BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer);
 }
 
-void Framebuffer::fill(float r, float g, float b) const {
+void Framebuffer::fill(float r, float g, float b, int x, int y, int width, int height) const {
   gl::BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer);
   gl::Viewport(0, 0, width_, height_);
-  gl::Disable(GL_SCISSOR_TEST);
+  gl::Enable(GL_SCISSOR_TEST);
+  gl::Scissor(x, height_ - y - height, width, height);
   gl::ClearColor(r, g, b, 1);
   gl::Clear(GL_COLOR_BUFFER_BIT);
+  gl::Disable(GL_SCISSOR_TEST);
 }
 
 void Framebuffer::copy(unsigned target, int target_height, int x, int y) const {
@@ -90,7 +92,8 @@ void Framebuffer::copy(unsigned target, int target_height, int x, int y) const {
   gl::BindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.framebuffer);
   gl::BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   const int low = target_height - y - height_;
-  gl::BlitFramebuffer(0, 0, width_, height_, x, low, x + width_, low + height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl::BlitFramebuffer(0, 0, width_, height_, x, low, x + width_, low + height_, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
   gl::BindFramebuffer(GL_FRAMEBUFFER, target);
 }
 

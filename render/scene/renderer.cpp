@@ -242,7 +242,7 @@ bool Renderer::upload_solids(const DrawList& list) {
   return moved;
 }
 
-void Renderer::paint(const DrawList& list) {
+void Renderer::paint(const DrawList& list, bool coarse) {
   const bool moved = upload_solids(list);
   const float aspect = static_cast<float>(frame_.width()) / static_cast<float>(frame_.height());
   const Matrix4f view = view_projection(list.camera, aspect);
@@ -259,7 +259,7 @@ void Renderer::paint(const DrawList& list) {
   shadows_from_ = light;
   shadow_map_.use_as_texture(0);
   shade_on_floor_.use_as_texture(1);
-  frame_.bind();
+  frame_.bind(coarse);
   gl::ClearColor(0, 0, 0, 0);  // where there is a background it covers what is left
   gl::Clear(GL_DEPTH_BUFFER_BIT | (list.transparent ? GL_COLOR_BUFFER_BIT : 0U));
   draw_solids(list, view, light);
@@ -268,7 +268,7 @@ void Renderer::paint(const DrawList& list) {
   gl::Enable(GL_CULL_FACE);
   draw_ghosts(list, view, light);
   gl::Disable(GL_CULL_FACE);
-  frame_.resolve();
+  if (!coarse) frame_.resolve();
   text_.draw(list, frame_.width(), frame_.height());
   transparent_ = list.transparent;
 }
