@@ -81,6 +81,7 @@ void refuse_foreign_options(const CLI::App& parser, const Command& command) {
 void add_study_options(CLI::App& parser, StudyArguments& study) {
   parser.add_option("--steps", study.ladder);
   parser.add_option("--repeats", study.repeats)->check(CLI::Range(1, 1000));
+  parser.add_option("--methods", study.methods)->allow_extra_args(false)->delimiter(',');
   parser.add_flag("--models", study.models);
   parser.add_option("--extreme", study.extremes)->allow_extra_args(false);
   parser.add_option("--vary", study.vary)->allow_extra_args(false);

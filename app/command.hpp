@@ -14,6 +14,7 @@ namespace unfurl {
 struct StudyArguments {
   std::string ladder;                 // --steps LARGEST:SMALLEST
   int repeats = 0;                    // --repeats
+  std::vector<std::string> methods;   // --methods NAME,...
   bool models = false;                // --models
   std::vector<std::string> extremes;  // --extreme NAME
   std::vector<std::string> vary;      // --vary KEY=FROM:TO:COUNT

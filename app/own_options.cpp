@@ -8,6 +8,7 @@ constexpr OwnOption rows[] = {
     {"--tolerance", "METRES", "pick stages and step for this error of node positions (solver.tolerance)"},
     {"--steps", "LARGEST:SMALLEST", "the ladder of steps [s], each half the one before"},
     {"--repeats", "N", "timed runs per point, at most (5)"},
+    {"--methods", "NAME,...", "only these methods (unfurl list methods)"},
     {"--extreme", "NAME", "only this one: mass_ratio, force, fold_angle, units, stiffness (repeatable)"},
     {"--vary", "KEY=FROM:TO:COUNT",
      "a key of the scene and its values (repeatable); also FROM:TO:COUNT:log or A,B,C"},

@@ -43,6 +43,7 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
       state_(std::move(document)),
       view_(context),
       export_(options_.wake),
+      study_(options_.wake),
       simulator_(options_.wake) {
   state_.dark = options_.settings.dark;
   state_.left_open = options_.settings.left_open;
@@ -296,7 +297,13 @@ void ControlPanel::draw_panes() {
     const Pane pane("figures", width - right, top, right, bottom - top,
                     ImGuiWindowFlags_AlwaysVerticalScrollbar);
     ui_.cursors.clear();
-    timed(times_.figures, [&] { draw_figure_pane(ui_, state_, cards_); });
+    draw_right_tabs(ui_, state_);
+    timed(times_.figures, [&] {
+      if (state_.studies_open)
+        draw_study_pane(ui_, state_, cards_, study_);
+      else
+        draw_figure_pane(ui_, state_, cards_);
+    });
   }
   if (right > 0) {
     const Pane pane("cursors", width - right, top, right, bottom - top,

@@ -12,6 +12,7 @@
 #include "app/panel/panel_state.hpp"
 #include "app/panel/scene_view.hpp"
 #include "app/panel/settings.hpp"
+#include "app/panel/study_job.hpp"
 #include "app/panel/ui.hpp"
 #include "render/gl/framebuffer.hpp"
 #include "render/ui/draw_damage.hpp"
@@ -101,6 +102,7 @@ class ControlPanel {
   std::string clipboard_;
   FrameTimes times_;
   ExportProcess export_;
+  StudyJob study_;
   Simulator simulator_;  // last: ends before what it wakes
 };
 

@@ -15,15 +15,8 @@ bool over_time(const Panel& panel) {
   return panel.x.label.starts_with("time") || (!panel.x.shown && panel.x.label.empty());
 }
 
-struct Placed {  // a figure in the window
-  ImVec2 origin;
-  double scale;
-  float x(double points) const { return origin.x + static_cast<float>(points * scale); }
-  float y(double points) const { return origin.y + static_cast<float>(points * scale); }
-};
-
 // The line at the present time; dragging in the panel moves it.
-void draw_cursor(Ui& ui, PanelState& state, const plot::PanelLayout& panel, const Placed& place,
+void draw_cursor(Ui& ui, PanelState& state, const plot::PanelLayout& panel, const PlacedFigure& place,
                  const std::string& key) {
   const plot::Rect& frame = panel.frame;
   const double t = state.playback.t;
@@ -44,8 +37,10 @@ void draw_cursor(Ui& ui, PanelState& state, const plot::PanelLayout& panel, cons
                                 state.shown->simulation.trajectory.end_time());
 }
 
-Placed draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
-  const Placed place{ImGui::GetCursorScreenPos(), figure_pixels_per_point * ui.scale};
+}  // namespace
+
+PlacedFigure draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
+  const PlacedFigure place{ImGui::GetCursorScreenPos(), figure_pixels_per_point * ui.scale};
   const ImVec2 size(static_cast<float>(card.layout.width * place.scale),
                     static_cast<float>(card.layout.height * place.scale));
   const ImVec2 high(place.origin.x + size.x, place.origin.y + size.y);
@@ -66,6 +61,12 @@ Placed draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
   return place;
 }
 
+double figure_width(const Ui& ui) {
+  return ImGui::GetContentRegionAvail().x / (figure_pixels_per_point * ui.scale);
+}
+
+namespace {
+
 // A header that opens and closes; returns whether it is open.
 bool draw_header(Ui& ui, FigureCard& card, std::string title, const std::string& key,
                  const std::string& help) {
@@ -81,7 +82,7 @@ bool draw_header(Ui& ui, FigureCard& card, std::string title, const std::string&
 }
 
 // Says which settings the point under the pointer had.
-void name_point(Ui& ui, const PanelState& state, const FigureCard& card, const Placed& place) {
+void name_point(Ui& ui, const PanelState& state, const FigureCard& card, const PlacedFigure& place) {
   const plot::PanelLayout& panel = card.layout.panels.front();
   ui.places["trade points"] = {place.x(panel.frame.x0), place.y(panel.frame.y0), place.x(panel.frame.x1),
                                place.y(panel.frame.y1)};
@@ -104,15 +105,14 @@ void draw_trade(Ui& ui, PanelState& state, FigureCards& cards) {
   const char* help = "CPU time and energy error of every run of this session";
   if (!draw_header(ui, cards.trade(), "Speed against accuracy", "trade", help)) return;
   cards.make_trade(state.trade);
-  const Placed place = draw_figure(ui, state, cards.trade());
+  const PlacedFigure place = draw_figure(ui, state, cards.trade());
   name_point(ui, state, cards.trade(), place);
 }
 
 }  // namespace
 
 void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards) {
-  const double width = ImGui::GetContentRegionAvail().x / (figure_pixels_per_point * ui.scale);
-  cards.show(state.shown, state.pinned, width);
+  cards.show(state.shown, state.pinned, figure_width(ui));
   draw_trade(ui, state, cards);
   for (FigureCard& card : cards.cards()) {
     if (!cards.applies(card)) continue;
@@ -120,6 +120,20 @@ void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards) {
     if (!draw_header(ui, card, name, name, std::string(card.kind->help))) continue;
     cards.make(card);
     draw_figure(ui, state, card);
+  }
+}
+
+void draw_right_tabs(Ui& ui, PanelState& state) {
+  const std::pair<const char*, bool> pages[] = {{"Figures", false}, {"Studies", true}};
+  for (const auto& [name, studies] : pages) {
+    if (studies) ImGui::SameLine(0, ui.px(4));
+    const bool is = state.studies_open == studies;
+    if (is) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    if (button(ui, std::string("page ") + name, name,
+               studies ? "measure this scene: speed against accuracy, a parameter's effect (3)"
+                       : "of the run shown (3)"))
+      state.studies_open = studies;
+    if (is) ImGui::PopStyleColor();
   }
 }
 

@@ -5,16 +5,29 @@
 #include "app/panel/figure_cards.hpp"
 #include "app/panel/panel_state.hpp"
 #include "app/panel/scene_view.hpp"
+#include "app/panel/study_job.hpp"
 #include "app/panel/ui.hpp"
 
 namespace unfurl {
 
 void draw_top_bar(Ui& ui, PanelState& state);
-void draw_scene_pane(Ui& ui, PanelState& state);                       // left
-void draw_view_pane(Ui& ui, PanelState& state, SceneView& view);       // centre
-void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards);  // right
-void draw_cursors(const Ui& ui);                                       // over the figures
-void draw_timeline(Ui& ui, PanelState& state);                         // bottom
+void draw_scene_pane(Ui& ui, PanelState& state);                                     // left
+void draw_view_pane(Ui& ui, PanelState& state, SceneView& view);                     // centre
+void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards);                // right
+void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards, StudyJob& job);  // right, other page
+void draw_right_tabs(Ui& ui, PanelState& state);                                     // above either
+
+struct PlacedFigure {  // a figure in the window
+  ImVec2 origin;
+  double scale;  // pixels per point
+  float x(double points) const { return origin.x + static_cast<float>(points * scale); }
+  float y(double points) const { return origin.y + static_cast<float>(points * scale); }
+};
+// At the cursor; with the present time as a line where it is drawn over time.
+PlacedFigure draw_figure(Ui& ui, PanelState& state, const FigureCard& card);
+double figure_width(const Ui& ui);              // what the window has room for [points]
+void draw_cursors(const Ui& ui);                // over the figures
+void draw_timeline(Ui& ui, PanelState& state);  // bottom
 void draw_help(Ui& ui, PanelState& state);
 void draw_export(Ui& ui, PanelState& state, ExportProcess& job);
 

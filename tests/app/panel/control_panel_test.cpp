@@ -264,6 +264,47 @@ TEST_CASE("nothing is painted again where nothing changed") {
   CHECK_FALSE(driver.panel().frame(0));  // and no further frame is asked for
 }
 
+TEST_CASE("what is painted in parts is what would be painted at once") {
+  PanelDriver driver;
+  driver.key(Key::p);
+  driver.drag("timeline", 0.2, 0.6);
+  driver.drag("view", 0.3, 0.5);
+  driver.key(Key::f1);
+  driver.key(Key::escape);
+  driver.click("page Studies");
+  driver.click("page Figures");
+  driver.drag("structure.post_length", 0.5, 0.6);
+  driver.settle();
+  for (const char* hovered : {"undo", "structure.units", "trade now", "timeline"}) {
+    driver.move_to(hovered);
+    driver.frame();
+    driver.frame();
+    const Image parts = driver.picture();
+    driver.panel().resize(parts.width, parts.height);  // forgets what was painted
+    driver.frame();
+    INFO(hovered);
+    CHECK(differing_pixels(parts, driver.picture(),
+                           {0, 0, static_cast<double>(parts.width), static_cast<double>(parts.height)}) == 0);
+  }
+}
+
+TEST_CASE("a slow machine sees one sample a pixel while something moves, and smooth edges at rest") {
+  PanelDriver driver;
+  driver.move_to("view", 0.5, 0.8);
+  const Image smooth = driver.picture();
+  const plot::Rect view = driver.panel().place("view");
+  const double t = driver.state().playback.t;
+  driver.state().playback.playing = true;
+  driver.state().playback.speed = 0.01;
+  for (int i = 0; i < 6; ++i) driver.frame(0.2);  // five frames a second
+  driver.state().playback.playing = false;
+  driver.state().playback.t = t;
+  CHECK(driver.panel().frame(0.2));  // it moved: another frame is wanted
+  CHECK(differing_pixels(smooth, driver.picture(), view) > 0);
+  for (int i = 0; i < 3; ++i) driver.frame(0);
+  CHECK(differing_pixels(smooth, driver.picture(), view) == 0);
+}
+
 TEST_CASE("the panel fits pictures from small to large") {
   const auto [width, height, scale] = GENERATE(
       table<int, int, float>({{640, 400, 1.f}, {1280, 720, 1.f}, {1920, 1080, 1.f}, {1600, 900, 2.f}}));
