@@ -17,6 +17,7 @@
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
+#include "core/simulate/singular_poses.hpp"
 #include "core/study/tolerance.hpp"
 
 namespace unfurl {
@@ -41,7 +42,9 @@ Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model
   SimulationHooks hooks;
   hooks.progress = [&](double fraction) { progress.show(fraction); };
   hooks.cancelled = interrupted;
-  return simulate_as_asked(model, scene.solver, hooks);
+  Simulation run = simulate_as_asked(model, scene.solver, hooks);
+  record_singular_poses(run);
+  return run;
 }
 
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,

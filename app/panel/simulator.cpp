@@ -4,6 +4,7 @@
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/scene/build.hpp"
+#include "core/simulate/singular_poses.hpp"
 #include "core/study/tolerance.hpp"
 
 namespace unfurl {
@@ -62,6 +63,7 @@ SimulationOutcome Simulator::run(long id, const SceneDocument& document) {
     hooks.progress = [this](double fraction) { notify(fraction); };
     hooks.cancelled = [this, id] { return stale(id); };
     Simulation simulation = simulate_as_asked(build_model(scene), scene.solver, hooks);
+    record_singular_poses(simulation);
     if (stale(id)) return outcome;
     Diagnostics diagnostics = diagnose(simulation);
     std::vector<std::string> warnings = simulation.warnings;

@@ -45,6 +45,7 @@ struct Bar {
 void draw_events(const Ui& ui, const PanelState& state, const Bar& bar) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
+  float free_from = bar.low.x - 1;  // where no label stands yet
   for (const Event& event : state.shown->simulation.events) {
     const float x = bar.x(event.t), y = bar.low.y;
     list.AddTriangleFilled({x - ui.px(5), y - ui.px(2)}, {x + ui.px(5), y - ui.px(2)}, {x, y + ui.px(6)},
@@ -53,8 +54,11 @@ void draw_events(const Ui& ui, const PanelState& state, const Bar& bar) {
     std::snprintf(text, sizeof text, "%s %.5g s", event.name.c_str(), event.t);
     const float wide = ui.small->CalcTextSizeA(ui.small->FontSize, FLT_MAX, 0, text).x;
     const float left = std::clamp(x - wide / 2, bar.low.x, std::max(bar.low.x, bar.high.x - wide));
-    list.AddText(ui.small, ui.small->FontSize, {left, y - ui.px(5) - ui.small->FontSize},
-                 ui.color(ui.theme.warning), text);
+    if (left > free_from) {
+      list.AddText(ui.small, ui.small->FontSize, {left, y - ui.px(5) - ui.small->FontSize},
+                   ui.color(ui.theme.warning), text);
+      free_from = left + wide + ui.px(6);
+    }
     if (std::hypot(mouse.x - x, mouse.y - y) < ui.px(9)) ImGui::SetTooltip("%s", text);
   }
 }

@@ -253,6 +253,9 @@ Diagnostics diagnose(const Simulation& run) {
     add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
     drives.append(system, state.t, lambda);
   }
+  for (Series& column : out.columns)
+    if (column.unit == "J")
+      for (double& energy : column.values) energy *= trajectory.structure().sectors;
   return out;
 }
 

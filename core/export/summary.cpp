@@ -73,6 +73,7 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   for (const auto& event : run.events) {
     summary["events"].push_back({{"name", event.name}, {"t_s", event.t}});
     if (event.energy_lost != 0.0) summary["events"].back()["energy_lost_J"] = event.energy_lost;
+    if (!std::isnan(event.singular_value)) summary["events"].back()["singular_value"] = event.singular_value;
   }
   if (!run.trajectory.empty()) summary["final"] = final_json(run.trajectory);
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -41,6 +41,9 @@ const std::vector<ParamSpec>& solver_params() {
                    "when fully deployed: the run stops, the motion passes through, or the structure locks"),
       boolean_param("eliminate_linear", fallback.eliminate_linear,
                     "solve in coordinates that fulfil the linear constraints exactly; changes no result"),
+      boolean_param(
+          "sparse", fallback.sparse,
+          "sparse factorisations; false: dense ones, to see what sparsity is worth; changes no result"),
   };
   return params;
 }
@@ -59,6 +62,7 @@ SolverOptions solver_options(const ParamSet& values) {
   options.tolerance = values.real("tolerance");
   options.end_time = values.real("end_time");
   options.at_deployed = values.text("at_deployed");
+  options.sparse = values.boolean("sparse");
   options.eliminate_linear = values.boolean("eliminate_linear");
   return options;
 }
@@ -77,6 +81,7 @@ ParamSet solver_values(const SolverOptions& solver) {
   values.set("tolerance", solver.tolerance);
   values.set("end_time", solver.end_time);
   values.set("at_deployed", solver.at_deployed);
+  values.set("sparse", solver.sparse);
   values.set("eliminate_linear", solver.eliminate_linear);
   return values;
 }

@@ -157,6 +157,7 @@ struct Structure {
   std::vector<NodeCopy> node_copies;
   std::vector<RodCopy> rod_copies;
   std::vector<LoadCopy> load_copies;
+  double sectors = 1.0;  // how many times what is solved makes the whole: energies are reported of the whole
 };
 
 // Fill the copies with the solved nodes, rods and loads themselves.

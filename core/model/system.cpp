@@ -262,6 +262,15 @@ Index System::linear_constraints() const {
 bool System::eliminated() const {
   return data_->eliminated;
 }
+void System::fill_mass() {
+  SparseRows& mass = data_->mass;
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(mass.rows() * mass.cols()));
+  for (int i = 0; i < mass.rows(); ++i)
+    for (int j = 0; j < mass.cols(); ++j) entries.emplace_back(i, j, mass.coeff(i, j));
+  mass.setFromTriplets(entries.begin(), entries.end());
+}
+
 const SparseRows& System::mass() const {
   return data_->mass;
 }

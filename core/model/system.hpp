@@ -29,6 +29,9 @@ class System {
   ~System();
   System(System&&) noexcept;
 
+  // Keep every entry of the mass matrix, zeros too: factorisations are dense then. For comparison.
+  void fill_mass();
+
   Index coordinates() const;         // 3 n, of all solved nodes
   Index solved_coordinates() const;  // size of z
   Index constraints() const;         // m, rows of Phi: those that are kept
@@ -93,7 +96,7 @@ class System {
 
  private:
   struct Data;
-  std::unique_ptr<const Data> data_;
+  std::unique_ptr<Data> data_;
 };
 
 }  // namespace unfurl

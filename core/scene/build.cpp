@@ -90,6 +90,16 @@ void add_loads(const Scene& scene, Structure& structure) {
   if (!problems.empty()) throw SceneError(std::move(problems));
 }
 
+void fill_mass(const Scene& scene, System& system) {
+  constexpr Index most = 3000;  // unknowns of a dense factorisation: 72 MB
+  const Index unknowns = system.solved_coordinates() + system.constraints();
+  if (unknowns > most)
+    throw SceneError({{location_of(scene, "solver.sparse"), "solver.sparse",
+                       "must be true for this structure: it has " + std::to_string(unknowns) +
+                           " unknowns, and dense matrices are for " + std::to_string(most) + " at most"}});
+  system.fill_mass();
+}
+
 }  // namespace
 
 Structure build_structure(const Scene& scene) {
@@ -107,6 +117,7 @@ std::shared_ptr<const Model> build_model(const Scene& scene) {
   try {
     System system(structure, scene.solver.eliminate_linear);
     check_consistency(structure, system);
+    if (!scene.solver.sparse) fill_mass(scene, system);
     return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
   } catch (const StructureError& error) {
     refuse(scene, error);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/integrators/index1.hpp"
@@ -13,8 +14,14 @@ namespace {
 // the hinges, 1e-16/fold, begins to show; at nine points below 3e-2 the extrapolation error of a six-unit
 // ring is of the order (0.01)^9. The fold rate varies on the scale sin(pi/n) of the fold angle: `farthest` is
 // halved until the rate changes by less than `even` over its outer half.
-constexpr double farthest = 3e-2, span = 12, even = 0.1, smallest_farthest = 1e-3;
+constexpr double farthest = 3e-2, span = 12, even = 0.1, smallest_farthest = 1e-4;
 constexpr int points = 9;
+// Before that, in rings of many units, theta theta' is nearly constant and a step of the run may be too long
+// for the last of its way. A step is short enough where the trapezoidal rule of its end rates gives its
+// change of the sine to this share: (r - 1)^2 / 4 r for rates of the ratio r, 1.1 here, which leaves 1e-9 s
+// at four stages.
+constexpr double short_enough = 2.3e-3;
+constexpr int most_stations = 200;
 
 struct Sample {
   double sine;
@@ -31,6 +38,7 @@ class Locator {
 
   std::optional<State> locate() {
     const double start = sine(trajectory_.state(0));
+    find_resolved();
     const double far = reach(std::min(farthest, 0.8 * start)), near = far / span;
     for (int i = 0; i < points; ++i) {
       const double u = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / points);
@@ -66,12 +74,43 @@ class Locator {
   }
   const System& system() const { return trajectory_.last_model().system; }
 
-  // One step from the last state before `target`, its length found by the secant method; any sine within 2 %
-  // of the target will do: targets lie at least 5 % apart, and no two samples may coincide.
-  void solve_to(double target) {
-    std::size_t i = trajectory_.size() - 1;
+  // How far the change of the sine from one state to the next differs from h (r_0 + r_1) / 2, as a share.
+  double unevenness(const State& a, const State& b) {
+    const double change = sine(b) - sine(a);
+    return std::abs(0.5 * (b.t - a.t) * (sine_rate(a) + sine_rate(b)) / change - 1);
+  }
+
+  // The last state of the run behind a step that was short enough; where none was, the last one.
+  void find_resolved() {
+    resolved_ = trajectory_.size() - 1;
+    for (std::size_t i = resolved_; i > 0; --i)
+      if (unevenness(trajectory_.state(i - 1), trajectory_.state(i)) <= short_enough) {
+        resolved_ = i;
+        return;
+      }
+  }
+
+  State last_before(double target) {
+    for (auto s = stations_.rbegin(); s != stations_.rend(); ++s)
+      if (s->sine > 1.0001 * target) return s->state;
+    std::size_t i = resolved_;
     while (i > 0 && sine(trajectory_.state(i)) < 1.0001 * target) --i;
-    const State& from = trajectory_.state(i);
+    return trajectory_.state(i);
+  }
+
+  // From the last state before `target`, in one step that is short enough or with stations on the way.
+  void solve_to(double target) {
+    for (int i = 0; i < most_stations; ++i) {
+      const State from = last_before(target);
+      if (step_to(from, target, short_enough)) return;
+      if (!add_station(from, target)) break;
+    }
+    step_to(last_before(target), target, std::numeric_limits<double>::infinity());
+  }
+
+  // One step, its length found by the secant method; any sine within 2 % of the target will do: targets lie
+  // at least 5 % apart, and no two samples may coincide.
+  bool step_to(const State& from, double target, double most_uneven) {
     const double s0 = sine(from), rate0 = sine_rate(from);
     double lo = 0, f_lo = s0 - target;
     double step = std::min(1.2 * h_, rate0 < 0 ? f_lo / -rate0 : h_);
@@ -84,16 +123,35 @@ class Locator {
       }
       const double f = sine(to) - target;
       if (std::abs(f) < 0.02 * target) {
+        if (unevenness(from, to) > most_uneven) return false;
         keep(f + target, std::move(to));
-        return;
+        return true;
       }
       const double slope = (f - f_lo) / (step - lo);
       if (f > 0) {
+        if (unevenness(from, to) > most_uneven) return false;
         lo = step;
         f_lo = f;
       }
       step = std::clamp(step - f / slope, 0.2 * step, 2.0 * step);
     }
+    return false;
+  }
+
+  // A state between `from` and the target.
+  bool add_station(const State& from, double target) {
+    const double rate = sine_rate(from);
+    double step = std::min(h_, rate < 0 ? 0.5 * (sine(from) - target) / -rate : h_);
+    for (int it = 0; it < 12; ++it, step *= 0.6) {
+      State to = from;
+      integrator_.restart();
+      if (!integrator_.step(to, step).ok()) continue;
+      const double at = sine(to);
+      if (!(at > 1.0001 * target && at < sine(from)) || unevenness(from, to) > short_enough) continue;
+      stations_.push_back({at, std::move(to)});
+      return true;
+    }
+    return false;
   }
 
   // Multipliers of least norm from the equations: those of a step's end are not as accurate as its
@@ -127,6 +185,8 @@ class Locator {
   double h_;
   Index1 index1_;
   std::vector<Sample> samples_;
+  std::vector<Sample> stations_;  // solved on the way, by falling sine
+  std::size_t resolved_ = 0;      // the last state of the run to start from
   VectorXd q_;
 };
 

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "core/integrators/integrator.hpp"
+#include "core/simulate/contact.hpp"
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
@@ -142,36 +143,20 @@ class TimeLoop {
   // The first stop that the step from now to `next` runs into.
   std::optional<Hit> first_hit(const State& next, double target) {
     std::optional<Hit> first;
+    std::unique_ptr<Integrator> fresh;
+    const auto after = [&](double step) {
+      std::optional<State> state = now();
+      if (!fresh) fresh = fresh_integrator();
+      fresh->restart();
+      if (!fresh->step(*state, step).ok()) state.reset();
+      return state;
+    };
     for (std::size_t i = 0; i < stops_.size(); ++i) {
-      if (held_.contains(i) || stops_.gap(i, system(), next) >= -stops_.touching()) continue;
-      const double time = time_of_contact(i, target - now().t);
-      if (!first || time < first->time) first = Hit{i, time};
+      if (held_.contains(i)) continue;
+      const auto time = time_to_contact(stops_, i, system(), now(), next, target - now().t, after);
+      if (time && (!first || now().t + *time < first->time)) first = Hit{i, now().t + *time};
     }
     return first;
-  }
-
-  // Steps of different lengths from now: the Illinois variant of regula falsi on the gap. A stop that is
-  // touched and left for less than a millionth of the step counts as touched now.
-  double time_of_contact(std::size_t i, double h) {
-    const auto fresh = fresh_integrator();
-    const auto gap_after = [&](double step) {
-      State state = now();
-      fresh->restart();
-      return fresh->step(state, step).ok() ? stops_.gap(i, system(), state) : -1.0;
-    };
-    double high = h, at_high = gap_after(high), low = h, at_low = at_high;
-    while (at_low <= 0 && low > 1e-6 * h) at_low = gap_after(low *= 0.5);
-    if (at_low <= 0) return now().t;
-    if (low < h) high = 2 * low, at_high = gap_after(high);
-    for (int it = 0; it < 60 && high - low > 1e-15 * h; ++it) {
-      const double middle = (low * at_high - high * at_low) / (at_high - at_low), at = gap_after(middle);
-      if (std::abs(at) <= 0.01 * stops_.touching()) return now().t + middle;
-      if ((at > 0) == (at_low > 0))
-        low = middle, at_low = at, at_high *= 0.5;
-      else
-        high = middle, at_high = at, at_low *= 0.5;
-    }
-    return now().t + low;
   }
 
   // Go to the contact, rebound or rest, and on to `target`.
@@ -219,7 +204,7 @@ class TimeLoop {
   void switch_held(const std::string& event) {
     const auto model = stops_.held_model(*base_, held_, run_.options.eliminate_linear);
     Handover after = hand_over(run_.trajectory.last_model(), now(), *model);
-    run_.events.push_back({event, now().t, after.energy_lost});
+    run_.events.push_back({event, now().t, after.energy_lost * run_.trajectory.structure().sectors});
     run_.trajectory.change_model(model);
     run_.trajectory.append(std::move(after.state), StepReport{});
     integrator_ = fresh_integrator();
@@ -268,12 +253,12 @@ class TimeLoop {
     return fold(now()) > singular_margin && fold(next) <= singular_margin;
   }
 
-  // Could the fold angle reach zero within a step? Its rate may double on the way.
+  // Could the fold angle reach zero within a step? Where sine * rate is constant it does so after sine / 2 rate.
   bool may_cross(double h) {
     if (deployment_.empty() || deployed_) return false;
     const double sine = fold(now());
     system().expand_rate(now().w, q_);
-    return sine > 0 && sine + 2.0 * h * deployment_.remaining_rate(q_) <= 0;
+    return sine > 0 && sine + 3.0 * h * deployment_.remaining_rate(q_) <= 0;
   }
 
   std::optional<State> locate(double h, double latest) {
@@ -295,7 +280,7 @@ class TimeLoop {
     append_deployed(event);
     const auto locked = latched_model(run_.trajectory.last_model(), run_.options.eliminate_linear);
     Handover after = hand_over(run_.trajectory.last_model(), now(), *locked);
-    run_.events.push_back({"latched", now().t, after.energy_lost});
+    run_.events.push_back({"latched", now().t, after.energy_lost * run_.trajectory.structure().sectors});
     held_.clear();  // what rests on a stop is locked there
     run_.trajectory.change_model(locked);
     run_.trajectory.append(std::move(after.state), StepReport{});

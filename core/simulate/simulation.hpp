@@ -19,6 +19,8 @@ struct Event {
   std::string name;          // "deployed", ...
   double t = 0.0;            // [s]
   double energy_lost = 0.0;  // in an impact [J]
+  // At a singular pose, that of the Jacobian (singular_poses.hpp); NaN: not said.
+  double singular_value = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct SimulationHooks {

@@ -106,6 +106,7 @@ Structure build_full(const HoopShape& s) {
 
 // The whole ring from the solved sector: node copies by rotation, in the order of the full model.
 void replicate(Structure& out, const HoopShape& s) {
+  out.sectors = s.n;
   const char* names[4] = {"B", "T", "Mb", "Mt"};
   for (int k = 0; k < s.n; ++k) {
     const Mat3 turn = Eigen::AngleAxisd(s.corner_angle(k), Vec3::UnitZ()).toRotationMatrix();

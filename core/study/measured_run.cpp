@@ -64,8 +64,9 @@ void measure_invariants(const Simulation& run, MeasuredRun& out) {
     out.constraint_velocity_max =
         std::max(out.constraint_velocity_max,
                  max_norm(system.all_jacobian(q) * v - system.all_target_rates(run.trajectory.time(i))));
-    const double kinetic = system.kinetic_energy(run.trajectory.state(i).w);
-    const double potential = system.potential_energy(q), work = system.load_work(q);
+    const double whole = run.trajectory.structure().sectors;
+    const double kinetic = whole * system.kinetic_energy(run.trajectory.state(i).w);
+    const double potential = whole * system.potential_energy(q), work = whole * system.load_work(q);
     const double energy = kinetic + potential - work;
     out.energy_scale = std::max({out.energy_scale, kinetic, std::abs(potential), std::abs(work)});
     out.kinetic_energy_max = std::max(out.kinetic_energy_max, kinetic);

@@ -57,6 +57,18 @@ double difference(const Trajectory& a, const Trajectory& b) {
   return largest;
 }
 
+// What drawing sees of a run: node positions in single precision. It costs no step anything.
+MeasuredModel display_mesh(const Trajectory& run) {
+  MeasuredModel m;
+  m.choice.name = "single precision of the display's mesh";
+  m.cpu_median = m.cpu_min = m.cpu_max = m.memory = m.deployment_time = nan;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    const VectorXd x = run.positions(i), drawn = x.cast<float>().cast<double>();
+    m.difference = std::max(m.difference, node_distance(x, drawn));
+  }
+  return m;
+}
+
 // The first run of a choice, and its model's cost.
 Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hooks, MeasuredModel& out) {
   const Scene scene = source.read(out.choice.changes);
@@ -99,6 +111,8 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
   add("structure", "model", "sector", "sector: one sector solved, all shown");
   add("solver", "eliminate_linear", "true", "linear constraints eliminated");
   add("solver", "eliminate_linear", "false", "linear constraints kept as equations");
+  add("solver", "sparse", "true", "sparse matrices");
+  add("solver", "sparse", "false", "dense matrices");
   add("structure", "mass", "consistent", "consistent mass: rigid uniform rods");
   add("structure", "mass", "lumped", "lumped mass: half of a rod at each node");
   std::vector<std::string> keys;
@@ -131,6 +145,7 @@ std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats
     }
     out.push_back(std::move(m));
   }
+  if (base) out.push_back(display_mesh(base->trajectory));
   hooks.tell(1);
   return out;
 }
@@ -155,7 +170,8 @@ Table models_summary(const std::vector<MeasuredModel>& models) {
               {}};
   for (const MeasuredModel& m : models) {
     if (m.solved_coordinates == 0) {
-      table.rows.push_back({m.choice.name + " (" + m.outcome + ")", "", "", "", "", "", "", ""});
+      table.rows.push_back({m.choice.name + (m.outcome.empty() ? "" : " (" + m.outcome + ")"), "", "", "", "",
+                            "", std::isnan(m.difference) ? "" : short_number(m.difference), ""});
       continue;
     }
     table.rows.push_back({m.choice.name, std::to_string(m.solved_coordinates), std::to_string(m.constraints),

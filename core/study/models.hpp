@@ -13,7 +13,7 @@ struct ModelChoice {
 };
 
 // The scene as it stands, then every choice that it allows and does not make: full or sector, linear
-// constraints eliminated or kept, consistent or lumped mass, without damping.
+// constraints eliminated or kept, sparse or dense matrices, consistent or lumped mass, without damping.
 std::vector<ModelChoice> model_choices(const SceneSource& source);
 
 struct MeasuredModel {
@@ -26,7 +26,7 @@ struct MeasuredModel {
   double deployment_time = 0;  // NaN: none [s]
 };
 
-// One after another, timed alone. Throws Cancelled; SceneError where the scene itself is wrong.
+// One after another, timed alone; last, what the single precision of the display changes. Throws Cancelled; SceneError where the scene itself is wrong.
 std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats, const StudyHooks& hooks);
 
 Table models_table(const std::vector<MeasuredModel>& models);    // exact

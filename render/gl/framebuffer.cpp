@@ -63,23 +63,35 @@ Framebuffer::~Framebuffer() {
   destroy_surface(resolved_);
 }
 
-void Framebuffer::bind(bool coarse) const {
-  gl::BindFramebuffer(GL_FRAMEBUFFER, samples_ > 0 && !coarse ? drawn_.framebuffer : resolved_.framebuffer);
+void Framebuffer::bind() const {
+  gl::BindFramebuffer(GL_FRAMEBUFFER, samples_ > 0 ? drawn_.framebuffer : resolved_.framebuffer);
   gl::Viewport(0, 0, width_, height_);
 }
 
-void Framebuffer::resolve() const {
-  if (samples_ > 0) {
-    gl::BindFramebuffer(GL_READ_FRAMEBUFFER, drawn_.framebuffer);
-    gl::BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.framebuffer);
-    gl::BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  }
+void Framebuffer::bind_resolved() const {
   gl::BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer);
+  gl::Viewport(0, 0, width_, height_);
+}
+
+void Framebuffer::blit(const Surface& from, const Surface& to, const PixelRect& p) const {
+  if (samples_ == 0 || p.empty()) return;
+  gl::BindFramebuffer(GL_READ_FRAMEBUFFER, from.framebuffer);
+  gl::BindFramebuffer(GL_DRAW_FRAMEBUFFER, to.framebuffer);
+  gl::BlitFramebuffer(p.x0, p.y0, p.x1, p.y1, p.x0, p.y0, p.x1, p.y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+void Framebuffer::spread(const PixelRect& part) const {
+  blit(resolved_, drawn_, part);
+  bind();
+}
+
+void Framebuffer::resolve(const PixelRect& part) const {
+  blit(drawn_, resolved_, part);
+  bind_resolved();
 }
 
 void Framebuffer::fill(float r, float g, float b, int x, int y, int width, int height) const {
-  gl::BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer);
-  gl::Viewport(0, 0, width_, height_);
+  bind_resolved();
   gl::Enable(GL_SCISSOR_TEST);
   gl::Scissor(x, height_ - y - height, width, height);
   gl::ClearColor(r, g, b, 1);

@@ -5,6 +5,12 @@
 
 namespace unfurl {
 
+// Of a picture [pixels] from its lower left corner, as OpenGL counts: x0 <= x < x1.
+struct PixelRect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  bool empty() const { return x0 >= x1 || y0 >= y1; }
+};
+
 // RGBA8 colour and 24-bit depth of one size. Needs a current context from construction to destruction.
 class Framebuffer {
  public:
@@ -19,9 +25,14 @@ class Framebuffer {
   int height() const { return height_; }
   int samples() const { return samples_; }
 
-  // Draw into the picture, multi-sampled or (coarse) straight into what resolve() makes; sets the viewport.
-  void bind(bool coarse = false) const;
-  void resolve() const;  // average the samples, then draw without multi-sampling: for text and panels
+  void bind() const;           // draw into the (multi-sampled) picture; sets the viewport
+  void bind_resolved() const;  // draw without multi-sampling: text, panels, what has no edges
+  // Inside a part of the picture, give every sample the colour of the resolved pixel, then draw with
+  // multi-sampling; and average the samples, then draw without.
+  void spread(const PixelRect& part) const;
+  void resolve(const PixelRect& part) const;
+  void resolve() const { resolve(whole()); }
+  PixelRect whole() const { return {0, 0, width_, height_}; }
   // Fill a rectangle [pixels from the top left] with one colour (0..1, no depth) and leave the picture bound
   // for drawing without multi-sampling.
   void fill(float r, float g, float b, int x, int y, int width, int height) const;
@@ -36,6 +47,7 @@ class Framebuffer {
   struct Surface {
     unsigned framebuffer = 0, color = 0, depth = 0;
   };
+  void blit(const Surface& from, const Surface& to, const PixelRect& part) const;
   void copy(unsigned target, int target_height, int x, int y) const;
   static bool make_surface(Surface& surface, int width, int height, int samples);
   static void destroy_surface(Surface& surface);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string>
 
 #include "render/gl/functions.hpp"
@@ -16,37 +15,11 @@ using Eigen::Matrix4f;
 
 constexpr int shadow_side = 1536, shade_side = 384;  // [pixels]
 
-constexpr std::size_t ghost_body = 3;
-
-Eigen::Vector4f as_vector(const Color& c) {
-  return {c.r, c.g, c.b, c.a};
-}
-
 // The camera's place, or the direction to it where the projection is parallel.
 Eigen::Vector4f eye_of(const Camera& camera) {
   if (camera.parallel_height <= 0) return {camera.eye.x(), camera.eye.y(), camera.eye.z(), 1};
   const Vec3f back = (camera.eye - camera.target).normalized();
   return {back.x(), back.y(), back.z(), 0};
-}
-
-constexpr float few_pixels = 2.5f;  // of radius: with so few, six sides look as round as twelve
-
-bool same(const std::vector<SolidInstance>& a, const std::vector<SolidInstance>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
-}
-
-// The largest radius in pixels that a body has in the picture, roughly.
-float thickest_pixels(const std::vector<SolidInstance>& bodies, const Camera& camera, int height) {
-  const Vec3f forward = (camera.target - camera.eye).normalized();
-  const float slope = 2 * std::tan(0.5f * camera.vertical_field_of_view);
-  float most = 0;
-  for (const SolidInstance& body : bodies) {
-    const float depth = std::max(
-        camera.near_plane, std::min(forward.dot(body.a - camera.eye), forward.dot(body.b - camera.eye)));
-    const float visible = camera.parallel_height > 0 ? camera.parallel_height : slope * depth;
-    most = std::max(most, std::max(body.radius_a, body.radius_b) / visible);
-  }
-  return most * static_cast<float>(height);
 }
 
 // What was blended over nothing holds its colours multiplied by its alpha.
@@ -59,18 +32,20 @@ void divide_by_alpha(Image& image) {
   }
 }
 
+std::string solid_vertex(bool hidden) {
+  return std::string(hidden ? shaders::version_hidden : shaders::version) + shaders::solid_vertex;
+}
+
 }  // namespace
 
 Renderer::Renderer(GlContext& context, int width, int height, int samples)
     : frame_((context.make_current(), width), height, samples),
-      depth_("shadow", shaders::solid_vertex, shaders::depth_fragment),
+      backdrop_(width, height, 0),
+      depth_("shadow", solid_vertex(false), shaders::depth_fragment),
       shade_("shade", shaders::background_vertex, shaders::shade_fragment),
       background_("background", shaders::background_vertex, shaders::background_fragment),
-      ground_("ground", shaders::ground_vertex, shaders::ground_fragment),
-      bodies_{make_body(capsule_mesh(12, 2), capsule_mesh(6, 1)),
-              make_body(capsule_mesh(16, 4), capsule_mesh(8, 2)),
-              make_body(cylinder_mesh(12), cylinder_mesh(6)),
-              make_body(capsule_mesh(8, 1), capsule_mesh(6, 1))},
+      grid_("grid", shaders::ground_vertex, shaders::grid_fragment),
+      floor_shadow_("floor shadow", shaders::ground_vertex, shaders::floor_shadow_fragment),
       shadow_map_(TextureKind::depth, shadow_side),
       shade_across_(TextureKind::shade, shade_side),
       shade_on_floor_(TextureKind::shade, shade_side) {
@@ -79,66 +54,25 @@ Renderer::Renderer(GlContext& context, int width, int height, int samples)
 
 Renderer::~Renderer() {
   gl::DeleteVertexArrays(1, &empty_array_);
-  for (const Body& body : bodies_) {
-    destroy_shape(body.fine);
-    destroy_shape(body.coarse);
-    gl::DeleteBuffers(1, &body.instances);
-  }
 }
 
-// The depth map, for shadows of bodies on bodies; from it, for the floor, what of the light is missing,
-// blurred. One read of that costs a floor pixel a sixth of as many reads of the depth map as would be as
-// soft.
-void Renderer::draw_shadows(const DrawList& list, const Matrix4f& light) const {
-  shadow_map_.bind();
-  gl::Clear(GL_DEPTH_BUFFER_BIT);
-  gl::Enable(GL_POLYGON_OFFSET_FILL);
-  gl::PolygonOffset(1.5f, 2.0f);
-  depth_.use();
-  depth_.set("view_projection", light);
-  depth_.set("eye", Eigen::Vector4f(0, 0, 1, 0));
-  depth_.set("nearer", 0.0f);
-  draw_bodies(&Body::coarse);
-  gl::Disable(GL_POLYGON_OFFSET_FILL);
-  shadow_map_.use_as_texture(0);
-  if (!list.ground.shown) return;
-  gl::Disable(GL_DEPTH_TEST);
-  gl::BindVertexArray(empty_array_);
-  shade_.use();
-  shade_.set("depth", 0);
-  shade_.set("shade", 1);
-  shade_.set("texels", shadow_map_.side() / shade_on_floor_.side());
-  shadow_map_.compare_depths(false);
-  for (const bool across : {true, false}) {
-    (across ? shade_across_ : shade_on_floor_).bind();
-    if (!across) shade_across_.use_as_texture(1);
-    shade_.set("across", across ? 1 : 0);
-    gl::DrawArrays(GL_TRIANGLES, 0, 3);
-  }
-  shade_on_floor_.use_as_texture(1);
-  shadow_map_.use_as_texture(0);
-  shadow_map_.compare_depths(true);
-  gl::Enable(GL_DEPTH_TEST);
-}
-
-const Program& Renderer::solid_program(const char* name, const char* fragment) {
-  std::unique_ptr<Program>& program = solid_[name];
+const Program& Renderer::solid_program(const char* name, const char* fragment, bool hidden) {
+  std::unique_ptr<Program>& program = solid_[std::string(name) + (hidden ? ", hidden" : "")];
   if (!program)
     program =
-        std::make_unique<Program>(name, shaders::solid_vertex, std::string(shaders::solid_head) + fragment);
+        std::make_unique<Program>(name, solid_vertex(hidden), std::string(shaders::solid_head) + fragment);
   return *program;
 }
 
 const Program& Renderer::begin_solids(const char* name, const char* fragment, const DrawList& list,
-                                      const Matrix4f& view, const Matrix4f& light) {
-  const Program& program = solid_program(name, fragment);
+                                      const View& view, bool hidden) {
+  const Program& program = solid_program(name, fragment, hidden);
   program.use();
   set_background(program, list);
-  program.set("view_projection", view);
-  program.set("light_projection", light);
+  program.set("view_projection", view.camera);
+  program.set("light_projection", view.light);
   program.set("shadow_map", 0);
   program.set("eye", eye_of(list.camera));
-  program.set("nearer", 0.0f);
   program.set("to_light", Vec3f(list.light_direction.normalized()));
   program.set("fade_center", list.center);
   program.set("fade", Eigen::Vector2f(list.radius, list.depth_fade));
@@ -147,39 +81,41 @@ const Program& Renderer::begin_solids(const char* name, const char* fragment, co
   return program;
 }
 
-void Renderer::draw_solids(const DrawList& list, const Matrix4f& view, const Matrix4f& light) {
-  if (list.shading == Shading::outline) return draw_outlines(list, view, light);
-  if (list.shading == Shading::studio) begin_solids("studio", shaders::studio_fragment, list, view, light);
-  if (list.shading == Shading::space) begin_solids("space", shaders::space_fragment, list, view, light);
-  if (list.shading == Shading::flat) begin_solids("flat", shaders::flat_fragment, list, view, light);
-  draw_bodies(&Body::fine);
+void Renderer::draw_bodies() const {
+  capsules_.draw();
+  balls_.draw();
+  cylinders_.draw();
+}
+
+void Renderer::draw_solids(const DrawList& list, const View& view) {
+  if (list.shading == Shading::outline) return draw_outlines(list, view);
+  if (list.shading == Shading::studio) begin_solids("studio", shaders::studio_fragment, list, view);
+  if (list.shading == Shading::space) begin_solids("space", shaders::space_fragment, list, view);
+  if (list.shading == Shading::flat) begin_solids("flat", shaders::flat_fragment, list, view);
+  draw_bodies();
 }
 
 // What is seen first; then, blended over it, the lines of what lies well behind.
-void Renderer::draw_outlines(const DrawList& list, const Matrix4f& view, const Matrix4f& light) {
-  const Program& program = begin_solids("outline", shaders::outline_fragment, list, view, light);
-  program.set("line_width", std::max(1.0f, static_cast<float>(frame_.height()) / 600.0f));
-  program.set("hidden", 0);
-  draw_bodies(&Body::fine);
-  program.set("hidden", 1);
-  program.set("nearer", list.hidden_gap);
-  gl::DepthFunc(GL_GREATER);
-  begin_blending();
-  draw_bodies(&Body::fine);
+void Renderer::draw_outlines(const DrawList& list, const View& view) {
+  for (const bool hidden : {false, true}) {
+    const Program& program = begin_solids("outline", shaders::outline_fragment, list, view, hidden);
+    program.set("line_width", std::max(1.0f, static_cast<float>(frame_.height()) / 600.0f));
+    program.set("hidden", hidden ? 1 : 0);
+    program.set("nearer", list.hidden_gap);
+    if (hidden) gl::DepthFunc(GL_GREATER), begin_blending();
+    draw_bodies();
+  }
   end_blending();
   gl::DepthFunc(GL_LEQUAL);
 }
 
 // Ghosts do not cover each other nor what is solid: drawn last, blended, and each pixel once.
-void Renderer::draw_ghosts(const DrawList& list, const Matrix4f& view, const Matrix4f& light) {
+void Renderer::draw_ghosts(const DrawList& list, const View& view) {
   if (list.ghosts.empty()) return;
-  std::vector<SolidInstance> tubes = tubes_of(list.ghosts);
-  for (std::size_t i = 0; i < tubes.size(); ++i) tubes[i].metal = list.ghosts[i].color.a;
-  upload(bodies_[ghost_body], tubes);
-  begin_solids("ghost", shaders::ghost_fragment, list, view, light);
+  begin_solids("ghost", shaders::ghost_fragment, list, view);
   begin_blending();
   gl::DepthMask(GL_TRUE);
-  draw_body(bodies_[ghost_body], &Body::fine);
+  ghosts_.draw();
   end_blending();
 }
 
@@ -195,80 +131,78 @@ void Renderer::end_blending() {
   gl::DepthMask(GL_TRUE);
 }
 
-void Renderer::set_background(const Program& program, const DrawList& list) const {
-  program.set("background_top", as_vector(list.background_top));
-  program.set("background_bottom", as_vector(list.background_bottom));
-  program.set("picture_height", static_cast<float>(frame_.height()));
-}
-
-void Renderer::draw_surroundings(const DrawList& list, const Matrix4f& view, const Matrix4f& light) const {
-  gl::BindVertexArray(empty_array_);
-  if (list.ground.shown) {
-    ground_.use();
-    set_background(ground_, list);
-    ground_.set("view_projection", view);
-    ground_.set("light_projection", light);
-    ground_.set("shade", 1);
-    ground_.set("center", Vec3f(list.ground.center.x(), list.ground.center.y(), list.ground.z));
-    ground_.set("reach", list.ground.fade);
-    ground_.set("cell", list.ground.cell);
-    ground_.set("grid_strength", list.ground.grid ? 1.0f : 0.0f);
-    ground_.set("transparent", list.transparent ? 1 : 0);
-    gl::DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  }
-  if (list.transparent) return;
-  background_.use();
-  background_.set("stars", list.stars);
-  set_background(background_, list);
-  gl::DrawArrays(GL_TRIANGLES, 0, 3);
-}
-
 // Returns whether anything is not as it was in the picture before.
 bool Renderer::upload_solids(const DrawList& list) {
   Solids solids = solids_of(list);
-  const bool moved = !same(solids.capsules, solids_.capsules) || !same(solids.balls, solids_.balls) ||
-                     !same(solids.cylinders, solids_.cylinders) || list.ground.shown != floor_shown_;
-  if (moved) {
-    upload(bodies_[0], solids.capsules);
-    upload(bodies_[1], solids.balls);
-    upload(bodies_[2], solids.cylinders);
-    solids_ = std::move(solids);
-    floor_shown_ = list.ground.shown;
-  }
-  bodies_[0].small = thickest_pixels(solids_.capsules, list.camera, frame_.height()) < few_pixels;
-  bodies_[1].small = thickest_pixels(solids_.balls, list.camera, frame_.height()) < few_pixels;
-  bodies_[2].small = thickest_pixels(solids_.cylinders, list.camera, frame_.height()) < few_pixels;
-  bodies_[ghost_body].instance_count = 0;
+  const int height = frame_.height();
+  bool moved = capsules_.set(std::move(solids.capsules), list.camera, height);
+  moved |= balls_.set(std::move(solids.balls), list.camera, height);
+  moved |= cylinders_.set(std::move(solids.cylinders), list.camera, height);
+  std::vector<SolidInstance> ghosts = tubes_of(list.ghosts);
+  for (std::size_t i = 0; i < ghosts.size(); ++i) ghosts[i].metal = list.ghosts[i].color.a;
+  ghosts_.set(std::move(ghosts), list.camera, height);
   return moved;
 }
 
+// Where bodies may be seen, with a margin.
+PixelRect Renderer::solid_part(const DrawList& list, const Matrix4f& camera) const {
+  const Vec3f forward = (list.camera.target - list.camera.eye).normalized();
+  const float right = camera.row(0).head<3>().norm(), up = camera.row(1).head<3>().norm();
+  Eigen::Array2f low(1, 1), high(-1, -1);
+  bool near = false;
+  for (const RendererBodies* bodies : {&capsules_, &balls_, &cylinders_, &ghosts_})
+    for (const SolidInstance& body : bodies->bodies()) {
+      const float r = 1.1f * std::max(body.radius_a, body.radius_b);
+      for (const Vec3f& end : {body.a, body.b}) {
+        near |= forward.dot(end - list.camera.eye) - r < list.camera.near_plane;
+        const Eigen::Vector4f clip = camera * end.homogeneous();
+        const float reach = list.camera.parallel_height > 0 ? 0.0f : r;  // towards the camera
+        const Eigen::Array2f at = clip.head<2>().array() / clip.w(),
+                             around = (Eigen::Array2f(right, up) + at.abs()) * r / (clip.w() - reach);
+        low = low.min(at - around), high = high.max(at + around);
+      }
+    }
+  if (near) return frame_.whole();
+  const auto pixel = [](float ndc, int size, float pad) {
+    return static_cast<int>(
+        std::clamp(0.5f * (1 + ndc) * static_cast<float>(size) + pad, 0.0f, static_cast<float>(size)));
+  };
+  const int w = frame_.width(), h = frame_.height();
+  return {pixel(low.x(), w, -2), pixel(low.y(), h, -2), pixel(high.x(), w, 3), pixel(high.y(), h, 3)};
+}
+
+// Bodies have edges and are drawn with several samples a pixel, in the part of the picture where they are.
+// What is behind them has none; while the camera rests it is drawn once.
 void Renderer::paint(const DrawList& list, bool coarse) {
-  const bool moved = upload_solids(list);
+  const bool moved = upload_solids(list) || list.ground.shown != floor_shown_;
   const float aspect = static_cast<float>(frame_.width()) / static_cast<float>(frame_.height());
-  const Matrix4f view = view_projection(list.camera, aspect);
-  const Matrix4f light = light_projection(list.light_direction, list.center, list.radius);
+  View view;
+  view.camera = view_projection(list.camera, aspect);
+  view.light = light_projection(list.light_direction, list.center, list.radius);
+  view.solid = solid_part(list, view.camera);
 
   gl::Disable(GL_BLEND);
   gl::Disable(GL_SCISSOR_TEST);
-  gl::Enable(GL_DEPTH_TEST);
   gl::DepthFunc(GL_LEQUAL);
   gl::DepthMask(GL_TRUE);
-  gl::Enable(GL_CULL_FACE);
   gl::CullFace(GL_BACK);
-  if (moved || light != shadows_from_) draw_shadows(list, light);
-  shadows_from_ = light;
-  shadow_map_.use_as_texture(0);
-  shade_on_floor_.use_as_texture(1);
-  frame_.bind(coarse);
-  gl::ClearColor(0, 0, 0, 0);  // where there is a background it covers what is left
-  gl::Clear(GL_DEPTH_BUFFER_BIT | (list.transparent ? GL_COLOR_BUFFER_BIT : 0U));
-  draw_solids(list, view, light);
+  if (moved || view.light != shadows_from_) draw_shadows(list, view.light);
+  gl::Disable(GL_DEPTH_TEST);
   gl::Disable(GL_CULL_FACE);  // the floor may be seen from below
-  draw_surroundings(list, view, light);
+  draw_backdrop(list, view.camera);
+  backdrop_.copy_to(frame_, 0, 0);
+  frame_.bind_resolved();
+  if (list.ground.shown) draw_floor_shadow(list, view);
+
+  if (!coarse) frame_.spread(view.solid);
+  gl::Enable(GL_DEPTH_TEST);
   gl::Enable(GL_CULL_FACE);
-  draw_ghosts(list, view, light);
+  gl::Clear(GL_DEPTH_BUFFER_BIT);
+  shadow_map_.use_as_texture(0);
+  draw_solids(list, view);
+  draw_ghosts(list, view);
   gl::Disable(GL_CULL_FACE);
-  if (!coarse) frame_.resolve();
+  if (!coarse) frame_.resolve(view.solid);
   text_.draw(list, frame_.width(), frame_.height());
   transparent_ = list.transparent;
 }

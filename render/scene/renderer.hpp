@@ -1,10 +1,10 @@
 // A DrawList becomes an Image: lit solids with shadows on a floor, in OpenGL 3.3 core.
 #pragma once
 
-#include <array>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "render/gl/context.hpp"
 #include "render/gl/framebuffer.hpp"
@@ -12,7 +12,7 @@
 #include "render/gl/texture_target.hpp"
 #include "render/image/image.hpp"
 #include "render/scene/draw_list.hpp"
-#include "render/scene/solid_mesh.hpp"
+#include "render/scene/renderer_bodies.hpp"
 #include "render/ui/text_overlay.hpp"
 
 namespace unfurl {
@@ -35,49 +35,44 @@ class Renderer {
   const Framebuffer& picture() const { return frame_; }  // what was painted last
 
  private:
-  struct Shape {  // a mesh, with a body's instances
-    unsigned vertex_array = 0, vertices = 0, indices = 0;
-    int index_count = 0;
+  using Matrix4f = Eigen::Matrix4f;
+  struct View {  // of a picture
+    Matrix4f camera, light;
+    PixelRect solid;  // outside it is nothing but surroundings
   };
-  struct Body {
-    Shape fine, coarse;      // for the picture; for the shadow, where nobody counts the corners
-    unsigned instances = 0;  // of this picture
-    int instance_count = 0;
-    bool small = false;  // no body is more than a few pixels thick: the coarse shape is as good
-  };
-  static Shape make_shape(const Mesh& mesh, unsigned instances);
-  static Body make_body(const Mesh& fine, const Mesh& coarse);
-  static void destroy_shape(const Shape& shape);
-  static void upload(Body& body, const std::vector<SolidInstance>& instances);
   bool upload_solids(const DrawList& list);
-  static void draw_body(const Body& body, Shape Body::*shape);
-  void draw_bodies(Shape Body::*shape) const;
-  void draw_shadows(const DrawList& list, const Eigen::Matrix4f& light) const;
+  PixelRect solid_part(const DrawList& list, const Matrix4f& camera) const;
+  void draw_shadows(const DrawList& list, const Matrix4f& light);
+  void blur_shadows() const;
+  void draw_backdrop(const DrawList& list, const Matrix4f& camera);
+  void draw_floor_shadow(const DrawList& list, const View& view) const;
+  const Program& begin_floor(const Program& program, const DrawList& list, const Matrix4f& camera) const;
   // A look's program is made at its first picture.
-  const Program& solid_program(const char* name, const char* fragment);
-  const Program& begin_solids(const char* name, const char* fragment, const DrawList& list,
-                              const Eigen::Matrix4f& view, const Eigen::Matrix4f& light);
-  void draw_solids(const DrawList& list, const Eigen::Matrix4f& view, const Eigen::Matrix4f& light);
-  void draw_outlines(const DrawList& list, const Eigen::Matrix4f& view, const Eigen::Matrix4f& light);
-  void draw_ghosts(const DrawList& list, const Eigen::Matrix4f& view, const Eigen::Matrix4f& light);
+  const Program& solid_program(const char* name, const char* fragment, bool hidden);
+  const Program& begin_solids(const char* name, const char* fragment, const DrawList& list, const View& view,
+                              bool hidden = false);
+  void draw_solids(const DrawList& list, const View& view);
+  void draw_outlines(const DrawList& list, const View& view);
+  void draw_ghosts(const DrawList& list, const View& view);
+  void draw_bodies() const;
   static void begin_blending();
   static void end_blending();
-  void draw_surroundings(const DrawList& list, const Eigen::Matrix4f& view,
-                         const Eigen::Matrix4f& light) const;
   void set_background(const Program& program, const DrawList& list) const;
 
-  Framebuffer frame_;
-  Program depth_, shade_, background_, ground_;
+  Framebuffer frame_, backdrop_;  // backdrop: what is behind the bodies, but for shadows
+  Program depth_, shade_, background_, grid_, floor_shadow_;
   std::map<std::string, std::unique_ptr<Program>> solid_;  // by name
-  std::array<Body, 4> bodies_;                             // capsules, balls, cylinders, ghosts
+  RendererBodies capsules_{BodyKind::capsule}, balls_{BodyKind::ball}, cylinders_{BodyKind::cylinder},
+      ghosts_{BodyKind::capsule};
   unsigned empty_array_ = 0;
   TextureTarget shadow_map_;                     // depth from the light
   TextureTarget shade_across_, shade_on_floor_;  // the shadow on the floor, blurred one way, then both
   TextOverlay text_;
-  bool transparent_ = false;  // of the picture that was painted last
-  Solids solids_;             // that the buffers hold
-  bool floor_shown_ = false;
-  Eigen::Matrix4f shadows_from_ = Eigen::Matrix4f::Zero();  // the light that the shadow maps were drawn for
+  bool transparent_ = false;                  // of the picture that was painted last
+  std::vector<float> backdrop_of_;            // what the backdrop shows
+  bool floor_shown_ = false;                  // when the shadow maps were drawn,
+  Matrix4f shadows_from_ = Matrix4f::Zero();  // by this light,
+  PixelRect shaded_;                          // and this part of the map on the floor is not empty
 };
 
 }  // namespace unfurl

@@ -1,8 +1,11 @@
-// The renderer's meshes and their instances on the graphics side.
+#include "render/scene/renderer_bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstring>
 
 #include "render/gl/functions.hpp"
-#include "render/scene/renderer.hpp"
 
 namespace unfurl {
 namespace {
@@ -24,9 +27,53 @@ void fill(GLenum target, unsigned buffer, const std::vector<T>& data, GLenum usa
   gl::BufferData(target, static_cast<GLsizeiptr>(data.size() * sizeof(T)), data.data(), usage);
 }
 
+bool same(const std::vector<SolidInstance>& a, const std::vector<SolidInstance>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
+}
+
+// The level of each body, by the size of its nearer end.
+std::vector<std::uint8_t> detail_of(const std::vector<SolidInstance>& bodies, const Camera& camera,
+                                    int height) {
+  const Vec3f forward = (camera.target - camera.eye).normalized();
+  const float slope = 2 * std::tan(0.5f * camera.vertical_field_of_view);
+  std::vector<std::uint8_t> levels;
+  for (const SolidInstance& body : bodies) {
+    const float depth = std::max(
+        camera.near_plane, std::min(forward.dot(body.a - camera.eye), forward.dot(body.b - camera.eye)));
+    const float visible = camera.parallel_height > 0 ? camera.parallel_height : slope * depth;
+    const float radius = std::max(body.radius_a, body.radius_b) / visible * static_cast<float>(height);
+    levels.push_back(static_cast<std::uint8_t>(detail_level(radius)));
+  }
+  return levels;
+}
+
+constexpr int level_sides[detail_levels] = {6, 8, 12, 24}, ball_sides[detail_levels] = {8, 10, 16, 32};
+
 }  // namespace
 
-Renderer::Shape Renderer::make_shape(const Mesh& mesh, unsigned instances) {
+// The middle of a side of n is r (1 - cos(pi / n)) inside the circle: a third of a pixel at these radii.
+int detail_level(float radius) {
+  int level = 0;
+  while (level + 1 < detail_levels &&
+         radius * (1 - std::cos(3.14159f / static_cast<float>(level_sides[level]))) > 0.34f)
+    ++level;
+  return level;
+}
+
+Mesh detailed_mesh(BodyKind kind, int level) {
+  const int sides = level_sides[level], round = ball_sides[level];
+  switch (kind) {
+    case BodyKind::capsule:
+      return capsule_mesh(sides, std::max(1, sides / 6));
+    case BodyKind::ball:
+      return capsule_mesh(round, round / 4);
+    case BodyKind::cylinder:
+      return level == 0 ? plain_cylinder_mesh(sides) : cylinder_mesh(sides);
+  }
+  return {};
+}
+
+RendererBodies::Shape RendererBodies::make_shape(const Mesh& mesh, unsigned instances) {
   Shape shape;
   gl::GenVertexArrays(1, &shape.vertex_array);
   gl::GenBuffers(1, &shape.vertices);
@@ -48,34 +95,60 @@ Renderer::Shape Renderer::make_shape(const Mesh& mesh, unsigned instances) {
   return shape;
 }
 
-Renderer::Body Renderer::make_body(const Mesh& fine, const Mesh& coarse) {
-  Body body;
-  gl::GenBuffers(1, &body.instances);
-  body.fine = make_shape(fine, body.instances);
-  body.coarse = make_shape(coarse, body.instances);
-  return body;
+RendererBodies::RendererBodies(BodyKind kind) {
+  for (int i = 0; i < detail_levels; ++i) {
+    Level& level = levels_[static_cast<std::size_t>(i)];
+    gl::GenBuffers(1, &level.instances);
+    level.picture = make_shape(detailed_mesh(kind, i), level.instances);
+    level.shadow = make_shape(detailed_mesh(kind, std::max(0, i - 2)), level.instances);
+  }
 }
 
-void Renderer::destroy_shape(const Shape& shape) {
+RendererBodies::~RendererBodies() {
+  for (const Level& level : levels_) {
+    destroy_shape(level.picture);
+    destroy_shape(level.shadow);
+    gl::DeleteBuffers(1, &level.instances);
+  }
+}
+
+void RendererBodies::destroy_shape(const Shape& shape) {
   gl::DeleteBuffers(1, &shape.indices);
   gl::DeleteBuffers(1, &shape.vertices);
   gl::DeleteVertexArrays(1, &shape.vertex_array);
 }
 
-void Renderer::upload(Body& body, const std::vector<SolidInstance>& instances) {
-  fill(GL_ARRAY_BUFFER, body.instances, instances, GL_STREAM_DRAW);
-  body.instance_count = static_cast<int>(instances.size());
+bool RendererBodies::set(std::vector<SolidInstance> bodies, const Camera& camera, int height) {
+  std::vector<std::uint8_t> detail = detail_of(bodies, camera, height);
+  const bool moved = !same(bodies, bodies_);
+  if (!moved && detail == detail_) return false;
+  bodies_ = std::move(bodies);
+  detail_ = std::move(detail);
+  upload();
+  return moved;
 }
 
-void Renderer::draw_body(const Body& body, Shape Body::*shape) {
-  if (body.instance_count == 0) return;
-  const Shape& drawn = body.small ? body.coarse : body.*shape;
-  gl::BindVertexArray(drawn.vertex_array);
-  gl::DrawElementsInstanced(GL_TRIANGLES, drawn.index_count, GL_UNSIGNED_SHORT, nullptr, body.instance_count);
+void RendererBodies::upload() {
+  std::array<std::vector<SolidInstance>, detail_levels> sorted;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) sorted[detail_[i]].push_back(bodies_[i]);
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    levels_[i].count = static_cast<int>(sorted[i].size());
+    fill(GL_ARRAY_BUFFER, levels_[i].instances, sorted[i], GL_STREAM_DRAW);
+  }
 }
 
-void Renderer::draw_bodies(Shape Body::*shape) const {
-  for (const Body& body : bodies_) draw_body(body, shape);
+void RendererBodies::draw_shape(const Shape& shape, int count) {
+  if (count == 0) return;
+  gl::BindVertexArray(shape.vertex_array);
+  gl::DrawElementsInstanced(GL_TRIANGLES, shape.index_count, GL_UNSIGNED_SHORT, nullptr, count);
+}
+
+void RendererBodies::draw() const {
+  for (const Level& level : levels_) draw_shape(level.picture, level.count);
+}
+
+void RendererBodies::draw_shadow() const {
+  for (const Level& level : levels_) draw_shape(level.shadow, level.count);
 }
 
 }  // namespace unfurl

@@ -5,7 +5,10 @@
 namespace unfurl::shaders {
 
 // Places a body of revolution (solid_mesh.hpp) between two points.
-inline constexpr const char* solid_vertex = R"(#version 330 core
+// With HIDDEN, for what is taken to be nearer than it is when depths are compared.
+inline constexpr const char* version = "#version 330 core\n";
+inline constexpr const char* version_hidden = "#version 330 core\n#define HIDDEN\n";
+inline constexpr const char* solid_vertex = R"(
 layout(location = 0) in vec3 offset;
 layout(location = 1) in vec3 axis_normal;
 layout(location = 2) in float end;
@@ -15,8 +18,8 @@ layout(location = 5) in vec2 radii;
 layout(location = 6) in vec3 color;
 layout(location = 7) in vec2 surface;
 uniform mat4 view_projection;
-uniform vec4 eye;      // the camera, or (w = 0) the direction to it
-uniform float nearer;  // how much nearer than it is everything is taken to be when depths are compared
+uniform vec4 eye;  // the camera, or (w = 0) the direction to it
+uniform float nearer;
 out vec3 world;
 out vec3 normal;
 flat out vec3 axis;  // unit; zero for a ball
@@ -35,8 +38,10 @@ void main() {
   metal_roughness = surface;
   axis = span > 0.0 ? z : vec3(0.0);
   gl_Position = view_projection * vec4(world, 1.0);
+#ifdef HIDDEN
   vec4 moved = view_projection * vec4(world + nearer * normalize(eye.xyz - eye.w * world), 1.0);
   gl_Position.z = moved.z / moved.w * gl_Position.w;
+#endif
 })";
 
 inline constexpr const char* depth_fragment = R"(#version 330 core
@@ -217,30 +222,20 @@ void main() {
 
 inline constexpr const char* ground_vertex = R"(#version 330 core
 uniform mat4 view_projection;
-uniform vec3 center;
-uniform float reach;
+uniform vec3 corner, side_u, side_v;  // of the part of the floor that is drawn
 out vec2 world;
 void main() {
-  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-  world = center.xy + corner * reach;
-  gl_Position = view_projection * vec4(world, center.z, 1.0);
+  vec3 at = corner + side_u * float(gl_VertexID & 1) + side_v * float(gl_VertexID >> 1);
+  world = at.xy;
+  gl_Position = view_projection * vec4(at, 1.0);
 })";
 
-// The floor has the background's own colour, so that it has no edge: only shadow and grid tell where it is.
-inline constexpr const char* ground_fragment = R"(#version 330 core
+// The floor has the background's own colour, so that it has no edge: only grid and shadow tell where it is.
+inline constexpr const char* grid_fragment = R"(#version 330 core
 in vec2 world;
-uniform vec4 background_top, background_bottom;
-uniform float picture_height;
-uniform vec3 center;
-uniform float reach, cell, grid_strength;
-uniform int transparent;
-uniform mat4 light_projection;
-uniform sampler2D shade;
+uniform vec2 center;
+uniform float picture_height, reach, cell;
 layout(location = 0) out vec4 color;
-
-float lit(vec3 p) {  // the map's edge is lit, and continues
-  return 1.0 - texture(shade, (light_projection * vec4(p, 1.0)).xy * 0.5 + 0.5).r;
-}
 
 float lines(vec2 p, float pixels) {  // 1 on the lines of the unit grid
   vec2 width = fwidth(p);
@@ -250,19 +245,23 @@ float lines(vec2 p, float pixels) {  // 1 on the lines of the unit grid
 }
 
 void main() {
-  float fade = 1.0 - smoothstep(0.35, 1.0, length(world - center.xy) / reach);
-  vec3 paper = mix(background_bottom, background_top, gl_FragCoord.y / picture_height).rgb;
+  float fade = 1.0 - smoothstep(0.35, 1.0, length(world - center) / reach);
   float finer = max(1.0, picture_height / 720.0);  // lines as wide for the eye in pictures of any size
-  float grid = max(0.20 * lines(world / cell, 1.1 * finer), 0.34 * lines(world / (5.0 * cell), 1.3 * finer)) * grid_strength * fade;
-  float shadow = fade > 0.0 ? fade * (1.0 - lit(vec3(world, center.z))) : 0.0;
-  if (transparent == 1) {  // multiplied by its own opacity
-    float ink = max(grid, 0.40 * shadow);
-    color = vec4(mix(vec3(0.36, 0.44, 0.54), vec3(0.10, 0.12, 0.16), shadow) * ink, ink);
-    return;
-  }
-  paper = mix(paper, vec3(0.36, 0.44, 0.54), grid);
-  paper *= mix(vec3(1.0), vec3(0.60, 0.63, 0.68), shadow);
-  color = vec4(paper, 1.0);
+  float grid = max(0.20 * lines(world / cell, 1.1 * finer), 0.34 * lines(world / (5.0 * cell), 1.3 * finer));
+  color = vec4(0.36, 0.44, 0.54, grid * fade);
+})";
+
+inline constexpr const char* floor_shadow_fragment = R"(#version 330 core
+in vec2 world;
+uniform float floor_height, reach;
+uniform vec2 center;
+uniform mat4 light_projection;
+uniform sampler2D shade;
+layout(location = 0) out vec4 color;
+void main() {
+  float fade = 1.0 - smoothstep(0.35, 1.0, length(world - center) / reach);
+  vec2 at = (light_projection * vec4(world, floor_height, 1.0)).xy * 0.5 + 0.5;
+  color = vec4(0.045, 0.11, 0.23, 0.42 * fade * texture(shade, at).r);
 })";
 
 }  // namespace unfurl::shaders

@@ -101,6 +101,16 @@ Mesh cylinder_mesh(int sides) {
                  sides);
 }
 
+Mesh plain_cylinder_mesh(int sides) {
+  return revolve({{0, 0, 0, -1, 0},
+                  {1, 0, 0, -1, 0},
+                  {1, 0, 1, 0, 0},
+                  {1, 0, 1, 0, 1},
+                  {1, 0, 0, 1, 1},
+                  {0, 0, 0, 1, 1}},
+                 sides);
+}
+
 std::vector<SolidInstance> tubes_of(const std::vector<Tube>& tubes) {
   std::vector<SolidInstance> out;
   for (const Tube& t : tubes) out.push_back(solid(t.a, t.b, t.radius, t.radius, t.color, t.finish));

@@ -23,6 +23,7 @@ struct Mesh {
 
 Mesh capsule_mesh(int sides, int cap_rings);  // round ends beyond a and b; a ball where a = b
 Mesh cylinder_mesh(int sides);                // flat ends at a and b with a bevel; a cone where a radius is 0
+Mesh plain_cylinder_mesh(int sides);          // the same without the bevel
 
 // One body of a mesh: 13 floats, as the shader takes them.
 struct SolidInstance {

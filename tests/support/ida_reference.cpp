@@ -40,7 +40,9 @@ class Equations {
     qr.setThreshold(1e-9);
     for (Index i = 0; i < qr.rank(); ++i) rows_.push_back(qr.colsPermutation().indices()[i]);
     std::sort(rows_.begin(), rows_.end());
+    for (const Index row : rows_) list_curvature(row);
     system.expand_rate(start.w, v_);
+    rate_.resize(system.constraints());
     lambda_.setOnes();
     mu_.setOnes();
     assemble(1.0, true);
@@ -66,10 +68,10 @@ class Equations {
     r1 += system_.mass() * (dz - w);
     system_.constraint(t, q_, phi_);
     system_.jacobian(q_, G_, scratch_);
-    const VectorXd rate = G_ * w;
+    rate_.noalias() = G_ * w;
     for (Index i = 0; i < picked(); ++i) {
       r[2 * n_ + i] = phi_[rows_[static_cast<std::size_t>(i)]];
-      r[2 * n_ + picked() + i] = rate[rows_[static_cast<std::size_t>(i)]];
+      r[2 * n_ + picked() + i] = rate_[rows_[static_cast<std::size_t>(i)]];
     }
   }
 
@@ -95,6 +97,16 @@ class Equations {
     }
   }
 
+  // Phi is quadratic: its curvature is the same at every pose.
+  void list_curvature(Index row) {
+    lambda_.setZero();
+    lambda_[row] = 1.0;
+    const SparseRows H = system_.curvature(q_, lambda_);
+    for (int i = 0; i < H.outerSize(); ++i)
+      for (SparseRows::InnerIterator it(H, i); it; ++it)
+        if (it.value() != 0.0) curves_.push_back({row, i, it.col(), it.value()});
+  }
+
   // Visits the entries in the same order every time; the first time they make the pattern.
   void assemble(double cj, bool first) {
     entries_.clear();
@@ -102,8 +114,10 @@ class Equations {
     add(system_.mass(), cj, z, z);
     add(system_.mass(), -1.0, z, w);
     add(system_.mass(), cj, w, w);
-    add(system_.curvature(q_, mu_), 1.0, z, z);
-    add(system_.curvature(q_, lambda_), 1.0, w, z);
+    for (const Curve& c : curves_) {
+      entries_.emplace_back(z + c.i, z + c.j, mu_[c.row] * c.value);
+      entries_.emplace_back(w + c.i, z + c.j, lambda_[c.row] * c.value);
+    }
     // Phi is quadratic, G affine: d(G w)/dz = G(v) - G(0).
     system_.jacobian(v_, Gw_, scratch_);
     for (Index i = 0; i < picked(); ++i) {
@@ -143,8 +157,13 @@ class Equations {
   Index n_;
   SparseRows G_, Gw_, G0_;
   std::vector<double> scratch_;
-  VectorXd q_, v_, f_, phi_, lambda_, mu_;
+  VectorXd q_, v_, f_, phi_, rate_, lambda_, mu_;
   std::vector<Index> rows_;
+  struct Curve {
+    Index row, i, j;
+    double value;  // entry (i, j) of Hess Phi_row
+  };
+  std::vector<Curve> curves_;
   std::vector<Eigen::Triplet<double, sunindextype>> entries_;
   std::vector<std::ptrdiff_t> place_;
   Columns matrix_;

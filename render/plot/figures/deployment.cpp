@@ -17,9 +17,7 @@ Figure deployment_figure(const Simulation& run, const Diagnostics& diagnostics) 
   f.caption = "Fold angle (solid, left axis) and deployed fraction (dashed, right axis).";
   if (!degrees.empty())
     f.caption += " The fold angle starts at " + plot::format_number(degrees.front(), 6) + "\u00B0.";
-  for (const Event& e : run.events)
-    f.caption += " Event \u201C" + e.name + "\u201D at " + plot::format_fixed(e.t, 6) + " s.";
-  f.caption += " " + method_sentence(run);
+  f.caption += events_sentence(run) + " " + method_sentence(run);
 
   Panel p = time_panel(run, "fold angle (\u00B0)");
   p.y.degrees = true;

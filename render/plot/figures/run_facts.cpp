@@ -9,6 +9,36 @@ namespace unfurl {
 
 using plot::format_number;
 
+namespace {
+
+constexpr std::size_t most_named = 5;  // events of one name; of more the first is labelled, with their number
+
+// Events of one name, in the order of their first ones.
+struct EventGroup {
+  std::string name;
+  std::vector<double> times;
+};
+
+std::vector<EventGroup> event_groups(const Simulation& run) {
+  std::vector<EventGroup> groups;
+  for (const Event& e : run.events) {
+    const auto same =
+        std::find_if(groups.begin(), groups.end(), [&](const EventGroup& g) { return g.name == e.name; });
+    if (same == groups.end())
+      groups.push_back({e.name, {e.t}});
+    else
+      same->times.push_back(e.t);
+  }
+  return groups;
+}
+
+std::string group_label(const EventGroup& group) {
+  if (group.times.size() <= most_named) return group.name;
+  return group.name + " (" + std::to_string(group.times.size()) + " times)";
+}
+
+}  // namespace
+
 Curve over_time(const Diagnostics& diagnostics, std::vector<double> values, std::string label, int color) {
   Curve c;
   c.label = std::move(label);
@@ -22,8 +52,27 @@ Panel time_panel(const Simulation& run, std::string y_label) {
   Panel p;
   p.x.label = "time (s)";
   p.y.label = std::move(y_label);
-  for (const Event& e : run.events) p.lines.push_back({e.t, false, e.name, 7});
+  for (const EventGroup& group : event_groups(run))
+    for (const double t : group.times) {
+      const bool named = group.times.size() <= most_named || t == group.times.front();
+      p.lines.push_back({t, false, named ? group_label(group) : "", 7});
+    }
   return p;
+}
+
+std::string events_sentence(const Simulation& run) {
+  std::string text;
+  for (const EventGroup& group : event_groups(run)) {
+    if (group.times.size() > most_named) {
+      text += " Event \u201C" + group.name + "\u201D " + std::to_string(group.times.size()) +
+              " times, from " + plot::format_fixed(group.times.front(), 6) + " s to " +
+              plot::format_fixed(group.times.back(), 6) + " s.";
+      continue;
+    }
+    for (const double t : group.times)
+      text += " Event \u201C" + group.name + "\u201D at " + plot::format_fixed(t, 6) + " s.";
+  }
+  return text;
 }
 
 void share_time_axis(Panel& upper, Panel& lower) {

@@ -11,8 +11,10 @@
 namespace unfurl {
 
 Curve over_time(const Diagnostics& diagnostics, std::vector<double> values, std::string label, int color);
-// Over time, with a dashed line at each event.
+// Over time, with a dashed line at each event; of many events of one name only the first is labelled.
 Panel time_panel(const Simulation& run, std::string y_label);
+// " Event "deployed" at 4.920000 s." for every event, many of one name in one sentence; a leading blank.
+std::string events_sentence(const Simulation& run);
 // Of a panel and the one below: the time axis has its labels below only, events have their names above only.
 void share_time_axis(Panel& upper, Panel& lower);
 

@@ -58,6 +58,29 @@ TEST_CASE("a ball bounces on a stop as its restitution says") {
   for (std::size_t i = 0; i < run.trajectory.size(); ++i) CHECK(run.trajectory.positions(i)[2] >= -1e-10);
 }
 
+TEST_CASE("a stop that is touched and left within one step is not missed") {
+  // Thrown down at 6 m/s from 0.3 m, and drawn up at 20 m/s^2: the parabola 0.3 - 6 t + 10 t^2 would be below
+  // the floor from 0.0551 s to 0.5449 s; steps of 0.6 s see it above at both ends.
+  const Simulation run =
+      run_scene(ball, {"structure.nodes.A.position=[0,0,0.3]", "structure.nodes.A.velocity=[0,0,-6]",
+                       "gravity.acceleration=[0,0,20]", "solver.step=0.6", "solver.end_time=0.6"});
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  REQUIRE(run.events.size() == 1);
+  const double touch = (6 - std::sqrt(36 - 12.0)) / 20;
+  CHECK(run.events[0].t == Approx(touch).epsilon(1e-12));
+  // Off again at half of the approach speed, sqrt(24) m/s.
+  const double left = 0.6 - touch;
+  CHECK(run.trajectory.positions(run.trajectory.size() - 1)[2] ==
+        Approx(0.5 * std::sqrt(24.0) * left + 10 * left * left).epsilon(1e-10));
+  // A parabola that stays 1 mm above the floor touches nothing.
+  const Simulation above =
+      run_scene(ball, {"structure.nodes.A.position=[0,0,0.901]", "structure.nodes.A.velocity=[0,0,-6]",
+                       "gravity.acceleration=[0,0,20]", "solver.step=0.6", "solver.end_time=0.6"});
+  CHECK(above.status == RunStatus::completed);
+  CHECK(above.events.empty());
+}
+
 TEST_CASE("bounces come to rest after their geometric series, and the stop then carries the weight") {
   const Simulation run = run_scene(ball, {"solver.end_time=4"});
   REQUIRE(run.status == RunStatus::completed);

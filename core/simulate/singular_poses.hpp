@@ -1,0 +1,44 @@
+// Poses of a run in which a structure gains ways to move.
+#pragma once
+
+#include "core/math/saddle_solver.hpp"
+#include "core/simulate/simulation.hpp"
+
+namespace unfurl {
+
+// The smallest singular value sigma of a system's Jacobian G (rows of length 1, solved coordinates, kept
+// rows) that is not zero everywhere, followed from pose to pose: block inverse iteration with G G^T + e I,
+// warm-started, then the singular values of G^T on the block (Rayleigh-Ritz), which converge like the square
+// of the block's error. `redundant`: how many rows depend on others in every pose; their zeros are passed
+// over.
+class SmallestSingularValue {
+ public:
+  SmallestSingularValue(const System& system, Index redundant);
+  double at(const ConstVec& z);  // NaN where the factorisation broke down
+
+ private:
+  void stir(Index column);
+  void improve();  // one iteration
+
+  const System& system_;
+  Index redundant_;
+  SparseRows G_;
+  std::vector<double> scratch_;
+  SaddleSolver saddle_;
+  VectorXd q_, sigma_, rest_;
+  MatrixXd block_;  // columns: singular vectors, by rising sigma
+};
+
+// Rows of the kept Jacobian less its rank, the largest rank of a few states of [first, last]: a pose that is
+// singular for a moment does not count.
+Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last);
+
+// Adds an event "singular pose" to `run` for every time between two states at which sigma dips below a
+// hundredth of its largest value in the run (0 up to the error of the dense output where the pose is truly
+// singular). The start and the end of a run are no dips: a ring that ends deployed ends at a singular pose,
+// and its event is "deployed". States are looked at after the run; not at all where the Jacobian has more
+// than max_singular_size rows or columns, and at every second, third, ... one where there are very many.
+inline constexpr Index max_singular_size = 300;
+void record_singular_poses(Simulation& run);
+
+}  // namespace unfurl

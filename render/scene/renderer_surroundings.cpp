@@ -1,0 +1,165 @@
+// What is behind the bodies: background, grid, and shadows, on the floor and in the map that bodies read.
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "render/gl/functions.hpp"
+#include "render/scene/renderer.hpp"
+
+namespace unfurl {
+namespace {
+
+using Eigen::Matrix4f;
+
+constexpr int blur_reach = 4;  // [pixels of the shade on the floor]
+
+Eigen::Vector4f as_vector(const Color& c) {
+  return {c.r, c.g, c.b, c.a};
+}
+
+// The part of a square map of the light's view that bodies may darken, blurred by `reach` pixels.
+PixelRect shaded_part(std::initializer_list<const RendererBodies*> all, const Matrix4f& light, int side,
+                      int reach) {
+  Eigen::Array2f low(1, 1), high(-1, -1);
+  const float scale = light.row(0).head<3>().norm();
+  for (const RendererBodies* bodies : all)
+    for (const SolidInstance& body : bodies->bodies())
+      for (const Vec3f& end : {body.a, body.b}) {
+        const Eigen::Array2f at = (light * end.homogeneous()).head<2>().array();
+        const float r = scale * std::max(body.radius_a, body.radius_b);
+        low = low.min(at - r), high = high.max(at + r);
+      }
+  const auto pixel = [&](float ndc, int pad) {
+    return std::clamp(
+        static_cast<int>(0.5f * (1 + std::clamp(ndc, -1.0f, 1.0f)) * static_cast<float>(side)) + pad, 0,
+        side);
+  };
+  return {pixel(low.x(), -reach), pixel(low.y(), -reach), pixel(high.x(), reach + 1),
+          pixel(high.y(), reach + 1)};
+}
+
+}  // namespace
+
+void Renderer::set_background(const Program& program, const DrawList& list) const {
+  program.set("background_top", as_vector(list.background_top));
+  program.set("background_bottom", as_vector(list.background_bottom));
+  program.set("picture_height", static_cast<float>(frame_.height()));
+}
+
+// The depth map, for shadows of bodies on bodies; from it, for the floor, what of the light is missing,
+// blurred. One read of that costs a floor pixel a sixth of as many reads of the depth map as would be as
+// soft.
+void Renderer::draw_shadows(const DrawList& list, const Matrix4f& light) {
+  gl::Enable(GL_DEPTH_TEST);
+  gl::Enable(GL_CULL_FACE);
+  shadow_map_.bind();
+  gl::Clear(GL_DEPTH_BUFFER_BIT);
+  gl::Enable(GL_POLYGON_OFFSET_FILL);
+  gl::PolygonOffset(1.5f, 2.0f);
+  depth_.use();
+  depth_.set("view_projection", light);
+  for (const RendererBodies* bodies : {&capsules_, &balls_, &cylinders_}) bodies->draw_shadow();
+  gl::Disable(GL_POLYGON_OFFSET_FILL);
+  if (list.ground.shown) {
+    shaded_ = shaded_part({&capsules_, &balls_, &cylinders_}, light, shade_on_floor_.side(), blur_reach);
+    blur_shadows();
+  }
+  shadows_from_ = light;
+  floor_shown_ = list.ground.shown;
+}
+
+void Renderer::blur_shadows() const {
+  gl::Disable(GL_DEPTH_TEST);
+  gl::Disable(GL_CULL_FACE);
+  gl::BindVertexArray(empty_array_);
+  shade_.use();
+  shade_.set("depth", 0);
+  shade_.set("shade", 1);
+  shade_.set("texels", shadow_map_.side() / shade_on_floor_.side());
+  shadow_map_.use_as_texture(0);
+  shadow_map_.compare_depths(false);
+  gl::ClearColor(0, 0, 0, 0);
+  for (const bool across : {true, false}) {
+    (across ? shade_across_ : shade_on_floor_).bind();
+    gl::Clear(GL_COLOR_BUFFER_BIT);
+    gl::Enable(GL_SCISSOR_TEST);
+    gl::Scissor(shaded_.x0, shaded_.y0, shaded_.x1 - shaded_.x0, shaded_.y1 - shaded_.y0);
+    if (!across) shade_across_.use_as_texture(1);
+    shade_.set("across", across ? 1 : 0);
+    if (!shaded_.empty()) gl::DrawArrays(GL_TRIANGLES, 0, 3);
+    gl::Disable(GL_SCISSOR_TEST);
+  }
+  shadow_map_.use_as_texture(0);
+  shadow_map_.compare_depths(true);
+}
+
+const Program& Renderer::begin_floor(const Program& program, const DrawList& list,
+                                     const Matrix4f& camera) const {
+  const Ground& g = list.ground;
+  program.use();
+  program.set("view_projection", camera);
+  program.set("center", Eigen::Vector2f(g.center.head<2>()));
+  program.set("reach", g.fade);
+  gl::BindVertexArray(empty_array_);
+  begin_blending();
+  return program;
+}
+
+void Renderer::draw_backdrop(const DrawList& list, const Matrix4f& camera) {
+  const Ground& g = list.ground;
+  std::vector<float> shows(camera.data(), camera.data() + 16);
+  for (const Color& c : {list.background_top, list.background_bottom})
+    shows.insert(shows.end(), {c.r, c.g, c.b, c.a});
+  const bool grid = g.shown && g.grid;
+  shows.insert(shows.end(), {list.stars, list.transparent ? 1.0f : 0.0f, grid ? 1.0f : 0.0f});
+  if (grid) shows.insert(shows.end(), {g.z, g.cell, g.fade, g.center.x(), g.center.y()});
+  if (shows == backdrop_of_) return;
+  backdrop_of_ = std::move(shows);
+
+  backdrop_.bind();
+  gl::ClearColor(0, 0, 0, 0);
+  gl::Clear(GL_COLOR_BUFFER_BIT);
+  gl::BindVertexArray(empty_array_);
+  if (!list.transparent) {
+    background_.use();
+    background_.set("stars", list.stars);
+    set_background(background_, list);
+    gl::DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  if (!grid) return;
+  const Program& program = begin_floor(grid_, list, camera);
+  program.set("picture_height", static_cast<float>(frame_.height()));
+  program.set("cell", g.cell);
+  program.set("corner", Vec3f(g.center.x() - g.fade, g.center.y() - g.fade, g.z));
+  program.set("side_u", Vec3f(2 * g.fade, 0, 0));
+  program.set("side_v", Vec3f(0, 2 * g.fade, 0));
+  gl::DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  end_blending();
+}
+
+// Only where there is some: the shaded part of the map, carried along the light to the floor.
+void Renderer::draw_floor_shadow(const DrawList& list, const View& view) const {
+  if (shaded_.empty()) return;
+  const float z = list.ground.z, per_pixel = 2.0f / static_cast<float>(shade_on_floor_.side());
+  const Eigen::Matrix2f across = view.light.topLeftCorner<2, 2>().inverse();
+  const auto on_floor = [&](int x, int y) {
+    const Eigen::Vector2f map(per_pixel * static_cast<float>(x) - 1, per_pixel * static_cast<float>(y) - 1);
+    const Eigen::Vector2f at =
+        across * (map - z * view.light.block<2, 1>(0, 2) - view.light.block<2, 1>(0, 3));
+    return Vec3f(at.x(), at.y(), z);
+  };
+  const Vec3f corner = on_floor(shaded_.x0, shaded_.y0);
+  const Program& program = begin_floor(floor_shadow_, list, view.camera);
+  program.set("corner", corner);
+  program.set("side_u", Vec3f(on_floor(shaded_.x1, shaded_.y0) - corner));
+  program.set("side_v", Vec3f(on_floor(shaded_.x0, shaded_.y1) - corner));
+  program.set("floor_height", z);
+  program.set("light_projection", view.light);
+  program.set("shade", 1);
+  shade_on_floor_.use_as_texture(1);
+  gl::DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  end_blending();
+}
+
+}  // namespace unfurl

@@ -1,0 +1,89 @@
+// Singular poses on the way, against the exact times of the ladder's collinear ones.
+#include "core/simulate/singular_poses.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/math/singular_values.hpp"
+#include "tests/support/four_bar_exact.hpp"
+#include "tests/support/models.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace singular_poses_test {
+
+namespace {
+
+std::vector<Event> singular_events(Simulation& run) {
+  record_singular_poses(run);
+  std::vector<Event> found;
+  for (const Event& e : run.events)
+    if (e.name == "singular pose") found.push_back(e);
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("the ladder's collinear poses are events, each at its time and none else") {
+  struct Case {
+    int windows;
+    double speed, end;
+  };
+  for (const Case& c : {Case{1, 1.0, 10.0}, Case{1, 30.0, 10.0}, Case{2, 1.0, 10.0}, Case{40, 30.0, 1.0}}) {
+    Simulation run = simulate(make_model(ladder_structure(c.windows, c.speed)), dvm_options(6, 0.01, c.end));
+    REQUIRE(run.status == RunStatus::completed);
+    const exact::FourBarLadder ladder{c.windows, c.speed};
+    const std::vector<Event> events = singular_events(run);
+    INFO("N = " << c.windows << ", v = " << c.speed << " m/s");
+    // All rods lie along x where the uprights have turned by 90, 270, 450, ... deg.
+    const double turns = (ladder.angle(c.end) - 0.5 * M_PI) / M_PI;
+    REQUIRE(events.size() == static_cast<std::size_t>(std::floor(turns)) + 1);
+    for (std::size_t k = 0; k < events.size(); ++k) {
+      // Cubic Hermite interpolation of a step that turns by a leaves a^4 / 384: 2e-5 rad at 0.3 rad, 6e-8 at
+      // 0.07.
+      const double off = ladder.angle(events[k].t) - (0.5 + static_cast<double>(k)) * M_PI;
+      CHECK(std::abs(off) <= (c.speed > 10 ? 1e-4 : 1e-6));
+      CHECK(events[k].singular_value <= 1e-4);
+    }
+  }
+}
+
+TEST_CASE(
+    "what is redundant everywhere is no singular pose; the ring's deployed one is, where it is passed") {
+  SolverOptions options = dvm_options(4, 0.01, 5.2);
+  Simulation stopped = simulate(make_model(hoop_structure()), options);
+  CHECK(structural_redundancy(stopped.trajectory, 0, stopped.trajectory.size() - 1) == 7);
+  CHECK(singular_events(stopped).empty());
+
+  options.at_deployed = "pass";
+  Simulation passing = simulate(make_model(hoop_structure()), options);
+  REQUIRE(passing.status == RunStatus::completed);
+  const std::vector<Event> events = singular_events(passing);
+  REQUIRE(events.size() == 1);
+  // 5 rad/s at h = 0.01: an interpolation error of 2e-8 rad; the step across is longer than the others.
+  CHECK(events[0].t == Approx(exact_hoop().time(0)).margin(1e-5));
+}
+
+TEST_CASE("a swing without singular poses has no such event") {
+  Simulation run = simulate(make_model(double_pendulum()), dvm_options(4, 0.01, 5.0));
+  CHECK(singular_events(run).empty());
+}
+
+TEST_CASE("inverse iteration finds the smallest singular value that is not zero everywhere") {
+  const auto model = make_model(hoop_structure());
+  const System& system = model->system;
+  const Simulation run = simulate(model, dvm_options(4, 0.01, 4.5));
+  SmallestSingularValue sigma(system, 7);
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  for (std::size_t i = 0; i < run.trajectory.size(); i += 50) {
+    system.jacobian(run.trajectory.node_positions(i), G, scratch);
+    for (Index r = 0; r < G.rows(); ++r) G.row(r) /= G.row(r).norm();
+    const VectorXd dense = singular_values(MatrixXd(G));
+    // Warm-started over 50 steps at once, two iterations leave less than a hundredth.
+    CHECK(sigma.at(run.trajectory.state(i).z) == Approx(dense[system.constraints() - 7 - 1]).epsilon(0.01));
+  }
+}
+
+}  // namespace singular_poses_test
