@@ -136,9 +136,18 @@ PickView SceneView::pick_view(const PanelState& state) const {
 DrawList SceneView::decorated(const PanelState& state) const {
   DrawList list = list_;
   list.camera = camera(state);
+  if (list.transparent) {  // for paper, which is white
+    list.transparent = false;
+    list.background_top = list.background_bottom = {1, 1, 1, 1};
+  }
   if (dark_ && picture_.look == "studio") darken(list);
   if (ghost_) add_ghost(ghost_->build(state.playback.t), list);
   return list;
+}
+
+bool SceneView::dark_ground() const {
+  if (picture_.look == "studio") return dark_;
+  return !list_.transparent && lightness(list_.background_top) < 0.5f;
 }
 
 bool SceneView::moved(const PanelState& state) const {

@@ -104,12 +104,12 @@ void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
   list.AddText({frame.low.x + ui.px(12), high.y - ui.px(26)}, ui.color(ui.theme.text), text);
 }
 
-void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame) {
+void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame, bool dark_ground) {
   const LiveRun& run = *state.shown;
   std::string text = run.scene.title;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 at(frame.low.x + ui.px(14), frame.low.y + ui.px(46));
-  const ImVec4 ink = state.dark ? ImVec4(0.92f, 0.94f, 0.96f, 1) : ui.theme.text;
+  const ImVec4 ink = dark_ground ? ImVec4(0.92f, 0.94f, 0.96f, 1) : ImVec4(0.12f, 0.15f, 0.18f, 1);
   list.AddText(ui.bold, ui.bold->FontSize, at, ui.color(ink), text.c_str());
   std::string line = std::string(to_string(run.simulation.status));
   char facts[160];
@@ -203,7 +203,7 @@ void draw_view_pane(Ui& ui, PanelState& state, SceneView& view) {
   if (!(state.hovered == state.selected))
     mark(ui, state, view, frame, state.hovered, ui.color(ui.theme.accent, 0.6f));
   draw_readings(ui, state, frame);
-  draw_state_line(ui, state, frame);
+  draw_state_line(ui, state, frame, view.dark_ground());
   draw_comparison(ui, state, frame);
   draw_view_buttons(ui, state, view, frame);
   draw_pending(ui, state, frame);

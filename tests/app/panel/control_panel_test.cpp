@@ -214,6 +214,13 @@ TEST_CASE("looks change the picture without a new simulation") {
   // A blueprint has another ground everywhere.
   CHECK(static_cast<double>(differing_pixels(before, driver.picture(), view)) >
         0.5 * view.width() * view.height());
+  // What is for paper stands on white, not on nothing.
+  driver.state().history.edit("render.look", std::string("print"));
+  driver.settle();
+  const Image print = driver.picture();
+  const auto corner = 4 * ((static_cast<std::size_t>(view.y1) - 3) * static_cast<std::size_t>(print.width) +
+                           static_cast<std::size_t>(view.x0) + 3);
+  CHECK(static_cast<int>(print.rgba.at(corner)) > 240);
   driver.state().history.edit("render.inset", std::string("no_such_column"));
   driver.settle();
   REQUIRE(driver.state().picture_problems.size() == 1);
