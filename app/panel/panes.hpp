@@ -31,7 +31,9 @@ void draw_timeline(Ui& ui, PanelState& state);  // bottom
 void draw_help(Ui& ui, PanelState& state);
 void draw_export(Ui& ui, PanelState& state, ExportProcess& job);
 
-// A row of the left pane: label and widget. Returns whether the value changed.
+// A row of the left pane, with its menu and what is wrong with it.
+void draw_row(Ui& ui, PanelState& state, const ParamRow& row);
+// The same without: label and widget. Returns whether the value changed.
 bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong);
 
 }  // namespace unfurl

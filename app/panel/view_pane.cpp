@@ -161,6 +161,10 @@ void choose_preset(PanelState& state, const SceneView& view, ViewPreset preset) 
   state.orbit = preset_view(preset, view.center(), view.radius(), aspect, view.framed().field_of_view);
 }
 
+// Of the picture's keys those that one changes often.
+constexpr std::string_view quick_rows[] = {"render.look", "render.colour_by", "render.ghosts",
+                                           "render.node_labels", "render.rod_labels"};
+
 void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const Frame& frame) {
   ImGui::SetCursorScreenPos({frame.low.x + ui.px(10), frame.low.y + ui.px(10)});
   if (button(ui, "frame", "Frame", "see the whole motion (F)")) state.orbit.reset();
@@ -172,7 +176,13 @@ void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const F
   }
   ImGui::SameLine(0, ui.px(12));
   if (button(ui, "view options", "View", "what the view shows")) ImGui::OpenPopup("view options");
+  ImGui::SetNextWindowSizeConstraints({ui.px(300), 0}, {ui.px(300), FLT_MAX});
   if (!ImGui::BeginPopup("view options")) return;
+  const auto sections = state.sections;  // copied: what is edited may replace them
+  for (const ParamSection& section : sections)
+    for (const ParamRow& row : section.rows)
+      if (std::find(std::begin(quick_rows), std::end(quick_rows), row.key) != std::end(quick_rows))
+        draw_row(ui, state, row);
   ImGui::Checkbox("loads as arrows", &state.view.loads);
   ui.note("view.loads");
   ImGui::Checkbox("title and time of the film", &state.view.labels);

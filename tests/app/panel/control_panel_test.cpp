@@ -111,6 +111,10 @@ TEST_CASE("the timeline scrubs, plays and steps") {
   CHECK(driver.state().playback.t == run.time(1));
   driver.key(Key::left);
   CHECK(driver.state().playback.t == 0.0);
+  driver.click("step +");
+  CHECK(driver.state().playback.t == run.time(1));
+  driver.click("step \u2212");
+  CHECK(driver.state().playback.t == 0.0);
   driver.key(Key::end);
   CHECK(driver.state().playback.t == end);
   driver.key(Key::home);
@@ -229,6 +233,17 @@ TEST_CASE("looks change the picture without a new simulation") {
   driver.settle();
   REQUIRE(driver.state().problems.size() == 1);
   CHECK(driver.state().problems[0].key == "render.look");
+}
+
+TEST_CASE("look and colours are at hand in the view") {
+  PanelDriver driver;
+  driver.click("view options");
+  driver.frame();
+  driver.click("render.colour_by");
+  driver.frame();
+  driver.click("render.colour_by=axial_force");
+  driver.frame();
+  CHECK(driver.state().picture.colour_by == "axial_force");
 }
 
 TEST_CASE("every run of a session is a point of speed against accuracy") {
