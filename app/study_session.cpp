@@ -5,8 +5,10 @@
 
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
+#include "app/run_figures.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
+#include "render/plot/figure_data.hpp"
 
 namespace unfurl {
 
@@ -17,7 +19,8 @@ StudySession::StudySession(const Arguments& arguments, std::string task, const s
     : arguments_(arguments),
       directory_(open_output_directory(arguments.output, arguments.force)),
       journal_(std::move(journal)),
-      progress_(std::move(task), arguments.quiet) {
+      progress_(std::move(task), arguments.quiet),
+      writer_(figure_options(arguments)) {
   const fs::path scene = directory_ / "scene.toml", results = directory_ / journal_;
   std::error_code error;
   const bool begun = fs::exists(results, error);
@@ -46,8 +49,9 @@ void StudySession::write(const std::string& name, const std::string& text) const
 
 std::string StudySession::write(const Figure& figure) {
   const std::string stem = "figures/" + figure.name;
-  writer_.write(figure, directory_ / (stem + ".svg"));
-  writer_.write(figure, directory_ / (stem + ".png"));
+  for (const char* extension : {".svg", ".pdf", ".png"})
+    writer_.write(figure, directory_ / (stem + extension));
+  write_figure_data(figure, directory_ / (stem + ".png"));
   return stem + ".png";
 }
 

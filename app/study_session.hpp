@@ -25,7 +25,8 @@ class StudySession {
   std::filesystem::path journal() const { return directory_ / journal_; }
 
   void write(const std::string& name, const std::string& text) const;  // DIR/name
-  // DIR/figures/NAME.svg and .png; returns "figures/NAME.png".
+  // DIR/figures/NAME.svg, .pdf and .png, its numbers and caption, as --style and --dpi say; returns
+  // "figures/NAME.png".
   std::string write(const Figure& figure);
 
  private:

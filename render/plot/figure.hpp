@@ -69,6 +69,7 @@ struct Dot {
 struct Cell {
   double x0, y0, x1, y1;
   FigureColor fill;
+  std::string stands_for = {};  // a value or a verdict, for the table of the figure's numbers; empty: nothing
 };
 
 struct Panel {

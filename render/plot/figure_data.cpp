@@ -36,6 +36,9 @@ class PanelTable {
       heading("y_axis", panel_.y.label);
       heading("right_axis", panel_.y2.label);
     }
+    for (const Cell& c : panel_.cells)
+      if (!c.stands_for.empty())
+        row("cell", c.stands_for, {number(c.x0), number(c.y0), number(c.x1), number(c.y1)});
     for (const Curve& c : panel_.curves) curve(c);
     for (const Band& b : panel_.bands)
       for (std::size_t i = 0; i < std::min({b.x.size(), b.lower.size(), b.upper.size()}); ++i)

@@ -14,7 +14,8 @@ inline constexpr const char* figure_csv_header = "panel,kind,series,x,y,x_end,y_
 // One row per point: panel (from 1), kind, the legend's name of the series (or its axis), x, y.
 // Kinds: `title`, `x_axis`, `y_axis`, `right_axis` (the name stands in the column series); `curve`,
 // `right_curve`; `band` (from y to y_end); `line` (a reference line at x or at y); `rod` (from x, y to x_end,
-// y_end, as projected), `node`. Numbers in full precision; empty cells are NaN.
+// y_end, as projected), `node`; `cell` (of a map, the corners; its value or verdict in the column series).
+// Numbers in full precision; empty cells are NaN.
 std::string figure_csv(const Figure& figure);
 // Title and caption as one paragraph.
 std::string figure_caption(const Figure& figure);

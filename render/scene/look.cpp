@@ -23,7 +23,7 @@ constexpr GroupColors on_dark{{{0.36f, 0.68f, 0.94f, 1},
 
 constexpr Look rows[] = {
     {"studio",
-     "soft light, shadows on a floor with a grid",
+     "soft light, dimmer where rods meet and near the floor; shadows on a floor with a grid",
      Shading::studio,
      {0.80f, 0.85f, 0.90f, 1},
      {0.95f, 0.96f, 0.97f, 1},

@@ -81,18 +81,23 @@ const Program& Renderer::begin_solids(const char* name, const char* fragment, co
   return program;
 }
 
-void Renderer::draw_bodies() const {
+void Renderer::draw_bodies(const Program& program) const {
+  program.set("meets", 2);  // rods, at their joints
   capsules_.draw();
+  program.set("meets", 0);
   balls_.draw();
+  program.set("meets", 1);  // fittings and arrows, at the joint that they begin in
   cylinders_.draw();
 }
 
 void Renderer::draw_solids(const DrawList& list, const View& view) {
   if (list.shading == Shading::outline) return draw_outlines(list, view);
-  if (list.shading == Shading::studio) begin_solids("studio", shaders::studio_fragment, list, view);
-  if (list.shading == Shading::space) begin_solids("space", shaders::space_fragment, list, view);
-  if (list.shading == Shading::flat) begin_solids("flat", shaders::flat_fragment, list, view);
-  draw_bodies();
+  if (list.shading == Shading::space)
+    draw_bodies(begin_solids("space", shaders::space_fragment, list, view));
+  else if (list.shading == Shading::flat)
+    draw_bodies(begin_solids("flat", shaders::flat_fragment, list, view));
+  else
+    draw_bodies(begin_solids("studio", shaders::studio_fragment, list, view));
 }
 
 // What is seen first; then, blended over it, the lines of what lies well behind.
@@ -103,7 +108,7 @@ void Renderer::draw_outlines(const DrawList& list, const View& view) {
     program.set("hidden", hidden ? 1 : 0);
     program.set("nearer", list.hidden_gap);
     if (hidden) gl::DepthFunc(GL_GREATER), begin_blending();
-    draw_bodies();
+    draw_bodies(program);
   }
   end_blending();
   gl::DepthFunc(GL_LEQUAL);
@@ -173,7 +178,7 @@ PixelRect Renderer::solid_part(const DrawList& list, const Matrix4f& camera) con
 
 // Bodies have edges and are drawn with several samples a pixel, in the part of the picture where they are.
 // What is behind them has none; while the camera rests it is drawn once.
-void Renderer::paint(const DrawList& list) {
+void Renderer::paint(const DrawList& list, bool coarse) {
   const bool moved = upload_solids(list) || list.ground.shown != floor_shown_;
   const float aspect = static_cast<float>(frame_.width()) / static_cast<float>(frame_.height());
   View view;
@@ -194,7 +199,7 @@ void Renderer::paint(const DrawList& list) {
   frame_.bind_resolved();
   if (list.ground.shown) draw_floor_shadow(list, view);
 
-  frame_.spread(view.solid);
+  if (!coarse) frame_.spread(view.solid);
   gl::Enable(GL_DEPTH_TEST);
   gl::Enable(GL_CULL_FACE);
   gl::Clear(GL_DEPTH_BUFFER_BIT);
@@ -202,7 +207,7 @@ void Renderer::paint(const DrawList& list) {
   draw_solids(list, view);
   draw_ghosts(list, view);
   gl::Disable(GL_CULL_FACE);
-  frame_.resolve(view.solid);
+  if (!coarse) frame_.resolve(view.solid);
   text_.draw(list, frame_.width(), frame_.height());
   transparent_ = list.transparent;
 }

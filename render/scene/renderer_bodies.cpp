@@ -120,12 +120,11 @@ void RendererBodies::destroy_shape(const Shape& shape) {
 
 bool RendererBodies::set(std::vector<SolidInstance> bodies, const Camera& camera, int height) {
   std::vector<std::uint8_t> detail = detail_of(bodies, camera, height);
-  const bool moved = !same(bodies, bodies_);
-  if (!moved && detail == detail_) return false;
+  if (detail == detail_ && same(bodies, bodies_)) return false;
   bodies_ = std::move(bodies);
   detail_ = std::move(detail);
   upload();
-  return moved;
+  return true;
 }
 
 void RendererBodies::upload() {

@@ -27,7 +27,7 @@ class RendererBodies {
   RendererBodies& operator=(const RendererBodies&) = delete;
 
   // What is drawn from now on, seen by that camera in a picture of that height [pixels]. Returns whether it
-  // is anything else than before, apart from the detail.
+  // is anything else than before, if only in detail, which shadows have as well.
   bool set(std::vector<SolidInstance> bodies, const Camera& camera, int height);
   const std::vector<SolidInstance>& bodies() const { return bodies_; }
   void draw() const;

@@ -25,6 +25,8 @@ out vec3 normal;
 flat out vec3 axis;  // unit; zero for a ball
 flat out vec3 albedo;
 flat out vec2 metal_roughness;
+out float along_axis;  // from a, in radii there
+flat out float whole_axis;
 void main() {
   vec3 along = point_b - point_a;
   float span = length(along);
@@ -37,6 +39,8 @@ void main() {
   albedo = pow(color, vec3(2.2));
   metal_roughness = surface;
   axis = span > 0.0 ? z : vec3(0.0);
+  along_axis = dot(world - point_a, z) / radii.x;
+  whole_axis = span / radii.x;
   gl_Position = view_projection * vec4(world, 1.0);
 #ifdef HIDDEN
   vec4 moved = view_projection * vec4(world + nearer * normalize(eye.xyz - eye.w * world), 1.0);
@@ -54,6 +58,8 @@ in vec3 normal;
 flat in vec3 axis;
 flat in vec3 albedo;
 flat in vec2 metal_roughness;
+in float along_axis;
+flat in float whole_axis;
 uniform vec4 eye;
 uniform vec3 to_light;
 uniform vec2 floor_height_reach;  // darkens what is nearer to the floor than `reach`
@@ -81,9 +87,17 @@ float lit(vec3 p, vec3 n, float texel) {
 
 )";
 
-// A key light with a soft shadow, the light of a bright room from everywhere, its reflection, and the floor's
-// darkening from below.
+// A key light with a soft shadow, the light of a bright room from everywhere and its reflection, less what is
+// kept off: by the floor from below, and where rods meet by one another, the more the fewer radii away.
 inline constexpr const char* studio_fragment = R"(
+uniform int meets;  // other bodies: 0 nowhere, 1 at a, 2 at both ends
+
+float open_to_room() {
+  if (meets == 0 || whole_axis <= 0.0) return 1.0;
+  float away = meets == 1 ? along_axis : min(along_axis, whole_axis - along_axis);
+  return mix(0.15, 1.0, smoothstep(0.0, meets == 1 ? 4.5 : 14.0, away));
+}
+
 vec3 room(vec3 d) {  // what a mirror would show: a pale floor, a bright horizon, a lamp overhead
   vec3 c = mix(vec3(0.40, 0.41, 0.43), vec3(0.78, 0.84, 0.92), smoothstep(-0.35, 0.25, d.z));
   return c + vec3(1.3) * smoothstep(0.80, 0.98, dot(d, normalize(to_light + vec3(0.0, 0.0, 0.6))));
@@ -96,7 +110,8 @@ void main() {
   float n_l = dot(n, to_light), n_v = max(dot(n, v), 0.02);
   float key = n_l > 0.0 ? n_l * lit(world, n, texel) : 0.0;
   float occlusion = mix(0.55, 1.0, smoothstep(0.0, 1.0, (world.z - floor_height_reach.x) / floor_height_reach.y)) *
-                    mix(0.75, 1.0, 0.5 + 0.5 * n.z);
+                    mix(0.75, 1.0, 0.5 + 0.5 * n.z) * open_to_room();
+  key *= mix(0.6, 1.0, occlusion);
   vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.55, 0.60, 0.68), 0.5 + 0.5 * n.z) * occlusion;
 
   vec3 f0 = mix(vec3(0.04), albedo, metal);
@@ -107,7 +122,7 @@ void main() {
   vec3 fresnel = f0 + (max(vec3(1.0 - roughness), f0) - f0) * pow(1.0 - n_v, 5.0);
 
   vec3 light = albedo * (1.0 - 0.75 * metal) * (ambient + 1.25 * vec3(1.0, 0.97, 0.92) * key);
-  light += fresnel * room(reflect(-v, n)) * mix(0.6, 1.0, occlusion);
+  light += fresnel * room(reflect(-v, n)) * mix(0.4, 1.0, occlusion);
   light += f0 * min(highlight, 6.0) * key;
   light = light / (1.0 + 0.18 * light) * 1.12;  // rolls off what is brighter than paper
   color = vec4(misty(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2))), 1.0);

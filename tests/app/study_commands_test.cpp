@@ -72,6 +72,7 @@ TEST_CASE("shards of a sweep merge into the whole") {
   const std::vector<std::string> sweep = {"sweep",     "hoop6_sector",
                                           "--vary",    "structure.fold_angle=40:60:5",
                                           "--measure", "deploy_time,peak_rod_force",
+                                          "--dpi",     "100",
                                           "-o",        dir / "out"};
   for (const char* shard : {"1/2", "2/2"})
     CHECK(run_program(sweep + std::vector<std::string>{"--shard", shard}).code == 0);
@@ -80,7 +81,8 @@ TEST_CASE("shards of a sweep merge into the whole") {
   const std::string merged = file_text(dir / "out/sweep.csv");
   CHECK(merged.starts_with("structure.fold_angle,outcome,deploy_time_s,peak_rod_force_N\n40,deployed,"));
   CHECK(lines(merged) == 6);
-  CHECK(fs::exists(dir / "out/figures/sweep_deploy_time.svg"));
+  for (const char* end : {".svg", ".pdf", ".png", ".csv", ".caption.txt"})
+    CHECK(fs::exists(dir / "out/figures/sweep_deploy_time" + end));
 
   fs::remove(dir / "out/sweep_2_of_2.csv");
   fs::remove(dir / "out/sweep.csv");

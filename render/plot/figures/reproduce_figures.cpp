@@ -11,6 +11,7 @@ namespace unfurl {
 namespace {
 
 constexpr std::array colors{1, 6, 5, 0};
+constexpr std::array dashes{Dash::solid, Dash::dashed, Dash::dash_dot, Dash::dotted};
 constexpr std::array markers{Marker::square, Marker::triangle, Marker::diamond, Marker::circle};
 
 Panel error_panel(std::string title, std::string x, std::string y) {
@@ -26,6 +27,7 @@ Curve curve(const Reproduction& r, std::size_t scheme, bool labelled) {
   Curve c;
   if (labelled) c.label = r.schemes[scheme].name;
   c.color = colors[scheme];
+  c.dash = dashes[scheme];
   return c;
 }
 

@@ -47,7 +47,7 @@ Panel atlas_panel(const StressPlan& plan, const Stress& stress, const Extreme& e
         static_cast<std::size_t>(std::find(values.begin(), values.end(), cell.value) - values.begin());
     if (i >= steps.size() || j >= values.size()) continue;
     p.cells.push_back({edge(steps, i, 0), edge(values, j, 0), edge(steps, i, 1), edge(values, j, 1),
-                       palette(color_of(cell.verdict))});
+                       palette(color_of(cell.verdict)), std::string(to_string(cell.verdict))});
   }
   return p;
 }
@@ -118,6 +118,8 @@ Figure long_run_figure(const Stress& stress, const std::string& scene) {
     Curve c;
     c.label = run.setting;
     c.color = static_cast<int>(i);
+    c.dash = static_cast<Dash>(i % 4);
+    c.marker = static_cast<Marker>(i / 4 % 5);
     c.x = run.step_count;
     c.y = run.energy_error;
     energy.curves.push_back(c);

@@ -11,17 +11,18 @@ namespace {
 
 using plot::format_number;
 
-// Colours, dashes and markers by the setting's place, so that a setting looks the same in every panel.
+// Colours, dashes and markers by the setting's place, so that a setting looks the same in every panel; no two
+// of sixteen have both dash and marker in common.
 Curve curve_of(const Study& study, std::size_t i, bool labelled, double MeasuredRun::*x,
                double MeasuredRun::*y) {
   constexpr std::array markers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond};
-  constexpr std::array dashes{Dash::solid, Dash::dashed, Dash::dotted};
+  constexpr std::array dashes{Dash::solid, Dash::dashed, Dash::dash_dot, Dash::dotted};
   const StudyCurve& from = study.curves[i];
   Curve c;
   if (labelled) c.label = from.setting.name;
   c.color = static_cast<int>(i % (palette_size - 1));
   c.marker = markers[i % markers.size()];
-  c.dash = dashes[i / (palette_size - 1) % dashes.size()];
+  c.dash = dashes[i / markers.size() % dashes.size()];
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (const MeasuredRun& run : from.runs) {
     c.x.push_back(run.*x);

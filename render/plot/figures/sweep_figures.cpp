@@ -108,7 +108,8 @@ void add_cells(const plot::Field& field, const ValueRange& range, Panel& p) {
           if (std::isnan(value)) continue;
           const double wx = field.x[i + 1] - field.x[i], wy = field.y[j + 1] - field.y[j];
           p.cells.push_back({field.x[i] + wx * u(da), field.y[j] + wy * v(db), field.x[i] + wx * u(da + 1),
-                             field.y[j] + wy * v(db + 1), map_color(range.share(value))});
+                             field.y[j] + wy * v(db + 1), map_color(range.share(value)),
+                             plot::format_number(value, 6)});
         }
 }
 

@@ -28,6 +28,8 @@ Figure small() {
   p.lines.push_back({5, true, "level", 7});
   p.lines.push_back({6, false, "", 7});
   p.segments.push_back({1, 2, 3, 4});
+  p.cells.push_back({0, 1, 2, 3, {}, "right"});
+  p.cells.push_back({2, 1, 4, 3, {}});  // of a colour bar: nothing to tell
   return f;
 }
 
@@ -39,6 +41,7 @@ TEST_CASE("the table of a figure has every number drawn, in full precision", "[f
         "1,x_axis,time (s),,,,\n"
         "1,y_axis,\"force (N), tension > 0\",,,,\n"
         "1,right_axis,fraction,,,,\n"
+        "1,cell,right,0,1,2,3\n"
         "1,curve,\"force (N), tension > 0\",0,0.3333333333333333,,\n"
         "1,curve,\"force (N), tension > 0\",0.1,,,\n"
         "1,right_curve,\"a \"\"quoted\"\" one\",0,0.3333333333333333,,\n"

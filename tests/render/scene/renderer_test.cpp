@@ -178,6 +178,61 @@ TEST_CASE("labels are drawn over the picture") {
   CHECK(changed_outside == 0);
 }
 
+TEST_CASE("rods are dimmer where they meet others than half way between") {
+  Studio studio;
+  DrawList list = empty_room();
+  list.ground.shown = false;
+  list.tubes.push_back(red_tube);  // 20 radii long
+  const Image image = studio.renderer.draw(list);
+  // Below the middle line, where the key light does not reach and what lights it is the room.
+  const float z = 1 - 0.8f * red_tube.radius;
+  CHECK(at(image, list, {-1.8f, -0.1f, z}).sum() < at(image, list, {0, -0.1f, z}).sum() - 15);
+  CHECK(at(image, list, {1.8f, -0.1f, z}).sum() < at(image, list, {0, -0.1f, z}).sum() - 15);
+}
+
+TEST_CASE("what is drawn once is drawn again when the camera, the floor or the colours change") {
+  Studio studio;
+  DrawList list = empty_room();
+  list.ground.cell = 1;
+  list.tubes.push_back(red_tube);
+  std::vector<DrawList> lists(7, list);
+  lists[1].camera.eye.x() += 1;
+  lists[2].ground.z -= 0.5f;
+  lists[3].ground.grid = false;
+  lists[4].background_top = {1, 1, 1, 1};
+  lists[5].transparent = true;
+  lists[6].light_direction = {1, 0, 1};
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    CAPTURE(k);
+    studio.context->make_current();
+    studio.renderer.draw(list);
+    const Image after = studio.renderer.draw(lists[k]);
+    Studio fresh;
+    const bool same = fresh.renderer.draw(lists[k]).rgba == after.rgba;
+    CHECK(same);
+  }
+  studio.context->make_current();
+}
+
+// A body behind the camera has all of the picture drawn with several samples; it does not show.
+TEST_CASE("the part of the picture that bodies are drawn in holds all of them") {
+  Studio studio;
+  for (const float parallel : {0.0f, 6.0f})
+    for (int k = 0; k < 12; ++k) {
+      DrawList list = empty_room();
+      list.camera.parallel_height = parallel;
+      const auto spread = [&](int n) { return static_cast<float>(7 * (k + 1) * n % 11) / 2.0f - 2.5f; };
+      list.tubes.push_back({{spread(1), spread(2), 1 + spread(3)},
+                            {spread(4), spread(5), 1},
+                            0.1f + 0.05f * static_cast<float>(k),
+                            red_tube.color});
+      const Image part = studio.renderer.draw(list);
+      list.ghosts.push_back({{0, -20, 12}, {0, -21, 12}, 0.01f, {0, 0, 0, 0}});
+      const bool same = studio.renderer.draw(list).rgba == part.rgba;
+      CHECK(same);
+    }
+}
+
 TEST_CASE("the same list gives the same bytes, also after another picture and in another context") {
   DrawList list = empty_room();
   list.tubes.push_back(red_tube);

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <tuple>
 
+#include "render/scene/renderer_bodies.hpp"
+
 using namespace unfurl;
 
 namespace solid_mesh_test {
@@ -47,7 +49,10 @@ std::map<std::pair<Place, Place>, int> edges(const Mesh& mesh, float length) {
 }  // namespace
 
 TEST_CASE("meshes are closed surfaces that face outwards") {
-  for (const Mesh& mesh : {capsule_mesh(12, 2), capsule_mesh(6, 1), cylinder_mesh(12)}) {
+  std::vector<Mesh> meshes;
+  for (const BodyKind kind : {BodyKind::capsule, BodyKind::ball, BodyKind::cylinder})
+    for (int level = 0; level < detail_levels; ++level) meshes.push_back(detailed_mesh(kind, level));
+  for (const Mesh& mesh : meshes) {
     const auto all = edges(mesh, 4);
     for (const auto& [edge, times] : all) {
       CHECK(times == 1);
@@ -67,6 +72,26 @@ TEST_CASE("fine meshes have the volume of the body, from inside") {
   // A cylinder less its two bevels of 0.18: each takes pi (0.18^2 - 0.18^3 / 3).
   const double cylinder = pi_d * 4 - 2 * pi_d * (0.18 * 0.18 - 0.18 * 0.18 * 0.18 / 3);
   CHECK(volume(cylinder_mesh(64), 4) == Approx(cylinder).epsilon(0.003));
+}
+
+TEST_CASE("facets are finer the larger a body is in the picture, and never far from round") {
+  CHECK(detail_level(0.5f) == 0);
+  CHECK(detail_level(500) == detail_levels - 1);
+  for (float radius = 0.5f; radius < 40; radius *= 1.1f) {
+    const int level = detail_level(radius);
+    CHECK(detail_level(1.1f * radius) >= level);
+    const Mesh mesh = detailed_mesh(BodyKind::capsule, level);
+    // The middle of the widest ring's sides, inside the circle [pixels].
+    float inside = 0;
+    for (std::size_t i = 0; i + 1 < mesh.vertices.size(); ++i) {
+      const Vec3f &a = mesh.vertices[i].offset, &b = mesh.vertices[i + 1].offset;
+      if (std::abs(a.head<2>().norm() - 1) > 1e-4f || std::abs(b.head<2>().norm() - 1) > 1e-4f) continue;
+      const Vec3f middle = 0.5f * (a + b);
+      if (middle.head<2>().norm() > 0.5f) inside = std::max(inside, radius * (1 - middle.head<2>().norm()));
+    }
+    CHECK(inside > 0);
+    CHECK(inside <= 0.35f);
+  }
 }
 
 TEST_CASE("an arrow is a shaft and a cone whose tip is its head; one without length is nothing") {

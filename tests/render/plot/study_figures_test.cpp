@@ -1,0 +1,147 @@
+// The figures of studies, sweeps, stress runs and of the paper, judged as the figures of runs are.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/library.hpp"
+#include "render/plot/figure_data.hpp"
+#include "render/plot/figures/reproduce_figures.hpp"
+#include "render/plot/figures/stress_figures.hpp"
+#include "render/plot/figures/study_figures.hpp"
+#include "render/plot/figures/sweep_figures.hpp"
+#include "tests/render/plot/recording_canvas.hpp"
+#include "tests/support/models.hpp"
+
+using namespace unfurl;
+
+namespace study_figures_test {
+
+namespace {
+
+// Every row of study_settings: what a page of all methods has to hold.
+Study study() {
+  StudyPlan plan = plan_study(testing::make_model(testing::double_pendulum()),
+                              testing::dvm_options(3, 0.01, 0.3), 0.05, 0.0125, {});
+  plan.timing.repeats = 1;
+  Journal journal({}, study_columns(), study_key_columns);
+  return run_study(plan, journal, {});
+}
+
+Sweep sweep_of(SweepPlan& plan) {
+  for (const char* name : {"deploy_time", "peak_rod_force"}) plan.measures.push_back(find_measure(name));
+  Journal journal({}, plan.columns(), plan.axes.size());
+  return run_sweep(plan, journal, {});
+}
+
+// Two runs whose errors grow as laws of the number of steps say, one of them cut off.
+Stress long_stress() {
+  Stress stress;
+  for (const char* name : {"dvm, s = 3", "rk4", "generalized_alpha"}) {
+    LongRun run;
+    run.setting = name;
+    run.step = 0.01;
+    for (double n = 1; n <= 1e6; n *= 10) {
+      run.step_count.push_back(n);
+      run.energy_error.push_back(name[0] == 'd' ? 1e-9 : 1e-10 * n);
+      run.constraint.push_back(name[0] == 'd' ? 0.0 : 1e-12 * n * n);
+      run.steps = static_cast<long>(n);
+    }
+    run.end = name[0] == 'r' ? "constraints lost" : "done";
+    stress.long_runs.push_back(run);
+  }
+  return stress;
+}
+
+Reproduction reproduction() {
+  Reproduction r;
+  for (const char* name :
+       {"variational, as printed", "Runge-Kutta 4", "variational, 3 nodes", "variational, 4 nodes"}) {
+    ReproducedScheme scheme;
+    scheme.name = name;
+    const double floor = name[0] == 'R' ? 1e-9 : 1e-15;
+    for (const double h : reproduced_steps) {
+      ReproducedRun run;
+      run.measured.outcome = "ok";
+      run.measured.step = h;
+      run.measured.position_error = h * h;
+      for (double t = 0; t < 4.9; t += 0.1) {
+        run.t.push_back(t), run.constraint_error.push_back(floor * t);
+        run.comparison_t.push_back(t), run.position_error.push_back(h * h * t);
+      }
+      scheme.runs.push_back(run);
+    }
+    r.schemes.push_back(scheme);
+  }
+  r.motion = std::make_shared<const Simulation>(
+      simulate(testing::make_model(testing::hoop_structure({{"model", std::string("sector")}})),
+               testing::dvm_options(3, 0.05, 9.0)));
+  return r;
+}
+
+void judge(const Figure& figure, bool slide = true) {
+  CAPTURE(figure.name);
+  CHECK(plot::twins(figure) == std::vector<std::string>{});
+  for (const FigureStyle& style : figure_styles()) {
+    if (style.name == "slide" && !slide) continue;
+    CAPTURE(style.name);
+    CHECK(plot::faults(figure, style) == std::vector<std::string>{});
+  }
+  CHECK(figure_csv(figure).size() > 200);
+  CHECK(figure_caption(figure).ends_with(".\n"));
+}
+
+}  // namespace
+
+TEST_CASE("figures of a study are in order in every style", "[figures]") {
+  const Study all = study();
+  Figure key = work_precision_figure(all, "Ring");
+  for (Curve& c : key.panels.back().curves) c.x = c.y = {1};  // a curve without points tells nothing apart
+  REQUIRE(key.panels.back().curves.size() == study_settings({}).size());
+  CHECK(plot::twins(key) == std::vector<std::string>{});
+  judge(work_precision_figure(all, "Spatial double pendulum of two rods"));
+  judge(convergence_figure(all, "Spatial double pendulum of two rods"));
+}
+
+TEST_CASE("figures of a sweep are in order in every style: curves, families of curves, maps", "[figures]") {
+  const SceneSource sector{find_scene("hoop6_sector"), {"solver.step=0.05"}};
+  for (const std::vector<std::string>& axes :
+       {std::vector<std::string>{"structure.fold_angle=40:80:5"},
+        {"structure.fold_angle=40:80:4", "structure.hinge_force=100:400:3"},
+        {"structure.fold_angle=40:80:5", "structure.hinge_force=100:400:5"}}) {
+    SweepPlan plan{sector, {}, {}, {}};
+    for (const std::string& axis : axes) plan.axes.push_back(parse_axis(axis));
+    const Sweep sweep = sweep_of(plan);
+    const std::vector<Figure> figures = sweep_figures(plan, sweep, "Six-unit ring antenna");
+    REQUIRE(figures.size() == 2);
+    for (const Figure& figure : figures) judge(figure);
+  }
+}
+
+TEST_CASE("the table of a map has a row for every cell", "[figures]") {
+  SweepPlan plan{{find_scene("hoop6_sector"), {"solver.step=0.05"}}, {}, {}, {}};
+  for (const char* axis : {"structure.fold_angle=40:80:5", "structure.hinge_force=100:400:5"})
+    plan.axes.push_back(parse_axis(axis));
+  const Figure map = sweep_figures(plan, sweep_of(plan), "Ring").front();
+  const std::string numbers = figure_csv(map);
+  std::size_t cells = 0;
+  for (std::size_t at = 0; (at = numbers.find("1,cell,", at)) != std::string::npos; ++at) ++cells;
+  CHECK(cells == map.panels.front().cells.size());
+}
+
+TEST_CASE("figures of stress runs are in order in every style", "[figures]") {
+  StressPlan plan = plan_stress({find_scene("hoop6_sector"), {}}, {"force"});
+  plan.extremes[0].values = {1e-3, 1, 1e3};
+  plan.steps = {8, 32, 128};
+  Journal journal({}, stress_columns(), stress_key_columns);
+  const Stress stress = run_stress(plan, journal, {});
+  for (const Figure& figure : atlas_figures(plan, stress, "Six-unit ring antenna")) judge(figure);
+  judge(long_run_figure(long_stress(), "Ladder of four-bar windows"));
+}
+
+TEST_CASE("figures beside the paper's are in order in every style", "[figures]") {
+  const Reproduction r = reproduction();
+  judge(reproduced_poses_figure(r));
+  judge(reproduced_constraint_figure(r));
+  judge(reproduced_trajectory_figure(r));
+}
+
+}  // namespace study_figures_test
