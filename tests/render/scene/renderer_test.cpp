@@ -204,13 +204,14 @@ TEST_CASE("what is drawn once is drawn again when the camera, the floor or the c
   lists[6].light_direction = {1, 0, 1};
   for (std::size_t k = 0; k < lists.size(); ++k) {
     CAPTURE(k);
+    studio.context->make_current();
     studio.renderer.draw(list);
     const Image after = studio.renderer.draw(lists[k]);
     Studio fresh;
     const bool same = fresh.renderer.draw(lists[k]).rgba == after.rgba;
     CHECK(same);
-    studio.context->make_current();
   }
+  studio.context->make_current();
 }
 
 // A body behind the camera has all of the picture drawn with several samples; it does not show.
