@@ -81,6 +81,7 @@ void refuse_foreign_options(const CLI::App& parser, const Command& command) {
 void add_study_options(CLI::App& parser, StudyArguments& study) {
   parser.add_option("--steps", study.ladder);
   parser.add_option("--repeats", study.repeats)->check(CLI::Range(1, 1000));
+  parser.add_option("--methods", study.methods)->allow_extra_args(false)->delimiter(',');
   parser.add_flag("--models", study.models);
   parser.add_option("--extreme", study.extremes)->allow_extra_args(false);
   parser.add_option("--vary", study.vary)->allow_extra_args(false);
@@ -90,6 +91,13 @@ void add_study_options(CLI::App& parser, StudyArguments& study) {
   parser.add_option("--find", study.find);
   parser.add_option("--target", study.target);
   parser.add_option("--between", study.between);
+}
+
+void add_view_options(CLI::App& parser, ViewArguments& view) {
+  parser.add_option("--picture", view.picture);
+  parser.add_option("--at", view.at)->check(CLI::Range(0.0, 1e9));
+  parser.add_flag("--dark", view.dark);
+  parser.add_flag("--bench", view.bench);
 }
 
 Parsed parse(const Command& command, const std::vector<std::string>& words) {
@@ -116,6 +124,7 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_flag("-h,--help", parsed.help);
   parser.add_option("--tolerance", tolerance);
   add_study_options(parser, a.study);
+  add_view_options(parser, a.view);
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {

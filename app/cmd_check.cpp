@@ -68,6 +68,7 @@ int cmd_check(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   const auto model = build_model(scene);
   const Mobility mobility = analyse_mobility(model->system, start_positions(model->structure));
+  for (const auto& note : model->structure.notes) std::cerr << "unfurl: warning: " << note << "\n";
   const std::string warning =
       velocity_warning(initial_state(model->structure, model->system), model->structure);
   if (!warning.empty()) std::cerr << "unfurl: warning: " << warning << "\n";

@@ -94,14 +94,10 @@ struct List {
   std::vector<Item> (*items)();
 };
 
-constexpr List lists[] = {{"structures", structure_items},
-                          {"methods", method_items},
-                          {"figures", figure_items},
-                          {"scenes", scene_items},
-                          {"constraints", constraint_items},
-                          {"forces", force_items},
-                          {"looks", look_items},
-                          {"measures", measure_items}};
+constexpr List lists[] = {
+    {"structures", structure_items}, {"methods", method_items},         {"figures", figure_items},
+    {"scenes", scene_items},         {"constraints", constraint_items}, {"forces", force_items},
+    {"looks", look_items},           {"measures", measure_items}};
 
 std::string default_text(const ParamSpec& spec) {
   if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";

@@ -26,7 +26,8 @@ int cmd_render(const Arguments& arguments) {
                     "holds frames of another film (the scene, its settings or the program changed); "
                     "use --force to start over, or another -o");
   if (!arguments.frames.empty()) frame_range(arguments.frames, 100000);
-  const auto context = make_offscreen_context(arguments.threads);  // missing graphics are found before the work
+  const auto context =
+      make_offscreen_context(arguments.threads);  // missing graphics are found before the work
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);

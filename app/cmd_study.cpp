@@ -86,6 +86,7 @@ int cmd_study(const Arguments& arguments) {
   const StudyHooks hooks = session.hooks();
   StudyPlan plan =
       as_usage([&] { return plan_study(std::move(model), scene.solver, range.from, range.to, hooks); });
+  as_usage([&] { keep_methods(plan, arguments.study.methods); });
   if (arguments.study.repeats > 0) plan.timing.repeats = arguments.study.repeats;
   Study study;
   {

@@ -14,6 +14,7 @@ namespace unfurl {
 struct StudyArguments {
   std::string ladder;                 // --steps LARGEST:SMALLEST
   int repeats = 0;                    // --repeats
+  std::vector<std::string> methods;   // --methods NAME,...
   bool models = false;                // --models
   std::vector<std::string> extremes;  // --extreme NAME
   std::vector<std::string> vary;      // --vary KEY=FROM:TO:COUNT
@@ -21,6 +22,13 @@ struct StudyArguments {
   std::string shard;                  // --shard I/N
   std::vector<std::string> merge;     // --merge DIR
   std::string find, target, between;  // --find KEY --target NAME=VALUE --between LOW:HIGH
+};
+
+// What only the window takes.
+struct ViewArguments {
+  std::string picture;               // --picture FILE: draw the panel into it, without a window
+  double at = -1;                    // --at SECONDS of the motion; < 0: where it begins
+  bool dark = false, bench = false;  // --dark, --bench
 };
 
 // What the command line says, the same for every verb.
@@ -35,10 +43,11 @@ struct Arguments {
   bool quiet = false;
   bool json = false;
   double ui_scale = 0;  // --ui-scale of the window; 0: the monitor's
-  int threads = 0;    // 0: as many as the machine has
-  std::string style;  // --style, of figures; empty: screen
-  double dpi = 0;     // --dpi, of figures; 0: the style's
+  int threads = 0;      // 0: as many as the machine has
+  std::string style;    // --style, of figures; empty: screen
+  double dpi = 0;       // --dpi, of figures; 0: the style's
   StudyArguments study;
+  ViewArguments view;
 };
 
 struct Command {

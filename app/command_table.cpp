@@ -12,7 +12,7 @@ constexpr Command table[] = {
      "one figure, PNG, SVG or PDF by extension; NAME all: every figure, into a directory", 2, 100, true,
      cmd_figure, "--tolerance"},
     {"study", "SCENE -o DIR", "speed against accuracy: every method over a ladder of steps", 1, 1, true,
-     cmd_study, "--steps --repeats --models"},
+     cmd_study, "--steps --repeats --methods --models"},
     {"stress", "SCENE -o DIR", "stability at the extremes: every method and step", 1, 1, true, cmd_stress,
      "--extreme"},
     {"sweep", "SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR",
@@ -25,7 +25,8 @@ constexpr Command table[] = {
      true, cmd_poster},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
      1, 1, false, cmd_check},
-    {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view},
+    {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
+     "--picture --at --dark --bench"},
     {"list", "structures|methods|figures|scenes|constraints|forces|looks|measures",
      "what there is to choose from", 1, 1, false, cmd_list},
 };

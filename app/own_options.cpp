@@ -8,6 +8,7 @@ constexpr OwnOption rows[] = {
     {"--tolerance", "METRES", "pick stages and step for this error of node positions (solver.tolerance)"},
     {"--steps", "LARGEST:SMALLEST", "the ladder of steps [s], each half the one before"},
     {"--repeats", "N", "timed runs per point, at most (5)"},
+    {"--methods", "NAME,...", "only these methods (unfurl list methods)"},
     {"--extreme", "NAME", "only this one: mass_ratio, force, fold_angle, units, stiffness (repeatable)"},
     {"--vary", "KEY=FROM:TO:COUNT",
      "a key of the scene and its values (repeatable); also FROM:TO:COUNT:log or A,B,C"},
@@ -17,6 +18,10 @@ constexpr OwnOption rows[] = {
     {"--find", "KEY", "the key of the scene that is solved for"},
     {"--target", "NAME=VALUE", "the measure (unfurl list measures) and what it shall be"},
     {"--between", "LOW:HIGH", "look for the key between these (default: around its value in the scene)"},
+    {"--picture", "FILE.png", "no window: the panel as it opens, as large as --size says"},
+    {"--at", "SECONDS", "of the motion: where it stands at first"},
+    {"--dark", "", "light text on a dark ground"},
+    {"--bench", "", "no person: frames per second, where their time goes, and the price of idling"},
     {"--models", "", "compare models of the scene instead of methods"},
 };
 

@@ -1,7 +1,9 @@
 #include "app/panel/control_panel.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "app/panel/panes.hpp"
 #include "app/panel/shortcuts.hpp"
@@ -14,6 +16,9 @@ namespace unfurl {
 namespace {
 
 constexpr std::size_t most_trade_points = 200;
+// Fewer frames a second than 30, and that so many times in a row.
+constexpr double slow_frame = 1.0 / 30;
+constexpr int slow_enough = 3;
 constexpr float bar_height = 46, timeline_height = 58;  // [points]
 
 // One pane: an ImGui window that fills a rectangle.
@@ -38,6 +43,7 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
       state_(std::move(document)),
       view_(context),
       export_(options_.wake),
+      study_(options_.wake),
       simulator_(options_.wake) {
   state_.dark = options_.settings.dark;
   state_.left_open = options_.settings.left_open;
@@ -123,6 +129,7 @@ void ControlPanel::resize(int width, int height) {
   picture_.reset();
   picture_ =
       std::make_unique<Framebuffer>(options_.width, options_.height, 0);  // ImGui smooths its own edges
+  damage_.forget();
   settling_ = 3;
 }
 
@@ -188,7 +195,7 @@ void ControlPanel::take_results() {
       else
         update_picture();
       const Trajectory& trajectory = state_.shown->simulation.trajectory;
-      if (first) state_.playback.t = trajectory.start_time();
+      if (first) state_.playback.t = options_.at;
       state_.playback.t = std::clamp(state_.playback.t, trajectory.start_time(), trajectory.end_time());
     }
   }
@@ -232,6 +239,16 @@ void ControlPanel::follow_document() {
   settling_ = std::max(settling_, 2);
 }
 
+template <class Part>
+void ControlPanel::timed(double& sum, const Part& part) {
+  if (!options_.measured) return part();
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  part();
+  picture_->finish();
+  sum += std::chrono::duration<double>(Clock::now() - start).count();
+}
+
 // The edge between two panes, to drag. `way`: of a wider pane.
 void ControlPanel::draw_splitter(const char* name, float x, float top, float bottom, float& width,
                                  float way) {
@@ -266,7 +283,9 @@ void ControlPanel::draw_panes() {
     draw_scene_pane(ui_, state_);
   }
   view_place_ = {left, top, width - right, bottom};
-  view_.prepare(static_cast<int>(view_place_.width()), static_cast<int>(view_place_.height()), state_);
+  timed(times_.scene, [&] {
+    view_.prepare(static_cast<int>(view_place_.width()), static_cast<int>(view_place_.height()), state_);
+  });
   {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     const Pane pane("view", left, top, width - right - left, bottom - top,
@@ -277,7 +296,19 @@ void ControlPanel::draw_panes() {
   if (right > 0) {
     const Pane pane("figures", width - right, top, right, bottom - top,
                     ImGuiWindowFlags_AlwaysVerticalScrollbar);
-    draw_figure_pane(ui_, state_, cards_);
+    ui_.cursors.clear();
+    draw_right_tabs(ui_, state_);
+    timed(times_.figures, [&] {
+      if (state_.studies_open)
+        draw_study_pane(ui_, state_, cards_, study_);
+      else
+        draw_figure_pane(ui_, state_, cards_);
+    });
+  }
+  if (right > 0) {
+    const Pane pane("cursors", width - right, top, right, bottom - top,
+                    ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoBackground);
+    draw_cursors(ui_);
   }
   {
     const Pane pane("timeline", 0, bottom, width, height - bottom, ImGuiWindowFlags_NoScrollWithMouse);
@@ -291,12 +322,41 @@ void ControlPanel::draw_panes() {
   list.AddRectFilled({0, 0}, {width, top}, ui_.color(ui_.theme.window));
 }
 
-void ControlPanel::paint() {
-  view_.paint(state_);
+// While something moves and frames take long, smooth edges wait until it rests.
+bool ControlPanel::coarse_view(double seconds) {
+  const bool moves = state_.playback.playing || view_.moved(state_) || ImGui::IsAnyMouseDown();
+  if (slow_frames_ < slow_enough && moves && seconds > 0)
+    slow_frames_ = seconds > slow_frame ? slow_frames_ + 1 : 0;
+  return moves && slow_frames_ >= slow_enough;
+}
+
+// What is as it was stays; the view's picture goes below whatever lies over it.
+void ControlPanel::paint(bool coarse) {
+  const plot::Rect& v = view_place_;
+  std::vector<plot::Rect> parts = damage_.update(*ImGui::GetDrawData());
+  bool copied = false;
+  timed(times_.scene, [&] { copied = view_.paint(state_, coarse); });
+  const auto below = [&](const plot::Rect& part) { return part.overlaps(v); };
+  if (copied || std::any_of(parts.begin(), parts.end(), below)) parts.push_back(v);
   const ImVec4& ground = ui_.theme.window;
-  picture_->fill(ground.x, ground.y, ground.z);
-  view_.copy_to(*picture_, static_cast<int>(view_place_.x0), static_cast<int>(view_place_.y0));
-  painter_->draw(*ImGui::GetDrawData());
+  for (const plot::Rect& part : merged(std::move(parts))) {
+    const int x = static_cast<int>(part.x0), y = static_cast<int>(part.y0);
+    timed(times_.scene, [&] {
+      picture_->fill(ground.x, ground.y, ground.z, x, y, static_cast<int>(part.width()),
+                     static_cast<int>(part.height()));
+      if (below(part)) view_.copy_to(*picture_, static_cast<int>(v.x0), static_cast<int>(v.y0));
+    });
+    timed(times_.painting, [&] { painter_->draw(*ImGui::GetDrawData(), part); });
+  }
+}
+
+void ControlPanel::settle() {
+  frame(0);
+  while (simulating() || state_.pending) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    frame(0, false);
+  }
+  for (int i = 0; i < 4; ++i) frame(0);
 }
 
 bool ControlPanel::frame(double seconds, bool visible) {
@@ -320,15 +380,21 @@ bool ControlPanel::frame(double seconds, bool visible) {
   io.DisplaySize = {static_cast<float>(options_.width), static_cast<float>(options_.height)};
   io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 0.25));
   ui_.places.clear();
-  ImGui::NewFrame();
-  ImGui::PushFont(ui_.regular);
-  draw_panes();
-  ImGui::PopFont();
-  ImGui::Render();
+  times_ = {};
+  double building = 0;
+  timed(building, [&] {
+    ImGui::NewFrame();
+    ImGui::PushFont(ui_.regular);
+    draw_panes();
+    ImGui::PopFont();
+    ImGui::Render();
+  });
+  times_.widgets = building - times_.scene - times_.figures;
   follow_document();
-  if (visible) paint();
+  if (visible) paint(coarse_view(seconds));
   settling_ = std::max(0, settling_ - 1);
-  return settling_ > 0 || !events_.empty() || state_.playback.playing || io.WantTextInput;
+  return settling_ > 0 || !events_.empty() || state_.playback.playing || io.WantTextInput ||
+         (visible && view_.coarse());
 }
 
 }  // namespace unfurl

@@ -6,22 +6,31 @@
 #include <functional>
 #include <memory>
 
-#include "app/panel/export_job.hpp"
+#include "app/panel/export_process.hpp"
 #include "app/panel/figure_cards.hpp"
 #include "app/panel/input_event.hpp"
 #include "app/panel/panel_state.hpp"
 #include "app/panel/scene_view.hpp"
 #include "app/panel/settings.hpp"
+#include "app/panel/study_job.hpp"
 #include "app/panel/ui.hpp"
 #include "render/gl/framebuffer.hpp"
+#include "render/ui/draw_damage.hpp"
 #include "render/ui/imgui_painter.hpp"
 
 namespace unfurl {
+
+// Where the time of a frame went [s].
+struct FrameTimes {
+  double scene = 0, figures = 0, widgets = 0, painting = 0;
+};
 
 struct PanelOptions {
   int width = 1280, height = 720;  // [pixels]
   float scale = 1;                 // pixels per point of a screen with 96 dpi
   PanelSettings settings;          // window size aside
+  double at = 0;                   // of the motion, at first [s]
+  bool measured = false;           // wait for the graphics after every part, so that frame_times() is true
   std::function<void()> wake;      // called by the simulating thread when there is news
   std::function<void(const char*)> set_clipboard;
   std::function<std::string()> get_clipboard;
@@ -42,7 +51,10 @@ class ControlPanel {
   // the motion plays, events wait, or widgets settle.
   // A panel that nobody can see is not painted.
   bool frame(double seconds, bool visible = true);
+  // Frames until nothing simulates and the widgets have their sizes: for pictures without a window.
+  void settle();
   const Framebuffer& picture() const { return *picture_; }
+  const FrameTimes& frame_times() const { return times_; }  // of the last frame
 
   PanelState& state() { return state_; }
   PanelSettings settings();  // as they are now, to be remembered
@@ -52,6 +64,7 @@ class ControlPanel {
   bool simulating() const { return simulator_.busy(); }
   long simulations() const { return simulator_.started(); }
   long view_paints() const { return view_.paints(); }
+  OrbitCamera framed() const { return view_.framed(); }  // the film's own camera
 
  private:
   void make_context();
@@ -63,12 +76,18 @@ class ControlPanel {
   void update_picture();
   void draw_panes();
   void draw_splitter(const char* name, float x, float top, float bottom, float& width, float way);
-  void paint();
+  bool coarse_view(double seconds);
+  void paint(bool coarse);
+  // Runs a part of a frame and adds its time to `sum`.
+  template <class Part>
+  void timed(double& sum, const Part& part);
 
   GlContext& context_;
   PanelOptions options_;
   PanelState state_;
   ImGuiContext* imgui_ = nullptr;
+  DrawDamage damage_;
+  int slow_frames_ = 0;  // in a row, while something moves
   std::unique_ptr<ImguiPainter> painter_;
   std::unique_ptr<Framebuffer> picture_;
   Ui ui_;
@@ -81,7 +100,9 @@ class ControlPanel {
   int settling_ = 3;  // frames until new widgets have their sizes
   std::optional<SceneDocument> submitted_;
   std::string clipboard_;
-  ExportJob export_;
+  FrameTimes times_;
+  ExportProcess export_;
+  StudyJob study_;
   Simulator simulator_;  // last: ends before what it wakes
 };
 

@@ -57,7 +57,7 @@ void save_as(Ui& ui, PanelState& state, float width) {
     ImGui::TextColored(ui.theme.warning, "this is the program's own copy of the scene");
 }
 
-void render(Ui& ui, PanelState& state, ExportJob& job, float width) {
+void render(Ui& ui, PanelState& state, ExportProcess& job, float width) {
   heading(ui, "Film and figures");
   text_field(ui, "output", state.export_output, width - ui.px(190));
   const bool ready = !job.running() && state.problems.empty() && !state.export_output.empty();
@@ -78,7 +78,7 @@ void render(Ui& ui, PanelState& state, ExportJob& job, float width) {
 
 }  // namespace
 
-void draw_export(Ui& ui, PanelState& state, ExportJob& job) {
+void draw_export(Ui& ui, PanelState& state, ExportProcess& job) {
   if (const std::string report = job.take_report(); !report.empty()) state.message = report;
   if (!state.export_open) return;
   if (state.export_path.empty()) {

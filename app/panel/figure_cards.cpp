@@ -71,15 +71,31 @@ void FigureCards::make(FigureCard& card) const {
   Figure figure = card.kind->make(run_->simulation, run_->diagnostics);
   if (pinned_ && pinned_ != run_ && card.kind->applies(pinned_->simulation, pinned_->diagnostics))
     figure = with_pinned(std::move(figure), card.kind->make(pinned_->simulation, pinned_->diagnostics));
-  place(card, std::move(figure));
+  place(card, std::move(figure), width_);
 }
 
 void FigureCards::make_trade(const std::vector<TradePoint>& points) {
-  if (!trade_.figure) place(trade_, trade_figure(points));
+  if (!trade_.figure) place(trade_, trade_figure(points), width_);
 }
 
-void FigureCards::place(FigureCard& card, Figure figure) const {
-  stack(figure, width_);
+std::vector<FigureCard*> FigureCards::study(const std::shared_ptr<const StudyOutcome>& outcome,
+                                            double width) {
+  if (outcome != studied_ || width != study_width_) {
+    studied_ = outcome;
+    study_width_ = width;
+    study_cards_.clear();
+    for (const Figure& figure : outcome->figures) {
+      study_cards_.emplace_back();
+      place(study_cards_.back(), figure, width);
+    }
+  }
+  std::vector<FigureCard*> all;
+  for (FigureCard& card : study_cards_) all.push_back(&card);
+  return all;
+}
+
+void FigureCards::place(FigureCard& card, Figure figure, double width) {
+  stack(figure, width);
   card.figure = std::make_unique<Figure>(std::move(figure));
   plot::LayoutOptions options;
   options.title = options.caption = false;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/panel/simulator.hpp"
+#include "app/panel/study_job.hpp"
 #include "app/panel/trade.hpp"
 #include "render/plot/figures.hpp"
 #include "render/plot/layout.hpp"
@@ -37,16 +38,21 @@ class FigureCards {
   // Call each frame: forgets figures of other runs and of other widths. `width`: of the pane [points].
   void show(const std::shared_ptr<const LiveRun>& run, const std::shared_ptr<const LiveRun>& pinned,
             double width);
+  // The figures of a study, laid out for a pane of that width [points].
+  std::vector<FigureCard*> study(const std::shared_ptr<const StudyOutcome>& outcome, double width);
   bool applies(const FigureCard& card) const;
   void make(FigureCard& card) const;  // figure and layout, where they are missing
 
  private:
-  void place(FigureCard& card, Figure figure) const;  // lays it out for the pane
+  static void place(FigureCard& card, Figure figure, double width);  // lays it out for the pane
 
   std::vector<FigureCard> cards_;
   FigureCard trade_;
   std::shared_ptr<const LiveRun> run_, pinned_;
   double width_ = 0;
+  std::shared_ptr<const StudyOutcome> studied_;
+  std::vector<FigureCard> study_cards_;
+  double study_width_ = 0;
 };
 
 }  // namespace unfurl

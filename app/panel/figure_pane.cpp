@@ -15,23 +15,15 @@ bool over_time(const Panel& panel) {
   return panel.x.label.starts_with("time") || (!panel.x.shown && panel.x.label.empty());
 }
 
-struct Placed {  // a figure in the window
-  ImVec2 origin;
-  double scale;
-  float x(double points) const { return origin.x + static_cast<float>(points * scale); }
-  float y(double points) const { return origin.y + static_cast<float>(points * scale); }
-};
-
 // The line at the present time; dragging in the panel moves it.
-void draw_cursor(Ui& ui, PanelState& state, const plot::PanelLayout& panel, const Placed& place,
+void draw_cursor(Ui& ui, PanelState& state, const plot::PanelLayout& panel, const PlacedFigure& place,
                  const std::string& key) {
   const plot::Rect& frame = panel.frame;
   const double t = state.playback.t;
   const double at = panel.x.scale(t);
   if (at >= frame.x0 - 0.5 && at <= frame.x1 + 0.5)
-    ImGui::GetWindowDrawList()->AddLine({std::floor(place.x(at)), place.y(frame.y0)},
-                                        {std::floor(place.x(at)), place.y(frame.y1)},
-                                        ui.color(ui.theme.error, 0.9f), std::max(1.0f, ui.px(1.2f)));
+    ui.cursors.push_back(
+        {std::floor(place.x(at)), place.y(frame.y0), std::floor(place.x(at)), place.y(frame.y1)});
   ImGui::SetCursorScreenPos({place.x(frame.x0), place.y(frame.y0)});
   ImGui::InvisibleButton(key.c_str(),
                          {place.x(frame.x1) - place.x(frame.x0), place.y(frame.y1) - place.y(frame.y0)});
@@ -45,8 +37,10 @@ void draw_cursor(Ui& ui, PanelState& state, const plot::PanelLayout& panel, cons
                                 state.shown->simulation.trajectory.end_time());
 }
 
-void draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
-  const Placed place{ImGui::GetCursorScreenPos(), figure_pixels_per_point * ui.scale};
+}  // namespace
+
+PlacedFigure draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
+  const PlacedFigure place{ImGui::GetCursorScreenPos(), figure_pixels_per_point * ui.scale};
   const ImVec2 size(static_cast<float>(card.layout.width * place.scale),
                     static_cast<float>(card.layout.height * place.scale));
   const ImVec2 high(place.origin.x + size.x, place.origin.y + size.y);
@@ -64,7 +58,14 @@ void draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
       draw_cursor(ui, state, card.layout.panels[i], place, "figure " + name + " " + std::to_string(i));
   ImGui::SetCursorScreenPos({place.origin.x, high.y + ui.px(4)});
   ImGui::Dummy({0, 0});
+  return place;
 }
+
+double figure_width(const Ui& ui) {
+  return ImGui::GetContentRegionAvail().x / (figure_pixels_per_point * ui.scale);
+}
+
+namespace {
 
 // A header that opens and closes; returns whether it is open.
 bool draw_header(Ui& ui, FigureCard& card, std::string title, const std::string& key,
@@ -80,19 +81,38 @@ bool draw_header(Ui& ui, FigureCard& card, std::string title, const std::string&
   return card.open;
 }
 
+// Says which settings the point under the pointer had.
+void name_point(Ui& ui, const PanelState& state, const FigureCard& card, const PlacedFigure& place) {
+  const plot::PanelLayout& panel = card.layout.panels.front();
+  ui.places["trade points"] = {place.x(panel.frame.x0), place.y(panel.frame.y0), place.x(panel.frame.x1),
+                               place.y(panel.frame.y1)};
+  const plot::Point now = mark_of(state.trade.back(), panel);
+  ui.places["trade now"] = {place.x(now.x) - 1, place.y(now.y) - 1, place.x(now.x) + 1, place.y(now.y) + 1};
+  if (!ImGui::IsWindowHovered()) return;
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const plot::Point at{(mouse.x - place.origin.x) / place.scale, (mouse.y - place.origin.y) / place.scale};
+  const std::size_t i = nearest_point(state.trade, panel, at, 6);
+  if (i == state.trade.size()) return;
+  const plot::Point mark = mark_of(state.trade[i], panel);
+  ImGui::GetWindowDrawList()->AddCircle({place.x(mark.x), place.y(mark.y)}, ui.px(7),
+                                        ui.color(ui.theme.accent), 0, ui.px(2));
+  ImGui::SetTooltip("%s", point_caption(state.trade[i]).c_str());
+  ui.places["trade point"] = ui.places["trade now"];
+}
+
 void draw_trade(Ui& ui, PanelState& state, FigureCards& cards) {
   if (state.trade.empty()) return;
   const char* help = "CPU time and energy error of every run of this session";
   if (!draw_header(ui, cards.trade(), "Speed against accuracy", "trade", help)) return;
   cards.make_trade(state.trade);
-  draw_figure(ui, state, cards.trade());
+  const PlacedFigure place = draw_figure(ui, state, cards.trade());
+  name_point(ui, state, cards.trade(), place);
 }
 
 }  // namespace
 
 void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards) {
-  const double width = ImGui::GetContentRegionAvail().x / (figure_pixels_per_point * ui.scale);
-  cards.show(state.shown, state.pinned, width);
+  cards.show(state.shown, state.pinned, figure_width(ui));
   draw_trade(ui, state, cards);
   for (FigureCard& card : cards.cards()) {
     if (!cards.applies(card)) continue;
@@ -101,6 +121,27 @@ void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards) {
     cards.make(card);
     draw_figure(ui, state, card);
   }
+}
+
+void draw_right_tabs(Ui& ui, PanelState& state) {
+  const std::pair<const char*, bool> pages[] = {{"Figures", false}, {"Studies", true}};
+  for (const auto& [name, studies] : pages) {
+    if (studies) ImGui::SameLine(0, ui.px(4));
+    const bool is = state.studies_open == studies;
+    if (is) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    if (button(ui, std::string("page ") + name, name,
+               studies ? "measure this scene: speed against accuracy, a parameter's effect (3)"
+                       : "of the run shown (3)"))
+      state.studies_open = studies;
+    if (is) ImGui::PopStyleColor();
+  }
+}
+
+void draw_cursors(const Ui& ui) {
+  for (const plot::Rect& line : ui.cursors)
+    ImGui::GetWindowDrawList()->AddLine({static_cast<float>(line.x0), static_cast<float>(line.y0)},
+                                        {static_cast<float>(line.x1), static_cast<float>(line.y1)},
+                                        ui.color(ui.theme.error, 0.9f), std::max(1.0f, ui.px(1.2f)));
 }
 
 }  // namespace unfurl

@@ -12,6 +12,7 @@
 #include "app/panel/picking.hpp"
 #include "app/panel/playback.hpp"
 #include "app/panel/simulator.hpp"
+#include "app/panel/study_job.hpp"
 #include "app/panel/trade.hpp"
 
 namespace unfurl {
@@ -51,6 +52,9 @@ struct PanelState {
   std::string export_path;            // of the scene's file; empty: not thought of yet
   std::string export_output = "out";  // directory of film and figures
   bool left_open = true, right_open = true;
+  bool studies_open = false;                    // on the right, instead of figures
+  StudyRequest study;                           // to be started
+  std::shared_ptr<const StudyOutcome> studied;  // the last that finished
   // What others are asked to do, once.
   bool wants_screenshot = false, wants_quit = false, wants_stop = false;
 };

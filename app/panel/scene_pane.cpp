@@ -45,6 +45,8 @@ void reset_menu(Ui& ui, PanelState& state, const ParamRow& row) {
   ImGui::EndPopup();
 }
 
+}  // namespace
+
 void draw_row(Ui& ui, PanelState& state, const ParamRow& row) {
   const auto& edits = state.history.now().edits;
   const auto it = edits.find(row.key);
@@ -57,6 +59,8 @@ void draw_row(Ui& ui, PanelState& state, const ParamRow& row) {
   reset_menu(ui, state, row);
   if (!wrong.empty()) wrapped(ui.theme.error, wrong);
 }
+
+namespace {
 
 // Problems that no row shows.
 void draw_other_problems(const Ui& ui, const PanelState& state) {

@@ -60,7 +60,8 @@ FrameStyle style_of(const LiveRun& run, const RenderOptions& picture) {
 }  // namespace
 
 bool SceneView::Painted::operator==(const Painted& o) const {
-  return run == o.run && ghost == o.ghost && t == o.t && dark == o.dark && same(camera, o.camera);
+  return run == o.run && ghost == o.ghost && t == o.t && dark == o.dark && coarse == o.coarse &&
+         same(camera, o.camera);
 }
 
 void SceneView::rebuild(PanelState& state) {
@@ -135,16 +136,29 @@ PickView SceneView::pick_view(const PanelState& state) const {
 DrawList SceneView::decorated(const PanelState& state) const {
   DrawList list = list_;
   list.camera = camera(state);
+  if (list.transparent) {  // for paper, which is white
+    list.transparent = false;
+    list.background_top = list.background_bottom = {1, 1, 1, 1};
+  }
   if (dark_ && picture_.look == "studio") darken(list);
   if (ghost_) add_ghost(ghost_->build(state.playback.t), list);
   return list;
 }
 
-bool SceneView::paint(const PanelState& state) {
+bool SceneView::dark_ground() const {
+  if (picture_.look == "studio") return dark_;
+  return !list_.transparent && lightness(list_.background_top) < 0.5f;
+}
+
+bool SceneView::moved(const PanelState& state) const {
+  return builder_ && (t_ != painted_.t || !same(camera(state), painted_.camera));
+}
+
+bool SceneView::paint(const PanelState& state, bool coarse) {
   if (!builder_) return false;
-  const Painted wanted{run_.get(), ghost_run_.get(), t_, camera(state), dark_};
+  const Painted wanted{run_.get(), ghost_run_.get(), t_, camera(state), dark_, coarse};
   if (wanted == painted_) return false;
-  renderer_->paint(decorated(state));
+  renderer_->paint(decorated(state), coarse);
   painted_ = wanted;
   ++paints_;
   return true;

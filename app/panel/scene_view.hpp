@@ -17,13 +17,18 @@ class SceneView {
   // Before anything else of a frame. Cheap where nothing changed.
   void prepare(int width, int height, PanelState& state);
   bool ready() const { return builder_ != nullptr; }
-  // Paint where something changed since the last time; returns whether.
-  bool paint(const PanelState& state);
+  // Paint where something changed since the last time; returns whether. `coarse`: with jagged edges, in half
+  // the time; again, once it is not asked for.
+  bool paint(const PanelState& state, bool coarse);
+  bool coarse() const { return painted_.coarse; }
+  // Does it show another time or stand elsewhere than in the last picture?
+  bool moved(const PanelState& state) const;
   void copy_to(const Framebuffer& target, int x, int y) const;
 
   Camera camera(const PanelState& state) const;
   OrbitCamera framed() const { return orbit_of(list_.camera); }  // the film's own camera
   PickView pick_view(const PanelState& state) const;
+  bool dark_ground() const;  // is light text what one can read on it?
   // The sphere around the whole motion.
   Vec3f center() const { return list_.center; }
   float radius() const { return list_.radius; }
@@ -36,7 +41,7 @@ class SceneView {
     const LiveRun *run = nullptr, *ghost = nullptr;
     double t = 0;
     Camera camera;
-    bool dark = false;
+    bool dark = false, coarse = false;
     bool operator==(const Painted& o) const;
   };
   void rebuild(PanelState& state);

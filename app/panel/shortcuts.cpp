@@ -91,6 +91,8 @@ std::span<const Shortcut> shortcuts() {
       {Key::one, false, false, "1, 2", "hide or show the left, the right pane",
        [](PanelState& s) { s.left_open = !s.left_open; }},
       {Key::two, false, false, "", "", [](PanelState& s) { s.right_open = !s.right_open; }},
+      {Key::three, false, false, "3", "on the right: figures or studies",
+       [](PanelState& s) { s.studies_open = !s.studies_open; }},
       {Key::f1, false, false, "F1, ?", "this list", [](PanelState& s) { s.help_open = !s.help_open; }},
       {Key::escape, false, false, "Esc", "close a box, stop a simulation, select nothing", escape},
       {Key::q, true, false, "Ctrl Q", "quit", [](PanelState& s) { s.wants_quit = true; }},

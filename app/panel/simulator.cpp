@@ -5,6 +5,7 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/singular_poses.hpp"
+#include "core/study/tolerance.hpp"
 
 namespace unfurl {
 
@@ -61,7 +62,7 @@ SimulationOutcome Simulator::run(long id, const SceneDocument& document) {
     SimulationHooks hooks;
     hooks.progress = [this](double fraction) { notify(fraction); };
     hooks.cancelled = [this, id] { return stale(id); };
-    Simulation simulation = simulate(build_model(scene), scene.solver, hooks);
+    Simulation simulation = simulate_as_asked(build_model(scene), scene.solver, hooks);
     record_singular_poses(simulation);
     if (stale(id)) return outcome;
     Diagnostics diagnostics = diagnose(simulation);

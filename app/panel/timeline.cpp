@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "app/panel/panes.hpp"
+#include "app/panel/shortcuts.hpp"
 
 namespace unfurl {
 
@@ -16,6 +18,16 @@ void draw_controls(Ui& ui, PanelState& state, double start, double end) {
   if (button(ui, "play", playback.playing ? "Pause" : "\u25B8 Play", "play or pause (space)"))
     playback = toggled(playback, start, end);
   ImGui::SameLine(0, ui.px(4));
+  if (ImGui::GetWindowWidth() > ui.px(900)) {  // else by keys alone
+    for (const auto& [key, name, help] : {std::tuple(Key::left, "\u2212", "one step back (\u2190)"),
+                                          std::tuple(Key::right, "+", "one step on (\u2192)")}) {
+      InputEvent event;
+      event.kind = InputEvent::Kind::key;
+      event.key = key;
+      if (button(ui, std::string("step ") + name, name, help)) press(state, event);
+      ImGui::SameLine(0, ui.px(4));
+    }
+  }
   if (button(ui, "to end", "\u25B8|", "to the end (End)")) playback.t = end;
   ImGui::SameLine(0, ui.px(12));
   ImGui::Checkbox("loop", &playback.loop);

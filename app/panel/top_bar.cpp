@@ -28,7 +28,10 @@ void draw_top_bar(Ui& ui, PanelState& state) {
   ImGui::SameLine(0, ui.px(16));
   ImGui::AlignTextToFramePadding();
   if (!state.message.empty()) ImGui::TextColored(ui.theme.dim, "%s", state.message.c_str());
-  const float right = ImGui::GetWindowWidth() - ui.px(12 + 128);
+  const float words = ImGui::CalcTextSize(state.dark ? "Light" : "Dark").x + ImGui::CalcTextSize("Keys").x;
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float right =
+      ImGui::GetWindowWidth() - style.WindowPadding.x - words - 4 * style.FramePadding.x - ui.px(4);
   ImGui::SameLine(right);
   if (button(ui, "theme", state.dark ? "Light" : "Dark", "light or dark (T)")) state.dark = !state.dark;
   ImGui::SameLine(0, ui.px(4));

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "app/panel/theme.hpp"
 #include "render/plot/canvas.hpp"
@@ -18,6 +19,9 @@ struct Ui {
   ImFont *regular = nullptr, *bold = nullptr, *small = nullptr;
   std::function<ImFont*(float pixels)> figure_font;
   std::map<std::string, plot::Rect> places;  // where each widget is, by key: for tests [pixels]
+
+  // Lines at the present time, over the figures. In a list of their own: what moves is small.
+  std::vector<plot::Rect> cursors;  // [pixels]
 
   float px(float points) const { return points * scale; }
   ImU32 color(const ImVec4& c, float alpha = 1) const {

@@ -104,12 +104,12 @@ void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
   list.AddText({frame.low.x + ui.px(12), high.y - ui.px(26)}, ui.color(ui.theme.text), text);
 }
 
-void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame) {
+void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame, bool dark_ground) {
   const LiveRun& run = *state.shown;
   std::string text = run.scene.title;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 at(frame.low.x + ui.px(14), frame.low.y + ui.px(46));
-  const ImVec4 ink = state.dark ? ImVec4(0.92f, 0.94f, 0.96f, 1) : ui.theme.text;
+  const ImVec4 ink = dark_ground ? ImVec4(0.92f, 0.94f, 0.96f, 1) : ImVec4(0.12f, 0.15f, 0.18f, 1);
   list.AddText(ui.bold, ui.bold->FontSize, at, ui.color(ink), text.c_str());
   std::string line = std::string(to_string(run.simulation.status));
   char facts[160];
@@ -161,6 +161,10 @@ void choose_preset(PanelState& state, const SceneView& view, ViewPreset preset) 
   state.orbit = preset_view(preset, view.center(), view.radius(), aspect, view.framed().field_of_view);
 }
 
+// Of the picture's keys those that one changes often.
+constexpr std::string_view quick_rows[] = {"render.look", "render.colour_by", "render.ghosts",
+                                           "render.node_labels", "render.rod_labels"};
+
 void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const Frame& frame) {
   ImGui::SetCursorScreenPos({frame.low.x + ui.px(10), frame.low.y + ui.px(10)});
   if (button(ui, "frame", "Frame", "see the whole motion (F)")) state.orbit.reset();
@@ -172,7 +176,13 @@ void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const F
   }
   ImGui::SameLine(0, ui.px(12));
   if (button(ui, "view options", "View", "what the view shows")) ImGui::OpenPopup("view options");
+  ImGui::SetNextWindowSizeConstraints({ui.px(300), 0}, {ui.px(300), FLT_MAX});
   if (!ImGui::BeginPopup("view options")) return;
+  const auto sections = state.sections;  // copied: what is edited may replace them
+  for (const ParamSection& section : sections)
+    for (const ParamRow& row : section.rows)
+      if (std::find(std::begin(quick_rows), std::end(quick_rows), row.key) != std::end(quick_rows))
+        draw_row(ui, state, row);
   ImGui::Checkbox("loads as arrows", &state.view.loads);
   ui.note("view.loads");
   ImGui::Checkbox("title and time of the film", &state.view.labels);
@@ -203,7 +213,7 @@ void draw_view_pane(Ui& ui, PanelState& state, SceneView& view) {
   if (!(state.hovered == state.selected))
     mark(ui, state, view, frame, state.hovered, ui.color(ui.theme.accent, 0.6f));
   draw_readings(ui, state, frame);
-  draw_state_line(ui, state, frame);
+  draw_state_line(ui, state, frame, view.dark_ground());
   draw_comparison(ui, state, frame);
   draw_view_buttons(ui, state, view, frame);
   draw_pending(ui, state, frame);

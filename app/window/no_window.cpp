@@ -4,6 +4,10 @@
 
 namespace unfurl {
 
+bool display_named() {
+  return false;
+}
+
 int show_window(SceneDocument, const WindowOptions&) {
   throw GraphicsError(no_window_message("this unfurl was built without one (UNFURL_WINDOW=OFF)"));
 }

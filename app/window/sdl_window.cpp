@@ -1,8 +1,10 @@
 // The window: events in, finished pictures out, redrawn only when something changes.
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <thread>
 #include <tuple>
@@ -10,6 +12,7 @@
 #include "app/exit_code.hpp"
 #include "app/interrupt.hpp"
 #include "app/panel/control_panel.hpp"
+#include "app/panel/panel_bench.hpp"
 #include "app/window/sdl_events.hpp"
 #include "app/window/sdl_library.hpp"
 #include "app/window/window.hpp"
@@ -79,6 +82,11 @@ class SdlWindow final : public GlContext {
   bool loaded_ = false;
 };
 
+bool variable_set(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value != nullptr && *value != '\0';
+}
+
 // SDL takes an invisible window where there is no display, which nobody wants to wait for.
 bool has_display() {
   const char* driver = sdl().GetCurrentVideoDriver();
@@ -88,11 +96,7 @@ bool has_display() {
 
 SdlWindow::SdlWindow(int width, int height) {
   const std::string nowhere = "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)";
-  const auto named = [](const char* variable) {
-    const char* value = std::getenv(variable);
-    return value != nullptr && *value != '\0';
-  };
-  const bool x11 = named("DISPLAY"), wayland = named("WAYLAND_DISPLAY");
+  const bool x11 = variable_set("DISPLAY"), wayland = variable_set("WAYLAND_DISPLAY");
   if (!x11 && !wayland) fail(nowhere);
   // Only what the environment names: the libraries of the other would complain on their own.
   sdl().SetHint(SDL_HINT_VIDEODRIVER, x11 && wayland ? "x11,wayland" : x11 ? "x11" : "wayland");
@@ -133,11 +137,14 @@ class Host {
  public:
   Host(SceneDocument document, const WindowOptions& options)
       : remembered_(load_settings(settings_file())),
-        window_(remembered_.width, remembered_.height),
+        window_(options.bench ? 1280 : remembered_.width, options.bench ? 720 : remembered_.height),
         wake_event_(sdl().RegisterEvents(1)) {
     const auto [width, height] = window_.pixels();
     PanelOptions panel;
     panel.settings = remembered_;
+    if (options.dark) panel.settings.dark = true;
+    panel.at = options.at;
+    panel.measured = options.bench;
     panel.width = width;
     panel.height = height;
     panel.scale = options.ui_scale > 0 ? options.ui_scale : window_.scale();
@@ -157,7 +164,6 @@ class Host {
   }
 
   int run() {
-    using Clock = std::chrono::steady_clock;
     auto last = Clock::now();
     bool more = true;
     while (!panel_->state().wants_quit && !interrupted()) {
@@ -172,13 +178,42 @@ class Host {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
       take_screenshot();
     }
-    PanelSettings now = panel_->settings();
-    std::tie(now.width, now.height) = window_.units();
-    if (!(now == remembered_)) save_settings(settings_file(), now);
+    remember();
+    return exit_ok;
+  }
+
+  int bench() {
+    sdl().GL_SetSwapInterval(0);
+    std::printf("%s, %d x %d pixels\n", window_.description().c_str(), panel_->picture().width(),
+                panel_->picture().height());
+    measure_panel(*panel_, [this] { window_.show(panel_->picture()); });
+    panel_->settle();
+    constexpr double idle = 10;  // [s]
+    SDL_Event event;
+    const auto start = Clock::now();
+    const std::clock_t cpu = std::clock();
+    int frames = 0;
+    while (std::chrono::duration<double>(Clock::now() - start).count() < idle && !interrupted()) {
+      if (sdl().WaitEventTimeout(&event, 500) == 0) continue;
+      ++frames;
+      if (!take(event)) break;
+      while (panel_->frame(0)) window_.show(panel_->picture());
+    }
+    const double used = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+    std::printf("idle for %.0f s: %.3f s of CPU time (%.2f %%), %d frames\n", idle, used, 100 * used / idle,
+                frames);
     return exit_ok;
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  void remember() const {
+    PanelSettings now = panel_->settings();
+    std::tie(now.width, now.height) = window_.units();
+    if (!(now == remembered_)) save_settings(settings_file(), now);
+  }
+
   void take_screenshot() {
     PanelState& state = panel_->state();
     if (!state.wants_screenshot) return;
@@ -224,9 +259,14 @@ class Host {
 
 }  // namespace
 
+bool display_named() {
+  return variable_set("DISPLAY") || variable_set("WAYLAND_DISPLAY");
+}
+
 int show_window(SceneDocument document, const WindowOptions& options) {
   const InterruptGuard guard;
-  return Host(std::move(document), options).run();
+  Host host(std::move(document), options);
+  return options.bench ? host.bench() : host.run();
 }
 
 }  // namespace unfurl

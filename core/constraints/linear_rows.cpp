@@ -127,4 +127,33 @@ std::unique_ptr<ConstraintBlock> relation_block(const Structure& structure) {
   });
 }
 
+std::unique_ptr<ConstraintBlock> linear_rows_of(std::span<const ConstraintBlock* const> blocks,
+                                                std::span<const int> picked, Index coordinates) {
+  const VectorXd zero = VectorXd::Zero(coordinates);
+  std::vector<Row> rows;
+  int first = 0;
+  std::size_t next = 0;
+  for (const ConstraintBlock* block : blocks) {
+    VectorXd at_zero(block->rows());
+    block->value(zero.data(), at_zero.data());
+    std::vector<std::vector<int>> stencils;
+    std::size_t entries = 0;
+    for (int r = 0; r < block->rows(); ++r) entries += stencils.emplace_back(block->stencil(r)).size();
+    std::vector<double> coefficients(entries);
+    block->jacobian(zero.data(), coefficients.data());
+    auto from = coefficients.begin();
+    for (int r = 0; r < block->rows(); ++r) {
+      const auto& stencil = stencils[static_cast<std::size_t>(r)];
+      const auto to = from + static_cast<std::ptrdiff_t>(stencil.size());
+      if (next < picked.size() && picked[next] == first + r) {
+        rows.push_back({block->name(r), stencil, {from, to}, -at_zero[r], block->length(r)});
+        ++next;
+      }
+      from = to;
+    }
+    first += block->rows();
+  }
+  return std::make_unique<LinearRows>(std::move(rows));
+}
+
 }  // namespace unfurl

@@ -22,4 +22,8 @@ std::unique_ptr<ConstraintBlock> line_block(const Structure& structure);
 std::unique_ptr<ConstraintBlock> fixed_block(const Structure& structure);
 std::unique_ptr<ConstraintBlock> relation_block(const Structure& structure);
 
+// The picked rows (ascending, counted over all blocks) of linear blocks, as a block of their own.
+std::unique_ptr<ConstraintBlock> linear_rows_of(std::span<const ConstraintBlock* const> blocks,
+                                                std::span<const int> picked, Index coordinates);
+
 }  // namespace unfurl

@@ -10,7 +10,8 @@ namespace {
 // Levels: 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
 constexpr double wanted = 1.5, wanted_constraint = constraint_level_wanted, accepted = 30.0;
 // A system with more unknowns than this is not given the full Newton matrix, whose factors grow too fast;
-// instead its weak modes may keep a larger constraint error.
+// instead its weak modes may keep a larger constraint error. Its regularisation is below the
+// sigma^2 of those, 1e-14 in a folded ring of a thousand units, and near round-off in what is redundant.
 constexpr Index full_newton_unknowns = 2500;
 constexpr int max_frozen_iterations = 30;
 constexpr int slow_iterations = 8;
@@ -30,7 +31,7 @@ class Dvm final : public Integrator {
         G_(system.jacobian_pattern()),
         saddle_(system.mass(), G_, c_.s - 1,
                 is_small(system, c_.s) ? SaddleSolver::standard_regularisation
-                                       : 0.1 * SaddleSolver::standard_regularisation) {
+                                       : 0.02 * SaddleSolver::standard_regularisation) {
     const Index n = system.solved_coordinates(), m = system.constraints();
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);

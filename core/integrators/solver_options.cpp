@@ -40,7 +40,7 @@ const std::vector<ParamSpec>& solver_params() {
       choice_param("at_deployed", fallback.at_deployed, {"stop", "pass", "latch"},
                    "when fully deployed: the run stops, the motion passes through, or the structure locks"),
       boolean_param("eliminate_linear", fallback.eliminate_linear,
-                    "solve in coordinates that fulfil the linear constraints exactly; changes no result"),
+                    "solve in coordinates that fulfil the linear constraints, where that pays; changes no result"),
       boolean_param(
           "sparse", fallback.sparse,
           "sparse factorisations; false: dense ones, to see what sparsity is worth; changes no result"),

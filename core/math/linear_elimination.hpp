@@ -14,10 +14,17 @@ struct LinearElimination {
   std::vector<int> free_coordinates;  // which entries of q are the entries of z
   std::vector<int> redundant;         // rows of A that follow from the others (consistent)
   std::vector<int> inconsistent;      // rows of A that contradict the others
+  std::vector<int> kept;  // rows of A that were left as equations: q = q_0 + B z does not fulfil them
 };
 
-// Gaussian elimination with the largest entry of each reduced row as pivot; a row whose entries all fall
-// below tolerance * its original norm is dependent.
+// Gaussian elimination; a row whose entries all fall below tolerance * its original norm is dependent. Each
+// reduced row is solved for the coordinate that the fewest earlier rows hold, of those within half of its
+// largest entry (threshold pivoting, Markowitz 1957): chains of relations then stay short sums.
 LinearElimination eliminate(const SparseRows& A, const ConstVec& b, double tolerance = 1e-11);
+
+// The same, but rows are kept where solving them would let one free coordinate act on more than `limit`
+// others. Coordinates marked in `must` are solved for in any case (empty: none).
+LinearElimination eliminate_sparsely(const SparseRows& A, const ConstVec& b, const std::vector<char>& must,
+                                     Index limit, double tolerance = 1e-11);
 
 }  // namespace unfurl

@@ -22,7 +22,7 @@ struct Rod {
   std::string name;
   int a = 0, b = 0;     // node indices
   double mass = 0.0;    // [kg]
-  double length = 0.0;  // [m]; the distance of its nodes at t = 0
+  double length = 0.0;  // [m]; the distance of its nodes at t = 0 (fit_lengths.hpp sees to that)
   std::string group;    // "chord", "post", "rod", ...: what colours and groups of rod forces go by
   double radius = 0.0;  // for drawing; 0: not known [m]
   double multiplicity =
@@ -157,6 +157,7 @@ struct Structure {
   std::vector<NodeCopy> node_copies;
   std::vector<RodCopy> rod_copies;
   std::vector<LoadCopy> load_copies;
+  std::vector<std::string> notes = {};  // what was changed of the given: warnings for whoever runs it
   double sectors = 1.0;  // how many times what is solved makes the whole: energies are reported of the whole
 };
 

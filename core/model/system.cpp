@@ -4,7 +4,9 @@
 #include <functional>
 #include <numeric>
 
+#include "core/constraints/linear_rows.hpp"
 #include "core/forces/force.hpp"
+#include "core/model/elimination_choice.hpp"
 #include "core/model/mass_matrix.hpp"
 #include "core/model/structure_error.hpp"
 
@@ -63,7 +65,7 @@ SparseRows node_jacobian(const Blocks& blocks, const double* q, Index n) {
 
 struct System::Data {
   std::vector<std::unique_ptr<ConstraintBlock>> owned;
-  Blocks all, kept, linear, leaving;                // leaving: linear ones that are eliminated
+  Blocks all, kept, linear, leaving;                // leaving: linear ones, eliminated where that pays
   std::vector<std::unique_ptr<ForceBlock>> forces;  // those that depend on t, q or v
   VectorXd constant_force;                          // the sum of the others [N]
   VectorXd loads, gravity_force;                    // its parts, for energies
@@ -132,7 +134,12 @@ void System::Data::build_coordinates() {
       block->value(zero.data(), phi.data() + at);
       at += block->rows();
     }
-    LinearElimination e = eliminate(node_jacobian(leaving, zero.data(), coordinates), -phi);
+    LinearElimination e = choose_elimination(node_jacobian(leaving, zero.data(), coordinates), -phi,
+                                             node_mass, node_jacobian(kept, start.data(), coordinates));
+    if (!e.kept.empty()) {
+      owned.push_back(linear_rows_of(leaving, e.kept, coordinates));
+      kept.insert(kept.begin(), owned.back().get());
+    }
     B = std::move(e.B);
     q0 = std::move(e.q0);
     free_coordinates = std::move(e.free_coordinates);

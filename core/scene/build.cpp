@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/model/consistency.hpp"
+#include "core/model/fit_lengths.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/model/structure_error.hpp"
 #include "core/structures/family.hpp"
@@ -115,6 +116,7 @@ Structure build_structure(const Scene& scene) {
 std::shared_ptr<const Model> build_model(const Scene& scene) {
   Structure structure = build_structure(scene);
   try {
+    fit_lengths(structure, scene.solver.eliminate_linear);
     System system(structure, scene.solver.eliminate_linear);
     check_consistency(structure, system);
     if (!scene.solver.sparse) fill_mass(scene, system);

@@ -37,6 +37,7 @@ void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
                   values.real("density"), values.real("area"),  values.text("group")};
     entry.finish();
     if (!entry.has("mass")) rod.mass = -1.0;
+    if (entry.has("length")) rod.length = values.real("length");
     spec.rods.push_back(std::move(rod));
   }
 }
@@ -120,8 +121,8 @@ void read_nodes_file(TableReader& table, const std::string& name, const std::str
 void read_rods_file(TableReader& table, const std::string& name, const std::string& folder, CustomSpec& spec,
                     SceneNotes& notes) {
   static const std::vector<CsvColumn> columns = {
-      {"a", "", false, true},     {"b", "", false, true}, {"name", ""}, {"mass", "kg", true},
-      {"density", "kg_m3", true}, {"area", "m2", true},   {"group", ""}};
+      {"a", "", false, true},     {"b", "", false, true}, {"name", ""},  {"mass", "kg", true},
+      {"density", "kg_m3", true}, {"area", "m2", true},   {"group", ""}, {"length", "m", true}};
   for (const auto& row : file_rows(table, "rods_file", name, folder, columns, notes)) {
     notes.locations[entry_key("rods", spec.rods.size())] = row.where;
     spec.rods.push_back({text_cell(row, "name", ""),
@@ -129,7 +130,8 @@ void read_rods_file(TableReader& table, const std::string& name, const std::stri
                          cell(row, "mass", -1.0),
                          cell(row, "density", 0.0),
                          cell(row, "area", 0.0),
-                         text_cell(row, "group", "rod")});
+                         text_cell(row, "group", "rod"),
+                         cell(row, "length", 0.0)});
   }
 }
 
@@ -167,7 +169,7 @@ const std::vector<ParamSpec>& custom_params() {
     ParamSpec nodes =
         text_param("nodes_file", "", "CSV file beside the scene: name,x,y,z[,vx,vy,vz,mass,fixed]");
     ParamSpec rods =
-        text_param("rods_file", "", "CSV file beside the scene: a,b[,name,mass,density,area,group]");
+        text_param("rods_file", "", "CSV file beside the scene: a,b[,name,mass,density,area,group,length]");
     return std::vector<ParamSpec>{
         choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"), nodes, rods};
   }();
@@ -195,9 +197,13 @@ const std::vector<ParamSpec>& custom_rod_params() {
     ParamSpec name = text_param("name", "", "\"A-B\" from its nodes by default");
     ParamSpec group = text_param("group", "rod", "what colours and groups of rod forces go by");
     return std::vector<ParamSpec>{
-        name, real_param("mass", "kg", 0.0, 0.0, infinity, "0: a pure distance constraint"),
+        name,
+        real_param("mass", "kg", 0.0, 0.0, infinity, "0: a pure distance constraint"),
         real_param("density", "kg/m^3", 0.0, 0.0, infinity, "in place of mass, with area"),
-        real_param("area", "m^2", 0.0, 0.0, infinity, "cross section"), group};
+        real_param("area", "m^2", 0.0, 0.0, infinity, "cross section"),
+        group,
+        real_param("length", "m", 0.0, 0.0, infinity,
+                   "the distance of its nodes by default; where it differs by up to 1 %, nodes are moved")};
   }();
   return params;
 }

@@ -58,6 +58,7 @@ std::string rod_text(const CustomRod& rod) {
   if (rod.mass >= 0.0) text += line("mass", real_text(rod.mass));
   if (rod.density != 0.0) text += line("density", real_text(rod.density));
   if (rod.area != 0.0) text += line("area", real_text(rod.area));
+  if (rod.length != 0.0) text += line("length", real_text(rod.length));
   if (rod.group != "rod") text += line("group", toml_string(rod.group));
   return text;
 }

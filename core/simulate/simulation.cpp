@@ -334,6 +334,7 @@ Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& opt
                     const SimulationHooks& hooks) {
   if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);
   Simulation run{.trajectory = Trajectory(model), .options = options};
+  run.warnings = model->structure.notes;
   InitialState start = initial_state(model->structure, model->system);
   if (std::string warning = velocity_warning(start, model->structure); !warning.empty())
     run.warnings.push_back(std::move(warning));

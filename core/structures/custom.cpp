@@ -70,9 +70,10 @@ Structure build_custom(const CustomSpec& spec) {
   for (const auto& node : spec.nodes) names.add(node.name);
   for (const auto& entry : spec.rods) {
     const int a = names.find(entry.nodes[0]), b = names.find(entry.nodes[1]);
-    const double length =
+    const double apart =
         (spec.nodes[static_cast<std::size_t>(b)].position - spec.nodes[static_cast<std::size_t>(a)].position)
             .norm();
+    const double length = entry.length > 0.0 ? entry.length : apart;
     structure.rods.push_back(
         {rod_name(entry), a, b, rod_mass(entry, length), length, entry.group, rod_radius(entry), 1.0});
   }

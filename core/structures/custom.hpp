@@ -25,6 +25,7 @@ struct CustomRod {
   double density = 0.0;            // [kg/m^3]
   double area = 0.0;               // [m^2]
   std::string group = "rod";
+  double length = 0.0;  // [m]; 0: the distance of its nodes
 };
 
 struct CustomConstraint {
@@ -59,8 +60,8 @@ struct CustomProblem {
 // 100.
 std::vector<CustomProblem> check_custom(const CustomSpec& spec);
 
-// Nodes in the spec's order; the rods' lengths are the distances of their nodes. Throws StructureError with
-// the first problem where check_custom has any.
+// Nodes in the spec's order; the rods' lengths are those given, else the distances of their nodes. Throws
+// StructureError with the first problem where check_custom has any.
 Structure build_custom(const CustomSpec& spec);
 
 // The name a rod goes by: its own, or "A-B" from its nodes.

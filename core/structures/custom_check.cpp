@@ -63,6 +63,7 @@ class Checker {
     for (std::size_t i = 0; i < spec_.rods.size() && !full(); ++i) {
       const auto& rod = spec_.rods[i];
       check_rod_mass(rod, i);
+      check_rod_length(rod, i);
       if (!check_rod_nodes(rod, i)) continue;
       const std::string name = rod_name(rod);
       if (const auto [first, is_new] = seen.try_emplace(name, i); !is_new)
@@ -98,6 +99,11 @@ class Checker {
     else if (!(length * length > 0.0) || !std::isfinite(length * length))
       add("rods", i, "nodes", "the square of its length is outside the range of double precision");
     return true;
+  }
+
+  void check_rod_length(const CustomRod& rod, std::size_t i) {
+    if (!(rod.length >= 0.0) || std::isinf(rod.length))
+      add("rods", i, "length", "must be > 0 m; leave it out for the distance of its nodes");
   }
 
   void check_rod_mass(const CustomRod& rod, std::size_t i) {

@@ -9,7 +9,7 @@ namespace unfurl {
 Scene SceneSource::read(const std::vector<std::string>& changes) const {
   std::vector<std::string> all = overrides;
   all.insert(all.end(), changes.begin(), changes.end());
-  return read_scene_file(path, all);
+  return text ? read_scene_text(*text, path, all, folder) : read_scene_file(path, all);
 }
 
 std::optional<double> scene_number(const Scene& scene, const std::string& key) {

@@ -11,10 +11,13 @@
 
 namespace unfurl {
 
-// Where the scene comes from: its file and the overrides of the command line.
+// Where the scene comes from: its file, or a text that is called `path`, and the overrides of the command
+// line.
 struct SceneSource {
   std::string path;
   std::vector<std::string> overrides = {};
+  std::shared_ptr<const std::string> text = nullptr;  // null: read the file
+  std::string folder = "";                            // of a text: where files lie that it names
 
   // With these "key=value" behind the overrides. Throws SceneError, UnreadableScene.
   Scene read(const std::vector<std::string>& changes = {}) const;

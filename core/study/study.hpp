@@ -46,6 +46,10 @@ struct StudyPlan {
 StudyPlan plan_study(std::shared_ptr<const Model> model, const SolverOptions& scene, double largest_step,
                      double smallest_step, const StudyHooks& hooks);
 
+// Leaves only settings of these methods; none named: all stay. Throws std::invalid_argument with the nearest
+// name of an unknown one.
+void keep_methods(StudyPlan& plan, const std::vector<std::string>& methods);
+
 struct StudyCurve {
   Setting setting;
   std::vector<MeasuredRun> runs;  // by falling step

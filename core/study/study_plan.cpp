@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "core/integrators/integrator.hpp"
+#include "core/model/nearest_name.hpp"
 #include "core/study/study.hpp"
 
 namespace unfurl {
@@ -87,6 +89,18 @@ StudyPlan plan_study(std::shared_ptr<const Model> model, const SolverOptions& sc
   plan.ladder = make_ladder(plan.end, scene.step, largest_step, smallest_step);
   plan.model = std::move(model);
   return plan;
+}
+
+void keep_methods(StudyPlan& plan, const std::vector<std::string>& names) {
+  std::vector<std::string_view> known;
+  for (const Method& method : methods()) known.push_back(method.name);
+  for (const std::string& name : names)
+    if (!find_method(name))
+      throw std::invalid_argument("no method " + in_quotes(name) + did_you_mean(name, known));
+  if (names.empty()) return;
+  std::erase_if(plan.settings, [&](const Setting& setting) {
+    return std::find(names.begin(), names.end(), setting.options.method) == names.end();
+  });
 }
 
 }  // namespace unfurl

@@ -81,11 +81,7 @@ class Picker {
   }
 
  private:
-  bool by_stages() const {
-    SolverOptions two = options_, four = options_;
-    two.stages = 2, four.stages = 4;
-    return method_.claims(two).order != method_.claims(four).order;
-  }
+  bool by_stages() const { return order_depends_on_stages(options_); }
 
   std::vector<int> stage_choices() const {
     if (!by_stages()) return {options_.stages};
@@ -169,6 +165,13 @@ class Picker {
 };
 
 }  // namespace
+
+bool order_depends_on_stages(const SolverOptions& options) {
+  const Method& method = *find_method(options.method);
+  SolverOptions two = options, four = options;
+  two.stages = 2, four.stages = 4;
+  return method.claims(two).order != method.claims(four).order;
+}
 
 Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const SolverOptions& options,
                              const SimulationHooks& hooks) {

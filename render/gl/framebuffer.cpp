@@ -90,11 +90,13 @@ void Framebuffer::resolve(const PixelRect& part) const {
   bind_resolved();
 }
 
-void Framebuffer::fill(float r, float g, float b) const {
+void Framebuffer::fill(float r, float g, float b, int x, int y, int width, int height) const {
   bind_resolved();
-  gl::Disable(GL_SCISSOR_TEST);
+  gl::Enable(GL_SCISSOR_TEST);
+  gl::Scissor(x, height_ - y - height, width, height);
   gl::ClearColor(r, g, b, 1);
   gl::Clear(GL_COLOR_BUFFER_BIT);
+  gl::Disable(GL_SCISSOR_TEST);
 }
 
 void Framebuffer::copy(unsigned target, int target_height, int x, int y) const {
@@ -113,6 +115,10 @@ void Framebuffer::copy_to(const Framebuffer& target, int x, int y) const {
 
 void Framebuffer::copy_to_window(int window_height) const {
   copy(0, window_height, 0, 0);
+}
+
+void Framebuffer::finish() const {
+  gl::Finish();
 }
 
 Image Framebuffer::read() const {

@@ -33,13 +33,15 @@ class Framebuffer {
   void resolve(const PixelRect& part) const;
   void resolve() const { resolve(whole()); }
   PixelRect whole() const { return {0, 0, width_, height_}; }
-  // Fill with one colour (0..1, no depth) and leave it bound for drawing without multi-sampling.
-  void fill(float r, float g, float b) const;
+  // Fill a rectangle [pixels from the top left] with one colour (0..1, no depth) and leave the picture bound
+  // for drawing without multi-sampling.
+  void fill(float r, float g, float b, int x, int y, int width, int height) const;
   // The resolved picture into another one, or into the window's own surface of that height: its upper left
   // corner at (x, y) from the top left there. Leaves the target bound.
   void copy_to(const Framebuffer& target, int x, int y) const;
   void copy_to_window(int window_height) const;
-  Image read() const;  // what was drawn since, of the resolved picture; top row first, alpha as drawn
+  void finish() const;  // wait until everything so far is drawn: for clocks
+  Image read() const;   // what was drawn since, of the resolved picture; top row first, alpha as drawn
 
  private:
   struct Surface {

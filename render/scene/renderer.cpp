@@ -178,7 +178,7 @@ PixelRect Renderer::solid_part(const DrawList& list, const Matrix4f& camera) con
 
 // Bodies have edges and are drawn with several samples a pixel, in the part of the picture where they are.
 // What is behind them has none; while the camera rests it is drawn once.
-void Renderer::paint(const DrawList& list) {
+void Renderer::paint(const DrawList& list, bool coarse) {
   const bool moved = upload_solids(list) || list.ground.shown != floor_shown_;
   const float aspect = static_cast<float>(frame_.width()) / static_cast<float>(frame_.height());
   View view;
@@ -199,7 +199,7 @@ void Renderer::paint(const DrawList& list) {
   frame_.bind_resolved();
   if (list.ground.shown) draw_floor_shadow(list, view);
 
-  frame_.spread(view.solid);
+  if (!coarse) frame_.spread(view.solid);
   gl::Enable(GL_DEPTH_TEST);
   gl::Enable(GL_CULL_FACE);
   gl::Clear(GL_DEPTH_BUFFER_BIT);
@@ -207,7 +207,7 @@ void Renderer::paint(const DrawList& list) {
   draw_solids(list, view);
   draw_ghosts(list, view);
   gl::Disable(GL_CULL_FACE);
-  frame_.resolve(view.solid);
+  if (!coarse) frame_.resolve(view.solid);
   text_.draw(list, frame_.width(), frame_.height());
   transparent_ = list.transparent;
 }

@@ -89,7 +89,13 @@ void ImguiPainter::upload_fonts(ImFontAtlas& atlas) {
   atlas.SetTexID(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(font_texture_)));
 }
 
-void ImguiPainter::draw_list(const ImDrawList& list, const ImDrawData& data, int height) const {
+void ImguiPainter::draw_list(const ImDrawList& list, const ImDrawData& data, int height,
+                             const plot::Rect& part) const {
+  const auto shown = [&](const ImDrawCmd& c) {
+    return part.overlaps({c.ClipRect.x - data.DisplayPos.x, c.ClipRect.y - data.DisplayPos.y,
+                          c.ClipRect.z - data.DisplayPos.x, c.ClipRect.w - data.DisplayPos.y});
+  };
+  if (std::none_of(list.CmdBuffer.begin(), list.CmdBuffer.end(), shown)) return;
   gl::BufferData(GL_ARRAY_BUFFER, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data, GL_STREAM_DRAW);
   gl::BufferData(GL_ELEMENT_ARRAY_BUFFER, list.IdxBuffer.size_in_bytes(), list.IdxBuffer.Data,
                  GL_STREAM_DRAW);
@@ -99,10 +105,10 @@ void ImguiPainter::draw_list(const ImDrawList& list, const ImDrawData& data, int
       command.UserCallback(&list, &command);
       continue;
     }
-    const int left = static_cast<int>(std::max(0.0f, command.ClipRect.x - data.DisplayPos.x));
-    const int top = static_cast<int>(std::max(0.0f, command.ClipRect.y - data.DisplayPos.y));
-    const int right = static_cast<int>(command.ClipRect.z - data.DisplayPos.x);
-    const int bottom = std::min(height, static_cast<int>(command.ClipRect.w - data.DisplayPos.y));
+    const int left = static_cast<int>(std::max<double>(part.x0, command.ClipRect.x - data.DisplayPos.x));
+    const int top = static_cast<int>(std::max<double>(part.y0, command.ClipRect.y - data.DisplayPos.y));
+    const int right = static_cast<int>(std::min<double>(part.x1, command.ClipRect.z - data.DisplayPos.x));
+    const int bottom = static_cast<int>(std::min<double>(part.y1, command.ClipRect.w - data.DisplayPos.y));
     if (right <= left || bottom <= top) continue;
     gl::Scissor(left, height - bottom, right - left, bottom - top);
     gl::BindTexture(GL_TEXTURE_2D, texture_of(command.GetTexID()));
@@ -114,6 +120,10 @@ void ImguiPainter::draw_list(const ImDrawList& list, const ImDrawData& data, int
 }
 
 void ImguiPainter::draw(const ImDrawData& data) const {
+  draw(data, {0, 0, data.DisplaySize.x, data.DisplaySize.y});
+}
+
+void ImguiPainter::draw(const ImDrawData& data, const plot::Rect& part) const {
   const int width = static_cast<int>(data.DisplaySize.x), height = static_cast<int>(data.DisplaySize.y);
   if (width <= 0 || height <= 0) return;
   gl::Viewport(0, 0, width, height);
@@ -125,7 +135,7 @@ void ImguiPainter::draw(const ImDrawData& data) const {
   gl::ActiveTexture(GL_TEXTURE0);
   gl::BindVertexArray(vertex_array_);
   gl::BindBuffer(GL_ARRAY_BUFFER, vertices_);
-  for (int i = 0; i < data.CmdListsCount; ++i) draw_list(*data.CmdLists[i], data, height);
+  for (int i = 0; i < data.CmdListsCount; ++i) draw_list(*data.CmdLists[i], data, height, part);
   gl::BindVertexArray(0);
   gl::Disable(GL_SCISSOR_TEST);
   gl::Disable(GL_BLEND);

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "render/gl/program.hpp"
+#include "render/plot/canvas.hpp"
 
 namespace unfurl {
 
@@ -25,9 +26,11 @@ class ImguiPainter {
   void upload_fonts(ImFontAtlas& atlas);
   // The viewport is set to the draw data's size; blending and scissor are left off.
   void draw(const ImDrawData& data) const;
+  // Only what of it lies in a rectangle [whole pixels from the top left].
+  void draw(const ImDrawData& data, const plot::Rect& part) const;
 
  private:
-  void draw_list(const ImDrawList& list, const ImDrawData& data, int height) const;
+  void draw_list(const ImDrawList& list, const ImDrawData& data, int height, const plot::Rect& part) const;
 
   Program program_;
   unsigned vertex_array_ = 0, vertices_ = 0, indices_ = 0, font_texture_ = 0;

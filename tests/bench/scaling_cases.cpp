@@ -64,7 +64,9 @@ Measured measure(const std::function<Structure()>& build, int steps, double h) {
   return m;
 }
 
-Structure chain(int rods) {
+}  // namespace
+
+Structure chain_of_rods(int rods) {
   CustomSpec spec;
   for (int i = 0; i <= rods; ++i)
     spec.nodes.push_back({"N" + std::to_string(i), {0.1 * i, 0, 0}, {0, 0, 0}, 0.0, i == 0});
@@ -74,8 +76,6 @@ Structure chain(int rods) {
   structure.gravity = {0, 0, -9.81};
   return structure;
 }
-
-}  // namespace
 
 void scaling_cases(Report& report) {
   report.begin("Cost and memory against size: dvm, 3 stages, h = 0.01 s (chain: 0.001 s), after 3 steps");
@@ -103,7 +103,7 @@ void scaling_cases(Report& report) {
         : n >= 1000 ? 100
                     : 30000 / n);
   row(
-      "chain of 1000 rods", [] { return chain(1000); }, 1000, 100, 0.001);
+      "chain of 1000 rods", [] { return chain_of_rods(1000); }, 1000, 100, 0.001);
   report.add({"scaling", "dearest / cheapest", highest / lowest, "ratio", "<= 1.5"});
 }
 

@@ -7,6 +7,7 @@ int main(int count, char** words) {
   unfurl::bench::Report report(std::cout);
   unfurl::bench::ring_cases(report);
   unfurl::bench::ladder_cases(report);
+  unfurl::bench::factor_cases(report);
   unfurl::bench::scaling_cases(report);
   const std::string path = count > 1 ? words[1] : "bench.csv";
   if (!report.write_csv(path)) {

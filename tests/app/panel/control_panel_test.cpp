@@ -111,6 +111,10 @@ TEST_CASE("the timeline scrubs, plays and steps") {
   CHECK(driver.state().playback.t == run.time(1));
   driver.key(Key::left);
   CHECK(driver.state().playback.t == 0.0);
+  driver.click("step +");
+  CHECK(driver.state().playback.t == run.time(1));
+  driver.click("step \u2212");
+  CHECK(driver.state().playback.t == 0.0);
   driver.key(Key::end);
   CHECK(driver.state().playback.t == end);
   driver.key(Key::home);
@@ -214,6 +218,13 @@ TEST_CASE("looks change the picture without a new simulation") {
   // A blueprint has another ground everywhere.
   CHECK(static_cast<double>(differing_pixels(before, driver.picture(), view)) >
         0.5 * view.width() * view.height());
+  // What is for paper stands on white, not on nothing.
+  driver.state().history.edit("render.look", std::string("print"));
+  driver.settle();
+  const Image print = driver.picture();
+  const auto corner = 4 * ((static_cast<std::size_t>(view.y1) - 3) * static_cast<std::size_t>(print.width) +
+                           static_cast<std::size_t>(view.x0) + 3);
+  CHECK(static_cast<int>(print.rgba.at(corner)) > 240);
   driver.state().history.edit("render.inset", std::string("no_such_column"));
   driver.settle();
   REQUIRE(driver.state().picture_problems.size() == 1);
@@ -222,6 +233,17 @@ TEST_CASE("looks change the picture without a new simulation") {
   driver.settle();
   REQUIRE(driver.state().problems.size() == 1);
   CHECK(driver.state().problems[0].key == "render.look");
+}
+
+TEST_CASE("look and colours are at hand in the view") {
+  PanelDriver driver;
+  driver.click("view options");
+  driver.frame();
+  driver.click("render.colour_by");
+  driver.frame();
+  driver.click("render.colour_by=axial_force");
+  driver.frame();
+  CHECK(driver.state().picture.colour_by == "axial_force");
 }
 
 TEST_CASE("every run of a session is a point of speed against accuracy") {
@@ -234,9 +256,26 @@ TEST_CASE("every run of a session is a point of speed against accuracy") {
   REQUIRE(driver.state().trade.size() == 3);
   CHECK(driver.state().trade[1].error > driver.state().trade[0].error);  // order 2 against order 4
   const Figure figure = trade_figure(driver.state().trade);
-  REQUIRE(figure.panels.at(0).curves.size() == 3);  // two methods, and the present point
-  CHECK(figure.panels[0].curves[2].y.at(0) == driver.state().trade[2].error);
-  CHECK(driver.panel().has_place("card trade"));
+  REQUIRE(figure.panels.at(0).curves.size() == 4);  // the trail, two methods, and the present point
+  CHECK(figure.panels[0].curves[0].x.size() == 3);
+  CHECK(figure.panels[0].curves[3].y.at(0) == driver.state().trade[2].error);
+  CHECK(driver.state().trade[0].setting == "dvm, 3 stages, step 0.05 s");
+  CHECK(driver.state().trade[2].setting == "rk4, step 0.05 s");
+  REQUIRE(driver.panel().has_place("trade now"));
+  driver.move_to("trade now");
+  CHECK(driver.panel().has_place("trade point"));  // named
+  driver.move_to("trade points", 0.999, 0.001);
+  CHECK_FALSE(driver.panel().has_place("trade point"));
+}
+
+TEST_CASE("the panel picks stages and step for a tolerance as the command line does") {
+  PanelDriver driver;
+  driver.state().history.edit("solver.tolerance", 1e-4);
+  driver.settle();
+  const Simulation& run = driver.state().shown->simulation;
+  CHECK(run.position_estimate <= 1e-4);
+  CHECK(run.options.step != 0.05);
+  CHECK(driver.state().trade.back().position_error == run.position_estimate);
 }
 
 TEST_CASE("nothing is painted again where nothing changed") {
@@ -245,6 +284,47 @@ TEST_CASE("nothing is painted again where nothing changed") {
   for (int i = 0; i < 5; ++i) driver.frame(0);
   CHECK(driver.panel().view_paints() == before);
   CHECK_FALSE(driver.panel().frame(0));  // and no further frame is asked for
+}
+
+TEST_CASE("what is painted in parts is what would be painted at once") {
+  PanelDriver driver;
+  driver.key(Key::p);
+  driver.drag("timeline", 0.2, 0.6);
+  driver.drag("view", 0.3, 0.5);
+  driver.key(Key::f1);
+  driver.key(Key::escape);
+  driver.click("page Studies");
+  driver.click("page Figures");
+  driver.drag("structure.post_length", 0.5, 0.6);
+  driver.settle();
+  for (const char* hovered : {"undo", "structure.units", "trade now", "timeline"}) {
+    driver.move_to(hovered);
+    driver.frame();
+    driver.frame();
+    const Image parts = driver.picture();
+    driver.panel().resize(parts.width, parts.height);  // forgets what was painted
+    driver.frame();
+    INFO(hovered);
+    CHECK(differing_pixels(parts, driver.picture(),
+                           {0, 0, static_cast<double>(parts.width), static_cast<double>(parts.height)}) == 0);
+  }
+}
+
+TEST_CASE("a slow machine sees one sample a pixel while something moves, and smooth edges at rest") {
+  PanelDriver driver;
+  driver.move_to("view", 0.5, 0.8);
+  const Image smooth = driver.picture();
+  const plot::Rect view = driver.panel().place("view");
+  const double t = driver.state().playback.t;
+  driver.state().playback.playing = true;
+  driver.state().playback.speed = 0.01;
+  for (int i = 0; i < 6; ++i) driver.frame(0.2);  // five frames a second
+  driver.state().playback.playing = false;
+  driver.state().playback.t = t;
+  CHECK(driver.panel().frame(0.2));  // it moved: another frame is wanted
+  CHECK(differing_pixels(smooth, driver.picture(), view) > 0);
+  for (int i = 0; i < 3; ++i) driver.frame(0);
+  CHECK(differing_pixels(smooth, driver.picture(), view) == 0);
 }
 
 TEST_CASE("the panel fits pictures from small to large") {

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "app/panel/export_job.hpp"
+#include "app/panel/export_process.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
 #include "tests/app/panel/panel_driver.hpp"
@@ -26,7 +26,7 @@ TEST_CASE("an export from the panel is what the command line makes") {
   const ScratchDirectory scratch;
   SceneDocument document = open_document("hoop6", {});
   document.edits["solver.step"] = 0.05;
-  ExportJob job({});
+  ExportProcess job({});
   job.start(UNFURL_PROGRAM, export_words(document, "run", scratch / "panel"));
   std::string report;
   for (int i = 0; i < 60000 && report.empty(); ++i) {
@@ -42,7 +42,7 @@ TEST_CASE("an export from the panel is what the command line makes") {
 TEST_CASE("an export that fails says why in one line") {
   const ScratchDirectory scratch;
   const std::string file = scratch.write("taken", "a file");
-  ExportJob job({});
+  ExportProcess job({});
   job.start(UNFURL_PROGRAM, export_words(open_document("hoop6", {}), "run", file));
   std::string report;
   for (int i = 0; i < 60000 && report.empty(); ++i) {

@@ -1,9 +1,6 @@
 // Drives the panel without a display: events in, frames, pictures out.
 #pragma once
 
-#include <chrono>
-#include <thread>
-
 #include "app/panel/control_panel.hpp"
 #include "render/gl/context.hpp"
 
@@ -29,15 +26,7 @@ class PanelDriver {
   PanelState& state() { return panel_.state(); }
 
   void frame(double seconds = 1.0 / 60, bool visible = true) { panel_.frame(seconds, visible); }
-  // Until nothing simulates and the widgets have their sizes.
-  void settle() {
-    for (int i = 0; i < 60000; ++i) {
-      panel_.frame(0);
-      if (!panel_.simulating() && !state().pending) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    for (int i = 0; i < 4; ++i) panel_.frame(0);
-  }
+  void settle() { panel_.settle(); }
   void move(double x, double y) {
     InputEvent event;
     event.x = static_cast<float>(x);

@@ -1,5 +1,7 @@
 #include "core/math/linear_elimination.hpp"
 
+#include <Eigen/QR>
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 using namespace unfurl;
@@ -36,6 +38,39 @@ TEST_CASE("elimination spans exactly the solutions and names dependent rows") {
     CHECK(MatrixXd(e.B)
               .row(e.free_coordinates[static_cast<std::size_t>(i)])
               .isApprox(VectorXd::Unit(3, i).transpose()));
+}
+
+TEST_CASE(
+    "elimination keeps rows that would make one coordinate act on many, but not for coordinates that must "
+    "go") {
+  // x_0 = x_1 = ... = x_9 and y = (x_0 + x_9) / 2: solved throughout, one coordinate acts on all others.
+  const int n = 10;
+  MatrixXd A = MatrixXd::Zero(n, n + 1);
+  for (int i = 0; i + 1 < n; ++i) A(i, i) = 1, A(i, i + 1) = -1;
+  A(n - 1, 0) = A(n - 1, n - 1) = 0.5;
+  A(n - 1, n) = -1;
+  const VectorXd b = VectorXd::Zero(n);
+  std::vector<char> must(n + 1, 0);
+  must[n] = 1;
+  const LinearElimination all = eliminate(rows(A), b), some = eliminate_sparsely(rows(A), b, must, 3);
+  CHECK(all.B.cols() == 1);
+  CHECK(all.kept.empty());
+  CHECK(!some.kept.empty());
+  CHECK(std::find(some.kept.begin(), some.kept.end(), n - 1) == some.kept.end());
+  CHECK(std::find(some.free_coordinates.begin(), some.free_coordinates.end(), n) ==
+        some.free_coordinates.end());
+  const MatrixXd B = some.B;
+  for (Index c = 0; c < B.cols(); ++c) CHECK((B.col(c).array() != 0).count() <= 1 + 3);
+  // Halves and ones: exact. What is solved is fulfilled; with the rows kept, one freedom is left as in `all`.
+  MatrixXd kept(static_cast<Index>(some.kept.size()), B.cols());
+  for (int r = 0; r < n; ++r) {
+    const auto at = std::find(some.kept.begin(), some.kept.end(), r);
+    if (at == some.kept.end())
+      CHECK((A.row(r) * B).cwiseAbs().maxCoeff() == 0.0);
+    else
+      kept.row(at - some.kept.begin()) = A.row(r) * B;
+  }
+  CHECK(kept.colPivHouseholderQr().rank() == B.cols() - 1);
 }
 
 }  // namespace linear_elimination_test

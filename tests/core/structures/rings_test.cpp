@@ -48,6 +48,26 @@ TEST_CASE("a pantograph ring opens as its energy quadrature says") {
   }
 }
 
+// All rods of such a ring act on its radius and height: with 100 units some linear constraints stay
+// equations.
+TEST_CASE(
+    "a pantograph ring of 100 units opens as its energy quadrature says, solved in sparse coordinates") {
+  const Changes changes = {{"units", 100L}};
+  const ParamSet p = family_params("scissor_ring", changes);
+  const exact::ScissorRing ring{100, 1.0, mass_of(p, "rod_length"), 85, 20, p.real("radial_force")};
+  const Structure structure = family_structure("scissor_ring", changes);
+  const auto model = make_model(structure);
+  CHECK(model->system.solved_coordinates() > 101);  // with every linear constraint eliminated
+  CHECK(model->system.solved_coordinates() < 500);  // with none
+  const double end = ring.motion().time(ring.deployed());
+  const Simulation run = simulate(model, dvm_options(4, end / 200, 2 * end));
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::deployed);
+  // Order 6 with 200 steps, and relative positions 100 times weaker determined than those of a small ring.
+  CHECK(std::abs(run.events.at(0).t - end) <= 1e-8 * end);
+  CHECK(largest(diagnose(run).at("constraint_relative_max")) <= 1e-12);
+}
+
 TEST_CASE("a Hoberman ring opens as its energy quadrature says") {
   for (const auto& [n, fold] : {std::pair{3L, 29.0}, {4L, 40.0}, {7L, 60.0}, {16L, 78.0}}) {
     const Changes changes = {

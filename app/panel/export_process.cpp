@@ -1,4 +1,4 @@
-#include "app/panel/export_job.hpp"
+#include "app/panel/export_process.hpp"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -49,12 +49,12 @@ std::string own_program() {
   return fs::read_symlink("/proc/self/exe", error).string();
 }
 
-ExportJob::~ExportJob() {
+ExportProcess::~ExportProcess() {
   if (running_ && pid_ > 0) ::kill(pid_, SIGTERM);
   if (thread_.joinable()) thread_.join();
 }
 
-void ExportJob::start(const std::string& program, const std::vector<std::string>& words) {
+void ExportProcess::start(const std::string& program, const std::vector<std::string>& words) {
   if (running_) return;
   if (thread_.joinable()) thread_.join();
   std::string log = (fs::temp_directory_path() / "unfurl_export_XXXXXX").string();
@@ -84,7 +84,7 @@ void ExportJob::start(const std::string& program, const std::vector<std::string>
       [this, pid, log, where = output == words.end() ? "" : *(output + 1)] { wait(pid, log, where); });
 }
 
-void ExportJob::wait(int pid, const std::string& log, const std::string& output) {
+void ExportProcess::wait(int pid, const std::string& log, const std::string& output) {
   int status = 0;
   ::waitpid(pid, &status, 0);
   std::string text = read_text_file(log).text;
@@ -100,7 +100,7 @@ void ExportJob::wait(int pid, const std::string& log, const std::string& output)
   if (wake_) wake_();
 }
 
-std::string ExportJob::take_report() {
+std::string ExportProcess::take_report() {
   const std::lock_guard lock(mutex_);
   return std::exchange(report_, "");
 }

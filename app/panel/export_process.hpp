@@ -21,12 +21,12 @@ std::vector<std::string> export_words(const SceneDocument& document, const std::
 // SceneError, FileError. `anew`: the text had to be written anew.
 SceneDocument save_document(const SceneDocument& document, const std::string& path, bool& anew);
 
-class ExportJob {
+class ExportProcess {
  public:
-  explicit ExportJob(std::function<void()> wake) : wake_(std::move(wake)) {}
-  ~ExportJob();  // ends a run that is under way
-  ExportJob(const ExportJob&) = delete;
-  ExportJob& operator=(const ExportJob&) = delete;
+  explicit ExportProcess(std::function<void()> wake) : wake_(std::move(wake)) {}
+  ~ExportProcess();  // ends a run that is under way
+  ExportProcess(const ExportProcess&) = delete;
+  ExportProcess& operator=(const ExportProcess&) = delete;
 
   // `program`: of unfurl.
   void start(const std::string& program, const std::vector<std::string>& words);

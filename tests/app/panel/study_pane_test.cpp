@@ -1,0 +1,113 @@
+// Studies from the panel: the command line's code, beside the window.
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <thread>
+
+#include "core/scene/build.hpp"
+#include "core/study/study.hpp"
+#include "tests/app/panel/panel_driver.hpp"
+
+using namespace unfurl;
+
+namespace study_pane_test {
+
+namespace {
+
+// Frames until the study that runs has ended and its outcome was taken.
+void finish_study(PanelDriver& driver, const std::shared_ptr<const StudyOutcome>& before) {
+  for (int i = 0; i < 20000 && driver.state().studied == before; ++i) {
+    driver.frame(0, false);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  REQUIRE(driver.state().studied != before);
+  for (int i = 0; i < 3; ++i) driver.frame(0);
+}
+
+}  // namespace
+
+TEST_CASE("the page of studies measures speed against accuracy of the scene that is shown") {
+  PanelDriver driver(PanelDriver::small(), "four_bar");
+  driver.click("page Studies");
+  REQUIRE(driver.state().studies_open);
+  driver.click("study method rk4");  // off: dvm alone
+  REQUIRE(driver.state().study.methods == std::vector<std::string>{"dvm"});
+  driver.state().study.largest_step = 0.04;
+  driver.state().study.smallest_step = 0.02;
+  driver.click("start study");
+  finish_study(driver, nullptr);
+  const StudyOutcome& outcome = *driver.state().studied;
+  INFO(outcome.message);
+  REQUIRE(outcome.figures.size() == 1);
+  CHECK(outcome.sentence.starts_with("The cheapest setting for 0.001 m is dvm"));
+  CHECK(driver.panel().has_place("study figure"));
+  // The errors (not the times) are those of the command line's study.
+  const Scene scene = read_document(driver.state().history.now());
+  StudyPlan plan = plan_study(build_model(scene), scene.solver, 0.04, 0.02, {});
+  keep_methods(plan, {"dvm"});
+  plan.timing = {1, 0, 10};
+  Journal journal({}, study_columns(), study_key_columns);
+  const Study study = run_study(plan, journal, {});
+  const Curve& curve = outcome.figures[0].panels.at(0).curves.at(0);
+  CHECK(curve.label == study.curves.at(0).setting.name);
+  REQUIRE(curve.y.size() == study.curves[0].runs.size());
+  for (std::size_t i = 0; i < curve.y.size(); ++i)
+    CHECK(curve.y[i] == study.curves[0].runs[i].position_error);
+}
+
+TEST_CASE("a measure over a parameter comes to the page, and bad values say why") {
+  PanelDriver driver;
+  driver.key(Key::three);
+  driver.state().study.kind = StudyRequest::Kind::sweep;
+  driver.state().study.key = "structure.fold_angle";
+  driver.state().study.from = 50;
+  driver.state().study.to = 80;
+  driver.state().study.count = 3;
+  driver.frame();
+  driver.click("start study");
+  finish_study(driver, nullptr);
+  const auto first = driver.state().studied;
+  REQUIRE(first->figures.size() == 1);
+  const Curve& curve = first->figures[0].panels.at(0).curves.at(0);
+  CHECK(curve.x == std::vector<double>{50, 65, 80});
+  CHECK(curve.y[0] < curve.y[2]);  // what is folded less is open sooner
+  driver.state().study.to = 95;    // the ring folds by less than 90 degrees
+  driver.frame();
+  driver.click("start study");
+  finish_study(driver, first);
+  CHECK(driver.state().studied->message.find("fold_angle") != std::string::npos);
+}
+
+TEST_CASE("a study is cancelled at once, and the window does not wait for it") {
+  PanelDriver driver;
+  driver.key(Key::three);
+  driver.state().study.methods = {"dvm", "rk4"};
+  driver.state().study.largest_step = 0.01;
+  driver.state().study.smallest_step = 1e-5;  // hours
+  driver.frame();
+  driver.click("start study");
+  driver.frame();
+  REQUIRE(driver.panel().has_place("cancel study"));
+  CHECK(driver.panel().has_place("study progress"));
+  driver.click("cancel study");
+  finish_study(driver, nullptr);
+  CHECK(driver.panel().has_place("start study"));
+}
+
+TEST_CASE("the command of a study is what a person would type") {
+  SceneDocument document = open_document("hoop6", {});
+  document.edits["structure.units"] = 8L;
+  StudyRequest request;
+  request.methods = {"dvm", "rk4"};
+  request.largest_step = 0.04;
+  request.smallest_step = 0.0025;
+  CHECK(study_command(request, document) ==
+        "unfurl study hoop6 -o study --set structure.units=8 --steps 0.04:0.0025 --methods dvm,rk4");
+  request.kind = StudyRequest::Kind::sweep;
+  request.key = "structure.fold_angle";
+  request.from = 50.0;
+  request.to = 80.5;
+  CHECK(study_command(request, document)
+            .find("--vary structure.fold_angle=50.0:80.5:9 --measure deploy_time") != std::string::npos);
+}
+
+}  // namespace study_pane_test
