@@ -1,5 +1,6 @@
 #include "render/scene/renderer.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>

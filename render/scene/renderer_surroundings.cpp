@@ -1,4 +1,5 @@
 // What is behind the bodies: background, grid, and shadows, on the floor and in the map that bodies read.
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
