@@ -1,5 +1,6 @@
 #include "core/integrators/full_newton.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/SparseLU>
 #include <limits>
 
@@ -101,6 +102,31 @@ void apply(StageEquations& eq, const VectorXd& x) {
   }
 }
 
+// Small systems are factorised as dense ones, which is several times faster than what a sparse code needs to
+// set itself up; the pattern of larger ones is analysed once a step.
+class Factors {
+ public:
+  bool compute(const Columns& A) {
+    if (A.rows() <= largest_dense) {
+      dense_.compute(MatrixXd(A));
+      return true;
+    }
+    if (A.nonZeros() != analysed_) sparse_.analyzePattern(A);
+    analysed_ = A.nonZeros();
+    sparse_.factorize(A);
+    return sparse_.info() == Eigen::Success;
+  }
+  VectorXd solve(const VectorXd& b) const {
+    return b.size() <= largest_dense ? VectorXd(dense_.solve(b)) : VectorXd(sparse_.solve(b));
+  }
+
+ private:
+  static constexpr Index largest_dense = 80;
+  Eigen::PartialPivLU<MatrixXd> dense_;
+  Eigen::SparseLU<Columns> sparse_;
+  Index analysed_ = -1;
+};
+
 }  // namespace
 
 StepStatus full_newton(StageEquations& eq, double wanted, double accepted, StepReport& report) {
@@ -117,7 +143,7 @@ StepStatus full_newton(StageEquations& eq, double wanted, double accepted, StepR
   }
   double best = std::numeric_limits<double>::infinity();
   int without_gain = 0;
-  Eigen::SparseLU<Columns> lu;
+  Factors factors;
   for (int it = 0; it <= max_iterations; ++it) {
     eq.evaluate();
     const double level = eq.level();
@@ -133,9 +159,8 @@ StepStatus full_newton(StageEquations& eq, double wanted, double accepted, StepR
     if (it == max_iterations) break;
     ++report.newton_iterations;
     ++report.factorisations;
-    lu.compute(newton_matrix(eq, scale));
-    if (lu.info() != Eigen::Success) return StepStatus::diverged;
-    const VectorXd x = lu.solve(scale.cwiseProduct(right_hand_side(eq)));
+    if (!factors.compute(newton_matrix(eq, scale))) return StepStatus::diverged;
+    const VectorXd x = factors.solve(scale.cwiseProduct(right_hand_side(eq)));
     apply(eq, scale.cwiseProduct(x));
     report.right_hand_sides += static_cast<int>(stages);
   }

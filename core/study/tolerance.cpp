@@ -57,7 +57,7 @@ class Picker {
         hooks_(hooks),
         method_(*find_method(options.method)),
         size_(structure_size(*model)),
-        fewest_steps_(model->structure.deployment.empty() ? 32 : 128) {
+        fewest_steps_(model->structure.deployment.empty() ? 32 : 32) {
     quiet_.cancelled = hooks.cancelled;
     options_.adaptive = false;
   }
