@@ -68,12 +68,16 @@ std::string change(double a, double b, bool factor) {
 
 }  // namespace
 
-std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b) {
+std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b, double error_a, double error_b) {
   std::vector<ComparisonRow> rows;
+  const auto add = [&](const char* label, const char* unit, double x, double y, bool factor) {
+    if (std::isnan(x) && std::isnan(y)) return;
+    rows.push_back({label, number(x, unit), number(y, unit), change(x, y, factor)});
+  };
   for (const Quantity& q : quantities) {
-    const double x = q.of(a), y = q.of(b);
-    if (std::isnan(x) && std::isnan(y)) continue;
-    rows.push_back({q.label, number(x, q.unit), number(y, q.unit), change(x, y, q.factor)});
+    if (std::string_view(q.label) == "energy error")  // errors together, those of positions first
+      add("position error", "m", error_a, error_b, true);
+    add(q.label, q.unit, q.of(a), q.of(b), q.factor);
   }
   return rows;
 }

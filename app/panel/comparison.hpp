@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,10 @@ struct ComparisonRow {
   std::string label, a, b, change;  // change: of b against a, "+12 %" or a factor
 };
 
-// Deployment time, peak rod force, errors, steps, CPU time.
-std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b);
+// Deployment time, peak rod force, errors, steps, CPU time. Position errors are the caller's, where they are
+// known [m].
+std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b,
+                                   double error_a = std::numeric_limits<double>::quiet_NaN(),
+                                   double error_b = std::numeric_limits<double>::quiet_NaN());
 
 }  // namespace unfurl
