@@ -79,7 +79,8 @@ void add_present(Panel& panel, const TradePoint& point, bool positions) {
   present.y = {error};
   present.marker = Marker::diamond;
   present.color = present_color;
-  present.width = 2.4f;
+  present.width = 0;
+  present.marker_size = 1.6f;
   present.label = "now";
   panel.curves.push_back(std::move(present));
 }
