@@ -220,7 +220,8 @@ void ControlPanel::follow_document() {
     state_.wants_stop = false;
   }
   if (submitted_ && *submitted_ == now) return;
-  if (!submitted_ || *submitted_->text != *now.text || submitted_->overrides != now.overrides) {
+  if (!submitted_ || *submitted_->text != *now.text || submitted_->overrides != now.overrides ||
+      submitted_->added != now.added) {
     try {
       state_.sections = param_sections(base_scene(now));
     } catch (const SceneError& error) {
