@@ -12,7 +12,7 @@ namespace unfurl {
 // A first version of an entry of `table` ("loads", "forces", "constraints"), to be changed by hand, as an
 // override: "constraints[1]={kind = \"angle\", ...}". It acts on what is selected, where that fits the kind;
 // a drive stays at the value of t = 0, a stop is there. Throws SceneError where the scene has no sound
-// structure.
+// structure, or no members for the kind.
 std::string new_entry(const SceneDocument& document, std::string_view table, std::string_view kind,
                       const Selection& selected);
 
