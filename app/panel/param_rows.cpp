@@ -159,8 +159,8 @@ std::string number_caption(double x) {
 
 }  // namespace
 
-std::vector<ParamSection> param_sections(const Scene& base) {
-  std::vector<ParamSection> sections;
+std::vector<ParamSection> param_sections(const Scene& base, const Selection& selected) {
+  std::vector<ParamSection> sections{selected_section(base, selected)};
   sections.push_back({"Structure", structure_rows(base)});
   sections.push_back(load_section(base));
   const Structure started = started_structure(base);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/panel/selection.hpp"
 #include "core/scene/scene.hpp"
 
 namespace unfurl {
@@ -33,8 +34,11 @@ struct ParamSection {
   std::string grows = {};  // the list to which entries may be added: "forces"; empty: none
 };
 
-// `base`: the scene without the panel's edits.
-std::vector<ParamSection> param_sections(const Scene& base);
+// `base`: the scene without the panel's edits. A node or rod of a custom structure that is selected comes
+// first.
+std::vector<ParamSection> param_sections(const Scene& base, const Selection& selected = {});
+// Of that; without rows where the selected part has no parameters of its own.
+ParamSection selected_section(const Scene& base, const Selection& selected);
 
 // What a slider spans. Where the declared range is wide or endless, around the scene's own value.
 struct SliderRange {

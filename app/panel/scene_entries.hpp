@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "app/panel/picking.hpp"
 #include "app/panel/scene_document.hpp"
+#include "app/panel/selection.hpp"
 
 namespace unfurl {
 

@@ -178,4 +178,30 @@ TEST_CASE("taking an entry away moves the ones behind it up, with their edits") 
   CHECK(document.edits.size() == 2);
 }
 
+TEST_CASE("the selected node or rod of a custom structure has rows of its own") {
+  PanelDriver driver(tall(), "four_bar");
+  driver.state().selected = {Selection::Kind::rod, "coupler"};
+  driver.settle();
+  REQUIRE(driver.panel().has_place("structure.rods[1].mass"));
+  const ParamRow& length = row_named(driver.state().sections, "structure.rods[1].length");
+  CHECK(not_given(length.value));
+  CHECK(length.typical == Approx(std::hypot(2.6, 1.4)));  // from (0, 0, 1) to (2.6, 0, 2.4)
+  driver.drag("structure.rods[1].mass", 0.5, 0.8);
+  driver.settle();
+  const double mass = std::get<double>(driver.state().history.now().edits.at("structure.rods[1].mass"));
+  CHECK(mass > 3);
+  CHECK(driver.state().shown->scene.custom.rods.at(1).mass == mass);
+  driver.state().selected = {Selection::Kind::node, "C"};
+  driver.settle();
+  CHECK_FALSE(driver.panel().has_place("structure.rods[1].mass"));
+  CHECK(std::get<std::vector<double>>(
+            row_named(driver.state().sections, "structure.nodes[2].position").value) ==
+        std::vector<double>{2.6, 0, 2.4});
+  driver.click("structure.nodes[2].fixed");
+  driver.settle();
+  CHECK(read_document(driver.state().history.now()).custom.nodes.at(2).fixed);
+  // Nodes of a family have no parameters of their own.
+  CHECK(selected_section(base_scene(open_document("hoop6", {})), {Selection::Kind::node, "B0"}).rows.empty());
+}
+
 }  // namespace entries_test
