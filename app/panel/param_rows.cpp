@@ -106,6 +106,11 @@ void add_member_rows(ParamSection& section, const SceneElement& element, Members
   if (!element.rods.empty()) add_row(section, rods, element.rods);
 }
 
+// "torsion spring of fold angle": of an entry without a name.
+std::string element_title(const SceneElement& element) {
+  return spaced(element.kind) + element.name.substr(element.kind.size());
+}
+
 ParamSection element_section(std::string title, std::string_view table,
                              const std::vector<SceneElement>& elements, const std::vector<ElementKind>& kinds,
                              const Structure& started) {
@@ -115,16 +120,17 @@ ParamSection element_section(std::string title, std::string_view table,
     const ElementKind* kind = find_kind(kinds, element.kind);
     if (!kind) continue;
     const bool named = !element.name.starts_with(element.kind + " of ");
-    begin_entry(
-        section,
-        {element.key, named ? element.name + ": " + element.kind : element.name, std::string(kind->help)},
-        element.enabled);
+    begin_entry(section,
+                {element.key, named ? element.name + ": " + spaced(element.kind) : element_title(element),
+                 std::string(kind->help)},
+                element.enabled);
     add_member_rows(section, element, kind->members);
     const double start = start_value(element, started);
     for (const ParamSpec& spec : kind->params()) {
       // Times and values are those of the file where there is one.
       if (element.table.empty() ? spec.name == "table" : spec.name == "times" || spec.name == "values")
         continue;
+      if (element.fold_angle && spec.name == "axis") continue;  // its sign is its own
       const bool file = spec.name == "table";
       add_row(section, spec, file ? ParamValue(element.table) : element.values.value(spec.name), start);
     }

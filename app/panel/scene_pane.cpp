@@ -78,22 +78,25 @@ void draw_row(Ui& ui, PanelState& state, const ParamRow& row) {
 
 namespace {
 
-// The motion that an entry is set to; empty: it has none.
-std::string motion_of(const PanelState& state, const ParamSection& section, const std::string& entry) {
-  for (const ParamRow& row : section.rows)
-    if (row.entry == entry && row.spec.name == "motion")
-      return std::get<std::string>(present_value(state, row));
-  return "";
+// The table that a row's key belongs to: "solver." of "solver.step".
+std::string_view table_of(const ParamRow& row) {
+  return std::string_view(row.key).substr(0, row.key.rfind('.') + 1);
 }
 
-// Whether the row says anything: its entry is on, and its motion is the one that is set. Where something is
-// wrong with it, always.
+// Whether the row says anything: its entry is on, and the parameter that it goes with has a value that it
+// goes with. Where something is wrong with it, always.
 bool matters(const PanelState& state, const ParamSection& section, const ParamRow& row, bool entry_on) {
-  if (row.entry.empty() || problem_of(state, row.key)) return true;
-  if (!entry_on) return false;
-  const auto& motions = row.spec.motions;
-  return motions.empty() ||
-         std::find(motions.begin(), motions.end(), motion_of(state, section, row.entry)) != motions.end();
+  if (problem_of(state, row.key)) return true;
+  if (!row.entry.empty() && !entry_on) return false;
+  if (row.spec.only_with.empty()) return true;
+  const std::string other = std::string(table_of(row)).append(row.spec.only_with);
+  for (const ParamRow& candidate : section.rows)
+    if (candidate.key == other) {
+      const std::string value = value_caption(present_value(state, candidate), "");
+      const auto& values = row.spec.only_values;
+      return std::find(values.begin(), values.end(), value) != values.end();
+    }
+  return true;
 }
 
 // What an entry is, with a box to switch it off, and a button that takes it away where the panel added it.

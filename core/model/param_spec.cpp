@@ -158,6 +158,12 @@ ParamSpec text_param(std::string_view name, std::string_view fallback, std::stri
   return named(name, "", ParamKind::text, std::string(fallback), help);
 }
 
+ParamSpec only_with(std::string_view other, std::vector<std::string_view> values, ParamSpec spec) {
+  spec.only_with = other;
+  spec.only_values = std::move(values);
+  return spec;
+}
+
 ParamSpec names_param(std::string_view name, std::string_view help) {
   ParamSpec spec = named(name, "", ParamKind::names, std::vector<std::string>{}, help);
   spec.required = true;

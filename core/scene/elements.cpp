@@ -23,32 +23,29 @@ ParamSpec direction_param(std::string_view name, std::string_view help) {
   return required(vector_param(name, "", {0, 0, 0}, help));
 }
 
-ParamSpec with_motions(std::vector<std::string_view> motions, ParamSpec spec) {
-  spec.motions = std::move(motions);
-  return spec;
-}
-
 // How a held or driven value moves; the unit is that of the measure.
 std::vector<ParamSpec> motion_params(std::string_view unit) {
   return {
       choice_param("motion", "hold", {"hold", "rate", "smooth", "table"},
                    "hold the value at t = 0, or drive it: at a constant rate, smoothly to a value, along a "
                    "table"),
-      with_motions({"rate"}, real_param("rate", unit == "m" ? "m/s" : "deg/s", 0.0, -infinity, infinity,
-                                        "rate: per second")),
-      with_motions({"rate"},
-                   real_param("ramp", "s", 0.0, 0.0, infinity, "rate: how long it takes to reach the rate")),
-      with_motions({"smooth"},
-                   real_param("to", unit, as_built, -infinity, infinity, "smooth: the value in the end")),
-      with_motions({"rate", "smooth"},
-                   real_param("start", "s", 0.0, 0.0, infinity, "rate, smooth: when the motion begins")),
-      with_motions({"smooth"}, positive_param("duration", "s", 1.0, "smooth: how long the motion takes")),
-      with_motions({"table"}, vector_param("times", "s", {}, "table: ascending, with values")),
-      with_motions({"table"},
-                   vector_param("values", unit, {}, "table: at the times; a cubic spline goes through them")),
-      with_motions({"table"},
-                   text_param("table", "",
-                              "table: CSV file beside the scene, in place of times and values: t,value"))};
+      only_with(
+          "motion", {"rate"},
+          real_param("rate", unit == "m" ? "m/s" : "deg/s", 0.0, -infinity, infinity, "rate: per second")),
+      only_with("motion", {"rate"},
+                real_param("ramp", "s", 0.0, 0.0, infinity, "rate: how long it takes to reach the rate")),
+      only_with("motion", {"smooth"},
+                real_param("to", unit, as_built, -infinity, infinity, "smooth: the value in the end")),
+      only_with("motion", {"rate", "smooth"},
+                real_param("start", "s", 0.0, 0.0, infinity, "rate, smooth: when the motion begins")),
+      only_with("motion", {"smooth"},
+                positive_param("duration", "s", 1.0, "smooth: how long the motion takes")),
+      only_with("motion", {"table"}, vector_param("times", "s", {}, "table: ascending, with values")),
+      only_with("motion", {"table"},
+                vector_param("values", unit, {}, "table: at the times; a cubic spline goes through them")),
+      only_with("motion", {"table"},
+                text_param("table", "",
+                           "table: CSV file beside the scene, in place of times and values: t,value"))};
 }
 
 std::vector<ParamSpec> operator+(std::vector<ParamSpec> a, const std::vector<ParamSpec>& b) {

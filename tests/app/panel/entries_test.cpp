@@ -178,6 +178,23 @@ TEST_CASE("taking an entry away moves the ones behind it up, with their edits") 
   CHECK(document.edits.size() == 2);
 }
 
+TEST_CASE("what another choice makes meaningless has no row") {
+  PanelDriver driver(tall());
+  CHECK(driver.panel().has_place("solver.stages"));
+  CHECK_FALSE(driver.panel().has_place("solver.baumgarte"));
+  CHECK_FALSE(driver.panel().has_place("solver.turn"));
+  driver.state().history.edit("solver.method", std::string("rk4_baumgarte"));
+  driver.state().history.edit("solver.adaptive", true);
+  driver.settle();
+  CHECK_FALSE(driver.panel().has_place("solver.stages"));
+  CHECK(driver.panel().has_place("solver.baumgarte"));
+  CHECK(driver.panel().has_place("solver.turn"));
+  // What is wrong is seen in any case.
+  driver.state().history.edit("solver.stages", 99L);
+  driver.settle();
+  CHECK(driver.panel().has_place("solver.stages"));
+}
+
 TEST_CASE("the selected node or rod of a custom structure has rows of its own") {
   PanelDriver driver(tall(), "four_bar");
   driver.state().selected = {Selection::Kind::rod, "coupler"};
