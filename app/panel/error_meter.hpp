@@ -22,6 +22,8 @@ struct RunError {
   long run = 0;  // LiveRun::id
   // Largest distance of a node from the reference, and how well that is known [m]; NaN: there is none.
   double error = std::numeric_limits<double>::quiet_NaN(), uncertainty = error;
+  double end = 0;        // up to when it was judged [s]
+  double cpu_s = 0;      // of the stepping loop up to there [s]; 0: only that of the whole run is known
   std::string why = {};  // there is no reference; empty where there is one but the run did not get through
 };
 
@@ -55,7 +57,8 @@ class ErrorMeter {
   const Known* find(const MotionKey& motion);
   Known solve(const LiveRun& run, const std::shared_ptr<const Model>& model, long task);
   void remember(Known known);
-  void report(const Known& known, const std::vector<std::shared_ptr<const LiveRun>>& runs);
+  void report(const Known& known, const std::vector<std::shared_ptr<const LiveRun>>& runs, long task);
+  double timed(const LiveRun& run, double end, long task);
 
   std::function<void()> wake_;
   mutable std::mutex mutex_;

@@ -21,7 +21,13 @@ void stack(Figure& figure, double width) {
   const double row = figure.height_mm / figure.rows;
   figure.rows = static_cast<int>(figure.panels.size());
   figure.columns = 1;
-  figure.height_mm = figure.rows * std::min(row, 0.55 * figure.width_mm) + 6;
+  std::size_t labels = 0;  // a legend of many rows must leave room for the curves
+  for (const Panel& panel : figure.panels)
+    labels = std::max(labels, static_cast<std::size_t>(
+                                  std::count_if(panel.curves.begin(), panel.curves.end(),
+                                                [](const Curve& curve) { return !curve.label.empty(); })));
+  const double share = labels > 5 ? 0.9 : 0.55;
+  figure.height_mm = figure.rows * std::min(row, share * figure.width_mm) + 6;
 }
 
 }  // namespace

@@ -46,6 +46,7 @@ TradePoint trade_point(const LiveRun& run) {
   return {.method = options.method,
           .setting = setting_caption(options),
           .cpu_s = run.simulation.cpu_s,
+          .whole_cpu_s = run.simulation.cpu_s,
           .error = energy > 0 ? error / energy : error,
           .constraint_error = largest(d, "constraint_max_m"),
           .estimate = run.simulation.position_estimate,
@@ -59,6 +60,8 @@ void note_error(std::vector<TradePoint>& points, const RunError& error) {
     point.position_error = error.error;
     point.uncertainty = error.uncertainty;
     point.why = error.why;
+    point.end = error.end;
+    if (error.cpu_s > 0 && std::isfinite(error.error)) point.cpu_s = error.cpu_s;
     point.accuracy = std::isfinite(error.error) ? Accuracy::known
                      : error.why.empty()        ? Accuracy::no_answer
                                                 : Accuracy::no_reference;
@@ -73,9 +76,11 @@ const TradePoint* point_of(const std::vector<TradePoint>& points, const LiveRun&
 
 std::string point_caption(const TradePoint& point) {
   std::string text = point.setting + "\nCPU time " + cpu_text(point.cpu_s);
+  if (point.cpu_s != point.whole_cpu_s)
+    text += " up to " + format_number(point.end, 4) + " s, " + cpu_text(point.whole_cpu_s) + " in all";
   if (point.accuracy == Accuracy::known)
-    text += "\nposition error " + format_number(point.position_error, 3) + " m (reference certain to " +
-            format_number(point.uncertainty, 2) + " m)";
+    text += "\nposition error " + format_number(point.position_error, 3) +
+            " m\nthe reference is certain to " + format_number(point.uncertainty, 2) + " m";
   if (std::isfinite(point.estimate))
     text += "\nestimated position error " + format_number(point.estimate, 3) + " m";
   return text + "\nenergy error " + format_number(point.error, 3) + " of the energy\nconstraint error " +
@@ -83,18 +88,18 @@ std::string point_caption(const TradePoint& point) {
 }
 
 std::string present_sentence(const TradePoint& point) {
-  const std::string cpu = cpu_text(point.cpu_s) + " of CPU time";
+  const std::string cpu = cpu_text(point.cpu_s);
   switch (point.accuracy) {
     case Accuracy::waiting:
       return cpu + "; measuring the position error ...";
     case Accuracy::known:
-      return "position error " + format_number(point.position_error, 3) + " m for " + cpu;
+      return "position error " + format_number(point.position_error, 3) + " m in " + cpu;
     case Accuracy::no_answer:
       return cpu + "; the run did not get to its end";
     case Accuracy::no_reference:
       break;
   }
-  return "energy error " + format_number(point.error, 3) + " for " + cpu +
+  return "energy error " + format_number(point.error, 3) + " in " + cpu +
          "; position errors are not measured: " + point.why;
 }
 

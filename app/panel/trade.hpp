@@ -23,8 +23,9 @@ enum class Accuracy {
 
 struct TradePoint {
   std::string method;
-  std::string setting;  // "dvm, 3 stages, step 0.01 s"
-  double cpu_s = 0;
+  std::string setting;          // "dvm, 3 stages, step 0.01 s"
+  double cpu_s = 0;             // of the run; where its position error is known, up to where that is judged
+  double whole_cpu_s = 0;       // of the run
   double error = 0;             // largest error of the energy balance, as a share of the energy turned over
   double constraint_error = 0;  // largest [m]
   double estimate = 0;  // of the position error, by a run with solver.tolerance [m]; NaN: it made none
@@ -32,6 +33,7 @@ struct TradePoint {
   MotionKey motion = nullptr;
   Accuracy accuracy = Accuracy::waiting;
   double position_error = std::numeric_limits<double>::quiet_NaN(), uncertainty = position_error;  // [m]
+  double end = 0;        // up to when it was judged [s]
   std::string why = {};  // there is no reference
 };
 TradePoint trade_point(const LiveRun& run);
@@ -60,7 +62,7 @@ Figure with_present(Figure study, const std::vector<TradePoint>& points);
 
 // "dvm, 3 stages, step 0.01 s" and the numbers, a line each: what is said of a point under the pointer.
 std::string point_caption(const TradePoint& point);
-// The present run's error and CPU time in a sentence.
+// The present run's error and CPU time in a line; why there is none may take more.
 std::string present_sentence(const TradePoint& point);
 // The point whose mark is nearest to a place on the page and within `reach` [points]; points.size(): none.
 std::size_t nearest_point(const std::vector<TradePoint>& points, const plot::PanelLayout& panel,

@@ -141,13 +141,11 @@ void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame, 
 // A and B side by side, in the lower left corner.
 void draw_comparison(Ui& ui, const PanelState& state, const Frame& frame) {
   if (!state.pinned) return;
-  const TradePoint *a = point_of(state.trade, *state.pinned), *b = point_of(state.trade, *state.shown);
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  const auto rows =
-      compare(*state.pinned, *state.shown, a ? a->position_error : unknown, b ? b->position_error : unknown);
+  const auto rows = compare(*state.pinned, *state.shown, point_of(state.trade, *state.pinned),
+                            point_of(state.trade, *state.shown));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ui.regular->FontSize + ui.px(3), pad = ui.px(10);
-  const float columns[] = {ui.px(118), ui.px(106), ui.px(106), ui.px(66)};
+  const float columns[] = {ui.px(118), ui.px(110), ui.px(110), ui.px(92)};
   float width = 2 * pad;
   for (const float column : columns) width += column;
   const float height = 2 * pad + line * static_cast<float>(rows.size() + 1);

@@ -135,19 +135,6 @@ double clearly_differing(const Image& a, const Image& b, const plot::Rect& in) {
   return static_cast<double>(count) / static_cast<double>(all);
 }
 
-bool uniform(const Image& image, const plot::Rect& in) {
-  const auto first = 4 * (static_cast<std::size_t>(in.y0) * static_cast<std::size_t>(image.width) +
-                          static_cast<std::size_t>(in.x0));
-  for (int y = static_cast<int>(in.y0); y < static_cast<int>(in.y1); ++y)
-    for (int x = static_cast<int>(in.x0); x < static_cast<int>(in.x1); ++x) {
-      const auto at = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                           static_cast<std::size_t>(x));
-      for (std::size_t c = 0; c < 3; ++c)
-        if (image.rgba[at + c] != image.rgba[first + c]) return false;
-    }
-  return true;
-}
-
 // The screen when `what` holds of it and it no longer changes there; the last one after a minute. Many tenths
 // of a second on a busy machine: conditions, not times.
 template <class Condition>
@@ -209,7 +196,7 @@ TEST_CASE("a person opens the window, drags a slider, scrubs, saves, and closes 
   twin.frame();
   const plot::Rect save = twin.panel().place("save");
 
-  const pid_t window = open_window(server, scratch, "hoop6 --ui-scale 1 --set solver.step=0.05");
+  const pid_t window = open_window(server, scratch, "hoop6 --set solver.step=0.05");
   REQUIRE(server.tool("search --sync --name Unfurl") == 0);
   // While the motion is simulated the view is dimmed, its corner too; that is of one colour otherwise.
   const auto corner = [&](const Image& a, const Image& b) {
@@ -261,33 +248,31 @@ TEST_CASE("a person opens the window, drags a slider, scrubs, saves, and closes 
 
 TEST_CASE("the window is as large as the monitor's fine pixels ask for, or as the user says") {
   if (!tools_installed()) return;
-  struct Case {
-    int dpi;
-    const char* arguments;
-    float scale;
+  // The top bar of panels of either scale, drawn without a window.
+  const auto panel = [](float scale) {
+    PanelOptions options;
+    options.scale = scale;
+    options.measure_errors = false;
+    PanelDriver twin(options);
+    twin.move(-1, -1);
+    return std::pair(twin.picture(), plot::Rect{0, 0, 330, twin.panel().place("undo").y1 + 4});
   };
-  for (const Case& c : {Case{192, "", 2}, Case{192, " --ui-scale 1", 1}, Case{96, "", 1}}) {
-    const XServer server(c.dpi);
+  const auto coarse = panel(1), fine = panel(2);
+  const XServer server(192);
+  for (const bool told : {false, true}) {
     const ScratchDirectory scratch;
-    // The top bar of panels of either scale, drawn without a window.
-    const auto bar = [](float scale) {
-      PanelOptions options;
-      options.scale = scale;
-      PanelDriver twin(options);
-      twin.move(-1, -1);
-      return std::pair(twin.picture(), twin.panel().place("undo"));
-    };
-    const auto [fitting, undo] = bar(c.scale);
-    const Image other = bar(3 - c.scale).first;
-    const pid_t window =
-        open_window(server, scratch, "hoop6 --set solver.step=0.05" + std::string(c.arguments));
+    const pid_t window = open_window(
+        server, scratch, std::string("hoop6 --set solver.step=0.05") + (told ? " --ui-scale 1" : ""));
     REQUIRE(server.tool("search --sync --name Unfurl") == 0);
-    const plot::Rect top{0, 0, 330, undo.y1 + 4};
-    const Image seen = screen_when(server, top, [&](const Image& now) { return !uniform(now, undo); });
-    INFO(c.dpi << " dpi" << c.arguments);
-    // With the other scale every letter is elsewhere.
-    CHECK(clearly_differing(seen, fitting, top) < 0.005);
-    CHECK(clearly_differing(seen, other, top) > 0.05);
+    const auto& [fitting, top] = told ? coarse : fine;
+    const auto& other = (told ? fine : coarse).first;
+    const plot::Rect bar = top;
+    const Image& expected = fitting;
+    const Image seen = screen_when(
+        server, bar, [&](const Image& now) { return clearly_differing(now, expected, bar) < 0.005; });
+    INFO((told ? "--ui-scale 1" : "192 dpi"));
+    CHECK(clearly_differing(seen, expected, bar) < 0.005);
+    CHECK(clearly_differing(seen, other, bar) > 0.05);  // every letter is elsewhere
     server.tool("mousemove 600 400 key ctrl+q");
     CHECK(end_of(window, 10) == 0);
     CHECK(file_text(scratch / "log") == "");

@@ -146,13 +146,16 @@ TEST_CASE("a newer motion, a hold and the end interrupt a reference that takes l
     CHECK(meter.begun() == 2);
     CHECK(meter.solved() == 1);
   }
-  ErrorMeter meter;
-  meter.measure(slow);
-  REQUIRE(comes_true([&] { return meter.begun() == 1; }));
   const auto start = std::chrono::steady_clock::now();
-  meter.hold(true);  // rests within an evaluation, and ends all the same
-  CHECK(meter.busy());
-  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
+  {
+    ErrorMeter meter;
+    meter.measure(slow);
+    REQUIRE(comes_true([&] { return meter.begun() == 1; }));
+    meter.hold(true);
+    CHECK(meter.busy());
+  }
+  // A held one ends all the same, within a step of some milliseconds instead of the seconds that it needs.
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
 }
 
 }  // namespace error_meter_test

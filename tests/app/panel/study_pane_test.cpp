@@ -5,6 +5,7 @@
 
 #include "core/scene/build.hpp"
 #include "core/study/study.hpp"
+#include "render/plot/ticks.hpp"
 #include "tests/app/panel/panel_driver.hpp"
 
 using namespace unfurl;
@@ -115,7 +116,9 @@ TEST_CASE("a measure over a parameter comes to the page, and bad values say why"
   const Curve& curve = first->figures[0].panels.at(0).curves.at(0);
   CHECK(curve.x == std::vector<double>{50, 65, 80});
   CHECK(curve.y[0] < curve.y[2]);  // what is folded less is open sooner
-  driver.state().study.to = 95;    // the ring folds by less than 90 degrees
+  CHECK(first->sentence == "deployment time (s): from " + plot::format_number(curve.y[0], 4) +
+                               " (at 50) to " + plot::format_number(curve.y[2], 4) + " (at 80).");
+  driver.state().study.to = 95;  // the ring folds by less than 90 degrees
   driver.frame();
   driver.click("start study");
   finish_study(driver, first);

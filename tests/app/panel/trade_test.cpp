@@ -70,7 +70,7 @@ TEST_CASE("the trade's diamond is at the present run's CPU time and true positio
     const Figure figure = trade_figure(panel.state().trade);
     CHECK(figure.panels.at(0).y.label == "position error (m)");
     const Curve diamond = labelled(figure, "now").at(0);
-    CHECK(diamond.x.at(0) == panel.state().shown->simulation.cpu_s);
+    CHECK(diamond.x.at(0) == panel.now().cpu_s);
     CHECK(diamond.y.at(0) == panel.now().position_error);
   }
   // More stages, smaller errors: what the user is to see.
@@ -107,8 +107,7 @@ TEST_CASE("a comparison has the position errors of both runs") {
   const TradePoint* b = point_of(trade, *panel.state().shown);
   REQUIRE(a);
   REQUIRE(b);
-  const auto rows =
-      compare(*panel.state().pinned, *panel.state().shown, a->position_error, b->position_error);
+  const auto rows = compare(*panel.state().pinned, *panel.state().shown, a, b);
   const auto row =
       std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r.label == "position error"; });
   REQUIRE(row != rows.end());
