@@ -26,7 +26,7 @@ void stack(Figure& figure, double width) {
     labels = std::max(labels, static_cast<std::size_t>(
                                   std::count_if(panel.curves.begin(), panel.curves.end(),
                                                 [](const Curve& curve) { return !curve.label.empty(); })));
-  const double share = labels > 5 ? 0.9 : 0.55;
+  const double share = labels > 5 ? 0.85 : 0.55;
   figure.height_mm = figure.rows * std::min(row, share * figure.width_mm) + 6;
 }
 

@@ -28,9 +28,14 @@ void number_row(Ui& ui, const char* label, const char* key, double& value, const
   tooltip(ui, help);
 }
 
+// Two in a row: the figure below wants the room.
 void choose_methods(Ui& ui, StudyRequest& request) {
   auto& chosen = request.methods;
+  const float half = ImGui::GetCursorStartPos().x + 0.5f * ImGui::GetContentRegionAvail().x;
+  bool second = false;
   for (const Method& method : methods()) {
+    if (second) ImGui::SameLine(half);
+    second = !second;
     const std::string name(method.name);
     const auto at = std::find(chosen.begin(), chosen.end(), name);
     bool is = at != chosen.end();

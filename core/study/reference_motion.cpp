@@ -40,10 +40,6 @@ HermiteWeights hermite_weights(const double* times, double t) {
   return out;
 }
 
-[[noreturn]] void too_long(double cpu_s) {
-  throw ReferenceError("a reference would take more than " + short_number(cpu_s, 2) + " s of CPU time");
-}
-
 // Solutions of a motion, within an amount of CPU time.
 class ReferenceSolver {
  public:
@@ -56,10 +52,11 @@ class ReferenceSolver {
     options_.adaptive = true;
   }
 
+  bool out_of_time() const { return out_of_time_; }
   double left() const { return cpu_s_ - (thread_cpu_seconds() - begin_); }
 
-  // Throws ReferenceError as soon as its speed tells that it would take too long.
-  Simulation solve(int stages, double turn, double end) {
+  // Nothing as soon as its speed tells that it would take too long.
+  std::optional<Simulation> solve(int stages, double turn, double end) {
     options_.stages = stages;
     options_.turn = turn;
     options_.end_time = end;
@@ -76,7 +73,8 @@ class ReferenceSolver {
       return hopeless || hooks_.stopped();
     };
     Simulation out = simulate(model_, options_, own);
-    if (hopeless) too_long(cpu_s_);
+    out_of_time_ = hopeless || 2.2 * out.cpu_s > left();
+    if (hopeless) return std::nullopt;
     if (out.status == RunStatus::stopped) throw Cancelled();
     return out;
   }
@@ -86,7 +84,39 @@ class ReferenceSolver {
   const StudyHooks& hooks_;
   SolverOptions options_;
   double cpu_s_, begin_;
+  bool out_of_time_ = false;  // no further solution would fit
 };
+
+// Solution after solution with smaller steps, until they agree to `goal` [m] or come no closer; nothing where
+// no two of them could be had.
+std::optional<ReferenceMotion> tightest(ReferenceSolver& solver, double end, double goal) {
+  std::optional<ReferenceMotion> best, last;
+  // Whether it is much better than the best before.
+  const auto keep = [&](ReferenceMotion& candidate) {
+    const double least = best ? best->uncertainty() : std::numeric_limits<double>::infinity();
+    const double own = candidate.uncertainty();
+    if (own < least) best = std::move(candidate);
+    return own < 0.5 * least;
+  };
+  double turn = first_turn;
+  int worse = 0;
+  for (int level = 0; level < levels && worse < 2; ++level, turn /= 2) {
+    const auto solution = solver.solve(level % 2 ? 7 : 8, turn, end);
+    if (!solution) break;
+    if (solution->status != RunStatus::completed) continue;
+    ReferenceMotion next(solution->trajectory);
+    // Two may agree by chance: one is as good as it agrees with those before and after it.
+    if (last) {
+      last->widen(next.compare(*last));
+      worse = keep(*last) ? 0 : worse + 1;
+    }
+    const bool enough = next.uncertainty() <= goal || 2 * static_cast<double>(next.bytes()) > most_bytes;
+    last = std::move(next);
+    if (enough || 2.2 * solution->cpu_s > solver.left()) break;
+  }
+  if (last && worse < 2 && std::isfinite(last->uncertainty())) keep(*last);
+  return best;
+}
 
 }  // namespace
 
@@ -144,41 +174,20 @@ void ReferenceMotion::widen(double uncertainty) {
 ReferenceMotion solve_reference_motion(const std::shared_ptr<const Model>& model, const Simulation& run,
                                        double cpu_s, const StudyHooks& hooks) {
   ReferenceSolver solver(model, run.options, cpu_s, hooks);
+  const ReferenceError too_long("a reference would take more than " + short_number(cpu_s, 2) +
+                                " s of CPU time");
   // Settings that are to be judged may be too coarse to tell where the motion ends.
-  const Simulation probe = solver.solve(5, first_turn, run.options.end_time);
-  if (probe.status == RunStatus::failed) throw ReferenceError("no reference runs through: " + probe.message);
-  const double end = judged_span(probe).end;
+  const auto probe = solver.solve(5, first_turn, run.options.end_time);
+  // The first two solutions take two and four times as long.
+  if (!probe || 6 * probe->cpu_s > solver.left()) throw too_long;
+  if (probe->status == RunStatus::failed)
+    throw ReferenceError("no reference runs through: " + probe->message);
+  const double end = judged_span(*probe).end;
   if (!(end > 0)) throw ReferenceError("the motion begins at an end stop");
-  const double size = structure_size(*model), goal = 64 * std::numeric_limits<double>::epsilon() * size;
-  std::optional<ReferenceMotion> best, last;
-  // Whether it is much better than the best before.
-  const auto keep = [&](ReferenceMotion& candidate) {
-    const double least = best ? best->uncertainty() : std::numeric_limits<double>::infinity();
-    const double own = candidate.uncertainty();
-    if (own < least) best = std::move(candidate);
-    return own < 0.5 * least;
-  };
-  double turn = first_turn, cost = 0;
-  int worse = 0;
-  for (int level = 0; level < levels && worse < 2; ++level, turn /= 2) {
-    if (level > 0 && 2.2 * cost > solver.left()) break;
-    const double before = solver.left();
-    const Simulation solution = solver.solve(level % 2 ? 7 : 8, turn, end);
-    cost = before - solver.left();
-    if (solution.status != RunStatus::completed) continue;
-    ReferenceMotion next(solution.trajectory);
-    // Two may agree by chance: one is as good as it agrees with those before and after it.
-    if (last) {
-      last->widen(next.compare(*last));
-      worse = keep(*last) ? 0 : worse + 1;
-    }
-    const bool enough = next.uncertainty() <= goal || 2 * static_cast<double>(next.bytes()) > most_bytes;
-    last = std::move(next);
-    if (enough) break;
-  }
-  if (last && worse < 2 && std::isfinite(last->uncertainty())) keep(*last);
-  if (best && best->uncertainty() < 1e-6 * size) return *std::move(best);
-  if (2.2 * cost > solver.left()) too_long(cpu_s);
+  const double size = structure_size(*model);
+  const auto best = tightest(solver, end, 64 * std::numeric_limits<double>::epsilon() * size);
+  if (best && best->uncertainty() < 1e-6 * size) return *best;
+  if (solver.out_of_time()) throw too_long;
   throw ReferenceError(best ? "the best two solutions differ by " + short_number(best->uncertainty()) + " m"
                             : "no reference runs through");
 }
