@@ -15,8 +15,8 @@ int cmd_run(const Arguments& arguments) {
   const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
   auto model = build_model(scene);
-  std::filesystem::path directory;
-  if (!arguments.output.empty()) directory = open_output_directory(arguments.output, arguments.force);
+  const OwnDirectory output(arguments.output, arguments.force);
+  const std::filesystem::path& directory = output.path();
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
