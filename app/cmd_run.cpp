@@ -2,12 +2,23 @@
 #include <iostream>
 
 #include "app/command.hpp"
+#include "app/film_folder.hpp"
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
 #include "app/scene_run.hpp"
 #include "core/scene/build.hpp"
 
 namespace unfurl {
+
+namespace {
+
+// A film of the very motion that is run stays beside its data.
+bool holds_film_of(const std::filesystem::path& directory, const Scene& scene) {
+  std::error_code error;
+  return std::filesystem::exists(directory / "film.json", error) && FilmFolder(directory, scene).holds_this();
+}
+
+}  // namespace
 
 int cmd_run(const Arguments& arguments) {
   if (arguments.output.empty() && !arguments.json)
@@ -21,7 +32,7 @@ int cmd_run(const Arguments& arguments) {
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
   const Diagnostics diagnostics = diagnose(run);
-  if (!directory.empty()) clear_old_results(directory);
+  if (!directory.empty() && !holds_film_of(directory, scene)) clear_old_results(directory);
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);
