@@ -4,10 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/diagnostics/diagnostics.hpp"
 #include "core/integrators/integrator.hpp"
-#include "core/scene/build.hpp"
-#include "core/scene/reader.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -15,16 +13,7 @@ namespace drive_test {
 
 namespace {
 
-Simulation run_scene(const std::string& text, const std::vector<std::string>& changes = {}) {
-  const Scene scene = read_scene_text(text, "test.toml", changes);
-  return simulate(build_model(scene), scene.solver);
-}
-
-double largest(const Diagnostics& d, const char* column) {
-  double m = 0;
-  for (const double x : d.at(column).values) m = std::max(m, std::abs(x));
-  return m;
-}
+using testing::largest, testing::run_scene;
 
 std::string error_of(const std::string& text, const std::vector<std::string>& changes = {}) {
   try {

@@ -2,9 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/diagnostics/diagnostics.hpp"
-#include "core/scene/build.hpp"
-#include "core/scene/reader.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -12,10 +10,7 @@ namespace stop_test {
 
 namespace {
 
-Simulation run_scene(const std::string& text, const std::vector<std::string>& changes = {}) {
-  const Scene scene = read_scene_text(text, "test.toml", changes);
-  return simulate(build_model(scene), scene.solver);
-}
+using testing::run_scene;
 
 // A ball of 2 kg that falls 5 m at 10 m/s^2: one second to the floor.
 const std::string ball = R"(
