@@ -8,7 +8,6 @@
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
 #include "app/scene_run.hpp"
-#include "core/model/nearest_name.hpp"
 #include "core/scene/build.hpp"
 #include "render/image/image_scale.hpp"
 #include "render/image/png.hpp"
@@ -53,11 +52,9 @@ Image draw_poses(const FrameStyle& style, const Trajectory& run, std::size_t pos
 
 int cmd_poster(const Arguments& arguments) {
   const std::filesystem::path output(arguments.output);
-  if (output.extension() != ".png")
-    throw UsageError("a poster is written as .png, not " + in_quotes(output.extension().string()));
+  require_writable_png(output, "a poster");
   const Scene scene = scene_of(arguments);
   auto model = build_model(scene);
-  require_writable(output);
   const auto context = make_offscreen_context(arguments.threads);
 
   const InterruptGuard guard;

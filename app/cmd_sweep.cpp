@@ -78,8 +78,10 @@ int cmd_sweep(const Arguments& arguments) {
   StudySession session(arguments, "sweeping", name, journal_name(plan.shard));
   const Sweep sweep = compute(plan, session, session.hooks(), arguments, name);
   session.write(journal_name(plan.shard), csv_text(sweep.table));
+  const std::size_t bad = unanswered(plan, sweep);
   const std::string count = std::to_string(sweep.table.rows.size()) + " points in " +
-                            (session.directory() / journal_name(plan.shard)).string();
+                            (session.directory() / journal_name(plan.shard)).string() +
+                            (bad > 0 ? ", " + std::to_string(bad) + " of them without an answer" : "");
   if (plan.shard.count > 1) return finish(sweep.missing == 0, arguments, count);
   std::vector<std::string> pictures;
   for (const Figure& figure : sweep_figures(plan, sweep, scene.title))

@@ -3,8 +3,10 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "app/exit_code.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
+#include "core/model/nearest_name.hpp"
 #include "core/scene/text_file.hpp"
 
 namespace unfurl {
@@ -94,6 +96,12 @@ void require_writable(const fs::path& file) {
   } catch (const FileError& error) {
     throw FileError(file, cause_of(error));
   }
+}
+
+void require_writable_png(const fs::path& file, const std::string& what) {
+  if (file.extension() != ".png")
+    throw UsageError(what + " is written as .png, not " + in_quotes(file.extension().string()));
+  require_writable(file);
 }
 
 void clear_old_results(const fs::path& directory) {

@@ -30,6 +30,8 @@ void remove_unfinished(const std::filesystem::path& directory);
 // Throws FileError, naming the file, where it could not be written now: no such directory, no permission,
 // disk full.
 void require_writable(const std::filesystem::path& file);
+// The same for a picture, `what` ("a poster"), that is a PNG file; UsageError where it has another extension.
+void require_writable_png(const std::filesystem::path& file, const std::string& what);
 
 // Remove what an earlier run left under the names that this program uses, so that no frame of it stays among
 // ours.

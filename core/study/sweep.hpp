@@ -49,6 +49,8 @@ struct Sweep {
   Table table;
   std::size_t missing = 0;
 };
+// Points whose run failed or whose parameters made no structure.
+std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep);
 
 // What the journal lacks of the shard's points is computed on hooks.threads cores, each kept as it finishes.
 Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks);

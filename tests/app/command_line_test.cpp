@@ -48,6 +48,8 @@ TEST_CASE("usage errors") {
               "unfurl: --dpi: must be a number from 20 to 2400; got '1e9'");
   check_error({"check", "hoop6", "--threads", "1.5"}, 2,
               "unfurl: --threads: must be a whole number from 1 to 1024; got '1.5'");
+  check_error({"view", "hoop6", "--picture", "x.jpg"}, 2,
+              "unfurl: a picture of the window is written as .png, not '.jpg'");
   check_error({"check", "hoop6", "--frames", "0:2"}, 2, "unfurl: unfurl check has no option '--frames'");
   check_error({"check", "hoop6", "-o", "x"}, 2,
               "unfurl: unfurl check writes no files; -o is not for it; usage: unfurl check SCENE");

@@ -91,6 +91,14 @@ TEST_CASE("shards of a sweep merge into the whole") {
   CHECK(missing.err.find("2 of 5 points are missing") != std::string::npos);
 }
 
+TEST_CASE("a sweep says how many of its points have no answer") {
+  const ScratchDirectory dir;
+  const ProgramResult r = run_program({"sweep", "hoop6_sector", "--vary", "structure.units=5:7:5",
+                                       "--measure", "deploy_time", "-o", dir / "out"});
+  CHECK(r.code == 0);
+  CHECK(r.err == "5 points in " + dir / "out/sweep.csv" + ", 2 of them without an answer\n");  // 5.5 and 6.5
+}
+
 TEST_CASE("points of another sweep are neither joined nor merged") {
   const ScratchDirectory dir;
   const std::vector<std::string> sweep = {

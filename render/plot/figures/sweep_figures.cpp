@@ -21,10 +21,7 @@ double value_of(const SweepPlan& plan, const std::vector<std::string>& row, std:
 }
 
 std::string count_sentence(const SweepPlan& plan, const Sweep& sweep) {
-  const std::size_t outcome = plan.axes.size();
-  const auto bad = std::count_if(sweep.table.rows.begin(), sweep.table.rows.end(), [&](const auto& row) {
-    return row[outcome] == "failed" || row[outcome] == "invalid";
-  });
+  const std::size_t bad = unanswered(plan, sweep);
   std::string text = std::to_string(sweep.table.rows.size()) + " runs";
   if (bad > 0) text += ", " + std::to_string(bad) + " of them without an answer (left out)";
   if (sweep.missing > 0) text += ", " + std::to_string(sweep.missing) + " more not done yet";
