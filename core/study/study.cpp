@@ -110,7 +110,7 @@ std::vector<std::string> study_columns() {
 Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks) {
   Study study;
   study.end = plan.end;
-  study.early = plan.early;
+  study.before = plan.before;
   study.size = structure_size(*plan.model);
   for (const Setting& setting : plan.settings) study.curves.push_back({setting, {}, {}});
   try {

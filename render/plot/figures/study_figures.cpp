@@ -76,7 +76,7 @@ void add_floor(const Study& study, Panel& panel) {
 
 std::string span_sentence(const Study& study) {
   return "Motion from 0 to " + format_number(study.end, 4) + " s" +
-         (study.early ? ", just before the deployed pose" : "") + ". Reference: " + study.reference +
+         (study.before.empty() ? "" : ", just before " + study.before) + ". Reference: " + study.reference +
          ", certain to " + format_number(study.reference_uncertainty, 2) + " m.";
 }
 
