@@ -168,8 +168,6 @@ void check_count(const Command& command, const Arguments& arguments) {
   if (count > command.max_names)
     message = "unexpected argument " + in_quotes(arguments.names[command.max_names]);
   if (message.empty() && command.needs_output && arguments.output.empty()) message = "-o is missing";
-  if (!arguments.output.empty() && command.usage.find("-o ") == std::string_view::npos)
-    message = "unfurl " + std::string(command.name) + " writes no files; -o is not for it";
   if (!message.empty()) throw UsageError(message + "; usage: " + usage_line(command));
 }
 
