@@ -84,7 +84,7 @@ TEST_CASE("the trade's diamond is at the present run's CPU time and true positio
   CHECK(panel.panel().has_place("trade sentence"));
 }
 
-TEST_CASE("a change of the motion takes its own reference; points of the old motion step back") {
+TEST_CASE("a change of the motion takes its own reference, and points of the old motion step back") {
   LadderPanel panel;
   panel.change("solver.stages", 3L);
   const std::size_t before = panel.state().trade.size();
