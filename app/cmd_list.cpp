@@ -89,15 +89,24 @@ std::vector<Item> look_items() {
   return items;
 }
 
+constexpr std::string_view entry_note =
+    "Every entry may also have a name, for messages and columns, and enabled = false, as if it were not "
+    "there.";
+
 struct List {
   std::string_view name;
   std::vector<Item> (*items)();
+  std::string_view note = {};  // below the list for people
 };
 
-constexpr List lists[] = {
-    {"structures", structure_items}, {"methods", method_items},         {"figures", figure_items},
-    {"scenes", scene_items},         {"constraints", constraint_items}, {"forces", force_items},
-    {"looks", look_items},           {"measures", measure_items}};
+constexpr List lists[] = {{"structures", structure_items},
+                          {"methods", method_items},
+                          {"figures", figure_items},
+                          {"scenes", scene_items},
+                          {"constraints", constraint_items, entry_note},
+                          {"forces", force_items, entry_note},
+                          {"looks", look_items},
+                          {"measures", measure_items}};
 
 std::string default_text(const ParamSpec& spec) {
   if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";
@@ -151,7 +160,12 @@ int cmd_list(const Arguments& arguments) {
   for (const auto& list : lists) {
     names.push_back(list.name);
     if (list.name != name) continue;
-    arguments.json ? print_json(list.items()) : print_text(list.items());
+    if (arguments.json) {
+      print_json(list.items());
+      return exit_ok;
+    }
+    print_text(list.items());
+    if (!list.note.empty()) std::cout << "\n" << list.note << "\n";
     return exit_ok;
   }
   throw UsageError("no list " + in_quotes(name) + did_you_mean(name, names));

@@ -54,7 +54,8 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
   };
   cards_.trade().open = is_open("trade");
   for (FigureCard& card : cards_.cards()) card.open = is_open(card.kind->name);
-  state_.sections = param_sections(base_scene(state_.history.now()));
+  state_.base = base_scene(state_.history.now());
+  state_.sections = param_sections(state_.base);
   context_.make_current();
   make_context();
   painter_ = std::make_unique<ImguiPainter>();
@@ -214,15 +215,23 @@ void ControlPanel::update_picture() {
 
 // A change of the scene asks for its simulation.
 void ControlPanel::follow_document() {
+  if (!(state_.described == state_.selected)) {
+    state_.described = state_.selected;
+    state_.sections = param_sections(state_.base, state_.selected);
+    settling_ = std::max(settling_, 2);
+  }
   const SceneDocument& now = state_.history.now();
   if (state_.wants_stop) {
     simulator_.cancel();
     state_.wants_stop = false;
   }
   if (submitted_ && *submitted_ == now) return;
-  if (!submitted_ || *submitted_->text != *now.text || submitted_->overrides != now.overrides) {
+  if (!submitted_ || *submitted_->text != *now.text || submitted_->overrides != now.overrides ||
+      submitted_->added != now.added) {
     try {
-      state_.sections = param_sections(base_scene(now));
+      state_.base = base_scene(now);
+      state_.described = state_.selected;
+      state_.sections = param_sections(state_.base, state_.selected);
     } catch (const SceneError& error) {
       if (!submitted_) throw;
       state_.problems = error.problems();

@@ -29,6 +29,8 @@ struct PanelState {
   explicit PanelState(SceneDocument document) : history(std::move(document)) {}
 
   EditHistory history;
+  Scene base;                          // the scene without edits
+  Selection described;                 // what sections were made for
   std::vector<ParamSection> sections;  // of the scene without edits
 
   std::shared_ptr<const LiveRun> shown;        // the latest run that finished; null at first

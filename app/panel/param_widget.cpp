@@ -1,5 +1,6 @@
 // One row of the left pane: a label and the widget that a parameter's kind asks for.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -9,7 +10,8 @@ namespace unfurl {
 
 namespace {
 
-constexpr std::size_t longest_text = 256;
+constexpr std::size_t longest_text = 4096;
+constexpr std::size_t most_numbers = 4;  // that a vector has a field for each of
 
 // Seven digits and the unit. ImGui takes the digits for the smallest number of a logarithmic slider too.
 std::string format_of(const ParamSpec& spec, const SliderRange& range) {
@@ -21,7 +23,12 @@ std::string format_of(const ParamSpec& spec, const SliderRange& range) {
 
 bool real_widget(const ParamRow& row, ParamValue& value) {
   double x = std::get<double>(value);
-  const SliderRange range = slider_range(row.spec, row.value);
+  const SliderRange range = slider_range(row);
+  if (not_given(value)) {
+    if (!ImGui::Button("not given", {ImGui::CalcItemWidth(), 0})) return false;
+    value = std::isfinite(row.typical) ? std::round(1e6 * row.typical) / 1e6 : 0.0;
+    return true;
+  }
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_NoRoundToFormat | (range.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
   const std::string format = format_of(row.spec, range);
@@ -38,7 +45,7 @@ bool real_widget(const ParamRow& row, ParamValue& value) {
 }
 
 bool integer_widget(const ParamRow& row, ParamValue& value) {
-  const SliderRange range = slider_range(row.spec, row.value);
+  const SliderRange range = slider_range(row);
   auto x = static_cast<ImS64>(std::get<long>(value));
   const auto low = static_cast<ImS64>(range.low), high = static_cast<ImS64>(range.high);
   if (!ImGui::SliderScalar("##value", ImGuiDataType_S64, &x, &low, &high, "%lld")) return false;
@@ -62,8 +69,7 @@ bool choice_widget(Ui& ui, const ParamRow& row, ParamValue& value) {
   return changed;
 }
 
-bool text_widget(ParamValue& value) {
-  auto& text = std::get<std::string>(value);
+bool text_field(std::string& text) {
   char buffer[longest_text];
   std::snprintf(buffer, sizeof buffer, "%s", text.c_str());
   if (!ImGui::InputText("##value", buffer, sizeof buffer)) return false;
@@ -71,9 +77,47 @@ bool text_widget(ParamValue& value) {
   return true;
 }
 
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i <= text.size();) {
+    const std::size_t end = std::min(text.find(',', i), text.size());
+    const std::size_t first = text.find_first_not_of(' ', i);
+    if (first < end) words.push_back(text.substr(first, text.find_last_not_of(' ', end - 1) - first + 1));
+    i = end + 1;
+  }
+  return words;
+}
+
+// Names with commas between them; what is no list of names yet changes nothing.
+bool names_widget(ParamValue& value) {
+  std::string text = value_caption(value, "");
+  if (!text_field(text)) return false;
+  auto words = words_of(text);
+  if (words.empty() || words == std::get<std::vector<std::string>>(value)) return false;
+  value = std::move(words);
+  return true;
+}
+
+// The same for any number of numbers.
+bool numbers_widget(ParamValue& value) {
+  std::string text = value_caption(value, "");
+  if (!text_field(text)) return false;
+  std::vector<double> numbers;
+  for (const std::string& word : words_of(text)) {
+    double x = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
+    if (error != std::errc() || end != word.data() + word.size()) return false;
+    numbers.push_back(x);
+  }
+  if (numbers == std::get<std::vector<double>>(value)) return false;
+  value = std::move(numbers);
+  return true;
+}
+
 bool vector_widget(const ParamRow& row, ParamValue& value) {
   auto& numbers = std::get<std::vector<double>>(value);
-  const SliderRange range = slider_range(row.spec, row.value);
+  if (row.spec.length == 0 || numbers.size() > most_numbers) return numbers_widget(value);
+  const SliderRange range = slider_range(row);
   const float speed = static_cast<float>((range.high - range.low) / 400);
   return ImGui::DragScalarN("##value", ImGuiDataType_Double, numbers.data(), static_cast<int>(numbers.size()),
                             speed, nullptr, nullptr, "%.4g", ImGuiSliderFlags_NoRoundToFormat);
@@ -90,22 +134,13 @@ bool widget(Ui& ui, const ParamRow& row, ParamValue& value) {
     case ParamKind::choice:
       return choice_widget(ui, row, value);
     case ParamKind::text:
-      return text_widget(value);
+      return text_field(std::get<std::string>(value));
     case ParamKind::vector:
       return vector_widget(row, value);
+    case ParamKind::names:
+      return names_widget(value);
   }
   return false;
-}
-
-std::string shortened(const std::string& text, float width) {
-  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-  std::string kept = text;
-  while (!kept.empty() && ImGui::CalcTextSize((kept + "\u2026").c_str()).x > width) {
-    do kept.pop_back();
-    while (!kept.empty() && (kept.back() & 0xC0) == 0x80);
-  }
-  while (!kept.empty() && kept.back() == ' ') kept.pop_back();
-  return kept + "\u2026";
 }
 
 }  // namespace
@@ -114,7 +149,7 @@ bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong) {
   ImGui::PushID(row.key.c_str());
   const float full = ImGui::GetContentRegionAvail().x;
   const float label = std::floor(0.44f * full);
-  const bool edited = !(value == row.value);
+  const bool edited = !(value == row.value) && !(not_given(value) && not_given(row.value));
   ImGui::AlignTextToFramePadding();
   ImGui::PushStyleColor(ImGuiCol_Text, wrong ? ui.theme.error : edited ? ui.theme.accent : ui.theme.text);
   ImGui::TextUnformatted(shortened(row.label, label - ui.px(6)).c_str());

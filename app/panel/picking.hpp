@@ -4,18 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "app/panel/selection.hpp"
 #include "app/panel/simulator.hpp"
 #include "render/scene/draw_list.hpp"
 
 namespace unfurl {
-
-struct Selection {
-  enum class Kind { none, rod, node };
-  Kind kind = Kind::none;
-  std::string name;  // of the whole structure's rod or node; a name outlives a new run
-
-  bool operator==(const Selection&) const = default;
-};
 
 struct PickView {
   Camera camera;

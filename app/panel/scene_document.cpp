@@ -41,8 +41,19 @@ SceneDocument simulated_part(SceneDocument document) {
   return document;
 }
 
+bool is_edited(const SceneDocument& document) {
+  return !document.edits.empty() || !document.added.empty();
+}
+
+SceneDocument without_edits(SceneDocument document) {
+  document.edits.clear();
+  document.added.clear();
+  return document;
+}
+
 std::vector<std::string> overrides_of(const SceneDocument& document) {
   std::vector<std::string> all = document.overrides;
+  all.insert(all.end(), document.added.begin(), document.added.end());
   for (const auto& [key, value] : document.edits) all.push_back(key + "=" + toml_value(value));
   return all;
 }
@@ -52,7 +63,9 @@ Scene read_document(const SceneDocument& document) {
 }
 
 Scene base_scene(const SceneDocument& document) {
-  return read_scene_text(*document.text, document.name, document.overrides, document.folder);
+  SceneDocument base = document;
+  base.edits.clear();
+  return read_document(base);
 }
 
 std::string shell_word(const std::string& word) {

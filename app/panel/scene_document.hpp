@@ -17,11 +17,12 @@ struct SceneDocument {
   std::string folder;  // where files that the scene names lie
   std::shared_ptr<const std::string> text;
   std::vector<std::string> overrides;       // from the command line
+  std::vector<std::string> added;           // entries of lists, from the panel: "forces[0]={...}"
   std::map<std::string, ParamValue> edits;  // from the panel: dotted key -> value, valid or not
 
   bool operator==(const SceneDocument& o) const {
     return path == o.path && name == o.name && *text == *o.text && overrides == o.overrides &&
-           edits == o.edits;
+           added == o.added && edits == o.edits;
   }
 };
 
@@ -33,11 +34,15 @@ SceneDocument document_of_family(const std::string& kind);
 // The document without edits that change only pictures: where it is the same, so is the run.
 SceneDocument simulated_part(SceneDocument document);
 
-// All overrides as "key=value", the panel's behind the command line's.
+bool is_edited(const SceneDocument& document);  // in the panel
+SceneDocument without_edits(SceneDocument document);
+
+// All overrides as "key=value": the command line's, entries added, edits.
 std::vector<std::string> overrides_of(const SceneDocument& document);
 // The scene that the document means. Throws SceneError.
 Scene read_document(const SceneDocument& document);
-// The scene without the panel's edits: what widgets show where nothing was edited. Throws SceneError.
+// The scene without the panel's edits, but with entries that it added: what widgets show where nothing was
+// edited. Throws SceneError.
 Scene base_scene(const SceneDocument& document);
 
 // "unfurl render hoop6 -o out --set solver.step=0.02", quoted for a shell.

@@ -31,8 +31,10 @@ float lightness(const Color& c) {
 void darken(DrawList& list) {
   list.background_top = {0.16f, 0.19f, 0.23f, 1};
   list.background_bottom = {0.27f, 0.31f, 0.36f, 1};
+  // Ink becomes nearly white; what is coloured stays recognisable, as a legend's swatch must.
   const auto light = [](Color& c) {
-    if (lightness(c) < 0.5f) c = mixed(c, {1, 1, 1, 1}, 0.75f);
+    const float chroma = std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b});
+    if (lightness(c) < 0.5f) c = mixed(c, {1, 1, 1, 1}, chroma > 0.3f ? 0.35f : 0.75f);
   };
   const auto dark = [](Color& c) {
     const float alpha = c.a;

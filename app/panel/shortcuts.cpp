@@ -45,9 +45,7 @@ void go(PanelState& state, bool to_end) {
 }
 
 void reset_edits(PanelState& state) {
-  SceneDocument document = state.history.now();
-  document.edits.clear();
-  state.history.replace(std::move(document));
+  state.history.replace(without_edits(state.history.now()));
 }
 
 void escape(PanelState& state) {

@@ -62,7 +62,7 @@ double as_number(const ParamValue& value) {
 
 // What the parameter's slider spans, rounded by the slider itself.
 void choose_key(const ParamRow& row, StudyRequest& request) {
-  const SliderRange range = slider_range(row.spec, row.value);
+  const SliderRange range = slider_range(row);
   const double now = as_number(row.value);
   request.key = row.key;
   request.from = std::max(range.low, now > 0 ? 0.5 * now : range.low);

@@ -12,11 +12,8 @@ void draw_top_bar(Ui& ui, PanelState& state) {
   if (button(ui, "redo", "Redo", "redo (Ctrl Y)", state.history.can_redo())) state.history.redo();
   ImGui::SameLine(0, ui.px(4));
   if (button(ui, "reset all", "Reset", "reset every change of the scene (R)",
-             !state.history.now().edits.empty())) {
-    SceneDocument document = state.history.now();
-    document.edits.clear();
-    state.history.replace(std::move(document));
-  }
+             is_edited(state.history.now())))
+    state.history.replace(without_edits(state.history.now()));
   ImGui::SameLine(0, ui.px(16));
   const bool pinned = state.pinned != nullptr;
   if (button(ui, "pin", pinned ? "Unpin A" : "Pin as A",

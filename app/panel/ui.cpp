@@ -11,6 +11,17 @@ void tooltip(const Ui& ui, const std::string& text) {
   ImGui::EndTooltip();
 }
 
+std::string shortened(const std::string& text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+  std::string kept = text;
+  while (!kept.empty() && ImGui::CalcTextSize((kept + "\u2026").c_str()).x > width) {
+    do kept.pop_back();
+    while (!kept.empty() && (kept.back() & 0xC0) == 0x80);
+  }
+  while (!kept.empty() && kept.back() == ' ') kept.pop_back();
+  return kept + "\u2026";
+}
+
 bool button(Ui& ui, const std::string& key, const std::string& label, const std::string& help, bool enabled) {
   ImGui::BeginDisabled(!enabled);
   const bool pressed = ImGui::Button((label + "##" + key).c_str());

@@ -36,6 +36,9 @@ struct Ui {
 
 void tooltip(const Ui& ui, const std::string& text);  // over the last widget
 
+// The text, cut with an ellipsis where it is wider in the present font [pixels].
+std::string shortened(const std::string& text, float width);
+
 // A button of the panel; greyed out where it is not enabled.
 bool button(Ui& ui, const std::string& key, const std::string& label, const std::string& help,
             bool enabled = true);

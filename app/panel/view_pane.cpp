@@ -54,8 +54,10 @@ void mark(const Ui& ui, const PanelState& state, const SceneView& view, const Fr
   list.AddCircle(b, ui.px(7), color, 0, ui.px(2));
 }
 
-// Lines of text on a ground of their own, right-aligned values; the box's upper right corner is at `corner`.
-void draw_box(const Ui& ui, const std::string& title, const std::vector<Reading>& rows, ImVec2 corner) {
+// Lines of text on a ground of their own, right-aligned values, in the upper right corner of the view; in the
+// lower one where it would lie over the part that it is about.
+void draw_box(const Ui& ui, const std::string& title, const std::vector<Reading>& rows, const Frame& frame,
+              const std::vector<ImVec2>& part) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ui.regular->FontSize + ui.px(3), pad = ui.px(10), gap = ui.px(16);
   float label = 0, value = 0;
@@ -66,8 +68,14 @@ void draw_box(const Ui& ui, const std::string& title, const std::vector<Reading>
   ImGui::PushFont(ui.bold);
   const float width = std::max(label + gap + value, ImGui::CalcTextSize(title.c_str()).x) + 2 * pad;
   ImGui::PopFont();
-  const ImVec2 low(corner.x - width, corner.y);
-  const float height = line * static_cast<float>(rows.size() + 1) + 2 * pad;
+  const float height = line * static_cast<float>(rows.size() + 1) + 2 * pad, margin = ui.px(12);
+  const ImVec2 corner(frame.low.x + frame.size.x - margin, frame.low.y + margin);
+  ImVec2 low(corner.x - width, corner.y);
+  const bool over = std::any_of(part.begin(), part.end(), [&](const ImVec2& p) {
+    return p.x > low.x - margin && p.y < low.y + height + margin;
+  });
+  const float legend = ui.px(44);  // below it
+  if (over) low.y = std::max(low.y, frame.low.y + frame.size.y - height - legend);
   list.AddRectFilled(low, {corner.x, low.y + height}, ui.color(ui.theme.window, 0.92f), ui.px(6));
   list.AddRect(low, {corner.x, low.y + height}, ui.color(ui.theme.rule), ui.px(6));
   list.AddText(ui.bold, ui.bold->FontSize, {low.x + pad, low.y + pad}, ui.color(ui.theme.text),
@@ -81,13 +89,16 @@ void draw_box(const Ui& ui, const std::string& title, const std::vector<Reading>
   }
 }
 
-void draw_readings(const Ui& ui, const PanelState& state, const Frame& frame) {
+void draw_readings(const Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame) {
   const Selection& selection = state.hovered.kind != Selection::Kind::none ? state.hovered : state.selected;
   const auto rows = readings(selection, *state.shown, state.playback.t);
   if (rows.empty()) return;
   const std::string kind = selection.kind == Selection::Kind::rod ? "rod " : "node ";
-  const float margin = ui.px(12);
-  draw_box(ui, kind + selection.name, rows, {frame.low.x + frame.size.x - margin, frame.low.y + margin});
+  const PickedPlace place = place_of(selection, *state.shown, state.playback.t, view.pick_view(state));
+  std::vector<ImVec2> part;
+  for (const Vec3f& end : {place.a, place.b})
+    if (place.found) part.emplace_back(frame.low.x + end.x(), frame.low.y + end.y());
+  draw_box(ui, kind + selection.name, rows, frame, part);
 }
 
 // The older run stays in sight, dimmed, while the newer one is made.
@@ -121,8 +132,10 @@ void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame, 
   }
   const bool failed = run.simulation.status == RunStatus::failed;
   line = failed ? "the solver failed " + run.simulation.message : line + facts;
-  list.AddText({at.x, at.y + ui.bold->FontSize + ui.px(4)},
-               ui.color(failed ? ui.theme.error : ink, failed ? 1.0f : 0.75f), line.c_str());
+  const float room = frame.low.x + frame.size.x - at.x - ui.px(14);
+  list.AddText(ui.regular, ui.regular->FontSize, {at.x, at.y + ui.bold->FontSize + ui.px(4)},
+               ui.color(failed ? ui.theme.error : ink, failed ? 1.0f : 0.75f), line.c_str(), nullptr,
+               std::max(room, ui.px(60)));
 }
 
 // A and B side by side, in the lower left corner.
@@ -212,7 +225,7 @@ void draw_view_pane(Ui& ui, PanelState& state, SceneView& view) {
   mark(ui, state, view, frame, state.selected, ui.color(ui.theme.accent));
   if (!(state.hovered == state.selected))
     mark(ui, state, view, frame, state.hovered, ui.color(ui.theme.accent, 0.6f));
-  draw_readings(ui, state, frame);
+  draw_readings(ui, state, view, frame);
   draw_state_line(ui, state, frame, view.dark_ground());
   draw_comparison(ui, state, frame);
   draw_view_buttons(ui, state, view, frame);

@@ -18,29 +18,38 @@ const std::vector<ParamSpec>& solver_params() {
   static const SolverOptions fallback;
   static const std::vector<ParamSpec> params = {
       choice_param("method", fallback.method, method_names(), "integrator; `unfurl list methods`"),
-      integer_param("stages", fallback.stages, 2, 8, "s, the interpolation nodes on a step (dvm)"),
-      choice_param("nodes", fallback.nodes, {"lobatto", "equidistant", "chebyshev"},
-                   "where the interpolation nodes lie on a step (dvm)"),
-      choice_param("constraints_at", fallback.constraints_at, {"nodes", "ends"},
-                   "constraints hold at every interpolation node, or at step ends only (dvm)"),
-      positive_param("baumgarte", "1/s", fallback.baumgarte,
-                     "rate at which constraint errors decay; stable below 2.7 / step (rk4_baumgarte)"),
-      real_param(
-          "rho_inf", "", fallback.rho_inf, 0.0, 1.0,
-          "what is left of the fastest oscillations after a step; 1 damps nothing (generalized_alpha)"),
+      only_with("method", {"dvm"},
+                integer_param("stages", fallback.stages, 2, 8, "s, the interpolation nodes on a step (dvm)")),
+      only_with("method", {"dvm"},
+                choice_param("nodes", fallback.nodes, {"lobatto", "equidistant", "chebyshev"},
+                             "where the interpolation nodes lie on a step (dvm)")),
+      only_with("method", {"dvm"},
+                choice_param("constraints_at", fallback.constraints_at, {"nodes", "ends"},
+                             "constraints hold at every interpolation node, or at step ends only (dvm)")),
+      only_with(
+          "method", {"rk4_baumgarte"},
+          positive_param("baumgarte", "1/s", fallback.baumgarte,
+                         "rate at which constraint errors decay; stable below 2.7 / step (rk4_baumgarte)")),
+      only_with("method", {"generalized_alpha"},
+                real_param("rho_inf", "", fallback.rho_inf, 0.0, 1.0,
+                           "what is left of the fastest oscillations after a step; 1 damps nothing "
+                           "(generalized_alpha)")),
       positive_param("step", "s", fallback.step, "time step h"),
       boolean_param("adaptive", fallback.adaptive,
                     "steps follow the motion, time-symmetrically and none larger than `step`; a symplectic "
                     "method is then symmetric only"),
-      positive_param("turn", "rad", fallback.turn,
-                     "with `adaptive`: about how far a rod may turn, or velocities change, in a step"),
+      only_with(
+          "adaptive", {"true"},
+          positive_param("turn", "rad", fallback.turn,
+                         "with `adaptive`: about how far a rod may turn, or velocities change, in a step")),
       real_param("tolerance", "m", fallback.tolerance, 0.0, 1e6,
                  "of node positions; stages and step are picked for it; 0: they are as given"),
       positive_param("end_time", "s", fallback.end_time, "the run ends here at the latest"),
       choice_param("at_deployed", fallback.at_deployed, {"stop", "pass", "latch"},
                    "when fully deployed: the run stops, the motion passes through, or the structure locks"),
-      boolean_param("eliminate_linear", fallback.eliminate_linear,
-                    "solve in coordinates that fulfil the linear constraints, where that pays; changes no result"),
+      boolean_param(
+          "eliminate_linear", fallback.eliminate_linear,
+          "solve in coordinates that fulfil the linear constraints, where that pays; changes no result"),
       boolean_param(
           "sparse", fallback.sparse,
           "sparse factorisations; false: dense ones, to see what sparsity is worth; changes no result"),

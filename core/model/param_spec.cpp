@@ -39,6 +39,11 @@ std::string value_text(const ParamValue& value) {
       for (const double x : v) text += (text.size() > 1 ? ", " : "") + number_text(x);
       return text + "]";
     }
+    std::string operator()(const std::vector<std::string>& v) const {
+      std::string text = "[";
+      for (const auto& name : v) text += (text.size() > 1 ? ", \"" : "\"") + name + '"';
+      return text + "]";
+    }
   };
   return std::visit(Writer{}, value);
 }
@@ -57,6 +62,7 @@ bool acceptable(const ParamSpec& spec, const ParamValue& value) {
   const auto* real = std::get_if<double>(&value);
   const auto* text = std::get_if<std::string>(&value);
   const auto* numbers = std::get_if<std::vector<double>>(&value);
+  const auto* names = std::get_if<std::vector<std::string>>(&value);
   switch (spec.kind) {
     case ParamKind::boolean:
       return std::holds_alternative<bool>(value);
@@ -75,6 +81,8 @@ bool acceptable(const ParamSpec& spec, const ParamValue& value) {
       for (const double x : *numbers)
         if (!in_range(spec, x)) return false;
       return true;
+    case ParamKind::names:
+      return names && !names->empty() && (spec.length == 0 || names->size() == spec.length);
   }
   return false;
 }
@@ -150,6 +158,18 @@ ParamSpec text_param(std::string_view name, std::string_view fallback, std::stri
   return named(name, "", ParamKind::text, std::string(fallback), help);
 }
 
+ParamSpec only_with(std::string_view other, std::vector<std::string_view> values, ParamSpec spec) {
+  spec.only_with = other;
+  spec.only_values = std::move(values);
+  return spec;
+}
+
+ParamSpec names_param(std::string_view name, std::string_view help) {
+  ParamSpec spec = named(name, "", ParamKind::names, std::vector<std::string>{}, help);
+  spec.required = true;
+  return spec;
+}
+
 std::string range_text(const ParamSpec& spec) {
   const std::string interval = interval_text(spec);
   switch (spec.kind) {
@@ -164,6 +184,8 @@ std::string range_text(const ParamSpec& spec) {
           with_unit((spec.length > 0 ? std::to_string(spec.length) + " " : "") + "numbers", spec.unit);
       return interval.empty() ? count : count + ", each " + interval;
     }
+    case ParamKind::names:
+      return (spec.length > 0 ? std::to_string(spec.length) + " " : "") + "names";
     case ParamKind::integer:
       return with_unit(interval.empty() ? "any whole number" : interval, spec.unit);
     case ParamKind::real:
@@ -183,6 +205,7 @@ std::string wanted_text(const ParamSpec& spec) {
       return noun + (range.front() == '[' || range.front() == '(' ? " in " : " ") + range;
     }
     case ParamKind::vector:
+    case ParamKind::names:
       return "a list of " + range;
     default:
       return range;

@@ -10,9 +10,10 @@
 
 namespace unfurl {
 
-using ParamValue = std::variant<bool, long, double, std::string, std::vector<double>>;
+using ParamValue =
+    std::variant<bool, long, double, std::string, std::vector<double>, std::vector<std::string>>;
 
-enum class ParamKind { boolean, integer, real, choice, text, vector };
+enum class ParamKind { boolean, integer, real, choice, text, vector, names };
 
 struct ParamSpec {
   std::string_view name;
@@ -27,6 +28,10 @@ struct ParamSpec {
   std::size_t length = 0;                 // for ParamKind::vector: how many numbers; 0: any number of them
   std::string_view help;                  // one line
   bool required = false;                  // true: there is no default, a scene must give it
+  // It means something only while another parameter of the same table has one of these values ("true" of a
+  // switch); empty: always.
+  std::string_view only_with;
+  std::vector<std::string_view> only_values;
 };
 
 // Shorthand for the common shapes, so that a table of parameters reads like a table.
@@ -42,6 +47,9 @@ ParamSpec vector_param(std::string_view name, std::string_view unit, std::vector
                        std::string_view help);
 
 ParamSpec text_param(std::string_view name, std::string_view fallback, std::string_view help);
+// That parameter, but only while another has one of the values.
+ParamSpec only_with(std::string_view other, std::vector<std::string_view> values, ParamSpec spec);
+ParamSpec names_param(std::string_view name, std::string_view help);  // of nodes or rods; required
 
 // "[0.1, 8]", "> 0", "one of a, b": the allowed range in words, for help and error messages.
 std::string range_text(const ParamSpec& spec);

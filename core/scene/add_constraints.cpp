@@ -202,7 +202,8 @@ class ConstraintAdder {
 void add_constraints(const std::vector<SceneElement>& elements, Structure& structure) {
   if (elements.empty()) return;
   ConstraintAdder adder(structure);
-  for (const SceneElement& element : elements) adder.add(element);
+  for (const SceneElement& element : elements)
+    if (element.enabled) adder.add(element);
   adder.finish();
 }
 

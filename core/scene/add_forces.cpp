@@ -97,7 +97,8 @@ class ForceAdder {
 void add_forces(const std::vector<SceneElement>& elements, Structure& structure) {
   if (elements.empty()) return;
   ForceAdder adder(structure);
-  for (const SceneElement& element : elements) adder.add(element);
+  for (const SceneElement& element : elements)
+    if (element.enabled) adder.add(element);
   adder.finish();
 }
 

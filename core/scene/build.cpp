@@ -60,9 +60,10 @@ void add_gravity(const Scene& scene, Structure& structure) {
 // An element stands for itself in the whole structure: a sector would repeat it.
 void refuse_elements(const Scene& scene) {
   for (const auto* list : {&scene.forces, &scene.constraints})
-    if (!list->empty())
-      throw SceneError({{list->front().where, list->front().key,
-                         "cannot be used with a sector model; set structure.model to \"full\""}});
+    for (const SceneElement& element : *list)
+      if (element.enabled)
+        throw SceneError({{element.where, element.key,
+                           "cannot be used with a sector model; set structure.model to \"full\""}});
 }
 
 // A load on a solved node is a load on each of its copies.
@@ -80,6 +81,7 @@ void add_loads(const Scene& scene, Structure& structure) {
   std::vector<SceneProblem> problems;
   for (std::size_t i = 0; i < scene.loads.size(); ++i) {
     const auto& load = scene.loads[i];
+    if (!load.enabled) continue;
     for (const auto& pattern : load.nodes) {
       const auto found = names.matching(pattern);
       for (const int node : found) add_load(structure, node, load.force);

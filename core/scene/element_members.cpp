@@ -1,5 +1,7 @@
 #include "core/scene/element_members.hpp"
 
+#include <limits>
+
 #include "core/model/measure.hpp"
 #include "core/model/nearest_name.hpp"
 
@@ -76,6 +78,20 @@ bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure&
     return false;
   }
   return true;
+}
+
+double start_value(const SceneElement& element, const Structure& structure) {
+  const auto of = [&](const Measure& measure) {
+    const double value = MemberFinder(structure).initial(measure);
+    return measure.kind == MeasureKind::angle || measure.kind == MeasureKind::fold
+               ? value / radians_per_degree
+               : value;
+  };
+  for (const Constraint& c : structure.constraints)
+    if (c.name == element.name && (c.kind == "measure" || c.kind == "stop")) return of(c.measure);
+  for (const Force& f : structure.forces)
+    if (f.name == element.name && (f.kind == "spring" || f.kind == "torsion_spring")) return of(f.measure);
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace unfurl

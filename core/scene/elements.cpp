@@ -25,19 +25,27 @@ ParamSpec direction_param(std::string_view name, std::string_view help) {
 
 // How a held or driven value moves; the unit is that of the measure.
 std::vector<ParamSpec> motion_params(std::string_view unit) {
-  ParamSpec duration = positive_param("duration", "s", 1.0, "smooth: how long the motion takes");
   return {
       choice_param("motion", "hold", {"hold", "rate", "smooth", "table"},
                    "hold the value at t = 0, or drive it: at a constant rate, smoothly to a value, along a "
                    "table"),
-      real_param("rate", unit == "m" ? "m/s" : "deg/s", 0.0, -infinity, infinity, "rate: per second"),
-      real_param("ramp", "s", 0.0, 0.0, infinity, "rate: how long it takes to reach the rate"),
-      real_param("to", unit, as_built, -infinity, infinity, "smooth: the value in the end"),
-      real_param("start", "s", 0.0, 0.0, infinity, "rate, smooth: when the motion begins"),
-      duration,
-      vector_param("times", "s", {}, "table: ascending, with values"),
-      vector_param("values", unit, {}, "table: at the times; a cubic spline goes through them"),
-      text_param("table", "", "table: CSV file beside the scene, in place of times and values: t,value")};
+      only_with(
+          "motion", {"rate"},
+          real_param("rate", unit == "m" ? "m/s" : "deg/s", 0.0, -infinity, infinity, "rate: per second")),
+      only_with("motion", {"rate"},
+                real_param("ramp", "s", 0.0, 0.0, infinity, "rate: how long it takes to reach the rate")),
+      only_with("motion", {"smooth"},
+                real_param("to", unit, as_built, -infinity, infinity, "smooth: the value in the end")),
+      only_with("motion", {"rate", "smooth"},
+                real_param("start", "s", 0.0, 0.0, infinity, "rate, smooth: when the motion begins")),
+      only_with("motion", {"smooth"},
+                positive_param("duration", "s", 1.0, "smooth: how long the motion takes")),
+      only_with("motion", {"table"}, vector_param("times", "s", {}, "table: ascending, with values")),
+      only_with("motion", {"table"},
+                vector_param("values", unit, {}, "table: at the times; a cubic spline goes through them")),
+      only_with("motion", {"table"},
+                text_param("table", "",
+                           "table: CSV file beside the scene, in place of times and values: t,value"))};
 }
 
 std::vector<ParamSpec> operator+(std::vector<ParamSpec> a, const std::vector<ParamSpec>& b) {
@@ -240,6 +248,11 @@ const ElementKind* find_kind(const std::vector<ElementKind>& kinds, std::string_
   return nullptr;
 }
 
+const ParamSpec& enabled_param() {
+  static const ParamSpec param = boolean_param("enabled", true, "false: as if the entry were not there");
+  return param;
+}
+
 std::string_view members_text(Members members) {
   switch (members) {
     case Members::none:
@@ -265,14 +278,16 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
   element.where = entry.where();
   std::vector<std::string_view> names;
   for (const ElementKind& row : kinds) names.push_back(row.kind);
-  const ParamSet head =
-      entry.read({required(choice_param("kind", "", std::move(names), "")), text_param("name", "", "")});
+  const ParamSet head = entry.read({required(choice_param("kind", "", std::move(names), "")),
+                                    text_param("name", "", ""), enabled_param()});
   element.kind = head.text("kind");
+  element.enabled = head.boolean("enabled");
   const ElementKind* kind = find_kind(kinds, element.kind);
   if (!kind) return element;  // noted; its other keys mean nothing
   read_members(entry, kind->members, element);
   element.values = entry.read(kind->params());
   if (element.values.has("table")) {
+    element.table = element.values.text("table");
     read_table(entry, element.values, folder, notes);
     check_table(entry, element.values);
   }

@@ -106,12 +106,26 @@ std::string entry_name(const TomlTree& entry) {
   return nodes->items[0].text + "-" + nodes->items[1].text;
 }
 
+// Lists of entries to which one more may be added.
+bool grows(std::string_view key) {
+  return key == "loads" || key == "forces" || key == "constraints";
+}
+
+TomlTree made_here(TomlTree::Kind kind) {
+  TomlTree made;
+  made.kind = kind;
+  made.where = made.key_where = from_command_line;
+  return made;
+}
+
 TomlTree& step_into_array(TomlTree& array, const Step& step, std::string_view so_far) {
   if (step.index) {
-    if (*step.index < array.items.size()) return array.items[*step.index];
     const std::size_t count = array.items.size();
+    if (*step.index == count && grows(so_far)) array.items.push_back(made_here(TomlTree::Kind::table));
+    if (*step.index < array.items.size()) return array.items[*step.index];
     throw Refusal{std::string(so_far) + " has " + std::to_string(count) +
-                  (count == 1 ? " entry" : " entries") + "; the first is [0]"};
+                  (count == 1 ? " entry" : " entries") +
+                  (grows(so_far) ? "; a new one is [" + std::to_string(count) + "]" : "; the first is [0]")};
   }
   std::vector<std::string> names;
   for (auto& item : array.items) {
@@ -128,15 +142,15 @@ TomlTree& step_into(TomlTree& tree, const Step& step, std::string_view so_far) {
     throw Refusal{std::string(so_far) + " is " + tree.describe() + ", not a table"};
   if (step.index) throw Refusal{std::string(so_far) + " is not a list"};
   if (TomlTree* found = tree.find(step.name)) return *found;
-  TomlTree made;
-  made.where = made.key_where = from_command_line;
-  tree.entries.emplace_back(step.name, std::move(made));
+  tree.entries.emplace_back(step.name, made_here(TomlTree::Kind::table));
   return tree.entries.back().second;
 }
 
 void apply(TomlTree& root, std::string_view key, std::string_view text) {
   const auto steps = parse_key(key);
   TomlTree value = parse_value(text);
+  if (steps.size() > 1 && steps[1].index && grows(steps[0].name) && !root.find(steps[0].name))
+    root.entries.emplace_back(steps[0].name, made_here(TomlTree::Kind::array));
   TomlTree* target = &root;
   std::string so_far;
   for (const auto& step : steps) {

@@ -10,8 +10,9 @@ namespace unfurl {
 
 // Each override is "key=value". The key is dotted; an entry of an array goes by its index or, in an array of
 // tables, by its name: structure.nodes[0].mass, structure.nodes.B0.mass; a name with dots goes in quotes. The
-// value is TOML; a bare word is a string. Missing tables are made; arrays do not grow. What cannot be applied
-// is added to `problems`.
+// value is TOML; a bare word is a string. Missing tables are made. The index behind the last entry of
+// [[loads]], [[forces]] or [[constraints]] adds one: constraints[0]={kind="angle", fold_angle=true}; other
+// arrays do not grow. What cannot be applied is added to `problems`.
 void apply_overrides(TomlTree& root, const std::vector<std::string>& overrides,
                      std::vector<SceneProblem>& problems);
 

@@ -65,7 +65,7 @@ void read_loads(TableReader& root, Scene& scene, SceneNotes& notes) {
   static const std::vector<ParamSpec> params = [] {
     ParamSpec force = vector_param("force", "N", {0, 0, 0}, "constant force on each node");
     force.required = true;
-    return std::vector<ParamSpec>{force};
+    return std::vector<ParamSpec>{force, enabled_param()};
   }();
   for (const TomlTree* tree : root.tables("loads")) {
     const std::string key = "loads[" + std::to_string(scene.loads.size()) + "]";
@@ -75,6 +75,7 @@ void read_loads(TableReader& root, Scene& scene, SceneNotes& notes) {
     const auto values = entry.read(params);
     const auto& f = values.vector("force");
     load.force = {f[0], f[1], f[2]};
+    load.enabled = values.boolean("enabled");
     load.where = tree->find("nodes") ? tree->find("nodes")->where : tree->where;
     entry.finish();
     scene.loads.push_back(std::move(load));

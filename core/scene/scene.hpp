@@ -19,6 +19,7 @@ struct SceneLoad {
   std::vector<std::string> nodes;  // names or globs
   Vec3 force = Vec3::Zero();       // [N]
   SourceLocation where;
+  bool enabled = true;  // false: as if it were not there
 };
 
 struct Scene {

@@ -58,6 +58,8 @@ std::optional<ParamValue> shaped(const ParamSpec& spec, const TomlTree& tree) {
       break;
     case ParamKind::vector:
       return numbers(tree);
+    case ParamKind::names:  // names()
+      break;
   }
   return std::nullopt;
 }

@@ -85,6 +85,7 @@ std::string element_text(std::string_view table, const SceneElement& element, co
   if (!element.nodes.empty()) text += line("nodes", names_text(element.nodes));
   if (!element.rods.empty())
     text += line(kind.members == Members::rod ? "rod" : "rods", names_text(element.rods));
+  if (!element.enabled) text += line("enabled", "false");
   if (element.fold_angle) text += line("fold_angle", "true");
   for (const auto& spec : kind.params()) {
     const ParamValue& value = element.values.value(spec.name);
@@ -147,6 +148,7 @@ std::string toml_value(const ParamValue& value) {
       for (const double x : v) text += (text.empty() ? "" : ", ") + real_text(x);
       return "[" + text + "]";
     }
+    std::string operator()(const std::vector<std::string>& v) const { return names_text(v); }
   };
   return std::visit(Writer{}, value);
 }
@@ -155,7 +157,8 @@ std::string scene_text(const Scene& scene) {
   std::string text = line("title", toml_string(scene.title)) + structure_text(scene);
   text += "\n[gravity]\n" + line("acceleration", vec_text(scene.gravity));
   for (const auto& load : scene.loads)
-    text += "\n[[loads]]\n" + line("nodes", names_text(load.nodes)) + line("force", vec_text(load.force));
+    text += "\n[[loads]]\n" + (load.enabled ? "" : line("enabled", "false")) +
+            line("nodes", names_text(load.nodes)) + line("force", vec_text(load.force));
   for (const auto& force : scene.forces)
     text += element_text("forces", force, *find_kind(scene_forces(), force.kind));
   for (const auto& constraint : scene.constraints)

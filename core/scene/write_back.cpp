@@ -96,6 +96,23 @@ std::optional<std::size_t> end_of_table(std::string_view text, const TomlTree& t
   return end;
 }
 
+// The members of an inline table, a line each.
+std::string member_lines(const std::string& table) {
+  const std::string text = "value = " + table;
+  const TomlTree root = parse_toml(text, "");
+  std::string lines;
+  for (const auto& [name, value] : root.entries.front().second.entries) {
+    const std::size_t begin = offset_of(text, value.where);
+    lines += name + " = " + text.substr(begin, value_end(text, begin) - begin) + "\n";
+  }
+  return lines;
+}
+
+Replacement at_the_end(std::string_view text, const std::string& lines) {
+  const char* gap = text.empty() || text.ends_with('\n') ? "\n" : "\n\n";
+  return {text.size(), text.size(), gap + lines};
+}
+
 // What makes the key have the value; nullopt where the text has no place for it.
 std::optional<Replacement> replacement(std::string_view text, const TomlTree& root, std::string_view key,
                                        const std::string& value) {
@@ -110,6 +127,8 @@ std::optional<Replacement> replacement(std::string_view text, const TomlTree& ro
     }
   }
   const std::string line = steps.back().name + " = " + value + "\n";
+  if (steps.size() == 2 && steps[1].index)  // a new entry of a list
+    return at_the_end(text, "[[" + steps[0].name + "]]\n" + member_lines(value));
   if (table) {
     const auto end = end_of_table(text, *table);
     if (!end) return std::nullopt;
@@ -117,8 +136,7 @@ std::optional<Replacement> replacement(std::string_view text, const TomlTree& ro
     return Replacement{*end, *end, (broken ? "\n" : "") + line};
   }
   if (steps.size() != 2 || steps[1].index) return std::nullopt;
-  const char* gap = text.empty() || text.ends_with('\n') ? "\n" : "\n\n";
-  return Replacement{text.size(), text.size(), gap + ("[" + steps[0].name + "]\n") + line};
+  return at_the_end(text, "[" + steps[0].name + "]\n" + line);
 }
 
 // As TOML: a bare word becomes a string.

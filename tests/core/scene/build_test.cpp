@@ -1,9 +1,11 @@
 #include "core/scene/build.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
+#include "core/scene/write.hpp"
 
 using namespace unfurl;
 
@@ -42,6 +44,40 @@ TEST_CASE("gravity and loads reach the structure") {
   for (const auto& load : s.loads)
     if (s.nodes[static_cast<std::size_t>(load.node)].name.starts_with("B")) on_corners += load.force[2];
   CHECK(on_corners == 6 * 5.0);  // B0..B5
+}
+
+TEST_CASE("entries that are switched off are as if they were not there, and stay in the file") {
+  const std::string entries =
+      "[[loads]]\nnodes = ['B?']\nforce = [0, 0, 5]\n[[forces]]\nkind = 'drag'\nnodes = ['B0']\ndamping = 1\n"
+      "[[constraints]]\nkind = 'angle'\nfold_angle = true\n";
+  const Structure bare = build_structure(read_scene_text(hoop, "x"));
+  const std::vector<std::string> off = {"loads[0].enabled=false", "forces[0].enabled=false",
+                                        "constraints[0].enabled=false"};
+  const Scene scene = read_scene_text(hoop + entries, "x", off);
+  const Structure s = build_structure(scene);
+  CHECK(s.loads.size() == bare.loads.size());
+  CHECK(s.forces.size() == bare.forces.size());
+  CHECK(s.constraints.size() == bare.constraints.size());
+  const Scene again = read_scene_text(scene_text(scene), "x");
+  CHECK_FALSE(again.loads.at(0).enabled);
+  CHECK_FALSE(again.forces.at(0).enabled);
+  CHECK_FALSE(again.constraints.at(0).enabled);
+  // A sector refuses elements, but not those that are off.
+  CHECK_NOTHROW(build_structure(read_scene_text(hoop + "model = 'sector'\n" + entries, "x", off)));
+  CHECK_THROWS_AS(build_structure(read_scene_text(hoop + "model = 'sector'\n" + entries, "x")), SceneError);
+}
+
+TEST_CASE("what a drive or a spring measures at the start is known") {
+  const Scene scene = read_scene_text(
+      hoop +
+          "fold_angle = 60\n[[constraints]]\nkind = 'angle'\nfold_angle = true\n[[forces]]\nkind = "
+          "'spring'\nnodes = ['B0', 'T0']\n[[forces]]\nkind = 'drag'\nnodes = ['B0']\ndamping = 1\n",
+      "x");
+  const Structure s = build_structure(scene);
+  CHECK(start_value(scene.constraints[0], s) ==
+        Approx(60).margin(1e-9));  // degrees, round-off of an arctangent
+  CHECK(start_value(scene.forces[0], s) == Approx(scene.structure.real("post_length")).epsilon(1e-12));
+  CHECK(std::isnan(start_value(scene.forces[1], s)));  // measures nothing
 }
 
 TEST_CASE("a load on a sector is a load on every copy, turned with it") {

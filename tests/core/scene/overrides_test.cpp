@@ -65,6 +65,21 @@ TEST_CASE("entries of arrays go by index or name") {
   CHECK(with({"structure.rods.\"A-B.0\".mass=2"}).problems == "");
 }
 
+TEST_CASE("the index behind the last adds an entry of loads, forces or constraints, of nothing else") {
+  const Result r = with({"forces[0]={kind = 'drag', nodes = ['A']}", "forces[0].damping=2",
+                         "forces[1]={kind = 'drag', nodes = ['B.0']}", "loads[0].nodes=['A']"});
+  CHECK(r.problems == "");
+  const auto& forces = r.tree.find("forces")->items;
+  REQUIRE(forces.size() == 2);
+  CHECK(forces[0].find("damping")->integer == 2);
+  CHECK(forces[1].find("nodes")->items[0].text == "B.0");
+  CHECK(r.tree.find("loads")->items.size() == 1);
+  CHECK(with({"forces[1]={kind = 'drag'}"}).problems ==
+        "--set forces[1]: forces has 0 entries; a new one is [0]\n");
+  CHECK(with({"structure.nodes[2].mass=1"}).problems ==
+        "--set structure.nodes[2].mass: structure.nodes has 2 entries; the first is [0]\n");
+}
+
 TEST_CASE("overrides that cannot be applied say why") {
   CHECK(with({"solver.step"}).problems == "--set solver.step: must be key=value\n");
   CHECK(with({"solver.step="}).problems == "--set solver.step: has no value\n");

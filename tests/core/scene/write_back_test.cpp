@@ -63,6 +63,20 @@ TEST_CASE("written back, a new key stands behind the others of its table, a new 
   CHECK(back({"gravity.acceleration=[0.0, 0.0, -9.81]"}) == with_gravity);
 }
 
+TEST_CASE("written back, a new entry of a list is a table of its own at the end, comments and all stay") {
+  const std::string motor =
+      "constraints[0]={kind = \"angle\", name = \"motor, no. 1\", fold_angle = true, motion = \"rate\"}";
+  const std::string hinge = "forces[0]={kind = \"drag\", nodes = [\"B0\", \"B1\"], damping = 1e-3}";
+  CHECK(
+      back({motor, "constraints[0].rate=-8.0", hinge}) ==
+      std::string(hoop) +
+          "\n[[constraints]]\nkind = \"angle\"\nname = \"motor, no. 1\"\nfold_angle = true\nmotion = "
+          "\"rate\"\nrate = -8.0\n\n[[forces]]\nkind = \"drag\"\nnodes = [\"B0\", \"B1\"]\ndamping = 1e-3\n");
+  CHECK(back({"loads[1]={nodes = [\"B2\"], force = [0.0, 0.0, 2.0]}", "loads[0].enabled=false"}) ==
+        with("-1.0]   # N\n",
+             "-1.0]   # N\nenabled = false\n\n[[loads]]\nnodes = [\"B2\"]\nforce = [0.0, 0.0, 2.0]\n"));
+}
+
 TEST_CASE("what cannot be written into the text is written anew and means the same") {
   const std::string text = "structure = { kind = \"hoop\", units = 6 }\n";
   const WrittenBack result = write_back(text, "x.toml", {"structure.post_length=2.0"}, "");
