@@ -2,13 +2,16 @@
 #include "app/cli.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <iostream>
+#include <sstream>
 
 #include "app/command.hpp"
 #include "app/failure.hpp"
 #include "app/help.hpp"
 #include "app/own_options.hpp"
 #include "core/model/nearest_name.hpp"
+#include "core/study/table.hpp"
 
 namespace unfurl {
 
@@ -66,6 +69,27 @@ void add_short_cuts(CLI::App& parser, std::vector<std::string>& overrides) {
   }
 }
 
+// A number that an option takes, in words of our own.
+CLI::Validator within(double low, double high, bool whole) {
+  return CLI::Validator(
+      [low, high, whole](const std::string& text) {
+        const double x = number_of(text);
+        if (x >= low && x <= high && (!whole || x == std::floor(x))) return std::string();
+        std::ostringstream message;
+        message << "must be a " << (whole ? "whole " : "") << "number from " << low << " to " << high
+                << "; got " << in_quotes(text);
+        return message.str();
+      },
+      "");
+}
+
+std::string words_of(const CLI::ParseError& error) {
+  const std::string text = error.what(), name = text.substr(0, text.find(':'));
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error))
+    return (name == "--output" ? "-o" : name) + " needs a value behind it";
+  return text;
+}
+
 struct Parsed {
   Arguments arguments;
   bool help = false;
@@ -80,7 +104,7 @@ void refuse_foreign_options(const CLI::App& parser, const Command& command) {
 
 void add_study_options(CLI::App& parser, StudyArguments& study) {
   parser.add_option("--steps", study.ladder);
-  parser.add_option("--repeats", study.repeats)->check(CLI::Range(1, 1000));
+  parser.add_option("--repeats", study.repeats)->check(within(1, 1000, true));
   parser.add_option("--methods", study.methods)->allow_extra_args(false)->delimiter(',');
   parser.add_flag("--models", study.models);
   parser.add_option("--extreme", study.extremes)->allow_extra_args(false);
@@ -95,7 +119,7 @@ void add_study_options(CLI::App& parser, StudyArguments& study) {
 
 void add_view_options(CLI::App& parser, ViewArguments& view) {
   parser.add_option("--picture", view.picture);
-  parser.add_option("--at", view.at)->check(CLI::Range(0.0, 1e9));
+  parser.add_option("--at", view.at)->check(within(0, 1e9, false));
   parser.add_flag("--dark", view.dark);
   parser.add_flag("--bench", view.bench);
 }
@@ -111,16 +135,16 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_option("--set", a.overrides)->allow_extra_args(false);
   parser.add_option("-o,--output", a.output);
   parser.add_option("--frames", a.frames);
-  parser.add_option("--poses", a.poses)->check(CLI::Range(1, 20));
+  parser.add_option("--poses", a.poses)->check(within(1, 20, true));
   add_short_cuts(parser, a.overrides);
   parser.add_option("--export", a.exports)->allow_extra_args(false)->delimiter(',');
   parser.add_flag("--force", a.force);
   parser.add_flag("--quiet", a.quiet);
   parser.add_flag("--json", a.json);
-  parser.add_option("--threads", a.threads)->check(CLI::Range(1, 1024));
+  parser.add_option("--threads", a.threads)->check(within(1, 1024, true));
   parser.add_option("--style", a.style);
-  parser.add_option("--dpi", a.dpi)->check(CLI::Range(20.0, 2400.0));
-  parser.add_option("--ui-scale", a.ui_scale)->check(CLI::Range(0.5, 4.0));
+  parser.add_option("--dpi", a.dpi)->check(within(20, 2400, false));
+  parser.add_option("--ui-scale", a.ui_scale)->check(within(0.5, 4, false));
   parser.add_flag("-h,--help", parsed.help);
   parser.add_option("--tolerance", tolerance);
   add_study_options(parser, a.study);
@@ -128,7 +152,7 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
-    throw UsageError(error.what());
+    throw UsageError(words_of(error));
   }
   if (!tolerance.empty()) a.overrides.push_back("solver.tolerance=" + tolerance);
   refuse_unknown_options(parser);
@@ -154,7 +178,8 @@ int dispatch(const std::vector<std::string>& words) {
   }
   const std::string& first = words.front();
   if (first == "--help" || first == "-h" || first == "help") {
-    std::cout << program_help();
+    const bool one = words.size() > 1 && !words[1].starts_with("-");
+    std::cout << (one ? command_help(find_command(words[1])) : program_help());
     return exit_ok;
   }
   if (first == "--version") {

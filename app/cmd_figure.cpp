@@ -68,6 +68,7 @@ int cmd_figure(const Arguments& arguments) {
     writer->write(figure, output);
     write_figure_data(figure, output);
   } else if (!write_figures(output, kinds, run, diagnostics, *writer, arguments)) {
+    std::cerr << "unfurl: interrupted; what is finished is kept\n";
     return exit_interrupted;
   }
   report_run(run, diagnostics, arguments);

@@ -8,7 +8,6 @@
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
 #include "app/scene_run.hpp"
-#include "core/model/nearest_name.hpp"
 #include "core/scene/build.hpp"
 #include "render/image/image_scale.hpp"
 #include "render/image/png.hpp"
@@ -33,12 +32,14 @@ FrameStyle panel_style(const Scene& scene, const Simulation& run, const Diagnost
   return style;
 }
 
+// Empty where it was interrupted.
 Image draw_poses(const FrameStyle& style, const Trajectory& run, std::size_t poses, int supersample,
                  GlContext& context) {
   const FrameBuilder builder(run, style);
   Renderer renderer(context, style.width, style.height);
   std::vector<Image> images;
   for (const double t : pose_times(run, poses)) {
+    if (interrupted()) return {};
     DrawList list = builder.build(t);
     list.ground.grid = false;  // its lines would break where two poses meet
     list.stars = 0;
@@ -51,11 +52,9 @@ Image draw_poses(const FrameStyle& style, const Trajectory& run, std::size_t pos
 
 int cmd_poster(const Arguments& arguments) {
   const std::filesystem::path output(arguments.output);
-  if (output.extension() != ".png")
-    throw UsageError("a poster is written as .png, not " + in_quotes(output.extension().string()));
+  require_writable_png(output, "a poster");
   const Scene scene = scene_of(arguments);
   auto model = build_model(scene);
-  require_writable(output);
   const auto context = make_offscreen_context(arguments.threads);
 
   const InterruptGuard guard;
@@ -64,6 +63,10 @@ int cmd_poster(const Arguments& arguments) {
   const FrameStyle style = panel_style(scene, run, diagnostics);
   const Image poster = draw_poses(style, run.trajectory, static_cast<std::size_t>(arguments.poses),
                                   scene.render.supersample, *context);
+  if (poster.rgba.empty()) {
+    std::cerr << "unfurl: interrupted before there was anything to write\n";
+    return exit_interrupted;
+  }
   write_png(output, poster, has_alpha(scene.render));
   report_run(run, diagnostics, arguments);
   return exit_code_of(run, diagnostics);

@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "app/command.hpp"
+#include "app/directory_lock.hpp"
 #include "app/film.hpp"
 #include "app/frame_range.hpp"
 #include "app/interrupt.hpp"
@@ -20,12 +21,18 @@ int cmd_render(const Arguments& arguments) {
   check_film(scene);
   auto model = build_model(scene);
   const auto directory = open_output_directory(arguments.output, arguments.force);
+  DirectoryLock lock(directory, DirectoryLock::Use::shareable);
+  if (lock.alone()) remove_unfinished(directory);
   const FilmFolder folder(directory, scene);
   if (folder.holds_another() && !arguments.force)
     throw FileError(directory,
                     "holds frames of another film (the scene, its settings or the program changed); "
                     "use --force to start over, or another -o");
+  if (!lock.alone() && !folder.holds_this())
+    throw FileError(directory, "another unfurl is writing another film into it; use another -o");
   if (!arguments.frames.empty()) frame_range(arguments.frames, 100000);
+  if (folder.fresh()) folder.claim();  // others may join before the simulation ends
+  if (folder.holds_this()) lock.share();
   const auto context =
       make_offscreen_context(arguments.threads);  // missing graphics are found before the work
 
@@ -34,6 +41,7 @@ int cmd_render(const Arguments& arguments) {
   const Diagnostics diagnostics = diagnose_run(run);
   if (!folder.holds_this()) clear_old_results(directory);
   folder.claim();
+  lock.share();
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);

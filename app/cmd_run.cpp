@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "app/command.hpp"
+#include "app/film_folder.hpp"
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
 #include "app/scene_run.hpp"
@@ -9,19 +10,29 @@
 
 namespace unfurl {
 
+namespace {
+
+// A film of the very motion that is run stays beside its data.
+bool holds_film_of(const std::filesystem::path& directory, const Scene& scene) {
+  std::error_code error;
+  return std::filesystem::exists(directory / "film.json", error) && FilmFolder(directory, scene).holds_this();
+}
+
+}  // namespace
+
 int cmd_run(const Arguments& arguments) {
   if (arguments.output.empty() && !arguments.json)
     throw UsageError("-o DIR is missing (or --json, for the summary alone)");
   const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
   auto model = build_model(scene);
-  std::filesystem::path directory;
-  if (!arguments.output.empty()) directory = open_output_directory(arguments.output, arguments.force);
+  const OwnDirectory output(arguments.output, arguments.force);
+  const std::filesystem::path& directory = output.path();
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
   const Diagnostics diagnostics = diagnose_run(run);
-  if (!directory.empty()) clear_old_results(directory);
+  if (!directory.empty() && !holds_film_of(directory, scene)) clear_old_results(directory);
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);

@@ -6,8 +6,10 @@
 
 #include "app/command.hpp"
 #include "app/interrupt.hpp"
+#include "app/output_directory.hpp"
 #include "app/scene_run.hpp"
 #include "app/study_session.hpp"
+#include "core/export/atomic_file.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
@@ -67,15 +69,14 @@ std::string result_json(const StudyArguments& study, const Target& target, const
   return json.dump(2) + "\n";
 }
 
-void write_results(const Arguments& arguments, const SceneSource& source, const Target& target,
-                   const Solved& solved) {
-  if (arguments.output.empty()) return;
-  const Scene scene = source.read({arguments.study.find + "=" + exact_number(solved.x)});
-  StudySession session(arguments, "", scene_text(scene), "solve.csv");
-  Table table{{arguments.study.find, target.measure.column}, {}};
+void write_results(const std::filesystem::path& directory, const std::string& key, const SceneSource& source,
+                   const Target& target, const Solved& solved) {
+  Table table{{key, target.measure.column}, {}};
   for (const Evaluation& e : solved.evaluations)
     table.rows.push_back({exact_number(e.x), exact_number(e.value)});
-  session.write("solve.csv", csv_text(table));
+  write_file_atomically(directory / "scene.toml",
+                        scene_text(source.read({key + "=" + exact_number(solved.x)})));
+  write_file_atomically(directory / "solve.csv", csv_text(table));
 }
 
 }  // namespace
@@ -89,6 +90,8 @@ int cmd_solve(const Arguments& arguments) {
   const Scene scene = source.read();
   const SolveOptions options = options_of(arguments, source, scene);
   source.read({study.find + "=" + exact_number(options.low < options.high ? options.low : options.start)});
+
+  const OwnDirectory output(arguments.output, arguments.force);
 
   const InterruptGuard guard;
   SimulationHooks hooks;
@@ -106,7 +109,7 @@ int cmd_solve(const Arguments& arguments) {
   asking.cancelled = interrupted;
   try {
     const Solved solved = solve_for(objective, target.value, options, asking);
-    write_results(arguments, source, target, solved);
+    if (!output.path().empty()) write_results(output.path(), study.find, source, target, solved);
     if (arguments.json)
       std::cout << result_json(study, target, solved);
     else

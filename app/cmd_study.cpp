@@ -37,7 +37,7 @@ Report study_report(const Study& study, const Scene& scene, const std::vector<st
   report.paragraph("**" + cheapest_sentence(study) + "**");
   report.paragraph("Errors are the largest distance of a node from the reference at " +
                    std::string("equally spaced times up to ") + short_number(study.end, 6) + " s" +
-                   (study.early ? ", shortly before the deployed pose, which is singular" : "") +
+                   (study.before.empty() ? "" : ", shortly before " + study.before) +
                    ". The reference: " + study.reference + "; its last two solutions agree to " +
                    short_number(study.reference_uncertainty) +
                    " m. CPU times are medians of runs that had the machine's "

@@ -1,5 +1,4 @@
 // unfurl sweep SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR: measures over a grid of parameters.
-#include <algorithm>
 #include <utility>
 
 #include "app/command.hpp"
@@ -45,26 +44,23 @@ std::string identity(const Scene& scene, const SweepPlan& plan) {
   return text + "\n" + scene_text(scene);
 }
 
-std::vector<fs::path> journals_in(const std::vector<std::string>& directories) {
+// The points of these directories, which must be of the same sweep.
+std::vector<fs::path> journals_in(const std::vector<std::string>& directories, const std::string& identity) {
   std::vector<fs::path> found;
   for (const auto& directory : directories) {
-    std::error_code error;
-    const std::size_t before = found.size();
-    for (const auto& entry : fs::directory_iterator(directory, error)) {
-      const std::string name = entry.path().filename().string();
-      if (name.starts_with("sweep") && name.ends_with(".csv")) found.push_back(entry.path());
-    }
-    if (error) throw FileError(directory, error.value());
-    if (found.size() == before) throw FileError(directory, "holds no points of a sweep (sweep*.csv)");
+    require_identity(directory, identity, "merge what one command computed, with its --set and --vary");
+    const auto here = journals_like("sweep.csv", directory);
+    if (here.empty()) throw FileError(directory, "holds no points of a sweep (sweep*.csv)");
+    found.insert(found.end(), here.begin(), here.end());
   }
-  std::sort(found.begin(), found.end());
   return found;
 }
 
 Sweep compute(const SweepPlan& plan, const StudySession& session, const StudyHooks& hooks,
-              const Arguments& arguments) {
+              const Arguments& arguments, const std::string& identity) {
   try {
-    if (!arguments.study.merge.empty()) return merge_sweep(plan, journals_in(arguments.study.merge));
+    if (!arguments.study.merge.empty())
+      return merge_sweep(plan, journals_in(arguments.study.merge, identity));
     Journal journal(session.journal(), plan.columns(), plan.axes.size());
     return run_sweep(plan, journal, hooks);
   } catch (const JournalMismatch& error) {
@@ -78,11 +74,14 @@ int cmd_sweep(const Arguments& arguments) {
   const SweepPlan plan = as_usage([&] { return plan_of(arguments); });
   const Scene scene = scene_of(arguments);
   const InterruptGuard guard;
-  StudySession session(arguments, "sweeping", identity(scene, plan), journal_name(plan.shard));
-  const Sweep sweep = compute(plan, session, session.hooks(), arguments);
+  const std::string name = identity(scene, plan);
+  StudySession session(arguments, "sweeping", name, journal_name(plan.shard));
+  const Sweep sweep = compute(plan, session, session.hooks(), arguments, name);
   session.write(journal_name(plan.shard), csv_text(sweep.table));
+  const std::size_t bad = unanswered(plan, sweep);
   const std::string count = std::to_string(sweep.table.rows.size()) + " points in " +
-                            (session.directory() / journal_name(plan.shard)).string();
+                            (session.directory() / journal_name(plan.shard)).string() +
+                            (bad > 0 ? ", " + std::to_string(bad) + " of them without an answer" : "");
   if (plan.shard.count > 1) return finish(sweep.missing == 0, arguments, count);
   std::vector<std::string> pictures;
   for (const Figure& figure : sweep_figures(plan, sweep, scene.title))

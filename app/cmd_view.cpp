@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/command.hpp"
+#include "app/output_directory.hpp"
 #include "app/panel/control_panel.hpp"
 #include "app/panel/panel_bench.hpp"
 #include "app/window/window.hpp"
@@ -36,6 +37,7 @@ struct OffscreenPanel {
 };
 
 int draw_picture(SceneDocument document, const Scene& scene, const Arguments& arguments) {
+  require_writable_png(arguments.view.picture, "a picture of the window");
   OffscreenPanel offscreen(std::move(document), arguments, scene.render.width, scene.render.height);
   offscreen.panel.settle();
   write_png(arguments.view.picture, offscreen.panel.picture().read());

@@ -75,6 +75,11 @@ bool FilmFolder::holds_another() const {
   return false;
 }
 
+bool FilmFolder::fresh() const {
+  std::error_code error;
+  return !holds_another() && !fs::exists(directory_ / "summary.json", error);
+}
+
 void FilmFolder::claim() const {
   const fs::path frames = directory_ / "frames";
   std::error_code error;

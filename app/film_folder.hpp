@@ -19,6 +19,7 @@ class FilmFolder {
   // Are there frames of another film, or of one that is not known? Then nothing may be added to them.
   bool holds_another() const;
   bool holds_this() const;  // this film was begun here
+  bool fresh() const;       // no results of any kind
   // Say whose frames these will be. Throws FileError, as all that writes.
   void claim() const;
 

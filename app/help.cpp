@@ -6,8 +6,11 @@ namespace unfurl {
 
 namespace {
 
-std::string padded(std::string_view text, std::size_t width) {
-  return std::string(text) + std::string(text.size() < width ? width - text.size() : 1, ' ');
+// Two columns; what is too long for the first has a line of its own.
+std::string row(const std::string& name, std::string_view help, std::size_t width) {
+  const std::string gap =
+      name.size() < width ? std::string(width - name.size(), ' ') : "\n" + std::string(width + 2, ' ');
+  return "  " + name + gap + std::string(help) + "\n";
 }
 
 constexpr std::string_view common_options =
@@ -19,15 +22,10 @@ constexpr std::string_view common_options =
     "structure.nodes.B0.mass=2\n"
     "  --size WxH, --fps N, --look NAME, --supersample N, --transparent\n"
     "                     short for --set render.size=[W, H], render.fps=N, ...\n"
-    "  --frames A:B       of a film only the frames A to B - 1, so that several machines can share one\n"
-    "  --export FORMATS   of run and render, also write vtk, gltf, csv, npy (a comma list, repeatable)\n"
     "  --force            write into a directory that holds other files, start another film there over\n"
     "  --quiet            no progress and no report\n"
     "  --json             the summary or the list as JSON on standard output\n"
     "  --threads N        at most N threads\n"
-    "  --style NAME       of figures: screen, single-column (89 mm), double-column (183 mm), slide\n"
-    "  --dpi N            pixels per inch of figures as PNG\n"
-    "  --ui-scale X       size of the window's text and widgets, 0.5 to 4; else the monitor's\n"
     "  --help, --version\n";
 
 }  // namespace
@@ -41,16 +39,17 @@ std::string command_help(const Command& command) {
   if (!command.options.empty()) text += "options of its own:\n";
   for (const OwnOption& own : own_options())
     if (takes(command, own.name))
-      text += "  " + padded(std::string(own.name) + " " + std::string(own.value), 30) +
-              std::string(own.help) + "\n";
+      text += row(std::string(own.name) + " " + std::string(own.value), own.help, 30);
   return text + (command.options.empty() ? "" : "\n") + std::string(common_options);
 }
 
 std::string program_help() {
   std::string text = "Unfurl simulates deployable structures, renders and plots them.\n\nusage:\n";
-  for (const auto& command : commands())
-    text += "  " + padded(usage_line(command), 40) + std::string(command.help) + "\n";
-  text += "\nSCENE is a scene file or a built-in one (unfurl list scenes).\n\n" + std::string(common_options);
+  for (const auto& command : commands()) text += row(usage_line(command), command.help, 40);
+  text +=
+      "\nSCENE is a scene file or a built-in one (unfurl list scenes).\n"
+      "unfurl help COMMAND, or COMMAND --help, tells the options of each.\n\n" +
+      std::string(common_options);
   return text +
          "\nexit codes: 0 ok, 1 internal, 2 usage, 3 scene invalid, 4 solver failed (the good part is "
          "saved),\n"

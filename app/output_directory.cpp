@@ -1,9 +1,12 @@
 #include "app/output_directory.hpp"
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "app/exit_code.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
+#include "core/model/nearest_name.hpp"
 #include "core/scene/text_file.hpp"
 
 namespace unfurl {
@@ -66,14 +69,39 @@ fs::path open_output_directory(const std::string& path, bool force) {
   return directory;
 }
 
+OwnDirectory::OwnDirectory(const std::string& path, bool force) {
+  if (path.empty()) return;
+  path_ = open_output_directory(path, force);
+  lock_.emplace(path_, DirectoryLock::Use::alone);
+  remove_unfinished(path_);
+}
+
+void remove_unfinished(const fs::path& directory) {
+  const auto old = fs::file_time_type::clock::now() - std::chrono::minutes(1);
+  std::error_code error;
+  for (const char* folder : {"", "frames", "figures"})
+    for (const auto& entry : fs::directory_iterator(directory / folder, error)) {
+      const std::string name = entry.path().filename().string();
+      if (!name.starts_with(".") || !name.ends_with(unfinished_suffix)) continue;
+      if (entry.last_write_time(error) < old && !error) fs::remove(entry.path(), error);
+    }
+}
+
 void require_writable(const fs::path& file) {
-  if (fs::is_directory(file)) throw FileError(file, "is a directory");
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) throw FileError(file, "is a directory");
   try {
     const PendingFile pending(file);
     write_file_atomically(pending.name(), std::string_view("can this directory be written to?\n"));
   } catch (const FileError& error) {
     throw FileError(file, cause_of(error));
   }
+}
+
+void require_writable_png(const fs::path& file, const std::string& what) {
+  if (file.extension() != ".png")
+    throw UsageError(what + " is written as .png, not " + in_quotes(file.extension().string()));
+  require_writable(file);
 }
 
 void clear_old_results(const fs::path& directory) {

@@ -22,6 +22,12 @@ constexpr OwnOption rows[] = {
     {"--at", "SECONDS", "of the motion: where it stands at first"},
     {"--dark", "", "light text on a dark ground"},
     {"--bench", "", "no person: frames per second, where their time goes, and the price of idling"},
+    {"--frames", "A:B", "only the frames A to B - 1 of the film, so that several machines can share one"},
+    {"--poses", "N", "how many, 1 to 20 (5)"},
+    {"--export", "FORMATS", "also write vtk, gltf, csv, npy (a comma list, repeatable)"},
+    {"--style", "NAME", "of figures: screen, single-column (89 mm), double-column (183 mm), slide"},
+    {"--dpi", "N", "pixels per inch of figures as PNG, 20 to 2400"},
+    {"--ui-scale", "X", "size of the window's text and widgets, 0.5 to 4; else the monitor's"},
     {"--models", "", "compare models of the scene instead of methods"},
 };
 

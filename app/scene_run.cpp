@@ -94,8 +94,8 @@ void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arg
   if (arguments.quiet) return;
   std::ostringstream text;
   text << std::setprecision(9) << to_string(run.status) << " at " << run.trajectory.end_time()
-       << " s: " << run.steps << " steps, " << std::setprecision(3) << run.cpu_s
-       << " s of CPU time, constraint error " << max_abs(diagnostics.at("constraint_max_m"))
+       << " s: " << run.steps << (run.steps == 1 ? " step, " : " steps, ") << std::setprecision(3)
+       << run.cpu_s << " s of CPU time, constraint error " << max_abs(diagnostics.at("constraint_max_m"))
        << " m, energy balance " << max_abs(diagnostics.at("energy_balance_J")) << " J\n";
   std::cerr << text.str();
 }

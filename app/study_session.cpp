@@ -1,5 +1,6 @@
 #include "app/study_session.hpp"
 
+#include <algorithm>
 #include <iostream>
 #include <thread>
 
@@ -14,24 +15,50 @@ namespace unfurl {
 
 namespace fs = std::filesystem;
 
+std::vector<fs::path> journals_like(const std::string& journal, const fs::path& directory) {
+  const std::string begin = journal.substr(0, journal.find_first_of("_."));
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(begin) && name.ends_with(".csv")) found.push_back(entry.path());
+  }
+  if (error) throw FileError(directory, error.value());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+void require_identity(const fs::path& directory, const std::string& identity, const std::string& cure) {
+  const TextFile scene = read_text_file((directory / "scene.toml").string());
+  if (scene.error.empty() && scene.text != identity)
+    throw FileError(directory, "holds results of another scene or other settings; " + cure);
+}
+
 StudySession::StudySession(const Arguments& arguments, std::string task, const std::string& identity,
                            std::string journal)
     : arguments_(arguments),
       directory_(open_output_directory(arguments.output, arguments.force)),
       journal_(std::move(journal)),
+      lock_(directory_, shard() ? DirectoryLock::Use::shareable : DirectoryLock::Use::alone),
       progress_(std::move(task), arguments.quiet),
       writer_(figure_options(arguments)) {
-  const fs::path scene = directory_ / "scene.toml", results = directory_ / journal_;
+  begin(identity);
+}
+
+void StudySession::begin(const std::string& identity) {
+  if (lock_.alone()) remove_unfinished(directory_);
+  const auto earlier = journals_like(journal_, directory_);
   std::error_code error;
-  const bool begun = fs::exists(results, error);
-  if (arguments.force) fs::remove(results, error);
-  if (begun && !arguments.force && read_text_file(scene.string()).text != identity)
-    throw FileError(directory_,
-                    "holds results of another scene or other settings; use another directory, or --force to "
-                    "begin anew");
-  if (!identity.empty()) write_file_atomically(scene, identity);
+  if (!arguments_.force || !lock_.alone()) {
+    if (!earlier.empty())
+      require_identity(directory_, identity, "use another directory, or --force to begin anew");
+  } else {
+    for (const auto& path : earlier) fs::remove(path, error);
+  }
+  if (!identity.empty()) write_file_atomically(directory_ / "scene.toml", identity);
   fs::create_directories(directory_ / "figures", error);
   if (error) throw FileError(directory_ / "figures", error.value());
+  if (shard()) lock_.share();
 }
 
 StudyHooks StudySession::hooks() {

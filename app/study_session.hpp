@@ -3,8 +3,11 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "app/command.hpp"
+#include "app/directory_lock.hpp"
 #include "app/progress.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/report.hpp"
@@ -13,10 +16,19 @@
 
 namespace unfurl {
 
+// Results in the directory that are called as `journal` is up to its first '_' or '.': those of other shards
+// too. Throws FileError where the directory cannot be read.
+std::vector<std::filesystem::path> journals_like(const std::string& journal,
+                                                 const std::filesystem::path& directory);
+// Throws FileError, with what can be done, where DIR/scene.toml tells of other results than `identity`.
+void require_identity(const std::filesystem::path& directory, const std::string& identity,
+                      const std::string& cure);
+
 class StudySession {
  public:
   // `identity` is written to DIR/scene.toml: what the results belong to. Results of another identity are
-  // refused; with --force they are removed first. `journal` is the file that holds finished results.
+  // refused; with --force they are removed first. `journal` is the file that holds finished results; a
+  // journal of one shard has others beside it, which may be at work in other processes.
   StudySession(const Arguments& arguments, std::string task, const std::string& identity,
                std::string journal);
 
@@ -31,13 +43,16 @@ class StudySession {
 
  private:
   const Arguments& arguments_;
+  void begin(const std::string& identity);
+  bool shard() const { return journal_.find('_') != std::string::npos; }
+
   std::filesystem::path directory_;
   std::string journal_;
+  DirectoryLock lock_;
   Progress progress_;
   FigureWriter writer_;
 };
 
-// The words of a report with its end: 0 or interrupted, with a line on stderr.
 // What a person asked for cannot be: std::invalid_argument of the studies as UsageError.
 template <class Work>
 auto as_usage(const Work& work) {
@@ -48,6 +63,7 @@ auto as_usage(const Work& work) {
   }
 }
 
+// The words of a report with its end: 0 or interrupted, with a line on stderr.
 int finish(bool complete, const Arguments& arguments, const std::string& sentence);
 
 }  // namespace unfurl

@@ -58,23 +58,24 @@ std::string number(double x, const char* unit) {
 
 std::string change(double a, double b, bool factor) {
   if (!(std::abs(a) > 0) || !std::isfinite(b)) return "";
+  if (factor) return "\u00D7" + plot::format_number(b / a, 3);
   char text[40];
-  if (factor)
-    std::snprintf(text, sizeof text, "\u00D7%.3g", b / a);
-  else
-    std::snprintf(text, sizeof text, "%+.3g %%", 100 * (b - a) / std::abs(a));
+  std::snprintf(text, sizeof text, "%+.3g %%", 100 * (b - a) / std::abs(a));
   return text;
 }
 
 }  // namespace
 
-std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b) {
+std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b, const TradePoint* point_a,
+                                   const TradePoint* point_b) {
   std::vector<ComparisonRow> rows;
-  for (const Quantity& q : quantities) {
-    const double x = q.of(a), y = q.of(b);
-    if (std::isnan(x) && std::isnan(y)) continue;
-    rows.push_back({q.label, number(x, q.unit), number(y, q.unit), change(x, y, q.factor)});
-  }
+  const auto add = [&](const char* label, const char* unit, double x, double y, bool factor) {
+    if (std::isnan(x) && std::isnan(y)) return;
+    rows.push_back({label, number(x, unit), number(y, unit), change(x, y, factor)});
+  };
+  const auto error = [](const TradePoint* point) { return point ? point->position_error : none; };
+  add("position error", "m", error(point_a), error(point_b), true);
+  for (const Quantity& q : quantities) add(q.label, q.unit, q.of(a), q.of(b), q.factor);
   return rows;
 }
 

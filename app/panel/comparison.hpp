@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "app/panel/simulator.hpp"
+#include "app/panel/trade.hpp"
 
 namespace unfurl {
 
@@ -12,7 +12,9 @@ struct ComparisonRow {
   std::string label, a, b, change;  // change: of b against a, "+12 %" or a factor
 };
 
-// Deployment time, peak rod force, errors, steps, CPU time.
-std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b);
+// Deployment time, peak rod force, errors, steps, CPU time. What is known of the runs beside that is in their
+// points of the trade, null where they have none.
+std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b, const TradePoint* point_a = nullptr,
+                                   const TradePoint* point_b = nullptr);
 
 }  // namespace unfurl

@@ -44,6 +44,7 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
       view_(context),
       export_(options_.wake),
       study_(options_.wake),
+      errors_(options_.wake),
       simulator_(options_.wake) {
   state_.dark = options_.settings.dark;
   state_.left_open = options_.settings.left_open;
@@ -190,6 +191,11 @@ void ControlPanel::take_results() {
       const bool first = !state_.shown;
       state_.shown = outcome->run;
       state_.trade.push_back(trade_point(*state_.shown));
+      ++state_.trade_news;
+      if (options_.measure_errors)
+        errors_.measure(state_.shown);
+      else
+        note_error(state_.trade, {.run = state_.shown->id, .why = "not asked for"});
       if (state_.trade.size() > most_trade_points) state_.trade.erase(state_.trade.begin());
       if (state_.shown->document == state_.history.now())
         state_.picture = state_.shown->scene.render;
@@ -201,6 +207,16 @@ void ControlPanel::take_results() {
     }
   }
   state_.pending = simulator_.busy();
+  take_errors();
+}
+
+void ControlPanel::take_errors() {
+  for (const RunError& error : errors_.take()) {
+    note_error(state_.trade, error);
+    ++state_.trade_news;
+    settling_ = std::max(settling_, 2);
+  }
+  errors_.hold(state_.pending);  // the next run comes first
 }
 
 // How things look needs no simulation.
@@ -242,6 +258,7 @@ void ControlPanel::follow_document() {
   if (same_run) {
     update_picture();
   } else {
+    errors_.hold(true);
     simulator_.submit(now);
     state_.pending = true;
   }
@@ -361,7 +378,7 @@ void ControlPanel::paint(bool coarse) {
 
 void ControlPanel::settle() {
   frame(0);
-  while (simulating() || state_.pending) {
+  while (simulating() || state_.pending || errors_.busy()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     frame(0, false);
   }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 
+#include "app/panel/error_meter.hpp"
 #include "app/panel/export_process.hpp"
 #include "app/panel/figure_cards.hpp"
 #include "app/panel/input_event.hpp"
@@ -30,6 +31,7 @@ struct PanelOptions {
   float scale = 1;                 // pixels per point of a screen with 96 dpi
   PanelSettings settings;          // window size aside
   double at = 0;                   // of the motion, at first [s]
+  bool measure_errors = true;      // of positions, against references
   bool measured = false;           // wait for the graphics after every part, so that frame_times() is true
   std::function<void()> wake;      // called by the simulating thread when there is news
   std::function<void(const char*)> set_clipboard;
@@ -51,7 +53,8 @@ class ControlPanel {
   // the motion plays, events wait, or widgets settle.
   // A panel that nobody can see is not painted.
   bool frame(double seconds, bool visible = true);
-  // Frames until nothing simulates and the widgets have their sizes: for pictures without a window.
+  // Frames until nothing simulates, errors are measured, and the widgets have their sizes: for pictures
+  // without a window.
   void settle();
   const Framebuffer& picture() const { return *picture_; }
   const FrameTimes& frame_times() const { return times_; }  // of the last frame
@@ -62,6 +65,7 @@ class ControlPanel {
   const plot::Rect& place(const std::string& key) const { return ui_.places.at(key); }
   bool has_place(const std::string& key) const { return ui_.places.contains(key); }
   bool simulating() const { return simulator_.busy(); }
+  const ErrorMeter& errors() const { return errors_; }
   long simulations() const { return simulator_.started(); }
   long view_paints() const { return view_.paints(); }
   OrbitCamera framed() const { return view_.framed(); }  // the film's own camera
@@ -72,6 +76,7 @@ class ControlPanel {
   void take_events();
   void apply(const InputEvent& event);
   void take_results();
+  void take_errors();
   void follow_document();
   void update_picture();
   void draw_panes();
@@ -103,6 +108,7 @@ class ControlPanel {
   FrameTimes times_;
   ExportProcess export_;
   StudyJob study_;
+  ErrorMeter errors_;
   Simulator simulator_;  // last: ends before what it wakes
 };
 

@@ -21,7 +21,13 @@ void stack(Figure& figure, double width) {
   const double row = figure.height_mm / figure.rows;
   figure.rows = static_cast<int>(figure.panels.size());
   figure.columns = 1;
-  figure.height_mm = figure.rows * std::min(row, 0.55 * figure.width_mm) + 6;
+  std::size_t labels = 0;  // a legend of many rows must leave room for the curves
+  for (const Panel& panel : figure.panels)
+    labels = std::max(labels, static_cast<std::size_t>(
+                                  std::count_if(panel.curves.begin(), panel.curves.end(),
+                                                [](const Curve& curve) { return !curve.label.empty(); })));
+  const double share = labels > 5 ? 0.9 : 0.55;
+  figure.height_mm = figure.rows * std::min(row, share * figure.width_mm) + 6;
 }
 
 }  // namespace
@@ -74,19 +80,26 @@ void FigureCards::make(FigureCard& card) const {
   place(card, std::move(figure), width_);
 }
 
-void FigureCards::make_trade(const std::vector<TradePoint>& points) {
-  if (!trade_.figure) place(trade_, trade_figure(points), width_);
+void FigureCards::make_trade(const std::vector<TradePoint>& points, long news,
+                             const std::shared_ptr<const StudyOutcome>& studied) {
+  if (trade_.figure && news == trade_news_ && studied == trade_study_) return;
+  trade_news_ = news;
+  trade_study_ = studied;
+  const bool same = studied && !points.empty() && same_motion(studied->motion, points.back().motion);
+  place(trade_, trade_figure(points, same ? studied->study.get() : nullptr), width_);
 }
 
 std::vector<FigureCard*> FigureCards::study(const std::shared_ptr<const StudyOutcome>& outcome,
-                                            double width) {
-  if (outcome != studied_ || width != study_width_) {
+                                            const std::vector<TradePoint>& points, long news, double width) {
+  if (outcome != studied_ || width != study_width_ || news != study_news_) {
     studied_ = outcome;
     study_width_ = width;
+    study_news_ = news;
     study_cards_.clear();
+    const bool same = outcome->study && !points.empty() && same_motion(outcome->motion, points.back().motion);
     for (const Figure& figure : outcome->figures) {
       study_cards_.emplace_back();
-      place(study_cards_.back(), figure, width);
+      place(study_cards_.back(), same ? with_present(figure, points) : figure, width);
     }
   }
   std::vector<FigureCard*> all;

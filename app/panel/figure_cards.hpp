@@ -32,14 +32,18 @@ class FigureCards {
   FigureCards();
 
   std::vector<FigureCard>& cards() { return cards_; }
-  // Speed against accuracy: of every run so far. Its figure is made where `points` are new.
+  // Speed against accuracy: of every run so far. Its figure is made again where `news`
+  // (PanelState::trade_news) or the study is new.
   FigureCard& trade() { return trade_; }
-  void make_trade(const std::vector<TradePoint>& points);
+  void make_trade(const std::vector<TradePoint>& points, long news,
+                  const std::shared_ptr<const StudyOutcome>& studied);
   // Call each frame: forgets figures of other runs and of other widths. `width`: of the pane [points].
   void show(const std::shared_ptr<const LiveRun>& run, const std::shared_ptr<const LiveRun>& pinned,
             double width);
-  // The figures of a study, laid out for a pane of that width [points].
-  std::vector<FigureCard*> study(const std::shared_ptr<const StudyOutcome>& outcome, double width);
+  // The figures of a study, laid out for a pane of that width [points]; with the present run where the study
+  // is of its motion.
+  std::vector<FigureCard*> study(const std::shared_ptr<const StudyOutcome>& outcome,
+                                 const std::vector<TradePoint>& points, long news, double width);
   bool applies(const FigureCard& card) const;
   void make(FigureCard& card) const;  // figure and layout, where they are missing
 
@@ -50,9 +54,12 @@ class FigureCards {
   FigureCard trade_;
   std::shared_ptr<const LiveRun> run_, pinned_;
   double width_ = 0;
+  long trade_news_ = 0;
+  std::shared_ptr<const StudyOutcome> trade_study_;  // that the trade's figure knows
   std::shared_ptr<const StudyOutcome> studied_;
   std::vector<FigureCard> study_cards_;
   double study_width_ = 0;
+  long study_news_ = 0;
 };
 
 }  // namespace unfurl

@@ -84,29 +84,38 @@ bool draw_header(Ui& ui, FigureCard& card, std::string title, const std::string&
 // Says which settings the point under the pointer had.
 void name_point(Ui& ui, const PanelState& state, const FigureCard& card, const PlacedFigure& place) {
   const plot::PanelLayout& panel = card.layout.panels.front();
+  const bool positions = shows_positions(state.trade);
   ui.places["trade points"] = {place.x(panel.frame.x0), place.y(panel.frame.y0), place.x(panel.frame.x1),
                                place.y(panel.frame.y1)};
-  const plot::Point now = mark_of(state.trade.back(), panel);
-  ui.places["trade now"] = {place.x(now.x) - 1, place.y(now.y) - 1, place.x(now.x) + 1, place.y(now.y) + 1};
+  const plot::Point now = mark_of(state.trade.back(), positions, panel);
+  if (!std::isnan(now.y))
+    ui.places["trade now"] = {place.x(now.x) - 1, place.y(now.y) - 1, place.x(now.x) + 1, place.y(now.y) + 1};
   if (!ImGui::IsWindowHovered()) return;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const plot::Point at{(mouse.x - place.origin.x) / place.scale, (mouse.y - place.origin.y) / place.scale};
   const std::size_t i = nearest_point(state.trade, panel, at, 6);
   if (i == state.trade.size()) return;
-  const plot::Point mark = mark_of(state.trade[i], panel);
+  const plot::Point mark = mark_of(state.trade[i], positions, panel);
   ImGui::GetWindowDrawList()->AddCircle({place.x(mark.x), place.y(mark.y)}, ui.px(7),
                                         ui.color(ui.theme.accent), 0, ui.px(2));
   ImGui::SetTooltip("%s", point_caption(state.trade[i]).c_str());
-  ui.places["trade point"] = ui.places["trade now"];
+  ui.places["trade point"] = {place.x(mark.x) - 1, place.y(mark.y) - 1, place.x(mark.x) + 1,
+                              place.y(mark.y) + 1};
 }
 
 void draw_trade(Ui& ui, PanelState& state, FigureCards& cards) {
   if (state.trade.empty()) return;
-  const char* help = "CPU time and energy error of every run of this session";
+  const char* help = "CPU time and error of every run of this session";
   if (!draw_header(ui, cards.trade(), "Speed against accuracy", "trade", help)) return;
-  cards.make_trade(state.trade);
+  cards.make_trade(state.trade, state.trade_news, state.studied);
   const PlacedFigure place = draw_figure(ui, state, cards.trade());
   name_point(ui, state, cards.trade(), place);
+  ImGui::PushStyleColor(ImGuiCol_Text, ui.theme.dim);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(present_sentence(state.trade.back()).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+  ui.note("trade sentence");
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ struct PanelState {
   RenderOptions picture;                       // how the view looks, as edited
   std::vector<SceneProblem> picture_problems;  // of that: names that this run does not know
   std::vector<TradePoint> trade;               // of every run so far
+  long trade_news = 0;                         // counts what happened to those
   std::string message;                         // other trouble, or what was done, in a line
 
   Playback playback;

@@ -68,8 +68,10 @@ SimulationOutcome Simulator::run(long id, const SceneDocument& document) {
     Diagnostics diagnostics = diagnose(simulation);
     std::vector<std::string> warnings = simulation.warnings;
     for (auto& warning : accuracy_warnings(diagnostics)) warnings.push_back(std::move(warning));
-    outcome.run = std::make_shared<const LiveRun>(LiveRun{document, std::move(scene), std::move(simulation),
-                                                          std::move(diagnostics), std::move(warnings)});
+    MotionKey motion = motion_of(scene);
+    outcome.run = std::make_shared<const LiveRun>(LiveRun{id, document, std::move(scene), std::move(motion),
+                                                          std::move(simulation), std::move(diagnostics),
+                                                          std::move(warnings)});
   } catch (const SceneError& error) {
     outcome.problems = error.problems();
   } catch (const std::bad_alloc&) {

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/panel/motion.hpp"
 #include "app/panel/scene_document.hpp"
 #include "core/diagnostics/diagnostics.hpp"
 
@@ -18,8 +19,10 @@ namespace unfurl {
 
 // A finished run and what belongs to it; immutable.
 struct LiveRun {
+  long id = 0;  // of the request that asked for it
   SceneDocument document;
   Scene scene;
+  MotionKey motion;  // what it is a solution of
   Simulation simulation;
   Diagnostics diagnostics;
   std::vector<std::string> warnings;

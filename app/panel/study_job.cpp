@@ -5,7 +5,6 @@
 
 #include "core/scene/build.hpp"
 #include "core/scene/write.hpp"
-#include "core/study/study.hpp"
 #include "core/study/sweep.hpp"
 #include "render/plot/figures/study_figures.hpp"
 #include "render/plot/figures/sweep_figures.hpp"
@@ -35,13 +34,16 @@ void study_precision(const StudyHooks& hooks, StudyOutcome& out) {
   keep_methods(plan, request.methods);
   plan.timing = {3, 0.3, 10.0};  // a person waits
   Journal journal({}, study_columns(), study_key_columns);
-  const Study study = run_study(plan, journal, hooks);
+  auto measured = std::make_shared<const Study>(run_study(plan, journal, hooks));
+  const Study& study = *measured;
   const bool any =
       std::any_of(study.curves.begin(), study.curves.end(), [](const auto& c) { return !c.runs.empty(); });
   if (!any) throw Cancelled();
   out.figures = {for_pane(work_precision_figure(study, scene.title))};
   out.sentence = cheapest_sentence(study);
   if (!study.complete) out.sentence += " (Cancelled: of the points so far.)";
+  out.study = std::move(measured);
+  out.motion = motion_of(scene);
 }
 
 std::string axis_text(const StudyRequest& request) {
@@ -61,7 +63,7 @@ void study_sweep(const StudyHooks& hooks, StudyOutcome& out) {
   double low = 0, high = 0;
   std::string at_low, at_high;
   for (const auto& row : sweep.table.rows) {
-    const double value = number_of(row.back());
+    const double value = unfurl::number_of(row.back());
     if (!(value == value)) continue;
     if (at_low.empty() || value < low) low = value, at_low = row.front();
     if (at_high.empty() || value > high) high = value, at_high = row.front();
@@ -105,7 +107,7 @@ void StudyJob::start(StudyRequest request, SceneDocument document) {
 }
 
 void StudyJob::work(const StudyRequest& request, const SceneDocument& document) {
-  auto out = std::make_shared<StudyOutcome>(StudyOutcome{request, document, {}, "", ""});
+  auto out = std::make_shared<StudyOutcome>(StudyOutcome{request, document, {}, "", "", nullptr, nullptr});
   StudyHooks hooks;
   hooks.progress = [this](double fraction) {
     progress_ = fraction;

@@ -9,7 +9,9 @@
 #include <thread>
 #include <vector>
 
+#include "app/panel/motion.hpp"
 #include "app/panel/scene_document.hpp"
+#include "core/study/study.hpp"
 #include "render/plot/figure.hpp"
 
 namespace unfurl {
@@ -35,6 +37,9 @@ struct StudyOutcome {
   std::vector<Figure> figures;
   std::string sentence;  // what came of it, for a person
   std::string message;   // why there is nothing
+  // Of speed against accuracy: the numbers, and what motion they are of.
+  std::shared_ptr<const Study> study = nullptr;
+  MotionKey motion = nullptr;
 };
 
 // "unfurl study hoop6 -o study --steps 0.04:0.0025 --methods dvm": the same on the command line.

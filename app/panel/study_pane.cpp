@@ -189,11 +189,12 @@ void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards, StudyJob& jo
   const StudyOutcome& outcome = *state.studied;
   ImGui::Separator();
   if (!outcome.message.empty()) wrapped_line(ui.theme.error, outcome.message);
-  if (!(outcome.document == simulated_part(state.history.now())))
-    wrapped_line(ui.theme.warning, "of the scene as it was when this was started");
+  const bool same = outcome.study ? same_motion(outcome.motion, state.shown->motion)
+                                  : outcome.document == simulated_part(state.history.now());
+  if (!same) wrapped_line(ui.theme.warning, "of the scene as it was when this was started");
   if (!outcome.sentence.empty()) wrapped_line(ui.theme.text, outcome.sentence);
   ui.note("study sentence");
-  for (FigureCard* card : cards.study(state.studied, figure_width(ui))) {
+  for (FigureCard* card : cards.study(state.studied, state.trade, state.trade_news, figure_width(ui))) {
     const PlacedFigure place = draw_figure(ui, state, *card);
     ui.places["study figure"] = {place.origin.x, place.origin.y, place.x(card->layout.width),
                                  place.y(card->layout.height)};

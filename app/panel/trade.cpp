@@ -10,7 +10,7 @@ namespace unfurl {
 
 namespace {
 
-constexpr int present_color = 6;  // ink; the methods have the colours before it
+using plot::format_number;
 
 double largest(const Diagnostics& diagnostics, const char* column) {
   const Series* series = diagnostics.find(column);
@@ -19,6 +19,10 @@ double largest(const Diagnostics& diagnostics, const char* column) {
     for (const double x : series->values)
       if (std::isfinite(x)) most = std::max(most, std::abs(x));
   return most;
+}
+
+std::string cpu_text(double cpu_s) {
+  return cpu_s < 1 ? format_number(1e3 * cpu_s, 3) + " ms" : format_number(cpu_s, 3) + " s";
 }
 
 }  // namespace
@@ -30,8 +34,7 @@ std::string setting_caption(const SolverOptions& options) {
     if (options.nodes != "lobatto") text += ", " + options.nodes;
     if (options.constraints_at != "nodes") text += ", constraints at " + options.constraints_at;
   }
-  return text + (options.adaptive ? ", steps up to " : ", step ") + plot::format_number(options.step, 4) +
-         " s";
+  return text + (options.adaptive ? ", steps up to " : ", step ") + format_number(options.step, 4) + " s";
 }
 
 TradePoint trade_point(const LiveRun& run) {
@@ -40,83 +43,83 @@ TradePoint trade_point(const LiveRun& run) {
       std::max({largest(d, "kinetic_energy_J"), largest(d, "potential_energy_J"), largest(d, "work_J")});
   const double error = largest(d, "energy_balance_J");
   const SolverOptions& options = run.simulation.options;  // with a tolerance: as they were picked
-  return {options.method,
-          setting_caption(options),
-          run.simulation.cpu_s,
-          energy > 0 ? error / energy : error,
-          largest(d, "constraint_max_m"),
-          run.simulation.position_estimate};
+  return {.method = options.method,
+          .setting = setting_caption(options),
+          .cpu_s = run.simulation.cpu_s,
+          .whole_cpu_s = run.simulation.cpu_s,
+          .error = energy > 0 ? error / energy : error,
+          .constraint_error = largest(d, "constraint_max_m"),
+          .estimate = run.simulation.position_estimate,
+          .run = run.id,
+          .motion = run.motion};
+}
+
+void note_error(std::vector<TradePoint>& points, const RunError& error) {
+  for (TradePoint& point : points) {
+    if (point.run != error.run) continue;
+    point.position_error = error.error;
+    point.uncertainty = error.uncertainty;
+    point.why = error.why;
+    point.end = error.end;
+    if (error.cpu_s > 0 && std::isfinite(error.error)) point.cpu_s = error.cpu_s;
+    point.accuracy = std::isfinite(error.error) ? Accuracy::known
+                     : error.why.empty()        ? Accuracy::no_answer
+                                                : Accuracy::no_reference;
+  }
+}
+
+const TradePoint* point_of(const std::vector<TradePoint>& points, const LiveRun& run) {
+  const auto at =
+      std::find_if(points.begin(), points.end(), [&](const TradePoint& p) { return p.run == run.id; });
+  return at == points.end() ? nullptr : &*at;
 }
 
 std::string point_caption(const TradePoint& point) {
-  std::string text = point.setting + "\nCPU time " + plot::format_number(point.cpu_s, 3) +
-                     " s\nenergy error " + plot::format_number(point.error, 3) + " of the energy\n" +
-                     "constraint error " + plot::format_number(point.constraint_error, 3) + " m";
-  if (std::isfinite(point.position_error))
-    text += "\nestimated position error " + plot::format_number(point.position_error, 3) + " m";
-  return text;
+  std::string text = point.setting + "\nCPU time " + cpu_text(point.cpu_s);
+  if (point.cpu_s != point.whole_cpu_s)
+    text += " up to " + format_number(point.end, 4) + " s, " + cpu_text(point.whole_cpu_s) + " in all";
+  if (point.accuracy == Accuracy::known)
+    text += "\nposition error " + format_number(point.position_error, 3) +
+            " m\nthe reference is certain to " + format_number(point.uncertainty, 2) + " m";
+  if (std::isfinite(point.estimate))
+    text += "\nestimated position error " + format_number(point.estimate, 3) + " m";
+  return text + "\nenergy error " + format_number(point.error, 3) + " of the energy\nconstraint error " +
+         format_number(point.constraint_error, 3) + " m";
 }
 
-plot::Point mark_of(const TradePoint& point, const plot::PanelLayout& panel) {
-  const double y = point.error > 0 ? panel.y.scale(point.error) : panel.frame.y1;
+std::string present_sentence(const TradePoint& point) {
+  const std::string cpu = cpu_text(point.cpu_s);
+  switch (point.accuracy) {
+    case Accuracy::waiting:
+      return cpu + "; measuring the position error ...";
+    case Accuracy::known:
+      return "position error " + format_number(point.position_error, 3) + " m in " + cpu;
+    case Accuracy::no_answer:
+      return cpu + "; the run did not get to its end";
+    case Accuracy::no_reference:
+      break;
+  }
+  return "energy error " + format_number(point.error, 3) + " in " + cpu +
+         "; position errors are not measured: " + point.why;
+}
+
+plot::Point mark_of(const TradePoint& point, bool positions, const plot::PanelLayout& panel) {
+  const double error = shown_error(point, positions);
+  if (std::isnan(error)) return {error, error};
+  const double y = error > 0 ? panel.y.scale(error) : panel.frame.y1;
   return {panel.x.scale(point.cpu_s), std::clamp(y, panel.frame.y0, panel.frame.y1)};
 }
 
 std::size_t nearest_point(const std::vector<TradePoint>& points, const plot::PanelLayout& panel,
                           const plot::Point& at, double reach) {
+  const bool positions = shows_positions(points);
   std::size_t best = points.size();
   for (std::size_t i = points.size(); i-- > 0;) {  // of marks on one another the latest
-    const plot::Point mark = mark_of(points[i], panel);
+    const plot::Point mark = mark_of(points[i], positions, panel);
     const double way = std::hypot(mark.x - at.x, mark.y - at.y);
     if (way < reach) best = i, reach = way;
   }
   return best;
-}
-
-Figure trade_figure(const std::vector<TradePoint>& points) {
-  Figure figure;
-  figure.name = "trade";
-  figure.title = "Speed against accuracy";
-  figure.caption = "A point for every run of this session; the diamond is the present one.";
-  figure.panels.emplace_back();
-  Panel& panel = figure.panels.back();
-  panel.x.label = "CPU time (s)";
-  panel.y.label = "energy error (relative)";
-  panel.x.log = panel.y.log = true;
-  panel.y.zeros_at_floor = true;
-  for (const TradePoint& point : points) {
-    auto curve = std::find_if(panel.curves.begin(), panel.curves.end(),
-                              [&](const Curve& c) { return c.label == point.method; });
-    if (curve == panel.curves.end()) {
-      Curve made;
-      made.label = point.method;
-      made.color = static_cast<int>(panel.curves.size()) % present_color;
-      made.marker = Marker::circle;
-      made.width = 0;  // points only
-      curve = panel.curves.insert(panel.curves.end(), std::move(made));
-    }
-    for (const double x : {point.cpu_s, std::nan("")}) curve->x.push_back(x);  // NaN parts it from the next
-    for (const double y : {point.error, std::nan("")}) curve->y.push_back(y);
-  }
-  if (points.empty()) return figure;
-  Curve trail;
-  for (std::size_t i = points.size() - std::min(points.size(), trail_length); i < points.size(); ++i) {
-    trail.x.push_back(points[i].cpu_s);
-    trail.y.push_back(points[i].error);
-  }
-  trail.color = 7;
-  trail.width = 0.8f;
-  trail.dash = Dash::dotted;
-  panel.curves.insert(panel.curves.begin(), std::move(trail));
-  Curve present;
-  present.x = {points.back().cpu_s};
-  present.y = {points.back().error};
-  present.marker = Marker::diamond;
-  present.color = present_color;
-  present.width = 2.4f;
-  present.label = "now";
-  panel.curves.push_back(std::move(present));
-  return figure;
 }
 
 }  // namespace unfurl

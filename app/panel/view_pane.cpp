@@ -141,10 +141,11 @@ void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame, 
 // A and B side by side, in the lower left corner.
 void draw_comparison(Ui& ui, const PanelState& state, const Frame& frame) {
   if (!state.pinned) return;
-  const auto rows = compare(*state.pinned, *state.shown);
+  const auto rows = compare(*state.pinned, *state.shown, point_of(state.trade, *state.pinned),
+                            point_of(state.trade, *state.shown));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ui.regular->FontSize + ui.px(3), pad = ui.px(10);
-  const float columns[] = {ui.px(118), ui.px(106), ui.px(106), ui.px(66)};
+  const float columns[] = {ui.px(118), ui.px(110), ui.px(110), ui.px(92)};
   float width = 2 * pad;
   for (const float column : columns) width += column;
   const float height = 2 * pad + line * static_cast<float>(rows.size() + 1);
@@ -152,9 +153,9 @@ void draw_comparison(Ui& ui, const PanelState& state, const Frame& frame) {
   list.AddRectFilled(low, {low.x + width, low.y + height}, ui.color(ui.theme.window, 0.92f), ui.px(6));
   list.AddRect(low, {low.x + width, low.y + height}, ui.color(ui.theme.rule), ui.px(6));
   float y = low.y + pad;
-  const auto draw = [&](const ComparisonRow& row, const ImVec4& a, const ImVec4& b) {
+  const auto draw = [&](const ComparisonRow& row, const ImVec4& ink_a, const ImVec4& ink_b) {
     const std::pair<const std::string*, const ImVec4*> cells[] = {
-        {&row.label, &ui.theme.dim}, {&row.a, &a}, {&row.b, &b}, {&row.change, &ui.theme.text}};
+        {&row.label, &ui.theme.dim}, {&row.a, &ink_a}, {&row.b, &ink_b}, {&row.change, &ui.theme.text}};
     float right = low.x + pad;
     for (int i = 0; i < 4; ++i) {
       right += columns[i];

@@ -16,6 +16,8 @@
   X(GetWindowFlags)             \
   X(GetWindowDisplayIndex)      \
   X(GetDisplayDPI)              \
+  X(GetDisplayUsableBounds)     \
+  X(SetWindowSize)              \
   X(GL_SetAttribute)            \
   X(GL_CreateContext)           \
   X(GL_DeleteContext)           \

@@ -13,6 +13,7 @@
 #include "app/interrupt.hpp"
 #include "app/panel/control_panel.hpp"
 #include "app/panel/panel_bench.hpp"
+#include "app/window/desktop_scale.hpp"
 #include "app/window/sdl_events.hpp"
 #include "app/window/sdl_library.hpp"
 #include "app/window/window.hpp"
@@ -57,14 +58,24 @@ class SdlWindow final : public GlContext {
     const int width = units().first;
     return width > 0 ? static_cast<float>(pixels().first) / static_cast<float>(width) : 1.0f;
   }
-  // Of the monitor: 1 at 96 dpi, in quarters.
+  // On X11 what the desktop's user chose, else by the monitor's size, else by what the X server knows.
   float scale() const {
-    float dpi = 0;
+    X11Dpi x11;
+    if (std::string_view(sdl().GetCurrentVideoDriver()) == "x11") x11 = x11_dpi();
+    float own = 0;
     const int index = sdl().GetWindowDisplayIndex(window_);
-    const float fine = pixels_per_unit();
-    if (index < 0 || sdl().GetDisplayDPI(index, nullptr, &dpi, nullptr) != 0 || dpi < 48 || dpi > 800)
-      return fine;
-    return std::max(1.0f, std::round(4 * std::max(fine, dpi / 96)) / 4);
+    if (index < 0 || sdl().GetDisplayDPI(index, nullptr, &own, nullptr) != 0) own = 0;
+    return scale_for(x11.chosen > 0 ? x11.chosen : own > 0 ? own : x11.screen, pixels_per_unit());
+  }
+  // So many units times `factor`, and no larger than the desktop has room for.
+  void grow(int width, int height, float factor) {
+    SDL_Rect room{0, 0, width, height};
+    const int index = sdl().GetWindowDisplayIndex(window_);
+    if (index < 0 || sdl().GetDisplayUsableBounds(index, &room) != 0) return;
+    const auto side = [&](int wanted, int most) {
+      return std::min(most, static_cast<int>(std::lround(static_cast<float>(wanted) * factor)));
+    };
+    sdl().SetWindowSize(window_, side(width, room.w), side(height, room.h));
   }
   bool visible() const {
     return (sdl().GetWindowFlags(window_) & (SDL_WINDOW_MINIMIZED | SDL_WINDOW_HIDDEN)) == 0;
@@ -139,6 +150,11 @@ class Host {
       : remembered_(load_settings(settings_file())),
         window_(options.bench ? 1280 : remembered_.width, options.bench ? 720 : remembered_.height),
         wake_event_(sdl().RegisterEvents(1)) {
+    const float scale = options.ui_scale > 0 ? options.ui_scale : window_.scale();
+    // The first time, room for as much as on a coarse screen.
+    if (const PanelSettings fresh;
+        !options.bench && remembered_.width == fresh.width && remembered_.height == fresh.height)
+      window_.grow(fresh.width, fresh.height, scale / window_.pixels_per_unit());
     const auto [width, height] = window_.pixels();
     PanelOptions panel;
     panel.settings = remembered_;
@@ -147,7 +163,7 @@ class Host {
     panel.measured = options.bench;
     panel.width = width;
     panel.height = height;
-    panel.scale = options.ui_scale > 0 ? options.ui_scale : window_.scale();
+    panel.scale = scale;
     panel.wake = [type = wake_event_] {
       SDL_Event event{};
       event.type = type;

@@ -23,7 +23,7 @@ std::string cause_text(int error_number) {
 std::filesystem::path temporary_name(const std::filesystem::path& target) {
   static std::atomic<unsigned> count{0};
   const std::string name = "." + target.filename().string() + "." + std::to_string(::getpid()) + "-" +
-                           std::to_string(count++) + ".part";
+                           std::to_string(count++) + unfinished_suffix;
   return target.parent_path() / name;
 }
 

@@ -26,6 +26,9 @@ class FileError : public std::runtime_error {
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
+// What the temporary names end in; they begin with a dot.
+inline constexpr const char* unfinished_suffix = ".part";
+
 // A file that another program writes: hand it name(), then commit(). What is not committed is removed again.
 class PendingFile {
  public:

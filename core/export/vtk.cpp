@@ -9,6 +9,7 @@
 #include "core/export/atomic_file.hpp"
 #include "core/export/base64.hpp"
 #include "core/export/formats.hpp"
+#include "core/export/xml_text.hpp"
 
 namespace unfurl {
 namespace {
@@ -18,21 +19,6 @@ static_assert(std::endian::native == std::endian::little);
 std::string number(double x) {
   char buffer[32];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
-}
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
 }
 
 template <class T>
@@ -112,7 +98,7 @@ void export_vtk(const ExportJob& job) {
     const std::string name = std::string(job.name) + suffix;
     write_file_atomically(folder / name, grid(job, cells, i));
     collection += "<DataSet timestep=\"" + number(trajectory.time(i)) + "\" part=\"0\" file=\"" +
-                  escaped(name) + "\"/>\n";
+                  xml_text(name) + "\"/>\n";
   }
   write_file_atomically(folder / (std::string(job.name) + ".pvd"),
                         collection + "</Collection>\n</VTKFile>\n");

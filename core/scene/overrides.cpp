@@ -10,7 +10,7 @@ namespace unfurl {
 
 namespace {
 
-const SourceLocation from_command_line{"--set", 0, 0};
+const SourceLocation from_command_line{override_source, 0, 0};
 
 // Why an override cannot be applied.
 struct Refusal {
@@ -78,7 +78,7 @@ bool is_bare_word(std::string_view text) {
 TomlTree parse_value(std::string_view text) {
   TomlTree value;
   try {
-    TomlTree parsed = parse_toml("value = " + std::string(text) + "\n", "--set");
+    TomlTree parsed = parse_toml("value = " + std::string(text) + "\n", override_source);
     if (parsed.entries.size() != 1) throw Refusal{"the value must be one TOML value"};
     value = std::move(parsed.entries[0].second);
   } catch (const SceneError& error) {

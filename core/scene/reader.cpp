@@ -136,7 +136,7 @@ void read_title(TableReader& root, Scene& scene) {
 
 // Overrides first, then each file from its top to its end.
 void sort_problems(std::vector<SceneProblem>& problems) {
-  std::map<std::string, int> rank{{"--set", 0}};
+  std::map<std::string, int> rank{{override_source, 0}};
   for (const auto& problem : problems) rank.try_emplace(problem.where.file, static_cast<int>(rank.size()));
   std::stable_sort(problems.begin(), problems.end(), [&](const SceneProblem& a, const SceneProblem& b) {
     const auto order = [&](const SourceLocation& where) {
@@ -170,6 +170,7 @@ Scene read_scene_text(std::string_view text, const std::string& name,
     throw SceneError(std::move(notes.problems));
   }
   scene.locations = std::move(notes.locations);
+  scene.units = std::move(notes.units);
   return scene;
 }
 

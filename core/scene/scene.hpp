@@ -8,8 +8,8 @@
 
 #include "core/integrators/solver_options.hpp"
 #include "core/model/structure.hpp"
-#include "core/scene/render_options.hpp"
 #include "core/scene/elements.hpp"
+#include "core/scene/render_options.hpp"
 #include "core/scene/scene_error.hpp"
 #include "core/structures/custom.hpp"
 
@@ -34,6 +34,7 @@ struct Scene {
   SolverOptions solver;
   RenderOptions render;
   std::map<std::string, SourceLocation> locations;  // dotted key -> where it was given, for later messages
+  std::map<std::string, std::string> units;         // of the keys that overrides change: dotted key -> unit
 };
 
 }  // namespace unfurl

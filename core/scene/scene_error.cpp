@@ -9,7 +9,8 @@ std::string problem_text(const SceneProblem& problem) {
   std::string text = where.file;
   if (where.line > 0)
     text.append(":").append(std::to_string(where.line)).append(":").append(std::to_string(where.column));
-  if (!problem.key.empty()) text.append(text.empty() ? "" : text == "--set" ? " " : ": ").append(problem.key);
+  if (!problem.key.empty())
+    text.append(text.empty() ? "" : text == override_source ? " " : ": ").append(problem.key);
   return text.append(text.empty() ? "" : ": ").append(problem.message);
 }
 

@@ -7,8 +7,10 @@
 
 namespace unfurl {
 
+inline constexpr const char* override_source = "--set";  // where overrides are said to come from
+
 struct SourceLocation {
-  std::string file;          // as the user named it; "--set" for an override
+  std::string file;          // as the user named it, or override_source
   int line = 0, column = 0;  // from 1; 0: unknown
 
   bool operator==(const SourceLocation&) const = default;

@@ -64,6 +64,11 @@ std::optional<ParamValue> shaped(const ParamSpec& spec, const TomlTree& tree) {
   return std::nullopt;
 }
 
+// Given by an override, whole or in part.
+bool overridden(const TomlTree& tree) {
+  return tree.where.file == override_source || std::ranges::any_of(tree.items, overridden);
+}
+
 std::string mistyped(const ParamSpec& spec, const TomlTree& tree) {
   std::string got = tree.describe();
   if (tree.kind == Kind::text) got = "the text " + in_quotes(tree.text);
@@ -112,6 +117,7 @@ void TableReader::read_one(const ParamSpec& spec, ParamSet& values) {
     if (spec.required) problem(spec.name, "is missing; must be " + wanted_text(spec));
     return;
   }
+  if (overridden(*tree)) notes_.units[key(spec.name)] = spec.unit;
   auto value = shaped(spec, *tree);
   if (!value) return problem(spec.name, mistyped(spec, *tree));
   std::string error = range_error(spec, *value);
@@ -177,7 +183,7 @@ void TableReader::finish() {
   for (const auto& [name, value] : table_->entries) {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const auto& where =
-        value.key_where.line > 0 || value.key_where.file == "--set" ? value.key_where : value.where;
+        value.key_where.line > 0 || value.key_where.file == override_source ? value.key_where : value.where;
     notes_.add(where, key(name), "unknown key" + did_you_mean(name, known_));
   }
 }

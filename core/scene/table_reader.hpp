@@ -15,6 +15,7 @@ namespace unfurl {
 struct SceneNotes {
   std::vector<SceneProblem> problems;
   std::map<std::string, SourceLocation> locations;  // dotted key -> place of its value
+  std::map<std::string, std::string> units;         // of what overrides change: dotted key -> unit
 
   void add(const SourceLocation& where, std::string key, std::string message);
 };

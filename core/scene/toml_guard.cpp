@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/model/utf8.hpp"
 #include "core/scene/toml_tree.hpp"
 
 namespace unfurl {
@@ -31,27 +32,6 @@ namespace {
 
 constexpr std::size_t max_brackets = 64;  // a scene needs 3
 constexpr std::size_t max_dots = 16;      // dots in one key; a scene needs 2
-
-bool continuation(std::string_view text, std::size_t i) {
-  return i < text.size() && (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80U;
-}
-
-// Length of the UTF-8 sequence at i (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF); 0 when it
-// is none.
-std::size_t utf8_length(std::string_view text, std::size_t i) {
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[i + k]); };
-  const unsigned char lead = byte(0);
-  if (lead < 0x80) return 1;
-  const std::size_t length = lead >= 0xC2 && lead <= 0xDF   ? 2
-                             : (lead & 0xF0U) == 0xE0       ? 3
-                             : lead >= 0xF0 && lead <= 0xF4 ? 4
-                                                            : 0;
-  for (std::size_t k = 1; k < length; ++k)
-    if (!continuation(text, i + k)) return 0;
-  if ((lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) > 0x9F)) return 0;
-  if ((lead == 0xF0 && byte(1) < 0x90) || (lead == 0xF4 && byte(1) > 0x8F)) return 0;
-  return length;
-}
 
 TextObstacle find_deep_nesting(std::string_view text) {
   std::size_t brackets = 0, dots = 0;

@@ -19,7 +19,7 @@ class Checker {
     check_nodes();
     check_rods();
     check_constraints();
-    check_masses();
+    if (nodes_found_) check_masses();  // else a node may lack only what was to be attached to it
     return std::move(problems_);
   }
 
@@ -76,7 +76,7 @@ class Checker {
   bool check_rod_nodes(const CustomRod& rod, std::size_t i) {
     if (rod.nodes.size() != 2) {
       add("rods", i, "nodes", "a rod joins 2 nodes; got " + std::to_string(rod.nodes.size()));
-      return false;
+      return nodes_found_ = false;
     }
     bool known = true;
     for (const auto& name : rod.nodes) {
@@ -84,7 +84,7 @@ class Checker {
       add("rods", i, "nodes", "there is no node " + in_quotes(name) + hint(name));
       known = false;
     }
-    if (!known) return false;
+    if (!known) return nodes_found_ = false;
     if (rod.nodes[0] == rod.nodes[1]) {
       add("rods", i, "nodes", "a rod from " + in_quotes(rod.nodes[0]) + " to itself");
       return false;
@@ -132,8 +132,10 @@ class Checker {
         add("constraints", i, std::string(kind->direction), "must not be zero");
       if (constraint.nodes.empty()) add("constraints", i, "nodes", "names no node");
       for (const auto& pattern : constraint.nodes)
-        if (names_.matching(pattern).empty())
+        if (names_.matching(pattern).empty()) {
           add("constraints", i, "nodes", "no node matches " + in_quotes(pattern) + hint(pattern));
+          nodes_found_ = false;
+        }
     }
   }
 
@@ -160,6 +162,7 @@ class Checker {
   const CustomSpec& spec_;
   std::vector<CustomProblem> problems_;
   NameIndex names_;
+  bool nodes_found_ = true;  // all that rods and constraints name
 };
 
 }  // namespace

@@ -2,8 +2,11 @@
 
 #include <fstream>
 #include <iterator>
+#include <span>
 
 #include "core/export/atomic_file.hpp"
+#include "core/export/base64.hpp"
+#include "core/export/xml_text.hpp"
 
 namespace unfurl {
 namespace {
@@ -18,23 +21,6 @@ figure { margin: 1.5rem 0 } img { max-width: 100%; height: auto } figcaption, .c
 code { background: #f2f2f2; padding: .1em .3em; border-radius: 3px }
 )";
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 // Pairs of a mark become an element.
 std::string replace_pairs(std::string text, std::string_view mark, const std::string& element) {
   for (std::size_t begin = 0; (begin = text.find(mark, begin)) != std::string::npos;) {
@@ -47,20 +33,7 @@ std::string replace_pairs(std::string text, std::string_view mark, const std::st
 }
 
 std::string html_text(std::string_view text) {
-  return replace_pairs(replace_pairs(replace_pairs(escaped(text), "**", "strong"), "*", "em"), "`", "code");
-}
-
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k > bytes.size() ? '=' : letters[group >> (18 - 6 * k) & 63U];
-  }
-  return out;
+  return replace_pairs(replace_pairs(replace_pairs(xml_text(text), "**", "strong"), "*", "em"), "`", "code");
 }
 
 std::string html_table(const Table& table) {
@@ -82,8 +55,9 @@ std::string html_picture(const ReportBlock& block, const std::filesystem::path& 
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   if (!file) throw FileError(path, "cannot be read");
   const std::string type = path.extension() == ".svg" ? "svg+xml" : "png";
-  return "<figure><img alt=\"" + escaped(block.text) + "\" src=\"data:image/" + type + ";base64," +
-         base64(bytes) + "\"><figcaption>" + html_text(block.text) + "</figcaption></figure>\n";
+  return "<figure><img alt=\"" + xml_text(block.text) + "\" src=\"data:image/" + type + ";base64," +
+         base64(std::as_bytes(std::span(bytes))) + "\"><figcaption>" + html_text(block.text) +
+         "</figcaption></figure>\n";
 }
 
 }  // namespace
@@ -118,7 +92,7 @@ std::string report_html(const Report& report, const std::filesystem::path& folde
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\"><title>" +
-      escaped(report.title) + "</title><style>" + style + "</style></head><body>\n<h1>" +
+      xml_text(report.title) + "</title><style>" + style + "</style></head><body>\n<h1>" +
       html_text(report.title) + "</h1>\n";
   for (const ReportBlock& block : report.blocks) {
     if (block.kind == ReportBlock::Kind::heading) text += "<h2>" + html_text(block.text) + "</h2>\n";

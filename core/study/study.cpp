@@ -110,7 +110,7 @@ std::vector<std::string> study_columns() {
 Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks) {
   Study study;
   study.end = plan.end;
-  study.early = plan.early;
+  study.before = plan.before;
   study.size = structure_size(*plan.model);
   for (const Setting& setting : plan.settings) study.curves.push_back({setting, {}, {}});
   try {
@@ -188,18 +188,18 @@ Cheapest cheapest(const Study& study, double error) {
 }
 
 std::string cheapest_sentence(const Study& study) {
-  std::string text;
+  std::string found, missed;
   for (const double error : {1e-3, 1e-6, 1e-9}) {
     const Cheapest best = cheapest(study, error);
-    text += (text.empty() ? "The cheapest setting for " : ", for ") + short_number(error, 1) + " m ";
     if (best.run)
-      text += (text.find(" is ") == std::string::npos ? "is " : "") + best.curve->setting.name +
-              " with a step of " + short_number(best.run->step) + " s (" +
-              short_number(1e3 * best.run->cpu_median) + " ms)";
+      found += (found.empty() ? "The cheapest setting for " : ", for ") + short_number(error, 1) + " m" +
+               (found.empty() ? " is " : " ") + best.curve->setting.name + " with a step of " +
+               short_number(best.run->step) + " s (" + short_number(1e3 * best.run->cpu_median) + " ms)";
     else
-      text += "was not found on this ladder";
+      missed += (missed.empty() ? "" : ", ") + short_number(error, 1) + " m";
   }
-  return text + ".";
+  if (missed.empty()) return found + ".";
+  return (found.empty() ? "No" : found + "; no") + " setting was found that keeps " + missed + ".";
 }
 
 }  // namespace unfurl

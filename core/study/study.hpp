@@ -36,13 +36,14 @@ struct StudyPlan {
   std::shared_ptr<const Model> model;
   std::vector<Setting> settings;
   StepLadder ladder;
-  double end = 0;      // [s]
-  bool early = false;  // it ends before the deployed pose
+  double end = 0;           // [s]
+  std::string before = {};  // what it ends right before: "the deployed pose"; empty: nothing
   TimingOptions timing;
 };
 
-// The motion of a scene up to its end or, where it deploys before, to 99.5 % of that time: the deployed pose
-// is singular, and no method's error there says anything about the method. Throws std::invalid_argument.
+// The motion of a scene up to its end or, where it deploys or meets an end stop before, to 99.5 % of that
+// time (judged_span): the deployed pose is singular, and no method's error there says anything about the
+// method. Throws std::invalid_argument.
 StudyPlan plan_study(std::shared_ptr<const Model> model, const SolverOptions& scene, double largest_step,
                      double smallest_step, const StudyHooks& hooks);
 
@@ -59,7 +60,7 @@ struct StudyCurve {
 struct Study {
   std::vector<StudyCurve> curves;
   double end = 0;
-  bool early = false;
+  std::string before = {};
   double reference_uncertainty = 0;  // [m]
   std::string reference;             // how it was solved
   double size = 0;                   // of the structure [m]

@@ -4,6 +4,7 @@
 
 #include "core/integrators/integrator.hpp"
 #include "core/model/nearest_name.hpp"
+#include "core/study/reference_motion.hpp"
 #include "core/study/study.hpp"
 
 namespace unfurl {
@@ -79,12 +80,11 @@ StudyPlan plan_study(std::shared_ptr<const Model> model, const SolverOptions& sc
     throw std::invalid_argument("the scene as it stands does not run (" + probe.message +
                                 "); a study needs a motion to measure");
   StudyPlan plan;
-  plan.end = scene.end_time;
-  for (const Event& event : probe.events)
-    if (event.name == "deployed" && event.t < scene.end_time) {
-      plan.end = 0.995 * event.t;
-      plan.early = true;
-    }
+  const JudgedSpan span = judged_span(probe);
+  if (!(span.end > 0))
+    throw std::invalid_argument("the motion begins at an end stop: there is nothing to measure");
+  plan.end = span.end;
+  plan.before = span.before;
   plan.settings = study_settings(scene);
   plan.ladder = make_ladder(plan.end, scene.step, largest_step, smallest_step);
   plan.model = std::move(model);

@@ -1,5 +1,6 @@
 #include "core/study/sweep.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <thread>
@@ -23,7 +24,8 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const s
     if (run.status == RunStatus::stopped) return std::nullopt;
     const Diagnostics diagnostics = diagnose(run);
     row.emplace_back(to_string(run.status));
-    for (const RunMeasure& measure : plan.measures) row.push_back(exact_number(measure.value(run, diagnostics)));
+    for (const RunMeasure& measure : plan.measures)
+      row.push_back(exact_number(measure.value(run, diagnostics)));
   } catch (const SceneError&) {
     row.emplace_back("invalid");
     row.resize(key.size() + 1 + plan.measures.size(), "nan");
@@ -85,6 +87,13 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   for (std::size_t i = 0; i < plan.points(); ++i)
     if (in_shard(plan, i) && !journal.find(plan.key(i))) ++sweep.missing;
   return sweep;
+}
+
+std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep) {
+  return static_cast<std::size_t>(std::ranges::count_if(sweep.table.rows, [&](const auto& row) {
+    const std::string& outcome = row[plan.axes.size()];
+    return outcome == "failed" || outcome == "invalid";
+  }));
 }
 
 Sweep merge_sweep(const SweepPlan& plan, const std::vector<std::filesystem::path>& journals) {

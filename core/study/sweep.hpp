@@ -13,6 +13,10 @@ struct SweepAxis {
   std::vector<std::string> values;  // as TOML
   std::vector<double> numbers;      // the same; empty where one is no number
   bool log = false;
+  std::string unit;  // of the values; check_plan finds it
+
+  std::string title() const;                   // "fold angle (°)", for figures
+  std::string title(std::size_t value) const;  // "fold angle = 30°", "solver method = dvm"
 };
 
 // "key=from:to:count", evenly spaced; "key=from:to:count:log", by equal factors; "key=a,b,c". Throws
@@ -36,8 +40,8 @@ struct SweepPlan {
 };
 
 // Throws std::invalid_argument (no axis, no measure, a key twice, too many points), SceneError where a value
-// is refused by the scene.
-void check_plan(const SweepPlan& plan);
+// is refused by the scene. Gives the axes their units.
+void check_plan(SweepPlan& plan);
 
 // Points in the grid's order; those that are not there are missing. Outcome: the run's status, or "invalid"
 // where the parameters, each fine, make no structure.
@@ -45,6 +49,8 @@ struct Sweep {
   Table table;
   std::size_t missing = 0;
 };
+// Points whose run failed or whose parameters made no structure.
+std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep);
 
 // What the journal lacks of the shard's points is computed on hooks.threads cores, each kept as it finishes.
 Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks);

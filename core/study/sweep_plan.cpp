@@ -1,4 +1,5 @@
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "core/model/nearest_name.hpp"
@@ -44,7 +45,45 @@ void fill_range(const std::string& text, const std::vector<std::string>& parts, 
   }
 }
 
+std::string replaced(std::string text, std::string_view what, std::string_view with) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size())
+    text.replace(at, what.size(), with);
+  return text;
+}
+
+// As figures write it: "m/s²", "N·m".
+std::string typeset(const std::string& unit) {
+  return replaced(replaced(replaced(unit, "deg", "\u00B0"), "^2", "\u00B2"), " ", "\u00B7");
+}
+
+// "structure.fold_angle": "fold angle"; "solver.step": "solver step".
+std::string words(const std::string& key) {
+  constexpr std::string_view implied = "structure.";
+  const std::string text = key.starts_with(implied) ? key.substr(implied.size()) : key;
+  return replaced(replaced(text, "_", " "), ".", " ");
+}
+
+// Of the key with the override. What it calls by name or index the scene knows by another key: the one that
+// is overridden now and was not before.
+std::string unit_of(const std::string& key, const std::map<std::string, std::string>& now,
+                    const std::map<std::string, std::string>& before) {
+  if (const auto found = now.find(key); found != now.end()) return found->second;
+  for (const auto& [name, unit] : now)
+    if (!before.contains(name) || key.starts_with(name + "[")) return unit;
+  return "";
+}
+
 }  // namespace
+
+std::string SweepAxis::title() const {
+  return words(key) + (unit.empty() ? "" : " (" + typeset(unit) + ")");
+}
+
+std::string SweepAxis::title(std::size_t value) const {
+  const std::string& text = values[value];
+  const std::string space = unit.empty() || unit == "deg" ? "" : " ";
+  return words(key) + " = " + text + space + typeset(unit);
+}
 
 SweepAxis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -107,7 +146,7 @@ std::vector<std::string> SweepPlan::columns() const {
   return names;
 }
 
-void check_plan(const SweepPlan& plan) {
+void check_plan(SweepPlan& plan) {
   if (plan.axes.empty()) throw std::invalid_argument("nothing to vary; give --vary KEY=FROM:TO:COUNT");
   if (plan.measures.empty()) throw std::invalid_argument("nothing to measure; give --measure NAME,...");
   if (plan.points() > max_points) throw std::invalid_argument("the grid has more than 1e7 points");
@@ -115,9 +154,10 @@ void check_plan(const SweepPlan& plan) {
     for (std::size_t b = 0; b < a; ++b)
       if (plan.axes[a].key == plan.axes[b].key)
         throw std::invalid_argument("the key " + in_quotes(plan.axes[a].key) + " is varied twice");
-  for (const SweepAxis& axis : plan.axes)
+  const auto known = plan.source.read().units;
+  for (SweepAxis& axis : plan.axes)
     for (const auto* value : {&axis.values.front(), &axis.values.back()})
-      plan.source.read({axis.key + "=" + *value});
+      axis.unit = unit_of(axis.key, plan.source.read({axis.key + "=" + *value}).units, known);
 }
 
 }  // namespace unfurl

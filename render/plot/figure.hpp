@@ -19,7 +19,8 @@ struct Curve {
   int color = 0;             // index into the colour-blind-safe palette; see palette()
   Dash dash = Dash::solid;
   Marker marker = Marker::none;
-  float width = 1.2f;       // [points]
+  float width = 1.2f;       // [points]; 0: markers only
+  float marker_size = 1;    // of the usual one
   bool right_axis = false;  // drawn against the panel's second y axis
 };
 

@@ -70,21 +70,14 @@ void say_no_data(const Panel& panel, PanelLayout& out) {
   out.labels.push_back({middle, "no data", {small_size, caption_color, Anchor::middle}, true});
 }
 
-// In the corner where it hides least, the lower left one first.
-void add_scale_bar(const Panel& panel, Obstacles& obstacles, PanelLayout& out) {
+// Below the frame, from its left edge.
+void add_scale_bar(const Panel& panel, PanelLayout& out) {
   if (!(panel.scale_bar > 0)) return;
   const double length = panel.scale_bar / (out.x.scale.hi - out.x.scale.lo) * out.frame.width();
-  const double width = std::max(length, text_width(panel.scale_bar_label, small_size)),
-               height = small_size + 6;
-  const Rect f = out.frame.grown(-3);
-  std::vector<Rect> corners;
-  for (const double y : {f.y1 - height, f.y0})
-    for (const double x : {f.x0, f.x1 - width}) corners.push_back({x, y, x + width, y + height});
-  const Rect box = best_of(obstacles, corners).box;
-  const double middle = (box.x0 + box.x1) / 2, y = box.y1 - 2;
+  const double text = text_width(panel.scale_bar_label, small_size);
+  const double middle = out.frame.x0 + std::max(length, text) / 2, y = out.frame.y1 + scale_bar_height - 2;
   out.scale_bar = Rect{middle - length / 2, y, middle + length / 2, y};
   out.labels.push_back({{middle, y - 3.5}, panel.scale_bar_label, {small_size, ink, Anchor::middle}});
-  obstacles.add_box(box);
 }
 
 }  // namespace
@@ -117,7 +110,7 @@ Obstacles obstacles_of(const Panel& panel, const PanelLayout& layout) {
 void add_inner_labels(const Panel& panel, PanelLayout& out) {
   Obstacles obstacles = obstacles_of(panel, out);
   for (const ReferenceLine& line : panel.lines) add_line_label(line, obstacles, out);
-  add_scale_bar(panel, obstacles, out);
+  add_scale_bar(panel, out);
   say_no_data(panel, out);
 }
 

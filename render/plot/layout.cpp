@@ -114,7 +114,8 @@ bool place_legends(const Figure& figure, std::vector<PanelLayout>& panels, std::
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Panel& panel = figure.panels[i];
     if (rows[i] > 0) {
-      const double bottom = panels[i].frame.y0 - 3 - (has_note(panels[i]) ? note_height : 0);
+      double bottom = panels[i].frame.y0 - 3 - (has_note(panels[i]) ? note_height : 0);
+      if (panel.bare && !panel.title.empty()) bottom -= panel_title_height + bare_gap;  // titles in one line
       panels[i].legend = legend_above(panel, panels[i].frame, bottom);
       continue;
     }

@@ -11,6 +11,8 @@
 namespace unfurl::plot {
 namespace {
 
+constexpr double marker_radius = 1.9;  // [points]
+
 class PanelPainter {
  public:
   PanelPainter(const Panel& panel, const PanelLayout& layout, Canvas& canvas)
@@ -76,7 +78,7 @@ class PanelPainter {
       const Curve& c = panel_.curves[i];
       const FigureColor color = palette(c.color);
       for (const Polyline& piece : layout_.curves[i]) {
-        canvas_.polyline(piece, {color, c.width, c.dash});
+        if (c.width > 0) canvas_.polyline(piece, {color, c.width, c.dash});
         if (piece.size() == 1 && c.marker == Marker::none)
           canvas_.circle(piece[0], std::max(1.6, 0.8 * c.width), color);
         markers(c, piece);
@@ -90,7 +92,7 @@ class PanelPainter {
     const Point* last = nullptr;
     for (const Point& p : piece) {
       if (last && std::hypot(p.x - last->x, p.y - last->y) < 4) continue;
-      canvas_.marker(c.marker, p, 1.9, palette(c.color));
+      canvas_.marker(c.marker, p, marker_radius * c.marker_size, palette(c.color));
       last = &p;
     }
   }
@@ -132,8 +134,9 @@ class PanelPainter {
           canvas_.line({from.x, y}, {to.x, y}, {palette(e.band->color), 0.8});
       } else {
         const FigureColor color = palette(e.curve->color);
-        canvas_.line(from, to, {color, e.curve->width, e.curve->dash});
-        canvas_.marker(e.curve->marker, {(from.x + to.x) / 2, from.y}, 1.9, color);
+        if (e.curve->width > 0) canvas_.line(from, to, {color, e.curve->width, e.curve->dash});
+        canvas_.marker(e.curve->marker, {(from.x + to.x) / 2, from.y}, marker_radius * e.curve->marker_size,
+                       color);
       }
       text(e.label);
     }

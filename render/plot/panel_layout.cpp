@@ -10,8 +10,6 @@ namespace unfurl::plot {
 namespace {
 
 constexpr double tick_gap = 2.5, label_gap = 4.0, edge = 1.0;
-constexpr double bare_gap =
-    3.0;  // between the title and what stands at the upper edge of a frame without axes
 constexpr double tick_text = tick_length + tick_gap;  // from the frame to tick labels
 constexpr double half_digit = cap_height * small_size / 2;
 
@@ -174,6 +172,7 @@ Margins margins(const Panel& panel, const PanelLayout& l, int legend_rows) {
   Margins m{edge, edge, edge, edge};
   if (!panel.title.empty()) m.top += panel_title_height + (panel.bare ? bare_gap : 0);
   m.top += legend_rows > 0 ? legend_rows * legend_row_height + 3 : 0;
+  if (panel.scale_bar > 0) m.bottom += scale_bar_height;
   if (panel.bare) return m;
   m.top += has_note(l) ? note_height : half_digit;  // the uppermost tick label stands half above the frame
   m.left = y_margin(panel.y, l.y, l.frame.height());
@@ -204,11 +203,9 @@ void set_traces(const Panel& panel, PanelLayout& out) {
 
 void add_axis_labels(const Panel& panel, const Rect& cell, int legend_rows, PanelLayout& out) {
   if (!panel.title.empty()) {
-    const double above = (has_note(out) ? note_height
-                          : panel.bare  ? 0
-                                        : half_digit) +
+    const double above = (has_note(out) ? note_height : half_digit) +
                          (legend_rows > 0 ? legend_rows * legend_row_height + 3 : 0);
-    const double base = out.frame.y0 - above - 3.5;
+    const double base = out.frame.y0 - (panel.bare ? 0 : above) - 3.5;
     const std::string title = shorten_text(panel.title, label_size, cell.width() - 2);
     if (panel.bare)
       out.labels.push_back(

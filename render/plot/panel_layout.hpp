@@ -3,6 +3,7 @@
 
 #include "render/plot/layout.hpp"
 #include "render/plot/limits.hpp"
+#include "render/plot/style.hpp"
 
 namespace unfurl::plot {
 
@@ -23,6 +24,9 @@ void add_inner_labels(const Panel& panel, PanelLayout& out);
 
 inline constexpr double legend_row_height = 9.6;
 inline constexpr double panel_title_height = 12.0, note_height = 10.0;
+inline constexpr double scale_bar_height = small_size + 9.0;  // below a frame
+// Between the title and what stands at the upper edge of a frame without axes.
+inline constexpr double bare_gap = 3.0;
 
 bool has_note(const PanelLayout& layout);  // of a y axis, above the frame
 

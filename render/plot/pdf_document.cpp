@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <new>
 
-#include "render/plot/text_metrics.hpp"
+#include "core/model/utf8.hpp"
 
 namespace unfurl::plot {
 namespace {

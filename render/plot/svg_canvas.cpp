@@ -5,31 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/export/xml_text.hpp"
 #include "render/plot/style.hpp"
-#include "render/plot/text_metrics.hpp"
 
 namespace unfurl::plot {
-
-std::string escape_xml(std::string_view text) {
-  std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t from = at;
-    const char32_t c = next_code_point(text, at);
-    const bool allowed =
-        c >= 0x20 && c != 0xFFFD && c != 0xFFFE && c != 0xFFFF && !(c >= 0xD800 && c < 0xE000);
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (allowed)
-      out += text.substr(from, at - from);
-  }
-  return out;
-}
 
 SvgCanvas::SvgCanvas(double width, double height, std::string_view title, std::string_view description) {
   out_ =
@@ -45,7 +24,7 @@ SvgCanvas::SvgCanvas(double width, double height, std::string_view title, std::s
   out_ +=
       "\" font-family=\"'DejaVu Sans', 'Bitstream Vera Sans', Verdana, sans-serif\" "
       "stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
-  out_ += "<title>" + escape_xml(title) + "</title>\n<desc>" + escape_xml(description) + "</desc>\n";
+  out_ += "<title>" + xml_text(title) + "</title>\n<desc>" + xml_text(description) + "</desc>\n";
 }
 
 std::string SvgCanvas::finish() {
@@ -151,7 +130,7 @@ void SvgCanvas::text(Point at, std::string_view text, const TextStyle& style) {
     number(at.y);
     out_ += ")\"";
   }
-  out_ += ">" + escape_xml(text) + "</text>\n";
+  out_ += ">" + xml_text(text) + "</text>\n";
 }
 
 void SvgCanvas::begin_clip(const Rect& r) {

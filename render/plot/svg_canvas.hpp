@@ -33,7 +33,4 @@ class SvgCanvas final : public Canvas {
   int clips_ = 0;
 };
 
-// Text as it may stand in an XML document: markup escaped, what is not allowed there left out.
-std::string escape_xml(std::string_view text);
-
 }  // namespace unfurl::plot

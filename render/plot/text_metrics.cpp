@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/model/utf8.hpp"
+
 namespace unfurl::plot {
 namespace {
 
@@ -70,21 +72,16 @@ double advance(char32_t c) {
   return i < run.advance.size() ? run.advance[i] : unknown_advance;
 }
 
-}  // namespace
-
-char32_t next_code_point(std::string_view text, std::size_t& at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned lead = byte(at++);
-  if (lead < 0x80) return lead;
-  const int more = lead >= 0xF0 && lead < 0xF5 ? 3 : lead >= 0xE0 ? 2 : lead >= 0xC2 ? 1 : 0;
-  if (more == 0 || lead >= 0xF5 || at + static_cast<std::size_t>(more) > text.size()) return 0xFFFD;
-  char32_t c = lead & (0x3Fu >> more);
-  for (int k = 0; k < more; ++k) {
-    if ((byte(at) & 0xC0u) != 0x80) return 0xFFFD;
-    c = c << 6 | (byte(at++) & 0x3Fu);
-  }
-  return c;
+// The end of the word at `at`: a number, exponents and all, and its unit ("0.01 s.", "29 units") are one.
+std::size_t word_end(std::string_view text, std::size_t at) {
+  const auto digit = [](char c) { return (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80; };
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const std::size_t end = std::min(text.find(' ', at), text.size());
+  if (end == at || end + 1 >= text.size() || !digit(text[end - 1]) || !letter(text[end + 1])) return end;
+  return std::min(text.find(' ', end + 1), text.size());
 }
+
+}  // namespace
 
 double text_width(std::string_view text, double size) {
   double sum = 0;
@@ -106,7 +103,7 @@ std::vector<std::string> wrap_text(std::string_view text, double size, double wi
   std::vector<std::string> lines;
   std::string line;
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::size_t end = word_end(text, at);
     const std::string word(text.substr(at, end - at));
     at = end + 1;
     const std::string longer = line.empty() ? word : line + ' ' + word;

@@ -25,7 +25,4 @@ std::vector<std::string> wrap_text(std::string_view text, double size, double wi
 // Ends in an ellipsis where it does not fit.
 std::string shorten_text(std::string_view text, double size, double width);
 
-// The code point at byte `at`, which moves behind it; U+FFFD for bytes that are not UTF-8.
-char32_t next_code_point(std::string_view text, std::size_t& at);
-
 }  // namespace unfurl::plot

@@ -51,7 +51,8 @@ void main() {
 inline constexpr const char* depth_fragment = R"(#version 330 core
 void main() {})";
 
-// What the fragment stages of all looks begin with: inputs, shadow, and the mist that tells near from far.
+// What the fragment stages of all looks begin with: inputs, the key light with its shadow and highlight, and
+// the mist that tells near from far.
 inline constexpr const char* solid_head = R"(#version 330 core
 in vec3 world;
 in vec3 normal;
@@ -85,6 +86,18 @@ float lit(vec3 p, vec3 n, float texel) {
   return 0.5 * (texture(shadow_map, at + vec3(step, step, 0.0)) + texture(shadow_map, at - vec3(step, step, 0.0)));
 }
 
+float key_light(vec3 n) {  // what arrives of it: by the angle and past what is in its way
+  float texel = 2.0 / (length(light_projection[0].xyz) * float(textureSize(shadow_map, 0).x));
+  float n_l = dot(n, to_light);
+  return n_l > 0.0 ? n_l * lit(world, n, texel) : 0.0;
+}
+
+float highlight(vec3 n, vec3 v) {  // of the key light, as a rough metal shows it (GGX)
+  float a2 = pow(metal_roughness.y, 4.0), n_h = max(dot(n, normalize(v + to_light)), 0.0);
+  float d = n_h * n_h * (a2 - 1.0) + 1.0;
+  return a2 / (3.14159 * d * d) * 0.25 / mix(max(dot(n, v), 0.02), 1.0, 0.5);
+}
+
 )";
 
 // A key light with a soft shadow, the light of a bright room from everywhere and its reflection, less what is
@@ -106,24 +119,18 @@ vec3 room(vec3 d) {  // what a mirror would show: a pale floor, a bright horizon
 void main() {
   vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
   float metal = metal_roughness.x, roughness = metal_roughness.y;
-  float texel = 2.0 / (length(light_projection[0].xyz) * float(textureSize(shadow_map, 0).x));
-  float n_l = dot(n, to_light), n_v = max(dot(n, v), 0.02);
-  float key = n_l > 0.0 ? n_l * lit(world, n, texel) : 0.0;
+  float n_v = max(dot(n, v), 0.02), key = key_light(n);
   float occlusion = mix(0.55, 1.0, smoothstep(0.0, 1.0, (world.z - floor_height_reach.x) / floor_height_reach.y)) *
                     mix(0.75, 1.0, 0.5 + 0.5 * n.z) * open_to_room();
   key *= mix(0.6, 1.0, occlusion);
   vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.55, 0.60, 0.68), 0.5 + 0.5 * n.z) * occlusion;
 
   vec3 f0 = mix(vec3(0.04), albedo, metal);
-  vec3 h = normalize(v + to_light);
-  float a2 = pow(roughness, 4.0), n_h = max(dot(n, h), 0.0);
-  float d = n_h * n_h * (a2 - 1.0) + 1.0;
-  float highlight = a2 / (3.14159 * d * d) * 0.25 / mix(n_v, 1.0, 0.5);
   vec3 fresnel = f0 + (max(vec3(1.0 - roughness), f0) - f0) * pow(1.0 - n_v, 5.0);
 
   vec3 light = albedo * (1.0 - 0.75 * metal) * (ambient + 1.25 * vec3(1.0, 0.97, 0.92) * key);
   light += fresnel * room(reflect(-v, n)) * mix(0.4, 1.0, occlusion);
-  light += f0 * min(highlight, 6.0) * key;
+  light += f0 * min(highlight(n, v), 6.0) * key;
   light = light / (1.0 + 0.18 * light) * 1.12;  // rolls off what is brighter than paper
   color = vec4(misty(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2))), 1.0);
 })";
@@ -132,18 +139,12 @@ void main() {
 inline constexpr const char* space_fragment = R"(
 void main() {
   vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
-  float metal = metal_roughness.x, roughness = metal_roughness.y;
-  float texel = 2.0 / (length(light_projection[0].xyz) * float(textureSize(shadow_map, 0).x));
-  float n_l = dot(n, to_light), n_v = max(dot(n, v), 0.02);
-  float key = n_l > 0.0 ? n_l * lit(world, n, texel) : 0.0;
+  float metal = metal_roughness.x;
+  float n_v = max(dot(n, v), 0.02), key = key_light(n);
   vec3 f0 = mix(vec3(0.04), albedo, metal);
-  vec3 h = normalize(v + to_light);
-  float a2 = pow(roughness, 4.0), n_h = max(dot(n, h), 0.0);
-  float d = n_h * n_h * (a2 - 1.0) + 1.0;
-  float highlight = a2 / (3.14159 * d * d) * 0.25 / mix(n_v, 1.0, 0.5);
   vec3 planet = mix(vec3(0.05, 0.06, 0.09), vec3(0.10, 0.20, 0.38), 0.5 - 0.5 * n.z);
   vec3 light = albedo * (planet + 1.7 * key * vec3(1.0, 0.97, 0.93));
-  light += f0 * min(highlight, 8.0) * key * 1.5;
+  light += f0 * min(highlight(n, v), 8.0) * key * 1.5;
   float behind = max(dot(n, normalize(vec3(-to_light.xy, 0.6))), 0.0);  // a second sun's glow at the edge
   light += (0.25 + 0.75 * behind) * pow(1.0 - n_v, 3.0) * mix(vec3(0.45, 0.70, 1.0), albedo, 0.3);
   light = light / (1.0 + 0.15 * light);

@@ -28,6 +28,8 @@ TEST_CASE("help and version go to standard output") {
   CHECK(contains(run_program({"--help"}).out, "unfurl run SCENE -o DIR"));
   CHECK(run_program({"--help"}).code == 0);
   CHECK(contains(run_program({"run", "--help"}).out, "usage: unfurl run SCENE -o DIR [options]"));
+  CHECK(run_program({"help", "run"}).out == run_program({"run", "--help"}).out);
+  check_error({"help", "rn"}, 2, "unfurl: no command 'rn'; did you mean 'run'?");
   CHECK(run_program({"--version"}).out == "unfurl 0.1.0\n");
 }
 
@@ -40,7 +42,16 @@ TEST_CASE("usage errors") {
   check_error({"rn"}, 2, "unfurl: no command 'rn'; did you mean 'run'?");
   check_error({"run", "hoop6", "--forse", "-o", "x"}, 2,
               "unfurl: no option '--forse'; did you mean '--force'?");
-  check_error({"run", "hoop6", "-o"}, 2, "unfurl: --output: 1 required TEXT missing");
+  check_error({"run", "hoop6", "-o"}, 2, "unfurl: -o needs a value behind it");
+  check_error({"run", "hoop6", "-o", "x", "--set"}, 2, "unfurl: --set needs a value behind it");
+  check_error({"figure", "hoop6", "energy", "-o", "x.png", "--dpi", "1e9"}, 2,
+              "unfurl: --dpi: must be a number from 20 to 2400; got '1e9'");
+  check_error({"check", "hoop6", "--threads", "1.5"}, 2,
+              "unfurl: --threads: must be a whole number from 1 to 1024; got '1.5'");
+  check_error({"view", "hoop6", "--picture", "x.jpg"}, 2,
+              "unfurl: a picture of the window is written as .png, not '.jpg'");
+  check_error({"check", "hoop6", "--frames", "0:2"}, 2, "unfurl: unfurl check has no option '--frames'");
+  CHECK(run_program({"check", "hoop6", "-o", "x"}).code == 0);  // common to all commands
   check_error({"run", "hoop6"}, 2, "unfurl: -o DIR is missing (or --json, for the summary alone)");
   check_error({"run"}, 2, "unfurl: too few arguments; usage: unfurl run SCENE -o DIR");
   check_error({"check", "hoop6", "hoop12"}, 2,

@@ -48,6 +48,22 @@ TEST_CASE("slices share one film, and the last one makes the animations") {
   CHECK(fs::exists(out + "/animation.webp"));
 }
 
+TEST_CASE("data of the same motion leave its film alone, data of another replace it") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  REQUIRE(run_program(film(out)).code == 0);
+  auto run = film(out, {"--export", "csv"});
+  run[0] = "run";
+  CHECK(run_program(run).code == 0);
+  CHECK(fs::exists(out + "/csv/nodes.csv"));
+  CHECK(frames_in(out) == 5);
+  CHECK(fs::exists(out + "/animation.gif"));
+  run[3] = "solver.end_time=0.3";
+  CHECK(run_program(run).code == 0);
+  CHECK(frames_in(out) == 0);
+  CHECK_FALSE(fs::exists(out + "/animation.gif"));
+}
+
 TEST_CASE("a second run draws only what is missing, and the same as before") {
   const ScratchDirectory dir;
   const std::string out = dir / "out";

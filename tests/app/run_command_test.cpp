@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -80,6 +81,21 @@ TEST_CASE("a directory with results of our own is used again, one with other fil
   CHECK(run_program(other + std::vector<std::string>{"--force"}).code == 0);
   CHECK(file_text(dir / "mine/thesis.txt") == "precious");
   CHECK_FALSE(fs::exists(dir / "mine/.unfurl"));  // force is asked for again as long as there is no summary
+}
+
+TEST_CASE("what a killed program left half written is removed, what another is writing is not") {
+  const ScratchDirectory dir;
+  const auto run = quick + std::vector<std::string>{"-o", dir / "out"};
+  REQUIRE(run_program(run).code == 0);
+  const std::string old = dir.write("out/.series.csv.1-0.part", "t_s"),
+                    young = dir.write("out/.series.csv.2-0.part", "t_s"),
+                    foreign = dir.write("out/.profile", "x");
+  for (const auto& path : {old, foreign})
+    fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  CHECK(run_program(run).code == 0);
+  CHECK_FALSE(fs::exists(old));
+  CHECK(fs::exists(young));
+  CHECK(fs::exists(foreign));
 }
 
 TEST_CASE("an output directory that cannot be used is found before the work") {

@@ -91,6 +91,33 @@ TEST_CASE("shards of a sweep merge into the whole") {
   CHECK(missing.err.find("2 of 5 points are missing") != std::string::npos);
 }
 
+TEST_CASE("a sweep says how many of its points have no answer") {
+  const ScratchDirectory dir;
+  const ProgramResult r = run_program({"sweep", "hoop6_sector", "--vary", "structure.units=5:7:5",
+                                       "--measure", "deploy_time", "-o", dir / "out"});
+  CHECK(r.code == 0);
+  CHECK(r.err == "5 points in " + dir / "out/sweep.csv" + ", 2 of them without an answer\n");  // 5.5 and 6.5
+}
+
+TEST_CASE("points of another sweep are neither joined nor merged") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> sweep = {
+      "sweep", "hoop6_sector", "--vary", "structure.fold_angle=40:60:3", "--measure", "deploy_time"};
+  const std::vector<std::string> heavier = {"--set", "structure.density=3500"};
+  REQUIRE(run_program(sweep + std::vector<std::string>{"--shard", "1/2", "-o", dir / "out"}).code == 0);
+  const ProgramResult joined =
+      run_program(sweep + heavier + std::vector<std::string>{"--shard", "2/2", "-o", dir / "out"});
+  CHECK(joined.code == 5);
+  CHECK(joined.err == "unfurl: " + dir / "out" +
+                          ": holds results of another scene or other settings; use another directory, or "
+                          "--force to begin anew\n");
+  const ProgramResult merged =
+      run_program(sweep + heavier + std::vector<std::string>{"--merge", dir / "out", "-o", dir / "new"});
+  CHECK(merged.code == 5);
+  CHECK(merged.err.find("holds results of another scene or other settings; merge what one command") !=
+        std::string::npos);
+}
+
 TEST_CASE("sweep refuses what cannot be swept") {
   const ScratchDirectory dir;
   const auto refused = [&](const std::string& vary, const std::string& measure, int code,
@@ -114,6 +141,25 @@ TEST_CASE("solve finds the ring's fold angle from its deployment time") {
   REQUIRE(r.code == 0);
   // The time is good to 1e-7 s with three nodes; it changes by 3.5 s per degree there.
   CHECK(nlohmann::json::parse(r.out)["value"].get<double>() == Approx(89.34053637766085).margin(1e-6));
+}
+
+TEST_CASE("solve begins with its directory, and keeps the answer of the last target") {
+  const ScratchDirectory dir;
+  const auto solve = [&](const char* target, const std::string& out) {
+    return run_program({"solve", "hoop6_sector", "--find", "structure.fold_angle", "--target",
+                        std::string("deploy_time=") + target, "-o", out});
+  };
+  REQUIRE(solve("2", dir / "out").code == 0);
+  const std::string before = file_text(dir / "out/scene.toml");
+  const ProgramResult r = solve("3", dir / "out");
+  CHECK(r.code == 0);
+  CHECK(r.out.starts_with("structure.fold_angle = "));
+  const std::string value = r.out.substr(23, r.out.size() - 24);  // between "= " and the line's end
+  CHECK(file_text(dir / "out/scene.toml").find("fold_angle = " + value + "  # deg\n") != std::string::npos);
+  CHECK(file_text(dir / "out/scene.toml") != before);
+  const ProgramResult refused = solve("3", dir.write("file", ""));
+  CHECK(refused.code == 5);
+  CHECK(refused.out == "");
 }
 
 TEST_CASE("options of other verbs are refused") {

@@ -42,12 +42,14 @@ int end_of(pid_t child, double seconds) {  // exit code; -1 where it does not en
   return -1;
 }
 
-// An X server on a display of its own.
+// An X server on a display of its own, whose screen is a file that can be read.
 class XServer {
  public:
-  XServer() {
+  explicit XServer(int dpi = 96, int width = 1280, int height = 720) {
     name_ = ":" + std::to_string(200 + ::getpid() % 500);
-    pid_ = start("Xvfb " + name_ + " -screen 0 1280x720x24 +extension GLX >/dev/null 2>&1");
+    pid_ = start("Xvfb " + name_ + " -screen 0 " + std::to_string(width) + "x" + std::to_string(height) +
+                 "x24 -dpi " + std::to_string(dpi) + " -fbdir " + (folder_ / "") +
+                 " +extension GLX >/dev/null 2>&1");
     for (int i = 0; i < 500 && !std::filesystem::exists("/tmp/.X11-unix/X" + name_.substr(1)); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
@@ -62,8 +64,30 @@ class XServer {
     return std::system(("DISPLAY=" + name_ + " xdotool " + words + " >/dev/null 2>&1").c_str());
   }
   const std::string& name() const { return name_; }
+  // What a person sees. The file is a window dump of X (XWDFile.h): a header of numbers with the largest byte
+  // first, a table of colours, and here 32 bits a pixel, blue first.
+  Image screen() const {
+    const std::string dump = file_text(folder_ / "Xvfb_screen0");
+    const auto number = [&](std::size_t i) {
+      std::size_t value = 0;
+      for (std::size_t k = 0; k < 4; ++k)
+        value = value << 8U | static_cast<unsigned char>(dump.at(4 * i + k));
+      return value;
+    };
+    const std::size_t header = number(0), width = number(4), height = number(5), line = number(12),
+                      colours = number(19);
+    Image image{static_cast<int>(width), static_cast<int>(height),
+                std::vector<std::uint8_t>(4 * width * height)};
+    for (std::size_t y = 0; y < height; ++y)
+      for (std::size_t x = 0; x < width; ++x)
+        for (std::size_t c = 0; c < 3; ++c)
+          image.rgba[4 * (y * width + x) + c] =
+              static_cast<unsigned char>(dump.at(header + 12 * colours + y * line + 4 * x + 2 - c));
+    return image;
+  }
 
  private:
+  ScratchDirectory folder_;
   std::string name_;
   pid_t pid_ = 0;
 };
@@ -77,6 +101,71 @@ bool appears(const std::string& file) {
 std::string middle_of(const plot::Rect& r, double share = 0.5) {
   return std::to_string(static_cast<int>(r.x0 + share * r.width())) + " " +
          std::to_string(static_cast<int>(0.5 * (r.y0 + r.y1)));
+}
+
+bool same_pixel(const Image& a, const Image& b, int x, int y) {
+  const auto at =
+      4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) + static_cast<std::size_t>(x));
+  return std::equal(a.rgba.begin() + static_cast<std::ptrdiff_t>(at),
+                    a.rgba.begin() + static_cast<std::ptrdiff_t>(at) + 3,
+                    b.rgba.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+// Share of the pixels of a rectangle that differ.
+double differing(const Image& a, const Image& b, const plot::Rect& in) {
+  long count = 0, all = 0;
+  for (int y = static_cast<int>(in.y0); y < static_cast<int>(in.y1); ++y)
+    for (int x = static_cast<int>(in.x0); x < static_cast<int>(in.x1); ++x, ++all)
+      count += !same_pixel(a, b, x, y);
+  return static_cast<double>(count) / static_cast<double>(all);
+}
+
+// Share of the pixels that differ clearly: OpenGL on a screen may round a shade otherwise than offscreen.
+double clearly_differing(const Image& a, const Image& b, const plot::Rect& in) {
+  long count = 0, all = 0;
+  for (int y = static_cast<int>(in.y0); y < static_cast<int>(in.y1); ++y)
+    for (int x = static_cast<int>(in.x0); x < static_cast<int>(in.x1); ++x, ++all) {
+      const auto at =
+          4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) + static_cast<std::size_t>(x));
+      int most = 0;
+      for (std::size_t c = 0; c < 3; ++c)
+        most = std::max(most, std::abs(static_cast<int>(a.rgba[at + c]) - static_cast<int>(b.rgba[at + c])));
+      count += most > 8;
+    }
+  return static_cast<double>(count) / static_cast<double>(all);
+}
+
+// The screen when `what` holds of it and it no longer changes there; the last one after a minute. Many tenths
+// of a second on a busy machine: conditions, not times.
+template <class Condition>
+Image screen_when(const XServer& server, const plot::Rect& in, const Condition& what) {
+  Image last = server.screen();
+  int still = 0;
+  for (int i = 0; i < 600 && still < 3; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    Image now = server.screen();
+    still = what(now) && differing(last, now, in) == 0 ? still + 1 : 0;
+    last = std::move(now);
+  }
+  return last;
+}
+
+// The program's window; what it prints is in the file "log".
+pid_t open_window(const XServer& server, const ScratchDirectory& scratch, const std::string& arguments) {
+  // A sanitizer would report what the display's GL driver leaks (240 bytes, from a module that is unloaded by
+  // then); leaks of the panel are looked for where it is driven without a window.
+  return start("sh -c 'cd " + (scratch / "") + " && exec env ASAN_OPTIONS=detect_leaks=0 DISPLAY=" +
+               server.name() + " XDG_CONFIG_HOME=" + (scratch / "config") + " HOME=" + (scratch / "home") +
+               " " + UNFURL_PROGRAM + " view " + arguments + " >" + (scratch / "log") + " 2>&1'");
+}
+
+bool tools_installed() {
+  for (const char* program : {"Xvfb", "xdotool"}) {
+    if (installed(program)) continue;
+    WARN("not tested: " << program << " is not installed (apt-get install xvfb xdotool)");
+    return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -93,11 +182,7 @@ TEST_CASE("without a display the window says so in one line and names what works
 }
 
 TEST_CASE("a person opens the window, drags a slider, scrubs, saves, and closes it") {
-  for (const char* program : {"Xvfb", "xdotool"}) {
-    if (installed(program)) continue;
-    WARN("not tested: " << program << " is not installed (apt-get install xvfb xdotool)");
-    return;
-  }
+  if (!tools_installed()) return;
   const XServer server;
   const ScratchDirectory scratch;
   // Where everything is: the same panel without a window.
@@ -105,29 +190,46 @@ TEST_CASE("a person opens the window, drags a slider, scrubs, saves, and closes 
   PanelDriver twin(options);
   twin.state().export_path = "hoop6.toml";
   const plot::Rect slider = twin.panel().place("structure.post_length"),
-                   timeline = twin.panel().place("timeline");
+                   timeline = twin.panel().place("timeline"), view = twin.panel().place("view");
+  const Image alike = twin.picture();
   twin.key(Key::e);
   twin.frame();
   const plot::Rect save = twin.panel().place("save");
 
-  // A sanitizer would report what the display's GL driver leaks (240 bytes, from a module that is unloaded by
-  // then); leaks of the panel are looked for where it is driven without a window.
-  const std::string unfurl = std::string("env ASAN_OPTIONS=detect_leaks=0 DISPLAY=") + server.name() +
-                             " XDG_CONFIG_HOME=" + (scratch / "config") + " HOME=" + (scratch / "home") +
-                             " " + UNFURL_PROGRAM + " view hoop6 --ui-scale 1 --set solver.step=0.05 >" +
-                             (scratch / "log") + " 2>&1";
-  const pid_t window = start("sh -c 'cd " + (scratch / "") + " && exec " + unfurl + "'");
+  const pid_t window = open_window(server, scratch, "hoop6 --set solver.step=0.05");
   REQUIRE(server.tool("search --sync --name Unfurl") == 0);
-  // A screenshot by its key tells that the window answers; asked again until it does.
-  for (int i = 0; i < 40 && !std::filesystem::exists(scratch / "unfurl.png"); ++i) {
-    server.tool("mousemove 600 400 key s");
-    std::this_thread::sleep_for(std::chrono::milliseconds(250));
-  }
-  REQUIRE(appears(scratch / "unfurl.png"));
+  // While the motion is simulated the view is dimmed, its corner too; that is of one colour otherwise.
+  const auto corner = [&](const Image& a, const Image& b) {
+    return same_pixel(a, b, static_cast<int>(view.x1) - 4, static_cast<int>(view.y1) - 9);
+  };
+  // It shows what the panel without a window shows, but for the CPU time in the view's second line.
+  const plot::Rect motion{view.x0, view.y0 + 80, view.x1, view.y1};
+  const Image opened = screen_when(
+      server, view, [&](const Image& now) { return clearly_differing(alike, now, motion) < 0.01; });
+  REQUIRE(clearly_differing(alike, opened, motion) < 0.01);
+  REQUIRE(clearly_differing(alike, opened, slider) < 0.01);
+  server.tool("mousemove 600 400 key End");
+  const Image deployed = screen_when(server, view, [&](const Image& now) {
+    return differing(opened, now, view) > 0.01 && corner(opened, now);
+  });
+  CHECK(differing(opened, deployed, view) > 0.01);
 
-  server.tool("key End mousemove " + middle_of(slider, 0.5) +
-              " mousedown 1 mousemove_relative 20 0 mousemove_relative 30 0 mouseup 1");
-  server.tool("mousemove " + middle_of(timeline, 0.2) + " mousedown 1 mousemove_relative 100 0 mouseup 1");
+  server.tool("mousemove " + middle_of(slider, 0.5) +
+              " mousedown 1 mousemove_relative 20 0 mousemove_relative 30 0 mouseup 1 mousemove 600 400");
+  const Image longer = screen_when(server, view, [&](const Image& now) {
+    return differing(deployed, now, view) > 0.01 && corner(deployed, now);
+  });
+  // The number: some digits of it and the slider's grab. The picture: longer posts.
+  CHECK(differing(deployed, longer, slider) > 0.02);
+  CHECK(differing(deployed, longer, view) > 0.01);
+  CHECK(corner(deployed, longer));
+
+  server.tool("mousemove " + middle_of(timeline, 0.9) +
+              " mousedown 1 mousemove_relative -- -100 0 mousemove_relative -- -100 0 mouseup 1");
+  const Image scrubbed =
+      screen_when(server, view, [&](const Image& now) { return differing(longer, now, view) > 0.01; });
+  CHECK(differing(longer, scrubbed, view) > 0.01);
+  CHECK(differing(longer, scrubbed, slider) == 0);  // nothing but the time was changed
   server.tool("mousemove 600 400 key e");
   // The dialog opens when the window gets to it; asked again until it is there.
   for (int i = 0; i < 40 && !std::filesystem::exists(scratch / "hoop6.toml"); ++i) {
@@ -142,6 +244,39 @@ TEST_CASE("a person opens the window, drags a slider, scrubs, saves, and closes 
   server.tool("key Escape key ctrl+q");
   CHECK(end_of(window, 10) == 0);
   CHECK(file_text(scratch / "log") == "");
+}
+
+TEST_CASE("the window is as large as the monitor's fine pixels ask for, or as the user says") {
+  if (!tools_installed()) return;
+  // The top bar of panels of either scale, drawn without a window.
+  const auto panel = [](float scale) {
+    PanelOptions options;
+    options.scale = scale;
+    options.measure_errors = false;
+    PanelDriver twin(options);
+    twin.move(-1, -1);
+    return std::pair(twin.picture(), plot::Rect{0, 0, 330, twin.panel().place("undo").y1 + 4});
+  };
+  const auto coarse = panel(1), fine = panel(2);
+  const XServer server(192);
+  for (const bool told : {false, true}) {
+    const ScratchDirectory scratch;
+    const pid_t window = open_window(
+        server, scratch, std::string("hoop6 --set solver.step=0.05") + (told ? " --ui-scale 1" : ""));
+    REQUIRE(server.tool("search --sync --name Unfurl") == 0);
+    const auto& [fitting, top] = told ? coarse : fine;
+    const auto& other = (told ? fine : coarse).first;
+    const plot::Rect bar = top;
+    const Image& expected = fitting;
+    const Image seen = screen_when(
+        server, bar, [&](const Image& now) { return clearly_differing(now, expected, bar) < 0.005; });
+    INFO((told ? "--ui-scale 1" : "192 dpi"));
+    CHECK(clearly_differing(seen, expected, bar) < 0.005);
+    CHECK(clearly_differing(seen, other, bar) > 0.05);  // every letter is elsewhere
+    server.tool("mousemove 600 400 key ctrl+q");
+    CHECK(end_of(window, 10) == 0);
+    CHECK(file_text(scratch / "log") == "");
+  }
 }
 
 }  // namespace window_test

@@ -30,6 +30,7 @@ struct Run {
 const std::vector<Run>& runs() {
   static const std::vector<Run> all = [] {
     std::vector<Run> out;
+    REQUIRE(library_scenes().size() >= 6);
     for (const LibraryScene& entry : library_scenes()) {
       Scene scene = read_scene_file(entry.path, {});
       Simulation simulation = simulate(build_model(scene), scene.solver);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tests/support/gauss_panel.hpp"
+
 namespace unfurl::exact {
 
 // Per unit, with theta the fold angle and f the force on each hinge,
@@ -30,6 +32,11 @@ struct Hoop {
   // Gauss-Legendre with 10 points on panels that shrink towards u = 0, where near dead centre the integrand
   // varies on the scale of 90 deg - theta_0; doubled until nothing changes above round-off.
   double time(double theta) const {
+    const auto integrand = [&](double u) {
+      const double difference =
+          2 * std::cos(theta0() - 0.5 * u * u) * std::sin(0.5 * u * u);  // sin theta0 - sin theta
+      return 2 * u * std::sqrt(l1 * G(theta0() - u * u) / (2 * f * difference));
+    };
     const double end = std::sqrt(theta0() - theta);
     double previous = -1, sum = 0;
     for (int panels = 32; panels <= 4096; panels *= 2) {
@@ -37,7 +44,7 @@ struct Hoop {
       double hi = end;
       for (int p = 0; p < panels; ++p) {
         const double lo = p + 1 == panels ? 0.0 : hi * std::pow(1e-7, 1.0 / panels);
-        sum += panel(lo, hi);
+        sum += gauss_panel(integrand, lo, hi);
         hi = lo;
       }
       if (std::abs(sum - previous) < 1e-15 * sum) break;
@@ -57,24 +64,6 @@ struct Hoop {
     double theta = 0.5 * (lo + hi);
     for (int i = 0; i < 3; ++i) theta -= (time(theta) - t) * rate(theta);
     return theta;
-  }
-
- private:
-  double integrand(double u) const {
-    const double theta = theta0() - u * u;
-    const double difference =
-        2 * std::cos(theta0() - 0.5 * u * u) * std::sin(0.5 * u * u);  // sin theta0 - sin theta
-    return 2 * u * std::sqrt(l1 * G(theta) / (2 * f * difference));
-  }
-  double panel(double lo, double hi) const {
-    static const double x[5] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244,
-                                0.8650633666889845, 0.9739065285171717};
-    static const double w[5] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820,
-                                0.1494513491505806, 0.0666713443086881};
-    const double m = 0.5 * (lo + hi), r = 0.5 * (hi - lo);
-    double sum = 0;
-    for (int i = 0; i < 5; ++i) sum += w[i] * (integrand(m - r * x[i]) + integrand(m + r * x[i]));
-    return r * sum;
   }
 };
 

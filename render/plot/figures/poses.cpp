@@ -177,7 +177,7 @@ Figure poses_figure(const Simulation& run, const Diagnostics& diagnostics) {
   corner.scale_bar = bar_length(size.x());
   corner.scale_bar_label = plot::format_number(corner.scale_bar, 2) + " m";
   // Panels about 48 mm wide, as high as the motion is, with room for titles and caption.
-  f.height_mm = std::clamp(rows * (48.0 * size.y() / size.x() + 7.0) + 20.0, 60.0, 125.0);
+  f.height_mm = std::clamp(rows * (48.0 * size.y() / size.x() + 7.0) + 25.0, 60.0, 130.0);
   f.caption = view.flat ? "View of the plane of motion, drawn to one scale."
                         : "Axonometric view, drawn to one scale.";
   if (by_fraction) f.caption += " The poses are equal steps of the deployed fraction apart.";

@@ -95,9 +95,11 @@ Figure steps_figure(const Simulation& run, const Diagnostics& diagnostics) {
     std::vector<double> edges;
     for (double x = -0.5; x < most + 1; ++x) edges.push_back(x);
     add_bars(histogram(iterations, std::move(edges)), 1, right);
-    f.caption = std::to_string(h.size()) + " steps from " + plot::format_number(*lo, 3) + " s to " +
-                plot::format_number(*hi, 3) + " s, " + plot::format_number(mean(iterations), 3) +
-                " Newton iterations a step on average, " + plot::format_number(most, 3) +
+    const std::string shortest = plot::format_number(*lo, 3), longest = plot::format_number(*hi, 3);
+    f.caption = std::to_string(h.size()) + (h.size() == 1 ? " step" : " steps") +
+                (shortest == longest ? " of " : " from " + shortest + " s to ") + longest + " s, " +
+                plot::format_number(mean(iterations), 3) + " Newton iterations a step on average, " +
+                plot::format_number(most, 3) +
                 " at most; left: how many steps are how long, right: how many take how many iterations.";
   }
   f.caption += " " + method_sentence(run);

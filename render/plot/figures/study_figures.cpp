@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "render/plot/ticks.hpp"
@@ -13,19 +14,23 @@ using plot::format_number;
 
 // Colours, dashes and markers by the setting's place, so that a setting looks the same in every panel; no two
 // of sixteen have both dash and marker in common.
-Curve curve_of(const Study& study, std::size_t i, bool labelled, double MeasuredRun::*x,
-               double MeasuredRun::*y) {
+Curve looks_of(std::size_t i) {
   constexpr std::array markers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond};
   constexpr std::array dashes{Dash::solid, Dash::dashed, Dash::dash_dot, Dash::dotted};
-  const StudyCurve& from = study.curves[i];
   Curve c;
-  if (labelled) c.label = from.setting.name;
   c.color = static_cast<int>(i % (palette_size - 1));
   c.marker = markers[i % markers.size()];
   c.dash = dashes[i / markers.size() % dashes.size()];
+  return c;
+}
+
+// A member or function of the run over another; NaN where the run has no answer.
+template <class X>
+Curve curve_of(const Study& study, std::size_t i, X x, double MeasuredRun::*y) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const MeasuredRun& run : from.runs) {
-    c.x.push_back(run.*x);
+  Curve c = looks_of(i);
+  for (const MeasuredRun& run : study.curves[i].runs) {
+    c.x.push_back(static_cast<double>(std::invoke(x, run)));
     c.y.push_back(run.ok() ? run.*y : nan);
   }
   return c;
@@ -44,9 +49,8 @@ Panel key_panel(const Study& study) {
   Panel p;
   p.bare = true;
   for (std::size_t i = 0; i < study.curves.size(); ++i) {
-    p.curves.push_back(curve_of(study, i, true, &MeasuredRun::step, &MeasuredRun::step));
-    p.curves.back().x.clear();
-    p.curves.back().y.clear();
+    p.curves.push_back(looks_of(i));
+    p.curves.back().label = study.curves[i].setting.name;
   }
   return p;
 }
@@ -72,7 +76,7 @@ void add_floor(const Study& study, Panel& panel) {
 
 std::string span_sentence(const Study& study) {
   return "Motion from 0 to " + format_number(study.end, 4) + " s" +
-         (study.early ? ", just before the deployed pose" : "") + ". Reference: " + study.reference +
+         (study.before.empty() ? "" : ", just before " + study.before) + ". Reference: " + study.reference +
          ", certain to " + format_number(study.reference_uncertainty, 2) + " m.";
 }
 
@@ -92,13 +96,9 @@ Figure work_precision_figure(const Study& study, const std::string& scene) {
   Panel time = log_panel("CPU time (s)", "position error (m)");
   Panel solves = log_panel("linear solves", "position error (m)");
   for (std::size_t i = 0; i < study.curves.size(); ++i) {
-    time.curves.push_back(curve_of(study, i, false, &MeasuredRun::cpu_median, &MeasuredRun::position_error));
+    time.curves.push_back(curve_of(study, i, &MeasuredRun::cpu_median, &MeasuredRun::position_error));
     add_spread(study.curves[i], time.curves.back().color, time);
-    solves.curves.push_back(
-        curve_of(study, i, false, &MeasuredRun::cpu_median, &MeasuredRun::position_error));
-    Curve& c = solves.curves.back();
-    for (std::size_t k = 0; k < c.x.size(); ++k)
-      c.x[k] = static_cast<double>(study.curves[i].runs[k].linear_solves);
+    solves.curves.push_back(curve_of(study, i, &MeasuredRun::linear_solves, &MeasuredRun::position_error));
   }
   add_floor(study, time);
   f.panels = {std::move(time), std::move(solves), key_panel(study)};
@@ -121,10 +121,10 @@ Figure convergence_figure(const Study& study, const std::string& scene) {
   Panel energy = log_panel("step (s)", "energy error (J)");
   constraint.y.zeros_at_floor = energy.y.zeros_at_floor = true;
   for (std::size_t i = 0; i < study.curves.size(); ++i) {
-    position.curves.push_back(curve_of(study, i, false, &MeasuredRun::step, &MeasuredRun::position_error));
+    position.curves.push_back(curve_of(study, i, &MeasuredRun::step, &MeasuredRun::position_error));
     constraint.curves.push_back(
-        curve_of(study, i, false, &MeasuredRun::step, &MeasuredRun::constraint_relative_max));
-    energy.curves.push_back(curve_of(study, i, false, &MeasuredRun::step, &MeasuredRun::energy_error));
+        curve_of(study, i, &MeasuredRun::step, &MeasuredRun::constraint_relative_max));
+    energy.curves.push_back(curve_of(study, i, &MeasuredRun::step, &MeasuredRun::energy_error));
   }
   add_floor(study, position);
   constraint.lines.push_back({std::numeric_limits<double>::epsilon(), true, "round-off", 7});

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "render/plot/contours.hpp"
+#include "render/plot/figures/run_facts.hpp"
 #include "render/plot/ticks.hpp"
 
 namespace unfurl {
@@ -20,10 +21,7 @@ double value_of(const SweepPlan& plan, const std::vector<std::string>& row, std:
 }
 
 std::string count_sentence(const SweepPlan& plan, const Sweep& sweep) {
-  const std::size_t outcome = plan.axes.size();
-  const auto bad = std::count_if(sweep.table.rows.begin(), sweep.table.rows.end(), [&](const auto& row) {
-    return row[outcome] == "failed" || row[outcome] == "invalid";
-  });
+  const std::size_t bad = unanswered(plan, sweep);
   std::string text = std::to_string(sweep.table.rows.size()) + " runs";
   if (bad > 0) text += ", " + std::to_string(bad) + " of them without an answer (left out)";
   if (sweep.missing > 0) text += ", " + std::to_string(sweep.missing) + " more not done yet";
@@ -36,12 +34,30 @@ std::string file_name(std::string text) {
   return text;
 }
 
+// Values over more than three decades are read on a log axis; exact zeros then stand at its bottom edge.
+void set_scale(Panel& p) {
+  double least = std::numeric_limits<double>::infinity(), largest = 0;
+  for (const Curve& c : p.curves)
+    for (const double y : c.y) {
+      if (y < 0) return;
+      if (y > 0) least = std::min(least, y), largest = std::max(largest, y);
+    }
+  p.y.log = p.y.zeros_at_floor = largest > 1e3 * least;
+}
+
+// "Deployment time", of "deployment time (s)".
+std::string heading(const std::string& label) {
+  std::string text = label.substr(0, label.rfind(" ("));
+  if (text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
 // Curves over axis `across`, one per value of the other axis where there is one.
 Panel curve_panel(const SweepPlan& plan, const Sweep& sweep, std::size_t measure, std::size_t across) {
   constexpr std::array markers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond};
   const SweepAxis& axis = plan.axes[across];
   Panel p;
-  p.x.label = axis.key;
+  p.x.label = axis.title();
   p.x.log = axis.log;
   p.y.label = plan.measures[measure].label;
   const std::size_t families = plan.axes.size() == 2 ? plan.axes[1 - across].values.size() : 1;
@@ -49,7 +65,7 @@ Panel curve_panel(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
     Curve c;
     c.color = static_cast<int>(f);
     c.marker = markers[f % markers.size()];
-    if (families > 1) c.label = plan.axes[1 - across].key + " = " + plan.axes[1 - across].values[f];
+    if (families > 1) c.label = plan.axes[1 - across].title(f);
     for (std::size_t i = 0; i < axis.values.size(); ++i) {
       const auto row = std::find_if(sweep.table.rows.begin(), sweep.table.rows.end(), [&](const auto& r) {
         return r[across] == axis.values[i] &&
@@ -60,6 +76,7 @@ Panel curve_panel(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
     }
     p.curves.push_back(std::move(c));
   }
+  set_scale(p);
   return p;
 }
 
@@ -146,8 +163,10 @@ Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
   f.width_mm = 140;
   f.height_mm = 125;
   Panel map;
-  map.x = {.label = plan.axes[0].key, .log = plan.axes[0].log, .min = field.x.front(), .max = field.x.back()};
-  map.y = {.label = plan.axes[1].key, .log = plan.axes[1].log, .min = field.y.front(), .max = field.y.back()};
+  map.x = {
+      .label = plan.axes[0].title(), .log = plan.axes[0].log, .min = field.x.front(), .max = field.x.back()};
+  map.y = {
+      .label = plan.axes[1].title(), .log = plan.axes[1].log, .min = field.y.front(), .max = field.y.back()};
   std::vector<double> levels;
   if (range.lo < range.hi) {
     add_cells(field, range, map);
@@ -191,8 +210,13 @@ std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, con
       f.panels.push_back(curve_panel(plan, sweep, m, across));
     }
     f.name = "sweep_" + file_name(plan.measures[m].name);
-    f.title = plan.measures[m].label + ": " + scene;
+    f.title = heading(plan.measures[m].label) + ": " + scene;
     f.caption += count_sentence(plan, sweep);
+    if (f.panels[0].y.zeros_at_floor) {
+      std::vector<double> drawn;
+      for (const Curve& c : f.panels[0].curves) drawn.insert(drawn.end(), c.y.begin(), c.y.end());
+      f.caption += zeros_sentence(drawn);
+    }
     figures.push_back(std::move(f));
   }
   return figures;

@@ -5,6 +5,7 @@
 
 #include "core/scene/build.hpp"
 #include "core/study/study.hpp"
+#include "render/plot/ticks.hpp"
 #include "tests/app/panel/panel_driver.hpp"
 
 using namespace unfurl;
@@ -54,6 +55,51 @@ TEST_CASE("the page of studies measures speed against accuracy of the scene that
     CHECK(curve.y[i] == study.curves[0].runs[i].position_error);
 }
 
+TEST_CASE("the present run is on the study's figure of its motion, and moves as settings are changed") {
+  PanelDriver driver(PanelDriver::small(), "four_bar");
+  driver.key(Key::three);
+  driver.state().study.methods = {"dvm"};
+  driver.state().study.largest_step = 0.05;
+  driver.state().study.smallest_step = 0.025;
+  driver.click("start study");
+  finish_study(driver, nullptr);
+  const StudyOutcome& outcome = *driver.state().studied;
+  REQUIRE(outcome.study);
+  const auto now_of = [&](const Figure& figure) {
+    std::vector<Curve> found;
+    for (const Curve& curve : figure.panels.at(0).curves)
+      if (curve.label == "now") found.push_back(curve);
+    return found;
+  };
+  FigureCards cards;
+  const auto shown = [&] {
+    const PanelState& state = driver.state();
+    return *cards.study(state.studied, state.trade, state.trade_news, 200).at(0)->figure;
+  };
+  const TradePoint before = driver.state().trade.back();
+  REQUIRE(before.accuracy == Accuracy::known);
+  REQUIRE(now_of(shown()).size() == 1);
+  CHECK(now_of(shown())[0].x.at(0) == before.cpu_s);
+  CHECK(now_of(shown())[0].y.at(0) == before.position_error);
+  // The panel's steps of 0.05 s are not the study's; but a run with the study's own step has its error, whose
+  // largest value is at the end of both.
+  const StudyCurve& curve = outcome.study->curves.at(1);
+  driver.state().history.edit("solver.stages", static_cast<long>(curve.setting.options.stages));
+  driver.state().history.edit("solver.step", curve.runs.at(0).step);
+  driver.settle();
+  const TradePoint after = driver.state().trade.back();
+  CHECK(now_of(shown())[0].y.at(0) == after.position_error);
+  CHECK(after.position_error != before.position_error);
+  CHECK(after.position_error >= 0.99 * curve.runs[0].position_error);
+  // The trade's own card has the study's curves behind its points, in the same place.
+  const Figure trade = trade_figure(driver.state().trade, outcome.study.get());
+  CHECK(trade.panels.at(0).curves.at(1).y.at(0) == curve.runs[0].position_error);
+  // Of another motion neither knows anything.
+  driver.state().history.edit("gravity.acceleration", std::vector<double>{0, 0, -5});
+  driver.settle();
+  CHECK(now_of(shown()).empty());
+}
+
 TEST_CASE("a measure over a parameter comes to the page, and bad values say why") {
   PanelDriver driver;
   driver.key(Key::three);
@@ -70,7 +116,9 @@ TEST_CASE("a measure over a parameter comes to the page, and bad values say why"
   const Curve& curve = first->figures[0].panels.at(0).curves.at(0);
   CHECK(curve.x == std::vector<double>{50, 65, 80});
   CHECK(curve.y[0] < curve.y[2]);  // what is folded less is open sooner
-  driver.state().study.to = 95;    // the ring folds by less than 90 degrees
+  CHECK(first->sentence == "deployment time (s): from " + plot::format_number(curve.y[0], 4) +
+                               " (at 50) to " + plot::format_number(curve.y[2], 4) + " (at 80).");
+  driver.state().study.to = 95;  // the ring folds by less than 90 degrees
   driver.frame();
   driver.click("start study");
   finish_study(driver, first);

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "core/constraints/constraint.hpp"
+#include "tests/support/table_structure.hpp"
 
 using namespace unfurl;
 
@@ -14,10 +15,7 @@ namespace {
 // A structure that has at least one constraint of every kind. A new kind must be added here: the test fails
 // without.
 Structure sample() {
-  Structure s;
-  s.nodes = {
-      {"a", {0.1, 0.2, 0.3}}, {"b", {1.3, -0.4, 0.6}}, {"c", {0.7, 1.9, -0.8}}, {"d", {-0.6, 0.5, 1.1}}};
-  s.rods = {{"ab", 0, 1, 1.0, 1.5, "rod", 0.01, 1.0}, {"bc", 1, 2, 1.0, 2.0, "rod", 0.01, 1.0}};
+  Structure s = testing::table_structure();
   const Vec3 n = Vec3(1, 2, 2) / 3;
   s.constraints = {{"plane", "plane", {0}, {n}, 0.25},
                    {"line", "line", {1}, {n}, 0.0},
@@ -25,8 +23,6 @@ Structure sample() {
                    {"relation", "relation", {0, 1, 2}, {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, -1)}, 0.5},
                    {"collinear", "collinear", {0, 1, 2}, {}, 0.0},
                    {"coplanar", "coplanar", {0, 1, 2, 3}, {}, 0.0}};
-  s.deployment.fold_sine = {{0, 1}, {n, -n}, 0.3};
-  s.deployment.fold_cosine = {{1, 3}, {Vec3(0.5, 0, 1), n}, 1.2};
   const Measure measures[] = {
       {MeasureKind::coordinate, {2}, n, 0},           {MeasureKind::coordinate, {0, 3}, n, 0},
       {MeasureKind::length, {1, 3}, Vec3::Zero(), 0}, {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0},

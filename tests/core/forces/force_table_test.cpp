@@ -5,6 +5,7 @@
 
 #include "core/forces/force.hpp"
 #include "core/model/mass_matrix.hpp"
+#include "tests/support/table_structure.hpp"
 
 using namespace unfurl;
 
@@ -15,13 +16,8 @@ namespace {
 // A structure that has at least one force of every kind. A new kind must be added here: the test fails
 // without.
 Structure sample() {
-  Structure s;
-  s.nodes = {
-      {"a", {0.1, 0.2, 0.3}}, {"b", {1.3, -0.4, 0.6}}, {"c", {0.7, 1.9, -0.8}}, {"d", {-0.6, 0.5, 1.1}}};
-  s.rods = {{"ab", 0, 1, 1.0, 1.5, "rod", 0.01, 1.0}, {"bc", 1, 2, 1.0, 2.0, "rod", 0.01, 1.0}};
+  Structure s = testing::table_structure();
   const Vec3 n = Vec3(1, 2, 2) / 3;
-  s.deployment.fold_sine = {{0, 1}, {n, -n}, 0.3};
-  s.deployment.fold_cosine = {{1, 3}, {Vec3(0.5, 0, 1), n}, 1.2};
   s.gravity = {0, 1, -9.81};
   s.loads = {{1, {3, 4, 5}}};
   const auto add = [&](const char* kind, std::vector<int> nodes) -> Force& {

@@ -4,19 +4,13 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "tests/support/sparse_rows.hpp"
+
 using namespace unfurl;
 
 namespace linear_elimination_test {
 
-namespace {
-
-SparseRows rows(const MatrixXd& A) {
-  SparseRows S = A.sparseView(1.0, 0.0);
-  S.makeCompressed();
-  return S;
-}
-
-}  // namespace
+using testing::sparse_rows;
 
 TEST_CASE("elimination spans exactly the solutions and names dependent rows") {
   MatrixXd A(5, 6);
@@ -27,7 +21,7 @@ TEST_CASE("elimination spans exactly the solutions and names dependent rows") {
       0, 0, 0, 4, 0, 2;   // twice the fourth, with another right-hand side
   VectorXd b(5);
   b << 1, 2, 3, 4, 9;
-  const LinearElimination e = eliminate(rows(A), b);
+  const LinearElimination e = eliminate(sparse_rows(A), b);
   CHECK(e.redundant == std::vector<int>{2});
   CHECK(e.inconsistent == std::vector<int>{4});
   REQUIRE(e.B.cols() == 3);
@@ -52,7 +46,8 @@ TEST_CASE(
   const VectorXd b = VectorXd::Zero(n);
   std::vector<char> must(n + 1, 0);
   must[n] = 1;
-  const LinearElimination all = eliminate(rows(A), b), some = eliminate_sparsely(rows(A), b, must, 3);
+  const LinearElimination all = eliminate(sparse_rows(A), b),
+                          some = eliminate_sparsely(sparse_rows(A), b, must, 3);
   CHECK(all.B.cols() == 1);
   CHECK(all.kept.empty());
   CHECK(!some.kept.empty());

@@ -4,17 +4,15 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "tests/support/sparse_rows.hpp"
+
 using namespace unfurl;
 
 namespace saddle_solver_test {
 
-namespace {
+using testing::sparse_rows;
 
-SparseRows sparse(const MatrixXd& A) {
-  SparseRows S = A.sparseView(1.0, 0.0);
-  S.makeCompressed();
-  return S;
-}
+namespace {
 
 // Random M (diagonally dominant, positive definite) and G with some rows repeated.
 struct Problem {
@@ -47,8 +45,8 @@ TEST_CASE("the saddle-point solver agrees with a dense rank-revealing solve, red
   for (unsigned seed = 1; seed <= 20; ++seed)
     for (int repeated : {0, 3}) {
       const Problem p = random_problem(24, 10, repeated, seed);
-      SaddleSolver solver(sparse(p.M), sparse(p.G));
-      REQUIRE(solver.factorise(sparse(p.G)));
+      SaddleSolver solver(sparse_rows(p.M), sparse_rows(p.G));
+      REQUIRE(solver.factorise(sparse_rows(p.G)));
       VectorXd x(p.f.size()), y(p.g.size());
       const double residual = solver.solve(p.f, p.g, x, y);
       MatrixXd K = MatrixXd::Zero(34 + repeated, 34 + repeated);
@@ -68,8 +66,8 @@ TEST_CASE("the saddle-point solver agrees with a dense rank-revealing solve, red
 TEST_CASE("multipliers of repeated rows come with least norm") {
   MatrixXd M = MatrixXd::Identity(2, 2), G(3, 2);
   G << 1, 0, 1, 0, 1, 0;  // one rod three times: each carries a third
-  SaddleSolver solver(sparse(M), sparse(G));
-  REQUIRE(solver.factorise(sparse(G)));
+  SaddleSolver solver(sparse_rows(M), sparse_rows(G));
+  REQUIRE(solver.factorise(sparse_rows(G)));
   VectorXd x(2), y(3);
   solver.solve(Eigen::Vector2d(3, 5), VectorXd::Zero(3), x, y);
   // Round-off in directions without rank is 1e-16 / e = 1e-6.
@@ -80,8 +78,8 @@ TEST_CASE("multipliers of repeated rows come with least norm") {
 
 TEST_CASE("several right-hand sides at once give what each gives alone") {
   const Problem p = random_problem(30, 12, 2, 7);
-  SaddleSolver solver(sparse(p.M), sparse(p.G), 7);
-  REQUIRE(solver.factorise(sparse(p.G)));
+  SaddleSolver solver(sparse_rows(p.M), sparse_rows(p.G), 7);
+  REQUIRE(solver.factorise(sparse_rows(p.G)));
   const int columns = 7;
   std::vector<double> f(30 * columns), g(14 * columns);
   for (int i = 0; i < 30; ++i)

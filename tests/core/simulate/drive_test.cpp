@@ -4,10 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/diagnostics/diagnostics.hpp"
 #include "core/integrators/integrator.hpp"
-#include "core/scene/build.hpp"
-#include "core/scene/reader.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -15,16 +13,7 @@ namespace drive_test {
 
 namespace {
 
-Simulation run_scene(const std::string& text, const std::vector<std::string>& changes = {}) {
-  const Scene scene = read_scene_text(text, "test.toml", changes);
-  return simulate(build_model(scene), scene.solver);
-}
-
-double largest(const Diagnostics& d, const char* column) {
-  double m = 0;
-  for (const double x : d.at(column).values) m = std::max(m, std::abs(x));
-  return m;
-}
+using testing::largest, testing::run_scene;
 
 std::string error_of(const std::string& text, const std::vector<std::string>& changes = {}) {
   try {
@@ -111,6 +100,7 @@ TEST_CASE("a crank at a constant rate goes round and round") {
   REQUIRE(run.status == RunStatus::completed);
   const VectorXd x = run.trajectory.positions(run.trajectory.size() - 1);
   const double theta = pi / 2 + 4 * pi * (2.5 - 0.25);
+  // The place is imposed, whatever the step: round-off of an angle of 30 rad, times 2 m, a hundredfold.
   CHECK(x[6] == Approx(2 * std::cos(theta)).margin(1e-11));
   CHECK(x[7] == Approx(2 * std::sin(theta)).margin(1e-11));
 }
@@ -121,6 +111,7 @@ TEST_CASE("a table is followed through its points; one that begins elsewhere is 
                                           "structure.constraints.motor.values=[90, 120, 100]"};
   const Simulation run = run_scene(crank, table);
   REQUIRE(run.status == RunStatus::completed);
+  // Imposed too: round-off of 2 m, a thousandfold.
   CHECK(run.trajectory.positions(50)[6] == Approx(2 * std::cos(120 * radians_per_degree)).margin(1e-12));
   CHECK(run.trajectory.positions(100)[6] == Approx(2 * std::cos(100 * radians_per_degree)).margin(1e-12));
   auto wrong = table;

@@ -83,6 +83,7 @@ TEST_CASE("extremes: rods that repeat others change nothing") {
   check_sound(out);
   REQUIRE(out.status == RunStatus::completed);
   const double phi = exact::FourBarLadder{2, 3.0}.angle(3.0);
+  // Order 6 at 3 rad/s and h = 0.01 s leaves (0.03)^6 = 1e-9 of a radian a turn; a hundredfold.
   CHECK((out.q.segment<3>(3) - Vec3(std::sin(phi), std::cos(phi), 0)).norm() <= 1e-7);
 }
 

@@ -2,9 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/diagnostics/diagnostics.hpp"
-#include "core/scene/build.hpp"
-#include "core/scene/reader.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -12,16 +10,10 @@ namespace spring_motion_test {
 
 namespace {
 
-Simulation run_scene(const std::string& text, const std::vector<std::string>& changes = {}) {
-  const Scene scene = read_scene_text(text, "test.toml", changes);
-  return simulate(build_model(scene), scene.solver);
-}
+using testing::run_scene;
 
 double largest(const Simulation& run, const char* column) {
-  double m = 0;
-  const Diagnostics d = diagnose(run);
-  for (const double x : d.at(column).values) m = std::max(m, std::abs(x));
-  return m;
+  return testing::largest(diagnose(run), column);
 }
 
 // A mass of 2 kg on the x axis, 1.5 m from its anchor, on a spring of 50 N/m and free length 1 m.

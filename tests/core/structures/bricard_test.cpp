@@ -44,6 +44,7 @@ TEST_CASE("a Bricard loop opens as its energy quadrature says") {
     INFO(twist << ", " << opening << ": " << run.message);
     REQUIRE(run.status == RunStatus::deployed);
     const Diagnostics d = diagnose(run);
+    // Round-off of coordinates up to ten times a pin's length.
     CHECK(largest(d.at("constraint_relative_max")) <= 1e-13);
     const double end = d.t.back();
     for (std::size_t i = 10; i < d.t.size(); i += d.t.size() / 7) {

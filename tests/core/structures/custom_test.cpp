@@ -117,6 +117,11 @@ TEST_CASE("each mistake is found, with its place and its cure") {
     spec.rods.push_back(rod("A", "Bb"));
     CHECK(problems_of(spec) == "rods[3].nodes: there is no node 'Bb'; did you mean 'B'?\n");
   }
+  SECTION("a rod to nowhere from a node that has no mass but the rod's") {
+    spec.nodes.push_back(node("D", {9, 9, 9}, 0.0));
+    spec.rods.push_back(rod("D", "Bb"));
+    CHECK(problems_of(spec) == "rods[3].nodes: there is no node 'Bb'; did you mean 'B'?\n");
+  }
   SECTION("a rod to itself") {
     spec.rods.push_back(rod("A", "A"));
     CHECK(problems_of(spec) == "rods[3].nodes: a rod from 'A' to itself\n");

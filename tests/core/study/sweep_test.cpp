@@ -56,6 +56,25 @@ TEST_CASE("a sweep finds the deployment times of the exact ring, on any number o
   CHECK(shard.table.rows[0] == sweep.table.rows[1]);
 }
 
+TEST_CASE("axes of figures are called by words and units") {
+  const auto titles = [](const char* scene, std::vector<std::string> overrides, const char* axis) {
+    SweepPlan plan{{find_scene(scene), std::move(overrides)}, {parse_axis(axis)}, {}, {}};
+    plan.measures.push_back(find_measure("deploy_time"));
+    check_plan(plan);
+    return std::pair(plan.axes[0].title(), plan.axes[0].title(0));
+  };
+  using Pair = std::pair<std::string, std::string>;
+  CHECK(titles("hoop6", {}, "structure.fold_angle=30:80:3") ==
+        Pair("fold angle (\u00B0)", "fold angle = 30\u00B0"));
+  CHECK(titles("hoop6", {"solver.step=0.02"}, "solver.step=0.01,0.05") ==
+        Pair("solver step (s)", "solver step = 0.01 s"));
+  CHECK(titles("hoop6", {}, "solver.method=dvm,rk4") == Pair("solver method", "solver method = dvm"));
+  CHECK(titles("pendulum", {}, "gravity.acceleration[2]=-9.81,0").first ==
+        "gravity acceleration[2] (m/s\u00B2)");
+  CHECK(titles("four_bar", {"structure.nodes.A.mass=1"}, "structure.nodes.B.mass=1:2:3").first ==
+        "nodes B mass (kg)");
+}
+
 TEST_CASE("unknown measures and keys are named") {
   CHECK_THROWS_WITH(find_measure("deploytime"), Catch::Contains("did you mean 'deploy_time'"));
   CHECK_THROWS_WITH(find_measure("max:kinetic_energy"), Catch::Contains("did you mean 'kinetic_energy_J'"));

@@ -130,6 +130,7 @@ TEST_CASE("equal scales are equal", "[figure]") {
 }
 
 TEST_CASE("legends hide no data", "[figure]") {
+  std::size_t inside = 0, above = 0;
   for (const Figure& figure : sample_figures()) {
     const plot::FigureLayout layout = plot::lay_out(figure);
     for (std::size_t i = 0; i < layout.panels.size(); ++i) {
@@ -138,14 +139,18 @@ TEST_CASE("legends hide no data", "[figure]") {
       CAPTURE(figure.name, i);
       if (!p.legend->inside) {
         CHECK(p.legend->box.y1 <= p.frame.y0);
+        ++above;
         continue;
       }
+      ++inside;
       CHECK(p.frame.contains(p.legend->box));
       for (const auto& pieces : p.curves)
         for (const auto& line : pieces)
           for (const auto& at : line) CHECK_FALSE(p.legend->box.contains({at.x, at.y, at.x, at.y}));
     }
   }
+  CHECK(inside > 0);
+  CHECK(above > 0);
 }
 
 }  // namespace unfurl

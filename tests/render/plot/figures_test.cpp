@@ -58,9 +58,11 @@ TEST_CASE("every figure of the table is found by its name and names its file", "
 }
 
 TEST_CASE("figures of real runs are in order", "[figures]") {
+  std::set<std::string_view> drawn;
   for (const Run* r : {&hoop(), &sector(), &pendulum(), &sheet()}) {
     for (const FigureKind& kind : figure_kinds()) {
       if (!kind.applies(r->simulation, r->diagnostics)) continue;
+      drawn.insert(kind.name);
       CAPTURE(kind.name, r->simulation.trajectory.structure().kind);
       const Figure figure = r->figure(kind.name);
       CHECK(plot::twins(figure) == std::vector<std::string>{});
@@ -70,6 +72,7 @@ TEST_CASE("figures of real runs are in order", "[figures]") {
       }
     }
   }
+  CHECK(drawn.size() == figure_kinds().size());  // every kind was judged
 }
 
 TEST_CASE("the phase portrait runs from the released fold angle at rest to the deployed pose", "[figures]") {
@@ -86,6 +89,7 @@ TEST_CASE("the phase portrait runs from the released fold angle at rest to the d
 
 TEST_CASE("the histogram of steps counts every step once", "[figures]") {
   const Figure f = hoop().figure("steps");
+  REQUIRE(f.panels.size() == 2);
   for (const Panel& p : f.panels) {
     double sum = 0;
     const std::vector<double>& counts = p.bands.at(0).upper;  // each bar has two points and a gap
@@ -218,7 +222,9 @@ TEST_CASE("a plane mechanism is seen along its normal", "[figures]") {
   Structure structure = build_custom(spec);
   structure.gravity = {0, 0, -9.81};
   const Run r = run(structure, 0.02, 1.0);
-  for (const Panel& p : r.figure("poses").panels) {
+  const Figure poses = r.figure("poses");
+  REQUIRE(poses.panels.size() == 6);
+  for (const Panel& p : poses.panels) {
     const Segment& s = p.segments.at(0);
     CHECK(std::hypot(s.x1 - s.x0, s.y1 - s.y0) ==
           Approx(1).epsilon(1e-6));  // true length; cubic between the steps

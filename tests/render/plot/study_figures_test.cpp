@@ -116,6 +116,24 @@ TEST_CASE("figures of a sweep are in order in every style: curves, families of c
   }
 }
 
+TEST_CASE("a sweep over decades is drawn on a log axis, and its axes tell their units", "[figures]") {
+  SweepPlan plan{{find_scene("hoop6_sector"), {}}, {parse_axis("solver.step=0.02:0.1:4:log")}, {}, {}};
+  plan.measures = {find_measure("energy_error"), find_measure("deploy_time")};
+  check_plan(plan);
+  Sweep sweep{{plan.columns(), {}}};
+  for (std::size_t i = 0; i < 4; ++i)
+    sweep.table.rows.push_back(
+        {plan.axes[0].values[i], "deployed", i == 0 ? "0" : "1e-" + std::to_string(3 * i), "4.9"});
+  const std::vector<Figure> figures = sweep_figures(plan, sweep, "Ring");
+  REQUIRE(figures.size() == 2);
+  CHECK(figures[0].panels[0].y.log);
+  CHECK(figures[0].caption == "4 runs. One exact zero is drawn at the bottom edge.");
+  CHECK(figures[0].title == "Energy error: Ring");
+  CHECK_FALSE(figures[1].panels[0].y.log);
+  CHECK(figures[1].caption == "4 runs.");
+  for (const Figure& figure : figures) CHECK(figure.panels[0].x.label == "solver step (s)");
+}
+
 TEST_CASE("the table of a map has a row for every cell", "[figures]") {
   SweepPlan plan{{find_scene("hoop6_sector"), {"solver.step=0.05"}}, {}, {}, {}};
   for (const char* axis : {"structure.fold_angle=40:80:5", "structure.hinge_force=100:400:5"})

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/export/xml_text.hpp"
 #include "render/plot/style.hpp"
 #include "render/plot/svg_canvas.hpp"
 #include "render/plot/write_figure.hpp"
@@ -56,13 +57,12 @@ TEST_CASE("every figure is well-formed SVG with its labels as text", "[svg]") {
     CHECK(xml_fault(svg) == "");
     CHECK(svg.find("width=\"160mm\"") != std::string::npos);
     CHECK(svg.find("DejaVu Sans") != std::string::npos);
-    CHECK(svg.find(">" + plot::escape_xml(figure.title) + "</text>") != std::string::npos);
+    CHECK(svg.find(">" + xml_text(figure.title) + "</text>") != std::string::npos);
     CHECK(svg.find("nan") == std::string::npos);
     CHECK(svg.find("inf") == svg.find("infinities"));  // only as a word of the labels
     for (const Panel& p : figure.panels)
       for (const Curve& c : p.curves)
-        CHECK(
-            (c.label.empty() || svg.find(">" + plot::escape_xml(c.label) + "</text>") != std::string::npos));
+        CHECK((c.label.empty() || svg.find(">" + xml_text(c.label) + "</text>") != std::string::npos));
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "render/plot/svg_canvas.hpp"
+#include "core/model/utf8.hpp"
 #include "render/ui/fonts.hpp"
 
 namespace unfurl::plot {
@@ -49,6 +49,11 @@ TEST_CASE("wrapped lines fit and lose no word", "[text]") {
   CHECK(joined == text);
   CHECK(lines.size() > 2);
   CHECK(wrap_text("", 7, 80).empty());
+  for (double width = 20; width < 120; width += 5)  // wherever lines end, a number keeps its unit
+    for (const std::string& line : wrap_text("From 0.01 s to 29 units of 4.5 m.", 7, width)) {
+      CAPTURE(width, line);
+      CHECK_FALSE((line.back() >= '0' && line.back() <= '9'));
+    }
   CHECK(text_width(wrap_text("unbreakable_word_that_is_far_too_long", 7, 50).at(0), 7) <= 50);
 }
 
@@ -69,12 +74,6 @@ TEST_CASE("boxes follow anchor and direction", "[text]") {
   CHECK(up.y1 == Approx(50));
   CHECK(up.y0 == Approx(50 - w));  // reads upwards
   CHECK(up.x0 < 100);
-}
-
-TEST_CASE("what XML does not allow is escaped or left out", "[text]") {
-  CHECK(escape_xml("a<b>&\"c\"") == "a&lt;b&gt;&amp;&quot;c&quot;");
-  CHECK(escape_xml("tab\there\x01\xFF end") == "tabhere end");
-  CHECK(escape_xml("10\u207B\u00B9 \u03B8") == "10\u207B\u00B9 \u03B8");
 }
 
 }  // namespace unfurl::plot

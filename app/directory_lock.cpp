@@ -1,0 +1,44 @@
+#include "app/directory_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <thread>
+
+#include "core/export/atomic_file.hpp"
+
+namespace unfurl {
+
+DirectoryLock::DirectoryLock(const std::filesystem::path& directory, Use use)
+    : file_(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  using namespace std::chrono_literals;
+  for (int attempt = 0; attempt < 20; ++attempt) {  // who begins to share holds it alone for a moment
+    if (attempt > 0) std::this_thread::sleep_for(50ms);
+    if (take(LOCK_EX)) return;
+    if (use == Use::shareable && take(LOCK_SH)) {
+      alone_ = false;
+      return;
+    }
+  }
+  ::close(file_);
+  throw FileError(directory,
+                  "another unfurl is writing into it; wait until it has finished, or use another -o");
+}
+
+DirectoryLock::~DirectoryLock() {
+  if (file_ >= 0) ::close(file_);
+}
+
+bool DirectoryLock::take(int mode) {
+  return file_ < 0 || ::flock(file_, mode | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+void DirectoryLock::share() {
+  take(LOCK_SH);
+  alone_ = false;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,158 @@
+// Speed against accuracy beside the view: true errors, of the motion that is shown.
+#include "app/panel/trade.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "app/panel/comparison.hpp"
+#include "render/plot/ticks.hpp"
+#include "tests/app/panel/panel_driver.hpp"
+#include "tests/support/four_bar_exact.hpp"
+
+using namespace unfurl;
+
+namespace trade_test {
+
+namespace {
+
+// The ladder of two windows over its first one and a half seconds, 1 m/s at the start.
+struct LadderPanel : PanelDriver {
+  LadderPanel() : PanelDriver(small(), "ladder") { change("solver.end_time", 1.5); }
+  void change(const std::string& key, ParamValue value) {
+    state().history.edit(key, std::move(value));
+    settle();
+  }
+  const TradePoint& now() { return state().trade.back(); }
+};
+
+double true_error(const LiveRun& run, double speed) {
+  const exact::FourBarLadder exact{2, speed};
+  const Trajectory& trajectory = run.simulation.trajectory;
+  double largest = 0;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const double phi = exact.angle(trajectory.time(i));
+    const Vec3 head(std::sin(phi), std::cos(phi), 0);
+    largest = std::max(largest, (trajectory.node_positions(i).segment<3>(3) - head).norm());
+  }
+  return largest;
+}
+
+std::vector<Curve> labelled(const Figure& figure, const std::string& label) {
+  std::vector<Curve> found;
+  for (const Curve& curve : figure.panels.at(0).curves)
+    if (curve.label == label) found.push_back(curve);
+  return found;
+}
+
+TradePoint point(const char* method, const char* motion, double cpu_s, double position_error) {
+  return {.method = method,
+          .setting = method,
+          .cpu_s = cpu_s,
+          .error = 1e-3,
+          .motion = std::make_shared<const std::string>(motion),
+          .accuracy = std::isnan(position_error) ? Accuracy::waiting : Accuracy::known,
+          .position_error = position_error,
+          .uncertainty = 1e-14};
+}
+
+const double none = std::nan("");
+
+}  // namespace
+
+TEST_CASE("the trade's diamond is at the present run's CPU time and true position error") {
+  LadderPanel panel;
+  for (const long stages : {2L, 3L, 4L}) {
+    panel.change("solver.stages", stages);
+    REQUIRE(panel.now().accuracy == Accuracy::known);
+    // What is left is round-off of the exact motion's own evaluation.
+    CHECK(panel.now().position_error ==
+          Approx(true_error(*panel.state().shown, 1.0)).margin(2 * panel.now().uncertainty + 1e-12));
+    const Figure figure = trade_figure(panel.state().trade);
+    CHECK(figure.panels.at(0).y.label == "position error (m)");
+    const Curve diamond = labelled(figure, "now").at(0);
+    CHECK(diamond.x.at(0) == panel.now().cpu_s);
+    CHECK(diamond.y.at(0) == panel.now().position_error);
+  }
+  // More stages, smaller errors: what the user is to see.
+  const auto& trade = panel.state().trade;
+  const std::size_t n = trade.size();
+  CHECK(trade[n - 3].position_error > 10 * trade[n - 2].position_error);
+  CHECK(trade[n - 2].position_error > 10 * trade[n - 1].position_error);
+  CHECK(point_caption(panel.now()).find("energy error") != std::string::npos);
+  CHECK(point_caption(panel.now()).find("position error") != std::string::npos);
+  CHECK(panel.panel().has_place("trade now"));
+  CHECK(panel.panel().has_place("trade sentence"));
+}
+
+TEST_CASE("a change of the motion takes its own reference; points of the old motion step back") {
+  LadderPanel panel;
+  panel.change("solver.stages", 3L);
+  const std::size_t before = panel.state().trade.size();
+  panel.change("structure.speed", 3.0);
+  REQUIRE(panel.now().accuracy == Accuracy::known);
+  CHECK(panel.now().position_error ==
+        Approx(true_error(*panel.state().shown, 3.0)).margin(2 * panel.now().uncertainty + 1e-12));
+  const Figure figure = trade_figure(panel.state().trade);
+  CHECK(labelled(figure, "other motions").at(0).x.size() == 2 * before);  // each with a gap behind it
+  CHECK(labelled(figure, "dvm").at(0).x.size() == 2);                     // the present one alone
+  CHECK(figure.panels[0].curves.at(0).x.size() == 1);                     // and nothing for the trail to join
+}
+
+TEST_CASE("a comparison has the position errors of both runs") {
+  LadderPanel panel;
+  panel.key(Key::p);
+  panel.change("solver.stages", 2L);
+  const auto& trade = panel.state().trade;
+  const TradePoint* a = point_of(trade, *panel.state().pinned);
+  const TradePoint* b = point_of(trade, *panel.state().shown);
+  REQUIRE(a);
+  REQUIRE(b);
+  const auto rows = compare(*panel.state().pinned, *panel.state().shown, a, b);
+  const auto row =
+      std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r.label == "position error"; });
+  REQUIRE(row != rows.end());
+  CHECK(row->a == plot::format_number(a->position_error, 4) + " m");
+  CHECK(row->b == plot::format_number(b->position_error, 4) + " m");
+  CHECK(row->a != row->b);
+  for (const auto& each : compare(*panel.state().pinned, *panel.state().shown))
+    CHECK(each.label != "position error");
+}
+
+TEST_CASE(
+    "while an error is measured the present run is a line at its CPU time, on the axis that was there") {
+  std::vector<TradePoint> points{point("dvm", "m", 0.01, 1e-5), point("rk4", "m", 0.02, none)};
+  Figure figure = trade_figure(points);
+  CHECK(figure.panels.at(0).y.label == "position error (m)");
+  CHECK(labelled(figure, "now").empty());
+  REQUIRE(figure.panels[0].lines.size() == 1);
+  CHECK_FALSE(figure.panels[0].lines[0].horizontal);
+  CHECK(figure.panels[0].lines[0].value == 0.02);
+  CHECK(std::isnan(mark_of(points[1], true, plot::PanelLayout()).y));
+  // At first, with nothing measured yet, and where nothing can be measured, it is the energy's error.
+  points = {point("dvm", "m", 0.01, none)};
+  CHECK(trade_figure(points).panels.at(0).y.label == "energy error (relative)");
+  points.push_back(point("rk4", "n", 0.02, 1e-6));
+  points.push_back(point("rk4", "m", 0.02, none));
+  points.back().run = 7;
+  note_error(points, {.run = 7, .why = "it would take some 50 s of CPU time"});
+  figure = trade_figure(points);
+  CHECK(figure.panels.at(0).y.label == "energy error (relative)");
+  CHECK(labelled(figure, "now").at(0).y.at(0) == 1e-3);
+  CHECK(present_sentence(points.back()).find("it would take some 50 s") != std::string::npos);
+  // A run that broke off has no error, but its motion's axis stays.
+  points.push_back(point("rk4", "n", 0.02, none));
+  points.back().run = 8;
+  points.insert(points.end() - 1, point("dvm", "n", 0.03, 1e-7));
+  note_error(points, {.run = 8, .uncertainty = 1e-14});
+  CHECK(points.back().accuracy == Accuracy::no_answer);
+  CHECK(trade_figure(points).panels.at(0).y.label == "position error (m)");
+}
+
+TEST_CASE("methods keep their colours whatever else is shown") {
+  const Figure one = trade_figure({point("rk4", "m", 0.01, 1e-5)});
+  const Figure two = trade_figure({point("dvm", "m", 0.01, 1e-5), point("rk4", "m", 0.01, 1e-5)});
+  CHECK(labelled(one, "rk4").at(0).color == labelled(two, "rk4").at(0).color);
+  CHECK(labelled(two, "dvm").at(0).color != labelled(two, "rk4").at(0).color);
+}
+
+}  // namespace trade_test
