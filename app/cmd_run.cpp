@@ -38,13 +38,13 @@ int cmd_run(const Arguments& arguments) {
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose(run);
+  const Diagnostics diagnostics = diagnose_run(run);
   if (!directory.empty() && !film) clear_old_results(directory);
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary;
-  return exit_code_of(run);
+  return exit_code_of(run, diagnostics);
 }
 
 }  // namespace unfurl
