@@ -59,7 +59,7 @@ int cmd_figure(const Arguments& arguments) {
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose(run);
+  const Diagnostics diagnostics = diagnose_run(run);
   if (arguments.names.size() == 2 && kinds.size() == 1) require_data(*kinds[0], scene, run, diagnostics);
   const auto writer =
       context ? std::make_unique<FigureWriter>(*context, options) : std::make_unique<FigureWriter>(options);
@@ -72,7 +72,7 @@ int cmd_figure(const Arguments& arguments) {
     return exit_interrupted;
   }
   report_run(run, diagnostics, arguments);
-  return exit_code_of(run);
+  return exit_code_of(run, diagnostics);
 }
 
 }  // namespace unfurl

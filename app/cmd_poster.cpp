@@ -59,7 +59,7 @@ int cmd_poster(const Arguments& arguments) {
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose(run);
+  const Diagnostics diagnostics = diagnose_run(run);
   const FrameStyle style = panel_style(scene, run, diagnostics);
   const Image poster = draw_poses(style, run.trajectory, static_cast<std::size_t>(arguments.poses),
                                   scene.render.supersample, *context);
@@ -69,7 +69,7 @@ int cmd_poster(const Arguments& arguments) {
   }
   write_png(output, poster, has_alpha(scene.render));
   report_run(run, diagnostics, arguments);
-  return exit_code_of(run);
+  return exit_code_of(run, diagnostics);
 }
 
 }  // namespace unfurl

@@ -38,7 +38,7 @@ int cmd_render(const Arguments& arguments) {
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose(run);
+  const Diagnostics diagnostics = diagnose_run(run);
   if (!folder.holds_this()) clear_old_results(directory);
   folder.claim();
   lock.share();
@@ -46,7 +46,7 @@ int cmd_render(const Arguments& arguments) {
   write_exports(formats, directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary << std::flush;
-  if (run.status == RunStatus::stopped) return exit_interrupted;
+  if (exit_code_of(run, diagnostics) == exit_interrupted) return exit_interrupted;
 
   FigureWriter writer(*context, style);
   if (!draw_frames(folder, scene, run, diagnostics, *context, arguments) ||
@@ -55,7 +55,7 @@ int cmd_render(const Arguments& arguments) {
     std::cerr << "unfurl: interrupted; what is finished is kept\n";
     return exit_interrupted;
   }
-  return exit_code_of(run);
+  return exit_code_of(run, diagnostics);
 }
 
 }  // namespace unfurl

@@ -12,10 +12,16 @@ namespace unfurl {
 
 namespace {
 
-// A film of the very motion that is run stays beside its data.
-bool holds_film_of(const std::filesystem::path& directory, const Scene& scene) {
+// A film of the very motion that is run stays beside its data; another one is not thrown away unasked.
+bool keeps_film(const std::filesystem::path& directory, const Scene& scene, bool force) {
   std::error_code error;
-  return std::filesystem::exists(directory / "film.json", error) && FilmFolder(directory, scene).holds_this();
+  if (!std::filesystem::exists(directory / "film.json", error)) return false;
+  const FilmFolder folder(directory, scene);
+  if (folder.holds_another() && !force)
+    throw FileError(directory,
+                    "holds the film of another scene (or of other settings, or drawn by another version); use "
+                    "--force to replace it, or another -o");
+  return folder.holds_this();
 }
 
 }  // namespace
@@ -28,16 +34,17 @@ int cmd_run(const Arguments& arguments) {
   auto model = build_model(scene);
   const OwnDirectory output(arguments.output, arguments.force);
   const std::filesystem::path& directory = output.path();
+  const bool film = !directory.empty() && keeps_film(directory, scene, arguments.force);
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose(run);
-  if (!directory.empty() && !holds_film_of(directory, scene)) clear_old_results(directory);
+  const Diagnostics diagnostics = diagnose_run(run);
+  if (!directory.empty() && !film) clear_old_results(directory);
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary;
-  return exit_code_of(run);
+  return exit_code_of(run, diagnostics);
 }
 
 }  // namespace unfurl

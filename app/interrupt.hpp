@@ -13,5 +13,7 @@ class InterruptGuard {
 };
 
 bool interrupted();
+// The flag went up at least this long ago: what is left of the work after a run is not worth waiting for.
+bool interrupted_for(double seconds);
 
 }  // namespace unfurl

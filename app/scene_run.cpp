@@ -30,6 +30,10 @@ double max_abs(const Series& series) {
   return largest;
 }
 
+bool waited_enough() {
+  return interrupted_for(1.0);
+}
+
 }  // namespace
 
 Scene scene_of(const Arguments& arguments) {
@@ -43,7 +47,7 @@ Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model
   hooks.progress = [&](double fraction) { progress.show(fraction); };
   hooks.cancelled = interrupted;
   Simulation run = simulate_as_asked(model, scene.solver, hooks);
-  record_singular_poses(run);
+  record_singular_poses(run, waited_enough);
   return run;
 }
 
@@ -85,7 +89,9 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {
   for (const auto& warnings : {run.warnings, accuracy_warnings(diagnostics)})
     for (const auto& warning : warnings) std::cerr << "unfurl: warning: " << warning << "\n";
-  if (run.status == RunStatus::failed) std::cerr << "unfurl: the solver failed: " << run.message << "\n";
+  if (run.status == RunStatus::failed)
+    std::cerr << "unfurl: the solver failed: " << run.message
+              << "; a smaller solver.step, or solver.adaptive = true, may get through\n";
   if (run.status == RunStatus::stopped) std::cerr << "unfurl: interrupted; what is finished is kept\n";
   if (arguments.quiet) return;
   std::ostringstream text;
@@ -96,9 +102,13 @@ void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arg
   std::cerr << text.str();
 }
 
-int exit_code_of(const Simulation& run) {
+Diagnostics diagnose_run(const Simulation& run) {
+  return diagnose(run, waited_enough);
+}
+
+int exit_code_of(const Simulation& run, const Diagnostics& diagnostics) {
   if (run.status == RunStatus::failed) return exit_solver_failed;
-  return run.status == RunStatus::stopped ? exit_interrupted : exit_ok;
+  return run.status == RunStatus::stopped || diagnostics.left_open > 0 ? exit_interrupted : exit_ok;
 }
 
 }  // namespace unfurl

@@ -44,6 +44,16 @@ class ConstraintBlock {
   virtual void jacobian(const double* q, double* g) const = 0;
   // f += scale * G(q)^T lambda, without forming G.
   virtual void add_force(const double* q, const double* lambda, double scale, double* f) const = 0;
+  // The same for several poses at once: entry i of pose c is q[i * stride + c], those of phi, lambda and f
+  // follow each other without gaps (interleaved.hpp), and every pose has its scale. False: not offered, ask
+  // pose by pose.
+  virtual bool values(int /*poses*/, const double* /*q*/, Index /*stride*/, double* /*phi*/) const {
+    return false;
+  }
+  virtual bool add_forces(int /*poses*/, const double* /*q*/, Index /*stride*/, const double* /*lambda*/,
+                          const double* /*scale*/, double* /*f*/) const {
+    return false;
+  }
   // phi_dd[row] = v^T Hess Phi_row v.
   virtual void bias(const double* q, const double* v, double* phi_dd) const = 0;
   // For each row a dense k x k matrix lambda_row * Hess Phi_row, column by column, k the length of its

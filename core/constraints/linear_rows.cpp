@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "core/math/interleaved.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -41,6 +43,15 @@ class LinearRows final : public ConstraintBlock {
       for (std::size_t i = 0; i < rows_[r].coordinates.size(); ++i)
         f[rows_[r].coordinates[i]] += scale * lambda[r] * rows_[r].coefficients[i];
   }
+  bool values(int poses, const double* q, Index stride, double* phi) const override {
+    with_columns(poses, [&](auto k) { values_of<k()>(q, stride, phi); });
+    return true;
+  }
+  bool add_forces(int poses, const double*, Index, const double* lambda, const double* scale,
+                  double* f) const override {
+    with_columns(poses, [&](auto k) { add_forces_of<k()>(lambda, scale, f); });
+    return true;
+  }
   void bias(const double*, const double*, double* phi_dd) const override {
     std::fill_n(phi_dd, rows_.size(), 0.0);
   }
@@ -50,6 +61,28 @@ class LinearRows final : public ConstraintBlock {
   }
 
  private:
+  template <int K>
+  void values_of(const double* q, Index stride, double* phi) const {
+    for (const Row& row : rows_) {
+      Lanes<K> sum = Lanes<K>::all(-row.value);
+      for (std::size_t i = 0; i < row.coordinates.size(); ++i)
+        sum = sum + row.coefficients[i] * Lanes<K>(q + row.coordinates[i] * stride);
+      sum.store(phi);
+      phi += K;
+    }
+  }
+  template <int K>
+  void add_forces_of(const double* lambda, const double* scale, double* f) const {
+    for (const Row& row : rows_) {
+      const Lanes<K> pull = Lanes<K>(scale) * Lanes<K>(lambda);
+      for (std::size_t i = 0; i < row.coordinates.size(); ++i) {
+        double* const to = f + static_cast<Index>(row.coordinates[i]) * K;
+        (Lanes<K>(to) + row.coefficients[i] * pull).store(to);
+      }
+      lambda += K;
+    }
+  }
+
   std::vector<Row> rows_;
 };
 

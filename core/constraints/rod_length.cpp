@@ -1,5 +1,7 @@
 #include "core/constraints/rod_length.hpp"
 
+#include "core/math/interleaved.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -53,6 +55,17 @@ class RodLength final : public ConstraintBlock {
     }
   }
 
+  bool values(int poses, const double* q, Index stride, double* phi) const override {
+    with_columns(poses, [&](auto k) { values_of<k()>(q, stride, phi); });
+    return true;
+  }
+
+  bool add_forces(int poses, const double* q, Index stride, const double* lambda, const double* scale,
+                  double* f) const override {
+    with_columns(poses, [&](auto k) { add_forces_of<k()>(q, stride, lambda, scale, f); });
+    return true;
+  }
+
   void bias(const double*, const double* v, double* phi_dd) const override {
     for (std::size_t r = 0; r < a_.size(); ++r) {
       double square = 0;
@@ -76,6 +89,36 @@ class RodLength final : public ConstraintBlock {
   }
 
  private:
+  template <int K>
+  void values_of(const double* q, Index stride, double* phi) const {
+    for (std::size_t r = 0; r < a_.size(); ++r, phi += K) {
+      const double* const xa = q + a_[r] * stride;
+      const double* const xb = q + b_[r] * stride;
+      const Lanes<K> dx = Lanes<K>(xb) - Lanes<K>(xa), dy = Lanes<K>(xb + stride) - Lanes<K>(xa + stride),
+                     dz = Lanes<K>(xb + 2 * stride) - Lanes<K>(xa + 2 * stride);
+      const double l = length_[r];
+      ((dx * dx + dy * dy + dz * dz - Lanes<K>::all(l * l)) / Lanes<K>::all(2.0 * l)).store(phi);
+    }
+  }
+
+  template <int K>
+  void add_forces_of(const double* q, Index stride, const double* lambda, const double* scale,
+                     double* f) const {
+    const Lanes<K> scales(scale);
+    for (std::size_t r = 0; r < a_.size(); ++r, lambda += K) {
+      const Lanes<K> tension = scales * Lanes<K>(lambda) / Lanes<K>::all(length_[r]);
+      const double* const xa = q + a_[r] * stride;
+      const double* const xb = q + b_[r] * stride;
+      double* const fa = f + static_cast<Index>(a_[r]) * K;
+      double* const fb = f + static_cast<Index>(b_[r]) * K;
+      for (int k = 0; k < 3; ++k) {
+        const Lanes<K> d = tension * (Lanes<K>(xb + k * stride) - Lanes<K>(xa + k * stride));
+        (Lanes<K>(fa + k * K) - d).store(fa + k * K);
+        (Lanes<K>(fb + k * K) + d).store(fb + k * K);
+      }
+    }
+  }
+
   std::vector<int> a_, b_;  // first coordinate of each end
   std::vector<double> length_;
   std::vector<std::string> name_;

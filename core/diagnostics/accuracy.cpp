@@ -26,6 +26,12 @@ double range(const Series& series) {
 }  // namespace
 
 std::vector<std::string> accuracy_warnings(const Diagnostics& d) {
+  if (d.left_open > 0) {
+    std::ostringstream text;
+    text << "the run was judged up to t = " << d.t[d.t.size() - std::min(d.left_open + 1, d.t.size())]
+         << " s only: what follows is empty in series and rod forces";
+    return {text.str()};
+  }
   std::vector<std::string> warnings;
   const double off = largest(d.at("energy_balance_J"));
   const double turned =

@@ -211,7 +211,19 @@ std::vector<std::string_view> diagnostic_names() {
   return names;
 }
 
-Diagnostics diagnose(const Simulation& run) {
+namespace {
+
+// The rows that were not looked at.
+void leave_open(const Trajectory& trajectory, Diagnostics& out) {
+  out.left_open = trajectory.size() - out.t.size();
+  while (out.t.size() < trajectory.size()) out.t.push_back(trajectory.time(out.t.size()));
+  for (Series& column : out.columns) column.values.resize(out.t.size(), nan);
+  out.axial_force.bottomRows(static_cast<Index>(out.left_open)).setConstant(nan);
+}
+
+}  // namespace
+
+Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
   const Trajectory& trajectory = run.trajectory;
   Diagnostics out;
   std::vector<const Row*> used;
@@ -227,32 +239,36 @@ Diagnostics diagnose(const Simulation& run) {
   const auto rods = static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
+  std::vector<double> scratch;
   const Model* model = nullptr;
   std::unique_ptr<Index1> index1;
   double first_energy = 0;
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+  for (std::size_t i = 0; i < trajectory.size() && !(cancelled && cancelled()); ++i) {
     const State& state = trajectory.state(i);
     if (model != &trajectory.model(i)) {
       model = &trajectory.model(i);
       index1 = std::make_unique<Index1>(model->system, true);
       lengths = model->system.all_lengths();
       phi.resize(lengths.size());
+      velocity_phi.resize(lengths.size());
     }
     const System& system = model->system;
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
     system.all_constraint_values(state.t, q, phi);
-    velocity_phi = system.all_jacobian(q) * v;
-    if (system.rheonomic()) velocity_phi -= system.all_target_rates(state.t);
-    const VectorXd lambda = multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
+    system.all_constraint_rates(state.t, q, v, velocity_phi, scratch);
+    const VectorXd lambda =
+        multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
     axial_forces(*model, lambda, force);
     out.axial_force.row(static_cast<Index>(i)) = force.transpose();
     if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
-    const Instant instant{run, i, state, q, v, phi, lengths, velocity_phi, force, acceleration, *model, flow, first_energy};
+    const Instant instant{run,          i,     state,        q,      v,    phi,         lengths,
+                          velocity_phi, force, acceleration, *model, flow, first_energy};
     out.t.push_back(state.t);
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
     add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
     drives.append(system, state.t, lambda);
   }
+  leave_open(trajectory, out);
   for (Series& column : out.columns)
     if (column.unit == "J")
       for (double& energy : column.values) energy *= trajectory.structure().sectors;

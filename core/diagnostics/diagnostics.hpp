@@ -1,6 +1,7 @@
 // What a run shows about itself, as series over its accepted steps. One function and one row per diagnostic.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,7 @@ struct Series {
 struct Diagnostics {
   std::vector<double> t;        // [s], one entry per state
   std::vector<Series> columns;  // in the table's order; each as long as t
+  std::size_t left_open = 0;    // states at the end that were not looked at: NaN
   MatrixXd axial_force;         // [states x rods of the solved model], tension positive [N]
   const Series* find(std::string_view name) const;  // nullptr where the scene has no such column
   const Series& at(std::string_view name) const;    // throws std::out_of_range
@@ -32,7 +34,8 @@ struct Diagnostics {
 // adds NAME.angle_rad NAME.torque_N_m NAME.power_W (or NAME.value_m NAME.force_N). deployed_fraction
 // axial_force_max_N axial_force_min_N step_s newton_iterations; fold columns only where the structure has a
 // fold angle. Then the structure's own lengths and, where it names strains, poisson_ratio.
-Diagnostics diagnose(const Simulation& run);
+// `cancelled` is asked before every state: once it says so, the rest stays NaN.
+Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled = {});
 
 // Names of all columns that a scene may have.
 std::vector<std::string_view> diagnostic_names();

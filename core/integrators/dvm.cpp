@@ -15,12 +15,11 @@ constexpr double wanted = 1.5, wanted_constraint = constraint_level_wanted, acce
 constexpr Index full_newton_unknowns = 2500;
 constexpr int max_frozen_iterations = 30;
 constexpr int slow_iterations = 8;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool is_small(const System& system, int stages) {
   return (system.solved_coordinates() + system.constraints()) * (stages - 1) <= full_newton_unknowns;
 }
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 class Dvm final : public Integrator {
  public:
@@ -35,6 +34,9 @@ class Dvm final : public Integrator {
     const Index n = system.solved_coordinates(), m = system.constraints();
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
+    previous_.setZero(n, c_.s - 1);
+    consistent_f_.setZero(n, c_.s - 1);
+    y_to_lambda_.setZero(c_.s - 1, c_.s - 1);
     for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_}) v->setZero(n);
     end_q_.setZero(system.coordinates());
     for (VectorXd* v : {&mu_, &rate_}) v->setZero(m);
@@ -49,11 +51,12 @@ class Dvm final : public Integrator {
   StepReport step(State& state, double h) override {
     StepReport report;
     eq_.start(state.t, state.z, state.w, h);
+    if (h != matrices_h_) set_matrices(h);
     predict(state, h);
     if (slow_)
       freeze_in_the_middle(report);
     else if (!frozen_)
-      freeze(eq_.node(0), report);
+      freeze(eq_.start_pose(), report);
     iterate(state, h, report);
     slow_ = report.newton_iterations > slow_iterations;
     if (report.ok()) finish(state, h, report);
@@ -69,12 +72,15 @@ class Dvm final : public Integrator {
 
  private:
   void analyse_mass();
+  void set_matrices(double h);
   void predict(const State& state, double h);
   void freeze(const ConstVec& q, StepReport& report);
   void freeze_in_the_middle(StepReport& report);
   void iterate(const State& state, double h, StepReport& report);
   bool frozen_iterations(StepReport& report);
   void correct(StepReport& report);
+  template <int K>
+  void correct_stages();
   void correct_at_ends(StepReport& report);
   void settle_end();
   void finish(State& state, double h, StepReport& report);
@@ -88,8 +94,9 @@ class Dvm final : public Integrator {
   SparseLdlt mass_factor_;  // ends variant only
   std::vector<double> rhs_f_, rhs_g_;
   VectorXd p1_, w1_, end_z_, end_q_, pull_, mu_, rate_, pose_, halfway_;
-  MatrixXd previous_, prolong_;
-  RowMajor consistent_f_;
+  Interleaved previous_, consistent_f_;
+  MatrixXd prolong_, momentum_to_f_, y_to_lambda_;  // -h C^-1; -C_kj / (h^2 b_k)
+  double matrices_h_ = 0;                           // the step that they are for
   double previous_h_ = 0;
   bool have_history_ = false;
   double left_constraint_ = 8.0;  // level of constraint error that weak modes may keep
@@ -112,6 +119,12 @@ void Dvm::analyse_mass() {
   mass_factor_.factorise(upper.valuePtr());
 }
 
+void Dvm::set_matrices(double h) {
+  matrices_h_ = h;
+  momentum_to_f_ = -h * c_.C_inverse;
+  for (int k = 0; k + 1 < c_.s; ++k) y_to_lambda_.row(k) = c_.C.row(k) / (-h * h * c_.b[k]);
+}
+
 // Prolong the last step's polynomial; at a start, fly on with the present velocity. Multipliers start from
 // the last step's end, which is solved afresh every step: prolonging stage multipliers would amplify their
 // round-off in directions where they are not unique.
@@ -119,11 +132,12 @@ void Dvm::predict(const State& state, double h) {
   if (have_history_) {
     const double ratio = h / previous_h_;
     if (std::abs(ratio - 1.0) < 1e-12)
-      eq_.dX.noalias() = previous_ * c_.extrapolation.transpose();
-    else {
+      prolong_ = c_.extrapolation;
+    else
       c_.extrapolate(ratio, prolong_);
-      eq_.dX.noalias() = previous_ * prolong_.transpose();
-    }
+    with_columns(c_.s - 1, [this](auto k) {
+      mix<k()>(previous_.data(), previous_.rows(), prolong_.data(), eq_.dX.data());
+    });
   } else {
     for (int j = 0; j + 1 < c_.s; ++j) eq_.dX.col(j) = (h * c_.basis.nodes()[j + 1]) * state.w;
   }
@@ -204,27 +218,33 @@ bool Dvm::frozen_iterations(StepReport& report) {
 // poses. Once the iteration no longer gains, the right-hand side is therefore replaced by what it can reach,
 // G times the motion it caused.
 void Dvm::correct(StepReport& report) {
-  const Index columns = c_.s - 1, n = eq_.dX.rows(), m = eq_.lambda.rows();
-  Eigen::Map<RowMajor> f(rhs_f_.data(), n, columns), g(rhs_g_.data(), m, columns);
-  f.noalias() = -eq_.h * (eq_.momentum * c_.C_inverse.transpose());
+  with_columns(c_.s - 1, [this](auto k) { correct_stages<k()>(); });
+  report.right_hand_sides += (careful_ ? 2 : 1) * (c_.s - 1);
+}
+
+template <int K>
+void Dvm::correct_stages() {
+  const Index n = eq_.dX.rows(), m = eq_.lambda.rows();
+  double* const f = rhs_f_.data();
+  double* const g = rhs_g_.data();
+  mix<K>(eq_.momentum.data(), n, momentum_to_f_.data(), f);
+  const double* const phi = eq_.phi.data();
   for (Index r = 0; r < m; ++r) {
-    const double noise = wanted_constraint * eq_.constraint_noise(r);
-    for (Index j = 0; j < columns; ++j)
-      g(r, j) = feed_ && std::abs(eq_.phi(r, j)) > noise ? -eq_.phi(r, j) : 0.0;
+    const double noise = feed_ ? wanted_constraint * eq_.constraint_noise(r) : infinity;
+    for (Index i = r * K; i < (r + 1) * K; ++i) g[i] = std::abs(phi[i]) > noise ? -phi[i] : 0.0;
   }
-  if (careful_) consistent_f_ = f;
-  saddle_.apply(rhs_f_.data(), rhs_g_.data(), static_cast<int>(columns));
-  report.right_hand_sides += static_cast<int>(columns);
+  if (careful_) std::copy(rhs_f_.begin(), rhs_f_.end(), consistent_f_.data());
+  saddle_.apply(f, g, K);
   if (careful_) {
-    g.noalias() = G_ * f;
-    f = consistent_f_;
-    saddle_.apply(rhs_f_.data(), rhs_g_.data(), static_cast<int>(columns));
-    report.right_hand_sides += static_cast<int>(columns);
+    multiply<K>(G_, f, g);
+    std::copy_n(consistent_f_.data(), rhs_f_.size(), f);
+    saddle_.apply(f, g, K);
   }
-  eq_.dX += f;
-  for (Index k = 0; k < columns; ++k)
-    for (Index j = 0; j < columns; ++j)
-      eq_.lambda.col(k) -= (c_.C(k, j) / (eq_.h * eq_.h * c_.b[k])) * g.col(j);
+  double* const dX = eq_.dX.data();
+  for (Index i = 0; i < n * K; ++i) dX[i] += f[i];
+  double* const lambda = eq_.lambda.data();
+  for (Index r = 0; r < m * K; r += K)
+    mixed<K>(Lanes<K>(lambda + r), g + r, y_to_lambda_.data()).store(lambda + r);
 }
 
 // One multiplier: Y_j = (C^-1)_j1 / (C^-1)_s1 y with y that of the last node; the other nodes follow from M
@@ -258,13 +278,15 @@ void Dvm::settle_end() {
     return phi.cwiseQuotient(system_.constraint_lengths()).lpNorm<Eigen::Infinity>();
   };
   if (eq_.phi.rows() == 0) return;
-  const double before = relative(eq_.phi.col(last));
-  if (!(before > settled)) return;
   Eigen::Map<VectorXd> dz(rhs_f_.data(), eq_.dX.rows()), phi(rhs_g_.data(), eq_.phi.rows());
+  phi = eq_.phi.col(last);
+  const double before = relative(phi);
+  if (!(before > settled)) return;
+  const double size = phi.lpNorm<Eigen::Infinity>();
   dz.setZero();
-  phi = -eq_.phi.col(last);
+  phi *= -1;
   saddle_.apply(dz.data(), phi.data(), 1);
-  if (!(dz.lpNorm<Eigen::Infinity>() <= far * eq_.phi.col(last).lpNorm<Eigen::Infinity>())) return;
+  if (!(dz.lpNorm<Eigen::Infinity>() <= far * size)) return;
   end_z_ = eq_.dX.col(last) + dz;
   dz = eq_.z0 + end_z_;
   system_.expand(dz, end_q_);
@@ -278,7 +300,8 @@ void Dvm::settle_end() {
 // b_s lambda_s. The factorisation is the one that the next step starts with.
 void Dvm::finish(State& state, double h, StepReport& report) {
   eq_.end_momentum(p1_);
-  freeze(eq_.node(c_.s - 1), report);
+  eq_.pose(c_.s - 1, pose_);
+  freeze(pose_, report);
   if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
   saddle_.solve(p1_, rate_, w1_, mu_);
   report.right_hand_sides += 1;

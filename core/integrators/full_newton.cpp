@@ -130,7 +130,8 @@ class Factors {
 }  // namespace
 
 StepStatus full_newton(StageEquations& eq, double wanted, double accepted, StepReport& report) {
-  constexpr int max_iterations = 15;
+  constexpr int max_iterations = 20;
+  constexpr double quick = 0.1;  // residuals that fall below this share of the last one keep their matrix
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
   SparseRows G = eq.system.jacobian_pattern();
   std::vector<double> scratch;
@@ -141,7 +142,7 @@ StepStatus full_newton(StageEquations& eq, double wanted, double accepted, StepR
     scale.segment(k * n, n) = s.coordinate;
     scale.segment(stages * n + k * m, m) = s.multiplier;
   }
-  double best = std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity(), before = 0;
   int without_gain = 0;
   Factors factors;
   for (int it = 0; it <= max_iterations; ++it) {
@@ -158,8 +159,11 @@ StepStatus full_newton(StageEquations& eq, double wanted, double accepted, StepR
     }
     if (it == max_iterations) break;
     ++report.newton_iterations;
-    ++report.factorisations;
-    if (!factors.compute(newton_matrix(eq, scale))) return StepStatus::diverged;
+    if (!(level < quick * before)) {
+      ++report.factorisations;
+      if (!factors.compute(newton_matrix(eq, scale))) return StepStatus::diverged;
+    }
+    before = level;
     const VectorXd x = factors.solve(scale.cwiseProduct(right_hand_side(eq)));
     apply(eq, scale.cwiseProduct(x));
     report.right_hand_sides += static_cast<int>(stages);

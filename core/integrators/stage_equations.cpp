@@ -3,21 +3,21 @@
 namespace unfurl {
 
 StageEquations::StageEquations(const System& sys, const GalerkinCoefficients& coefficients, bool ends)
-    : system(sys), c(coefficients), at_ends(ends) {
-  const Index n = system.solved_coordinates(), m = system.constraints(), k = c.s - 1;
+    : system(sys), c(coefficients), at_ends(ends), C_size_(coefficients.C.lpNorm<Eigen::Infinity>()) {
+  const Index n = system.solved_coordinates(), m = system.constraints(), k = c.s - 1,
+              nodes = system.coordinates();
   z0.setZero(n);
   p0.setZero(n);
-  dX.setZero(n, k);
-  momentum.setZero(n, k);
-  lambda.setZero(m, k);
-  phi.setZero(m, k);
-  Q.setZero(system.coordinates(), c.s);
-  MdX_.setZero(n, k);
-  force_.setZero(system.coordinates(), system.constant_forces() ? 1 : c.s);
-  z_.setZero(n);
-  f_.setZero(system.coordinates());
-  q_tau_.setZero(system.coordinates());
-  v_tau_.setZero(system.coordinates());
+  for (Interleaved* x : {&dX, &momentum, &Z_, &MdX_}) x->setZero(n, k);
+  for (Interleaved* x : {&lambda, &phi}) x->setZero(m, k);
+  Q.setZero(nodes, c.s);
+  for (Interleaved* x : {&f_, &applied_}) x->setZero(nodes, k);
+  force_.setZero(nodes, system.constant_forces() ? 1 : c.s);
+  impulse_.setZero(c.s, force_.cols());
+  C_by_h_.setZero(k, k);
+  for (VectorXd* x : {&time_, &scale_}) x->setZero(k);
+  for (VectorXd* x : {&f_end_, &q_0_, &q_tau_, &v_tau_, &scratch_.q, &scratch_.f}) x->setZero(nodes);
+  scratch_.row.setZero(m);
 }
 
 double StageEquations::multiplier_weight(int k) const {
@@ -28,11 +28,22 @@ void StageEquations::start(double time, const ConstVec& z, const ConstVec& w, do
   t = time;
   h = step;
   z0 = z;
-  p0.noalias() = system.mass() * w;
-  system.expand(z0, Q.col(0));
+  multiply<1>(system.mass(), w.data(), p0.data());
+  system.expand(z0, q_0_);
+  Q.col(0) = q_0_;
+  for (Index k = 0; k < scale_.size(); ++k) {
+    time_[k] = t + c.basis.nodes()[k + 1] * h;
+    scale_[k] = -h * multiplier_weight(static_cast<int>(k));
+  }
+  // D_k S = (1/h) sum_j C_kj M dX_j + ...
+  C_by_h_ = c.C / h;
   if (system.constant_forces()) {
+    impulse_ = h * c.b;
     force_.setZero();
-    system.add_applied_force(t, Q.col(0), v_tau_, 1.0, force_.col(0));
+    system.add_applied_force(t, q_0_, v_tau_, 1.0, force_.col(0));
+    with_columns(c.s - 1, [this](auto k) { spread_forces<k()>(); });
+  } else {
+    impulse_ = h * (c.value * c.weight.asDiagonal());
   }
   if (stiffness_ < 0) find_stiffness();
 }
@@ -42,84 +53,115 @@ void StageEquations::find_stiffness() {
   if (system.constant_forces()) return;
   SparseRows by_z, by_w;
   v_tau_.setZero();
-  system.force_derivatives(t, Q.col(0), v_tau_, by_z, by_w);
+  system.force_derivatives(t, q_0_, v_tau_, by_z, by_w);
   for (int r = 0; r < by_z.outerSize(); ++r)
     for (SparseRows::InnerIterator it(by_z, r); it; ++it)
       stiffness_ = std::max(stiffness_, std::abs(it.value()));
 }
 
-// f += h sum_j w_j l_k(tau_j) F(tau_j)
-void StageEquations::add_forces(int k, MutVec f) {
-  if (system.constant_forces()) {
-    f.noalias() += (h * c.b[k]) * force_.col(0);
-    return;
-  }
-  for (int j = 0; j < c.s; ++j) f.noalias() += (h * c.weight[j] * c.value(k, j)) * force_.col(j);
-}
-
 void StageEquations::place_nodes() {
-  for (int j = 0; j + 1 < c.s; ++j) {
-    z_ = z0 + dX.col(j);
-    system.expand(z_, Q.col(j + 1));
-  }
+  with_columns(c.s - 1, [this](auto k) {
+    constexpr int K = k();
+    for (Index i = 0, n = dX.rows(); i < n; ++i)
+      (Lanes<K>::all(z0[i]) + Lanes<K>(dX.data() + i * K)).store(Z_.data() + i * K);
+  });
+  system.expand_stages(Z_, 1, Q);
 }
 
 void StageEquations::evaluate() {
-  const int stages = c.s - 1;
   place_nodes();
-  for (int j = 0; j < stages; ++j) {
-    if (!at_ends || j == stages - 1)
-      system.constraint(t + c.basis.nodes()[j + 1] * h, Q.col(j + 1), phi.col(j));
-    MdX_.col(j).noalias() = system.mass() * dX.col(j);
-  }
-  if (!system.constant_forces()) {
-    force_.setZero();
-    for (int j = 0; j < c.s; ++j) {
-      q_tau_.noalias() = Q * c.value.col(j);
-      v_tau_.noalias() = Q * c.slope.col(j) / h;
-      system.add_applied_force(t + c.tau[j] * h, q_tau_, v_tau_, 1.0, force_.col(j));
-    }
-  }
-  force_scale_ = 0;
-  for (int k = 0; k < stages; ++k) {
-    f_.setZero();
-    add_forces(k, f_);
-    if (!at_ends || k == 0)
-      system.add_constraint_force(Q.col(k), lambda.col(k), -h * multiplier_weight(k), f_);
-    force_scale_ = std::max(force_scale_, f_.lpNorm<Eigen::Infinity>());
-    // Rows have unit gradients: single rod forces may far exceed their sum.
-    if (lambda.rows())
-      force_scale_ = std::max(force_scale_,
-                              std::abs(h * multiplier_weight(k)) * lambda.col(k).lpNorm<Eigen::Infinity>());
-    system.reduce_force(f_, momentum.col(k));
-    for (int j = 0; j < stages; ++j) momentum.col(k) += (c.C(k, j) / h) * MdX_.col(j);
-  }
-  momentum.col(0) += p0;
+  system.constraint_stages(time_.data(), Q, 1, phi, scratch_);
+  if (at_ends) phi.leftCols(c.s - 2).setZero();
+  if (!system.constant_forces()) applied_forces();
+  with_columns(c.s - 1, [this](auto k) { evaluate_momentum<k()>(); });
   measure();
+}
+
+void StageEquations::applied_forces() {
+  force_.setZero();
+  for (int j = 0; j < c.s; ++j) {
+    q_tau_.noalias() = Q * c.value.col(j);
+    v_tau_.noalias() = Q * c.slope.col(j) / h;
+    system.add_applied_force(t + c.tau[j] * h, q_tau_, v_tau_, 1.0, force_.col(j));
+  }
+}
+
+// h sum_j w_j l_k(tau_j) F(tau_j)
+template <int K>
+void StageEquations::spread_forces() {
+  for (Index i = 0, nodes = applied_.rows(); i < nodes; ++i) {
+    Lanes<K> sum = Lanes<K>::all(0.0);
+    for (Index j = 0; j < force_.cols(); ++j)
+      sum = sum + force_.data()[j * nodes + i] * Lanes<K>(impulse_.data() + j * c.s);
+    sum.store(applied_.data() + i * K);
+  }
+}
+
+// B^T f_k + (1/h) sum_j C_kj M dX_j with f_k = h sum_j w_j l_k(tau_j) F(tau_j) - h b_k G(Q_k)^T lambda_k
+template <int K>
+void StageEquations::evaluate_momentum() {
+  const Index n = dX.rows(), m = lambda.rows();
+  const SparseRows& M = system.mass();
+  if (!system.constant_forces()) spread_forces<K>();
+  f_ = applied_;
+  system.add_constraint_force_stages(Q, 0, lambda, scale_.data(), f_, scratch_);
+  // Rows have unit gradients: single rod forces may far exceed their sum.
+  Lanes<K> most = Lanes<K>::all(0.0);
+  for (Index i = 0; i < m; ++i) most = larger(most, Lanes<K>(lambda.data() + i * K));
+  force_scale_ = larger(Lanes<K>::all(0.0), most * Lanes<K>(scale_.data())).largest();
+  force_scale_ = std::max(force_scale_, largest_magnitude(f_.data(), f_.size()));
+
+  system.reduce_force_stages(f_, momentum);
+  Lanes<K> inertia = Lanes<K>::all(0.0), rest = inertia;
+  most = inertia;
+  for (Index i = 0; i < n; ++i) {
+    double Mx[K];
+    const Lanes<K> MdX = row_times<K>(M, i, dX.data());
+    MdX.store(Mx);
+    MdX.store(MdX_.data() + i * K);
+    inertia = larger(inertia, MdX);
+    double* const r = momentum.data() + i * K;
+    mixed<K>(Lanes<K>(r), Mx, C_by_h_.data()).store(r);
+    r[0] += p0[i];
+    most = larger(most, Lanes<K>(r));
+    rest = rest + 0.0 * Lanes<K>(r);
+  }
+  finite_ = rest.sum() == 0.0;
+  inertia_size_ = inertia.largest();
+  momentum_size_ = most.largest();
+}
+
+// The largest |Phi_r| / constraint_noise(r).
+template <int K>
+void StageEquations::measure_constraints() {
+  Lanes<K> rest = Lanes<K>::all(0.0);
+  double level = 0;
+  for (Index r = 0, rows = phi.rows(); r < rows; ++r) {
+    const Lanes<K> row(phi.data() + r * K);
+    level = std::max(level, larger(Lanes<K>::all(0.0), row).largest() / constraint_noise(r));
+    rest = rest + 0.0 * row;
+  }
+  finite_ = finite_ && rest.sum() == 0.0;
+  constraint_level_ = level;
 }
 
 // Momentum: compared with the sizes of the terms that cancel in it, and with what rounding the coordinates
 // leaves of spring forces. Constraints: with the larger of a row's
 // length and the coordinates, whose rounding moves a row by that much.
 void StageEquations::measure() {
-  reach_ = Q.lpNorm<Eigen::Infinity>();
-  double size = force_scale_ + p0.lpNorm<Eigen::Infinity>();
+  reach_ = largest_magnitude(Q.data(), Q.size());
+  double size = force_scale_ + largest_magnitude(p0.data(), p0.size());
   size = std::max(size, std::abs(h) * stiffness_ * reach_);
-  size = std::max(size, MdX_.lpNorm<Eigen::Infinity>() * c.C.lpNorm<Eigen::Infinity>() / std::abs(h));
-  momentum_level_ = size > 0 ? momentum.lpNorm<Eigen::Infinity>() / (4 * ulp * size) : 0.0;
-  constraint_level_ = 0;
-  for (Index j = 0; j < phi.cols(); ++j)
-    for (Index r = 0; r < phi.rows(); ++r)
-      constraint_level_ = std::max(constraint_level_, std::abs(phi(r, j)) / constraint_noise(r));
-  if (!momentum.allFinite() || !phi.allFinite())
-    momentum_level_ = constraint_level_ = std::numeric_limits<double>::infinity();
+  size = std::max(size, inertia_size_ * C_size_ / std::abs(h));
+  momentum_level_ = size > 0 ? momentum_size_ / (4 * ulp * size) : 0.0;
+  with_columns(c.s - 1, [this](auto k) { measure_constraints<k()>(); });
+  if (!finite_) momentum_level_ = constraint_level_ = std::numeric_limits<double>::infinity();
 }
 
 void StageEquations::end_momentum(MutVec p1) {
   const int last = c.s - 1;
-  f_.setZero();
-  add_forces(last, f_);
-  system.reduce_force(f_, p1);
+  f_end_.noalias() = force_ * impulse_.row(last).transpose();
+  system.reduce_force(f_end_, p1);
   for (int j = 0; j < last; ++j) p1 += (c.K(last, j + 1) / h) * MdX_.col(j);
 }
 

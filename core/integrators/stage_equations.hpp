@@ -18,6 +18,7 @@ inline double constraint_noise(double length, double reach) {
 }
 
 // Unknowns and residuals of one variational step; allocated once per model.
+// A row holds one coordinate or constraint at all nodes (interleaved.hpp).
 //   dX [nz x s-1]: increments of the nodes 2..s from the step's start;  lambda [m x s-1]: multipliers of
 //   nodes 1..s-1 momentum [nz x s-1]: D_k S (+ p_0 for k = 1), kg m/s;  phi [m x s-1]: Phi(Q_j), j = 2..s, m
 // With constraints at the ends only, lambda has its first column and phi its last one in use; the rest stays
@@ -42,27 +43,44 @@ class StageEquations {
     return unfurl::constraint_noise(system.constraint_lengths()[r], reach_);
   }
 
-  double multiplier_weight(int k) const;           // b_k, or 1/2 for the ends variant; k = 0..s-1
-  ConstVec node(int k) const { return Q.col(k); }  // node coordinates at node k
+  double multiplier_weight(int k) const;                 // b_k, or 1/2 for the ends variant; k = 0..s-1
+  const VectorXd& start_pose() const { return q_0_; }    // node coordinates at node 0
+  void pose(int k, VectorXd& q) const { q = Q.col(k); }  // at node k; q must have its size
 
   const System& system;
   const GalerkinCoefficients& c;
   const bool at_ends;
   double t = 0, h = 0;
   VectorXd z0, p0;
-  MatrixXd dX, lambda, momentum, phi;
-  MatrixXd Q;  // [3 nodes x s]
+  Interleaved dX, lambda, momentum, phi;
+  Interleaved Q;  // [3 nodes x s]
 
  private:
   static constexpr double ulp = std::numeric_limits<double>::epsilon();
-  void add_forces(int k, MutVec f);
+  template <int K>
+  void spread_forces();
+  template <int K>
+  void evaluate_momentum();
+  template <int K>
+  void measure_constraints();
+  void applied_forces();
   void measure();
   void find_stiffness();
 
-  MatrixXd MdX_, force_;  // M dX_j; node forces at the quadrature times or (constant) one column
-  VectorXd z_, f_, q_tau_, v_tau_;
+  Interleaved Z_, MdX_;      // coordinates and M dX_j of nodes 2..s
+  Interleaved applied_, f_;  // impulses of the applied forces and of all forces on nodes 1..s-1
+  VectorXd q_0_;
+  MatrixXd force_;    // node forces at the quadrature times or (constant) one column
+  MatrixXd impulse_;  // [s x s], or (constant) [s x 1]: h w_j l_k(tau_j), row k
+  MatrixXd C_by_h_;
+  VectorXd time_, scale_;  // of nodes 2..s [s]; -h b_k of nodes 1..s-1
+  double C_size_ = 0;      // largest entry of C
+  VectorXd f_end_, q_tau_, v_tau_;
+  System::StageScratch scratch_;
   double momentum_level_ = 0, constraint_level_ = 0;
-  double force_scale_ = 0, reach_ = 0;
+  // Largest magnitudes: forces, coordinates, M dX, momentum; whether all residuals are finite.
+  double force_scale_ = 0, reach_ = 0, inertia_size_ = 0, momentum_size_ = 0;
+  bool finite_ = true;
   double stiffness_ = -1;  // largest entry of dF/dz at the first step [N/m]; negative: not known yet
 };
 

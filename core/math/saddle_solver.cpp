@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/interleaved.hpp"
+
 namespace unfurl {
 
 std::vector<int> minimum_degree_order(const SparseRows& upper) {
@@ -53,112 +55,120 @@ std::vector<int> elimination_order(const SparseRows& upper, const SparseRows& G)
 SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns, double regularisation)
     : n_(M.rows()),
       m_(G.rows()),
-      M_(M),
-      G_(G),
       column_scale_(M.rows()),
-      row_scale_(VectorXd::Ones(G.rows())) {
+      row_scale_(VectorXd::Ones(G.rows())),
+      regularisation_(regularisation) {
   for (Index i = 0; i < n_; ++i) column_scale_[i] = 1.0 / std::sqrt(M.coeff(i, i));
-  M_ = column_scale_.asDiagonal() * M * column_scale_.asDiagonal();
-  M_.makeCompressed();
-  G_.makeCompressed();
   std::vector<Eigen::Triplet<double>> entries;
-  for (int r = 0; r < M_.outerSize(); ++r)
-    for (SparseRows::InnerIterator it(M_, r); it; ++it)
-      if (it.col() >= r) entries.emplace_back(r, it.col(), it.value());
-  for (int r = 0; r < G_.outerSize(); ++r) {
-    for (SparseRows::InnerIterator it(G_, r); it; ++it) entries.emplace_back(it.col(), n_ + r, 1.0);
+  for (int r = 0; r < M.outerSize(); ++r)
+    for (SparseRows::InnerIterator it(M, r); it; ++it)
+      if (it.col() >= r)
+        entries.emplace_back(r, it.col(), column_scale_[r] * it.value() * column_scale_[it.col()]);
+  for (int r = 0; r < G.outerSize(); ++r) {
+    for (SparseRows::InnerIterator it(G, r); it; ++it) entries.emplace_back(it.col(), n_ + r, 1.0);
     entries.emplace_back(n_ + r, n_ + r, -regularisation);
   }
   SparseRows upper(n_ + m_, n_ + m_);
   upper.setFromTriplets(entries.begin(), entries.end());
-  ldlt_.analyse(upper, elimination_order(upper, G_));
+  ldlt_.analyse(upper, elimination_order(upper, G));
   values_.assign(upper.valuePtr(), upper.valuePtr() + upper.nonZeros());
-  for (int r = 0; r < G_.outerSize(); ++r)
-    for (SparseRows::InnerIterator it(G_, r); it; ++it) {
+  for (int r = 0; r < G.outerSize(); ++r)
+    for (SparseRows::InnerIterator it(G, r); it; ++it) {
       const int* begin = upper.innerIndexPtr() + upper.outerIndexPtr()[it.col()];
       const int* end = upper.innerIndexPtr() + upper.outerIndexPtr()[it.col() + 1];
       jacobian_place_.push_back(
           static_cast<int>(std::lower_bound(begin, end, static_cast<int>(n_ + r)) - upper.innerIndexPtr()));
     }
+  place_.resize(static_cast<std::size_t>(n_ + m_));
+  for (std::size_t k = 0; k < place_.size(); ++k)
+    place_[static_cast<std::size_t>(ldlt_.order()[k])] = static_cast<int>(k);
   packed_.assign(static_cast<std::size_t>((n_ + m_) * max_columns), 0.0);
-  for (VectorXd* v : {&rhs_f_, &best_x_, &try_x_}) v->setZero(n_);
-  for (VectorXd* v : {&rhs_g_, &best_y_, &try_y_}) v->setZero(m_);
+  for (VectorXd* v : {&rhs_, &best_, &try_}) v->setZero(n_ + m_);
 }
 
 bool SaddleSolver::factorise(const SparseRows& G) {
   const int* start = G.outerIndexPtr();
   const int* column = G.innerIndexPtr();
   const double* from = G.valuePtr();
-  double* to = G_.valuePtr();
-  for (int r = 0; r < G.outerSize(); ++r) {
+  const int* const place = jacobian_place_.data();
+  for (int r = 0, rows = static_cast<int>(m_); r < rows; ++r) {
     double square = 0;
     for (int p = start[r]; p < start[r + 1]; ++p) {
-      to[p] = from[p] * column_scale_[column[p]];
-      square += to[p] * to[p];
+      const double value = from[p] * column_scale_[column[p]];
+      square += value * value;
+      values_[static_cast<std::size_t>(place[p])] = value;
     }
     row_scale_[r] = square > 0 ? 1.0 / std::sqrt(square) : 1.0;
-    for (int p = start[r]; p < start[r + 1]; ++p) {
-      to[p] *= row_scale_[r];
-      values_[static_cast<std::size_t>(jacobian_place_[static_cast<std::size_t>(p)])] = to[p];
-    }
+    for (int p = start[r]; p < start[r + 1]; ++p)
+      values_[static_cast<std::size_t>(place[p])] *= row_scale_[r];
   }
   return ldlt_.factorise(values_.data());
 }
 
 void SaddleSolver::apply(double* f, double* g, int columns) const {
-  double* const b = packed_.data();
-  for (Index i = 0; i < n_; ++i)
-    for (int c = 0; c < columns; ++c) b[i * columns + c] = f[i * columns + c] * column_scale_[i];
-  double* const bg = b + n_ * columns;
-  for (Index i = 0; i < m_; ++i)
-    for (int c = 0; c < columns; ++c) bg[i * columns + c] = g[i * columns + c] * row_scale_[i];
-  ldlt_.solve(b, columns);
-  for (Index i = 0; i < n_; ++i)
-    for (int c = 0; c < columns; ++c) f[i * columns + c] = b[i * columns + c] * column_scale_[i];
-  for (Index i = 0; i < m_; ++i)
-    for (int c = 0; c < columns; ++c) g[i * columns + c] = bg[i * columns + c] * row_scale_[i];
+  with_columns(columns, [&](auto k) {
+    constexpr int K = k();
+    double* const b = packed_.data();
+    const int* const place = place_.data();
+    const auto gather = [&](const double* x, const VectorXd& scale, const int* to) {
+      for (Index i = 0, size = scale.size(); i < size; ++i)
+        (scale[i] * Lanes<K>(x + i * K)).store(b + static_cast<Index>(to[i]) * K);
+    };
+    const auto scatter = [&](double* x, const VectorXd& scale, const int* from) {
+      for (Index i = 0, size = scale.size(); i < size; ++i)
+        (scale[i] * Lanes<K>(b + static_cast<Index>(from[i]) * K)).store(x + i * K);
+    };
+    gather(f, column_scale_, place);
+    gather(g, row_scale_, place + n_);
+    ldlt_.solve_ordered(b, K);
+    scatter(f, column_scale_, place);
+    scatter(g, row_scale_, place + n_);
+  });
+}
+
+double SaddleSolver::residual_norm(const double* r) const {
+  double f = 0, g = 0;
+  const int* place = place_.data();
+  for (Index i = 0; i < n_; ++i, ++place) f += r[*place] * r[*place];
+  for (Index i = 0; i < m_; ++i, ++place) g += r[*place] * r[*place];
+  return std::sqrt(f) + std::sqrt(g);
 }
 
 // Refinement in scaled unknowns: x += K_e^{-1} (b - K_0 x), keeping the best iterate; it stops when the
 // residual no longer halves, which round-off and inconsistent right-hand sides bring about.
 double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y,
                            int max_refinements) const {
-  const double size =
-      std::max((f.cwiseProduct(column_scale_)).norm() + (g.cwiseProduct(row_scale_)).norm(), 1e-300);
+  double* const r = packed_.data();
+  const int* const coordinate = place_.data();
+  const int* const row = place_.data() + n_;
+  for (Index i = 0; i < n_; ++i) rhs_[coordinate[i]] = f[i] * column_scale_[i];
+  for (Index i = 0; i < m_; ++i) rhs_[row[i]] = g[i] * row_scale_[i];
+  const double size = std::max(residual_norm(rhs_.data()), 1e-300);
   if (!std::isfinite(size)) {
     x.setConstant(std::numeric_limits<double>::quiet_NaN());
     y.setConstant(std::numeric_limits<double>::quiet_NaN());
     return size;
   }
-  double* const b = packed_.data();
-  best_x_.setZero();
-  best_y_.setZero();
-  try_x_.setZero();
-  try_y_.setZero();
+  best_.setZero();
+  try_.setZero();
   double best = 2.0 * size;
   for (int it = 0; it <= max_refinements + 1; ++it) {
-    rhs_f_ = f.cwiseProduct(column_scale_);
-    rhs_g_ = g.cwiseProduct(row_scale_);
+    std::copy(rhs_.begin(), rhs_.end(), r);
     if (it > 0) {
-      rhs_f_.noalias() -= M_ * try_x_;
-      rhs_f_.noalias() -= G_.transpose() * try_y_;
-      rhs_g_.noalias() -= G_ * try_x_;
+      ldlt_.subtract_product(values_.data(), try_.data(), r);
+      for (Index i = 0; i < m_; ++i) r[row[i]] -= regularisation_ * try_[row[i]];  // K_0 = K_e + e I there
     }
-    const double residual = rhs_f_.norm() + rhs_g_.norm();
+    const double residual = residual_norm(r);
     if (!(residual < best)) break;
     const bool slow = residual > 0.5 * best;
     best = residual;
-    best_x_ = try_x_;
-    best_y_ = try_y_;
+    best_ = try_;
     if (it > 0 && (slow || residual <= 1e-17 * size)) break;
-    Eigen::Map<VectorXd>(b, n_) = rhs_f_;
-    Eigen::Map<VectorXd>(b + n_, m_) = rhs_g_;
-    ldlt_.solve(b, 1);
-    try_x_ += Eigen::Map<VectorXd>(b, n_);
-    try_y_ += Eigen::Map<VectorXd>(b + n_, m_);
+    ldlt_.solve_ordered(r, 1);
+    for (Index i = 0; i < n_ + m_; ++i) try_[i] += r[i];
   }
-  x = best_x_.cwiseProduct(column_scale_);
-  y = best_y_.cwiseProduct(row_scale_);
+  for (Index i = 0; i < n_; ++i) x[i] = best_[coordinate[i]] * column_scale_[i];
+  for (Index i = 0; i < m_; ++i) y[i] = best_[row[i]] * row_scale_[i];
   return best / size;
 }
 

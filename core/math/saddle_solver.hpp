@@ -44,14 +44,18 @@ class SaddleSolver {
   static constexpr double standard_regularisation = 1e-13;  // e, in the scaled unknowns
 
  private:
+  double residual_norm(const double* r) const;
+
   Index n_ = 0, m_ = 0;
-  SparseRows M_, G_;                   // scaled
   VectorXd column_scale_, row_scale_;  // D, R
   SparseLdlt ldlt_;
+  double regularisation_;            // e
   std::vector<double> values_;       // upper triangle of K_e
   std::vector<int> jacobian_place_;  // where each entry of G goes in values_
+  std::vector<int> place_;           // of each row in the order of elimination
+  // Unknowns and right-hand sides, in the order of elimination.
   mutable std::vector<double> packed_;
-  mutable VectorXd rhs_f_, rhs_g_, best_x_, best_y_, try_x_, try_y_;
+  mutable VectorXd rhs_, best_, try_;
 };
 
 }  // namespace unfurl

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/interleaved.hpp"
+
 namespace unfurl {
 
 // Elimination tree and row patterns of L (Liu 1990; the up-looking method of Davis 2006, "Direct Methods",
@@ -112,52 +114,54 @@ int SparseLdlt::negative_pivots() const {
 }
 
 template <int R>
-void SparseLdlt::solve_fixed(double* x) const {
+void SparseLdlt::solve_fixed(double* const b) const {
   const int n = static_cast<int>(n_);
-  double* const b = permuted_.data();
-  for (int k = 0; k < n; ++k)
-    for (int c = 0; c < R; ++c) b[k * R + c] = x[order_[static_cast<std::size_t>(k)] * R + c];
   const double* const l = l_.data();
   const int* const rows = row_index_.data();
+  const int* const start = column_start_.data();
   for (int j = 0; j < n; ++j) {
-    double bj[R];
-    for (int c = 0; c < R; ++c) bj[c] = b[j * R + c];
-    for (int p = column_start_[static_cast<std::size_t>(j)];
-         p < column_start_[static_cast<std::size_t>(j) + 1]; ++p)
-      for (int c = 0; c < R; ++c) b[rows[p] * R + c] -= l[p] * bj[c];
+    const Lanes<R> bj(b + j * R);
+    for (int p = start[j], end = start[j + 1]; p < end; ++p) {
+      double* const to = b + static_cast<Index>(rows[p]) * R;
+      (Lanes<R>(to) - l[p] * bj).store(to);
+    }
   }
   for (int j = n - 1; j >= 0; --j) {
-    double bj[R];
-    for (int c = 0; c < R; ++c) bj[c] = b[j * R + c] * inverse_pivot_[static_cast<std::size_t>(j)];
-    for (int p = column_start_[static_cast<std::size_t>(j)];
-         p < column_start_[static_cast<std::size_t>(j) + 1]; ++p)
-      for (int c = 0; c < R; ++c) bj[c] -= l[p] * b[rows[p] * R + c];
-    for (int c = 0; c < R; ++c) b[j * R + c] = bj[c];
+    Lanes<R> bj = inverse_pivot_[static_cast<std::size_t>(j)] * Lanes<R>(b + j * R);
+    for (int p = start[j], end = start[j + 1]; p < end; ++p)
+      bj = bj - l[p] * Lanes<R>(b + static_cast<Index>(rows[p]) * R);
+    bj.store(b + j * R);
   }
-  for (int k = 0; k < n; ++k)
-    for (int c = 0; c < R; ++c) x[order_[static_cast<std::size_t>(k)] * R + c] = b[k * R + c];
+}
+
+void SparseLdlt::solve_ordered(double* b, int columns) const {
+  with_columns(columns, [&](auto k) { solve_fixed<k()>(b); });
+}
+
+void SparseLdlt::subtract_product(const double* values, const double* x, double* r) const {
+  const int* const row = entry_row_.data();
+  const int* const source = entry_source_.data();
+  for (int k = 0, n = static_cast<int>(n_); k < n; ++k) {
+    const double xk = x[k];
+    double sum = 0;
+    for (int e = entry_start_[static_cast<std::size_t>(k)],
+             end = entry_start_[static_cast<std::size_t>(k) + 1];
+         e < end; ++e) {
+      const double value = values[source[e]];
+      sum += value * x[row[e]];
+      if (row[e] != k) r[row[e]] -= value * xk;
+    }
+    r[k] -= sum;
+  }
 }
 
 void SparseLdlt::solve(double* x, int columns) const {
-  switch (columns) {
-    case 1:
-      return solve_fixed<1>(x);
-    case 2:
-      return solve_fixed<2>(x);
-    case 3:
-      return solve_fixed<3>(x);
-    case 4:
-      return solve_fixed<4>(x);
-    case 5:
-      return solve_fixed<5>(x);
-    case 6:
-      return solve_fixed<6>(x);
-    case 7:
-      return solve_fixed<7>(x);
-    default:
-      eigen_assert(columns == 8);
-      return solve_fixed<8>(x);
-  }
+  double* const b = permuted_.data();
+  for (std::size_t k = 0; k < order_.size(); ++k)
+    std::copy_n(x + static_cast<Index>(order_[k]) * columns, columns, b + static_cast<Index>(k) * columns);
+  solve_ordered(b, columns);
+  for (std::size_t k = 0; k < order_.size(); ++k)
+    std::copy_n(b + static_cast<Index>(k) * columns, columns, x + static_cast<Index>(order_[k]) * columns);
 }
 
 }  // namespace unfurl

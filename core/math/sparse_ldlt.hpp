@@ -24,13 +24,19 @@ class SparseLdlt {
   // order.
   void solve(double* x, int columns) const;
 
+  // The same for right-hand sides whose rows are in the order of elimination already.
+  void solve_ordered(double* b, int columns) const;
+  // r -= A x for the matrix with these values (as for factorise); rows in the order of elimination.
+  void subtract_product(const double* values, const double* x, double* r) const;
+  const std::vector<int>& order() const { return order_; }  // as given to analyse
+
   Index size() const { return n_; }
   Index factor_nonzeros() const { return static_cast<Index>(row_index_.size()); }
   int negative_pivots() const;
 
  private:
   template <int R>
-  void solve_fixed(double* x) const;
+  void solve_fixed(double* b) const;
 
   Index n_ = 0;
   std::vector<int> order_;         // position -> row

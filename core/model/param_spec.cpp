@@ -180,8 +180,8 @@ std::string range_text(const ParamSpec& spec) {
     case ParamKind::text:
       return "text";
     case ParamKind::vector: {
-      const std::string count =
-          with_unit((spec.length > 0 ? std::to_string(spec.length) + " " : "") + "numbers", spec.unit);
+      std::string count = (spec.length > 0 ? std::to_string(spec.length) + " " : "") + "numbers";
+      if (!spec.unit.empty()) count.append(" in ").append(spec.unit);
       return interval.empty() ? count : count + ", each " + interval;
     }
     case ParamKind::names:

@@ -5,22 +5,20 @@
 #include <numeric>
 
 #include "core/constraints/linear_rows.hpp"
-#include "core/forces/force.hpp"
 #include "core/model/elimination_choice.hpp"
 #include "core/model/mass_matrix.hpp"
 #include "core/model/structure_error.hpp"
+#include "core/model/system_data.hpp"
 
 namespace unfurl {
 namespace {
 
-using Blocks = std::vector<const ConstraintBlock*>;
-
-int total_rows(const Blocks& blocks) {
+int total_rows(const ConstraintBlocks& blocks) {
   return std::accumulate(blocks.begin(), blocks.end(), 0,
                          [](int sum, const auto* b) { return sum + b->rows(); });
 }
 
-std::size_t jacobian_entries(const Blocks& blocks) {
+std::size_t jacobian_entries(const ConstraintBlocks& blocks) {
   std::size_t count = 0;
   for (const ConstraintBlock* block : blocks)
     for (int r = 0; r < block->rows(); ++r) count += block->stencil(r).size();
@@ -28,7 +26,7 @@ std::size_t jacobian_entries(const Blocks& blocks) {
 }
 
 // out += scale * (derivative of g of this order) over all rows.
-void add_targets(const Blocks& blocks, int order, double t, double scale, MutVec out) {
+void add_targets(const ConstraintBlocks& blocks, int order, double t, double scale, MutVec out) {
   double* row = out.data();
   for (const ConstraintBlock* block : blocks) {
     if (block->rheonomic()) block->add_target(order, t, scale, row);
@@ -36,7 +34,7 @@ void add_targets(const Blocks& blocks, int order, double t, double scale, MutVec
   }
 }
 
-void values_at(const Blocks& blocks, double t, const ConstVec& q, MutVec phi) {
+void values_at(const ConstraintBlocks& blocks, double t, const ConstVec& q, MutVec phi) {
   double* row = phi.data();
   for (const ConstraintBlock* block : blocks) {
     block->value(q.data(), row);
@@ -46,7 +44,7 @@ void values_at(const Blocks& blocks, double t, const ConstVec& q, MutVec phi) {
 }
 
 // Jacobian of `blocks` in node coordinates at q.
-SparseRows node_jacobian(const Blocks& blocks, const double* q, Index n) {
+SparseRows node_jacobian(const ConstraintBlocks& blocks, const double* q, Index n) {
   std::vector<Eigen::Triplet<double>> entries;
   int row = 0;
   for (const ConstraintBlock* block : blocks) {
@@ -62,37 +60,6 @@ SparseRows node_jacobian(const Blocks& blocks, const double* q, Index n) {
 }
 
 }  // namespace
-
-struct System::Data {
-  std::vector<std::unique_ptr<ConstraintBlock>> owned;
-  Blocks all, kept, linear, leaving;                // leaving: linear ones, eliminated where that pays
-  std::vector<std::unique_ptr<ForceBlock>> forces;  // those that depend on t, q or v
-  VectorXd constant_force;                          // the sum of the others [N]
-  VectorXd loads, gravity_force;                    // its parts, for energies
-  SparseRows node_mass, mass, B;
-  VectorXd q0, start;
-  std::vector<int> free_coordinates;
-  bool eliminated = false, rheonomic = false;
-  Index coordinates = 0, rows = 0, linear_rows = 0;
-  VectorXd lengths;
-  std::vector<std::string> names;
-  std::vector<int> rod_rows;
-  std::vector<Drive> drives;
-  // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e,
-  // start_{e+1}).
-  SparseRows pattern;
-  std::vector<int> sum_start, sum_source;
-  std::vector<double> sum_coefficient;
-  std::vector<std::size_t> block_entries;  // entries of the node Jacobian of each kept block
-  std::size_t entries = 0;
-
-  void build_blocks(const Structure& structure, bool eliminate_linear);
-  void add_blocks(const Structure& structure, bool eliminate_linear);
-  void build_coordinates();
-  void build_forces(const Structure& structure);
-  void build_jacobian_map();
-  void check_mass(const Structure& structure) const;
-};
 
 // Constraints with a massless node are eliminated in any case: such a node has no equation of motion and can
 // only follow from others (a pin, the middle of a rod).
@@ -151,6 +118,7 @@ void System::Data::build_coordinates() {
     std::iota(free_coordinates.begin(), free_coordinates.end(), 0);
   }
   B.makeCompressed();
+  B_transposed = B.transpose();
   rows = total_rows(kept);
   int first = 0;
   for (const ConstraintBlock* block : kept) {
@@ -220,6 +188,18 @@ void System::Data::build_jacobian_map() {
   for (const ConstraintBlock* block : kept) block_entries.push_back(jacobian_entries({block}));
 }
 
+void System::Data::build_stencils() {
+  for (const ConstraintBlock* block : all) {
+    const std::size_t before = all_columns.size();
+    for (int r = 0; r < block->rows(); ++r) {
+      const std::vector<int> stencil = block->stencil(r);
+      all_columns.insert(all_columns.end(), stencil.begin(), stencil.end());
+      all_row_ends.push_back(all_columns.size());
+    }
+    all_block_entries.push_back(all_columns.size() - before);
+  }
+}
+
 // A coordinate without inertia has no equation of motion.
 void System::Data::check_mass(const Structure& structure) const {
   for (Index i = 0; i < mass.rows(); ++i)
@@ -244,6 +224,7 @@ System::System(const Structure& structure, bool eliminate_linear) {
   data->check_mass(structure);
   data->build_forces(structure);
   data->build_jacobian_map();
+  data->build_stencils();
   data->rod_rows.assign(structure.rods.size(), -1);
   for (std::size_t i = 0; i < structure.rods.size(); ++i)  // rods are the last kept block
     data->rod_rows[i] =
@@ -457,10 +438,21 @@ void System::all_constraint_values(double t, const ConstVec& q, MutVec phi) cons
   values_at(data_->all, t, q, phi);
 }
 
-VectorXd System::all_target_rates(double t) const {
-  VectorXd rate = VectorXd::Zero(all_constraints());
-  add_targets(data_->all, 1, t, 1.0, rate);
-  return rate;
+void System::all_constraint_rates(double t, const ConstVec& q, const ConstVec& v, MutVec rate,
+                                  std::vector<double>& scratch) const {
+  scratch.resize(data_->all_columns.size());
+  std::size_t entry = 0;
+  for (std::size_t b = 0; b < data_->all.size(); ++b) {
+    data_->all[b]->jacobian(q.data(), scratch.data() + entry);
+    entry += data_->all_block_entries[b];
+  }
+  entry = 0;
+  for (std::size_t r = 0; r < data_->all_row_ends.size(); ++r) {
+    double sum = 0;
+    for (; entry < data_->all_row_ends[r]; ++entry) sum += scratch[entry] * v[data_->all_columns[entry]];
+    rate[static_cast<Index>(r)] = sum;
+  }
+  add_targets(data_->all, 1, t, -1.0, rate);
 }
 
 SparseRows System::all_jacobian(const ConstVec& q) const {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/constraints/constraint.hpp"
+#include "core/math/interleaved.hpp"
 #include "core/math/linear_elimination.hpp"
 #include "core/math/types.hpp"
 #include "core/model/state.hpp"
@@ -61,6 +62,18 @@ class System {
   // v^T Hess Phi v - g''(t) [m/s^2]: the acceleration level is G a = -bias.
   void constraint_bias(double t, const ConstVec& q, const ConstVec& v, MutVec bias) const;
 
+  // The same for the stages of a step at once, each vector interleaved with those of the other stages (z, f,
+  // r, phi, lambda: `poses` columns; of Q, which has a column more, those from `first` on).
+  struct StageScratch {
+    VectorXd q, f, row;  // for kinds of constraints that are asked pose by pose
+  };
+  void expand_stages(const Interleaved& z, Index first, Interleaved& Q) const;
+  void reduce_force_stages(const Interleaved& f, Interleaved& r) const;
+  void constraint_stages(const double* t, const Interleaved& Q, Index first, Interleaved& phi,
+                         StageScratch& scratch) const;
+  void add_constraint_force_stages(const Interleaved& Q, Index first, const Interleaved& lambda,
+                                   const double* scale, Interleaved& f, StageScratch& scratch) const;
+
   // Jacobian with respect to z [m x size of z]; `pattern` allocates it once, `jacobian` only writes values.
   // `scratch` is grown once.
   SparseRows jacobian_pattern() const;
@@ -89,8 +102,10 @@ class System {
   // Every constraint of the structure, eliminated ones included (for check and diagnostics).
   Index all_constraints() const;
   void all_constraint_values(double t, const ConstVec& q, MutVec phi) const;  // [m]
-  VectorXd all_target_rates(double t) const;                                  // g'(t) [m/s]
-  SparseRows all_jacobian(const ConstVec& q) const;                           // of the node coordinates
+  // G v - g'(t) [m/s]; `scratch` is grown once.
+  void all_constraint_rates(double t, const ConstVec& q, const ConstVec& v, MutVec rate,
+                            std::vector<double>& scratch) const;
+  SparseRows all_jacobian(const ConstVec& q) const;  // of the node coordinates
   std::vector<std::string> all_names() const;
   VectorXd all_lengths() const;
 

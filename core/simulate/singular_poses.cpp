@@ -20,6 +20,7 @@ constexpr double no_rank = 1e-11;
 constexpr double shift = 1e-8;
 constexpr int most_iterations = 30;
 constexpr double converged = 1e-4, lost = 1e-9;  // of sigma, and what squares below it lose to round-off
+constexpr double much = 0.2;                     // a change of sigma from one state to the next
 constexpr double most_work = 3e8;                // multiplications for all states; below a second
 
 SparseRows identity(Index n) {
@@ -37,11 +38,13 @@ void scale_rows(SparseRows& G) {
 
 SmallestSingularValue::SmallestSingularValue(const System& system, Index redundant)
     : system_(system),
-      redundant_(redundant),
+      by_rows_(system.constraints() <= system.solved_coordinates()),
+      zeros_(by_rows_ ? redundant : redundant + system.solved_coordinates() - system.constraints()),
       G_(system.jacobian_pattern()),
-      saddle_(identity(system.solved_coordinates()), G_, 1, shift),
+      saddle_(identity(system.solved_coordinates()), G_, most_columns, shift),
       q_(system.coordinates()) {
-  block_.resize(system.constraints(), std::min(system.constraints(), redundant + 2));
+  const Index size = std::min(system.constraints(), system.solved_coordinates());
+  block_.resize(size, std::min(size, zeros_ + 2));
   for (Index c = 0; c < block_.cols(); ++c) stir(c);
 }
 
@@ -51,34 +54,57 @@ void SmallestSingularValue::stir(Index column) {
     block_(i, column) = std::sin(1.0 + static_cast<double>((i + 1) * (7 * column + 3)) * 0.7548776662466927);
 }
 
-double SmallestSingularValue::at(const ConstVec& z) {
+bool SmallestSingularValue::place(const ConstVec& z) {
   system_.expand(z, q_);
   system_.jacobian(q_, G_, scratch_);
   scale_rows(G_);
-  if (!saddle_.factorise(G_)) return std::numeric_limits<double>::quiet_NaN();
+  return saddle_.factorise(G_);
+}
+
+double SmallestSingularValue::settle(double tolerance) {
   stir(block_.cols() - 1);  // the last pose's vectors may all be orthogonal to this one's
   double before = -1;
   for (int i = 0; i < most_iterations; ++i) {
     improve();
-    const double now = sigma_[redundant_];
-    if (!(std::abs(now - before) > converged * now + lost)) break;
+    const double now = sigma_[zeros_];
+    if (!(std::abs(now - before) > tolerance * now + lost)) break;
     before = now;
   }
-  return sigma_[redundant_];
+  return sigma_[zeros_];
 }
 
-// [I G^T; G -e] [x; y] = [0; -b] is y = (G G^T + e)^-1 b. Columns are kept in the order of their sigma, so
-// that those of redundant rows, which grow most, are orthogonalised first.
+double SmallestSingularValue::at(const ConstVec& z) {
+  return place(z) ? settle(converged) : std::numeric_limits<double>::quiet_NaN();
+}
+
+double SmallestSingularValue::estimate(const ConstVec& z) {
+  if (sigma_.size() == 0) return at(z);
+  const double before = sigma_[zeros_];
+  if (!place(z)) return std::numeric_limits<double>::quiet_NaN();
+  stir(block_.cols() - 1);
+  improve();
+  if (std::abs(sigma_[zeros_] - before) <= much * before) return sigma_[zeros_];
+  return settle(0.01);
+}
+
+// With b in the place of f or of g, [I G^T; G -e] [x; y] = [f; g] has the solutions
+//     f = 0:  y = -(G G^T + e)^-1 g,      g = 0:  x = e (G^T G + e)^-1 f.
+// Columns are kept in the order of their sigma, so that those of zeros, which grow most, are orthogonalised
+// first.
 void SmallestSingularValue::improve() {
   const Index columns = block_.cols();
-  for (Index c = 0; c < columns; ++c) {
-    rest_.setZero(G_.cols());
-    block_.col(c) *= -1;
-    saddle_.apply(rest_.data(), block_.col(c).data(), 1);
+  for (Index c = 0; c < columns; c += most_columns) {
+    const Index count = std::min<Index>(most_columns, columns - c);
+    rows_.setZero(G_.rows(), count);
+    columns_.setZero(G_.cols(), count);
+    Interleaved& known = by_rows_ ? rows_ : columns_;
+    known = block_.middleCols(c, count);
+    saddle_.apply(columns_.data(), rows_.data(), static_cast<int>(count));
+    block_.middleCols(c, count) = by_rows_ ? rows_ : columns_;
   }
   const Eigen::HouseholderQR<MatrixXd> qr(block_);
   const MatrixXd basis = qr.householderQ() * MatrixXd::Identity(block_.rows(), columns);
-  const MatrixXd image = G_.transpose() * basis;
+  const MatrixXd image = by_rows_ ? MatrixXd(G_.transpose() * basis) : MatrixXd(G_ * basis);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(image.transpose() * image);
   block_ = basis * ritz.eigenvectors();
   sigma_ = ritz.eigenvalues().cwiseMax(0.0).cwiseSqrt();
@@ -113,26 +139,29 @@ class DipSearch {
         last_(last),
         sigma_(trajectory.model(first).system, structural_redundancy(trajectory, first, last)) {}
 
-  void run(std::vector<Event>& events) {
+  void run(std::vector<Event>& events, const std::function<bool()>& cancelled) {
     const System& system = trajectory_.model(first_).system;
     const auto size = static_cast<double>(system.constraints() + system.solved_coordinates());
     const double work = 100 * size * static_cast<double>(last_ - first_);  // sparse factors, some right sides
     stride_ = static_cast<std::size_t>(std::ceil(std::max(1.0, work / most_work)));
-    double largest = 0;
-    for (std::size_t i = first_; i <= last_; i += stride_) {
-      values_.push_back(sigma_.at(trajectory_.state(i).z));
+    for (std::size_t i = first_; i <= last_ && !(cancelled && cancelled()); i += stride_) {
+      values_.push_back(sigma_.estimate(trajectory_.state(i).z));
       if (!std::isfinite(values_.back())) return;
-      largest = std::max(largest, values_.back());
     }
-    for (std::size_t k = 1; k + 1 < values_.size(); ++k) {
+    if (values_.empty()) return;
+    const double largest =
+        exact(static_cast<std::size_t>(std::max_element(values_.begin(), values_.end()) - values_.begin()));
+    for (std::size_t k = 1; k + 1 < values_.size() && !(cancelled && cancelled()); ++k) {
       if (!(values_[k] <= values_[k - 1] && values_[k] < values_[k + 1] && values_[k] < 0.7 * largest))
         continue;
-      const Event event = refined(first_ + k * stride_, k);
+      const Event event = refined(k);
       if (event.singular_value <= dip * largest) events.push_back(event);
     }
   }
 
  private:
+  double exact(std::size_t k) { return sigma_.at(trajectory_.state(first_ + k * stride_).z); }
+
   // Vertex of the parabola through sigma^2 at three times: exact where sigma = c |t - t*|, and where it turns
   // round at a distance, sigma^2 = c^2 (t - t*)^2 + d^2.
   static double vertex(const double (&t)[3], const double (&s)[3]) {
@@ -143,10 +172,11 @@ class DipSearch {
     return t[1] + std::clamp(move, a, b);
   }
 
-  Event refined(std::size_t i, std::size_t k) {
+  Event refined(std::size_t k) {
+    const std::size_t i = first_ + k * stride_;
     const std::size_t before = i - stride_, after = i + stride_;
     const double low = trajectory_.time(before), high = trajectory_.time(after);
-    double t = vertex({low, trajectory_.time(i), high}, {values_[k - 1], values_[k], values_[k + 1]});
+    double t = vertex({low, trajectory_.time(i), high}, {exact(k - 1), exact(k), exact(k + 1)});
     for (double reach = 0.05 * (high - low); reach > 1e-4 * (high - low); reach *= 0.05) {
       const double times[3] = {std::max(low, t - reach), t, std::min(high, t + reach)};
       t = vertex(times, {between(times[0]), between(times[1]), between(times[2])});
@@ -177,10 +207,11 @@ class DipSearch {
 
 }  // namespace
 
-void record_singular_poses(Simulation& run) {
+void record_singular_poses(Simulation& run, const std::function<bool()>& cancelled) {
   const Trajectory& trajectory = run.trajectory;
   std::vector<Event> found;
-  for (std::size_t first = 0, last = 0; first < trajectory.size(); first = last + 1) {
+  for (std::size_t first = 0, last = 0; first < trajectory.size() && !(cancelled && cancelled());
+       first = last + 1) {
     const System& system = trajectory.model(first).system;
     for (last = first; last + 1 < trajectory.size() &&
                        &trajectory.model(last + 1) == &trajectory.model(first) &&
@@ -188,7 +219,7 @@ void record_singular_poses(Simulation& run) {
       ++last;
     const Index size = std::max(system.constraints(), system.solved_coordinates());
     if (last < first + 2 || system.constraints() == 0 || size > max_singular_size) continue;
-    DipSearch(trajectory, first, last).run(found);
+    DipSearch(trajectory, first, last).run(found, cancelled);
   }
   run.events.insert(run.events.end(), found.begin(), found.end());
   std::stable_sort(run.events.begin(), run.events.end(),

@@ -1,32 +1,40 @@
 // Poses of a run in which a structure gains ways to move.
 #pragma once
 
+#include "core/math/interleaved.hpp"
 #include "core/math/saddle_solver.hpp"
 #include "core/simulate/simulation.hpp"
 
 namespace unfurl {
 
 // The smallest singular value sigma of a system's Jacobian G (rows of length 1, solved coordinates, kept
-// rows) that is not zero everywhere, followed from pose to pose: block inverse iteration with G G^T + e I,
-// warm-started, then the singular values of G^T on the block (Rayleigh-Ritz), which converge like the square
-// of the block's error. `redundant`: how many rows depend on others in every pose; their zeros are passed
-// over.
+// rows) that is not zero everywhere, followed from pose to pose: block inverse iteration with G G^T + e I or
+// G^T G + e I, whichever has fewer zeros, warm-started, then the singular values of G on the block
+// (Rayleigh-Ritz), which converge like the square of the block's error. `redundant`: how many rows depend on
+// others in every pose; their zeros are passed over.
 class SmallestSingularValue {
  public:
   SmallestSingularValue(const System& system, Index redundant);
   double at(const ConstVec& z);  // NaN where the factorisation broke down
+  // From one iteration, which the last pose's vectors make good enough to follow sigma by; from as many as it
+  // takes where sigma has changed much.
+  double estimate(const ConstVec& z);
 
  private:
+  bool place(const ConstVec& z);
+  double settle(double tolerance);
   void stir(Index column);
   void improve();  // one iteration
 
   const System& system_;
-  Index redundant_;
+  bool by_rows_;  // the block lies in the space of the rows
+  Index zeros_;   // of the matrix that is iterated with, in every pose
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
-  VectorXd q_, sigma_, rest_;
-  MatrixXd block_;  // columns: singular vectors, by rising sigma
+  VectorXd q_, sigma_;
+  Interleaved rows_, columns_;  // the two parts of some of the saddle-point system's unknowns
+  MatrixXd block_;              // columns: singular vectors, by rising sigma
 };
 
 // Rows of the kept Jacobian less its rank, the largest rank of a few states of [first, last]: a pose that is
@@ -37,8 +45,9 @@ Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std
 // hundredth of its largest value in the run (0 up to the error of the dense output where the pose is truly
 // singular). The start and the end of a run are no dips: a ring that ends deployed ends at a singular pose,
 // and its event is "deployed". States are looked at after the run; not at all where the Jacobian has more
-// than max_singular_size rows or columns, and at every second, third, ... one where there are very many.
+// than max_singular_size rows or columns, and at every second, third, ... one where there are very many. Once
+// `cancelled` says so, the events so far are all.
 inline constexpr Index max_singular_size = 300;
-void record_singular_poses(Simulation& run);
+void record_singular_poses(Simulation& run, const std::function<bool()>& cancelled = {});
 
 }  // namespace unfurl

@@ -48,7 +48,7 @@ TEST_CASE("slices share one film, and the last one makes the animations") {
   CHECK(fs::exists(out + "/animation.webp"));
 }
 
-TEST_CASE("data of the same motion leave its film alone, data of another replace it") {
+TEST_CASE("data of the same motion leave its film alone, data of another replace it when told to") {
   const ScratchDirectory dir;
   const std::string out = dir / "out";
   REQUIRE(run_program(film(out)).code == 0);
@@ -59,6 +59,11 @@ TEST_CASE("data of the same motion leave its film alone, data of another replace
   CHECK(frames_in(out) == 5);
   CHECK(fs::exists(out + "/animation.gif"));
   run[3] = "solver.end_time=0.3";
+  const auto refused = run_program(run);
+  CHECK(refused.code == 5);
+  CHECK(refused.err.find("--force") != std::string::npos);
+  CHECK(frames_in(out) == 5);
+  run.emplace_back("--force");
   CHECK(run_program(run).code == 0);
   CHECK(frames_in(out) == 0);
   CHECK_FALSE(fs::exists(out + "/animation.gif"));

@@ -66,17 +66,6 @@ Measured measure(const std::function<Structure()>& build, int steps, double h) {
 
 }  // namespace
 
-Structure chain_of_rods(int rods) {
-  CustomSpec spec;
-  for (int i = 0; i <= rods; ++i)
-    spec.nodes.push_back({"N" + std::to_string(i), {0.1 * i, 0, 0}, {0, 0, 0}, 0.0, i == 0});
-  for (int i = 0; i < rods; ++i)
-    spec.rods.push_back({"", {"N" + std::to_string(i), "N" + std::to_string(i + 1)}, 0.1});
-  Structure structure = build_custom(spec);
-  structure.gravity = {0, 0, -9.81};
-  return structure;
-}
-
 void scaling_cases(Report& report) {
   report.begin("Cost and memory against size: dvm, 3 stages, h = 0.01 s (chain: 0.001 s), after 3 steps");
   double first = 0, lowest = 1e300, highest = 0;

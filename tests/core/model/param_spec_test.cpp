@@ -19,7 +19,7 @@ TEST_CASE("a range in words") {
   CHECK(range_text(integer_param("n", 3, 2, 100000, "")) == "[2, 100000]");
   CHECK(range_text(choice_param("c", "a", {"a", "b"}, "")) == "one of a, b");
   CHECK(range_text(boolean_param("b", true, "")) == "true or false");
-  CHECK(range_text(vector_param("v", "m", {0, 0, 0}, "")) == "3 numbers m");
+  CHECK(range_text(vector_param("v", "m", {0, 0, 0}, "")) == "3 numbers in m");
   CHECK(range_text(text_param("t", "", "")) == "text");
 }
 
@@ -40,7 +40,7 @@ TEST_CASE("values outside their range are refused with the range and what was gi
   CHECK(range_error(integer_param("n", 3, 2, 8, ""), 2.5) == "must be a whole number in [2, 8]; got 2.5");
   CHECK(range_error(boolean_param("b", true, ""), 1L) == "must be true or false; got 1");
   CHECK(range_error(vector_param("v", "m", {0, 0}, ""), std::vector<double>{1}) ==
-        "must be a list of 2 numbers m; got [1]");
+        "must be a list of 2 numbers in m; got [1]");
 }
 
 TEST_CASE("an open end of a range is outside it") {

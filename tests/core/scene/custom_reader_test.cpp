@@ -78,7 +78,7 @@ TEST_CASE("mistakes in a list carry the entry's place") {
         "s.toml:14:8: structure.rods[0].mass: must be >= 0 kg; got -2");
   CHECK(error_of(head + two_nodes + "[[structure.nodes]]\nposition = [0, 0, 'x']\n") ==
         "s.toml:12:1: structure.nodes[2].name: is missing; must be text\n"
-        "s.toml:13:12: structure.nodes[2].position: must be a list of 3 numbers m; got a list with text");
+        "s.toml:13:12: structure.nodes[2].position: must be a list of 3 numbers in m; got a list with text");
   CHECK(error_of(head + two_nodes +
                  "[[structure.constraints]]\nkind = 'plane'\nnodes = 'B'\nnormal = [0, 0, 0]\n") ==
         "s.toml:15:10: structure.constraints[0].normal: must not be zero");
@@ -90,10 +90,11 @@ TEST_CASE("mistakes in a list carry the entry's place") {
 }
 
 TEST_CASE("one wrong node does not set off messages about what refers to it") {
-  CHECK(error_of(head + two_nodes +
-                 "[[structure.nodes]]\nname = 'C'\nposition = 3\n[[structure.rods]]\nnodes = ['B', "
-                 "'C']\nmass = 1\n") ==
-        "s.toml:14:12: structure.nodes[2].position: must be a list of 3 numbers m; got the whole number 3");
+  CHECK(
+      error_of(head + two_nodes +
+               "[[structure.nodes]]\nname = 'C'\nposition = 3\n[[structure.rods]]\nnodes = ['B', "
+               "'C']\nmass = 1\n") ==
+      "s.toml:14:12: structure.nodes[2].position: must be a list of 3 numbers in m; got the whole number 3");
 }
 
 TEST_CASE("nodes and rods come from CSV files beside the scene") {

@@ -88,9 +88,9 @@ TEST_CASE("an error names file, line, column, key, range and the nearest name") 
 
 TEST_CASE("lists of the wrong length or with wrong entries are refused") {
   CHECK(error_of(hoop + "[gravity]\nacceleration = [0, 0]") ==
-        "s.toml:4:16: gravity.acceleration: must be a list of 3 numbers m/s^2; got [0, 0]");
+        "s.toml:4:16: gravity.acceleration: must be a list of 3 numbers in m/s^2; got [0, 0]");
   CHECK(error_of(hoop + "[gravity]\nacceleration = [0, 0, 'x']") ==
-        "s.toml:4:16: gravity.acceleration: must be a list of 3 numbers m/s^2; got a list with text");
+        "s.toml:4:16: gravity.acceleration: must be a list of 3 numbers in m/s^2; got a list with text");
   CHECK(error_of(hoop + "[gravity]\nacceleration = [0, 0, nan]").find("got [0, 0, nan]") !=
         std::string::npos);
   CHECK(error_of(hoop + "[render]\nsize = [100.5, 100]").find("whole numbers of pixels") !=
