@@ -5,7 +5,7 @@
 #include <cmath>
 #include <thread>
 
-#include "app/panel/panes.hpp"
+#include "app/panel/panes/panes.hpp"
 #include "app/panel/shortcuts.hpp"
 #include "render/plot/imgui_canvas.hpp"
 #include "render/plot/style.hpp"

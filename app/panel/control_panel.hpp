@@ -6,15 +6,15 @@
 #include <functional>
 #include <memory>
 
-#include "app/panel/error_meter.hpp"
-#include "app/panel/export_process.hpp"
-#include "app/panel/figure_cards.hpp"
 #include "app/panel/input_event.hpp"
 #include "app/panel/panel_state.hpp"
-#include "app/panel/scene_view.hpp"
+#include "app/panel/panes/figure_cards.hpp"
+#include "app/panel/panes/ui.hpp"
+#include "app/panel/runs/error_meter.hpp"
+#include "app/panel/runs/export_process.hpp"
+#include "app/panel/runs/study_job.hpp"
 #include "app/panel/settings.hpp"
-#include "app/panel/study_job.hpp"
-#include "app/panel/ui.hpp"
+#include "app/panel/view/scene_view.hpp"
 #include "render/gl/framebuffer.hpp"
 #include "render/ui/draw_damage.hpp"
 #include "render/ui/imgui_painter.hpp"

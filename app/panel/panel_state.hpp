@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "app/panel/edit_history.hpp"
-#include "app/panel/orbit_camera.hpp"
-#include "app/panel/param_rows.hpp"
-#include "app/panel/picking.hpp"
-#include "app/panel/playback.hpp"
-#include "app/panel/simulator.hpp"
-#include "app/panel/study_job.hpp"
-#include "app/panel/trade.hpp"
+#include "app/panel/document/edit_history.hpp"
+#include "app/panel/document/param_rows.hpp"
+#include "app/panel/runs/simulator.hpp"
+#include "app/panel/runs/study_job.hpp"
+#include "app/panel/runs/trade.hpp"
+#include "app/panel/view/orbit_camera.hpp"
+#include "app/panel/view/picking.hpp"
+#include "app/panel/view/playback.hpp"
 
 namespace unfurl {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "app/panel/scene_document.hpp"
+#include "app/panel/document/scene_document.hpp"
 
 namespace unfurl {
 

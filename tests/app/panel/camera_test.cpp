@@ -1,8 +1,8 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "app/panel/orbit_camera.hpp"
-#include "app/panel/picking.hpp"
+#include "app/panel/view/orbit_camera.hpp"
+#include "app/panel/view/picking.hpp"
 #include "render/scene/frame_builder.hpp"
 #include "render/scene/view.hpp"
 

@@ -1,8 +1,8 @@
 // Entries of [[loads]], [[forces]] and [[constraints]] in the left pane.
 #include <catch2/catch.hpp>
 
-#include "app/panel/export_process.hpp"
-#include "app/panel/scene_entries.hpp"
+#include "app/panel/document/scene_entries.hpp"
+#include "app/panel/runs/export_process.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/text_file.hpp"

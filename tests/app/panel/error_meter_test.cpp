@@ -1,5 +1,5 @@
 // Position errors beside the window: true, of the right motion, and out of the way of the next run.
-#include "app/panel/error_meter.hpp"
+#include "app/panel/runs/error_meter.hpp"
 
 #include <catch2/catch.hpp>
 #include <chrono>

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "app/panel/export_process.hpp"
+#include "app/panel/runs/export_process.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
 #include "tests/app/panel/panel_driver.hpp"

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
-#include "app/panel/edit_history.hpp"
-#include "app/panel/param_rows.hpp"
-#include "app/panel/playback.hpp"
+#include "app/panel/document/edit_history.hpp"
+#include "app/panel/document/param_rows.hpp"
+#include "app/panel/view/playback.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 

@@ -1,4 +1,4 @@
-#include "app/panel/simulator.hpp"
+#include "app/panel/runs/simulator.hpp"
 
 #include <catch2/catch.hpp>
 #include <chrono>

@@ -1,10 +1,10 @@
 // Speed against accuracy beside the view: true errors, of the motion that is shown.
-#include "app/panel/trade.hpp"
+#include "app/panel/runs/trade.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "app/panel/comparison.hpp"
+#include "app/panel/runs/comparison.hpp"
 #include "render/plot/ticks.hpp"
 #include "tests/app/panel/panel_driver.hpp"
 #include "tests/support/four_bar_exact.hpp"

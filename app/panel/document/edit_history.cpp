@@ -1,0 +1,57 @@
+#include "app/panel/document/edit_history.hpp"
+
+namespace unfurl {
+
+void EditHistory::remember() {
+  past_.push_back(now_);
+  if (past_.size() > deepest) past_.erase(past_.begin());
+  future_.clear();
+}
+
+void EditHistory::edit(const std::string& key, ParamValue value) {
+  const auto it = now_.edits.find(key);
+  if (it != now_.edits.end() && it->second == value) return;
+  if (gesture_ != key) remember();
+  gesture_ = key;
+  future_.clear();
+  now_.edits[key] = std::move(value);
+}
+
+void EditHistory::forget(const std::string& key) {
+  end_gesture();
+  if (!now_.edits.contains(key)) return;
+  remember();
+  now_.edits.erase(key);
+}
+
+void EditHistory::replace(SceneDocument document) {
+  end_gesture();
+  if (document == now_) return;
+  remember();
+  now_ = std::move(document);
+}
+
+void EditHistory::saved(SceneDocument document) {
+  end_gesture();
+  now_ = std::move(document);
+}
+
+bool EditHistory::undo() {
+  end_gesture();
+  if (past_.empty()) return false;
+  future_.push_back(std::move(now_));
+  now_ = std::move(past_.back());
+  past_.pop_back();
+  return true;
+}
+
+bool EditHistory::redo() {
+  end_gesture();
+  if (future_.empty()) return false;
+  past_.push_back(std::move(now_));
+  now_ = std::move(future_.back());
+  future_.pop_back();
+  return true;
+}
+
+}  // namespace unfurl

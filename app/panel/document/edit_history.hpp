@@ -1,0 +1,38 @@
+// Undo and redo of everything that was changed in a scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/panel/document/scene_document.hpp"
+
+namespace unfurl {
+
+class EditHistory {
+ public:
+  explicit EditHistory(SceneDocument document) : now_(std::move(document)) {}
+
+  const SceneDocument& now() const { return now_; }
+  // A change of one key; changes of the same key join into one step until end_gesture, so that a slider's way
+  // from press to release is undone at once. Equal values are no change.
+  void edit(const std::string& key, ParamValue value);
+  void forget(const std::string& key);   // back to the file's value
+  void replace(SceneDocument document);  // another scene, or none of the edits
+  void saved(SceneDocument document);    // the same scene, now in a file: no step
+  void end_gesture() { gesture_.clear(); }
+
+  bool can_undo() const { return !past_.empty(); }
+  bool can_redo() const { return !future_.empty(); }
+  bool undo();  // false: there was nothing to undo
+  bool redo();
+
+ private:
+  void remember();
+  static constexpr std::size_t deepest = 10000;
+
+  SceneDocument now_;
+  std::vector<SceneDocument> past_, future_;
+  std::string gesture_;  // the key that is being changed
+};
+
+}  // namespace unfurl

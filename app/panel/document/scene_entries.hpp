@@ -1,0 +1,24 @@
+// Entries of [[loads]], [[forces]] and [[constraints]] that the panel adds to a scene and takes away again.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "app/panel/document/scene_document.hpp"
+#include "app/panel/document/selection.hpp"
+
+namespace unfurl {
+
+// A first version of an entry of `table` ("loads", "forces", "constraints"), to be changed by hand, as an
+// override: "constraints[1]={kind = \"angle\", ...}". It acts on what is selected, where that fits the kind;
+// a drive stays at the value of t = 0, a stop is there. Throws SceneError where the scene has no sound
+// structure, or no members for the kind.
+std::string new_entry(const SceneDocument& document, std::string_view table, std::string_view kind,
+                      const Selection& selected);
+
+SceneDocument with_entry(SceneDocument document, std::string entry);
+// Without an entry that the panel added, and edits of it; the ones behind it move up. `key`: "forces[2]".
+SceneDocument without_entry(SceneDocument document, const std::string& key);
+bool is_added(const SceneDocument& document, const std::string& key);
+
+}  // namespace unfurl

@@ -1,0 +1,39 @@
+// The parts of the panel. Each draws into the current ImGui window and changes the state.
+#pragma once
+
+#include "app/panel/panel_state.hpp"
+#include "app/panel/panes/figure_cards.hpp"
+#include "app/panel/panes/ui.hpp"
+#include "app/panel/runs/export_process.hpp"
+#include "app/panel/runs/study_job.hpp"
+#include "app/panel/view/scene_view.hpp"
+
+namespace unfurl {
+
+void draw_top_bar(Ui& ui, PanelState& state);
+void draw_scene_pane(Ui& ui, PanelState& state);                                     // left
+void draw_view_pane(Ui& ui, PanelState& state, SceneView& view);                     // centre
+void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards);                // right
+void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards, StudyJob& job);  // right, other page
+void draw_right_tabs(Ui& ui, PanelState& state);                                     // above either
+
+struct PlacedFigure {  // a figure in the window
+  ImVec2 origin;
+  double scale;  // pixels per point
+  float x(double points) const { return origin.x + static_cast<float>(points * scale); }
+  float y(double points) const { return origin.y + static_cast<float>(points * scale); }
+};
+// At the cursor; with the present time as a line where it is drawn over time.
+PlacedFigure draw_figure(Ui& ui, PanelState& state, const FigureCard& card);
+double figure_width(const Ui& ui);              // what the window has room for [points]
+void draw_cursors(const Ui& ui);                // over the figures
+void draw_timeline(Ui& ui, PanelState& state);  // bottom
+void draw_help(Ui& ui, PanelState& state);
+void draw_export(Ui& ui, PanelState& state, ExportProcess& job);
+
+// A row of the left pane, with its menu and what is wrong with it.
+void draw_row(Ui& ui, PanelState& state, const ParamRow& row);
+// The same without: label and widget. Returns whether the value changed.
+bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong);
+
+}  // namespace unfurl

@@ -1,0 +1,168 @@
+// One row of the left pane: a label and the widget that a parameter's kind asks for.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "app/panel/panes/panes.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr std::size_t longest_text = 4096;
+constexpr std::size_t most_numbers = 4;  // that a vector has a field for each of
+
+// Seven digits and the unit. ImGui takes the digits for the smallest number of a logarithmic slider too.
+std::string format_of(const ParamSpec& spec, const SliderRange& range) {
+  const double smallest = range.logarithmic && range.low > 0 ? std::log10(range.low) : 0.0;
+  const int digits = std::clamp(static_cast<int>(std::ceil(-smallest)) + 1, 7, 15);
+  const std::string unit = unit_caption(spec.unit);
+  return "%." + std::to_string(digits) + "g" + (unit.empty() || unit == "°" ? "" : " ") + unit;
+}
+
+bool real_widget(const ParamRow& row, ParamValue& value) {
+  double x = std::get<double>(value);
+  const SliderRange range = slider_range(row);
+  if (not_given(value)) {
+    if (!ImGui::Button("not given", {ImGui::CalcItemWidth(), 0})) return false;
+    value = std::isfinite(row.typical) ? std::round(1e6 * row.typical) / 1e6 : 0.0;
+    return true;
+  }
+  const ImGuiSliderFlags flags =
+      ImGuiSliderFlags_NoRoundToFormat | (range.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  const std::string format = format_of(row.spec, range);
+  if (!ImGui::SliderScalar("##value", ImGuiDataType_Double, &x, &range.low, &range.high, format.c_str(),
+                           flags))
+    return false;
+  if (!ImGui::GetIO().WantTextInput) {  // dragged: four digits are what a hand can mean
+    char rounded[40];
+    std::snprintf(rounded, sizeof rounded, "%.4g", x);
+    x = std::clamp(std::strtod(rounded, nullptr), range.low, range.high);
+  }
+  value = x;
+  return true;
+}
+
+bool integer_widget(const ParamRow& row, ParamValue& value) {
+  const SliderRange range = slider_range(row);
+  auto x = static_cast<ImS64>(std::get<long>(value));
+  const auto low = static_cast<ImS64>(range.low), high = static_cast<ImS64>(range.high);
+  if (!ImGui::SliderScalar("##value", ImGuiDataType_S64, &x, &low, &high, "%lld")) return false;
+  value = static_cast<long>(x);
+  return true;
+}
+
+bool choice_widget(Ui& ui, const ParamRow& row, ParamValue& value) {
+  auto& chosen = std::get<std::string>(value);
+  bool changed = false;
+  if (!ImGui::BeginCombo("##value", chosen.c_str())) return false;
+  for (const std::string_view choice : row.spec.choices) {
+    const bool is = chosen == choice;
+    if (ImGui::Selectable(std::string(choice).c_str(), is) && !is) {
+      chosen = choice;
+      changed = true;
+    }
+    ui.note(row.key + "=" + std::string(choice));
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+bool text_field(std::string& text) {
+  char buffer[longest_text];
+  std::snprintf(buffer, sizeof buffer, "%s", text.c_str());
+  if (!ImGui::InputText("##value", buffer, sizeof buffer)) return false;
+  text = buffer;
+  return true;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i <= text.size();) {
+    const std::size_t end = std::min(text.find(',', i), text.size());
+    const std::size_t first = text.find_first_not_of(' ', i);
+    if (first < end) words.push_back(text.substr(first, text.find_last_not_of(' ', end - 1) - first + 1));
+    i = end + 1;
+  }
+  return words;
+}
+
+// Names with commas between them; what is no list of names yet changes nothing.
+bool names_widget(ParamValue& value) {
+  std::string text = value_caption(value, "");
+  if (!text_field(text)) return false;
+  auto words = words_of(text);
+  if (words.empty() || words == std::get<std::vector<std::string>>(value)) return false;
+  value = std::move(words);
+  return true;
+}
+
+// The same for any number of numbers.
+bool numbers_widget(ParamValue& value) {
+  std::string text = value_caption(value, "");
+  if (!text_field(text)) return false;
+  std::vector<double> numbers;
+  for (const std::string& word : words_of(text)) {
+    double x = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
+    if (error != std::errc() || end != word.data() + word.size()) return false;
+    numbers.push_back(x);
+  }
+  if (numbers == std::get<std::vector<double>>(value)) return false;
+  value = std::move(numbers);
+  return true;
+}
+
+bool vector_widget(const ParamRow& row, ParamValue& value) {
+  auto& numbers = std::get<std::vector<double>>(value);
+  if (row.spec.length == 0 || numbers.size() > most_numbers) return numbers_widget(value);
+  const SliderRange range = slider_range(row);
+  const float speed = static_cast<float>((range.high - range.low) / 400);
+  return ImGui::DragScalarN("##value", ImGuiDataType_Double, numbers.data(), static_cast<int>(numbers.size()),
+                            speed, nullptr, nullptr, "%.4g", ImGuiSliderFlags_NoRoundToFormat);
+}
+
+bool widget(Ui& ui, const ParamRow& row, ParamValue& value) {
+  switch (row.spec.kind) {
+    case ParamKind::boolean:
+      return ImGui::Checkbox("##value", &std::get<bool>(value));
+    case ParamKind::integer:
+      return integer_widget(row, value);
+    case ParamKind::real:
+      return real_widget(row, value);
+    case ParamKind::choice:
+      return choice_widget(ui, row, value);
+    case ParamKind::text:
+      return text_field(std::get<std::string>(value));
+    case ParamKind::vector:
+      return vector_widget(row, value);
+    case ParamKind::names:
+      return names_widget(value);
+  }
+  return false;
+}
+
+}  // namespace
+
+bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong) {
+  ImGui::PushID(row.key.c_str());
+  const float full = ImGui::GetContentRegionAvail().x;
+  const float label = std::floor(0.44f * full);
+  const bool edited = !(value == row.value) && !(not_given(value) && not_given(row.value));
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushStyleColor(ImGuiCol_Text, wrong ? ui.theme.error : edited ? ui.theme.accent : ui.theme.text);
+  ImGui::TextUnformatted(shortened(row.label, label - ui.px(6)).c_str());
+  ImGui::PopStyleColor();
+  tooltip(ui, row.label + "\n" + param_tooltip(row));
+  ImGui::SameLine(ImGui::GetCursorStartPos().x + label);
+  ImGui::SetNextItemWidth(full - label);
+  if (wrong) ImGui::PushStyleColor(ImGuiCol_Border, ui.theme.error);
+  const bool changed = widget(ui, row, value);
+  if (wrong) ImGui::PopStyleColor();
+  ui.note(row.key);
+  ImGui::PopID();
+  return changed;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,46 @@
+// What the panes share while a frame is drawn.
+#pragma once
+
+#include <imgui.h>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/panel/panes/theme.hpp"
+#include "render/plot/canvas.hpp"
+
+namespace unfurl {
+
+struct Ui {
+  float scale = 1;  // pixels per point of a screen with 96 dpi
+  Theme theme;
+  ImFont *regular = nullptr, *bold = nullptr, *small = nullptr;
+  std::function<ImFont*(float pixels)> figure_font;
+  std::map<std::string, plot::Rect> places;  // where each widget is, by key: for tests [pixels]
+
+  // Lines at the present time, over the figures. In a list of their own: what moves is small.
+  std::vector<plot::Rect> cursors;  // [pixels]
+
+  float px(float points) const { return points * scale; }
+  ImU32 color(const ImVec4& c, float alpha = 1) const {
+    return ImGui::ColorConvertFloat4ToU32(ImVec4(c.x, c.y, c.z, c.w * alpha));
+  }
+  // Note the last widget's place.
+  void note(const std::string& key) {
+    const ImVec2 a = ImGui::GetItemRectMin(), b = ImGui::GetItemRectMax();
+    places[key] = {a.x, a.y, b.x, b.y};
+  }
+};
+
+void tooltip(const Ui& ui, const std::string& text);  // over the last widget
+
+// The text, cut with an ellipsis where it is wider in the present font [pixels].
+std::string shortened(const std::string& text, float width);
+
+// A button of the panel; greyed out where it is not enabled.
+bool button(Ui& ui, const std::string& key, const std::string& label, const std::string& help,
+            bool enabled = true);
+
+}  // namespace unfurl

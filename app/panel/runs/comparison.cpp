@@ -1,0 +1,82 @@
+#include "app/panel/runs/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "render/plot/ticks.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+double largest(const LiveRun& run, const char* column) {
+  const Series* series = run.diagnostics.find(column);
+  if (series == nullptr) return none;
+  double most = 0;
+  for (const double x : series->values)
+    if (std::isfinite(x)) most = std::max(most, std::abs(x));
+  return most;
+}
+
+double deployed_at(const LiveRun& run) {
+  for (const Event& event : run.simulation.events)
+    if (event.name == "deployed") return event.t;
+  return none;
+}
+
+double peak_force(const LiveRun& run) {
+  double most = none;
+  for (Index i = 0; i < run.diagnostics.axial_force.size(); ++i) {
+    const double f = std::abs(run.diagnostics.axial_force.data()[i]);
+    if (std::isfinite(f)) most = std::isnan(most) ? f : std::max(most, f);
+  }
+  return most;
+}
+
+struct Quantity {
+  const char *label, *unit;
+  double (*of)(const LiveRun&);
+  bool factor;  // compared by factors rather than by per cent
+};
+
+constexpr Quantity quantities[] = {
+    {"deployed at", "s", deployed_at, false},
+    {"peak rod force", "N", peak_force, false},
+    {"energy error", "J", [](const LiveRun& r) { return largest(r, "energy_balance_J"); }, true},
+    {"constraint error", "m", [](const LiveRun& r) { return largest(r, "constraint_max_m"); }, true},
+    {"steps", "", [](const LiveRun& r) { return static_cast<double>(r.simulation.steps); }, true},
+    {"CPU time", "s", [](const LiveRun& r) { return r.simulation.cpu_s; }, true}};
+
+std::string number(double x, const char* unit) {
+  if (std::isnan(x)) return "\u2013";
+  return plot::format_number(x, 4) + (*unit == '\0' ? "" : std::string(" ") + unit);
+}
+
+std::string change(double a, double b, bool factor) {
+  if (!(std::abs(a) > 0) || !std::isfinite(b)) return "";
+  if (factor) return "\u00D7" + plot::format_number(b / a, 3);
+  char text[40];
+  std::snprintf(text, sizeof text, "%+.3g %%", 100 * (b - a) / std::abs(a));
+  return text;
+}
+
+}  // namespace
+
+std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b, const TradePoint* point_a,
+                                   const TradePoint* point_b) {
+  std::vector<ComparisonRow> rows;
+  const auto add = [&](const char* label, const char* unit, double x, double y, bool factor) {
+    if (std::isnan(x) && std::isnan(y)) return;
+    rows.push_back({label, number(x, unit), number(y, unit), change(x, y, factor)});
+  };
+  const auto error = [](const TradePoint* point) { return point ? point->position_error : none; };
+  add("position error", "m", error(point_a), error(point_b), true);
+  for (const Quantity& q : quantities) add(q.label, q.unit, q.of(a), q.of(b), q.factor);
+  return rows;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,197 @@
+#include "app/panel/runs/error_meter.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace unfurl {
+
+namespace {
+
+// A person waits, and the machine has other things to do: not much more CPU time for a reference than so many
+// times the run's own, within limits [s].
+constexpr double effort_of_run = 40, least_effort = 4, most_effort = 20;
+// CPU time of a run that is timed once more, and more than once [s].
+constexpr double longest_timed = 5, longest_repeated = 0.1;
+constexpr std::size_t most_known = 32, most_waiting = 64;
+constexpr double most_known_bytes = 128e6, most_waiting_bytes = 128e6;
+
+double bytes_of(const LiveRun& run) {
+  const auto states = static_cast<double>(run.simulation.trajectory.size());
+  const Structure& structure = run.simulation.trajectory.structure();
+  const auto numbers = static_cast<double>(6 * structure.nodes.size() + 2 * structure.rods.size());
+  return states * (8 * numbers + 512);
+}
+
+}  // namespace
+
+ErrorMeter::ErrorMeter(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { work(); }) {}
+
+ErrorMeter::~ErrorMeter() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void ErrorMeter::measure(std::shared_ptr<const LiveRun> run) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!same_motion(wanted_, run->motion)) ++task_;
+    wanted_ = run->motion;
+    waiting_.push_back(std::move(run));
+    double bytes = 0;
+    std::size_t keep = 0;  // of the latest
+    for (auto it = waiting_.rbegin(); it != waiting_.rend() && keep < most_waiting; ++it, ++keep)
+      if (bytes += bytes_of(**it); bytes > most_waiting_bytes && keep > 0) break;
+    waiting_.erase(waiting_.begin(), waiting_.end() - static_cast<std::ptrdiff_t>(keep));
+  }
+  changed_.notify_all();
+}
+
+void ErrorMeter::hold(bool on) {
+  if (held_ == on) return;
+  {
+    const std::lock_guard lock(mutex_);
+    held_ = on;
+  }
+  changed_.notify_all();
+}
+
+std::vector<RunError> ErrorMeter::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(measured_, {});
+}
+
+bool ErrorMeter::has_work() const {
+  return std::any_of(waiting_.begin(), waiting_.end(),
+                     [&](const auto& run) { return same_motion(run->motion, wanted_); });
+}
+
+bool ErrorMeter::busy() const {
+  const std::lock_guard lock(mutex_);
+  return working_ || has_work() || !measured_.empty();
+}
+
+// Rests while it is held.
+bool ErrorMeter::stopped(long task) {
+  if (held_) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return !held_ || task_ != task || ending_; });
+  }
+  return task_ != task || ending_;
+}
+
+const ErrorMeter::Known* ErrorMeter::find(const MotionKey& motion) {
+  const auto it = std::find_if(known_.begin(), known_.end(),
+                               [&](const Known& known) { return same_motion(known.motion, motion); });
+  if (it == known_.end()) return nullptr;
+  known_.splice(known_.begin(), known_, it);
+  return &known_.front();
+}
+
+void ErrorMeter::remember(Known known) {
+  known_.push_front(std::move(known));
+  double bytes = 0;
+  std::size_t keep = 0;
+  for (const Known& each : known_) {
+    if (each.reference) bytes += static_cast<double>(each.reference->bytes());
+    if (keep > 0 && (bytes > most_known_bytes || keep == most_known)) break;
+    ++keep;
+  }
+  known_.resize(keep);
+}
+
+ErrorMeter::Known ErrorMeter::solve(const LiveRun& run, const std::shared_ptr<const Model>& model,
+                                    long task) {
+  Known known{run.motion, nullptr, {}};
+  ++begun_;
+  try {
+    StudyHooks hooks;
+    hooks.cancelled = [this, task] { return stopped(task); };
+    const double effort = std::clamp(effort_of_run * run.simulation.cpu_s, least_effort, most_effort);
+    known.reference =
+        std::make_shared<const ReferenceMotion>(solve_reference_motion(model, run.simulation, effort, hooks));
+    ++solved_;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    known.why = "out of memory";
+  } catch (const std::exception& error) {
+    known.why = error.what();
+  }
+  return known;
+}
+
+// CPU time of a run up to where errors are judged, as in studies: locating the deployed pose behind that may
+// cost several times as much. A first run finds cold memory and is short enough for any other work of the
+// machine to disturb it: the median of three tells more. 0: it was not to be had.
+double ErrorMeter::timed(const LiveRun& run, double end, long task) {
+  SolverOptions options = run.simulation.options;
+  options.end_time = std::min(end, options.end_time);
+  SimulationHooks hooks;
+  hooks.cancelled = [this, task] { return stopped(task); };
+  const std::shared_ptr<const Model> model(std::shared_ptr<void>(), &run.simulation.trajectory.model());
+  std::vector<double> times;
+  if (run.simulation.cpu_s > longest_timed) return 0;
+  do {
+    const Simulation again = simulate(model, options, hooks);
+    if (again.status == RunStatus::stopped) break;
+    times.push_back(again.cpu_s);
+  } while (times.size() < 3 && times.front() < longest_repeated);
+  std::sort(times.begin(), times.end());
+  return times.empty() ? 0 : times[times.size() / 2];
+}
+
+void ErrorMeter::report(const Known& known, const std::vector<std::shared_ptr<const LiveRun>>& runs,
+                        long task) {
+  for (const auto& run : runs) {
+    RunError out{.run = run->id, .why = known.why};
+    if (known.reference) {
+      out.end = known.reference->end();
+      out.cpu_s = timed(*run, out.end, task);
+      out.error = position_error(run->simulation, *known.reference);
+      out.uncertainty = known.reference->uncertainty();
+    }
+    const std::lock_guard lock(mutex_);
+    measured_.push_back(std::move(out));
+  }
+}
+
+void ErrorMeter::work() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return ending_ || (!held_ && has_work()); });
+    if (ending_) return;
+    working_ = true;
+    const long task = task_;
+    // The latest run may have the steps that fit its motion best: the user looks at it.
+    const auto of_motion = [this](const auto& run) { return same_motion(run->motion, wanted_); };
+    const auto latest = *std::find_if(waiting_.rbegin(), waiting_.rend(), of_motion);
+    const Known* found = find(wanted_);
+    if (!found) {
+      lock.unlock();
+      Known known;
+      try {
+        const std::shared_ptr<const Model> model(latest, &latest->simulation.trajectory.model());
+        known = solve(*latest, model, task);
+      } catch (const Cancelled&) {
+      }
+      lock.lock();
+      if (known.motion) remember(std::move(known));
+    } else {
+      std::vector<std::shared_ptr<const LiveRun>> runs;
+      std::copy_if(waiting_.begin(), waiting_.end(), std::back_inserter(runs), of_motion);
+      std::erase_if(waiting_, of_motion);
+      const Known known = *found;
+      lock.unlock();
+      report(known, runs, task);
+      lock.lock();
+    }
+    working_ = false;
+    if (wake_) wake_();
+  }
+}
+
+}  // namespace unfurl

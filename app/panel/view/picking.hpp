@@ -1,0 +1,36 @@
+// What is under the pointer, and what there is to say about it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/panel/document/selection.hpp"
+#include "app/panel/runs/simulator.hpp"
+#include "render/scene/draw_list.hpp"
+
+namespace unfurl {
+
+struct PickView {
+  Camera camera;
+  int width = 0, height = 0;        // [pixels]
+  Mat3 upright = Mat3::Identity();  // scene -> picture
+};
+
+// The node, or else the rod, whose picture is nearest to a pixel and within `reach` pixels.
+Selection pick(const LiveRun& run, double t, const PickView& view, float x, float y, float reach);
+
+// Where it is in the picture: two ends of a rod, twice the same point of a node; `found` false: the structure
+// has no such part.
+struct PickedPlace {
+  bool found = false;
+  Vec3f a, b;  // pixels, and depth [m]
+};
+PickedPlace place_of(const Selection& selection, const LiveRun& run, double t, const PickView& view);
+
+struct Reading {
+  std::string label, value;
+};
+// Length, axial force, length error of a rod; position and speed of a node; at time t.
+std::vector<Reading> readings(const Selection& selection, const LiveRun& run, double t);
+
+}  // namespace unfurl

@@ -1,0 +1,173 @@
+#include "app/panel/view/scene_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/film.hpp"
+
+namespace unfurl {
+
+namespace {
+
+Color mixed(const Color& a, const Color& b, float share) {
+  return {a.r + share * (b.r - a.r), a.g + share * (b.g - a.g), a.b + share * (b.b - a.b), 1};
+}
+
+// The other run: thinner, all in one pale colour, so that nobody takes it for the present one.
+void add_ghost(const DrawList& other, DrawList& list) {
+  const Color pale = mixed({0.48f, 0.31f, 0.64f, 1}, list.background_top, 0.45f);
+  for (Tube tube : other.tubes) {
+    tube.color = pale;
+    tube.radius *= 0.55f;
+    list.tubes.push_back(tube);
+  }
+}
+
+float lightness(const Color& c) {
+  return 0.3f * c.r + 0.6f * c.g + 0.1f * c.b;
+}
+
+// The studio at night: what is written over the picture changes its lightness with the background.
+void darken(DrawList& list) {
+  list.background_top = {0.16f, 0.19f, 0.23f, 1};
+  list.background_bottom = {0.27f, 0.31f, 0.36f, 1};
+  // Ink becomes nearly white; what is coloured stays recognisable, as a legend's swatch must.
+  const auto light = [](Color& c) {
+    const float chroma = std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b});
+    if (lightness(c) < 0.5f) c = mixed(c, {1, 1, 1, 1}, chroma > 0.3f ? 0.35f : 0.75f);
+  };
+  const auto dark = [](Color& c) {
+    const float alpha = c.a;
+    if (lightness(c) > 0.5f) c = {0.14f, 0.17f, 0.20f, alpha};
+  };
+  for (TextLabel& label : list.labels) {
+    light(label.color);
+    dark(label.backing);
+  }
+  for (OverlayLine& line : list.lines) light(line.color);
+  for (OverlayArea& area : list.areas) dark(area.color);
+}
+
+bool same(const Camera& a, const Camera& b) {
+  return a.eye == b.eye && a.target == b.target && a.vertical_field_of_view == b.vertical_field_of_view &&
+         a.near_plane == b.near_plane && a.far_plane == b.far_plane && a.parallel_height == b.parallel_height;
+}
+
+FrameStyle style_of(const LiveRun& run, const RenderOptions& picture) {
+  Scene scene = run.scene;
+  scene.render = picture;
+  return film_style(scene, run.simulation, run.diagnostics);
+}
+
+}  // namespace
+
+bool SceneView::Painted::operator==(const Painted& o) const {
+  return run == o.run && ghost == o.ghost && t == o.t && dark == o.dark && coarse == o.coarse &&
+         same(camera, o.camera);
+}
+
+void SceneView::rebuild(PanelState& state) {
+  run_ = state.shown;
+  options_ = state.view;
+  picture_ = state.picture;
+  painted_ = {};
+  RenderOptions shown = picture_;
+  shown.transparent = false;
+  shown.supersample = 1;
+  if (!options_.labels) shown.title = shown.time = false;
+  FrameStyle style;
+  state.picture_problems.clear();
+  try {
+    style = style_of(*run_, shown);
+  } catch (const SceneError& error) {  // a name that this run does not know
+    state.picture_problems = error.problems();
+    shown.inset = shown.trails = "";
+    style = style_of(*run_, shown);
+  }
+  style.width = width_;
+  style.height = height_;
+  style.loads = style.loads && options_.loads;
+  builder_ = std::make_unique<FrameBuilder>(run_->simulation.trajectory, style);
+  ghost_.reset();
+  if (ghost_run_) {
+    FrameStyle plain;
+    plain.width = width_;
+    plain.height = height_;
+    plain.labels = plain.loads = false;
+    ghost_ = std::make_unique<FrameBuilder>(ghost_run_->simulation.trajectory, plain);
+  }
+  list_ = builder_->build(state.playback.t);
+  t_ = state.playback.t;
+}
+
+void SceneView::prepare(int width, int height, PanelState& state) {
+  if (width < 1 || height < 1) return;
+  const bool resized = width != width_ || height != height_;
+  dark_ = state.dark;
+  if (resized || !renderer_) {
+    renderer_.reset();  // its memory first
+    renderer_ = std::make_unique<Renderer>(context_, width, height);
+    width_ = width;
+    height_ = height;
+  }
+  if (!state.shown || state.shown->simulation.trajectory.empty()) return;
+  const auto ghost = state.view.ghost ? state.pinned : nullptr;
+  const bool changed =
+      run_ != state.shown || ghost_run_ != ghost || !(options_ == state.view) || !(picture_ == state.picture);
+  if (resized || !builder_ || changed) {
+    ghost_run_ = ghost;
+    rebuild(state);
+  } else if (t_ != state.playback.t) {
+    list_ = builder_->build(state.playback.t);
+    t_ = state.playback.t;
+  }
+}
+
+Camera SceneView::camera(const PanelState& state) const {
+  if (!state.orbit) return list_.camera;
+  Camera camera = camera_of(*state.orbit, list_.center, list_.radius);
+  if (list_.camera.parallel_height > 0)
+    camera.parallel_height = 2 * state.orbit->distance * std::tan(0.5f * state.orbit->field_of_view);
+  return camera;
+}
+
+PickView SceneView::pick_view(const PanelState& state) const {
+  return {camera(state), width_, height_, builder_->upright()};
+}
+
+DrawList SceneView::decorated(const PanelState& state) const {
+  DrawList list = list_;
+  list.camera = camera(state);
+  if (list.transparent) {  // for paper, which is white
+    list.transparent = false;
+    list.background_top = list.background_bottom = {1, 1, 1, 1};
+  }
+  if (dark_ && picture_.look == "studio") darken(list);
+  if (ghost_) add_ghost(ghost_->build(state.playback.t), list);
+  return list;
+}
+
+bool SceneView::dark_ground() const {
+  if (picture_.look == "studio") return dark_;
+  return !list_.transparent && lightness(list_.background_top) < 0.5f;
+}
+
+bool SceneView::moved(const PanelState& state) const {
+  return builder_ && (t_ != painted_.t || !same(camera(state), painted_.camera));
+}
+
+bool SceneView::paint(const PanelState& state, bool coarse) {
+  if (!builder_) return false;
+  const Painted wanted{run_.get(), ghost_run_.get(), t_, camera(state), dark_, coarse};
+  if (wanted == painted_) return false;
+  renderer_->paint(decorated(state), coarse);
+  painted_ = wanted;
+  ++paints_;
+  return true;
+}
+
+void SceneView::copy_to(const Framebuffer& target, int x, int y) const {
+  if (renderer_ && builder_) renderer_->picture().copy_to(target, x, y);
+}
+
+}  // namespace unfurl
