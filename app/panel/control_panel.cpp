@@ -417,6 +417,8 @@ bool ControlPanel::frame(double seconds, bool visible) {
   });
   times_.widgets = building - times_.scene - times_.figures;
   follow_document();
+  const std::pair jobs(study_.running(), export_.running());
+  if (std::exchange(jobs_, jobs) != jobs) settling_ = std::max(settling_, 2);  // other widgets, other sizes
   if (visible) paint(coarse_view(seconds));
   settling_ = std::max(0, settling_ - 1);
   return settling_ > 0 || !events_.empty() || state_.playback.playing || io.WantTextInput ||

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "app/panel/input_event.hpp"
 #include "app/panel/panel_state.hpp"
@@ -106,6 +107,7 @@ class ControlPanel {
   std::optional<SceneDocument> submitted_;
   std::string clipboard_;
   FrameTimes times_;
+  std::pair<bool, bool> jobs_;  // a study, an export ran in the last frame
   ExportProcess export_;
   StudyJob study_;
   ErrorMeter errors_;

@@ -54,8 +54,19 @@ std::string exact_number(double value) {
 
 std::string short_number(double value, int digits) {
   std::array<char, 40> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, value + 0.0);
-  return buffer.data();
+  const double x = value + 0.0;
+  const bool countable = std::abs(x) >= 1 && std::abs(x) < 1e6;  // 1230 rather than 1.23e+03
+  if (countable && std::abs(x) >= std::pow(10.0, digits))
+    std::snprintf(buffer.data(), buffer.size(), "%.0f", x);
+  else
+    std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, x);
+  std::string text = buffer.data();
+  if (const std::size_t e = text.find('e'); e != std::string::npos) {  // 1e-6, as people write it
+    std::size_t first = e + (text[e + 1] == '-' ? 2 : 1);
+    if (text[first] == '+') text.erase(first, 1);
+    while (text[first] == '0' && first + 1 < text.size()) text.erase(first, 1);
+  }
+  return text;
 }
 
 double number_of(std::string_view text) {

@@ -21,7 +21,7 @@ std::string markdown_text(const Table& table);  // a pipe table; numbers to the 
 
 // Shortest text that reads back as the same double; "nan" and "inf" where it is none.
 std::string exact_number(double value);
-// With so many significant digits: "4.92", "1.2e-09".
+// With so many significant digits, as people write it: "4.92", "1230", "1.2e-9".
 std::string short_number(double value, int digits = 3);
 // Back from either; NaN where the text is no number.
 double number_of(std::string_view text);

@@ -84,10 +84,10 @@ TEST_CASE("the cheapest of the runs that are accurate enough is named") {
   CHECK(cheapest(study, 1e-6).curve == &study.curves[0]);
   CHECK(cheapest(study, 1e-9).run == nullptr);
   CHECK(cheapest_sentence(study) ==
-        "The cheapest setting for 0.001 m is fast with a step of 0.5 s (1e+03 ms), for 1e-06 m slow with a "
-        "step of 0.5 s (4e+03 ms); no setting was found that keeps 1e-09 m.");
+        "The cheapest setting for 0.001 m is fast with a step of 0.5 s (1000 ms), for 1e-6 m slow with a "
+        "step of 0.5 s (4000 ms); no setting was found that keeps 1e-9 m.");
   study.curves.clear();
-  CHECK(cheapest_sentence(study) == "No setting was found that keeps 0.001 m, 1e-06 m, 1e-09 m.");
+  CHECK(cheapest_sentence(study) == "No setting was found that keeps 0.001 m, 1e-6 m, 1e-9 m.");
 }
 
 TEST_CASE("a ladder falls by halves and two thirds, and all its runs meet") {
