@@ -83,7 +83,7 @@ TEST_CASE("a second run draws only what is missing, and the same as before") {
   CHECK(file_text(frame(out, 3)) == cut);
 }
 
-TEST_CASE("frames of another scene are never mixed in; --force starts over") {
+TEST_CASE("frames of another scene are never mixed in, and --force starts over") {
   const ScratchDirectory dir;
   const std::string out = dir / "out";
   REQUIRE(run_program(film(out)).code == 0);

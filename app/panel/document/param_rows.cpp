@@ -138,7 +138,7 @@ ParamSection element_section(std::string title, std::string_view table,
   return section;
 }
 
-double number_of(const ParamValue& value) {
+double size_of(const ParamValue& value) {
   if (const auto* x = std::get_if<double>(&value)) return *x;
   if (const auto* i = std::get_if<long>(&value)) return static_cast<double>(*i);
   if (const auto* v = std::get_if<std::vector<double>>(&value)) {
@@ -181,7 +181,7 @@ std::vector<ParamSection> param_sections(const Scene& base, const Selection& sel
 
 SliderRange slider_range(const ParamSpec& spec, const ParamValue& base) {
   const bool bounded = std::isfinite(spec.min) && std::isfinite(spec.max);
-  const double value = number_of(base), fallback = number_of(spec.fallback);
+  const double value = size_of(base), fallback = size_of(spec.fallback);
   const double typical = std::abs(value) > 0 ? std::abs(value) : std::abs(fallback);
   const double room = typical > 0 ? typical : 1.0;
   if (bounded && spec.max - spec.min <= 1000 * std::max(room, 1.0)) {
@@ -235,7 +235,7 @@ std::string value_caption(const ParamValue& value, std::string_view unit) {
   if (const auto* v = std::get_if<std::vector<double>>(&value)) {
     for (const double x : *v) text += (text.empty() ? "" : ", ") + number_caption(x);
   } else {
-    text = number_caption(number_of(value));
+    text = number_caption(size_of(value));
   }
   return unit.empty() ? text : text + (unit == "deg" ? "" : " ") + unit_caption(unit);
 }

@@ -63,7 +63,7 @@ void study_sweep(const StudyHooks& hooks, StudyOutcome& out) {
   double low = 0, high = 0;
   std::string at_low, at_high;
   for (const auto& row : sweep.table.rows) {
-    const double value = unfurl::number_of(row.back());
+    const double value = number_of(row.back());
     if (!(value == value)) continue;
     if (at_low.empty() || value < low) low = value, at_low = row.front();
     if (at_high.empty() || value > high) high = value, at_high = row.front();

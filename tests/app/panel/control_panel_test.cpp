@@ -135,7 +135,7 @@ TEST_CASE("dragging in a figure moves the time") {
   CHECK(driver.state().playback.t < 0.8 * end);
 }
 
-TEST_CASE("the view turns, moves and zooms; F frames it again") {
+TEST_CASE("the view turns, moves and zooms, and F frames it again") {
   PanelDriver driver;
   driver.drag("view", 0.3, 0.6);
   REQUIRE(driver.state().orbit);

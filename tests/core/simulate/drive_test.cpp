@@ -105,7 +105,7 @@ TEST_CASE("a crank at a constant rate goes round and round") {
   CHECK(x[7] == Approx(2 * std::sin(theta)).margin(1e-11));
 }
 
-TEST_CASE("a table is followed through its points; one that begins elsewhere is refused") {
+TEST_CASE("a table is followed through its points, one that begins elsewhere is refused") {
   const std::vector<std::string> table = {"structure.constraints.motor.motion=table",
                                           "structure.constraints.motor.times=[0, 1, 2]",
                                           "structure.constraints.motor.values=[90, 120, 100]"};

@@ -50,7 +50,7 @@ TEST_CASE("the ladder's collinear poses are events, each at its time and none el
 }
 
 TEST_CASE(
-    "what is redundant everywhere is no singular pose; the ring's deployed one is, where it is passed") {
+    "what is redundant everywhere is no singular pose, the ring's deployed one is, where it is passed") {
   SolverOptions options = dvm_options(4, 0.01, 5.2);
   Simulation stopped = simulate(make_model(hoop_structure()), options);
   CHECK(structural_redundancy(stopped.trajectory, 0, stopped.trajectory.size() - 1) == 7);

@@ -75,7 +75,7 @@ TEST_CASE("constraint errors are at round-off and drawn on a logarithmic scale")
   CHECK(field.position(std::sqrt(field.low * field.high)) == Approx(0.5));
 }
 
-TEST_CASE("a given range is kept; beyond it the colour is that of its end, and grey where nothing is known") {
+TEST_CASE("a given range is kept, beyond it the colour is that of its end, and grey where nothing is known") {
   const Run r;
   const RodField field = rod_field("speed", {1, 3}, r.run, r.diagnostics);
   CHECK(field.low == 1);

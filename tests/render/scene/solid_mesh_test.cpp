@@ -94,7 +94,7 @@ TEST_CASE("facets are finer the larger a body is in the picture, and never far f
   }
 }
 
-TEST_CASE("an arrow is a shaft and a cone whose tip is its head; one without length is nothing") {
+TEST_CASE("an arrow is a shaft and a cone whose tip is its head, one without length is nothing") {
   DrawList list;
   list.arrows.push_back({{0, 0, 0}, {0, 0, 2}, 0.05f, {}});
   list.arrows.push_back({{1, 1, 1}, {1, 1, 1}, 0.05f, {}});
