@@ -1,7 +1,10 @@
 // The exact motion of a ladder of four-bar windows that stay parallelograms.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+
+#include "core/simulate/trajectory.hpp"
 
 namespace unfurl::exact {
 
@@ -46,5 +49,26 @@ struct FourBarLadder {
     for (int n = order + 2; n >= 1; --n) rate = rate * h + n * a[n];
   }
 };
+
+// Largest distance of an upper node of such a run from where it should be [m]: all of them move alike, but
+// past a collinear pose round-off grows, in Runge-Kutta steps to more than 1e-11 m, and differently at each.
+inline double largest_head_error(const FourBarLadder& exact, const Trajectory& trajectory) {
+  const auto& nodes = trajectory.structure().nodes;
+  const VectorXd start = trajectory.node_positions(0);
+  double largest = 0;
+  int heads = 0;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const double phi = exact.angle(trajectory.time(i));
+    const Vec3 moved = exact.length * Vec3(std::sin(phi), std::cos(phi) - 1, 0);
+    const VectorXd q = trajectory.node_positions(i);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (!nodes[k].name.starts_with("B")) continue;
+      const auto at = 3 * static_cast<Index>(k);
+      largest = std::max(largest, (q.segment<3>(at) - start.segment<3>(at) - moved).norm());
+      ++heads;
+    }
+  }
+  return heads > 0 ? largest : std::numeric_limits<double>::quiet_NaN();
+}
 
 }  // namespace unfurl::exact

@@ -36,21 +36,12 @@ void EditHistory::saved(SceneDocument document) {
   now_ = std::move(document);
 }
 
-bool EditHistory::undo() {
+bool EditHistory::step(std::vector<SceneDocument>& from, std::vector<SceneDocument>& to) {
   end_gesture();
-  if (past_.empty()) return false;
-  future_.push_back(std::move(now_));
-  now_ = std::move(past_.back());
-  past_.pop_back();
-  return true;
-}
-
-bool EditHistory::redo() {
-  end_gesture();
-  if (future_.empty()) return false;
-  past_.push_back(std::move(now_));
-  now_ = std::move(future_.back());
-  future_.pop_back();
+  if (from.empty()) return false;
+  to.push_back(std::move(now_));
+  now_ = std::move(from.back());
+  from.pop_back();
   return true;
 }
 

@@ -23,11 +23,12 @@ class EditHistory {
 
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }
-  bool undo();  // false: there was nothing to undo
-  bool redo();
+  bool undo() { return step(past_, future_); }  // false: there was nothing to undo
+  bool redo() { return step(future_, past_); }
 
  private:
   void remember();
+  bool step(std::vector<SceneDocument>& from, std::vector<SceneDocument>& to);
   static constexpr std::size_t deepest = 10000;
 
   SceneDocument now_;

@@ -152,9 +152,8 @@ void add_start(std::string& text, const ElementKind& kind, const SceneDocument& 
                const std::string& key, double end_time) {
   const bool stop = has_param(kind, "restitution");
   if (!stop && !has_param(kind, "motion")) return;
-  std::string held = text;  // the same members, held: what they measure
-  if (const std::size_t at = held.find("_stop"); at != std::string::npos) held.erase(at, 5);
-  const double now = value_at_start(document, key, held);
+  // Held, or with a limit that no motion comes to, it can be built: then its measure is known.
+  const double now = value_at_start(document, key, stop ? text + ", min = -1e300" : text);
   if (stop) return add_member(text, "min", now);
   add_member(text, "motion", std::string("smooth"));
   add_member(text, "to", now);

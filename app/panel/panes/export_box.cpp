@@ -100,17 +100,11 @@ void draw_export(Ui& ui, PanelState& state, ExportProcess& job) {
   render(ui, state, job, inside);
   heading(ui, "Command line");
   const std::string line = command_line(state.history.now(), "render", state.export_output);
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(line.c_str());
-  ImGui::PopTextWrapPos();
+  wrapped(ui.theme.text, line);
   if (button(ui, "copy", "Copy", "to the clipboard")) ImGui::SetClipboardText(line.c_str());
   ImGui::SameLine();
   if (button(ui, "close export", "Close", "Esc")) state.export_open = false;
-  if (!state.message.empty()) {
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextColored(ui.theme.dim, "%s", state.message.c_str());
-    ImGui::PopTextWrapPos();
-  }
+  if (!state.message.empty()) wrapped(ui.theme.dim, state.message);
   ImGui::End();
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();

@@ -11,14 +11,6 @@ namespace unfurl {
 
 namespace {
 
-void wrapped(const ImVec4& color, const std::string& text) {
-  ImGui::PushStyleColor(ImGuiCol_Text, color);
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::PopStyleColor();
-}
-
 // The problem of a key, or of an entry or member of it.
 const SceneProblem* problem_of(const PanelState& state, const std::string& key) {
   for (const SceneProblem& problem : state.problems)
@@ -52,10 +44,6 @@ void reset_menu(Ui& ui, PanelState& state, const ParamRow& row) {
   if (ImGui::MenuItem("Copy the key")) ImGui::SetClipboardText(row.key.c_str());
   ImGui::EndPopup();
 }
-
-}  // namespace
-
-namespace {
 
 const ParamValue& present_value(const PanelState& state, const ParamRow& row) {
   const auto& edits = state.history.now().edits;

@@ -149,14 +149,6 @@ void draw_start(Ui& ui, PanelState& state, StudyJob& job) {
   }
 }
 
-void wrapped_line(const ImVec4& color, const std::string& text) {
-  ImGui::PushStyleColor(ImGuiCol_Text, color);
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::PopStyleColor();
-}
-
 // What the mark under the pointer stands for.
 void name_mark(const Ui& ui, const FigureCard& card, const PlacedFigure& place) {
   if (!ImGui::IsWindowHovered()) return;
@@ -193,11 +185,11 @@ void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards, StudyJob& jo
   if (!state.studied) return;
   const StudyOutcome& outcome = *state.studied;
   ImGui::Separator();
-  if (!outcome.message.empty()) wrapped_line(ui.theme.error, outcome.message);
+  if (!outcome.message.empty()) wrapped(ui.theme.error, outcome.message);
   const bool same = outcome.study ? same_motion(outcome.motion, state.shown->motion)
                                   : outcome.document == simulated_part(state.history.now());
-  if (!same) wrapped_line(ui.theme.warning, "of the scene as it was when this was started");
-  if (!outcome.sentence.empty()) wrapped_line(ui.theme.text, outcome.sentence);
+  if (!same) wrapped(ui.theme.warning, "of the scene as it was when this was started");
+  if (!outcome.sentence.empty()) wrapped(ui.theme.text, outcome.sentence);
   ui.note("study sentence");
   for (FigureCard* card : cards.study(state.studied, state.trade, state.trade_news, figure_width(ui))) {
     const PlacedFigure place = draw_figure(ui, state, *card);

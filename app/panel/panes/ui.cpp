@@ -22,6 +22,14 @@ std::string shortened(const std::string& text, float width) {
   return kept + "\u2026";
 }
 
+void wrapped(const ImVec4& color, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
 bool button(Ui& ui, const std::string& key, const std::string& label, const std::string& help, bool enabled) {
   ImGui::BeginDisabled(!enabled);
   const bool pressed = ImGui::Button((label + "##" + key).c_str());

@@ -39,6 +39,8 @@ void tooltip(const Ui& ui, const std::string& text);  // over the last widget
 // The text, cut with an ellipsis where it is wider in the present font [pixels].
 std::string shortened(const std::string& text, float width);
 
+void wrapped(const ImVec4& color, const std::string& text);  // over as many lines as it takes
+
 // A button of the panel; greyed out where it is not enabled.
 bool button(Ui& ui, const std::string& key, const std::string& label, const std::string& help,
             bool enabled = true);

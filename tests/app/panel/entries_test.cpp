@@ -160,6 +160,18 @@ TEST_CASE("a new entry acts on what is selected") {
   }
 }
 
+TEST_CASE("a new drive or stop begins at what its members measure, whatever they are called") {
+  const std::string scene =
+      "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'up_stop'\nposition = [0, 0, 3]\nmass = 1\n"
+      "[[structure.nodes]]\nname = 'foot'\nposition = [0, 0, 0]\nfixed = true\n";
+  SceneDocument document = open_document("pendulum", {});
+  document.text = std::make_shared<const std::string>(scene);
+  const Selection up{Selection::Kind::node, "up_stop"};
+  CHECK(new_entry(document, "constraints", "length", up).find("to = 3.0,") != std::string::npos);
+  CHECK(new_entry(document, "constraints", "length_stop", up).ends_with("min = 3.0}"));
+  CHECK(new_entry(document, "constraints", "coordinate_stop", up).ends_with("min = 3.0}"));
+}
+
 TEST_CASE("taking an entry away moves the ones behind it up, with their edits") {
   SceneDocument document = open_document("hoop6", {});
   for (const char* node : {"B0", "B1", "B2"})

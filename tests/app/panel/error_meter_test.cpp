@@ -24,15 +24,6 @@ SceneDocument ladder(const char* method, long stages, double step) {
   return document;
 }
 
-std::shared_ptr<const LiveRun> run_of(Simulator& simulator, const SceneDocument& document) {
-  simulator.submit(document);
-  for (int i = 0; i < 60000; ++i) {
-    if (auto outcome = simulator.take()) return outcome->run;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return nullptr;
-}
-
 template <class Condition>
 bool comes_true(const Condition& condition) {  // within a minute
   for (int i = 0; i < 60000; ++i) {
@@ -40,6 +31,17 @@ bool comes_true(const Condition& condition) {  // within a minute
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return false;
+}
+
+std::shared_ptr<const LiveRun> run_of(Simulator& simulator, const SceneDocument& document) {
+  simulator.submit(document);
+  std::shared_ptr<const LiveRun> run;
+  comes_true([&] {
+    const auto outcome = simulator.take();
+    if (outcome) run = outcome->run;
+    return outcome.has_value();
+  });
+  return run;
 }
 
 std::vector<RunError> all_errors(ErrorMeter& meter) {
@@ -51,26 +53,8 @@ std::vector<RunError> all_errors(ErrorMeter& meter) {
   return all;
 }
 
-// From the exact motion, of every upper node: past a collinear pose round-off grows, in Runge-Kutta steps to
-// more than 1e-11 m, and differently at each.
 double true_error(const LiveRun& run) {
-  const exact::FourBarLadder exact{2, scene_speed};
-  const Trajectory& trajectory = run.simulation.trajectory;
-  double largest = 0;
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const double phi = exact.angle(trajectory.time(i));
-    const Vec3 head(std::sin(phi), std::cos(phi), 0);
-    const VectorXd q = trajectory.node_positions(i), start = trajectory.node_positions(0);
-    const Vec3 first = start.segment<3>(3);
-    const auto& nodes = trajectory.structure().nodes;
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      if (!nodes[k].name.starts_with("B")) continue;
-      const auto at = 3 * static_cast<Index>(k);
-      const Vec3 beside = start.segment<3>(at) - first;  // parallel rods: from head to head for ever
-      largest = std::max(largest, (q.segment<3>(at) - head - beside).norm());
-    }
-  }
-  return largest;
+  return exact::largest_head_error({2, scene_speed}, run.simulation.trajectory);
 }
 
 }  // namespace

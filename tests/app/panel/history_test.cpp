@@ -59,15 +59,15 @@ TEST_CASE("every declared parameter of a scene has a row, and its value is in th
       for (const ParamRow& row : section.rows) {
         INFO(row.key);
         ++rows;
-        if (not_given(row.value)) continue;
-        CHECK(range_error(row.spec, row.value).empty());
+        const bool given = !not_given(row.value);
+        if (given) CHECK(range_error(row.spec, row.value).empty());
         if (row.spec.kind != ParamKind::real && row.spec.kind != ParamKind::integer) continue;
         const SliderRange range = slider_range(row);
         const double x = row.spec.kind == ParamKind::real ? std::get<double>(row.value)
                                                           : static_cast<double>(std::get<long>(row.value));
         CHECK(range.low < range.high);
-        CHECK(range.low <= x);
-        CHECK(x <= range.high);
+        if (given) CHECK(range.low <= x);
+        if (given) CHECK(x <= range.high);
         // Both ends are allowed: no slider leads into an error of its own.
         if (row.spec.kind == ParamKind::real) {
           CHECK(range_error(row.spec, range.low).empty());

@@ -24,6 +24,15 @@ void finish_study(PanelDriver& driver, const std::shared_ptr<const StudyOutcome>
   for (int i = 0; i < 3; ++i) driver.frame(0);
 }
 
+// Of dvm alone, from the page's own button.
+void study_dvm(PanelDriver& driver, double largest_step, double smallest_step) {
+  driver.state().study.methods = {"dvm"};
+  driver.state().study.largest_step = largest_step;
+  driver.state().study.smallest_step = smallest_step;
+  driver.click("start study");
+  finish_study(driver, nullptr);
+}
+
 }  // namespace
 
 TEST_CASE("the page of studies measures speed against accuracy of the scene that is shown") {
@@ -32,10 +41,7 @@ TEST_CASE("the page of studies measures speed against accuracy of the scene that
   REQUIRE(driver.state().studies_open);
   driver.click("study method rk4");  // off: dvm alone
   REQUIRE(driver.state().study.methods == std::vector<std::string>{"dvm"});
-  driver.state().study.largest_step = 0.04;
-  driver.state().study.smallest_step = 0.02;
-  driver.click("start study");
-  finish_study(driver, nullptr);
+  study_dvm(driver, 0.04, 0.02);
   const StudyOutcome& outcome = *driver.state().studied;
   INFO(outcome.message);
   REQUIRE(outcome.figures.size() == 1);
@@ -58,11 +64,7 @@ TEST_CASE("the page of studies measures speed against accuracy of the scene that
 TEST_CASE("the present run is on the study's figure of its motion, and moves as settings are changed") {
   PanelDriver driver(PanelDriver::small(), "four_bar");
   driver.key(Key::three);
-  driver.state().study.methods = {"dvm"};
-  driver.state().study.largest_step = 0.05;
-  driver.state().study.smallest_step = 0.025;
-  driver.click("start study");
-  finish_study(driver, nullptr);
+  study_dvm(driver, 0.05, 0.025);
   const StudyOutcome& outcome = *driver.state().studied;
   REQUIRE(outcome.study);
   const auto now_of = [&](const Figure& figure) {

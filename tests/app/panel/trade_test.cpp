@@ -26,15 +26,7 @@ struct LadderPanel : PanelDriver {
 };
 
 double true_error(const LiveRun& run, double speed) {
-  const exact::FourBarLadder exact{2, speed};
-  const Trajectory& trajectory = run.simulation.trajectory;
-  double largest = 0;
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const double phi = exact.angle(trajectory.time(i));
-    const Vec3 head(std::sin(phi), std::cos(phi), 0);
-    largest = std::max(largest, (trajectory.node_positions(i).segment<3>(3) - head).norm());
-  }
-  return largest;
+  return exact::largest_head_error({2, speed}, run.simulation.trajectory);
 }
 
 std::vector<Curve> labelled(const Figure& figure, const std::string& label) {
