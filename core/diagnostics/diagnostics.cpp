@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include "core/diagnostics/energy_flow.hpp"
@@ -160,8 +161,11 @@ class DriveColumns {
  public:
   DriveColumns(const System& system, std::vector<Series>& columns)
       : columns_(columns), first_(columns.size()), drives_(system.drives()) {
+    std::set<std::string> taken;
     for (const Drive& drive : drives_) {
-      const std::string& name = drive.name;
+      std::string name = drive.name;  // a scene's names are unique, a program's need not be
+      for (int number = 2; !taken.insert(name).second; ++number)
+        name = drive.name + " (" + std::to_string(number) + ")";
       columns.push_back(
           {name + (drive.angle ? ".angle_rad" : ".value_m"), name, drive.angle ? "rad" : "m", {}});
       columns.push_back({name + (drive.angle ? ".torque_N_m" : ".force_N"),
@@ -177,7 +181,7 @@ class DriveColumns {
     for (const Drive& wanted : drives_) {
       const Drive* drive = nullptr;
       for (const Drive& d : system.drives())
-        if (d.name == wanted.name) drive = &d;
+        if (d.constraint == wanted.constraint) drive = &d;
       const double effort = drive ? -drive->scale * lambda[drive->row] : nan;
       columns_[column++].values.push_back(wanted.target(t));
       columns_[column++].values.push_back(effort);

@@ -26,7 +26,10 @@ std::string listed(const std::vector<std::string>& names, std::size_t most = 6) 
 class Checker {
  public:
   Checker(const Structure& structure, const System& system)
-      : system_(system), names_(system.all_names()), q_(system.coordinates()) {
+      : system_(system),
+        names_(system.all_names()),
+        sources_(system.all_sources()),
+        q_(system.coordinates()) {
     for (std::size_t i = 0; i < structure.nodes.size(); ++i)
       q_.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
   }
@@ -85,10 +88,12 @@ class Checker {
 
   // A drive whose row follows from rows that stand still asks them to move.
   void check_drive(const Drive& drive) const {
-    const auto row = std::find(names_.begin(), names_.end(), drive.name) - names_.begin();
+    const auto row = std::find(sources_.begin(), sources_.end(), drive.constraint) - sources_.begin();
     std::vector<std::string> held;
     for (const Index k : combination(row)) {
-      const auto is_it = [&](const Drive& d) { return d.name == name(k); };
+      const auto is_it = [&](const Drive& d) {
+        return d.constraint == sources_[static_cast<std::size_t>(k)];
+      };
       if (std::any_of(system_.drives().begin(), system_.drives().end(), is_it))
         return;  // two drives may agree
       held.push_back(name(k));
@@ -113,6 +118,7 @@ class Checker {
 
   const System& system_;
   std::vector<std::string> names_;
+  std::vector<int> sources_;
   VectorXd q_;
   MatrixXd G_;  // unit rows
 };

@@ -2,6 +2,7 @@
 // those).
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,16 @@ struct Constraint {
   double value = 0.0;         // offset or length [m]
   Measure measure = {};       // "measure": what is held or driven
   TimeFunction target = {};   // "measure": its value over time, in the measure's unit
+};
+
+// An end stop: limits that a measure may touch but not pass (simulate/stops.hpp).
+struct Stop {
+  std::string name;  // for messages and events
+  Measure measure;
+  // In the measure's unit [m] or [rad]; infinite where there is no limit.
+  double min = -std::numeric_limits<double>::infinity(), max = std::numeric_limits<double>::infinity();
+  double restitution = 0.0;  // rebound speed over approach speed
+  double rest_speed = 0.0;   // rebounds slower than this rest on the stop [m/s] or [rad/s]
 };
 
 // One force of a kind in the force table (forces/force.hpp).
@@ -143,6 +154,7 @@ struct Structure {
   std::vector<Node> nodes;
   std::vector<Rod> rods;
   std::vector<Constraint> constraints;
+  std::vector<Stop> stops;
   std::vector<Load> loads;
   std::vector<Force> forces;
   Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]

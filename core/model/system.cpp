@@ -1,7 +1,6 @@
 #include "core/model/system.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 
 #include "core/constraints/linear_rows.hpp"
@@ -72,9 +71,10 @@ void System::Data::build_blocks(const Structure& structure, bool eliminate_linea
     return add_blocks(structure, eliminate_linear);
   Structure rest = structure, following;
   following.nodes = structure.nodes;
-  following.constraints.assign(structure.constraints.begin(), structure.constraints.end());
-  std::erase_if(rest.constraints, follows);
-  std::erase_if(following.constraints, std::not_fn(follows));
+  following.constraints = structure.constraints;
+  for (std::size_t i = 0; i < structure.constraints.size();
+       ++i)  // no kind: no row, but the others keep their index
+    (follows(structure.constraints[i]) ? rest : following).constraints[i].kind.clear();
   add_blocks(following, true);
   add_blocks(rest, false);
 }
@@ -140,6 +140,12 @@ void System::Data::build_coordinates() {
 }
 
 void System::Data::build_forces(const Structure& structure) {
+  for (std::size_t i = 0; i < structure.forces.size(); ++i)
+    if (std::ranges::none_of(force_kinds(), [&](const ForceKind& kind) {
+          return kind.params && kind.kind == structure.forces[i].kind;
+        }))
+      throw StructureError("forces[" + std::to_string(i) + "].kind",
+                           "there is no force kind \"" + structure.forces[i].kind + "\"");
   constant_force = loads = gravity_force = VectorXd::Zero(coordinates);
   for (const ForceKind& kind : force_kinds()) {
     auto block = kind.make(structure, node_mass);
@@ -151,6 +157,24 @@ void System::Data::build_forces(const Structure& structure) {
   }
   for (const Load& load : structure.loads) loads.segment<3>(3 * load.node) += load.force;
   gravity_force = node_mass * structure.gravity.replicate(coordinates / 3, 1);
+}
+
+// Every constraint must be in some block, or it would not act, and nobody would know.
+void System::Data::find_constraint_rows(const Structure& structure) {
+  std::vector<char> taken(structure.constraints.size());
+  for (const ConstraintBlock* block : all)
+    for (int r = 0; r < block->rows(); ++r)
+      if (const int source = block->source(r); source >= 0) taken[static_cast<std::size_t>(source)] = 1;
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    if (!taken[i])
+      throw StructureError("constraints[" + std::to_string(i) + "].kind",
+                           "there is no constraint kind \"" + structure.constraints[i].kind + "\"");
+  constraint_rows.assign(taken.size(), -1);
+  int row = 0;
+  for (const ConstraintBlock* block : kept)
+    for (int r = 0; r < block->rows(); ++r, ++row)
+      if (const int source = block->source(r); source >= 0)
+        if (int& first = constraint_rows[static_cast<std::size_t>(source)]; first < 0) first = row;
 }
 
 // G_z = G B, entry by entry, so that evaluating it is one pass over precomputed sums.
@@ -221,6 +245,7 @@ System::System(const Structure& structure, bool eliminate_linear) {
   data->node_mass = node_mass_matrix(structure);
   data->build_blocks(structure, eliminate_linear);
   data->build_coordinates();
+  data->find_constraint_rows(structure);
   data->check_mass(structure);
   data->build_forces(structure);
   data->build_jacobian_map();
@@ -270,6 +295,9 @@ const VectorXd& System::constraint_lengths() const {
 }
 const std::vector<std::string>& System::constraint_names() const {
   return data_->names;
+}
+int System::constraint_row(int constraint) const {
+  return data_->constraint_rows[static_cast<std::size_t>(constraint)];
 }
 const std::vector<int>& System::rod_rows() const {
   return data_->rod_rows;
@@ -464,6 +492,13 @@ std::vector<std::string> System::all_names() const {
   for (const ConstraintBlock* block : data_->all)
     for (int r = 0; r < block->rows(); ++r) names.push_back(block->name(r));
   return names;
+}
+
+std::vector<int> System::all_sources() const {
+  std::vector<int> sources;
+  for (const ConstraintBlock* block : data_->all)
+    for (int r = 0; r < block->rows(); ++r) sources.push_back(block->source(r));
+  return sources;
 }
 
 VectorXd System::all_lengths() const {

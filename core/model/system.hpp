@@ -98,6 +98,8 @@ class System {
   const std::vector<std::string>& constraint_names() const;  // per kept row
   // Kept row of each rod; -1 where it is none.
   const std::vector<int>& rod_rows() const;
+  // First kept row of Structure::constraints[constraint]; -1 where it was eliminated.
+  int constraint_row(int constraint) const;
 
   // Every constraint of the structure, eliminated ones included (for check and diagnostics).
   Index all_constraints() const;
@@ -107,6 +109,7 @@ class System {
                             std::vector<double>& scratch) const;
   SparseRows all_jacobian(const ConstVec& q) const;  // of the node coordinates
   std::vector<std::string> all_names() const;
+  std::vector<int> all_sources() const;  // indices in Structure::constraints, -1: a rod
   VectorXd all_lengths() const;
 
  private:

@@ -21,7 +21,7 @@ struct System::Data {
   Index coordinates = 0, rows = 0, linear_rows = 0;
   VectorXd lengths;
   std::vector<std::string> names;
-  std::vector<int> rod_rows;
+  std::vector<int> rod_rows, constraint_rows;
   std::vector<Drive> drives;
   // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e,
   // start_{e+1}).
@@ -40,6 +40,7 @@ struct System::Data {
   void build_forces(const Structure& structure);
   void build_jacobian_map();
   void build_stencils();
+  void find_constraint_rows(const Structure& structure);
   void check_mass(const Structure& structure) const;
 };
 

@@ -1,7 +1,6 @@
 // [[constraints]] of a scene into a structure.
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "core/scene/element_members.hpp"
@@ -165,23 +164,23 @@ class ConstraintAdder {
 
   void push_stop(const SceneElement& e, const Measure& measure, double unit) {
     const double initial = find_.initial(measure), round_off = 1e-9 * std::max(1.0, std::abs(initial));
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Vec3 limits(-infinity, infinity, 0);
-    int given = 0;
+    Stop stop{.name = e.name, .measure = measure};
+    bool given = false;
     for (const int side : {0, 1}) {
       const char* key = side == 0 ? "min" : "max";
       const double limit = unit * e.values.real(key);
       if (std::isnan(limit)) continue;
-      ++given;
-      limits[side] = limit;
+      given = true;
+      (side == 0 ? stop.min : stop.max) = limit;
       if (side == 0 ? initial >= limit - round_off : initial <= limit + round_off) continue;
       std::ostringstream text;
       text << "is passed already at t = 0, where the value is " << initial / unit;
       find_.problem(e, key, text.str());
     }
-    if (given == 0) return find_.problem(e, "min", "is missing, and so is max: a stop needs a limit");
-    const Vec3 impact(e.values.real("restitution"), unit * e.values.real("rest_speed"), 0);
-    structure_.constraints.push_back({"stop", e.name, {}, {limits, impact}, 0.0, measure, {}});
+    if (!given) return find_.problem(e, "min", "is missing, and so is max: a stop needs a limit");
+    stop.restitution = e.values.real("restitution");
+    stop.rest_speed = unit * e.values.real("rest_speed");
+    structure_.stops.push_back(std::move(stop));
   }
 
   void check_begin(const SceneElement& e, double begin, double initial, double unit) {

@@ -87,10 +87,15 @@ double start_value(const SceneElement& element, const Structure& structure) {
                ? value / radians_per_degree
                : value;
   };
-  for (const Constraint& c : structure.constraints)
-    if (c.name == element.name && (c.kind == "measure" || c.kind == "stop")) return of(c.measure);
-  for (const Force& f : structure.forces)
-    if (f.name == element.name && (f.kind == "spring" || f.kind == "torsion_spring")) return of(f.measure);
+  if (element.key.starts_with("forces")) {
+    for (const Force& f : structure.forces)
+      if (f.name == element.name && (f.kind == "spring" || f.kind == "torsion_spring")) return of(f.measure);
+  } else {
+    for (const Constraint& c : structure.constraints)
+      if (c.name == element.name && c.kind == "measure") return of(c.measure);
+    for (const Stop& stop : structure.stops)
+      if (stop.name == element.name) return of(stop.measure);
+  }
   return std::numeric_limits<double>::quiet_NaN();
 }
 

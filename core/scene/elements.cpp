@@ -2,6 +2,7 @@
 #include "core/scene/elements.hpp"
 
 #include <limits>
+#include <map>
 
 #include "core/model/nearest_name.hpp"
 #include "core/scene/csv_table.hpp"
@@ -293,8 +294,29 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
   }
   if (element.values.has("motion")) check_motion(entry, element.values);
   entry.finish();
-  element.name = head.text("name").empty() ? made_name(element) : head.text("name");
+  element.name = head.text("name");
   return element;
+}
+
+void settle_names(std::vector<SceneElement>& elements, SceneNotes& notes) {
+  std::map<std::string, const SceneElement*> taken;
+  for (const SceneElement& element : elements) {
+    if (element.name.empty() || !element.enabled) continue;
+    const auto [first, is_new] = taken.try_emplace(element.name, &element);
+    if (is_new) continue;
+    const std::string key = element.key + ".name";
+    const auto place = notes.locations.find(key);
+    notes.add(place == notes.locations.end() ? element.where : place->second, key,
+              first->second->key + " is called " + in_quotes(element.name) +
+                  " already; give this one a name of its own");
+  }
+  for (SceneElement& element : elements) {
+    if (!element.name.empty() || element.kind.empty()) continue;
+    const std::string made = made_name(element);
+    element.name = made;
+    for (int number = 2; !taken.try_emplace(element.name, &element).second; ++number)
+      element.name = made + " (" + std::to_string(number) + ")";
+  }
 }
 
 }  // namespace unfurl

@@ -12,7 +12,7 @@ namespace unfurl {
 
 struct SceneElement {
   std::string kind;
-  std::string name;                // for messages and columns; made from kind and members where none is given
+  std::string name;                // for messages and columns: one of its own (settle_names)
   std::vector<std::string> nodes;  // names or globs
   std::vector<std::string> rods;
   bool fold_angle = false;  // acts on the structure's fold angle
@@ -44,6 +44,10 @@ std::string_view members_text(Members members);
 // One entry; `folder` is where its CSV table may lie. Mistakes are noted.
 SceneElement read_element(TableReader& entry, const std::string& key, const std::vector<ElementKind>& kinds,
                           const std::string& folder, SceneNotes& notes);
+
+// Gives every element without a name one from its kind and members, numbered where that is taken: "angle of
+// A-B-C", "angle of A-B-C (2)". Notes two enabled elements that were given the same.
+void settle_names(std::vector<SceneElement>& elements, SceneNotes& notes);
 
 // What an element that measures something (a drive, a stop, a spring) measures at the start of the structure
 // that was built with it, in the scene's unit [m or deg]; NaN: nothing, or it was not built.

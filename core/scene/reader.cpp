@@ -162,6 +162,8 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   read_loads(root, scene, notes);
   read_elements(root, "forces", scene_forces(), folder, scene.forces, notes);
   read_elements(root, "constraints", scene_constraints(), folder, scene.constraints, notes);
+  settle_names(scene.forces, notes);
+  settle_names(scene.constraints, notes);
   read_solver(root, tree, scene, notes);
   read_render(root, tree, scene, notes);
   root.finish();

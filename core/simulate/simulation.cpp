@@ -194,7 +194,7 @@ class TimeLoop {
   // Stops that would have to pull let go.
   bool release_stops() {
     for (const std::size_t i : std::set<std::size_t>(held_)) {
-      if (stops_.push(i, system(), now()) >= 0) continue;
+      if (stops_.push(i, run_.trajectory.last_model(), held_, now()) >= 0) continue;
       held_.erase(i);
       switch_held("leaves stop " + stops_[i].name);
     }
@@ -253,7 +253,8 @@ class TimeLoop {
     return fold(now()) > singular_margin && fold(next) <= singular_margin;
   }
 
-  // Could the fold angle reach zero within a step? Where sine * rate is constant it does so after sine / 2 rate.
+  // Could the fold angle reach zero within a step? Where sine * rate is constant it does so after sine / 2
+  // rate.
   bool may_cross(double h) {
     if (deployment_.empty() || deployed_) return false;
     const double sine = fold(now());

@@ -10,20 +10,18 @@
 namespace unfurl {
 namespace {
 
-std::string held_name(const Stop& stop) {
+std::string held_name(const StopSide& stop) {
   return stop.name + (stop.sign > 0 ? " (held at its lower limit)" : " (held at its upper limit)");
 }
 
 }  // namespace
 
 Stops::Stops(const Structure& structure) : touching_(1e-11 * reference_length(structure)) {
-  for (const Constraint& c : structure.constraints) {
-    if (c.kind != "stop") continue;
-    for (const int side : {0, 1})
-      if (std::isfinite(c.vectors[0][side]))
-        stops_.push_back({c.name, c.measure, MeasureFunction(c.measure, structure.deployment),
-                          c.vectors[0][side], side == 0 ? 1.0 : -1.0, c.vectors[1][0], c.vectors[1][1]});
-  }
+  for (const Stop& stop : structure.stops)
+    for (const double sign : {1.0, -1.0})
+      if (const double limit = sign > 0 ? stop.min : stop.max; std::isfinite(limit))
+        stops_.push_back({stop.name, stop.measure, MeasureFunction(stop.measure, structure.deployment), limit,
+                          sign, stop.restitution, stop.rest_speed});
 }
 
 double Stops::gap(std::size_t i, const System& system, const State& state) const {
@@ -43,7 +41,7 @@ double Stops::gap_rate(std::size_t i, const System& system, const State& state) 
 }
 
 double Stops::rebound(std::size_t i, const System& system, State& state) const {
-  const Stop& stop = stops_[i];
+  const StopSide& stop = stops_[i];
   VectorXd q(system.coordinates()), n = VectorXd::Zero(q.size()), n_z(state.z.size());
   system.expand(state.z, q);
   const auto& stencil = stop.function.stencil();
@@ -78,10 +76,11 @@ std::shared_ptr<const Model> Stops::held_model(const Model& base, const std::set
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
 }
 
-double Stops::push(std::size_t i, const System& system, const State& state) const {
-  const auto& names = system.constraint_names();
-  const auto row = std::find(names.begin(), names.end(), held_name(stops_[i])) - names.begin();
-  return row < state.lambda.size() ? -stops_[i].sign * state.lambda[row] : 0.0;
+double Stops::push(std::size_t i, const Model& model, const std::set<std::size_t>& held,
+                   const State& state) const {
+  const auto behind = std::distance(held.find(i), held.end());
+  const int constraint = static_cast<int>(std::ssize(model.structure.constraints) - behind);
+  return -stops_[i].sign * state.lambda[model.system.constraint_row(constraint)];
 }
 
 }  // namespace unfurl
