@@ -43,7 +43,7 @@ std::vector<ParamSpec> motion_params(std::string_view unit) {
                 positive_param("duration", "s", 1.0, "smooth: how long the motion takes")),
       only_with("motion", {"table"}, vector_param("times", "s", {}, "table: ascending, with values")),
       only_with("motion", {"table"},
-                vector_param("values", unit, {}, "table: at the times; a cubic spline goes through them")),
+                vector_param("values", unit, {}, "table: at the times; a natural cubic spline between them, held before and after")),
       only_with("motion", {"table"},
                 text_param("table", "",
                            "table: CSV file beside the scene, in place of times and values: t,value"))};
