@@ -32,7 +32,7 @@ class FlowIntegrator {
  public:
   explicit FlowIntegrator(const System& system)
       : system_(system),
-        index1_(system),
+        index1_(system_),
         loads_(system.has_power(false)),
         dampers_(system.has_power(true)),
         drives_(!system.drives().empty()),
@@ -42,6 +42,7 @@ class FlowIntegrator {
 
   VectorXd acceleration(const State& state) {
     VectorXd a(state.z.size());
+    system_.follow(state);
     if (!index1_.evaluate(state.t, state.z, state.w, a, lambda_)) a.setZero();
     return a;
   }
@@ -49,6 +50,7 @@ class FlowIntegrator {
   // Adds the step's work to the last entries.
   void add(const Ends& ends, EnergyFlow& flow) {
     static const Quadrature gauss = gauss_legendre(3);
+    system_.follow(ends.a);
     VectorXd q(system_.coordinates()), v(q.size()), unused(ends.a.z.size());
     for (Index i = 0; i < gauss.nodes.size(); ++i) {
       const double u = gauss.nodes[i], t = ends.a.t + u * ends.h, weight = ends.h * gauss.weights[i];
@@ -64,7 +66,7 @@ class FlowIntegrator {
   }
 
  private:
-  const System& system_;
+  System system_;  // follows the states
   Index1 index1_;
   bool loads_, dampers_, drives_;
   VectorXd lambda_;
@@ -83,8 +85,8 @@ EnergyFlow energy_flow(const Simulation& run) {
       list->push_back(list->back());
     const State &a = trajectory.state(i), &b = trajectory.state(i + 1);
     if (b.t == a.t) {  // an impact
-      flow.impact_loss.back() += trajectory.model(i).system.kinetic_energy(a.w) -
-                                 trajectory.model(i + 1).system.kinetic_energy(b.w);
+      flow.impact_loss.back() +=
+          trajectory.model(i).system.kinetic_energy(a.w) - trajectory.model(i + 1).system.kinetic_energy(b.w);
       after.resize(0);
       continue;
     }
