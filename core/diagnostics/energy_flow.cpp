@@ -4,6 +4,7 @@
 
 #include "core/integrators/index1.hpp"
 #include "core/math/quadrature.hpp"
+#include "core/model/time_edges.hpp"
 
 namespace unfurl {
 namespace {
@@ -84,9 +85,10 @@ EnergyFlow energy_flow(const Simulation& run) {
     for (auto* list : {&flow.load_work, &flow.dissipated, &flow.drive_work, &flow.impact_loss})
       list->push_back(list->back());
     const State &a = trajectory.state(i), &b = trajectory.state(i + 1);
-    if (b.t == a.t) {  // an impact
-      flow.impact_loss.back() +=
-          trajectory.model(i).system.kinetic_energy(a.w) - trajectory.model(i + 1).system.kinetic_energy(b.w);
+    if (same_instant(a.t, b.t)) {  // an impulse; where time goes on a little, of a drive
+      const double gain =
+          trajectory.model(i + 1).system.kinetic_energy(b.w) - trajectory.model(i).system.kinetic_energy(a.w);
+      (b.t > a.t ? flow.drive_work : flow.impact_loss).back() += b.t > a.t ? gain : -gain;
       after.resize(0);
       continue;
     }

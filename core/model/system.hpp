@@ -131,7 +131,9 @@ class System {
 
   std::shared_ptr<Data> data_;
   // Of the state that is followed, and where it was measured last; empty: none is followed.
-  VectorXd angles_, rates_, q_, v_, measured_, measured_rates_;
+  VectorXd angles_, rates_, measured_, measured_rates_;
+  VectorXd q_, v_;  // where it was measured
+  std::vector<double> gradient_;
   double since_ = 0.0;
 };
 

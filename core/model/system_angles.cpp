@@ -22,12 +22,11 @@ void System::measure_angles(const State& state) {
   v_.resize(coordinates());
   expand(state.z, q_);
   expand_rate(state.w, v_);
-  std::vector<double> gradient;
   for (Index i = 0; i < followed_angles(); ++i) {
     const MeasureFunction& angle = data_->followed[static_cast<std::size_t>(i)];
-    gradient.resize(angle.stencil().size());
-    measured_[i] = angle.value_and_gradient(q_.data(), gradient.data(), measured_[i]);
-    measured_rates_[i] = angle.rate(gradient.data(), v_.data());
+    gradient_.resize(angle.stencil().size());
+    measured_[i] = angle.value_and_gradient(q_.data(), gradient_.data(), measured_[i]);
+    measured_rates_[i] = angle.rate(gradient_.data(), v_.data());
   }
 }
 

@@ -37,12 +37,13 @@ double linear_part(const TimeFunction& f, int order, double t) {
   return order == 1 && inside == t ? slope : 0.0;
 }
 
+// Continuous from the right: at the last point the bend is already that of what is held.
 double spline_part(const TimeFunction& f, int order, double t) {
-  const double inside = std::clamp(t, f.times.front(), f.times.back());
-  const std::size_t i = interval(f.times, inside);
-  const double h = f.times[i + 1] - f.times[i], b = (inside - f.times[i]) / h, a = 1 - b;
+  if (t < f.times.front()) return order == 0 ? f.values.front() : 0.0;
+  if (t >= f.times.back()) return order == 0 ? f.values.back() : 0.0;
+  const std::size_t i = interval(f.times, t);
+  const double h = f.times[i + 1] - f.times[i], b = (t - f.times[i]) / h, a = 1 - b;
   const double p = f.bends[i], q = f.bends[i + 1];
-  if (order > 0 && inside != t) return 0.0;
   if (order == 2) return a * p + b * q;
   if (order == 1)
     return (f.values[i + 1] - f.values[i]) / h + h / 6 * ((1 - 3 * a * a) * p + (3 * b * b - 1) * q);

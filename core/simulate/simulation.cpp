@@ -17,6 +17,7 @@
 #include "core/simulate/latch.hpp"
 #include "core/simulate/step_control.hpp"
 #include "core/simulate/stops.hpp"
+#include "core/simulate/time_grid.hpp"
 
 namespace unfurl {
 namespace {
@@ -62,22 +63,20 @@ class TimeLoop {
 
   void drive() {
     const SolverOptions& o = run_.options;
-    if (o.adaptive) {
-      std::optional<StepControl> control;
-      const System* controlled = nullptr;
-      while (now().t < o.end_time) {
-        if (controlled != &system()) {  // the first step, or the model has changed
-          controlled = &system();
-          control.emplace(run_.trajectory.structure(), *controlled, o);
-        }
-        const double h = control->next(now());
-        const bool last = now().t + 1.001 * h >= o.end_time;
-        if (!go_on() || !advance_to(last ? o.end_time : now().t + h)) return;
+    const TimeGrid grid(now().t, o, time_edges(run_.trajectory.structure(), o.step));
+    std::optional<StepControl> control;
+    const System* controlled = nullptr;
+    while (now().t < o.end_time) {
+      if (o.adaptive && controlled != &system()) {  // the first step, or the model has changed
+        controlled = &system();
+        control.emplace(run_.trajectory.structure(), *controlled, o);
       }
-    } else {
-      const auto count = std::max(1L, static_cast<long>(std::ceil(o.end_time / o.step - 1e-9)));
-      for (long k = 1; k <= count; ++k)
-        if (!go_on() || !advance_to(k == count ? o.end_time : static_cast<double>(k) * o.step)) return;
+      const TimeGrid::Target target =
+          o.adaptive ? grid.next(now().t, control->next(now())) : grid.next(now().t);
+      if (!go_on()) return;
+      if (target.h > 0 && !advance_to(target.t, target.h)) return;
+      if (target.edge) integrator_->restart();
+      if (target.jumps) jump(target.jump);
     }
     report_progress(1.0);
   }
@@ -98,9 +97,9 @@ class TimeLoop {
   }
 
   // False where the run ends here.
-  bool advance_to(double target) {
+  bool advance_to(double target) { return advance_to(target, target - now().t); }
+  bool advance_to(double target, double h) {
     State next = now();
-    const double h = target - next.t;
     StepReport report = step(next, h);
     std::optional<State> event;
     if (!report.ok() && may_cross(h)) event = locate(h, target + 0.05 * h);
@@ -117,6 +116,15 @@ class TimeLoop {
       if (!report.ok() || std::abs(fold(next)) < singular_margin) return step_over(target, h);
     }
     return accept(next, target, report);
+  }
+
+  // A drive's velocity jumps: what it drives is taken along by an impulse of the constraints.
+  void jump(double t) {
+    State before = now();
+    before.t = t;
+    Handover after = hand_over(run_.trajectory.last_model(), before, run_.trajectory.last_model());
+    run_.trajectory.append(std::move(after.state), StepReport{});
+    integrator_->restart();
   }
 
   bool fail(const std::string& why) {

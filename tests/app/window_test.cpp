@@ -11,16 +11,13 @@
 
 #include "tests/app/panel/panel_driver.hpp"
 #include "tests/app/run_program.hpp"
+#include "tests/support/not_tested.hpp"
 
 using namespace unfurl;
 
 namespace window_test {
 
 namespace {
-
-bool installed(const char* program) {
-  return std::system(("command -v " + std::string(program) + " >/dev/null 2>&1").c_str()) == 0;
-}
 
 pid_t start(const std::string& command) {
   const pid_t child = ::fork();
@@ -159,13 +156,9 @@ pid_t open_window(const XServer& server, const ScratchDirectory& scratch, const 
                " " + UNFURL_PROGRAM + " view " + arguments + " >" + (scratch / "log") + " 2>&1'");
 }
 
-bool tools_installed() {
-  for (const char* program : {"Xvfb", "xdotool"}) {
-    if (installed(program)) continue;
-    WARN("not tested: " << program << " is not installed (apt-get install xvfb xdotool)");
-    return false;
-  }
-  return true;
+bool tools_missing() {
+  return testing::lacks(testing::installed("Xvfb") && testing::installed("xdotool"),
+                        "the window (apt-get install xvfb xdotool)");
 }
 
 }  // namespace
@@ -182,7 +175,7 @@ TEST_CASE("without a display the window says so in one line and names what works
 }
 
 TEST_CASE("a person opens the window, drags a slider, scrubs, saves, and closes it") {
-  if (!tools_installed()) return;
+  if (tools_missing()) return;
   const XServer server;
   const ScratchDirectory scratch;
   // Where everything is: the same panel without a window.
@@ -247,7 +240,7 @@ TEST_CASE("a person opens the window, drags a slider, scrubs, saves, and closes 
 }
 
 TEST_CASE("the window is as large as the monitor's fine pixels ask for, or as the user says") {
-  if (!tools_installed()) return;
+  if (tools_missing()) return;
   // The top bar of panels of either scale, drawn without a window.
   const auto panel = [](float scale) {
     PanelOptions options;

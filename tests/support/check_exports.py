@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """Reads exports with programs that we did not write: numpy, meshio, vtk, the Khronos glTF validator.
 
-    unfurl run hoop6 -o out --export vtk,gltf,csv,npy
-    /usr/bin/python3 tests/support/check_exports.py out [folder of node_modules/gltf-validator]
+    python3 tests/support/check_exports.py build/release/unfurl [folder with node_modules/gltf-validator]
 
 Needs python3-numpy, python3-meshio, python3-vtk9; `npm install gltf-validator` for the glTF part.
 """
@@ -11,13 +10,16 @@ import glob
 import json
 import subprocess
 import sys
+import tempfile
 
 import meshio
 import numpy as np
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-out = sys.argv[1]
+folder = tempfile.TemporaryDirectory(prefix="unfurl_exports_")
+out = folder.name
+subprocess.run([sys.argv[1], "run", "hoop6", "-o", out, "--quiet", "--export", "vtk,gltf,csv,npy"], check=True)
 table = list(csv.reader(open(f"{out}/trajectory.csv")))
 names = [h[:-4] for h in table[0] if h.endswith(".x_m")]
 numbers = np.array(table[1:], dtype=float)

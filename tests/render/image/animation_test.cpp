@@ -11,6 +11,7 @@
 #include "core/export/atomic_file.hpp"
 #include "render/image/mp4_pipe.hpp"
 #include "render/image/webp_animation.hpp"
+#include "tests/support/not_tested.hpp"
 
 using namespace unfurl;
 namespace fs = std::filesystem;
@@ -100,7 +101,8 @@ TEST_CASE("an animation that cannot be written is a file error, one without fram
 }
 
 TEST_CASE("an MP4 of odd size is made even and has every frame") {
-  if (!ffmpeg_available()) return;
+  if (testing::lacks(ffmpeg_available() && testing::installed("ffprobe"), "MP4 (apt-get install ffmpeg)"))
+    return;
   const ScratchFolder scratch;
   const fs::path file = scratch.path / "it's a film.mp4";  // no shell is asked
   Mp4Pipe film(file, 65, 47, 25.0);

@@ -4,6 +4,7 @@
 
 #include "core/model/utf8.hpp"
 #include "render/ui/fonts.hpp"
+#include "tests/support/not_tested.hpp"
 
 namespace unfurl::plot {
 
@@ -14,7 +15,9 @@ TEST_CASE("the width table agrees with the typeface", "[text]") {
   unsigned char* data = nullptr;
   int width = 0, height = 0;
   atlas.GetTexDataAsAlpha8(&data, &width, &height);
-  if (font->FindGlyphNoFallback(0x2212) == nullptr) return;  // DejaVu Sans is not installed
+  if (testing::lacks(font->FindGlyphNoFallback(0x2212) != nullptr,
+                     "the typeface (apt-get install fonts-dejavu-core)"))
+    return;
   for (const char* text : {"The quick brown fox, 0123456789", "\u221210\u207B\u00B9\u2075 \u00D7 \u00B0",
                            "\u03B1\u03B2\u03A9 \u201Cq\u201D"}) {
     double sum = 0;

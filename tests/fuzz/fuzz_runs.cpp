@@ -1,0 +1,47 @@
+// From scene text to numbers: a dozen steps of whatever can be built, its diagnostics, its summary.
+#include "tests/fuzz/fuzz.hpp"
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/export/summary.hpp"
+#include "core/model/mobility.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/scene/scene_error.hpp"
+#include "core/simulate/simulation.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+// Sizes of more than one digit are slow, not interesting.
+bool large(std::string_view text) {
+  for (const char* key : {"units", "cells", "rows", "columns", "links", "windows", "sides"}) {
+    const auto at = text.find(key);
+    if (at == text.npos) continue;
+    int digits = 0;
+    for (const char c : text.substr(at, 30)) digits += c >= '0' && c <= '9';
+    if (digits > 1) return true;
+  }
+  return text.size() > 6000;
+}
+
+}  // namespace
+
+void unfurl::fuzz::try_text(std::string_view text) {
+  if (large(text)) return;
+  try {
+    Scene scene = read_scene_text(text, "fuzz.toml");
+    scene.solver.end_time = std::min(scene.solver.end_time, 12 * scene.solver.step);
+    scene.solver.tolerance = 0;
+    const auto model = build_model(scene);
+    int steps = 0;
+    SimulationHooks hooks;
+    hooks.cancelled = [&] { return ++steps > 200; };
+    const Simulation run = simulate(model, scene.solver, hooks);
+    const Diagnostics diagnostics = diagnose(run);
+    const Mobility mobility = analyse_mobility(model->system, run.trajectory.node_positions(0));
+    const std::string summary = summary_json("fuzz", run, diagnostics, mobility);
+    require(run.status == RunStatus::failed || summary.find("nan") == summary.npos, "a number is a number");
+  } catch (const SceneError&) {
+  }
+}

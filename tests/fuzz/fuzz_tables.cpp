@@ -1,0 +1,49 @@
+// CSV of nodes and rods, axes of sweeps, names of measures, and changes written back into a file: the first
+// byte picks which.
+#include <stdexcept>
+
+#include "tests/fuzz/fuzz.hpp"
+
+#include "core/scene/csv_table.hpp"
+#include "core/scene/reader.hpp"
+#include "core/scene/scene_error.hpp"
+#include "core/scene/write_back.hpp"
+#include "core/study/measures.hpp"
+#include "core/study/sweep.hpp"
+
+using namespace unfurl;
+
+namespace {
+
+template <class Call>
+void may_refuse(const Call& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument&) {
+  } catch (const SceneError&) {
+  }
+}
+
+}  // namespace
+
+void unfurl::fuzz::try_text(std::string_view text) {
+  static const std::vector<CsvColumn> columns = {
+      {"name", "", false, true}, {"x", "m", true, true}, {"vx", "m_s", true}, {"mass", "kg", true}};
+  if (text.empty() || text.size() > 8000) return;
+  const char which = text[0];
+  text.remove_prefix(1);
+  if (which % 3 == 0) {
+    SceneNotes notes;
+    read_csv(text, "fuzz.csv", columns, notes);
+    csv_records(text);
+  } else if (which % 3 == 1) {
+    may_refuse([&] { parse_axis(std::string(text)); });
+    may_refuse([&] { parse_shard(std::string(text)); });
+    may_refuse([&] { find_measure(std::string(text)); });
+  } else if (const auto end = text.find('\n'); end != text.npos) {
+    may_refuse([&] {
+      const auto back = write_back(text.substr(end + 1), "fuzz.toml", {std::string(text.substr(0, end))}, "");
+      read_scene_text(back.text, "fuzz.toml");
+    });
+  }
+}
