@@ -24,11 +24,12 @@ struct Instant {
   const VectorXd& velocity_phi;   // G v of all constraints [m/s]
   const VectorXd& axial_force;    // of the solved rods [N]
   const VectorXd& acceleration;   // of the nodes; NaN where the equations have no solution [m/s^2]
-  const Model& model;             // that the state belongs to
+  const System& equations;        // that the state belongs to, near its angles
+  double fold_angle;              // [rad]
   const EnergyFlow& flow;
   double first_energy;  // kinetic + potential at t = 0 [J]
 
-  const System& system() const { return model.system; }
+  const System& system() const { return equations; }
   const Deployment& deployment() const { return run.trajectory.structure().deployment; }
   double work() const { return system().load_work(q) + flow.load_work[i]; }
   double kinetic() const { return system().kinetic_energy(state.w); }
@@ -77,8 +78,7 @@ const std::array rows{
         [](const Instant& s) { return s.relative_constraint() / ulp; }},
     Row{"constraint_velocity_max_m_s", "velocity constraint error", "m/s", Needs::nothing,
         [](const Instant& s) { return max_norm(s.velocity_phi); }},
-    Row{"fold_angle_rad", "fold angle", "rad", Needs::fold,
-        [](const Instant& s) { return s.deployment().fold_angle(s.q); }},
+    Row{"fold_angle_rad", "fold angle", "rad", Needs::fold, [](const Instant& s) { return s.fold_angle; }},
     Row{"fold_rate_rad_s", "fold rate", "rad/s", Needs::fold,
         [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v); }},
     Row{"deployed_fraction", "deployed fraction", "", Needs::fold,
@@ -147,6 +147,24 @@ VectorXd multipliers(Index1& index1, const Model& model, const State& state, boo
   model.system.expand_rate(acceleration, node_acceleration);
   return ok ? lambda : VectorXd::Constant(lambda.size(), nan);
 }
+
+// The fold angle, which counts on where it passes half a turn.
+class FoldAngle {
+ public:
+  explicit FoldAngle(const Deployment& deployment) : deployment_(deployment) {}
+  double at(double t, const VectorXd& q, const VectorXd& v) {
+    if (deployment_.empty()) return nan;
+    const double angle = deployment_.fold_angle(q), rate = deployment_.fold_rate(q, v);
+    const double expected = std::isnan(t_) ? angle : angle_ + 0.5 * (t - t_) * (rate_ + rate);
+    t_ = t;
+    rate_ = rate;
+    return angle_ = angle - 2 * pi * std::round((angle - expected) / (2 * pi));
+  }
+
+ private:
+  const Deployment& deployment_;
+  double t_ = nan, angle_ = nan, rate_ = nan;
+};
 
 // Per rod of the whole structure [N].
 void axial_forces(const Model& model, const VectorXd& lambda, VectorXd& force) {
@@ -245,18 +263,22 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
   VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
   std::vector<double> scratch;
   const Model* model = nullptr;
+  std::unique_ptr<System> followed;
   std::unique_ptr<Index1> index1;
+  FoldAngle fold(trajectory.structure().deployment);
   double first_energy = 0;
   for (std::size_t i = 0; i < trajectory.size() && !(cancelled && cancelled()); ++i) {
     const State& state = trajectory.state(i);
     if (model != &trajectory.model(i)) {
       model = &trajectory.model(i);
-      index1 = std::make_unique<Index1>(model->system, true);
+      followed = std::make_unique<System>(model->system);
+      index1 = std::make_unique<Index1>(*followed, true);
       lengths = model->system.all_lengths();
       phi.resize(lengths.size());
       velocity_phi.resize(lengths.size());
     }
-    const System& system = model->system;
+    followed->follow(state);
+    const System& system = *followed;
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
     system.all_constraint_values(state.t, q, phi);
     system.all_constraint_rates(state.t, q, v, velocity_phi, scratch);
@@ -265,8 +287,13 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
     axial_forces(*model, lambda, force);
     out.axial_force.row(static_cast<Index>(i)) = force.transpose();
     if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
-    const Instant instant{run,          i,     state,        q,      v,    phi,         lengths,
-                          velocity_phi, force, acceleration, *model, flow, first_energy};
+    const Instant instant{run,     i,
+                          state,   q,
+                          v,       phi,
+                          lengths, velocity_phi,
+                          force,   acceleration,
+                          system,  fold.at(state.t, q, v),
+                          flow,    first_energy};
     out.t.push_back(state.t);
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
     add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);

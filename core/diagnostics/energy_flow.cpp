@@ -33,7 +33,7 @@ class FlowIntegrator {
  public:
   explicit FlowIntegrator(const System& system)
       : system_(system),
-        index1_(system),
+        index1_(system_),
         loads_(system.has_power(false)),
         dampers_(system.has_power(true)),
         drives_(!system.drives().empty()),
@@ -43,6 +43,7 @@ class FlowIntegrator {
 
   VectorXd acceleration(const State& state) {
     VectorXd a(state.z.size());
+    system_.follow(state);
     if (!index1_.evaluate(state.t, state.z, state.w, a, lambda_)) a.setZero();
     return a;
   }
@@ -50,6 +51,7 @@ class FlowIntegrator {
   // Adds the step's work to the last entries.
   void add(const Ends& ends, EnergyFlow& flow) {
     static const Quadrature gauss = gauss_legendre(3);
+    system_.follow(ends.a);
     VectorXd q(system_.coordinates()), v(q.size()), unused(ends.a.z.size());
     for (Index i = 0; i < gauss.nodes.size(); ++i) {
       const double u = gauss.nodes[i], t = ends.a.t + u * ends.h, weight = ends.h * gauss.weights[i];
@@ -65,7 +67,7 @@ class FlowIntegrator {
   }
 
  private:
-  const System& system_;
+  System system_;  // follows the states
   Index1 index1_;
   bool loads_, dampers_, drives_;
   VectorXd lambda_;

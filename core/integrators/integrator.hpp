@@ -35,8 +35,12 @@ struct Method {
   std::string_view name;
   std::string_view help;
   Claims (*claims)(const SolverOptions&);
-  // `system` must outlive the integrator. Workspaces are allocated here, once.
-  std::unique_ptr<Integrator> (*make)(const System& system, const SolverOptions& options);
+  // Workspaces are allocated here, once.
+  std::unique_ptr<Integrator> (*plain)(const System& system, const SolverOptions& options);
+
+  // The method on a system that must outlive it; every step begins near the angles of its state and counts
+  // them on.
+  std::unique_ptr<Integrator> make(const System& system, const SolverOptions& options) const;
 };
 
 std::span<const Method> methods();

@@ -1,5 +1,6 @@
 #include "core/scene/build.hpp"
 
+#include <set>
 #include <utility>
 
 #include "core/model/consistency.hpp"
@@ -82,11 +83,20 @@ void add_loads(const Scene& scene, Structure& structure) {
   for (std::size_t i = 0; i < scene.loads.size(); ++i) {
     const auto& load = scene.loads[i];
     if (!load.enabled) continue;
+    const std::string key = "loads[" + std::to_string(i) + "].nodes";
+    std::set<int> loaded;
     for (const auto& pattern : load.nodes) {
       const auto found = names.matching(pattern);
-      for (const int node : found) add_load(structure, node, load.force);
+      for (const int node : found) {
+        if (loaded.insert(node).second)
+          add_load(structure, node, load.force);
+        else
+          problems.push_back({load.where, key,
+                              "names " + in_quotes(structure.nodes[static_cast<std::size_t>(node)].name) +
+                                  " more than once"});
+      }
       if (found.empty())
-        problems.push_back({load.where, "loads[" + std::to_string(i) + "].nodes",
+        problems.push_back({load.where, key,
                             "no node matches " + in_quotes(pattern) + did_you_mean(pattern, names.names())});
     }
   }
@@ -110,8 +120,9 @@ Structure build_structure(const Scene& scene) {
   add_gravity(scene, structure);
   add_loads(scene, structure);
   if (is_sector(structure)) refuse_elements(scene);
-  add_forces(scene.forces, structure);
-  add_constraints(scene.constraints, structure);
+  add_elements(scene.forces, scene_forces(), scene.solver.end_time, structure);
+  add_elements(scene.constraints, scene_constraints(), scene.solver.end_time, structure);
+  for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   return structure;
 }
 

@@ -20,7 +20,8 @@ struct Refusal {
 struct Step {
   std::string name;
   bool quoted = false;
-  std::optional<std::size_t> index;  // [3]; `name` is empty then
+  std::optional<std::size_t>
+      index;  // [3]; `name` is empty then. [motor] is the step to an entry of that name
 };
 
 std::string quoted_step(std::string_view key, std::size_t& i) {
@@ -33,13 +34,17 @@ std::string quoted_step(std::string_view key, std::size_t& i) {
 
 Step index_step(std::string_view key, std::size_t& i) {
   const std::size_t end = key.find(']', i);
-  const std::string_view digits = key.substr(i + 1, end == std::string_view::npos ? end : end - i - 1);
-  std::size_t index = 0;
-  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-  if (end == std::string_view::npos || error != std::errc() || stop != digits.data() + digits.size())
-    throw Refusal{"an index must be a whole number in brackets, [0] the first"};
+  if (end == std::string_view::npos) throw Refusal{"a bracket in the key stays open"};
+  std::string_view text = key.substr(i + 1, end - i - 1);
   i = end + 1;
-  return {"", false, index};
+  std::size_t index = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error == std::errc() && stop == text.data() + text.size()) return {"", false, index};
+  if (text.size() >= 2 && (text[0] == '"' || text[0] == '\'') && text.back() == text[0])
+    text = text.substr(1, text.size() - 2);
+  if (text.empty() || text[0] == '-' || text[0] == '+')
+    throw Refusal{"an index must be a whole number in brackets, [0] the first, or a name"};
+  return {std::string(text), true, std::nullopt};
 }
 
 std::vector<Step> parse_key(std::string_view key) {

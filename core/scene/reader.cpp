@@ -171,6 +171,7 @@ Scene read_scene_text(std::string_view text, const std::string& name,
     sort_problems(notes.problems);
     throw SceneError(std::move(notes.problems));
   }
+  scene.warnings = std::move(notes.warnings);
   scene.locations = std::move(notes.locations);
   scene.units = std::move(notes.units);
   return scene;

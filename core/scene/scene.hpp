@@ -33,6 +33,7 @@ struct Scene {
   std::vector<SceneElement> forces, constraints;
   SolverOptions solver;
   RenderOptions render;
+  std::vector<SceneProblem> warnings;               // what is given and does nothing
   std::map<std::string, SourceLocation> locations;  // dotted key -> where it was given, for later messages
   std::map<std::string, std::string> units;         // of the keys that overrides change: dotted key -> unit
 };

@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 
 std::string outside_error(const std::string& folder, const std::string& name) {
   const fs::path path(name);
+  if (name.find('\0') != std::string::npos) return "holds the character \\u0000, which no file name can";
   if (folder.empty()) return "a scene that is not a file cannot name other files";
   if (path.is_absolute()) return "must be relative to the scene's folder";
   std::error_code error;

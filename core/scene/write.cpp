@@ -89,7 +89,7 @@ std::string element_text(std::string_view table, const SceneElement& element, co
   if (element.fold_angle) text += line("fold_angle", "true");
   for (const auto& spec : kind.params()) {
     const ParamValue& value = element.values.value(spec.name);
-    if (!worth_writing(value)) continue;
+    if (!worth_writing(value) || !means_something(spec, element.values)) continue;
     text += line(spec.name, toml_value(value));
     if (!spec.unit.empty()) text.insert(text.size() - 1, "  # " + std::string(spec.unit));
   }

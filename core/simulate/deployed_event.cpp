@@ -34,7 +34,8 @@ class Locator {
       : trajectory_(trajectory),
         integrator_(integrator),
         h_(h),
-        index1_(trajectory.last_model().system, true) {}
+        followed_(trajectory.last_model().system),
+        index1_(followed_, true) {}
 
   std::optional<State> locate() {
     const double start = sine(trajectory_.state(0));
@@ -158,12 +159,13 @@ class Locator {
   // coordinates.
   void keep(double at, State state) {
     VectorXd acceleration(state.w.size());
+    followed_.follow(state);
     if (index1_.evaluate(state.t, state.z, state.w, acceleration, state.lambda))
       samples_.push_back({at, std::move(state)});
   }
 
   // Lagrange extrapolation of everything, as functions of the sine, to zero.
-  std::optional<State> extrapolate() const {
+  std::optional<State> extrapolate() {
     State out = samples_.front().state;
     out.t = 0;
     for (VectorXd* v : {&out.z, &out.w, &out.lambda}) v->setZero();
@@ -177,12 +179,15 @@ class Locator {
       out.lambda += weight * samples_[i].state.lambda;
     }
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
+    followed_.follow(samples_.front().state);
+    followed_.count_on(out);
     return out;
   }
 
   const Trajectory& trajectory_;
   Integrator& integrator_;
   double h_;
+  System followed_;
   Index1 index1_;
   std::vector<Sample> samples_;
   std::vector<Sample> stations_;  // solved on the way, by falling sine

@@ -68,8 +68,10 @@ InitialState initial_state(const Structure& structure, const System& system) {
     system.expand_rate(s.w, back);
     out.velocity_change = (back - v).lpNorm<Eigen::Infinity>();
   }
+  System followed = system.at(s);
+  followed.count_on(s);
   VectorXd acceleration(system.solved_coordinates());
-  Index1 index1(system);
+  Index1 index1(followed);
   if (!index1.evaluate(0.0, s.z, s.w, acceleration, s.lambda)) s.lambda.setZero();
   return out;
 }

@@ -17,17 +17,20 @@ std::string held_name(const StopSide& stop) {
 }  // namespace
 
 Stops::Stops(const Structure& structure) : touching_(1e-11 * reference_length(structure)) {
-  for (const Stop& stop : structure.stops)
+  const std::vector<int> followed = followed_angles(structure).of_stop;
+  for (std::size_t i = 0; i < structure.stops.size(); ++i) {
+    const Stop& stop = structure.stops[i];
     for (const double sign : {1.0, -1.0})
       if (const double limit = sign > 0 ? stop.min : stop.max; std::isfinite(limit))
         stops_.push_back({stop.name, stop.measure, MeasureFunction(stop.measure, structure.deployment), limit,
-                          sign, stop.restitution, stop.rest_speed});
+                          sign, stop.restitution, stop.rest_speed, followed[i]});
+  }
 }
 
 double Stops::gap(std::size_t i, const System& system, const State& state) const {
   VectorXd q(system.coordinates());
   system.expand(state.z, q);
-  return stops_[i].sign * (stops_[i].function.value(q.data()) - stops_[i].limit);
+  return stops_[i].sign * (stops_[i].function.value(q.data(), stops_[i].near(state)) - stops_[i].limit);
 }
 
 double Stops::gap_rate(std::size_t i, const System& system, const State& state) const {
