@@ -15,7 +15,7 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   // Advance `state` by h [s]. Where the report is not ok, `state` is unchanged.
-  virtual StepReport step(State& state, double h) = 0;
+  [[nodiscard]] virtual StepReport step(State& state, double h) = 0;
   // Forget what was learnt from earlier steps (predictors): the next state does not follow the last one.
   virtual void restart() = 0;
 };

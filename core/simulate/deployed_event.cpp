@@ -22,6 +22,7 @@ constexpr int points = 9;
 // at four stages.
 constexpr double short_enough = 2.3e-3;
 constexpr int most_stations = 200;
+constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 
 struct Sample {
   double sine;
@@ -81,14 +82,18 @@ class Locator {
     return std::abs(0.5 * (b.t - a.t) * (sine_rate(a) + sine_rate(b)) / change - 1);
   }
 
-  // The last state of the run behind a step that was short enough; where none was, the last one.
+  // The last state of the run behind a step that was short enough; where none was, behind the best one. Not
+  // as far back as a dead centre: there a motion grows by the same share in every step, however short its
+  // way.
   void find_resolved() {
     resolved_ = trajectory_.size() - 1;
-    for (std::size_t i = resolved_; i > 0; --i)
-      if (unevenness(trajectory_.state(i - 1), trajectory_.state(i)) <= short_enough) {
-        resolved_ = i;
-        return;
-      }
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t i = resolved_; i > 0 && sine(trajectory_.state(i - 1)) < near_dead_centre; --i) {
+      const double now = unevenness(trajectory_.state(i - 1), trajectory_.state(i));
+      if (now < best) resolved_ = i;
+      best = std::min(best, now);
+      if (best <= short_enough) return;
+    }
   }
 
   State last_before(double target) {

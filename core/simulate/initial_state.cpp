@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <stdexcept>
 
 #include "core/integrators/index1.hpp"
 #include "core/math/saddle_solver.hpp"
@@ -40,7 +41,8 @@ VectorXd fitted_rates(const System& system, double t, const ConstVec& q, const C
   std::vector<double> scratch;
   system.jacobian(q, G, scratch);
   SaddleSolver saddle(system.mass(), G);
-  saddle.factorise(G);
+  if (!saddle.factorise(G))
+    throw std::runtime_error("the constraint matrix at the start cannot be factorised");
   VectorXd p(system.solved_coordinates()), w(p.size()), y(system.constraints()), rate(y.size());
   system.target_rate(t, rate);
   system.reduce_force(system.node_mass() * v, p);

@@ -57,7 +57,7 @@ double Stops::rebound(std::size_t i, const System& system, State& state) const {
   std::vector<double> scratch;
   system.jacobian(q, G, scratch);
   SaddleSolver saddle(system.mass(), G);
-  saddle.factorise(G);
+  if (!saddle.factorise(G)) return std::numeric_limits<double>::quiet_NaN();
   VectorXd response(n_z.size()), mu(system.constraints());
   saddle.solve(n_z, VectorXd::Zero(mu.size()), response, mu);
   const double a = n_z.dot(response), free = n_z.cwiseAbs2().maxCoeff() / system.mass().diagonal().maxCoeff();
