@@ -9,6 +9,7 @@
 #include "app/command.hpp"
 #include "app/failure.hpp"
 #include "app/help.hpp"
+#include "app/interrupt.hpp"
 #include "app/own_options.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/study/table.hpp"
@@ -201,6 +202,7 @@ int dispatch(const std::vector<std::string>& words) {
 
 int run_command_line(const std::vector<std::string>& words) {
   int code = exit_internal;
+  end_on_signals();
   try {
     code = dispatch(words);
   } catch (...) {

@@ -54,11 +54,15 @@ int cmd_figure(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   auto model = build_model(scene);
   if (file) require_writable(output);
+  // A directory may hold whatever it does: nothing but figures of ours is replaced in it.
+  OwnDirectory directory(file ? "" : arguments.output, true, "figure", DirectoryLock::Use::shareable);
+  if (!file) directory.lock().share();
   std::unique_ptr<GlContext> context;
   if (!file || output.extension() == ".png") context = make_offscreen_context();
 
   const InterruptGuard guard;
   const Simulation run = simulate_scene(scene, std::move(model), arguments);
+  throw_if_interrupted();
   const Diagnostics diagnostics = diagnose_run(run);
   if (arguments.names.size() == 2 && kinds.size() == 1) require_data(*kinds[0], scene, run, diagnostics);
   const auto writer =

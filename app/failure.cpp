@@ -4,15 +4,24 @@
 #include <new>
 
 #include "app/exit_code.hpp"
+#include "app/interrupt.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/reader.hpp"
+#include "core/study/reference.hpp"
 #include "render/gl/graphics_error.hpp"
 
 namespace unfurl {
 
 int report_failure(std::ostream& out) {
+  constexpr const char* interrupted_words = "unfurl: interrupted; what is finished is kept\n";
   try {
     throw;
+  } catch (const Interrupted&) {
+    out << interrupted_words;
+    return exit_interrupted;
+  } catch (const Cancelled&) {
+    out << interrupted_words;
+    return exit_interrupted;
   } catch (const SceneError& error) {
     out << error.what() << "\n";
     return exit_scene_invalid;

@@ -31,7 +31,7 @@ double max_abs(const Series& series) {
 }
 
 bool waited_enough() {
-  return interrupted_for(1.0);
+  return interrupted_for(0.5);
 }
 
 }  // namespace

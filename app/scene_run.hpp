@@ -33,7 +33,7 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
 // A few lines for a person on stderr; nothing where `quiet` was asked for.
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments);
 
-// The run's diagnostics; a second after Ctrl-C what is not computed yet is left open.
+// The run's diagnostics; half a second after Ctrl-C what is not computed yet is left open.
 Diagnostics diagnose_run(const Simulation& run);
 
 // 0, solver failed, or interrupted.

@@ -282,6 +282,7 @@ bool display_named() {
 int show_window(SceneDocument document, const WindowOptions& options) {
   const InterruptGuard guard;
   Host host(std::move(document), options);
+  const FinishedWork keeping;  // what the window remembers
   return options.bench ? host.bench() : host.run();
 }
 
