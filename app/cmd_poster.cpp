@@ -8,7 +8,6 @@
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
 #include "app/scene_run.hpp"
-#include "core/scene/build.hpp"
 #include "render/image/image_scale.hpp"
 #include "render/image/png.hpp"
 #include "render/scene/frame_builder.hpp"
@@ -53,7 +52,7 @@ int cmd_poster(const Arguments& arguments) {
   const std::filesystem::path output(arguments.output);
   require_writable_png(output, "a poster");
   const Scene scene = scene_of(arguments);
-  auto model = build_model(scene);
+  auto model = model_of(scene, arguments);
   const auto context = make_offscreen_context(arguments.threads);
 
   const InterruptGuard guard;

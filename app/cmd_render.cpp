@@ -10,7 +10,6 @@
 #include "app/run_figures.hpp"
 #include "app/scene_run.hpp"
 #include "core/export/atomic_file.hpp"
-#include "core/scene/build.hpp"
 
 namespace unfurl {
 
@@ -19,7 +18,7 @@ int cmd_render(const Arguments& arguments) {
   const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
   check_film(scene);
-  auto model = build_model(scene);
+  auto model = model_of(scene, arguments);
   OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
   const std::filesystem::path& directory = output.path();
   DirectoryLock& lock = output.lock();

@@ -6,7 +6,6 @@
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
 #include "app/scene_run.hpp"
-#include "core/scene/build.hpp"
 
 namespace unfurl {
 
@@ -32,7 +31,7 @@ int cmd_run(const Arguments& arguments) {
     throw UsageError("-o DIR is missing (or --json, for the summary alone)");
   const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
-  auto model = build_model(scene);
+  auto model = model_of(scene, arguments);
   OwnDirectory output(arguments.output, arguments.force, "run");
   const std::filesystem::path& directory = output.path();
   const bool film = !directory.empty() && keeps_film(directory, scene, arguments.force);

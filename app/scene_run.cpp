@@ -40,6 +40,11 @@ Scene scene_of(const Arguments& arguments) {
   return read_scene_file(find_scene(arguments.names.front()), arguments.overrides);
 }
 
+std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& arguments) {
+  const Waiting waiting("building the structure", arguments.quiet);
+  return build_model(scene);
+}
+
 Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model,
                           const Arguments& arguments) {
   Progress progress("simulating", arguments.quiet);

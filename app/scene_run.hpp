@@ -15,6 +15,9 @@ namespace unfurl {
 // The scene that the first word names, with the overrides.
 Scene scene_of(const Arguments& arguments);
 
+// Its structure and equations; a large one says that it takes long.
+std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& arguments);
+
 // Simulate with a progress bar; Ctrl-C stops it. Warnings and the reason of a failure go to stderr.
 Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model, const Arguments& arguments);
 

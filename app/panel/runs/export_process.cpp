@@ -17,11 +17,24 @@ namespace unfurl {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// OUTPUT.toml, or OUTPUT-2.toml, ...: the first that is not there or holds this very text.
+std::string free_name(const std::string& output, const std::string& text) {
+  std::error_code unknown;
+  for (int number = 1;; ++number) {
+    std::string name = output + (number == 1 ? "" : "-" + std::to_string(number)) + ".toml";
+    if (!fs::exists(fs::symlink_status(name, unknown)) || read_text_file(name).text == text) return name;
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> export_words(const SceneDocument& document, const std::string& verb,
                                       const std::string& output) {
   std::string scene = document.path;
   if (scene.empty()) {
-    scene = output + ".toml";
+    scene = free_name(output, *document.text);
     write_file_atomically(scene, *document.text);
   }
   std::vector<std::string> words{verb, scene};
