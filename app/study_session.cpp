@@ -88,6 +88,8 @@ void StudySession::begin_anew(const std::string& identity) {
   const TextFile scene = read_text_file((directory() / "scene.toml").string());
   if (shard() && scene.error.empty() && scene.text == identity) {
     output_.written().remove(journal_);
+    std::error_code error;
+    if (fs::exists(journal(), error)) output_.written().keep_aside(journal_);
     return;
   }
   output_.written().remove_all();
