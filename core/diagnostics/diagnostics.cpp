@@ -263,7 +263,7 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
     const VectorXd lambda =
         multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
     axial_forces(*model, lambda, force);
-    if (rods > 0) out.axial_force.row(static_cast<Index>(i)) = force.transpose();
+    out.axial_force.row(static_cast<Index>(i)) = force.transpose();
     if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
     const Instant instant{run,          i,     state,        q,      v,    phi,         lengths,
                           velocity_phi, force, acceleration, *model, flow, first_energy};
