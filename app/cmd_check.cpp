@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command.hpp"
+#include "app/progress.hpp"
 #include "app/scene_run.hpp"
 #include "core/model/mobility.hpp"
-#include "core/scene/build.hpp"
 #include "core/simulate/initial_state.hpp"
 
 namespace unfurl {
@@ -62,12 +62,19 @@ void print_table(const Scene& scene, const Model& model, const Mobility& mobilit
               << std::setprecision(3) << mobility.smallest_singular_value << "\n";
 }
 
+Mobility mobility_of(const Model& model, const Arguments& arguments) {
+  const Waiting waiting("ranking " + std::to_string(model.system.constraints()) + " constraints of " +
+                            std::to_string(model.system.solved_coordinates()) + " coordinates",
+                        arguments.quiet);
+  return analyse_mobility(model.system, start_positions(model.structure));
+}
+
 }  // namespace
 
 int cmd_check(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
-  const auto model = build_model(scene);
-  const Mobility mobility = analyse_mobility(model->system, start_positions(model->structure));
+  const auto model = model_of(scene, arguments);
+  const Mobility mobility = mobility_of(*model, arguments);
   for (const auto& note : model->structure.notes) std::cerr << "unfurl: warning: " << note << "\n";
   const std::string warning =
       velocity_warning(initial_state(model->structure, model->system), model->structure);

@@ -91,7 +91,7 @@ int cmd_solve(const Arguments& arguments) {
   const SolveOptions options = options_of(arguments, source, scene);
   source.read({study.find + "=" + exact_number(options.low < options.high ? options.low : options.start)});
 
-  const OwnDirectory output(arguments.output, arguments.force);
+  const OwnDirectory output(arguments.output, arguments.force, "solve");
 
   const InterruptGuard guard;
   SimulationHooks hooks;

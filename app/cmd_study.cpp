@@ -5,7 +5,6 @@
 #include "app/interrupt.hpp"
 #include "app/scene_run.hpp"
 #include "app/study_session.hpp"
-#include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/write.hpp"
 #include "core/study/models.hpp"
@@ -80,7 +79,7 @@ int cmd_study(const Arguments& arguments) {
   if (arguments.study.models) return study_models(arguments);
   const Range range = step_range(arguments.study.ladder);
   const Scene scene = scene_of(arguments);
-  auto model = build_model(scene);
+  auto model = model_of(scene, arguments);
   const InterruptGuard guard;
   StudySession session(arguments, "measuring", scene_text(scene), "study.csv");
   const StudyHooks hooks = session.hooks();

@@ -31,13 +31,18 @@ double max_abs(const Series& series) {
 }
 
 bool waited_enough() {
-  return interrupted_for(1.0);
+  return interrupted_for(0.5);
 }
 
 }  // namespace
 
 Scene scene_of(const Arguments& arguments) {
   return read_scene_file(find_scene(arguments.names.front()), arguments.overrides);
+}
+
+std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& arguments) {
+  const Waiting waiting("building the structure", arguments.quiet);
+  return build_model(scene);
 }
 
 Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model,

@@ -1,5 +1,7 @@
 #include "core/export/csv.hpp"
 
+#include <unistd.h>
+
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -16,7 +18,7 @@ namespace {
 class CsvFile {
  public:
   explicit CsvFile(const std::filesystem::path& path)
-      : path_(path), pending_(path), file_(std::fopen(pending_.name().c_str(), "wb")) {
+      : path_(path), pending_(path), file_(::fdopen(::dup(pending_.file()), "wb")) {
     if (!file_) throw FileError(path_, errno);
   }
   ~CsvFile() {

@@ -96,10 +96,11 @@ void export_vtk(const ExportJob& job) {
     char suffix[32];
     std::snprintf(suffix, sizeof suffix, "_%06zu.vtu", i);
     const std::string name = std::string(job.name) + suffix;
-    write_file_atomically(folder / name, grid(job, cells, i));
+    write_file_atomically(folder / name, grid(job, cells, i), Flush::later);
     collection += "<DataSet timestep=\"" + number(trajectory.time(i)) + "\" part=\"0\" file=\"" +
                   xml_text(name) + "\"/>\n";
   }
+  flush_files(folder);
   write_file_atomically(folder / (std::string(job.name) + ".pvd"),
                         collection + "</Collection>\n</VTKFile>\n");
 }

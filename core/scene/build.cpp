@@ -7,6 +7,7 @@
 #include "core/model/fit_lengths.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/model/structure_error.hpp"
+#include "core/scene/size_limits.hpp"
 #include "core/structures/family.hpp"
 #include "core/structures/name_index.hpp"
 
@@ -33,6 +34,7 @@ SourceLocation location_of(const Scene& scene, const std::string& key) {
 
 Structure bare_structure(const Scene& scene) {
   try {
+    require_buildable(scene);
     if (const Family* family = find_family(scene.kind)) return family->build(scene.structure);
     return build_custom(scene.custom);
   } catch (const StructureError& error) {
@@ -113,6 +115,11 @@ void fill_mass(const Scene& scene, System& system) {
   system.fill_mass();
 }
 
+void refuse_endless_runs(const Scene& scene, const Model& model) {
+  const std::string problem = too_many_states(scene, model, machine_memory());
+  if (!problem.empty()) throw SceneError({{location_of(scene, "solver.step"), "solver.step", problem}});
+}
+
 }  // namespace
 
 Structure build_structure(const Scene& scene) {
@@ -133,7 +140,9 @@ std::shared_ptr<const Model> build_model(const Scene& scene) {
     System system(structure, scene.solver.eliminate_linear);
     check_consistency(structure, system);
     if (!scene.solver.sparse) fill_mass(scene, system);
-    return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+    auto model = std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+    refuse_endless_runs(scene, *model);
+    return model;
   } catch (const StructureError& error) {
     refuse(scene, error);
   }

@@ -85,7 +85,7 @@ TomlTree parse_value(std::string_view text) {
   try {
     TomlTree parsed = parse_toml("value = " + std::string(text) + "\n", override_source);
     if (parsed.entries.size() != 1) throw Refusal{"the value must be one TOML value"};
-    value = std::move(parsed.entries[0].second);
+    value = std::move(parsed.entries[0].value);
   } catch (const SceneError& error) {
     if (!is_bare_word(text)) {
       const bool none = text.find_first_not_of(" \t") == std::string_view::npos;
@@ -147,15 +147,15 @@ TomlTree& step_into(TomlTree& tree, const Step& step, std::string_view so_far) {
     throw Refusal{std::string(so_far) + " is " + tree.describe() + ", not a table"};
   if (step.index) throw Refusal{std::string(so_far) + " is not a list"};
   if (TomlTree* found = tree.find(step.name)) return *found;
-  tree.entries.emplace_back(step.name, made_here(TomlTree::Kind::table));
-  return tree.entries.back().second;
+  tree.entries.push_back({step.name, made_here(TomlTree::Kind::table)});
+  return tree.entries.back().value;
 }
 
 void apply(TomlTree& root, std::string_view key, std::string_view text) {
   const auto steps = parse_key(key);
   TomlTree value = parse_value(text);
   if (steps.size() > 1 && steps[1].index && grows(steps[0].name) && !root.find(steps[0].name))
-    root.entries.emplace_back(steps[0].name, made_here(TomlTree::Kind::array));
+    root.entries.push_back({steps[0].name, made_here(TomlTree::Kind::array)});
   TomlTree* target = &root;
   std::string so_far;
   for (const auto& step : steps) {

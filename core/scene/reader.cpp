@@ -178,7 +178,7 @@ Scene read_scene_text(std::string_view text, const std::string& name,
 }
 
 Scene read_scene_file(const std::string& path, const std::vector<std::string>& overrides) {
-  const TextFile file = read_text_file(path);
+  const TextFile file = read_text_file(path, TextSource::pipe_too);
   if (!file.error.empty()) throw UnreadableScene("cannot read scene " + path + ": " + file.error);
   std::string folder = std::filesystem::path(path).parent_path().string();
   return read_scene_text(file.text, path, overrides, folder.empty() ? "." : folder);

@@ -98,7 +98,9 @@ void Simulator::work() {
     lock.lock();
     running_ = false;
     if (!stale(id)) finished_ = std::move(outcome);
+    lock.unlock();  // who is woken may ask this object at once
     if (wake_) wake_();
+    lock.lock();
   }
 }
 
