@@ -58,8 +58,8 @@ int cmd_figure(const Arguments& arguments) {
   if (!file || output.extension() == ".png") context = make_offscreen_context();
 
   const InterruptGuard guard;
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose_run(run);
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  const Diagnostics diagnostics = judge_run(run);
   if (arguments.names.size() == 2 && kinds.size() == 1) require_data(*kinds[0], scene, run, diagnostics);
   const auto writer =
       context ? std::make_unique<FigureWriter>(*context, options) : std::make_unique<FigureWriter>(options);

@@ -37,8 +37,8 @@ int cmd_render(const Arguments& arguments) {
       make_offscreen_context(arguments.threads);  // missing graphics are found before the work
 
   const InterruptGuard guard;
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose_run(run);
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  const Diagnostics diagnostics = judge_run(run);
   if (!folder.holds_this()) clear_old_results(directory);
   folder.claim();
   lock.share();

@@ -18,9 +18,10 @@ bool keeps_film(const std::filesystem::path& directory, const Scene& scene, bool
   if (!std::filesystem::exists(directory / "film.json", error)) return false;
   const FilmFolder folder(directory, scene);
   if (folder.holds_another() && !force)
-    throw FileError(directory,
-                    "holds the film of another scene (or of other settings, or drawn by another version); use "
-                    "--force to replace it, or another -o");
+    throw FileError(
+        directory,
+        "holds the film of another scene (or of other settings, or drawn by another version); use "
+        "--force to replace it, or another -o");
   return folder.holds_this();
 }
 
@@ -37,8 +38,8 @@ int cmd_run(const Arguments& arguments) {
   const bool film = !directory.empty() && keeps_film(directory, scene, arguments.force);
 
   const InterruptGuard guard;
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose_run(run);
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  const Diagnostics diagnostics = judge_run(run);
   if (!directory.empty() && !film) clear_old_results(directory);
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -195,6 +196,32 @@ class DriveColumns {
   std::vector<Drive> drives_;
 };
 
+// What rounding alone does to the energy balance: coordinates are known to some `levels` units of round-off
+// of their largest, and a force F works |F| dx along that, a mass m that moves so within a step h has m dx^2
+// / h^2; energies that are sums of large ones are rounded as those. Errors of n states add up like sqrt(n).
+class EnergyRoundOff {
+ public:
+  void append(const System& system, const State& state, double step, const VectorXd& q, const VectorXd& v,
+              const VectorXd& axial) {
+    constexpr double levels = 64;
+    force_.setZero(q.size());
+    system.add_applied_force(state.t, q, v, 1.0, force_);
+    const auto larger = [](double& most, double x) { most = x > most ? x : most; };
+    const double forces = force_.lpNorm<1>() + (axial.allFinite() ? axial.lpNorm<1>() : 0.0);
+    larger(reach_, max_norm(q));
+    larger(work_, forces * reach_ + std::abs(system.potential_energy(q)) + std::abs(system.load_work(q)));
+    if (step > 0 && !(step > shortest_)) shortest_ = step;
+    const double speed = std::isfinite(shortest_) ? levels * ulp * reach_ / shortest_ : 0.0;
+    const double many = std::sqrt(static_cast<double>(values.size()) + 1);
+    values.push_back(many * levels * ulp * work_ + system.node_mass().diagonal().sum() * speed * speed);
+  }
+  std::vector<double> values;
+
+ private:
+  VectorXd force_;
+  double reach_ = 0, work_ = 0, shortest_ = std::numeric_limits<double>::infinity();
+};
+
 }  // namespace
 
 const Series* Diagnostics::find(std::string_view name) const {
@@ -225,24 +252,26 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
   out.axial_force.bottomRows(static_cast<Index>(out.left_open)).setConstant(nan);
 }
 
-}  // namespace
-
-Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
+Diagnostics diagnosed(const Simulation& run, bool books, const std::function<bool()>& cancelled) {
   const Trajectory& trajectory = run.trajectory;
   Diagnostics out;
   std::vector<const Row*> used;
   for (const Row& row : rows) {
-    if (!present(row.needs, run)) continue;
+    const bool book =
+        row.unit == std::string_view("J") || std::string_view(row.name).starts_with("constraint_");
+    if (!present(row.needs, run) || (books && !book)) continue;
     used.push_back(&row);
     out.columns.push_back({row.name, row.label, row.unit, {}});
   }
-  DriveColumns drives(trajectory.model().system, out.columns);
+  std::optional<DriveColumns> drives;
+  if (!books) drives.emplace(trajectory.model().system, out.columns);
   const std::size_t first_own = out.columns.size();
-  add_own_columns(trajectory.structure(), out);
+  if (!books) add_own_columns(trajectory.structure(), out);
   const EnergyFlow flow = energy_flow(run);
-  const auto rods = static_cast<Index>(trajectory.structure().rods.size());
+  const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
+  EnergyRoundOff round_off;
   std::vector<double> scratch;
   const Model* model = nullptr;
   std::unique_ptr<Index1> index1;
@@ -251,7 +280,7 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
     const State& state = trajectory.state(i);
     if (model != &trajectory.model(i)) {
       model = &trajectory.model(i);
-      index1 = std::make_unique<Index1>(model->system, true);
+      if (!books) index1 = std::make_unique<Index1>(model->system, true);
       lengths = model->system.all_lengths();
       phi.resize(lengths.size());
       velocity_phi.resize(lengths.size());
@@ -260,23 +289,40 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
     system.all_constraint_values(state.t, q, phi);
     system.all_constraint_rates(state.t, q, v, velocity_phi, scratch);
-    const VectorXd lambda =
-        multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
-    axial_forces(*model, lambda, force);
+    VectorXd lambda;
+    if (!books) {
+      lambda = multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
+      axial_forces(*model, lambda, force);
+    }
     out.axial_force.row(static_cast<Index>(i)) = force.transpose();
     if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
     const Instant instant{run,          i,     state,        q,      v,    phi,         lengths,
                           velocity_phi, force, acceleration, *model, flow, first_energy};
     out.t.push_back(state.t);
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
-    add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
-    drives.append(system, state.t, lambda);
+    if (!books) {
+      add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
+      drives->append(system, state.t, lambda);
+    }
+    round_off.append(system, state, i == 0 ? 0.0 : state.t - trajectory.time(i - 1), q, v, force);
   }
   leave_open(trajectory, out);
   for (Series& column : out.columns)
     if (column.unit == "J")
       for (double& energy : column.values) energy *= trajectory.structure().sectors;
+  out.energy_round_off = std::move(round_off.values);
+  for (double& energy : out.energy_round_off) energy *= trajectory.structure().sectors;
   return out;
+}
+
+}  // namespace
+
+Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
+  return diagnosed(run, false, cancelled);
+}
+
+Diagnostics diagnose_books(const Simulation& run) {
+  return diagnosed(run, true, {});
 }
 
 }  // namespace unfurl

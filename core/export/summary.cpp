@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/math/largest.hpp"
 
 namespace unfurl {
 
@@ -12,12 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Largest magnitude of a column; NaN where any entry is NaN.
 double max_abs(const Diagnostics& diagnostics, std::string_view name) {
-  double largest = 0.0;
-  for (const double x : diagnostics.at(name).values)
-    largest = std::isnan(x) ? x : std::max(largest, std::abs(x));
-  return largest;
+  return largest_magnitude(diagnostics.at(name).values);
 }
 
 Json model_json(const Structure& structure, const System& system, const Mobility& mobility) {
@@ -62,7 +59,7 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   Json summary = {{"unfurl", UNFURL_VERSION}, {"scene", scene_name}, {"status", to_string(run.status)}};
   summary["message"] = run.message;
   summary["warnings"] = run.warnings;
-  for (const auto& warning : accuracy_warnings(diagnostics)) summary["warnings"].push_back(warning);
+  for (const auto& warning : accuracy_warnings(run, diagnostics)) summary["warnings"].push_back(warning);
   summary["model"] = model_json(model.structure, model.system, mobility);
   summary["solver"] = solver_json(run);
   for (const char* name : {"constraint_max_m", "constraint_relative_max", "constraint_velocity_max_m_s"})
