@@ -12,7 +12,7 @@ constexpr std::size_t max_points = 10'000'000;
 constexpr long max_count = 1'000'000;
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
-  throw std::invalid_argument(in_quotes(text) + ": " + why);
+  throw StudyError(in_quotes(text) + ": " + why);
 }
 
 std::vector<std::string> split(const std::string& text, char mark) {
@@ -119,7 +119,7 @@ Shard parse_shard(const std::string& text) {
                count = parts.size() == 2 ? number_of(parts[1]) : 0;
   if (!(count >= 1 && count <= 1e6 && index >= 1 && index <= count) || index != std::floor(index) ||
       count != std::floor(count))
-    throw std::invalid_argument("a shard is I/N with 1 <= I <= N; got " + in_quotes(text));
+    throw StudyError("a shard is I/N with 1 <= I <= N; got " + in_quotes(text));
   return {static_cast<int>(index), static_cast<int>(count)};
 }
 
@@ -147,13 +147,13 @@ std::vector<std::string> SweepPlan::columns() const {
 }
 
 void check_plan(SweepPlan& plan) {
-  if (plan.axes.empty()) throw std::invalid_argument("nothing to vary; give --vary KEY=FROM:TO:COUNT");
-  if (plan.measures.empty()) throw std::invalid_argument("nothing to measure; give --measure NAME,...");
-  if (plan.points() > max_points) throw std::invalid_argument("the grid has more than 1e7 points");
+  if (plan.axes.empty()) throw StudyError("nothing to vary; give --vary KEY=FROM:TO:COUNT");
+  if (plan.measures.empty()) throw StudyError("nothing to measure; give --measure NAME,...");
+  if (plan.points() > max_points) throw StudyError("the grid has more than 1e7 points");
   for (std::size_t a = 0; a < plan.axes.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
       if (plan.axes[a].key == plan.axes[b].key)
-        throw std::invalid_argument("the key " + in_quotes(plan.axes[a].key) + " is varied twice");
+        throw StudyError("the key " + in_quotes(plan.axes[a].key) + " is varied twice");
   const auto known = plan.source.read().units;
   for (SweepAxis& axis : plan.axes)
     for (const auto* value : {&axis.values.front(), &axis.values.back()})

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "core/simulate/initial_state.hpp"
 #include "core/study/extrapolation.hpp"
@@ -19,6 +20,25 @@ TEST_CASE("the reference of the ring is the quadrature of its energy") {
     CHECK(std::abs(model->structure.deployment.fold_angle(reference.q[k]) - exact.angle(reference.t[k])) <
           1e-11);
   CHECK(reference.uncertainty < 1e-11);
+}
+
+TEST_CASE("a reference is known as well as two methods agree, where there are two") {
+  const Reference swing = solve_reference(make_model(double_pendulum()), 1.2, 12, {});
+  CHECK(swing.confirmed);
+  CHECK(swing.uncertainty < 1e-11);
+  // Collinear poses stop the index-1 equations: dvm is left alone, and agrees with itself.
+  const auto ladder = make_model(ladder_structure(1, 6.0));
+  const Reference turning = solve_reference(ladder, 2.0, 20, {});
+  CHECK_FALSE(turning.confirmed);
+  CHECK(turning.how.find("dvm") == 0);
+}
+
+TEST_CASE("distances keep what is not a number") {
+  VectorXd a = VectorXd::LinSpaced(9, 0, 1), b = a;
+  b[8] += 0.25;
+  CHECK(node_distance(a, b) == Approx(0.25));
+  b[1] = std::numeric_limits<double>::quiet_NaN();  // of the first node, with a larger distance after it
+  CHECK(std::isnan(node_distance(a, b)));
 }
 
 TEST_CASE("extrapolation is of order 16") {
