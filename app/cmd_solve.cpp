@@ -39,6 +39,10 @@ Target target_of(const std::string& text, const Scene& scene) {
 
 SolveOptions options_of(const Arguments& arguments, const SceneSource& source, const Scene& scene) {
   const StudyArguments& study = arguments.study;
+  if (is_whole_number(scene, study.find))
+    throw UsageError(in_quotes(study.find) +
+                     " takes whole numbers, which cannot be searched; unfurl sweep --vary " + study.find +
+                     "=A,B,C shows the measure over some of them");
   SolveOptions options;
   if (!study.between.empty()) {
     const std::size_t colon = study.between.find(':');

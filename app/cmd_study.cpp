@@ -89,7 +89,7 @@ int cmd_study(const Arguments& arguments) {
   if (arguments.study.repeats > 0) plan.timing.repeats = arguments.study.repeats;
   Study study;
   {
-    Journal journal(session.journal(), study_columns(), study_key_columns);
+    Journal journal(session.journal(), study_columns(), study_key_columns, study_number_columns());
     study = run_study(plan, journal, hooks);
   }
   if (study.complete) session.write("study.csv", csv_text(points_table(study)));

@@ -63,7 +63,7 @@ Sweep compute(const SweepPlan& plan, const StudySession& session, const StudyHoo
   try {
     if (!arguments.study.merge.empty())
       return merge_sweep(plan, journals_in(arguments.study.merge, identity));
-    Journal journal(session.journal(), plan.columns(), plan.axes.size());
+    Journal journal(session.journal(), plan.columns(), plan.axes.size(), plan.number_columns());
     return run_sweep(plan, journal, hooks);
   } catch (const JournalMismatch& error) {
     throw FileError(session.directory(), std::string(error.what()) + "; other --vary or --measure than now?");

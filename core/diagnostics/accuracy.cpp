@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/diagnostics/books.hpp"
 #include "core/integrators/stage_equations.hpp"
 #include "core/math/largest.hpp"
 
@@ -26,10 +27,6 @@ void add_state(const std::vector<const Series*>& energies, std::size_t i, Energy
   std::vector<double> others;
   for (std::size_t k = 1; k < energies.size(); ++k) others.push_back(energies[k]->values[i]);
   turned.add(energies[0]->values[i], others);
-}
-
-double balance_noise(const Diagnostics& d, std::size_t i) {
-  return i < d.energy_round_off.size() ? d.energy_round_off[i] : 0.0;
 }
 
 bool finite(const Simulation& run, const Diagnostics& d, std::size_t i) {
@@ -55,6 +52,7 @@ GoodPart good_part(const Simulation& run, const Diagnostics& d) {
   const std::size_t judged = d.t.size() - d.left_open;
   const Series &balance = d.at("energy_balance_J"), &stretch = d.at("constraint_relative_max");
   const auto columns = energies(d);
+  const std::vector<double> round_off_error = energy_round_off(run);
   EnergyTurnedOver turned;
   GoodPart part;
   std::ostringstream why;
@@ -73,7 +71,7 @@ GoodPart good_part(const Simulation& run, const Diagnostics& d) {
     off = larger(off, std::abs(balance.values[i]));
     add_state(columns, i, turned);
     const double energy = turned.value();
-    if (off <= trusted_share * energy + balance_noise(d, i)) {
+    if (off <= trusted_share * energy + round_off_error[i]) {
       part.states = i + 1;
       why.str("");
     } else if (part.states == i) {
@@ -90,7 +88,6 @@ GoodPart good_part(const Simulation& run, const Diagnostics& d) {
 void keep_states(std::size_t states, Simulation& run, Diagnostics& d) {
   while (run.trajectory.size() > states) run.trajectory.pop_back();
   d.t.resize(states);
-  d.energy_round_off.resize(std::min(d.energy_round_off.size(), states));
   for (Series& column : d.columns) column.values.resize(states);
   d.axial_force.conservativeResize(static_cast<Index>(states), Eigen::NoChange);
   std::erase_if(run.events, [&](const Event& event) { return event.t > run.trajectory.end_time(); });
@@ -159,7 +156,7 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
   const double off = largest_magnitude(d.at("energy_balance_J").values), turned = energy_turned_over(d);
   std::ostringstream text;
   text.precision(3);
-  if (!(off <= energy_share * turned + balance_noise(d, d.energy_round_off.size() - 1))) {
+  if (!(off <= energy_share * turned + energy_round_off(run).back())) {
     text << "the energy balance is off by " << off << " J, " << percent_of(off, turned)
          << " of the energy turned over: take a smaller solver.step" << (dvm ? " or more solver.stages" : "");
     warnings.push_back(text.str());

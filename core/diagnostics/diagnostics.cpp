@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/diagnostics/books.hpp"
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/integrators/index1.hpp"
 
@@ -196,32 +197,6 @@ class DriveColumns {
   std::vector<Drive> drives_;
 };
 
-// What rounding alone does to the energy balance: coordinates are known to some `levels` units of round-off
-// of their largest, and a force F works |F| dx along that, a mass m that moves so within a step h has m dx^2
-// / h^2; energies that are sums of large ones are rounded as those. Errors of n states add up like sqrt(n).
-class EnergyRoundOff {
- public:
-  void append(const System& system, const State& state, double step, const VectorXd& q, const VectorXd& v,
-              const VectorXd& axial) {
-    constexpr double levels = 64;
-    force_.setZero(q.size());
-    system.add_applied_force(state.t, q, v, 1.0, force_);
-    const auto larger = [](double& most, double x) { most = x > most ? x : most; };
-    const double forces = force_.lpNorm<1>() + (axial.allFinite() ? axial.lpNorm<1>() : 0.0);
-    larger(reach_, max_norm(q));
-    larger(work_, forces * reach_ + std::abs(system.potential_energy(q)) + std::abs(system.load_work(q)));
-    if (step > 0 && !(step > shortest_)) shortest_ = step;
-    const double speed = std::isfinite(shortest_) ? levels * ulp * reach_ / shortest_ : 0.0;
-    const double many = std::sqrt(static_cast<double>(values.size()) + 1);
-    values.push_back(many * levels * ulp * work_ + system.node_mass().diagonal().sum() * speed * speed);
-  }
-  std::vector<double> values;
-
- private:
-  VectorXd force_;
-  double reach_ = 0, work_ = 0, shortest_ = std::numeric_limits<double>::infinity();
-};
-
 }  // namespace
 
 const Series* Diagnostics::find(std::string_view name) const {
@@ -271,7 +246,6 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
   const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
-  EnergyRoundOff round_off;
   std::vector<double> scratch;
   const Model* model = nullptr;
   std::unique_ptr<Index1> index1;
@@ -304,14 +278,11 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
       add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
       drives->append(system, state.t, lambda);
     }
-    round_off.append(system, state, i == 0 ? 0.0 : state.t - trajectory.time(i - 1), q, v, force);
   }
   leave_open(trajectory, out);
   for (Series& column : out.columns)
     if (column.unit == "J")
       for (double& energy : column.values) energy *= trajectory.structure().sectors;
-  out.energy_round_off = std::move(round_off.values);
-  for (double& energy : out.energy_round_off) energy *= trajectory.structure().sectors;
   return out;
 }
 

@@ -24,8 +24,6 @@ struct Diagnostics {
   std::vector<Series> columns;  // in the table's order; each as long as t
   std::size_t left_open = 0;    // states at the end that were not looked at: NaN
   MatrixXd axial_force;         // [states x rods of the solved model], tension positive [N]
-  // Per state [J]: what the energy balance may be off by rounding alone (accuracy.hpp).
-  std::vector<double> energy_round_off = {};
   const Series* find(std::string_view name) const;  // nullptr where the scene has no such column
   const Series& at(std::string_view name) const;    // throws std::out_of_range
 };
@@ -38,8 +36,6 @@ struct Diagnostics {
 // fold angle. Then the structure's own lengths and, where it names strains, poisson_ratio.
 // `cancelled` is asked before every state: once it says so, the rest stays NaN.
 Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled = {});
-// Of these only energies and constraint errors, and no rod forces: a run's books, at a tenth of the price.
-Diagnostics diagnose_books(const Simulation& run);
 
 // Names of all columns that a scene may have.
 std::vector<std::string_view> diagnostic_names();

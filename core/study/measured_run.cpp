@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/books.hpp"
 #include "core/math/largest.hpp"
 
 namespace unfurl {
@@ -58,7 +59,7 @@ void measure_invariants(const Simulation& run, MeasuredRun& out) {
   out.energy_error = most("energy_balance_J");
   out.kinetic_energy_max = most("kinetic_energy_J");
   out.energy_turned_over = energy_turned_over(books);
-  out.energy_round_off = books.energy_round_off.back();
+  out.energy_round_off = energy_round_off(run).back();
   if (const std::string why = mistrust(run, books); out.ok() && !why.empty()) {
     out.outcome = "not trusted";
     out.message = why;

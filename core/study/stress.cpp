@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/books.hpp"
 
 namespace unfurl {
 namespace {
@@ -195,6 +196,10 @@ std::vector<std::string> stress_columns() {
           "kinetic_energy_max_J",
           "cpu_s",
           "message"};
+}
+
+std::vector<std::size_t> stress_number_columns() {
+  return {1, 3, 5, 6, 7, 8, 9, 10};
 }
 
 Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& hooks) {

@@ -107,6 +107,10 @@ std::vector<std::string> study_columns() {
           "repeats"};
 }
 
+std::vector<std::size_t> study_number_columns() {
+  return {1, 3, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19};
+}
+
 Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks) {
   Study study;
   study.end = plan.end;

@@ -73,6 +73,7 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
 
 std::vector<std::string> study_columns();
 inline constexpr std::size_t study_key_columns = 2;  // setting, steps
+std::vector<std::size_t> study_number_columns();     // whose cells are numbers
 
 // "two methods agree to 1e-12 m", "agrees with itself to ...": what is known of the reference.
 std::string reference_words(const Study& study);

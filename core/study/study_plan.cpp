@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/books.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/study/reference_motion.hpp"

@@ -118,7 +118,7 @@ std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep) {
 Sweep merge_sweep(const SweepPlan& plan, const std::vector<std::filesystem::path>& journals) {
   std::vector<std::unique_ptr<Journal>> open;
   for (const auto& path : journals)
-    open.push_back(std::make_unique<Journal>(path, plan.columns(), plan.axes.size()));
+    open.push_back(std::make_unique<Journal>(path, plan.columns(), plan.axes.size(), plan.number_columns()));
   SweepPlan whole = plan;
   whole.shard = {};
   return collect(plan, points_of_shard(whole), [&](std::size_t i) -> const std::vector<std::string>* {

@@ -37,6 +37,7 @@ struct SweepPlan {
   std::size_t points() const;                             // of the whole grid
   std::vector<std::string> key(std::size_t point) const;  // its values; the last axis runs fastest
   std::vector<std::string> columns() const;               // keys, outcome, measures
+  std::vector<std::size_t> number_columns() const;        // those of the measures
 };
 
 // Throws StudyError (no axis, no measure, a key twice, too many points), SceneError where a value

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 
 #include "core/model/nearest_name.hpp"
@@ -146,6 +147,12 @@ std::vector<std::string> SweepPlan::columns() const {
   return names;
 }
 
+std::vector<std::size_t> SweepPlan::number_columns() const {
+  std::vector<std::size_t> numbers(measures.size());
+  std::iota(numbers.begin(), numbers.end(), axes.size() + 1);
+  return numbers;
+}
+
 void check_plan(SweepPlan& plan) {
   if (plan.axes.empty()) throw StudyError("nothing to vary; give --vary KEY=FROM:TO:COUNT");
   if (plan.measures.empty()) throw StudyError("nothing to measure; give --measure NAME,...");
@@ -154,7 +161,13 @@ void check_plan(SweepPlan& plan) {
     for (std::size_t b = 0; b < a; ++b)
       if (plan.axes[a].key == plan.axes[b].key)
         throw StudyError("the key " + in_quotes(plan.axes[a].key) + " is varied twice");
-  const auto known = plan.source.read().units;
+  const Scene scene = plan.source.read();
+  const auto& known = scene.units;
+  for (const SweepAxis& axis : plan.axes)
+    for (std::size_t i = 0; i < axis.numbers.size(); ++i)
+      if (axis.numbers[i] != std::floor(axis.numbers[i]) && is_whole_number(scene, axis.key))
+        throw StudyError(in_quotes(axis.key) + " takes whole numbers; " + axis.values[i] +
+                         " is none: give a COUNT that leads to some, or list them (" + axis.key + "=4,6,12)");
   for (SweepAxis& axis : plan.axes)
     for (const auto* value : {&axis.values.front(), &axis.values.back()})
       axis.unit = unit_of(axis.key, plan.source.read({axis.key + "=" + *value}).units, known);
