@@ -7,6 +7,7 @@
 
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
+#include "core/model/time_edges.hpp"
 
 namespace unfurl {
 namespace {
@@ -61,8 +62,8 @@ class Neighbourhood {
  private:
   bool joined(std::size_t a, std::size_t b) const {
     const Trajectory& t = run_.trajectory;
-    return t.time(b) > std::nextafter(t.time(a), t.time(b)) && &t.model(a) == &t.model(b) &&
-           !t.report(a).singular_event && !t.report(b).singular_event;
+    return !same_instant(t.time(a), t.time(b)) && &t.model(a) == &t.model(b) && !t.report(a).singular_event &&
+           !t.report(b).singular_event;
   }
   bool known(std::size_t k) const {
     return acceleration(k).size() > 0 || run_.trajectory.state(k).z.size() == 0;

@@ -1,11 +1,13 @@
 #include "core/study/reference.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "core/integrators/integrator.hpp"
 #include "core/math/largest.hpp"
+#include "core/model/time_edges.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/extrapolation.hpp"
 #include "core/study/table.hpp"
@@ -16,6 +18,22 @@ namespace {
 using Solution = std::optional<std::vector<VectorXd>>;
 using Stepper = std::function<bool(State&, double h)>;
 
+// Ends of steps inside one interval: so many equal parts, cut at the edges of time, which no step may
+// straddle.
+std::vector<double> step_ends(double begin, double end, int parts, const std::vector<TimeEdge>& edges) {
+  std::vector<double> ends;
+  auto edge = std::upper_bound(edges.begin(), edges.end(), begin,
+                               [](double t, const TimeEdge& e) { return same_instant(t, e.t) || t < e.t; });
+  for (int k = 1; k <= parts; ++k) {
+    const double target = k == parts ? end : begin + (end - begin) * k / parts;
+    for (; edge != edges.end() && edge->t < target; ++edge)
+      if (!same_instant(edge->t, target) && !same_instant(ends.empty() ? begin : ends.back(), edge->t))
+        ends.push_back(edge->t);
+    ends.push_back(target);
+  }
+  return ends;
+}
+
 // Node coordinates at the comparison times, with so many equal steps between two of them.
 Solution solve(const Model& model, const Stepper& step, double end, int intervals, int parts,
                const StudyHooks& hooks) {
@@ -24,11 +42,12 @@ Solution solve(const Model& model, const Stepper& step, double end, int interval
   model.system.expand(state.z, q);
   std::vector<VectorXd> out{q};
   const double H = end / intervals;
+  const std::vector<TimeEdge> edges = time_edges(model.structure, H / parts);
   for (int i = 0; i < intervals; ++i) {
-    for (int k = 0; k < parts; ++k) {
+    for (const double target : step_ends(H * i, H * (i + 1), parts, edges)) {
       if (hooks.stopped()) throw Cancelled();
-      if (!step(state, H / parts)) return std::nullopt;
-      state.t = H * (i + static_cast<double>(k + 1) / parts);
+      if (!step(state, target - state.t)) return std::nullopt;
+      state.t = target;
     }
     model.system.expand(state.z, q);
     out.push_back(q);
@@ -130,6 +149,11 @@ double structure_size(const Model& model) {
 Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
                           const StudyHooks& hooks, double goal) {
   const double size = structure_size(*model);
+  for (const TimeEdge& edge : time_edges(model->structure, end / intervals))
+    if (edge.jump && edge.t > 0 && edge.t < end)
+      throw ReferenceError(
+          "there is no reference across the time of " + short_number(edge.t, 6) +
+          " s, where the velocity of a drive jumps; an earlier solver.end_time, or a ramp, helps");
   goal = std::max(goal, 64 * std::numeric_limits<double>::epsilon() * size);
   const double least = 1e-6 * size;
   Best best = tighten(extrapolated(*model, end, intervals, hooks), goal);

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/extrapolation.hpp"
 #include "core/study/reference.hpp"
@@ -31,6 +33,23 @@ TEST_CASE("a reference is known as well as two methods agree, where there are tw
   const Reference turning = solve_reference(ladder, 2.0, 20, {});
   CHECK_FALSE(turning.confirmed);
   CHECK(turning.how.find("dvm") == 0);
+}
+
+TEST_CASE("a reference knows of a load that acts between two of its times") {
+  // 3 kg, free; 840 N along x, up within 0.1 ms, on for 1 ms and down again: 0.924 kg m/s in all, symmetric
+  // about its middle, so that x goes on from there with 0.308 m/s.
+  const Scene scene = read_scene_text(
+      "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'P'\nposition = [0.3, 0.2, 0.1]\nmass = "
+      "3.0\n"
+      "[[structure.nodes]]\nname = 'O'\nposition = [1.3, 0.2, 0.7]\nfixed = true\n"
+      "[[forces]]\nkind = 'load_over_time'\nnodes = ['P']\nforce = [840, 0, 0]\n"
+      "times = [0.5031, 0.5032, 0.5042, 0.5043]\nvalues = [0, 1, 1, 0]\n",
+      "blow.toml", {});
+  const Reference reference = solve_reference(build_model(scene), 1.2, 6, {});
+  // Six intervals of 0.2 s: straight on before and after.
+  CHECK(reference.q[2][0] == Approx(0.3).epsilon(1e-14));
+  CHECK(reference.q[6][0] == Approx(0.3 + 840 * 0.0011 / 3 * (1.2 - 0.5037)).epsilon(1e-12));
+  CHECK(reference.uncertainty < 1e-13);
 }
 
 TEST_CASE("distances keep what is not a number") {
