@@ -60,9 +60,9 @@ int cmd_figure(const Arguments& arguments) {
   if (!file || output.extension() == ".png") context = make_offscreen_context();
 
   const InterruptGuard guard;
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
   throw_if_interrupted();
-  const Diagnostics diagnostics = diagnose_run(run);
+  const Diagnostics diagnostics = judge_run(run);
   if (arguments.names.size() == 2 && kinds.size() == 1) require_data(*kinds[0], scene, run, diagnostics);
   const auto writer =
       context ? std::make_unique<FigureWriter>(*context, options) : std::make_unique<FigureWriter>(options);

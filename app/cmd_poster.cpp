@@ -56,9 +56,9 @@ int cmd_poster(const Arguments& arguments) {
   const auto context = make_offscreen_context(arguments.threads);
 
   const InterruptGuard guard;
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
   throw_if_interrupted();
-  const Diagnostics diagnostics = diagnose_run(run);
+  const Diagnostics diagnostics = judge_run(run);
   const FrameStyle style = panel_style(scene, run, diagnostics);
   const Image poster = draw_poses(style, run.trajectory, static_cast<std::size_t>(arguments.poses),
                                   scene.render.supersample, *context);

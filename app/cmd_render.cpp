@@ -37,8 +37,8 @@ int cmd_render(const Arguments& arguments) {
 
   const InterruptGuard guard;
   std::optional<FinishedWork> keeping(std::in_place);  // of a motion that is interrupted too
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose_run(run);
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  const Diagnostics diagnostics = judge_run(run);
   if (!folder.holds_this()) FilmFolder::clear(output.written());
   folder.claim();
   lock.share();

@@ -38,8 +38,8 @@ int cmd_run(const Arguments& arguments) {
 
   const InterruptGuard guard;
   const FinishedWork keeping;  // of a motion that is interrupted too
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose_run(run);
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  const Diagnostics diagnostics = judge_run(run);
   if (!directory.empty() && !film) FilmFolder::clear(output.written());
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics);

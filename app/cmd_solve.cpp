@@ -9,6 +9,7 @@
 #include "app/output_directory.hpp"
 #include "app/scene_run.hpp"
 #include "app/study_session.hpp"
+#include "core/diagnostics/accuracy.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/scene/build.hpp"
@@ -28,16 +29,20 @@ struct Target {
   double value = 0;
 };
 
-Target target_of(const std::string& text) {
+Target target_of(const std::string& text, const Scene& scene) {
   const std::size_t equals = text.rfind('=');
   const double value =
       equals == std::string::npos ? NAN : number_of(std::string_view(text).substr(equals + 1));
   if (!std::isfinite(value)) throw UsageError("--target is NAME=VALUE with a number; got " + in_quotes(text));
-  return {find_measure(text.substr(0, equals)), value};
+  return {find_measure(text.substr(0, equals), columns_of(build_model(scene))), value};
 }
 
 SolveOptions options_of(const Arguments& arguments, const SceneSource& source, const Scene& scene) {
   const StudyArguments& study = arguments.study;
+  if (is_whole_number(scene, study.find))
+    throw UsageError(in_quotes(study.find) +
+                     " takes whole numbers, which cannot be searched; unfurl sweep --vary " + study.find +
+                     "=A,B,C shows the measure over some of them");
   SolveOptions options;
   if (!study.between.empty()) {
     const std::size_t colon = study.between.find(':');
@@ -85,9 +90,9 @@ int cmd_solve(const Arguments& arguments) {
   const StudyArguments& study = arguments.study;
   if (study.find.empty()) throw UsageError("--find KEY is missing");
   if (study.target.empty()) throw UsageError("--target NAME=VALUE is missing");
-  const Target target = as_usage([&] { return target_of(study.target); });
   const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
   const Scene scene = source.read();
+  const Target target = as_usage([&] { return target_of(study.target, scene); });
   const SolveOptions options = options_of(arguments, source, scene);
   source.read({study.find + "=" + exact_number(options.low < options.high ? options.low : options.start)});
 
@@ -99,8 +104,10 @@ int cmd_solve(const Arguments& arguments) {
   const Objective objective = [&](double x) {
     try {
       const Scene changed = source.read({study.find + "=" + exact_number(x)});
-      const Simulation run = simulate_as_asked(build_model(changed), changed.solver, hooks);
-      return target.measure.value(run, diagnose(run));
+      Simulation run = simulate_as_asked(build_model(changed), changed.solver, hooks);
+      const Diagnostics diagnostics = judge(run);
+      return run.status == RunStatus::failed ? std::numeric_limits<double>::quiet_NaN()
+                                             : target.measure.value(run, diagnostics);
     } catch (const SceneError&) {
       return std::numeric_limits<double>::quiet_NaN();
     }

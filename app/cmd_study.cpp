@@ -37,9 +37,8 @@ Report study_report(const Study& study, const Scene& scene, const std::vector<st
   report.paragraph("Errors are the largest distance of a node from the reference at " +
                    std::string("equally spaced times up to ") + short_number(study.end, 6) + " s" +
                    (study.before.empty() ? "" : ", shortly before " + study.before) +
-                   ". The reference: " + study.reference + "; its last two solutions agree to " +
-                   short_number(study.reference_uncertainty) +
-                   " m. CPU times are medians of runs that had the machine's "
+                   ". The reference: " + study.reference + "; " + reference_words(study) +
+                   ". CPU times are medians of runs that had the machine's "
                    "core to themselves; smallest and largest are in `study.csv`.");
   report.heading("Observed orders");
   report.add(orders_table(study));
@@ -89,7 +88,7 @@ int cmd_study(const Arguments& arguments) {
   if (arguments.study.repeats > 0) plan.timing.repeats = arguments.study.repeats;
   Study study;
   {
-    Journal journal(session.journal(), study_columns(), study_key_columns);
+    Journal journal(session.journal(), study_columns(), study_key_columns, study_number_columns());
     study = run_study(plan, journal, hooks);
   }
   if (study.complete) session.write("study.csv", csv_text(points_table(study)));

@@ -6,6 +6,7 @@
 #include "app/scene_run.hpp"
 #include "app/study_session.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/write.hpp"
 #include "core/study/sweep.hpp"
@@ -20,12 +21,13 @@ namespace fs = std::filesystem;
 SweepPlan plan_of(const Arguments& arguments) {
   SweepPlan plan{{find_scene(arguments.names.front()), arguments.overrides}, {}, {}, {}};
   for (const auto& text : arguments.study.vary) plan.axes.push_back(parse_axis(text));
+  const auto columns = columns_of(build_model(plan.source.read()));
   std::string name;
   for (const char c : arguments.study.measure + ",") {
     if (c != ',')
       name += c;
     else if (!name.empty())
-      plan.measures.push_back(find_measure(std::exchange(name, "")));
+      plan.measures.push_back(find_measure(std::exchange(name, ""), columns));
   }
   if (!arguments.study.shard.empty()) plan.shard = parse_shard(arguments.study.shard);
   check_plan(plan);
@@ -61,7 +63,7 @@ Sweep compute(const SweepPlan& plan, const StudySession& session, const StudyHoo
   try {
     if (!arguments.study.merge.empty())
       return merge_sweep(plan, journals_in(arguments.study.merge, identity));
-    Journal journal(session.journal(), plan.columns(), plan.axes.size());
+    Journal journal(session.journal(), plan.columns(), plan.axes.size(), plan.number_columns());
     return run_sweep(plan, journal, hooks);
   } catch (const JournalMismatch& error) {
     throw FileError(session.directory(), std::string(error.what()) + "; other --vary or --measure than now?");

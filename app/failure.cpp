@@ -10,6 +10,7 @@
 #include "app/interrupt.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/reader.hpp"
+#include "core/study/journal.hpp"
 #include "core/study/reference.hpp"
 #include "render/gl/graphics_error.hpp"
 #include "render/image/child_process.hpp"
@@ -55,6 +56,12 @@ int report_failure(std::ostream& out) {
   } catch (const UsageError& error) {
     out << "unfurl: " << error.what() << "\n";
     return exit_usage;
+  } catch (const ReferenceError& error) {
+    out << "unfurl: " << error.what() << "\n";
+    return exit_solver_failed;
+  } catch (const JournalMismatch& error) {
+    out << "unfurl: " << error.what() << "\n";
+    return exit_file_error;
   } catch (const UnreadableScene& error) {
     out << "unfurl: " << error.what() << "\n";
     return exit_file_error;

@@ -36,8 +36,9 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
 // A few lines for a person on stderr; nothing where `quiet` was asked for.
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments);
 
-// The run's diagnostics; half a second after Ctrl-C what is not computed yet is left open.
-Diagnostics diagnose_run(const Simulation& run);
+// The run's diagnostics, which decide its end (judge()); half a second after Ctrl-C what is not computed yet is
+// left open.
+Diagnostics judge_run(Simulation& run);
 
 // 0, solver failed, or interrupted.
 int exit_code_of(const Simulation& run, const Diagnostics& diagnostics);

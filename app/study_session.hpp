@@ -53,12 +53,12 @@ class StudySession {
   FigureWriter writer_;
 };
 
-// What a person asked for cannot be: std::invalid_argument of the studies as UsageError.
+// What a person asked for cannot be: StudyError as UsageError.
 template <class Work>
 auto as_usage(const Work& work) {
   try {
     return work();
-  } catch (const std::invalid_argument& error) {
+  } catch (const StudyError& error) {
     throw UsageError(error.what());
   }
 }

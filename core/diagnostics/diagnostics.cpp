@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
+#include "core/diagnostics/books.hpp"
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/integrators/index1.hpp"
 
@@ -243,22 +245,23 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
   out.axial_force.bottomRows(static_cast<Index>(out.left_open)).setConstant(nan);
 }
 
-}  // namespace
-
-Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
+Diagnostics diagnosed(const Simulation& run, bool books, const std::function<bool()>& cancelled) {
   const Trajectory& trajectory = run.trajectory;
   Diagnostics out;
   std::vector<const Row*> used;
   for (const Row& row : rows) {
-    if (!present(row.needs, run)) continue;
+    const bool book =
+        row.unit == std::string_view("J") || std::string_view(row.name).starts_with("constraint_");
+    if (!present(row.needs, run) || (books && !book)) continue;
     used.push_back(&row);
     out.columns.push_back({row.name, row.label, row.unit, {}});
   }
-  DriveColumns drives(trajectory.model().system, out.columns);
+  std::optional<DriveColumns> drives;
+  if (!books) drives.emplace(trajectory.model().system, out.columns);
   const std::size_t first_own = out.columns.size();
-  add_own_columns(trajectory.structure(), out);
+  if (!books) add_own_columns(trajectory.structure(), out);
   const EnergyFlow flow = energy_flow(run);
-  const auto rods = static_cast<Index>(trajectory.structure().rods.size());
+  const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
   std::vector<double> scratch;
@@ -272,7 +275,7 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
     if (model != &trajectory.model(i)) {
       model = &trajectory.model(i);
       followed = std::make_unique<System>(model->system);
-      index1 = std::make_unique<Index1>(*followed, true);
+      if (!books) index1 = std::make_unique<Index1>(*followed, true);
       lengths = model->system.all_lengths();
       phi.resize(lengths.size());
       velocity_phi.resize(lengths.size());
@@ -282,9 +285,11 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
     system.all_constraint_values(state.t, q, phi);
     system.all_constraint_rates(state.t, q, v, velocity_phi, scratch);
-    const VectorXd lambda =
-        multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
-    axial_forces(*model, lambda, force);
+    VectorXd lambda;
+    if (!books) {
+      lambda = multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
+      axial_forces(*model, lambda, force);
+    }
     out.axial_force.row(static_cast<Index>(i)) = force.transpose();
     if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
     const Instant instant{run,     i,
@@ -296,14 +301,26 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
                           flow,    first_energy};
     out.t.push_back(state.t);
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
-    add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
-    drives.append(system, state.t, lambda);
+    if (!books) {
+      add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
+      drives->append(system, state.t, lambda);
+    }
   }
   leave_open(trajectory, out);
   for (Series& column : out.columns)
     if (column.unit == "J")
       for (double& energy : column.values) energy *= trajectory.structure().sectors;
   return out;
+}
+
+}  // namespace
+
+Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
+  return diagnosed(run, false, cancelled);
+}
+
+Diagnostics diagnose_books(const Simulation& run) {
+  return diagnosed(run, true, {});
 }
 
 }  // namespace unfurl

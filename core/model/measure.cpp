@@ -189,6 +189,22 @@ void MeasureFunction::hessian(const double* q, double* hess) const {
   }
 }
 
+double MeasureFunction::curvature_along(const double* q, const double* v) const {
+  if (kind_ == MeasureKind::coordinate) return 0.0;
+  if (kind_ == MeasureKind::fold) {  // atan2_hessian's form, with ds . v = s', dc . v = c'
+    const double s = linear(sine_, sine_offset_, q), c = linear(cosine_, cosine_offset_, q);
+    const double s1 = linear(sine_, 0.0, v), c1 = linear(cosine_, 0.0, v), r2 = s * s + c * c;
+    return 2 * (s * c * (c1 * c1 - s1 * s1) + (s * s - c * c) * s1 * c1) / (r2 * r2);
+  }
+  std::array<double, 144> hess{};
+  hessian(q, hess.data());
+  double sum = 0;
+  const std::size_t size = stencil_.size();
+  for (std::size_t j = 0; j < size; ++j)
+    for (std::size_t i = 0; i < size; ++i) sum += v[stencil_[i]] * hess[j * size + i] * v[stencil_[j]];
+  return sum;
+}
+
 // (I - n n^T) / length, n the unit direction.
 void MeasureFunction::length_hessian(const double* q, double* hess) const {
   Vec6 g;

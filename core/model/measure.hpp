@@ -31,6 +31,8 @@ class MeasureFunction {
   }
   // Hess s, dense, column by column, size of stencil squared.
   void hessian(const double* q, double* hess) const;
+  // v^T Hess s v, without that matrix: a fold angle's is as large as the structure.
+  double curvature_along(const double* q, const double* v) const;
   double rate(const double* gradient, const double* v) const {  // gradient . v
     double sum = 0;
     for (std::size_t i = 0; i < stencil_.size(); ++i) sum += gradient[i] * v[stencil_[i]];

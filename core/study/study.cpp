@@ -107,6 +107,10 @@ std::vector<std::string> study_columns() {
           "repeats"};
 }
 
+std::vector<std::size_t> study_number_columns() {
+  return {1, 3, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19};
+}
+
 Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks) {
   Study study;
   study.end = plan.end;
@@ -118,6 +122,7 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
         solve_reference(plan.model, plan.end, static_cast<int>(plan.ladder.grid), hooks);
     study.reference = reference.how;
     study.reference_uncertainty = reference.uncertainty;
+    study.reference_confirmed = reference.confirmed;
     double done = 0;
     double all = 0;
     for (const long steps : plan.ladder.steps)
@@ -144,6 +149,12 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
   const double floor = floor_of(study);
   for (StudyCurve& curve : study.curves) curve.order = order_of(curve, floor, study.size);
   return study;
+}
+
+std::string reference_words(const Study& study) {
+  const std::string size = short_number(study.reference_uncertainty, 2) + " m";
+  return study.reference_confirmed ? "dvm and extrapolation agree to " + size
+                                   : "it agrees with itself to " + size;
 }
 
 Table points_table(const Study& study) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/diagnostics/accuracy.hpp"
 #include "core/study/tolerance.hpp"
 #include "render/plot/ticks.hpp"
 
@@ -39,8 +40,7 @@ std::string setting_caption(const SolverOptions& options) {
 
 TradePoint trade_point(const LiveRun& run) {
   const Diagnostics& d = run.diagnostics;
-  const double energy =
-      std::max({largest(d, "kinetic_energy_J"), largest(d, "potential_energy_J"), largest(d, "work_J")});
+  const double energy = energy_turned_over(d);
   const double error = largest(d, "energy_balance_J");
   const SolverOptions& options = run.simulation.options;  // with a tolerance: as they were picked
   return {.method = options.method,
@@ -80,7 +80,7 @@ std::string point_caption(const TradePoint& point) {
     text += " up to " + format_number(point.end, 4) + " s, " + cpu_text(point.whole_cpu_s) + " in all";
   if (point.accuracy == Accuracy::known)
     text += "\nposition error " + format_number(point.position_error, 3) +
-            " m\nthe reference is certain to " + format_number(point.uncertainty, 2) + " m";
+            " m\nthe reference agrees with itself to " + format_number(point.uncertainty, 2) + " m";
   if (std::isfinite(point.estimate))
     text += "\nestimated position error " + format_number(point.estimate, 3) + " m";
   return text + "\nenergy error " + format_number(point.error, 3) + " of the energy\nconstraint error " +

@@ -77,7 +77,7 @@ void add_floor(const Study& study, Panel& panel) {
 std::string span_sentence(const Study& study) {
   return "Motion from 0 to " + format_number(study.end, 4) + " s" +
          (study.before.empty() ? "" : ", just before " + study.before) + ". Reference: " + study.reference +
-         ", certain to " + format_number(study.reference_uncertainty, 2) + " m.";
+         "; " + reference_words(study) + ".";
 }
 
 }  // namespace
