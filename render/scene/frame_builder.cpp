@@ -57,7 +57,7 @@ double FrameBuilder::prepare_camera() {
       for (const Vec3& p : pose) visit(p);
   });
   if (bounds_.radius <= 0) bounds_.radius = 1;  // a single node that rests
-  looks_ = appearance_of(s, bounds_.radius);
+  looks_ = appearance_of(s, bounds_.radius, style_.options.rod_scale);
   const double thickest = looks_.joint_radius.empty() ? 0.0 : *std::ranges::max_element(looks_.joint_radius);
   Framing framing;
   framing.around = thickest + (style_.loads && !s.load_copies.empty() ? 0.5 * looks_.arrow_length : 0.0);

@@ -131,7 +131,7 @@ void FrameOverlay::add_names(const VectorXd& whole, DrawList& list) const {
   const Vec3 back = (list.camera.eye - list.camera.target).cast<double>();
   std::stable_sort(names.begin(), names.end(),
                    [&](const auto& a, const auto& b) { return back.dot(a.second) > back.dot(b.second); });
-  std::vector<Box> taken{{0, 0, width_, edge_ + 1.3f * large_},
+  std::vector<Box> taken{{0, 0, width_, edge_ + 1.3f * large_ + 1.2f * small_},
                          {0, height_ - edge_ - 1.5f * small_, width_, height_}};
   for (const auto& [name, at] : names) add_name(*name, at, taken, list);
 }

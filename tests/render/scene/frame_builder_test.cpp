@@ -189,4 +189,29 @@ TEST_CASE("frames come at the film's rate and the last one shows the end") {
   CHECK(slow[slow.size() - 2] < slow.back());
 }
 
+TEST_CASE("rods drawn thicker than they are say by how much, and rod_scale = 1 draws them as they are") {
+  const Simulation r = run(ring);
+  const double own = std::sqrt(9e-4 / pi);  // of the section's area, 9e-4 m^2
+  const auto drawn = [&](double rod_scale, double& radius) {
+    FrameStyle style;
+    style.options.rod_scale = rod_scale;
+    const DrawList list = FrameBuilder(r.trajectory, style).build(0.0);
+    radius = static_cast<double>(list.tubes.at(0).radius);
+    std::string note;
+    for (const TextLabel& label : list.labels)
+      if (label.text.find("rods drawn") != std::string::npos) note += label.text;
+    return note;
+  };
+  double radius = 0;
+  CHECK(drawn(1.0, radius).empty());
+  CHECK(radius == Approx(own));
+  CHECK(drawn(3.0, radius) == "rods drawn 3.0 \u00D7 as thick");
+  CHECK(radius == Approx(3 * own));
+  const std::string note = drawn(0.0, radius);
+  REQUIRE(radius > 1.5 * own);  // a ring of 12 m, seen whole
+  char factor[32];
+  std::snprintf(factor, sizeof factor, "%.1f", radius / own);
+  CHECK(note == "rods drawn " + std::string(factor) + " \u00D7 as thick");
+}
+
 }  // namespace frame_builder_test
