@@ -214,4 +214,30 @@ TEST_CASE("rods drawn thicker than they are say by how much, and rod_scale = 1 d
   CHECK(note == "rods drawn " + std::string(factor) + " \u00D7 as thick");
 }
 
+TEST_CASE(
+    "dimension lines and their numbers stay inside the picture and off what is written in its corners") {
+  const Simulation r = run(ring);
+  for (const char* camera : {"auto", "front", "side", "iso"}) {
+    FrameStyle style;
+    style.options.dimensions = true;
+    style.options.camera = camera;
+    const FrameBuilder with(r.trajectory, style);
+    style.options.dimensions = false;
+    const FrameBuilder without(r.trajectory, style);
+    for (const double share : {0.0, 0.4, 0.8, 1.0}) {
+      INFO(camera << " at " << share);
+      const DrawList list = with.build(share * r.trajectory.end_time());
+      const std::size_t plain = without.build(share * r.trajectory.end_time()).lines.size();
+      REQUIRE(list.lines.size() > plain);
+      for (const OverlayLine& line : list.lines)
+        for (const auto& [x, y] : {std::pair(line.x0, line.y0), std::pair(line.x1, line.y1)}) {
+          CHECK(x > 0);
+          CHECK(x < 1280);
+          CHECK(y > 0);
+          CHECK(y < 720 - 51);  // the legend and the time: an edge of 30 and a line of 21 pixels
+        }
+    }
+  }
+}
+
 }  // namespace frame_builder_test
