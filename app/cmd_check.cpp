@@ -83,24 +83,27 @@ void print_row(const char* name, Index value) {
 }
 
 // A redundant member with those that it can be pre-stressed against.
-void print_state(const Judged& judged, const SelfStress& state, const std::string& redundant) {
+void print_state(const Judged& judged, const SelfStress& state, int redundant) {
   constexpr std::size_t most = 4;
   std::string others;
   std::size_t count = 0;
   for (const auto& member : state.members) {
-    const std::string name = judged.name(member.row);
-    if (name == redundant || ++count > most) continue;
-    others += (others.empty() ? "" : ", ") + name;
+    if (member.row == redundant || ++count > most) continue;
+    others += (others.empty() ? "" : ", ") + judged.name(member.row);
   }
   if (count > most) others += " and " + std::to_string(count - most) + " more";
-  std::cout << "  " << redundant << (others.empty() ? "" : "  against " + others) << "\n";
+  std::cout << "  " << judged.name(redundant) << (others.empty() ? " alone" : " against " + others) << "\n";
 }
 
+// Last, since it may be long.
 void print_forces(const Judged& judged) {
   const auto rods = static_cast<Index>(judged.model.structure.rod_copies.size());
   if (rods > 0) print_row("rods of unique force", judged.unique_rods());
   if (judged.model.structure.sectors > 1) std::cout << "  (among forces with the symmetry of the sector)\n";
-  if (!judged.balance.listed) std::cout << "  (too large a structure to list its states of self-stress)\n";
+  print_row("states of self-stress", static_cast<Index>(judged.mobility.redundant.size()));
+  if (!judged.balance.listed) std::cout << "  (too large a structure to list their members)\n";
+  for (std::size_t k = 0; k < judged.balance.states.size(); ++k)
+    print_state(judged, judged.balance.states[k], judged.mobility.redundant_rows[k]);
 }
 
 void print_table(const Scene& scene, const Judged& judged) {
@@ -114,16 +117,14 @@ void print_table(const Scene& scene, const Judged& judged) {
   print_row("constraints", mobility.constraints);
   print_row("rank", mobility.rank);
   print_row("redundant", static_cast<Index>(mobility.redundant.size()));
-  for (std::size_t k = 0; k < mobility.redundant.size(); ++k)
-    print_state(judged, judged.balance.listed ? judged.balance.states[k] : SelfStress{},
-                mobility.redundant[k]);
-  print_forces(judged);
+  for (const auto& name : mobility.redundant) std::cout << "  " << name << "\n";
   print_row("degrees of freedom", mobility.degrees_of_freedom);
   if (mobility.rigid_motions > 0) print_row("  as one rigid body", mobility.rigid_motions);
   print_row("by Maxwell's count", mobility.count);
   if (!std::isnan(mobility.smallest_singular_value))
     std::cout << std::left << std::setw(24) << "smallest singular value" << std::right << std::setw(8)
               << std::setprecision(3) << mobility.smallest_singular_value << "\n";
+  print_forces(judged);
 }
 
 }  // namespace
