@@ -150,6 +150,17 @@ void FrameOverlay::add_legend(DrawList& list) const {
   }
 }
 
+namespace {
+
+// Where the colours end before the values do.
+std::string end_mark(const RodField& field, double u) {
+  if (u == 0.0 && field.below) return "\u2264 ";
+  if (u == 1.0 && field.above) return "\u2265 ";
+  return {};
+}
+
+}  // namespace
+
 void FrameOverlay::add_color_bar(DrawList& list) const {
   constexpr int steps = 64;
   const float length = 280 * unit_, thick = 12 * unit_, line = std::round(0.8f * small_);
@@ -166,8 +177,8 @@ void FrameOverlay::add_color_bar(DrawList& list) const {
   for (const double u : {0.0, 0.5, 1.0}) {
     const float at = x + length * static_cast<float>(u);
     list.lines.push_back({at, y + thick, at, y + thick + 4 * unit_, 1.5f * unit_, look_.ink});
-    list.labels.push_back(
-        {at, y + thick + 5 * unit_, line, look_.ink, number_text(value(u)), static_cast<float>(u)});
+    list.labels.push_back({at, y + thick + 5 * unit_, line, look_.ink,
+                           end_mark(*field_, u) + number_text(value(u)), static_cast<float>(u)});
   }
   list.labels.push_back({x, y - 1.35f * line, line, look_.ink, field_->label});
 }

@@ -107,6 +107,11 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
   }
   choose_range(field);
   if (range[0] < range[1] && (!field.log || range[0] > 0)) field.low = range[0], field.high = range[1];
+  for (Index i = 0; i < field.values.size(); ++i) {
+    const double value = field.values.data()[i], hair = 1e-9 * (field.high - field.low);
+    field.below = field.below || (!field.log && value < field.low - hair);
+    field.above = field.above || value > field.high + hair;
+  }
   return field;
 }
 

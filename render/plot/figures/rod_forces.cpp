@@ -104,7 +104,7 @@ std::string uniqueness_sentence(const Structure& structure, const Diagnostics& d
   const char* symmetric = structure.sectors > 1 ? " under the symmetry of the sector" : "";
   if (open == 0) return std::string(" The model determines all of them") + symmetric + ".";
   return " Dashed: not unique, the rigid model does not determine the force of " + std::to_string(open) +
-         " of the " + std::to_string(rods) + " rods" + symmetric + "; shown is the choice of least norm.";
+         " of the " + std::to_string(rods) + " rods" + symmetric + "; shown is the choice of least norm, scaled by mass.";
 }
 
 std::string peak_sentence(const Structure& structure, const Diagnostics& d) {
