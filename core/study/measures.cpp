@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/peaks.hpp"
 #include "core/math/largest.hpp"
 #include "core/model/nearest_name.hpp"
@@ -33,9 +34,14 @@ double last_of(const Simulation&, const Diagnostics& d, std::string_view column)
   return series ? last(series->values) : nan;
 }
 
-double peak_rod_force(const Simulation& run, const Diagnostics& d) {
+double peak_force(const Simulation& run, const Diagnostics& d) {
   return larger(largest_of_column(run, d, "axial_force_max_N"),
                 -smallest_of_column(run, d, "axial_force_min_N"));
+}
+
+template <Pull pull>
+double peak_unique(const Simulation&, const Diagnostics& d) {
+  return peak_rod_force(d, pull).unique ? 1.0 : 0.0;
 }
 
 double largest_magnitude_of(const Diagnostics& d, std::string_view column) {
@@ -62,7 +68,8 @@ double peak_speed(const Simulation& run, const Diagnostics&) {
 const std::array rows{
     NamedMeasure{"deploy_time", "deployment time", "s", "when the structure is fully deployed", deploy_time},
     NamedMeasure{"peak_rod_force", "peak rod force", "N",
-                 "largest axial force of any rod, tension or compression", peak_rod_force},
+                 "largest axial force of any rod, tension or compression; the mean over the rod's length",
+                 peak_force},
     NamedMeasure{"peak_tension", "peak tension", "N", "largest tension of any rod",
                  [](const Simulation& run, const Diagnostics& d) {
                    return largest_of_column(run, d, "axial_force_max_N");
@@ -71,6 +78,14 @@ const std::array rows{
                  [](const Simulation& run, const Diagnostics& d) {
                    return -smallest_of_column(run, d, "axial_force_min_N");
                  }},
+    NamedMeasure{
+        "peak_rod_force_unique", "peak rod force is unique", "",
+        "1: the rigid model determines the peak rod force; 0: it is one choice of many (`unfurl check`)",
+        peak_unique<Pull::either>},
+    NamedMeasure{"peak_tension_unique", "peak tension is unique", "", "the same of the peak tension",
+                 peak_unique<Pull::tension>},
+    NamedMeasure{"peak_compression_unique", "peak compression is unique", "",
+                 "the same of the peak compression", peak_unique<Pull::compression>},
     NamedMeasure{
         "energy", "kinetic energy at the end", "J", "kinetic energy at the end of the run",
         [](const Simulation& run, const Diagnostics& d) { return last_of(run, d, "kinetic_energy_J"); }},
@@ -119,6 +134,13 @@ std::string suffix(std::string_view unit) {
 
 std::span<const NamedMeasure> named_measures() {
   return rows;
+}
+
+std::string uniqueness_of(std::string_view measure) {
+  const std::string name = std::string(measure) + "_unique";
+  const bool known =
+      std::any_of(rows.begin(), rows.end(), [&](const NamedMeasure& m) { return m.name == name; });
+  return known ? name : "";
 }
 
 std::vector<std::string> columns_of(const std::shared_ptr<const Model>& model) {

@@ -24,6 +24,10 @@ struct NamedMeasure {
 // To add one: a function and a row.
 std::span<const NamedMeasure> named_measures();
 
+// The measure that says whether this one is unique (1) or one choice of many (0): "peak_rod_force_unique" of
+// "peak_rod_force". Empty where there is none.
+std::string uniqueness_of(std::string_view measure);
+
 // All columns that a series.csv of this model has, its drives' and lengths' too.
 std::vector<std::string> columns_of(const std::shared_ptr<const Model>& model);
 
