@@ -14,19 +14,19 @@ namespace {
 constexpr int rows = 2, columns = 3;
 constexpr std::size_t poses = rows * columns;
 
-struct Moment {
+struct Shot {
   double t;
   std::string title;
 };
 
 // Six equal steps of the deployed fraction where the run unfolds from its start to its end without turning
 // back; an empty list where it does not.
-std::vector<Moment> moments_of_deployment(const Diagnostics& d) {
+std::vector<Shot> moments_of_deployment(const Diagnostics& d) {
   const Series* fraction = d.find("deployed_fraction");
   if (!fraction) return {};
   const std::vector<double>& f = fraction->values;
   if (f.size() < poses || !std::is_sorted(f.begin(), f.end()) || f.back() - f.front() < 0.05) return {};
-  std::vector<Moment> moments;
+  std::vector<Shot> moments;
   for (std::size_t k = 0; k < poses; ++k) {
     const double wanted = f.front() + (f.back() - f.front()) * static_cast<double>(k) / (poses - 1);
     const auto i = static_cast<std::size_t>(
@@ -41,8 +41,8 @@ std::vector<Moment> moments_of_deployment(const Diagnostics& d) {
   return moments;
 }
 
-std::vector<Moment> equal_moments(const Trajectory& run) {
-  std::vector<Moment> moments;
+std::vector<Shot> equal_moments(const Trajectory& run) {
+  std::vector<Shot> moments;
   for (std::size_t k = 0; k < poses; ++k) {
     const double t =
         run.start_time() + (run.end_time() - run.start_time()) * static_cast<double>(k) / (poses - 1);
@@ -119,12 +119,12 @@ class PosePainter {
 
 Figure poses_figure(const Simulation& run, const Diagnostics& diagnostics) {
   const Structure& structure = run.trajectory.structure();
-  std::vector<Moment> moments = moments_of_deployment(diagnostics);
+  std::vector<Shot> moments = moments_of_deployment(diagnostics);
   const bool by_fraction = !moments.empty();
   if (!by_fraction) moments = equal_moments(run.trajectory);
   std::vector<VectorXd> q;
   PoseBox space;
-  for (const Moment& m : moments) {
+  for (const Shot& m : moments) {
     q.push_back(run.trajectory.positions_at(m.t));
     for (int i = 0; i < q.back().size() / 3; ++i) space.add(pose_node(q.back(), i));
   }
