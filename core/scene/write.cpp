@@ -154,7 +154,9 @@ std::string toml_value(const ParamValue& value) {
 }
 
 std::string scene_text(const Scene& scene) {
-  std::string text = line("title", toml_string(scene.title)) + structure_text(scene);
+  std::string text =
+      line("title", toml_string(scene.title_pattern.empty() ? scene.title : scene.title_pattern)) +
+      structure_text(scene);
   text += "\n[gravity]\n" + line("acceleration", vec_text(scene.gravity));
   for (const auto& load : scene.loads)
     text += "\n[[loads]]\n" + (load.enabled ? "" : line("enabled", "false")) +
