@@ -168,10 +168,13 @@ Table orders_table(const Study& study) {
     else
       row.insert(row.end(), {"too few points", ""});
     row.push_back(std::to_string(o.points));
-    if (best)
-      for (const double x :
-           {best->position_error, best->step, best->cpu_median, best->constraint_max, best->energy_error})
+    if (best) {
+      const bool below = best->position_error < study.reference_uncertainty;  // by how much is not known
+      row.push_back(below ? "below " + short_number(study.reference_uncertainty)
+                          : short_number(best->position_error));
+      for (const double x : {best->step, best->cpu_median, best->constraint_max, best->energy_error})
         row.push_back(short_number(x));
+    }
     row.resize(table.columns.size());
     table.rows.push_back(std::move(row));
   }
