@@ -2,7 +2,9 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "app/command.hpp"
 #include "app/interrupt.hpp"
@@ -58,7 +60,9 @@ SolveOptions options_of(const Arguments& arguments, const SceneSource& source, c
   return options;
 }
 
-std::string result_json(const StudyArguments& study, const Target& target, const Solved& solved) {
+// solved_force: of a force, whether it is unique at the solution.
+std::string result_json(const StudyArguments& study, const Target& target, const Solved& solved,
+                        const std::optional<bool>& solved_force) {
   nlohmann::ordered_json json = {{"key", study.find},
                                  {"value", solved.x},
                                  {"measure", target.measure.name},
@@ -66,6 +70,7 @@ std::string result_json(const StudyArguments& study, const Target& target, const
                                  {"reached", solved.value},
                                  {"bracket", {solved.low, solved.high}},
                                  {"runs", solved.evaluations.size()}};
+  if (solved_force) json["unique"] = *solved_force;
   return json.dump(2) + "\n";
 }
 
@@ -96,11 +101,15 @@ int cmd_solve(const Arguments& arguments) {
   const InterruptGuard guard;
   SimulationHooks hooks;
   hooks.cancelled = interrupted;
+  const std::string flag = uniqueness_of(target.measure.name);
+  std::map<double, bool> unique;  // by the parameter
   const Objective objective = [&](double x) {
     try {
       const Scene changed = source.read({study.find + "=" + exact_number(x)});
       const Simulation run = simulate_as_asked(build_model(changed), changed.solver, hooks);
-      return target.measure.value(run, diagnose(run));
+      const Diagnostics diagnostics = diagnose(run);
+      if (!flag.empty()) unique[x] = find_measure(flag).value(run, diagnostics) != 0.0;
+      return target.measure.value(run, diagnostics);
     } catch (const SceneError&) {
       return std::numeric_limits<double>::quiet_NaN();
     }
@@ -110,13 +119,17 @@ int cmd_solve(const Arguments& arguments) {
   try {
     const Solved solved = solve_for(objective, target.value, options, asking);
     if (!output.path().empty()) write_results(output.path(), study.find, source, target, solved);
+    std::optional<bool> solved_force;
+    if (const auto at = unique.find(solved.x); at != unique.end()) solved_force = at->second;
     if (arguments.json)
-      std::cout << result_json(study, target, solved);
+      std::cout << result_json(study, target, solved, solved_force);
     else
       std::cout << study.find << " = " << exact_number(solved.x) << "\n";
-    return finish(true, arguments,
-                  target.measure.name + " is " + short_number(solved.value, 12) + " there, after " +
-                      std::to_string(solved.evaluations.size()) + " runs");
+    return finish(
+        true, arguments,
+        target.measure.name + " is " + short_number(solved.value, 12) + " there, after " +
+            std::to_string(solved.evaluations.size()) + " runs" +
+            (solved_force == false ? "; it is not unique: the rigid model does not determine it" : ""));
   } catch (const Cancelled&) {
     std::cerr << "unfurl: interrupted before the parameter was found\n";
     return exit_interrupted;

@@ -1,4 +1,5 @@
 // unfurl sweep SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR: measures over a grid of parameters.
+#include <algorithm>
 #include <utility>
 
 #include "app/command.hpp"
@@ -32,6 +33,22 @@ SweepPlan plan_of(const Arguments& arguments) {
   return plan;
 }
 
+// Which forces of the table the rigid model does not determine, for whoever reads only the last line.
+std::string not_unique(const SweepPlan& plan, const Sweep& sweep) {
+  std::string text;
+  for (std::size_t m = 0; m < plan.measures.size(); ++m) {
+    const std::string flag = uniqueness_of(plan.measures[m].name);
+    for (std::size_t f = 0; f < plan.measures.size(); ++f) {
+      if (flag.empty() || plan.measures[f].name != flag) continue;
+      const auto open = std::count_if(sweep.table.rows.begin(), sweep.table.rows.end(),
+                                      [&](const auto& row) { return row[plan.axes.size() + 1 + f] == "0"; });
+      if (open > 0)
+        text += "; " + plan.measures[m].name + " is not unique in " + std::to_string(open) + " of them";
+    }
+  }
+  return text;
+}
+
 std::string journal_name(const Shard& shard) {
   if (shard.count == 1) return "sweep.csv";
   return "sweep_" + std::to_string(shard.index) + "_of_" + std::to_string(shard.count) + ".csv";
@@ -42,6 +59,14 @@ std::string identity(const Scene& scene, const SweepPlan& plan) {
   std::string text = "# A sweep over";
   for (const auto& axis : plan.axes) text += " " + axis.key;
   return text + "\n" + scene_text(scene);
+}
+
+// What a whole sweep is of: a title that names what is varied would speak of one point.
+std::string title_of(const Scene& scene, const SweepPlan& plan) {
+  const bool structure = std::any_of(plan.axes.begin(), plan.axes.end(), [](const SweepAxis& axis) {
+    return axis.key.starts_with("structure.");
+  });
+  return structure ? scene.name : scene.title;
 }
 
 // The points of these directories, which must be of the same sweep.
@@ -81,12 +106,13 @@ int cmd_sweep(const Arguments& arguments) {
   const std::size_t bad = unanswered(plan, sweep);
   const std::string count = std::to_string(sweep.table.rows.size()) + " points in " +
                             (session.directory() / journal_name(plan.shard)).string() +
-                            (bad > 0 ? ", " + std::to_string(bad) + " of them without an answer" : "");
+                            (bad > 0 ? ", " + std::to_string(bad) + " of them without an answer" : "") +
+                            not_unique(plan, sweep);
   if (plan.shard.count > 1) return finish(sweep.missing == 0, arguments, count);
   std::vector<std::string> pictures;
-  for (const Figure& figure : sweep_figures(plan, sweep, scene.title))
+  for (const Figure& figure : sweep_figures(plan, sweep, title_of(scene, plan)))
     pictures.push_back(session.write(figure));
-  Report report{"Sweep: " + scene.title};
+  Report report{"Sweep: " + title_of(scene, plan)};
   report.paragraph(count + ".");
   for (const auto& picture : pictures) report.picture(picture, picture);
   if (sweep.table.rows.size() <= 1000) report.add(sweep.table);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/diagnostics/energy_flow.hpp"
+#include "core/diagnostics/force_uniqueness.hpp"
 #include "core/integrators/index1.hpp"
 
 namespace unfurl {
@@ -19,12 +20,13 @@ struct Instant {
   const Simulation& run;
   std::size_t i;
   const State& state;
-  const VectorXd &q, &v;          // node coordinates, velocities
-  const VectorXd &phi, &lengths;  // of all constraints [m]
-  const VectorXd& velocity_phi;   // G v of all constraints [m/s]
-  const VectorXd& axial_force;    // of the solved rods [N]
-  const VectorXd& acceleration;   // of the nodes; NaN where the equations have no solution [m/s^2]
-  const Model& model;             // that the state belongs to
+  const VectorXd &q, &v;                  // node coordinates, velocities
+  const VectorXd &phi, &lengths;          // of all constraints [m]
+  const VectorXd& velocity_phi;           // G v of all constraints [m/s]
+  const VectorXd& axial_force;            // of the solved rods [N]
+  const std::vector<char>& force_unique;  // of the solved rods
+  const VectorXd& acceleration;           // of the nodes; NaN where the equations have no solution [m/s^2]
+  const Model& model;                     // that the state belongs to
   const EnergyFlow& flow;
   double first_energy;  // kinetic + potential at t = 0 [J]
 
@@ -39,6 +41,16 @@ struct Instant {
 
 double max_norm(const VectorXd& v) {
   return v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
+}
+
+// Whether the force that is largest in this direction is unique; of no rods it is.
+double extreme_unique(const Instant& s, double sign) {
+  if (s.axial_force.size() == 0) return 1.0;
+  const double most = (sign * s.axial_force).maxCoeff();
+  const double close = 1e-9 * std::abs(most);  // equal ones differ by round-off
+  for (Index r = 0; r < s.axial_force.size(); ++r)
+    if (!(sign * s.axial_force[r] < most - close) && !s.force_unique[static_cast<std::size_t>(r)]) return 0.0;
+  return 1.0;
 }
 
 // What a scene must have for a column to mean something.
@@ -91,6 +103,10 @@ const std::array rows{
         [](const Instant& s) { return s.i == 0 ? 0.0 : s.state.t - s.run.trajectory.time(s.i - 1); }},
     Row{"newton_iterations", "Newton iterations", "", Needs::nothing,
         [](const Instant& s) { return static_cast<double>(s.run.trajectory.report(s.i).newton_iterations); }},
+    Row{"axial_force_max_unique", "largest axial force is unique", "", Needs::nothing,
+        [](const Instant& s) { return extreme_unique(s, 1.0); }},
+    Row{"axial_force_min_unique", "smallest axial force is unique", "", Needs::nothing,
+        [](const Instant& s) { return extreme_unique(s, -1.0); }},
 };
 
 // -(across'/across) / (along'/along): the ratio of the strain increments of the motion that goes on, which at
@@ -156,7 +172,8 @@ void axial_forces(const Model& model, const VectorXd& lambda, VectorXd& force) {
   }
 }
 
-// Three columns for each drive: what it prescribes, what the motor gives for it, and the power.
+// Four columns for each drive: what it prescribes, what the motor gives for it, the power, and whether the
+// effort is unique.
 class DriveColumns {
  public:
   DriveColumns(const System& system, std::vector<Series>& columns)
@@ -173,10 +190,14 @@ class DriveColumns {
                          drive.angle ? "N m" : "N",
                          {}});
       columns.push_back({name + ".power_W", name + " power", "W", {}});
+      columns.push_back({name + (drive.angle ? ".torque_unique" : ".force_unique"),
+                         name + (drive.angle ? " torque" : " force") + " is unique",
+                         "",
+                         {}});
     }
   }
   // `system`: that of the state, whose rows may be others than at the start.
-  void append(const System& system, double t, const VectorXd& lambda) {
+  void append(const System& system, double t, const VectorXd& lambda, const std::vector<char>& unique) {
     std::size_t column = first_;
     for (const Drive& wanted : drives_) {
       const Drive* drive = nullptr;
@@ -186,6 +207,7 @@ class DriveColumns {
       columns_[column++].values.push_back(wanted.target(t));
       columns_[column++].values.push_back(effort);
       columns_[column++].values.push_back(effort * wanted.target.derivative(1, t));
+      columns_[column++].values.push_back(drive && unique[static_cast<std::size_t>(drive->row)] ? 1.0 : 0.0);
     }
   }
 
@@ -223,6 +245,7 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
   while (out.t.size() < trajectory.size()) out.t.push_back(trajectory.time(out.t.size()));
   for (Series& column : out.columns) column.values.resize(out.t.size(), nan);
   out.axial_force.bottomRows(static_cast<Index>(out.left_open)).setConstant(nan);
+  out.force_unique.bottomRows(static_cast<Index>(out.left_open)).setConstant(false);
 }
 
 }  // namespace
@@ -242,6 +265,10 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
   const EnergyFlow flow = energy_flow(run);
   const auto rods = static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
+  out.force_unique.resize(out.axial_force.rows(), rods);
+  out.rod_unique.assign(static_cast<std::size_t>(rods), 1);
+  std::vector<char> unique(out.rod_unique);
+  const ForceUniqueness uniqueness(run);
   VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
   std::vector<double> scratch;
   const Model* model = nullptr;
@@ -263,14 +290,20 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
     const VectorXd lambda =
         multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
     axial_forces(*model, lambda, force);
+    for (std::size_t r = 0; r < unique.size(); ++r) {
+      unique[r] = uniqueness.at(i)[static_cast<std::size_t>(system.rod_rows()[r])];
+      if (uniqueness.regular(i)) out.rod_unique[r] = static_cast<char>(out.rod_unique[r] & unique[r]);
+      out.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
+          unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);
+    }
     out.axial_force.row(static_cast<Index>(i)) = force.transpose();
     if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
-    const Instant instant{run,          i,     state,        q,      v,    phi,         lengths,
-                          velocity_phi, force, acceleration, *model, flow, first_energy};
+    const Instant instant{run,   i,      state,        q,      v,    phi,         lengths, velocity_phi,
+                          force, unique, acceleration, *model, flow, first_energy};
     out.t.push_back(state.t);
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
     add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
-    drives.append(system, state.t, lambda);
+    drives.append(system, state.t, lambda, uniqueness.at(i));
   }
   leave_open(trajectory, out);
   for (Series& column : out.columns)

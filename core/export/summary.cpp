@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/force_uniqueness.hpp"
 
 namespace unfurl {
 
@@ -54,6 +55,20 @@ Json final_json(const Trajectory& trajectory) {
           {"velocities_m_s", by_node(trajectory.structure(), trajectory.velocities(last))}};
 }
 
+// The rod that carries the peak by the name of its first copy.
+Json forces_json(const Structure& structure, const Diagnostics& diagnostics) {
+  const PeakForce peak = peak_rod_force(diagnostics);
+  const auto shown = std::find_if(structure.rod_copies.begin(), structure.rod_copies.end(),
+                                  [&](const RodCopy& copy) { return copy.source == peak.rod; });
+  Json forces = {{"rods", structure.rod_copies.size()}, {"unique_rods", unique_rods(structure, diagnostics)}};
+  if (shown == structure.rod_copies.end()) return forces;
+  forces["peak_rod_force_N"] = std::abs(peak.force_N);
+  forces["peak_rod"] = shown->name;
+  forces["peak_t_s"] = peak.t;
+  forces["peak_unique"] = peak.unique;
+  return forces;
+}
+
 }  // namespace
 
 std::string summary_json(const std::string& scene_name, const Simulation& run, const Diagnostics& diagnostics,
@@ -69,6 +84,7 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
     summary["errors"][name] = max_abs(diagnostics, name);
   summary["errors"]["energy_balance_max_J"] = max_abs(diagnostics, "energy_balance_J");
   if (!std::isnan(run.position_estimate)) summary["errors"]["position_estimate_m"] = run.position_estimate;
+  summary["forces"] = forces_json(model.structure, diagnostics);
   summary["events"] = Json::array();
   for (const auto& event : run.events) {
     summary["events"].push_back({{"name", event.name}, {"t_s", event.t}});

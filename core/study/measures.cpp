@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/diagnostics/force_uniqueness.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/study/measured_run.hpp"
 
@@ -39,8 +40,13 @@ double deploy_time(const Simulation& run, const Diagnostics&) {
              : std::numeric_limits<double>::infinity();
 }
 
-double peak_rod_force(const Simulation&, const Diagnostics& d) {
+double peak_force(const Simulation&, const Diagnostics& d) {
   return std::max(largest(d.at("axial_force_max_N").values), -smallest(d.at("axial_force_min_N").values));
+}
+
+template <Pull pull>
+double peak_unique(const Simulation&, const Diagnostics& d) {
+  return peak_rod_force(d, pull).unique ? 1.0 : 0.0;
 }
 
 double column(const Diagnostics& d, std::string_view name, double (*of)(const std::vector<double>&)) {
@@ -64,13 +70,22 @@ double peak_speed(const Simulation& run, const Diagnostics&) {
 const std::array rows{
     NamedMeasure{"deploy_time", "deployment time", "s", "when the structure is fully deployed", deploy_time},
     NamedMeasure{"peak_rod_force", "peak rod force", "N",
-                 "largest axial force of any rod, tension or compression", peak_rod_force},
+                 "largest axial force of any rod, tension or compression; the mean over the rod's length",
+                 peak_force},
     NamedMeasure{
         "peak_tension", "peak tension", "N", "largest tension of any rod",
         [](const Simulation&, const Diagnostics& d) { return column(d, "axial_force_max_N", largest); }},
     NamedMeasure{
         "peak_compression", "peak compression", "N", "largest compression of any rod",
         [](const Simulation&, const Diagnostics& d) { return -column(d, "axial_force_min_N", smallest); }},
+    NamedMeasure{
+        "peak_rod_force_unique", "peak rod force is unique", "",
+        "1: the rigid model determines the peak rod force; 0: it is one choice of many (`unfurl check`)",
+        peak_unique<Pull::either>},
+    NamedMeasure{"peak_tension_unique", "peak tension is unique", "", "the same of the peak tension",
+                 peak_unique<Pull::tension>},
+    NamedMeasure{"peak_compression_unique", "peak compression is unique", "",
+                 "the same of the peak compression", peak_unique<Pull::compression>},
     NamedMeasure{"energy", "kinetic energy at the end", "J", "kinetic energy at the end of the run",
                  [](const Simulation&, const Diagnostics& d) { return column(d, "kinetic_energy_J", last); }},
     NamedMeasure{
@@ -114,6 +129,13 @@ std::string suffix(std::string_view unit) {
 
 std::span<const NamedMeasure> named_measures() {
   return rows;
+}
+
+std::string uniqueness_of(std::string_view measure) {
+  const std::string name = std::string(measure) + "_unique";
+  const bool known =
+      std::any_of(rows.begin(), rows.end(), [&](const NamedMeasure& m) { return m.name == name; });
+  return known ? name : "";
 }
 
 RunMeasure find_measure(const std::string& name) {

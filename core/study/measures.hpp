@@ -24,6 +24,10 @@ struct NamedMeasure {
 // To add one: a function and a row.
 std::span<const NamedMeasure> named_measures();
 
+// The measure that says whether this one is unique (1) or one choice of many (0): "peak_rod_force_unique" of
+// "peak_rod_force". Empty where there is none.
+std::string uniqueness_of(std::string_view measure);
+
 // A row of the table, or max:, min:, final: with the name of a column of series.csv. Throws
 // std::invalid_argument with the nearest name.
 RunMeasure find_measure(const std::string& name);

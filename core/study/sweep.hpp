@@ -40,7 +40,7 @@ struct SweepPlan {
 };
 
 // Throws std::invalid_argument (no axis, no measure, a key twice, too many points), SceneError where a value
-// is refused by the scene. Gives the axes their units.
+// is refused by the scene. Gives the axes their units, and forces a column that says whether they are unique.
 void check_plan(SweepPlan& plan);
 
 // Points in the grid's order; those that are not there are missing. Outcome: the run's status, or "invalid"

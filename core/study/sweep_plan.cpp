@@ -146,9 +146,24 @@ std::vector<std::string> SweepPlan::columns() const {
   return names;
 }
 
+namespace {
+
+// Beside each force that may not be unique, unless it is asked for anyway, whether it is.
+void add_uniqueness(std::vector<RunMeasure>& measures) {
+  for (std::size_t m = 0; m < measures.size(); ++m) {
+    const std::string name = uniqueness_of(measures[m].name);
+    const bool there = std::any_of(measures.begin(), measures.end(),
+                                   [&](const RunMeasure& have) { return have.name == name; });
+    if (!name.empty() && !there) measures.push_back(find_measure(name));
+  }
+}
+
+}  // namespace
+
 void check_plan(SweepPlan& plan) {
   if (plan.axes.empty()) throw std::invalid_argument("nothing to vary; give --vary KEY=FROM:TO:COUNT");
   if (plan.measures.empty()) throw std::invalid_argument("nothing to measure; give --measure NAME,...");
+  add_uniqueness(plan.measures);
   if (plan.points() > max_points) throw std::invalid_argument("the grid has more than 1e7 points");
   for (std::size_t a = 0; a < plan.axes.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)

@@ -34,7 +34,9 @@ using Names = std::vector<std::string>;
 TEST_CASE("the summary has exactly its documented keys") {
   const auto s = summary_of("hoop6", {"solver.end_time=0.05"});
   CHECK(keys(s) == Names{"unfurl", "scene", "status", "message", "warnings", "model", "solver", "errors",
-                         "events", "final"});
+                         "forces", "events", "final"});
+  CHECK(keys(s["forces"]) ==
+        Names{"rods", "unique_rods", "peak_rod_force_N", "peak_rod", "peak_t_s", "peak_unique"});
   CHECK(keys(s["model"]) == Names{"nodes", "rods", "coordinates", "solved_coordinates", "constraints", "rank",
                                   "redundant", "degrees_of_freedom"});
   CHECK(keys(s["solver"]) == Names{"method", "stages", "nodes", "constraints_at", "step_s", "steps",
@@ -54,6 +56,18 @@ TEST_CASE("the model of the six-unit ring is counted as documented") {
   CHECK(s["solver"]["steps"] == 5);
   CHECK(s["final"]["t_s"].get<double>() == Approx(0.05).epsilon(1e-12));  // five times 0.01, rounded
   CHECK(s["final"]["positions_m"].size() == 24);
+}
+
+TEST_CASE("the summary says which rod carries most, when, and whether the model determines it") {
+  const auto full = summary_of("hoop6", {"solver.end_time=0.05"})["forces"];
+  CHECK(full["rods"] == 30);
+  CHECK(full["unique_rods"] == 6);
+  CHECK_FALSE(full["peak_unique"].get<bool>());  // a chord's
+  CHECK(full["peak_rod_force_N"].get<double>() > 0);
+  const auto swing = summary_of("double_pendulum", {"solver.end_time=0.05"})["forces"];
+  CHECK(swing["unique_rods"] == swing["rods"]);
+  CHECK(swing["peak_unique"].get<bool>());
+  CHECK(swing["peak_t_s"].get<double>() <= 0.05 + 1e-12);
 }
 
 TEST_CASE("a sector counts the nodes of the whole and the coordinates of what was solved") {
