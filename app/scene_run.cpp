@@ -9,6 +9,7 @@
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/ending.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/csv.hpp"
 #include "core/export/summary.hpp"
@@ -99,6 +100,7 @@ void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arg
        << " s: " << run.steps << (run.steps == 1 ? " step, " : " steps, ") << std::setprecision(3)
        << run.cpu_s << " s of CPU time, constraint error " << max_abs(diagnostics.at("constraint_max_m"))
        << " m, energy balance " << max_abs(diagnostics.at("energy_balance_J")) << " J\n";
+  if (const std::string note = ending_note(run, diagnostics); !note.empty()) text << note << "\n";
   std::cerr << text.str();
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/diagnostics/columns.hpp"
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/integrators/index1.hpp"
 
@@ -207,6 +208,12 @@ const Series& Diagnostics::at(std::string_view name) const {
   const Series* s = find(name);
   if (!s) throw std::out_of_range("no diagnostic " + std::string(name));
   return *s;
+}
+
+std::vector<DiagnosticColumn> diagnostic_columns() {
+  std::vector<DiagnosticColumn> columns;
+  for (const Row& row : rows) columns.push_back({row.name, row.label});
+  return columns;
 }
 
 std::vector<std::string_view> diagnostic_names() {

@@ -33,8 +33,8 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("the summary has exactly its documented keys") {
   const auto s = summary_of("hoop6", {"solver.end_time=0.05"});
-  CHECK(keys(s) == Names{"unfurl", "scene", "status", "message", "warnings", "model", "solver", "errors",
-                         "events", "final"});
+  CHECK(keys(s) == Names{"unfurl", "scene", "status", "message", "warnings", "notes", "model", "solver",
+                         "errors", "events", "final"});
   CHECK(keys(s["model"]) == Names{"nodes", "rods", "coordinates", "solved_coordinates", "constraints", "rank",
                                   "redundant", "degrees_of_freedom"});
   CHECK(keys(s["solver"]) == Names{"method", "stages", "nodes", "constraints_at", "step_s", "steps",
