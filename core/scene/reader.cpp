@@ -12,6 +12,7 @@
 #include "core/scene/key_tables.hpp"
 #include "core/scene/table_reader.hpp"
 #include "core/scene/text_file.hpp"
+#include "core/scene/title.hpp"
 #include "core/scene/variables.hpp"
 #include "core/structures/family.hpp"
 
@@ -132,9 +133,12 @@ void read_render(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
                   "means nothing with camera_keys, orbit or turntable: they say where the camera is");
 }
 
-void read_title(TableReader& root, Scene& scene) {
-  const std::string title = root.read(scene_params()).text("title");
-  scene.title = root.has("title") ? title : scene.name;
+void read_title(TableReader& root, const TomlTree& tree, const TomlTree& own, Scene& scene) {
+  const std::string given = root.read(scene_params()).text("title");
+  std::string unknown;
+  scene.title = scene_title(tree, own, scene.name, &unknown);
+  if (is_title_pattern(given)) scene.title_pattern = given;
+  if (!unknown.empty()) root.problem("title", "{" + unknown + "} names no number or text of [structure]");
 }
 
 // "structure.nodes[3].mass" -> "structure.nodes[].mass"
@@ -181,13 +185,16 @@ void sort_problems(std::vector<SceneProblem>& problems) {
 
 Scene read_scene_text(std::string_view text, const std::string& name,
                       const std::vector<std::string>& overrides, const std::string& folder) {
-  TomlTree tree = parse_toml(text, name);
+  TomlTree own = parse_toml(text, name);
+  TomlTree tree = own;
   SceneNotes notes;
   if (!apply_overrides_and_expand(tree, overrides, notes.problems)) refuse(notes.problems);
+  std::vector<SceneProblem> told_already;
+  apply_overrides_and_expand(own, {}, told_already);
   Scene scene;
   scene.name = std::filesystem::path(name).stem().string();
   TableReader root(&tree, "", tree.where, notes);
-  read_title(root, scene);
+  read_title(root, tree, own, scene);
   read_structure(root, tree, folder, scene, notes);
   read_gravity(root, tree, scene, notes);
   read_loads(root, scene, notes);
@@ -199,13 +206,14 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   read_render(root, tree, scene, notes);
   root.finish();
   if (!notes.problems.empty()) refuse(notes.problems);
+  scene.warnings = std::move(notes.warnings);
   scene.locations = std::move(notes.locations);
   scene.units = std::move(notes.units);
   return scene;
 }
 
 Scene read_scene_file(const std::string& path, const std::vector<std::string>& overrides) {
-  const TextFile file = read_text_file(path);
+  const TextFile file = read_text_file(path, TextSource::pipe_too);
   if (!file.error.empty()) throw UnreadableScene("cannot read scene " + path + ": " + file.error);
   std::string folder = std::filesystem::path(path).parent_path().string();
   return read_scene_text(file.text, path, overrides, folder.empty() ? "." : folder);

@@ -44,14 +44,15 @@ class Expansion {
       for (const auto& [name, value] : table->entries) read_variable(name, value);
     else
       note(*table, "variables", "must be a table, [variables]; got " + table->describe());
-    std::erase_if(root.entries, [](const auto& entry) { return entry.first == "variables"; });
+    std::erase_if(root.entries, [](const auto& entry) { return entry.key == "variables"; });
   }
 
   // What is filled in by overrides afterwards has expressions, but no braces.
   void leave_braces() { braces_ = false; }
 
   void expand(TomlTree& tree, const std::string& key) {
-    if (is_expression(tree) && key != "title") {
+    if (key == "title") return;  // its braces are parameters of the structure (title.hpp)
+    if (is_expression(tree)) {
       if (const auto value = value_of(tree, key)) become(tree, *value);
     } else if (tree.kind == Kind::text && braces_) {
       fill_braces(tree, key);
@@ -139,7 +140,7 @@ class Expansion {
   void repeat(TomlTree entry, const std::string& key, std::vector<TomlTree>& items) {
     const std::string place = key + "[" + std::to_string(items.size()) + "].repeat";
     const TomlTree ranges = std::move(*entry.find("repeat"));
-    std::erase_if(entry.entries, [](const auto& member) { return member.first == "repeat"; });
+    std::erase_if(entry.entries, [](const auto& member) { return member.key == "repeat"; });
     if (ranges.kind != Kind::table || ranges.entries.empty())
       return note(ranges, place, "must be a table such as {i = \"0:n\"}; got " + ranges.describe());
     const bool braces = std::exchange(braces_, true);

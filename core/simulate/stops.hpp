@@ -25,6 +25,11 @@ struct StopSide {
   MeasureFunction function;
   double limit, sign;
   double restitution, rest_speed;
+  int followed;  // index in State::angles; -1: it counts no turns
+
+  double near(const State& state) const {
+    return followed >= 0 && followed < state.angles.size() ? state.angles[followed] : function.reference();
+  }
 };
 
 class Stops {

@@ -107,6 +107,10 @@ std::vector<std::string> study_columns() {
           "repeats"};
 }
 
+std::vector<std::size_t> study_number_columns() {
+  return {1, 3, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19};
+}
+
 Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks) {
   Study study;
   study.end = plan.end;
@@ -118,6 +122,7 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
         solve_reference(plan.model, plan.end, static_cast<int>(plan.ladder.grid), hooks);
     study.reference = reference.how;
     study.reference_uncertainty = reference.uncertainty;
+    study.reference_confirmed = reference.confirmed;
     double done = 0;
     double all = 0;
     for (const long steps : plan.ladder.steps)
@@ -146,6 +151,12 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
   return study;
 }
 
+std::string reference_words(const Study& study) {
+  const std::string size = short_number(study.reference_uncertainty, 2) + " m";
+  return study.reference_confirmed ? "dvm and extrapolation agree to " + size
+                                   : "it agrees with itself to " + size;
+}
+
 Table points_table(const Study& study) {
   Table table{study_columns(), {}};
   for (const StudyCurve& curve : study.curves)
@@ -168,10 +179,13 @@ Table orders_table(const Study& study) {
     else
       row.insert(row.end(), {"too few points", ""});
     row.push_back(std::to_string(o.points));
-    if (best)
-      for (const double x :
-           {best->position_error, best->step, best->cpu_median, best->constraint_max, best->energy_error})
+    if (best) {
+      const bool below = best->position_error < study.reference_uncertainty;  // by how much is not known
+      row.push_back(below ? "below " + short_number(study.reference_uncertainty)
+                          : short_number(best->position_error));
+      for (const double x : {best->step, best->cpu_median, best->constraint_max, best->energy_error})
         row.push_back(short_number(x));
+    }
     row.resize(table.columns.size());
     table.rows.push_back(std::move(row));
   }
