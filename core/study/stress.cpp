@@ -1,14 +1,15 @@
 #include "core/study/stress.hpp"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <thread>
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/books.hpp"
+#include "core/study/parallel_for.hpp"
+#include "core/study/row_columns.hpp"
 
 namespace unfurl {
 namespace {
@@ -107,53 +108,55 @@ Verdict judge(const MeasuredRun& run, double size, const StressLimits& limits) {
   return run.position_error <= limits.right * size ? Verdict::right : Verdict::inaccurate;
 }
 
-std::vector<std::string> row_of(const StressCell& c) {
-  std::vector<std::string> row{c.extreme, exact_number(c.value), c.setting, std::to_string(c.steps),
-                               std::string(to_string(c.verdict))};
-  for (const double x : {c.run.step, c.run.position_error, c.run.constraint_relative_max, c.run.energy_error,
-                         c.run.kinetic_energy_max, c.run.cpu_median})
-    row.push_back(exact_number(x));
-  row.push_back(c.run.message);
-  return row;
+template <auto member>
+constexpr RowColumn<StressCell> run_number(const char* name) {
+  return number_column < StressCell, [](auto& cell) -> auto& {
+    return cell.run;
+  }
+  , member > (name);
 }
+
+template <auto member>
+constexpr RowColumn<StressCell> cell_number(const char* name) {
+  return number_column < StressCell, [](auto& cell) -> auto& {
+    return cell;
+  }
+  , member > (name);
+}
+
+template <std::string StressCell::*member>
+constexpr RowColumn<StressCell> cell_word(const char* name) {
+  return {name, [](const StressCell& c) { return c.*member; },
+          [](StressCell& c, const std::string& cell) { c.*member = cell; }, false};
+}
+
+void read_verdict(StressCell& c, const std::string& cell) {
+  for (const Verdict v : verdicts())
+    if (to_string(v) == cell) c.verdict = v;
+}
+
+constexpr std::array stress_rows{
+    cell_word<&StressCell::extreme>("extreme"),
+    cell_number<&StressCell::value>("value"),
+    cell_word<&StressCell::setting>("setting"),
+    cell_number<&StressCell::steps>("steps"),
+    RowColumn<StressCell>{"verdict", [](const StressCell& c) { return std::string(to_string(c.verdict)); },
+                          read_verdict, false},
+    run_number<&MeasuredRun::step>("step_s"),
+    run_number<&MeasuredRun::position_error>("position_error_m"),
+    run_number<&MeasuredRun::constraint_relative_max>("constraint_relative_max"),
+    run_number<&MeasuredRun::energy_error>("energy_error_max_J"),
+    run_number<&MeasuredRun::kinetic_energy_max>("kinetic_energy_max_J"),
+    run_number<&MeasuredRun::cpu_median>("cpu_s"),
+    RowColumn<StressCell>{"message", [](const StressCell& c) { return c.run.message; },
+                          [](StressCell& c, const std::string& cell) { c.run.message = cell; }, false},
+};
+constexpr std::span<const RowColumn<StressCell>> cell_columns(stress_rows);
 
 StressCell cell_of(const std::vector<std::string>& row) {
-  StressCell c;
-  c.extreme = row[0];
-  c.value = number_of(row[1]);
-  c.setting = row[2];
-  c.steps = std::lround(number_of(row[3]));
-  for (const Verdict v : verdicts())
-    if (to_string(v) == row[4]) c.verdict = v;
-  c.run.step = number_of(row[5]);
-  c.run.position_error = number_of(row[6]);
-  c.run.constraint_relative_max = number_of(row[7]);
-  c.run.energy_error = number_of(row[8]);
-  c.run.kinetic_energy_max = number_of(row[9]);
-  c.run.cpu_median = number_of(row[10]);
-  c.run.message = row[11];
-  return c;
-}
-
-// Jobs 0 .. count-1 on so many threads; the first exception is thrown here.
-void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& job) {
-  std::atomic<std::size_t> next = 0;
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    for (std::size_t i; (i = next++) < count;) try {
-        job(i);
-      } catch (...) {
-        next = count;
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-      }
-  };
-  std::vector<std::thread> team;
-  for (int i = 1; i < threads; ++i) team.emplace_back(work);
-  work();
-  for (auto& member : team) member.join();
-  if (failure) std::rethrow_exception(failure);
+  StressCell cell;
+  read_cells(cell_columns, row, cell);
+  return cell;
 }
 
 std::vector<std::string> key_of(const Site& site, const Setting& setting, long steps) {
@@ -177,29 +180,18 @@ void fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mute
       cell.run = measure_run(site.model, setting.options, steps, *site.reference, once, hooks);
       cell.verdict = judge(cell.run, structure_size(*site.model), plan.limits);
       const std::lock_guard lock(mutex);
-      journal.append(row_of(cell));
+      journal.append(cells_of(cell_columns, cell));
     }
 }
 
 }  // namespace
 
 std::vector<std::string> stress_columns() {
-  return {"extreme",
-          "value",
-          "setting",
-          "steps",
-          "verdict",
-          "step_s",
-          "position_error_m",
-          "constraint_relative_max",
-          "energy_error_max_J",
-          "kinetic_energy_max_J",
-          "cpu_s",
-          "message"};
+  return column_names(cell_columns);
 }
 
 std::vector<std::size_t> stress_number_columns() {
-  return {1, 3, 5, 6, 7, 8, 9, 10};
+  return number_columns(cell_columns);
 }
 
 Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& hooks) {
@@ -210,7 +202,7 @@ Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& ho
   std::mutex mutex;
   std::size_t done = 0;
   try {
-    in_parallel(sites.size(), hooks.threads, [&](std::size_t i) {
+    parallel_for(sites.size(), hooks.threads, [&](std::size_t i) {
       fill(plan, sites[i], journal, mutex, hooks);
       const std::lock_guard lock(mutex);
       hooks.tell(static_cast<double>(++done) / static_cast<double>(sites.size() + 2));
@@ -232,7 +224,7 @@ Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& ho
 
 Table cells_table(const Stress& stress) {
   Table table{stress_columns(), {}};
-  for (const StressCell& cell : stress.cells) table.rows.push_back(row_of(cell));
+  for (const StressCell& cell : stress.cells) table.rows.push_back(cells_of(cell_columns, cell));
   return table;
 }
 

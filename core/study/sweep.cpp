@@ -1,15 +1,14 @@
 #include "core/study/sweep.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <numeric>
-#include <thread>
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/scene/build.hpp"
 #include "core/study/measured_run.hpp"
+#include "core/study/parallel_for.hpp"
 #include "core/study/tolerance.hpp"
 
 namespace unfurl {
@@ -78,33 +77,16 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   std::vector<std::size_t> open;
   for (const std::size_t i : own)
     if (!journal.find(plan.key(i))) open.push_back(i);
-  std::atomic<std::size_t> next = 0;
   std::size_t done = 0;
   std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      while (!hooks.stopped()) {
-        const std::size_t at = next++;
-        if (at >= open.size()) return;
-        auto row = run_point(plan, plan.key(open[at]), hooks);
-        if (!row) return;
-        const std::lock_guard lock(mutex);
-        journal.append(std::move(*row));
-        hooks.tell(static_cast<double>(++done) / static_cast<double>(open.size()));
-      }
-    } catch (...) {
-      next = open.size();
-      const std::lock_guard lock(mutex);
-      failure = std::current_exception();
-    }
-  };
-  std::vector<std::thread> team;
-  for (int i = 1; i < hooks.threads && static_cast<std::size_t>(i) < open.size(); ++i)
-    team.emplace_back(work);
-  work();
-  for (auto& member : team) member.join();
-  if (failure) std::rethrow_exception(failure);
+  parallel_for(open.size(), hooks.threads, [&](std::size_t i) {
+    if (hooks.stopped()) return;
+    auto row = run_point(plan, plan.key(open[i]), hooks);
+    if (!row) return;
+    const std::lock_guard lock(mutex);
+    journal.append(std::move(*row));
+    hooks.tell(static_cast<double>(++done) / static_cast<double>(open.size()));
+  });
   return collect(plan, own, [&](std::size_t i) { return journal.find(plan.key(i)); });
 }
 
