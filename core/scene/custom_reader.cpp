@@ -17,7 +17,17 @@ std::string entry_key(std::string_view table, std::size_t index) {
   return "structure." + std::string(table) + "[" + std::to_string(index) + "]";
 }
 
+// `nodes = "nodes.csv"`: the key that names a file is another one.
+bool names_a_file(TableReader& table, const std::string& name) {
+  const TomlTree* tree = table.member(name);
+  if (!tree || tree->kind != TomlTree::Kind::text) return false;
+  table.problem(name, "must be an array of tables, [[structure." + name + "]]; a CSV file is named by " +
+                          name + "_file = " + in_quotes(tree->text));
+  return true;
+}
+
 void read_nodes(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
+  if (names_a_file(table, "nodes")) return;
   for (const TomlTree* tree : table.tables("nodes")) {
     const std::string key = entry_key("nodes", spec.nodes.size());
     notes.locations[key] = tree->where;
@@ -30,6 +40,7 @@ void read_nodes(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
 }
 
 void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
+  if (names_a_file(table, "rods")) return;
   for (const TomlTree* tree : table.tables("rods")) {
     const std::string key = entry_key("rods", spec.rods.size());
     notes.locations[key] = tree->where;
@@ -91,7 +102,7 @@ void read_nodes_file(TableReader& table, const std::string& name, const std::str
   static const std::vector<CsvColumn> columns = {
       {"name", "", false, true}, {"x", "m", true, true}, {"y", "m", true, true},
       {"z", "m", true, true},    {"vx", "m_s", true},    {"vy", "m_s", true},
-      {"vz", "m_s", true},       {"mass", "kg", true},   {"fixed", "", true}};
+      {"vz", "m_s", true},       {"mass", "kg", true},   {"fixed", "", true, false, true}};
   for (const auto& row : file_rows(table, "nodes_file", name, folder, columns, notes)) {
     notes.locations[entry_key("nodes", spec.nodes.size())] = row.where;
     spec.nodes.push_back({text_cell(row, "name", ""),

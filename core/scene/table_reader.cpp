@@ -201,7 +201,9 @@ void TableReader::finish() {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const auto& where =
         value.key_where.line > 0 || value.key_where.file == override_source ? value.key_where : value.where;
-    notes_.add(where, key(name), "unknown key" + did_you_mean(name, known_));
+    std::string message = "unknown key" + did_you_mean(name, known_);
+    if (message.ends_with("...")) message += "; all of them: unfurl list keys";
+    notes_.add(where, key(name), std::move(message));
   }
 }
 

@@ -142,16 +142,19 @@ TEST_CASE("one wrong node does not set off messages about what refers to it") {
 
 TEST_CASE("nodes and rods come from CSV files beside the scene") {
   const Folder folder;
-  folder.write("n.csv", "name,x_m,y,z,mass_kg,fixed\nA,0,0,0,,1\n\"B, 2\",1e0,0.5,-2,3.25,0\n");
-  folder.write("r.csv", "\xEF\xBB\xBF# rods\r\na,b,mass\r\nA,\"B, 2\",1.5\r\n");
+  folder.write("n.csv",
+               "name,x_m,y,z,mass_kg,fixed\nA,0,0,0,,true\n\"B, 2\",1e0,0.5,-2,3.25,false\nC,9,9,9,1,1\n");
+  folder.write("r.csv", "\xEF\xBB\xBF# rods\r\na,b,mass\r\nA,\"B, 2\",1.5\r\n\"B, 2\",C,0.5\r\n");
   const auto path = folder.write("s.toml", head + "nodes_file = 'n.csv'\nrods_file = 'r.csv'\n");
   const Scene scene = read_scene_file(path);
-  REQUIRE(scene.custom.nodes.size() == 2);
+  REQUIRE(scene.custom.nodes.size() == 3);
   CHECK(scene.custom.nodes[0].fixed);
+  CHECK_FALSE(scene.custom.nodes[1].fixed);
+  CHECK(scene.custom.nodes[2].fixed);
   CHECK(scene.custom.nodes[1].name == "B, 2");
   CHECK(scene.custom.nodes[1].position == Vec3(1, 0.5, -2));
   CHECK(scene.custom.nodes[1].mass == 3.25);
-  REQUIRE(scene.custom.rods.size() == 1);
+  REQUIRE(scene.custom.rods.size() == 2);
   CHECK(scene.custom.rods[0].mass == 1.5);
 }
 
@@ -166,6 +169,8 @@ TEST_CASE("mistakes in CSV files carry file and line") {
   CHECK(error("name,x,y,z\nA,0,0,one\n") == dir + "n.csv:2:1: z: must be a finite number; got 'one'");
   CHECK(error("name,x,y,z\nA,0,0,nan\n") == dir + "n.csv:2:1: z: must be a finite number; got 'nan'");
   CHECK(error("name,x,y,z\n\nA,0,0\n") == dir + "n.csv:3:1: has 3 cells; the header has 4");
+  CHECK(error("name,x,y,z,fixed\nA,0,0,0,yes\n") ==
+        dir + "n.csv:2:1: fixed: must be true or false; got 'yes'");
   CHECK(error("name,x,y\nA,0,0\n") == dir + "n.csv:1:1: column 'z' is missing");
   CHECK(error("name,x,y,z,mas\nA,0,0,0,1\n") ==
         dir + "n.csv:1:1: unknown column 'mas'; did you mean 'mass'?");
@@ -176,6 +181,13 @@ TEST_CASE("mistakes in CSV files carry file and line") {
   CHECK(error("name,x,y,z,mass\nA,0,0,0,-1\n") ==
         dir + "n.csv:2:1: structure.nodes[0].mass: must be >= 0 kg");
   CHECK(error("name,x,y,z\n\xFF,0,0,0\n") == dir + "n.csv:2:1: not valid UTF-8");
+}
+
+TEST_CASE("a list that is the name of a file is told which key names files") {
+  const std::string told =
+      "s.toml:3:9: structure.nodes: must be an array of tables, [[structure.nodes]]; a CSV file is named by "
+      "nodes_file = 'n.csv'";
+  CHECK(error_of(head + "nodes = 'n.csv'").find(told) != std::string::npos);
 }
 
 TEST_CASE("files outside the scene's folder are not read") {
