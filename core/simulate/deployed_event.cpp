@@ -22,6 +22,8 @@ constexpr int points = 9;
 // at four stages.
 constexpr double short_enough = 2.3e-3;
 constexpr int most_stations = 200;
+constexpr int most_lengths =
+    40;  // of a step that is to end near a sine: starts next to the pose need short ones
 
 struct Sample {
   double sine;
@@ -114,7 +116,7 @@ class Locator {
     const double s0 = sine(from), rate0 = sine_rate(from);
     double lo = 0, f_lo = s0 - target;
     double step = std::min(1.2 * h_, rate0 < 0 ? f_lo / -rate0 : h_);
-    for (int it = 0; it < 12; ++it) {
+    for (int it = 0; it < most_lengths; ++it) {
       State to = from;
       integrator_.restart();
       if (!integrator_.step(to, step).ok()) {
