@@ -6,7 +6,7 @@
 
 using namespace unfurl;
 
-namespace time_function_test {
+namespace time_function_derivatives_test {
 
 namespace {
 
@@ -88,4 +88,4 @@ TEST_CASE("time functions: a natural spline has no bend at its ends and none tha
   CHECK(line.derivative(1, 0.05) == Approx(3));
 }
 
-}  // namespace time_function_test
+}  // namespace time_function_derivatives_test
