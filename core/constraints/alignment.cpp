@@ -12,6 +12,7 @@ using Vec9 = Eigen::Matrix<double, 9, 1>;
 
 struct Entry {
   std::string name;
+  int source;  // index in Structure::constraints
   std::vector<int> nodes;
 };
 
@@ -40,8 +41,9 @@ std::vector<int> coordinates_of(const std::vector<int>& nodes) {
 class Alignment : public ConstraintBlock {
  public:
   Alignment(const Structure& structure, std::string_view kind) : length_(reference_length(structure)) {
-    for (const Constraint& c : structure.constraints)
-      if (c.kind == kind) entries_.push_back({c.name, c.nodes});
+    for (std::size_t i = 0; i < structure.constraints.size(); ++i)
+      if (const Constraint& c = structure.constraints[i]; c.kind == kind)
+        entries_.push_back({c.name, static_cast<int>(i), c.nodes});
   }
   bool empty() const { return entries_.empty(); }
   bool linear() const override { return false; }
@@ -60,6 +62,7 @@ class Collinear final : public Alignment {
   std::string name(int row) const override {
     return entries_[static_cast<std::size_t>(row / 3)].name + " " + "xyz"[row % 3];
   }
+  int source(int row) const override { return entries_[static_cast<std::size_t>(row / 3)].source; }
   std::vector<int> stencil(int row) const override {
     return coordinates_of(entries_[static_cast<std::size_t>(row / 3)].nodes);
   }
@@ -118,6 +121,7 @@ class Coplanar final : public Alignment {
   using Alignment::Alignment;
   int rows() const override { return static_cast<int>(entries_.size()); }
   std::string name(int row) const override { return entries_[static_cast<std::size_t>(row)].name; }
+  int source(int row) const override { return entries_[static_cast<std::size_t>(row)].source; }
   std::vector<int> stencil(int row) const override {
     return coordinates_of(entries_[static_cast<std::size_t>(row)].nodes);
   }

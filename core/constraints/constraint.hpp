@@ -14,7 +14,8 @@ namespace unfurl {
 
 // A row that prescribes a motion: what a motor or an actuator does.
 struct Drive {
-  std::string name;
+  std::string name;     // for columns and messages; two may have the same
+  int constraint = 0;   // index in Structure::constraints: what tells drives apart
   int row = 0;          // of the block, of the kept constraints in System::drives
   double scale = 1.0;   // l: the row is l (s - f); effort along s = -l lambda [N] or [N m]
   bool angle = false;   // s in radians, else in metres
@@ -29,6 +30,8 @@ class ConstraintBlock {
   virtual int rows() const = 0;
   virtual bool linear() const = 0;  // G constant in q and t: may be eliminated exactly
   virtual std::string name(int row) const = 0;
+  // Index in Structure::constraints of what asked for the row; -1: a rod.
+  virtual int source(int row) const = 0;
   virtual double length(int row) const = 0;  // the length to which this row's error is relative [m]
   // Coordinates that row depends on, in the order used by jacobian and curvature.
   virtual std::vector<int> stencil(int row) const = 0;

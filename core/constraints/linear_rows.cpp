@@ -10,6 +10,7 @@ namespace {
 
 struct Row {
   std::string name;
+  int source;  // index in Structure::constraints
   std::vector<int> coordinates;
   std::vector<double> coefficients;
   double value;
@@ -22,6 +23,7 @@ class LinearRows final : public ConstraintBlock {
   int rows() const override { return static_cast<int>(rows_.size()); }
   bool linear() const override { return true; }
   std::string name(int row) const override { return rows_[static_cast<std::size_t>(row)].name; }
+  int source(int row) const override { return rows_[static_cast<std::size_t>(row)].source; }
   double length(int row) const override { return rows_[static_cast<std::size_t>(row)].length; }
   std::vector<int> stencil(int row) const override {
     return rows_[static_cast<std::size_t>(row)].coordinates;
@@ -99,8 +101,12 @@ std::unique_ptr<ConstraintBlock> block_of(const Structure& structure, std::strin
                                           MakeRows make_rows) {
   std::vector<Row> rows;
   const double length = reference_length(structure);
-  for (const Constraint& c : structure.constraints)
-    if (c.kind == kind) make_rows(c, length, rows);
+  for (std::size_t i = 0; i < structure.constraints.size(); ++i) {
+    if (structure.constraints[i].kind != kind) continue;
+    const std::size_t before = rows.size();
+    make_rows(structure.constraints[i], length, rows);
+    for (std::size_t r = before; r < rows.size(); ++r) rows[r].source = static_cast<int>(i);
+  }
   if (rows.empty()) return nullptr;
   return std::make_unique<LinearRows>(std::move(rows));
 }
@@ -109,6 +115,7 @@ std::unique_ptr<ConstraintBlock> block_of(const Structure& structure, std::strin
 Row held(const Structure& structure, const Constraint& c, const Vec3& direction, double length,
          const char* suffix) {
   Row row{c.name + suffix,
+          -1,
           {},
           {},
           direction.dot(structure.nodes[static_cast<std::size_t>(c.nodes[0])].position),
@@ -127,7 +134,7 @@ double reference_length(const Structure& structure) {
 
 std::unique_ptr<ConstraintBlock> plane_block(const Structure& structure) {
   return block_of(structure, "plane", [](const Constraint& c, double length, std::vector<Row>& rows) {
-    Row row{c.name, {}, {}, c.value, length};
+    Row row{c.name, -1, {}, {}, c.value, length};
     append(row, c.nodes[0], c.vectors[0]);
     rows.push_back(std::move(row));
   });
@@ -154,8 +161,11 @@ std::unique_ptr<ConstraintBlock> fixed_block(const Structure& structure) {
 
 std::unique_ptr<ConstraintBlock> relation_block(const Structure& structure) {
   return block_of(structure, "relation", [](const Constraint& c, double length, std::vector<Row>& rows) {
-    Row row{c.name, {}, {}, c.value, length};
-    for (std::size_t i = 0; i < c.nodes.size(); ++i) append(row, c.nodes[i], c.vectors[i]);
+    double longest = 0;
+    for (const Vec3& vector : c.vectors) longest = std::max(longest, vector.stableNorm());
+    const double scale = longest > 0 ? longest : 1.0;
+    Row row{c.name, -1, {}, {}, c.value / scale, length};
+    for (std::size_t i = 0; i < c.nodes.size(); ++i) append(row, c.nodes[i], c.vectors[i] / scale);
     rows.push_back(std::move(row));
   });
 }
@@ -179,7 +189,8 @@ std::unique_ptr<ConstraintBlock> linear_rows_of(std::span<const ConstraintBlock*
       const auto& stencil = stencils[static_cast<std::size_t>(r)];
       const auto to = from + static_cast<std::ptrdiff_t>(stencil.size());
       if (next < picked.size() && picked[next] == first + r) {
-        rows.push_back({block->name(r), stencil, {from, to}, -at_zero[r], block->length(r)});
+        rows.push_back(
+            {block->name(r), block->source(r), stencil, {from, to}, -at_zero[r], block->length(r)});
         ++next;
       }
       from = to;

@@ -10,6 +10,7 @@ namespace {
 
 struct Measured {
   std::string name;
+  int source;  // index in Structure::constraints
   MeasureFunction measure;
   TimeFunction target;
   double scale;   // l
@@ -23,6 +24,7 @@ class MeasureRows final : public ConstraintBlock {
   bool linear() const override { return false; }
   bool rheonomic() const override { return true; }
   std::string name(int row) const override { return at(row).name; }
+  int source(int row) const override { return at(row).source; }
   double length(int row) const override { return at(row).length; }
   std::vector<int> stencil(int row) const override { return at(row).measure.stencil(); }
 
@@ -32,8 +34,8 @@ class MeasureRows final : public ConstraintBlock {
   void list_drives(std::vector<Drive>& drives) const override {
     for (std::size_t r = 0; r < rows_.size(); ++r)
       if (rows_[r].target.moves())
-        drives.push_back({rows_[r].name, static_cast<int>(r), rows_[r].scale, rows_[r].measure.is_angle(),
-                          rows_[r].target});
+        drives.push_back({rows_[r].name, rows_[r].source, static_cast<int>(r), rows_[r].scale,
+                          rows_[r].measure.is_angle(), rows_[r].target});
   }
   void add_target(int order, double t, double scale, double* out) const override {
     for (const Measured& row : rows_) {
@@ -61,15 +63,7 @@ class MeasureRows final : public ConstraintBlock {
     }
   }
   void bias(const double* q, const double* v, double* phi_dd) const override {
-    for (const Measured& row : rows_) {
-      const auto& stencil = row.measure.stencil();
-      const auto size = static_cast<Index>(stencil.size());
-      MatrixXd hess(size, size);
-      VectorXd rates(size);
-      row.measure.hessian(q, hess.data());
-      for (Index i = 0; i < size; ++i) rates[i] = v[stencil[static_cast<std::size_t>(i)]];
-      *phi_dd++ = row.scale * rates.dot(hess * rates);
-    }
+    for (const Measured& row : rows_) *phi_dd++ = row.scale * row.measure.curvature_along(q, v);
   }
   void curvature(const double* q, const double* lambda, double* hess) const override {
     for (const Measured& row : rows_) {
@@ -91,11 +85,12 @@ class MeasureRows final : public ConstraintBlock {
 std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure) {
   std::vector<Measured> rows;
   const double length = reference_length(structure);
-  for (const Constraint& c : structure.constraints) {
+  for (std::size_t i = 0; i < structure.constraints.size(); ++i) {
+    const Constraint& c = structure.constraints[i];
     if (c.kind != "measure") continue;
     MeasureFunction measure(c.measure, structure.deployment);
     const double scale = measure.is_angle() ? length : 1.0;
-    rows.push_back({c.name, std::move(measure), c.target, scale, length});
+    rows.push_back({c.name, static_cast<int>(i), std::move(measure), c.target, scale, length});
   }
   if (rows.empty()) return nullptr;
   return std::make_unique<MeasureRows>(std::move(rows));

@@ -18,6 +18,7 @@ class RodLength final : public ConstraintBlock {
   int rows() const override { return static_cast<int>(a_.size()); }
   bool linear() const override { return false; }
   std::string name(int row) const override { return name_[static_cast<std::size_t>(row)]; }
+  int source(int) const override { return -1; }
   double length(int row) const override { return length_[static_cast<std::size_t>(row)]; }
   std::vector<int> stencil(int row) const override {
     const int a = a_[static_cast<std::size_t>(row)], b = b_[static_cast<std::size_t>(row)];

@@ -2,6 +2,7 @@
 // those).
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ struct Measure {
   MeasureKind kind = MeasureKind::length;
   std::vector<int> nodes;  // coordinate: 1 or 2; length: 2; angle: 4; fold: none
   Vec3 axis = Vec3::Zero();
-  double reference = 0.0;  // angles with a sign: the branch within pi of it [rad]
+  double reference =
+      0.0;  // angles with a sign: at t = 0 they are counted on the branch within pi of it [rad]
 };
 
 // One constraint of a kind in the constraint table (constraints/constraint.hpp says how each kind reads the
@@ -49,6 +51,16 @@ struct Constraint {
   double value = 0.0;         // offset or length [m]
   Measure measure = {};       // "measure": what is held or driven
   TimeFunction target = {};   // "measure": its value over time, in the measure's unit
+};
+
+// An end stop: limits that a measure may touch but not pass (simulate/stops.hpp).
+struct Stop {
+  std::string name;  // for messages and events
+  Measure measure;
+  // In the measure's unit [m] or [rad]; infinite where there is no limit.
+  double min = -std::numeric_limits<double>::infinity(), max = std::numeric_limits<double>::infinity();
+  double restitution = 0.0;  // rebound speed over approach speed
+  double rest_speed = 0.0;   // rebounds slower than this rest on the stop [m/s] or [rad/s]
 };
 
 // One force of a kind in the force table (forces/force.hpp).
@@ -143,6 +155,7 @@ struct Structure {
   std::vector<Node> nodes;
   std::vector<Rod> rods;
   std::vector<Constraint> constraints;
+  std::vector<Stop> stops;
   std::vector<Load> loads;
   std::vector<Force> forces;
   Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]

@@ -11,11 +11,23 @@ namespace unfurl {
 
 namespace {
 
+constexpr const char* mass_twice = "give mass, or density and area, not both";
+
 std::string entry_key(std::string_view table, std::size_t index) {
   return "structure." + std::string(table) + "[" + std::to_string(index) + "]";
 }
 
+// `nodes = "nodes.csv"`: the key that names a file is another one.
+bool names_a_file(TableReader& table, const std::string& name) {
+  const TomlTree* tree = table.member(name);
+  if (!tree || tree->kind != TomlTree::Kind::text) return false;
+  table.problem(name, "must be an array of tables, [[structure." + name + "]]; a CSV file is named by " +
+                          name + "_file = " + in_quotes(tree->text));
+  return true;
+}
+
 void read_nodes(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
+  if (names_a_file(table, "nodes")) return;
   for (const TomlTree* tree : table.tables("nodes")) {
     const std::string key = entry_key("nodes", spec.nodes.size());
     notes.locations[key] = tree->where;
@@ -28,6 +40,7 @@ void read_nodes(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
 }
 
 void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
+  if (names_a_file(table, "rods")) return;
   for (const TomlTree* tree : table.tables("rods")) {
     const std::string key = entry_key("rods", spec.rods.size());
     notes.locations[key] = tree->where;
@@ -37,45 +50,27 @@ void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
                   values.real("density"), values.real("area"),  values.text("group")};
     entry.finish();
     if (!entry.has("mass")) rod.mass = -1.0;
+    if (entry.has("mass") && entry.has("density")) entry.problem("density", mass_twice);
     if (entry.has("length")) rod.length = values.real("length");
     spec.rods.push_back(std::move(rod));
   }
 }
 
-bool is_custom_kind(const TomlTree& tree) {
-  const TomlTree* kind = tree.find("kind");
-  for (const auto& row : custom_constraint_kinds())
-    if (kind && kind->kind == TomlTree::Kind::text && kind->text == row.kind) return true;
-  return false;
+// "length" of a row, which must be a length where it is given; 0: it is not.
+double length_cell(const CsvRow& row, const std::string& key, SceneNotes& notes) {
+  const auto it = row.numbers.find("length");
+  if (it == row.numbers.end()) return 0.0;
+  if (!(it->second > 0))
+    notes.add(row.where, key + ".length", "must be > 0 m; leave it out for the distance of its nodes");
+  return it->second;
 }
 
-void read_constraints(TableReader& table, const std::string& folder, CustomSpec& spec, SceneNotes& notes,
-                      std::vector<SceneElement>& general) {
-  std::size_t count = 0;
+void read_constraints(TableReader& table, const std::string& folder, SceneNotes& notes,
+                      std::vector<SceneElement>& constraints) {
   for (const TomlTree* tree : table.tables("constraints")) {
-    if (!is_custom_kind(*tree)) {
-      SceneNotes own;  // its places must not be taken for those of an entry of spec.constraints
-      const std::string key = entry_key("constraints", count++);
-      TableReader entry(tree, key, tree->where, own);
-      general.push_back(read_element(entry, key, scene_constraints(), folder, own));
-      notes.problems.insert(notes.problems.end(), own.problems.begin(), own.problems.end());
-      continue;
-    }
-    ++count;
-    const std::string key = entry_key("constraints", spec.constraints.size());
-    notes.locations[key] = tree->where;
+    const std::string key = entry_key("constraints", constraints.size());
     TableReader entry(tree, key, tree->where, notes);
-    CustomConstraint constraint;
-    constraint.kind = entry.read({text_param("kind", "", "")}).text("kind");
-    constraint.nodes = entry.names("nodes");
-    for (const auto& row : custom_constraint_kinds()) {
-      if (row.kind != constraint.kind || row.direction.empty()) continue;
-      ParamSpec direction = vector_param(row.direction, "", {0, 0, 0}, "");
-      direction.required = true;
-      constraint.normal = vec3(entry.read({direction}), row.direction);
-    }
-    entry.finish();
-    spec.constraints.push_back(std::move(constraint));
+    constraints.push_back(read_element(entry, key, scene_constraints(), folder, notes));
   }
 }
 
@@ -107,7 +102,7 @@ void read_nodes_file(TableReader& table, const std::string& name, const std::str
   static const std::vector<CsvColumn> columns = {
       {"name", "", false, true}, {"x", "m", true, true}, {"y", "m", true, true},
       {"z", "m", true, true},    {"vx", "m_s", true},    {"vy", "m_s", true},
-      {"vz", "m_s", true},       {"mass", "kg", true},   {"fixed", "", true}};
+      {"vz", "m_s", true},       {"mass", "kg", true},   {"fixed", "", true, false, true}};
   for (const auto& row : file_rows(table, "nodes_file", name, folder, columns, notes)) {
     notes.locations[entry_key("nodes", spec.nodes.size())] = row.where;
     spec.nodes.push_back({text_cell(row, "name", ""),
@@ -124,14 +119,17 @@ void read_rods_file(TableReader& table, const std::string& name, const std::stri
       {"a", "", false, true},     {"b", "", false, true}, {"name", ""},  {"mass", "kg", true},
       {"density", "kg_m3", true}, {"area", "m2", true},   {"group", ""}, {"length", "m", true}};
   for (const auto& row : file_rows(table, "rods_file", name, folder, columns, notes)) {
-    notes.locations[entry_key("rods", spec.rods.size())] = row.where;
+    const std::string key = entry_key("rods", spec.rods.size());
+    notes.locations[key] = row.where;
+    if (row.numbers.contains("mass") && row.numbers.contains("density"))
+      notes.add(row.where, key + ".density", mass_twice);
     spec.rods.push_back({text_cell(row, "name", ""),
                          {text_cell(row, "a", ""), text_cell(row, "b", "")},
                          cell(row, "mass", -1.0),
                          cell(row, "density", 0.0),
                          cell(row, "area", 0.0),
                          text_cell(row, "group", "rod"),
-                         cell(row, "length", 0.0)});
+                         length_cell(row, key, notes)});
   }
 }
 
@@ -196,14 +194,16 @@ const std::vector<ParamSpec>& custom_rod_params() {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     ParamSpec name = text_param("name", "", "\"A-B\" from its nodes by default");
     ParamSpec group = text_param("group", "rod", "what colours and groups of rod forces go by");
+    ParamSpec length = positive_param(
+        "length", "m", 0.0,
+        "the distance of its nodes by default; where it differs by up to 1 %, nodes are moved");
     return std::vector<ParamSpec>{
         name,
         real_param("mass", "kg", 0.0, 0.0, infinity, "0: a pure distance constraint"),
         real_param("density", "kg/m^3", 0.0, 0.0, infinity, "in place of mass, with area"),
         real_param("area", "m^2", 0.0, 0.0, infinity, "cross section"),
         group,
-        real_param("length", "m", 0.0, 0.0, infinity,
-                   "the distance of its nodes by default; where it differs by up to 1 %, nodes are moved")};
+        length};
   }();
   return params;
 }
@@ -218,7 +218,7 @@ CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes
   read_nodes_file(table, values.text("nodes_file"), folder, spec, notes);
   read_rods(table, spec, notes);
   read_rods_file(table, values.text("rods_file"), folder, spec, notes);
-  read_constraints(table, folder, spec, notes, constraints);
+  read_constraints(table, folder, notes, constraints);
   note_problems(spec, before, table, notes);
   return spec;
 }

@@ -178,13 +178,32 @@ std::vector<const TomlTree*> TableReader::tables(std::string_view name) {
   return found;
 }
 
+void TableReader::warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values) {
+  for (const ParamSpec& spec : specs) {
+    if (!has(spec.name) || means_something(spec, values)) continue;
+    const std::string other(spec.only_with);
+    std::string text = "does nothing with " + other + " = ";
+    text += std::holds_alternative<bool>(values.value(other)) ? "false" : in_quotes(values.text(other));
+    notes_.warnings.push_back({table_->find(spec.name)->where, key(spec.name), text});
+  }
+}
+
+std::map<std::string, SourceLocation, std::less<>> TableReader::places() const {
+  std::map<std::string, SourceLocation, std::less<>> places;
+  if (table_)
+    for (const auto& [name, value] : table_->entries) places[name] = value.where;
+  return places;
+}
+
 void TableReader::finish() {
   if (!table_) return;
   for (const auto& [name, value] : table_->entries) {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const auto& where =
         value.key_where.line > 0 || value.key_where.file == override_source ? value.key_where : value.where;
-    notes_.add(where, key(name), "unknown key" + did_you_mean(name, known_));
+    std::string message = "unknown key" + did_you_mean(name, known_);
+    if (message.ends_with("...")) message += "; all of them: unfurl list keys";
+    notes_.add(where, key(name), std::move(message));
   }
 }
 

@@ -63,15 +63,6 @@ std::string rod_text(const CustomRod& rod) {
   return text;
 }
 
-std::string constraint_text(const CustomConstraint& constraint) {
-  std::string text = "\n[[structure.constraints]]\n" + line("kind", toml_string(constraint.kind));
-  text += line("nodes", names_text(constraint.nodes));
-  for (const auto& row : custom_constraint_kinds())
-    if (row.kind == constraint.kind && !row.direction.empty())
-      text += line(row.direction, vec_text(constraint.normal));
-  return text;
-}
-
 bool worth_writing(const ParamValue& value) {
   if (const auto* x = std::get_if<double>(&value)) return !std::isnan(*x);
   if (const auto* text = std::get_if<std::string>(&value)) return !text->empty();
@@ -89,7 +80,7 @@ std::string element_text(std::string_view table, const SceneElement& element, co
   if (element.fold_angle) text += line("fold_angle", "true");
   for (const auto& spec : kind.params()) {
     const ParamValue& value = element.values.value(spec.name);
-    if (!worth_writing(value)) continue;
+    if (!worth_writing(value) || !means_something(spec, element.values)) continue;
     text += line(spec.name, toml_value(value));
     if (!spec.unit.empty()) text.insert(text.size() - 1, "  # " + std::string(spec.unit));
   }
@@ -103,7 +94,6 @@ std::string structure_text(const Scene& scene) {
   text += line("mass", toml_string(scene.custom.lumped_mass ? "lumped" : "consistent"));
   for (const auto& node : scene.custom.nodes) text += node_text(node);
   for (const auto& rod : scene.custom.rods) text += rod_text(rod);
-  for (const auto& constraint : scene.custom.constraints) text += constraint_text(constraint);
   return text;
 }
 
@@ -154,7 +144,9 @@ std::string toml_value(const ParamValue& value) {
 }
 
 std::string scene_text(const Scene& scene) {
-  std::string text = line("title", toml_string(scene.title)) + structure_text(scene);
+  std::string text =
+      line("title", toml_string(scene.title_pattern.empty() ? scene.title : scene.title_pattern)) +
+      structure_text(scene);
   text += "\n[gravity]\n" + line("acceleration", vec_text(scene.gravity));
   for (const auto& load : scene.loads)
     text += "\n[[loads]]\n" + (load.enabled ? "" : line("enabled", "false")) +

@@ -1,15 +1,36 @@
 #include "core/simulate/latch.hpp"
 
+#include <cmath>
+
 #include "core/integrators/index1.hpp"
 #include "core/simulate/initial_state.hpp"
 
 namespace unfurl {
+namespace {
+
+// Deployment::remaining_sine as a form of its own: cos(d) sine - sin(d) cosine with d the deployed fold
+// angle.
+LinearForm remaining(const Deployment& deployment) {
+  LinearForm form;
+  const auto add = [&form](double factor, const LinearForm& part) {
+    for (std::size_t i = 0; i < part.nodes.size(); ++i) {
+      form.nodes.push_back(part.nodes[i]);
+      form.coefficients.push_back(factor * part.coefficients[i]);
+    }
+    form.offset += factor * part.offset;
+  };
+  add(std::cos(deployment.deployed_fold_angle), deployment.fold_sine);
+  if (const double s = std::sin(deployment.deployed_fold_angle); s != 0) add(-s, deployment.fold_cosine);
+  return form;
+}
+
+}  // namespace
 
 std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear) {
   Structure structure = model.structure;
   const Deployment& deployment = structure.deployment;
   std::vector<LinearForm> latches = deployment.latches;
-  if (latches.empty()) latches.push_back(deployment.fold_sine);
+  if (latches.empty()) latches.push_back(remaining(deployment));
   for (const LinearForm& form : latches) {
     const std::string name =
         deployment.latches.empty()
@@ -32,7 +53,9 @@ Handover hand_over(const Model& from, const State& state, const Model& to) {
   s.w = fitted_rates(to.system, s.t, q, v);
   s.lambda.setZero(to.system.constraints());
   VectorXd acceleration(s.z.size());
-  Index1 index1(to.system);
+  s.angles = state.angles;
+  const System followed = to.system.at(s);
+  Index1 index1(followed);
   if (!index1.evaluate(s.t, s.z, s.w, acceleration, s.lambda)) s.lambda.setZero();
   out.energy_lost = from.system.kinetic_energy(state.w) - to.system.kinetic_energy(s.w);
   return out;

@@ -7,7 +7,8 @@
 
 namespace unfurl {
 
-// The model with the latches of its deployment (structure.hpp) held at zero.
+// The model with the latches of its deployment held at zero (structure.hpp); where it names none, the sine of
+// what is left to its deployed fold angle.
 std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear);
 
 // A state after the constraints have become those of another model of the same nodes: node positions stay,

@@ -10,40 +10,48 @@
 namespace unfurl {
 namespace {
 
-std::string held_name(const Stop& stop) {
+std::string held_name(const StopSide& stop) {
   return stop.name + (stop.sign > 0 ? " (held at its lower limit)" : " (held at its upper limit)");
 }
 
 }  // namespace
 
 Stops::Stops(const Structure& structure) : touching_(1e-11 * reference_length(structure)) {
-  for (const Constraint& c : structure.constraints) {
-    if (c.kind != "stop") continue;
-    for (const int side : {0, 1})
-      if (std::isfinite(c.vectors[0][side]))
-        stops_.push_back({c.name, c.measure, MeasureFunction(c.measure, structure.deployment),
-                          c.vectors[0][side], side == 0 ? 1.0 : -1.0, c.vectors[1][0], c.vectors[1][1]});
+  const std::vector<int> followed = followed_angles(structure).of_stop;
+  for (std::size_t i = 0; i < structure.stops.size(); ++i) {
+    const Stop& stop = structure.stops[i];
+    for (const double sign : {1.0, -1.0})
+      if (const double limit = sign > 0 ? stop.min : stop.max; std::isfinite(limit))
+        stops_.push_back({stop.name, stop.measure, MeasureFunction(stop.measure, structure.deployment), limit,
+                          sign, stop.restitution, stop.rest_speed, followed[i]});
   }
 }
 
 double Stops::gap(std::size_t i, const System& system, const State& state) const {
   VectorXd q(system.coordinates());
   system.expand(state.z, q);
-  return stops_[i].sign * (stops_[i].function.value(q.data()) - stops_[i].limit);
+  return stops_[i].sign * (stops_[i].function.value(q.data(), stops_[i].near(state)) - stops_[i].limit);
+}
+
+double Stops::gap(std::size_t i, const VectorXd& q, const VectorXd& v, double& rate) const {
+  const MeasureFunction& s = stops_[i].function;
+  VectorXd gradient(static_cast<Index>(s.stencil().size()));
+  const double value = s.value_and_gradient(q.data(), gradient.data());
+  rate = stops_[i].sign * s.rate(gradient.data(), v.data());
+  return stops_[i].sign * (value - stops_[i].limit);
 }
 
 double Stops::gap_rate(std::size_t i, const System& system, const State& state) const {
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
-  const MeasureFunction& s = stops_[i].function;
-  VectorXd gradient(static_cast<Index>(s.stencil().size()));
-  s.value_and_gradient(q.data(), gradient.data());
-  return stops_[i].sign * s.rate(gradient.data(), v.data());
+  double rate = 0;
+  gap(i, q, v, rate);
+  return rate;
 }
 
 double Stops::rebound(std::size_t i, const System& system, State& state) const {
-  const Stop& stop = stops_[i];
+  const StopSide& stop = stops_[i];
   VectorXd q(system.coordinates()), n = VectorXd::Zero(q.size()), n_z(state.z.size());
   system.expand(state.z, q);
   const auto& stencil = stop.function.stencil();
@@ -56,7 +64,7 @@ double Stops::rebound(std::size_t i, const System& system, State& state) const {
   std::vector<double> scratch;
   system.jacobian(q, G, scratch);
   SaddleSolver saddle(system.mass(), G);
-  saddle.factorise(G);
+  if (!saddle.factorise(G)) return std::numeric_limits<double>::quiet_NaN();
   VectorXd response(n_z.size()), mu(system.constraints());
   saddle.solve(n_z, VectorXd::Zero(mu.size()), response, mu);
   const double a = n_z.dot(response), free = n_z.cwiseAbs2().maxCoeff() / system.mass().diagonal().maxCoeff();
@@ -66,22 +74,19 @@ double Stops::rebound(std::size_t i, const System& system, State& state) const {
   return (1 - stop.restitution * stop.restitution) * approach * approach / (2 * a);
 }
 
-std::shared_ptr<const Model> Stops::held_model(const Model& base, const std::set<std::size_t>& held,
-                                               bool eliminate_linear) const {
-  Structure structure = base.structure;
+void Stops::hold(const std::set<std::size_t>& held, Structure& structure) const {
   for (const std::size_t i : held) {
     TimeFunction limit;
     limit.offset = stops_[i].limit;
     structure.constraints.push_back({"measure", held_name(stops_[i]), {}, {}, 0.0, stops_[i].measure, limit});
   }
-  System system(structure, eliminate_linear);
-  return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
 }
 
-double Stops::push(std::size_t i, const System& system, const State& state) const {
-  const auto& names = system.constraint_names();
-  const auto row = std::find(names.begin(), names.end(), held_name(stops_[i])) - names.begin();
-  return row < state.lambda.size() ? -stops_[i].sign * state.lambda[row] : 0.0;
+double Stops::push(std::size_t i, const Model& model, const std::set<std::size_t>& held,
+                   const State& state) const {
+  const auto behind = std::distance(held.find(i), held.end());
+  const int constraint = static_cast<int>(std::ssize(model.structure.constraints) - behind);
+  return -stops_[i].sign * state.lambda[model.system.constraint_row(constraint)];
 }
 
 }  // namespace unfurl

@@ -19,25 +19,31 @@ namespace unfurl {
 //
 // with a the gap's rate under a unit impulse. Below rest_speed the stop is held as a constraint instead,
 // until its force would have to pull.
-struct Stop {
+struct StopSide {
   std::string name;
   Measure measure;
   MeasureFunction function;
   double limit, sign;
   double restitution, rest_speed;
+  int followed;  // index in State::angles; -1: it counts no turns
+
+  double near(const State& state) const {
+    return followed >= 0 && followed < state.angles.size() ? state.angles[followed] : function.reference();
+  }
 };
 
 class Stops {
  public:
-  // Reads the structure's constraints of kind "stop": measure, vectors[0] = (min, max, 0), vectors[1] =
-  // (restitution, rest speed, 0); infinite where there is no limit.
+  // One for each finite limit of the structure's stops.
   explicit Stops(const Structure& structure);
 
   bool empty() const { return stops_.empty(); }
   std::size_t size() const { return stops_.size(); }
-  const Stop& operator[](std::size_t i) const { return stops_[i]; }
+  const StopSide& operator[](std::size_t i) const { return stops_[i]; }
 
   double gap(std::size_t i, const System& system, const State& state) const;
+  // The same, of node coordinates and velocities, with its rate.
+  double gap(std::size_t i, const VectorXd& q, const VectorXd& v, double& rate) const;
   double gap_rate(std::size_t i, const System& system, const State& state) const;
   // Gaps within this count as touching [m] or [rad].
   double touching() const { return touching_; }
@@ -45,14 +51,14 @@ class Stops {
   // Turn the approach of stop i round; the energy lost [J]. NaN: the stop cannot be moved by any impulse.
   double rebound(std::size_t i, const System& system, State& state) const;
 
-  // `base` with these stops held.
-  std::shared_ptr<const Model> held_model(const Model& base, const std::set<std::size_t>& held,
-                                          bool eliminate_linear) const;
-  // The force with which held stop i pushes, negative where it pulls [N] or [N m].
-  double push(std::size_t i, const System& system, const State& state) const;
+  // These stops become constraints, the last ones of the structure, in their order.
+  void hold(const std::set<std::size_t>& held, Structure& structure) const;
+  // The force with which stop i pushes in a state of a model that holds them so, negative where it pulls [N]
+  // or [N m].
+  double push(std::size_t i, const Model& model, const std::set<std::size_t>& held, const State& state) const;
 
  private:
-  std::vector<Stop> stops_;
+  std::vector<StopSide> stops_;
   double touching_;
 };
 

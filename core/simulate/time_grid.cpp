@@ -1,0 +1,52 @@
+#include "core/simulate/time_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace unfurl {
+namespace {
+
+// Times closer than this share of a step are one: what a bend does within it is below round-off, and a step
+// of that size would only make noise.
+constexpr double together = 1e-9;
+
+}  // namespace
+
+TimeGrid::TimeGrid(double start, const SolverOptions& options, std::vector<TimeEdge> edges)
+    : start_(start),
+      step_(options.step),
+      end_(options.end_time),
+      count_(std::max(1L, static_cast<long>(std::ceil((end_ - start_) / step_ - together)))),
+      edges_(std::move(edges)) {}
+
+TimeGrid::Target TimeGrid::next(double now) const {
+  const long k = static_cast<long>(std::floor((now - start_) / step_ + together)) + 1;
+  const double t = k >= count_ ? end_ : start_ + static_cast<double>(k) * step_;
+  const double h = t - now, rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
+  return cut(now, {t, std::abs(h - step_) <= rounding ? step_ : h});
+}
+
+TimeGrid::Target TimeGrid::next(double now, double wanted) const {
+  const bool last = now + 1.001 * wanted >= end_;
+  return cut(now, last ? Target{end_, end_ - now} : Target{now + wanted, wanted});
+}
+
+TimeGrid::Target TimeGrid::cut(double now, Target target) const {
+  const double near = together * step_;
+  auto edge = std::upper_bound(edges_.begin(), edges_.end(), now,
+                               [](double t, const TimeEdge& e) { return t < e.t; });
+  for (; edge != edges_.end() && edge->t < target.t + near; ++edge) {
+    if (edge->t >= end_ - near) break;
+    if (edge->jump) {
+      const double before = before_jump(edge->t);
+      if (edge->t <= now + near) return {now, 0.0, true, true, edge->t};
+      return {before, before - now, true, true, edge->t};
+    }
+    if (edge->t > now + near && edge->t < target.t - near) return {edge->t, edge->t - now, true};
+    target.edge = target.edge || edge->t > now + near;
+  }
+  return target;
+}
+
+}  // namespace unfurl

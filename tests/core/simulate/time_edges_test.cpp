@@ -1,0 +1,183 @@
+// Time has edges: no step of any method straddles a bend or a jump of what a scene prescribes over time.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/integrators/integrator.hpp"
+#include "core/model/time_edges.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace time_edges_test {
+
+namespace {
+
+using testing::run_scene;
+
+// A free mass of 1.5 kg at 0.3 m/s along x; what pushes it is added.
+const std::string mass = R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "A"
+position = [0.2, 0, 0]
+velocity = [0.3, 0, 0]
+mass = 1.5
+[solver]
+stages = 4
+step = 0.01
+end_time = 2
+)";
+
+std::vector<std::string> with_method(std::string_view method, bool adaptive) {
+  return {"solver.method=" + std::string(method),
+          std::string("solver.adaptive=") + (adaptive ? "true" : "false")};
+}
+
+double last_x(const Simulation& run) {
+  return run.trajectory.node_positions(run.trajectory.size() - 1)[0];
+}
+
+}  // namespace
+
+TEST_CASE("a blow much shorter than a step does its work with every method") {
+  // 2000 N over 1 ms with ramps of 0.1 ms: 2.2 N s about t = 0.5037 s, far from every multiple of a step.
+  const std::string blow = mass + R"(
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [2000, 0, 0]
+times = [0.5031, 0.5032, 0.5042, 0.5043]
+values = [0, 1, 1, 0]
+)";
+  for (const Method& method : methods())
+    for (const bool adaptive : {false, true}) {
+      const Simulation run = run_scene(blow, with_method(method.name, adaptive));
+      INFO(method.name << (adaptive ? " adaptive" : "") << ": " << run.message);
+      REQUIRE(run.status == RunStatus::completed);
+      // The trapezium is symmetric about its middle: as if all of it came there. generalized_alpha averages
+      // the force over a step; its ramps of 0.1 ms cost it h^2 of them.
+      const double impulse = 2000 * 0.0011, x = 0.2 + 0.3 * 2 + impulse / 1.5 * (2 - 0.5037);
+      CHECK(last_x(run) == Approx(x).epsilon(method.name == "generalized_alpha" ? 2e-4 : 1e-11));
+    }
+}
+
+TEST_CASE("the paper's order holds over the bends of a load") {
+  // F = 7.3 N (t - 0.31) up to 0.77 s, held after: x = x0 + v0 t + F' (t - a)^3 / 6m - F' (t - b)^3 / 6m.
+  const std::string ramp = mass + R"(
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [7.3, 0, 0]
+times = [0.3137, 0.7771]
+values = [0, 0.4634]
+)";
+  const auto cube = [](double t) { return t * t * t; };
+  const double x = 0.2 + 0.3 * 2 + 7.3 / 9 * (cube(2 - 0.3137) - cube(2 - 0.7771));
+  for (const char* method : {"dvm", "rk4", "rk4_projected", "rk4_baumgarte"})
+    for (const bool adaptive : {false, true}) {
+      auto changes = with_method(method, adaptive);
+      changes.push_back("solver.step=0.2");
+      // Cubics between the bends: exact for all of these.
+      CHECK(last_x(run_scene(ramp, changes)) == Approx(x).epsilon(1e-13));
+    }
+}
+
+TEST_CASE("a drive that starts at once takes its load along, and the energy is the drive's work") {
+  // Two free masses on a line, A driven by 2.5 m/s relative to the ground from 0.4137 s on, B coupled to A by
+  // a spring of 40 N/m: B = x_B0 + v (t - sin(omega t) / omega) after the start, A imposed.
+  const std::string drive = R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "A"
+position = [0, 0, 0]
+mass = 1.5
+[[structure.nodes]]
+name = "B"
+position = [0.8, 0, 0]
+mass = 0.7
+[[constraints]]
+kind = "coordinate"
+name = "motor"
+nodes = ["A"]
+direction = [1, 0, 0]
+motion = "rate"
+rate = 2.5
+start = 0.4137
+[[forces]]
+kind = "spring"
+nodes = ["A", "B"]
+stiffness = 40
+[solver]
+stages = 4
+step = 0.01
+end_time = 1
+)";
+  const double omega = std::sqrt(40 / 0.7), t = 1 - 0.4137;
+  for (const Method& method : methods())
+    for (const bool adaptive : {false, true}) {
+      const Simulation run = run_scene(drive, with_method(method.name, adaptive));
+      INFO(method.name << (adaptive ? " adaptive" : "") << ": " << run.message);
+      REQUIRE(run.status == RunStatus::completed);
+      const VectorXd q = run.trajectory.node_positions(run.trajectory.size() - 1);
+      // Errors at omega h = 0.076: order 2 leaves (omega h)^2 / 12 of a swing of 0.33 m, order 4 its square.
+      const double tolerance = method.name == "dvm"                 ? 1e-11
+                               : method.name == "generalized_alpha" ? 5e-3
+                                                                    : 1e-6;
+      CHECK(q[0] == Approx(2.5 * t).margin(std::max(1e-9, method.name == "rk4_baumgarte" ? 1e-7 : 0.0)));
+      CHECK(q[3] == Approx(0.8 + 2.5 * (t - std::sin(omega * t) / omega)).margin(tolerance));
+      const Diagnostics d = diagnose(run);
+      // The impulse alone is 1.5 kg (2.5 m/s)^2 / 2 = 4.7 J; smeared over a step it was off by 16 %.
+      CHECK(testing::largest(d, "energy_balance_J") <= 20 * std::max(tolerance, 1e-9));
+    }
+}
+
+TEST_CASE("a motion table holds its last value") {
+  const std::string table = mass + R"(
+[[constraints]]
+kind = "coordinate"
+name = "slide"
+nodes = ["A"]
+direction = [1, 0, 0]
+motion = "table"
+times = [0, 0.5, 1.1037]
+values = [0.2, 0.3, 1.4]
+)";
+  const Simulation run = run_scene(table, {"structure.nodes.A.velocity=[0,0,0]"});
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(last_x(run) == Approx(1.4).epsilon(1e-13));
+  CHECK(std::abs(run.trajectory.node_velocities(run.trajectory.size() - 1)[0]) <= 1e-13);
+  CHECK(testing::largest(diagnose(run), "energy_balance_J") <= 1e-9);
+}
+
+TEST_CASE("every kind of time function names its edges") {
+  Structure s;
+  const auto edges_of = [&](TimeFunction f, double step) {
+    s.constraints.assign(1, Constraint{});
+    s.constraints[0].target = std::move(f);
+    return time_edges(s, step);
+  };
+  TimeFunction f;
+  CHECK(edges_of(f, 0.1).empty());
+  f.kind = TimeFunction::Kind::rate, f.rate = 3, f.start = 0.7;
+  REQUIRE(edges_of(f, 0.1).size() == 1);
+  CHECK(edges_of(f, 0.1)[0].jump);
+  f.ramp = 0.2;
+  REQUIRE(edges_of(f, 0.1).size() == 2);
+  CHECK_FALSE(edges_of(f, 0.1)[0].jump);
+  CHECK(edges_of(f, 0.1)[1].t == Approx(0.9));
+  f.kind = TimeFunction::Kind::smooth, f.duration = 0.3;
+  CHECK(edges_of(f, 0.1)[1].t == Approx(1.0));
+  // A dense table of a smooth motion does not shatter the grid; its ends still count.
+  std::vector<double> times, values;
+  for (int i = 0; i <= 2000; ++i) times.push_back(1e-3 * i), values.push_back(std::sin(1e-3 * i));
+  CHECK(edges_of(make_spline(times, values), 0.01).size() == 2);
+  CHECK(edges_of(make_spline(times, values), 0.001).size() == 2001);
+  // Three points on a line and one off it: the first, the third and the last bend.
+  f = {};
+  f.kind = TimeFunction::Kind::linear, f.times = {0.1, 0.2, 0.3, 0.4}, f.values = {1, 2, 3, 3};
+  CHECK(edges_of(f, 0.1).size() == 2);
+}
+
+}  // namespace time_edges_test
