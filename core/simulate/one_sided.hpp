@@ -73,6 +73,7 @@ class OneSided {
   double step_;
   bool eliminate_linear_;
   VectorXd gradient_, acceleration_, lambda_;
+  std::unique_ptr<System> followed_;  // the model's, near the angles of the state that is looked at
   std::unique_ptr<Index1> index1_;
 };
 

@@ -33,10 +33,10 @@ double Stops::gap(std::size_t i, const System& system, const State& state) const
   return stops_[i].sign * (stops_[i].function.value(q.data(), stops_[i].near(state)) - stops_[i].limit);
 }
 
-double Stops::gap(std::size_t i, const VectorXd& q, const VectorXd& v, double& rate) const {
+double Stops::gap(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v, double& rate) const {
   const MeasureFunction& s = stops_[i].function;
   VectorXd gradient(static_cast<Index>(s.stencil().size()));
-  const double value = s.value_and_gradient(q.data(), gradient.data());
+  const double value = s.value_and_gradient(q.data(), gradient.data(), stops_[i].near(state));
   rate = stops_[i].sign * s.rate(gradient.data(), v.data());
   return stops_[i].sign * (value - stops_[i].limit);
 }
@@ -46,7 +46,7 @@ double Stops::gap_rate(std::size_t i, const System& system, const State& state) 
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
   double rate = 0;
-  gap(i, q, v, rate);
+  gap(i, state, q, v, rate);
   return rate;
 }
 
