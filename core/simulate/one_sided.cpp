@@ -77,7 +77,7 @@ double OneSided::stretch(const Cable& cable, const VectorXd& q, const VectorXd& 
 
 void OneSided::measure_pushes(const Model& model, const State& state, Probe& probe) {
   if (!index1_) {
-    followed_ = std::make_unique<System>(model.system);
+    followed_.emplace(model.system);
     index1_ = std::make_unique<Index1>(*followed_);
   }
   followed_->follow(state);

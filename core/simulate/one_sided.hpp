@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,8 +74,8 @@ class OneSided {
   double step_;
   bool eliminate_linear_;
   VectorXd gradient_, acceleration_, lambda_;
-  std::unique_ptr<System> followed_;  // the model's, near the angles of the state that is looked at
-  std::unique_ptr<Index1> index1_;
+  std::optional<System> followed_;  // the present model's, near a state's angles
+  std::unique_ptr<Index1> index1_;  // of that
 };
 
 }  // namespace unfurl

@@ -33,7 +33,8 @@ double Stops::gap(std::size_t i, const System& system, const State& state) const
   return stops_[i].sign * (stops_[i].function.value(q.data(), stops_[i].near(state)) - stops_[i].limit);
 }
 
-double Stops::gap(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v, double& rate) const {
+double Stops::gap(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v,
+                  double& rate) const {
   const MeasureFunction& s = stops_[i].function;
   VectorXd gradient(static_cast<Index>(s.stencil().size()));
   const double value = s.value_and_gradient(q.data(), gradient.data(), stops_[i].near(state));
