@@ -38,6 +38,10 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
                     err = scratch / "err";
   const pid_t child = ::fork();
   if (child == 0) become(arguments, options.environment, out, err);
+  for (int i = 0; i < 6000 && !options.first_wait_for.empty(); ++i) {
+    if (std::filesystem::exists(options.first_wait_for)) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   if (options.interrupt_after_s >= 0) {
     std::this_thread::sleep_for(std::chrono::duration<double>(options.interrupt_after_s));
     ::kill(child, options.signal);

@@ -16,7 +16,8 @@ struct ProgramOptions {
   std::vector<std::string> environment = {};  // "NAME=value", added to this process's
   double interrupt_after_s = -1.0;            // send the signal then; negative: never
   int signal = SIGINT;
-  std::string out_file = "";  // standard output goes there instead
+  std::string first_wait_for = "";  // until this file is there, at most a minute, before those seconds
+  std::string out_file = "";        // standard output goes there instead
 };
 
 // Runs the program with these arguments and waits for it.
