@@ -15,7 +15,10 @@ namespace unfurl {
 DirectoryLock::DirectoryLock(const std::filesystem::path& directory, Use use)
     : file_(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   using namespace std::chrono_literals;
-  for (int attempt = 0; attempt < 20; ++attempt) {  // who begins to share holds it alone for a moment
+  // Who begins to share holds it alone until its first files are on the disk: a moment, but not on a busy
+  // machine.
+  const int attempts = use == Use::shareable ? 80 : 20;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
     if (attempt > 0) std::this_thread::sleep_for(50ms);
     if (take(LOCK_EX, Held::alone)) return;
     if (use == Use::shareable && take(LOCK_SH, Held::shared)) return;

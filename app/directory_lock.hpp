@@ -12,7 +12,7 @@ class DirectoryLock {
   enum class Use { alone, shareable };
 
   // Alone where nobody else is at work in the directory; else, where the use is shareable, beside those who
-  // share it. Throws FileError where that cannot be had within a second.
+  // share it. Throws FileError where that cannot be had within seconds.
   DirectoryLock(const std::filesystem::path& directory, Use use);
   ~DirectoryLock();
   DirectoryLock(const DirectoryLock&) = delete;
