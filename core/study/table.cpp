@@ -1,6 +1,7 @@
 #include "core/study/table.hpp"
 
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -30,10 +31,22 @@ std::string csv_text(const Table& table) {
   return text;
 }
 
+// "a < b & c" is text as it stands; "<b" would open an element and "&b" an entity.
 std::string markdown_line(std::string_view text) {
+  const std::string plain = printable_text(text);
+  const auto letter = [&](std::size_t i) {
+    return i < plain.size() && std::isalpha(static_cast<unsigned char>(plain[i])) != 0;
+  };
   std::string out;
-  for (const char c : printable_text(text))
-    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '\n' ? " " : std::string(1, c);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    const char next = i + 1 < plain.size() ? plain[i + 1] : ' ';
+    if (plain[i] == '<' && (letter(i + 1) || next == '/' || next == '!' || next == '?'))
+      out += "&lt;";
+    else if (plain[i] == '&' && (letter(i + 1) || next == '#'))
+      out += "&amp;";
+    else
+      out += plain[i] == '\n' ? ' ' : plain[i];
+  }
   return out;
 }
 

@@ -90,9 +90,9 @@ TEST_CASE("reports hold anybody's text as text") {
   report.paragraph(evil);
   report.add(Table{{"k|ey"}, {{"v|alue\n<i>"}}});
   const std::string markdown = report_markdown(report), html = report_html(report, ".");
-  CHECK(markdown.starts_with("# a &lt;b&gt; &amp; c\n"));
+  CHECK(markdown.starts_with("# a &lt;b> & c\n"));
   CHECK(markdown.find("| k\\|ey |") != std::string::npos);
-  CHECK(markdown.find("| v\\|alue &lt;i&gt; |") != std::string::npos);
+  CHECK(markdown.find("| v\\|alue &lt;i> |") != std::string::npos);
   CHECK_FALSE(commands_in(markdown));
   CHECK(html.find("<script>") == std::string::npos);
   CHECK(html.find("<i>") == std::string::npos);

@@ -12,7 +12,7 @@ void unfurl::fuzz::try_text(std::string_view text) {
   static const Scene scene;
   static const FilmFolder film(file.path().parent_path(), scene);  // hashes this program
   require(!(film.holds_this() && film.holds_another()), "a film is this or another");
-  film.encoded();
+  film.encoded("animation.gif");
   const PanelSettings settings = load_settings(file.path());
   require(settings.width > 0 && settings.height > 0 && settings.left_width > 0, "settings are within reason");
 }
