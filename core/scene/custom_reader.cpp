@@ -65,41 +65,12 @@ double length_cell(const CsvRow& row, const std::string& key, SceneNotes& notes)
   return it->second;
 }
 
-bool is_custom_kind(const TomlTree& tree) {
-  const TomlTree* kind = tree.find("kind");
-  for (const auto& row : custom_constraint_kinds())
-    if (kind && kind->kind == TomlTree::Kind::text && kind->text == row.kind) return true;
-  return false;
-}
-
-void read_constraints(TableReader& table, const std::string& folder, CustomSpec& spec, SceneNotes& notes,
-                      std::vector<SceneElement>& general) {
-  std::size_t count = 0;
+void read_constraints(TableReader& table, const std::string& folder, SceneNotes& notes,
+                      std::vector<SceneElement>& constraints) {
   for (const TomlTree* tree : table.tables("constraints")) {
-    if (!is_custom_kind(*tree)) {
-      SceneNotes own;  // its places must not be taken for those of an entry of spec.constraints
-      const std::string key = entry_key("constraints", count++);
-      TableReader entry(tree, key, tree->where, own);
-      general.push_back(read_element(entry, key, scene_constraints(), folder, own));
-      notes.problems.insert(notes.problems.end(), own.problems.begin(), own.problems.end());
-      notes.warnings.insert(notes.warnings.end(), own.warnings.begin(), own.warnings.end());
-      continue;
-    }
-    ++count;
-    const std::string key = entry_key("constraints", spec.constraints.size());
-    notes.locations[key] = tree->where;
+    const std::string key = entry_key("constraints", constraints.size());
     TableReader entry(tree, key, tree->where, notes);
-    CustomConstraint constraint;
-    constraint.kind = entry.read({text_param("kind", "", "")}).text("kind");
-    constraint.nodes = entry.names("nodes");
-    for (const auto& row : custom_constraint_kinds()) {
-      if (row.kind != constraint.kind || row.direction.empty()) continue;
-      ParamSpec direction = vector_param(row.direction, "", {0, 0, 0}, "");
-      direction.required = true;
-      constraint.normal = vec3(entry.read({direction}), row.direction);
-    }
-    entry.finish();
-    spec.constraints.push_back(std::move(constraint));
+    constraints.push_back(read_element(entry, key, scene_constraints(), folder, notes));
   }
 }
 
@@ -247,7 +218,7 @@ CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes
   read_nodes_file(table, values.text("nodes_file"), folder, spec, notes);
   read_rods(table, spec, notes);
   read_rods_file(table, values.text("rods_file"), folder, spec, notes);
-  read_constraints(table, folder, spec, notes, constraints);
+  read_constraints(table, folder, notes, constraints);
   note_problems(spec, before, table, notes);
   return spec;
 }

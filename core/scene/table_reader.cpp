@@ -188,6 +188,13 @@ void TableReader::warn_idle(const std::vector<ParamSpec>& specs, const ParamSet&
   }
 }
 
+std::map<std::string, SourceLocation, std::less<>> TableReader::places() const {
+  std::map<std::string, SourceLocation, std::less<>> places;
+  if (table_)
+    for (const auto& [name, value] : table_->entries) places[name] = value.where;
+  return places;
+}
+
 void TableReader::finish() {
   if (!table_) return;
   for (const auto& [name, value] : table_->entries) {

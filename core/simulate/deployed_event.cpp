@@ -23,6 +23,8 @@ constexpr int points = 9;
 constexpr double short_enough = 2.3e-3;
 constexpr int most_stations = 200;
 constexpr double near_dead_centre = 0.95;  // sine of the fold angle
+// Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
+constexpr int most_lengths = 40;
 
 struct Sample {
   double sine;
@@ -120,7 +122,7 @@ class Locator {
     const double s0 = sine(from), rate0 = sine_rate(from);
     double lo = 0, f_lo = s0 - target;
     double step = std::min(1.2 * h_, rate0 < 0 ? f_lo / -rate0 : h_);
-    for (int it = 0; it < 12; ++it) {
+    for (int it = 0; it < most_lengths; ++it) {
       State to = from;
       integrator_.restart();
       if (!integrator_.step(to, step).ok()) {

@@ -21,6 +21,7 @@ constexpr double shift = 1e-8;
 constexpr int most_iterations = 30;
 constexpr double converged = 1e-4, lost = 1e-9;  // of sigma, and what squares below it lose to round-off
 constexpr double much = 0.2;                     // a change of sigma from one state to the next
+constexpr double most_turn = 0.15;               // of a rod from sample to sample [rad]
 constexpr double most_work = 3e8;                // multiplications for all states; below a second
 
 SparseRows identity(Index n) {
@@ -140,19 +141,17 @@ class DipSearch {
         sigma_(trajectory.model(first).system, structural_redundancy(trajectory, first, last)) {}
 
   void run(std::vector<Event>& events, const std::function<bool()>& cancelled) {
-    const System& system = trajectory_.model(first_).system;
-    const auto size = static_cast<double>(system.constraints() + system.solved_coordinates());
-    const double work = 100 * size * static_cast<double>(last_ - first_);  // sparse factors, some right sides
-    stride_ = static_cast<std::size_t>(std::ceil(std::max(1.0, work / most_work)));
-    for (std::size_t i = first_; i <= last_ && !(cancelled && cancelled()); i += stride_) {
-      values_.push_back(sigma_.estimate(trajectory_.state(i).z));
+    place_samples();
+    for (std::size_t k = 0; k < times_.size() && !(cancelled && cancelled()); ++k) {
+      values_.push_back(sigma_.estimate(pose(times_[k])));
       if (!std::isfinite(values_.back())) return;
     }
-    if (values_.empty()) return;
+    if (values_.size() < 3) return;
     const double largest =
         exact(static_cast<std::size_t>(std::max_element(values_.begin(), values_.end()) - values_.begin()));
     for (std::size_t k = 1; k + 1 < values_.size() && !(cancelled && cancelled()); ++k) {
-      if (!(values_[k] <= values_[k - 1] && values_[k] < values_[k + 1] && values_[k] < 0.7 * largest))
+      if (!(values_[k] <= values_[k - 1] && values_[k] < values_[k + 1] && values_[k] < 0.7 * largest) ||
+          !stands_out(k))
         continue;
       const Event event = refined(k);
       if (event.singular_value <= dip * largest) events.push_back(event);
@@ -160,7 +159,57 @@ class DipSearch {
   }
 
  private:
-  double exact(std::size_t k) { return sigma_.at(trajectory_.state(first_ + k * stride_).z); }
+  // The states' own times, and times between them where rods turn far in a step; fewer where there are very
+  // many.
+  void place_samples() {
+    const System& system = trajectory_.model(first_).system;
+    const auto size = static_cast<double>(system.constraints() + system.solved_coordinates());
+    const double most = std::max(3.0, most_work / (100 * size));  // sparse factors, some right sides
+    double turned = 0;
+    for (std::size_t i = first_; i < last_; ++i) turned += turn(i);
+    const double states = static_cast<double>(last_ - first_ + 1);
+    const auto stride = static_cast<std::size_t>(std::ceil(std::max(1.0, states / most)));
+    const double each = std::max(most_turn, turned / std::max(1.0, most - states));
+    for (std::size_t i = first_; i < last_; i += stride) {
+      const double t = trajectory_.time(i), h = trajectory_.time(i + 1) - t;
+      const int parts_of_step = stride > 1 ? 1 : static_cast<int>(std::ceil(std::max(1.0, turn(i) / each)));
+      for (int k = 0; k < parts_of_step; ++k) times_.push_back(t + h * k / parts_of_step);
+    }
+    times_.push_back(trajectory_.time(last_));
+  }
+
+  // How far a rod turns in the step that follows state i, by the faster of its ends [rad].
+  double turn(std::size_t i) const {
+    const double h = trajectory_.time(i + 1) - trajectory_.time(i);
+    double fastest = 0;
+    for (const std::size_t k : {i, i + 1}) {
+      const VectorXd v = trajectory_.node_velocities(k);
+      for (const Rod& rod : trajectory_.structure().rods)
+        fastest = std::max(fastest, (v.segment<3>(3 * rod.b) - v.segment<3>(3 * rod.a)).norm() / rod.length);
+    }
+    return h * fastest;
+  }
+
+  // Half as low as the heights on both sides that part it from what is lower: what is not is rounding.
+  bool stands_out(std::size_t k) const {
+    const auto height = [&](auto first, auto last) {
+      double top = 0;
+      for (auto it = first; it != last && *it >= values_[k]; ++it) top = std::max(top, *it);
+      return top;
+    };
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    const double before = height(values_.rbegin() + (std::ssize(values_) - at), values_.rend());
+    const double after = height(values_.begin() + at + 1, values_.end());
+    return values_[k] <= 0.5 * std::min(before, after);
+  }
+
+  VectorXd pose(double t) const {
+    const std::size_t i = trajectory_.state_before(t);
+    return i < last_ && t > trajectory_.time(i) ? trajectory_.state_at(t).z
+                                                : trajectory_.state(std::min(i, last_)).z;
+  }
+  double exact(std::size_t k) { return between(times_[k]); }
+  double between(double t) { return sigma_.at(pose(t)); }
 
   // Vertex of the parabola through sigma^2 at three times: exact where sigma = c |t - t*|, and where it turns
   // round at a distance, sigma^2 = c^2 (t - t*)^2 + d^2.
@@ -173,10 +222,8 @@ class DipSearch {
   }
 
   Event refined(std::size_t k) {
-    const std::size_t i = first_ + k * stride_;
-    const std::size_t before = i - stride_, after = i + stride_;
-    const double low = trajectory_.time(before), high = trajectory_.time(after);
-    double t = vertex({low, trajectory_.time(i), high}, {exact(k - 1), exact(k), exact(k + 1)});
+    const double low = times_[k - 1], high = times_[k + 1];
+    double t = vertex({low, times_[k], high}, {exact(k - 1), exact(k), exact(k + 1)});
     for (double reach = 0.05 * (high - low); reach > 1e-4 * (high - low); reach *= 0.05) {
       const double times[3] = {std::max(low, t - reach), t, std::min(high, t + reach)};
       t = vertex(times, {between(times[0]), between(times[1]), between(times[2])});
@@ -186,23 +233,10 @@ class DipSearch {
     return event;
   }
 
-  // At any time, by cubic Hermite interpolation of the solved coordinates.
-  double between(double t) {
-    std::size_t i = first_, j = last_;
-    while (j - i > 1) {
-      const std::size_t middle = (i + j) / 2;
-      (trajectory_.time(middle) > t ? j : i) = middle;
-    }
-    const State &p = trajectory_.state(i), &r = trajectory_.state(j);
-    const double h = r.t - p.t, u = (t - p.t) / h, v = 1 - u;
-    return sigma_.at((1 + 2 * u) * v * v * p.z + u * v * v * h * p.w + u * u * (3 - 2 * u) * r.z -
-                     u * u * v * h * r.w);
-  }
-
   const Trajectory& trajectory_;
-  std::size_t first_, last_, stride_ = 1;
+  std::size_t first_, last_;
   SmallestSingularValue sigma_;
-  std::vector<double> values_;  // at every stride_-th state
+  std::vector<double> times_, values_;  // of the samples
 };
 
 }  // namespace

@@ -42,11 +42,11 @@ class SmallestSingularValue {
 Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last);
 
 // Adds an event "singular pose" to `run` for every time between two states at which sigma dips below a
-// hundredth of its largest value in the run (0 up to the error of the dense output where the pose is truly
-// singular). The start and the end of a run are no dips: a ring that ends deployed ends at a singular pose,
-// and its event is "deployed". States are looked at after the run; not at all where the Jacobian has more
-// than max_singular_size rows or columns, and at every second, third, ... one where there are very many. Once
-// `cancelled` says so, the events so far are all.
+// hundredth of its largest value in the run and to a half of its heights before and after. The start and the
+// end of a run are no dips: a ring that ends deployed ends at a singular pose, and its event is "deployed".
+// States are looked at after the run, and poses inside steps in which a rod turns far; nothing where the
+// Jacobian has more than max_singular_size rows or columns, every second, third, ... where states abound.
+// Once `cancelled` says so, the events so far are all.
 inline constexpr Index max_singular_size = 300;
 void record_singular_poses(Simulation& run, const std::function<bool()>& cancelled = {});
 

@@ -33,14 +33,22 @@ double Stops::gap(std::size_t i, const System& system, const State& state) const
   return stops_[i].sign * (stops_[i].function.value(q.data(), stops_[i].near(state)) - stops_[i].limit);
 }
 
+double Stops::gap(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v,
+                  double& rate) const {
+  const MeasureFunction& s = stops_[i].function;
+  VectorXd gradient(static_cast<Index>(s.stencil().size()));
+  const double value = s.value_and_gradient(q.data(), gradient.data(), stops_[i].near(state));
+  rate = stops_[i].sign * s.rate(gradient.data(), v.data());
+  return stops_[i].sign * (value - stops_[i].limit);
+}
+
 double Stops::gap_rate(std::size_t i, const System& system, const State& state) const {
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
-  const MeasureFunction& s = stops_[i].function;
-  VectorXd gradient(static_cast<Index>(s.stencil().size()));
-  s.value_and_gradient(q.data(), gradient.data());
-  return stops_[i].sign * s.rate(gradient.data(), v.data());
+  double rate = 0;
+  gap(i, state, q, v, rate);
+  return rate;
 }
 
 double Stops::rebound(std::size_t i, const System& system, State& state) const {
@@ -67,16 +75,12 @@ double Stops::rebound(std::size_t i, const System& system, State& state) const {
   return (1 - stop.restitution * stop.restitution) * approach * approach / (2 * a);
 }
 
-std::shared_ptr<const Model> Stops::held_model(const Model& base, const std::set<std::size_t>& held,
-                                               bool eliminate_linear) const {
-  Structure structure = base.structure;
+void Stops::hold(const std::set<std::size_t>& held, Structure& structure) const {
   for (const std::size_t i : held) {
     TimeFunction limit;
     limit.offset = stops_[i].limit;
     structure.constraints.push_back({"measure", held_name(stops_[i]), {}, {}, 0.0, stops_[i].measure, limit});
   }
-  System system(structure, eliminate_linear);
-  return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
 }
 
 double Stops::push(std::size_t i, const Model& model, const std::set<std::size_t>& held,

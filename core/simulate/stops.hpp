@@ -42,6 +42,8 @@ class Stops {
   const StopSide& operator[](std::size_t i) const { return stops_[i]; }
 
   double gap(std::size_t i, const System& system, const State& state) const;
+  // The same, of the state's node coordinates and velocities, with its rate.
+  double gap(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v, double& rate) const;
   double gap_rate(std::size_t i, const System& system, const State& state) const;
   // Gaps within this count as touching [m] or [rad].
   double touching() const { return touching_; }
@@ -49,10 +51,10 @@ class Stops {
   // Turn the approach of stop i round; the energy lost [J]. NaN: the stop cannot be moved by any impulse.
   double rebound(std::size_t i, const System& system, State& state) const;
 
-  // `base` with these stops held: its last constraints, in their order.
-  std::shared_ptr<const Model> held_model(const Model& base, const std::set<std::size_t>& held,
-                                          bool eliminate_linear) const;
-  // The force with which stop i pushes in a state of that held model, negative where it pulls [N] or [N m].
+  // These stops become constraints, the last ones of the structure, in their order.
+  void hold(const std::set<std::size_t>& held, Structure& structure) const;
+  // The force with which stop i pushes in a state of a model that holds them so, negative where it pulls [N]
+  // or [N m].
   double push(std::size_t i, const Model& model, const std::set<std::size_t>& held, const State& state) const;
 
  private:

@@ -4,16 +4,21 @@
 
 namespace unfurl {
 
-Trajectory::Trajectory(std::shared_ptr<const Model> model) : models_{{0, std::move(model)}} {}
+Trajectory::Trajectory(std::shared_ptr<const Model> model, const SolverOptions& options)
+    : models_{{0, std::move(model)}}, dense_(std::make_shared<DenseOutput>(options)) {}
 
 void Trajectory::change_model(std::shared_ptr<const Model> model) {
   models_.push_back({size(), std::move(model)});
 }
 
+const Trajectory::Part& Trajectory::part_of(std::size_t i) const {
+  const auto behind = std::upper_bound(models_.begin() + 1, models_.end(), i,
+                                       [](std::size_t state, const Part& p) { return state < p.first; });
+  return *(behind - 1);
+}
+
 const Model& Trajectory::model(std::size_t i) const {
-  std::size_t part = models_.size() - 1;
-  while (part > 0 && models_[part].first > i) --part;
-  return *models_[part].model;
+  return *part_of(i).model;
 }
 
 void Trajectory::append(State state, StepReport report) {
@@ -47,16 +52,30 @@ VectorXd Trajectory::velocities(std::size_t i) const {
   return whole_velocities(structure(), node_velocities(i));
 }
 
-VectorXd Trajectory::positions_at(double t) const {
+std::size_t Trajectory::state_before(double t) const {
   const auto after = std::upper_bound(states_.begin(), states_.end(), t,
                                       [](double value, const State& s) { return value < s.t; });
-  if (after == states_.begin()) return positions(0);
-  if (after == states_.end()) return positions(size() - 1);
-  const auto i = static_cast<std::size_t>(after - states_.begin()) - 1;
-  const double h = time(i + 1) - time(i), u = (t - time(i)) / h;
-  const double a = (1 + 2 * u) * (1 - u) * (1 - u), b = u * (1 - u) * (1 - u) * h, c = u * u * (3 - 2 * u),
-               d = -u * u * (1 - u) * h;
-  return a * positions(i) + b * velocities(i) + c * positions(i + 1) + d * velocities(i + 1);
+  return after == states_.begin() ? 0 : static_cast<std::size_t>(after - states_.begin()) - 1;
+}
+
+State Trajectory::state_at(double t) const {
+  const std::size_t i = state_before(t);
+  if (i + 1 == size() || t <= time(i)) return states_[i];
+  return dense_->between(part_of(i).model, states_[i], states_[i + 1], t);
+}
+
+VectorXd Trajectory::positions_at(double t) const {
+  const System& system = model(state_before(t)).system;
+  VectorXd q(system.coordinates());
+  system.expand(state_at(t).z, q);
+  return whole_positions(structure(), q);
+}
+
+VectorXd Trajectory::velocities_at(double t) const {
+  const System& system = model(state_before(t)).system;
+  VectorXd v(system.coordinates());
+  system.expand_rate(state_at(t).w, v);
+  return whole_velocities(structure(), v);
 }
 
 }  // namespace unfurl

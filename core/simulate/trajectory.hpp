@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "core/integrators/solver_options.hpp"
 #include "core/model/state.hpp"
 #include "core/model/structure.hpp"
 #include "core/model/system.hpp"
+#include "core/simulate/dense_output.hpp"
 
 namespace unfurl {
 
@@ -20,7 +22,8 @@ struct Model {
 // Append-only states and reports with dense output.
 class Trajectory {
  public:
-  explicit Trajectory(std::shared_ptr<const Model> model);
+  // `options`: those of the method that its states come from.
+  explicit Trajectory(std::shared_ptr<const Model> model, const SolverOptions& options = {});
 
   void append(State state, StepReport report);
   void pop_back();
@@ -42,19 +45,26 @@ class Trajectory {
   // Solved node coordinates and velocities [3 n] at state i.
   VectorXd node_positions(std::size_t i) const;
   VectorXd node_velocities(std::size_t i) const;
-  // The whole structure's [3 N] at state i, or at any time inside (cubic Hermite between states).
+  // The whole structure's [3 N] at state i, or at any time inside: from a step of the method to that time, as
+  // accurate as the states (dense_output.hpp). At an impulse, what comes after it.
   VectorXd positions(std::size_t i) const;
   VectorXd velocities(std::size_t i) const;
   VectorXd positions_at(double t) const;
+  VectorXd velocities_at(double t) const;
+  // The same in the coordinates of the model of state_before(t).
+  State state_at(double t) const;
+  std::size_t state_before(double t) const;  // the last state at or before t; the first one before the start
 
  private:
   struct Part {
     std::size_t first;  // state
     std::shared_ptr<const Model> model;
   };
+  const Part& part_of(std::size_t i) const;
   std::vector<Part> models_;
   std::vector<State> states_;
   std::vector<StepReport> reports_;
+  std::shared_ptr<DenseOutput> dense_;
 };
 
 }  // namespace unfurl

@@ -28,7 +28,7 @@ struct Folder {
 
 std::string error_of(std::string_view text) {
   try {
-    read_scene_text(text, "s.toml");
+    build_structure(read_scene_text(text, "s.toml"));
   } catch (const SceneError& error) {
     return error.what();
   }
@@ -86,7 +86,50 @@ TEST_CASE("mistakes in a list carry the entry's place") {
         "s.toml:12:1: structure.constraints[0].normal: is missing; must be a list of 3 numbers");
   CHECK(error_of(head + two_nodes +
                  "[[structure.constraints]]\nkind = 'fixed'\nnodes = 'B'\nnormal = [0, 0, 1]\n") ==
-        "s.toml:15:1: structure.constraints[0].normal: unknown key; known: kind, nodes");
+        "s.toml:15:1: structure.constraints[0].normal: unknown key; known: kind, name, enabled, nodes");
+}
+
+TEST_CASE("a plane passes through each node's start, its normal made a unit vector") {
+  for (const char* normal : {"[0, 0, 1e-200]", "[0, 0, 7]", "[0, 0, 1e200]"}) {
+    const Structure s = build_structure(read_scene_text(
+        head + two_nodes + "[[structure.constraints]]\nkind = 'plane'\nnodes = ['?']\nnormal = " + normal +
+            "\n",
+        "x"));
+    REQUIRE(s.constraints.size() == 3);  // A is fixed
+    CHECK(s.constraints[1].vectors[0] == Vec3(0, 0, 1));
+    CHECK(s.constraints[1].value == 0);
+    CHECK(s.constraints[2].value == 2);
+    CHECK(s.constraints[2].name == "plane of B");
+  }
+}
+
+TEST_CASE("constraints find their nodes by pattern, a literal name first") {
+  const Structure s = build_structure(
+      read_scene_text(head + two_nodes + "[[structure.nodes]]\nname = '*'\nposition = [1, 1, 1]\nmass = 1\n" +
+                          "[[structure.constraints]]\nkind = 'fixed'\nnodes = '*'\n" +
+                          "[[structure.constraints]]\nkind = 'fixed'\nnodes = '?'\n",
+                      "x"));
+  REQUIRE(s.constraints.size() == 1 + 1 + 3);
+  CHECK(s.constraints[1].nodes == std::vector<int>{2});
+  CHECK(error_of(head + two_nodes + "[[structure.constraints]]\nkind = 'fixed'\nnodes = ['X*']\n") ==
+        "s.toml:14:9: structure.constraints[0].nodes: there is no node 'X*'; known: A, B");
+}
+
+TEST_CASE("a node that moves without mass is refused, one that follows others is not") {
+  const std::string third = "[[structure.nodes]]\nname = 'C'\nposition = [0, 3, 1]\n";
+  try {
+    build_model(read_scene_text(head + two_nodes + third, "s.toml"));
+    FAIL("a node without mass");
+  } catch (const SceneError& error) {
+    CHECK(std::string(error.what()) ==
+          "s.toml:12:1: structure.nodes[2].mass: node C can move but has no mass: give it a mass, or a mass "
+          "to a rod "
+          "that ends there");
+  }
+  CHECK_NOTHROW(build_model(read_scene_text(head + two_nodes + third +
+                                                "[[structure.constraints]]\nkind = 'mirror'\nnodes = ['B', "
+                                                "'C']\nnormal = [0, 3, -1]\npoint = [0, 1.5, 1.5]\n",
+                                            "s.toml")));
 }
 
 TEST_CASE("one wrong node does not set off messages about what refers to it") {

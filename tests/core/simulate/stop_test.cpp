@@ -104,10 +104,9 @@ values = [0, 1]
   CHECK(run.events[0].name == "rests on stop floor");
   CHECK(run.events[0].energy_lost == Approx(100).epsilon(1e-10));  // free fall is exact; a thousand roundings
   CHECK(run.events[1].name == "leaves stop floor");
-  CHECK(run.events[1].t == Approx(1.7).margin(0.0011));  // 40 N (t - 1.2) = 20 N, seen at the end of a step
-  // Then z'' = 20 (t - 1.7) m/s^2 until 2.2 s: z = 20 / 6 * 0.125.
-  CHECK(run.trajectory.positions(run.trajectory.size() - 1 - 300)[2] ==
-        Approx(20.0 / 6 * 0.125).epsilon(1e-2));
+  // 40 N (t - 1.2) = 20 N; then z'' = 20 (t - 1.7) m/s^2 until 2.2 s.
+  CHECK(run.events[1].t == Approx(1.7).epsilon(1e-10));
+  CHECK(run.trajectory.positions_at(2.2)[2] == Approx(20.0 / 6 * 0.125).epsilon(1e-9));
 }
 
 }  // namespace stop_test

@@ -1,0 +1,77 @@
+#include "core/simulate/dense_output.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/simulate/initial_state.hpp"
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr std::size_t most_idle = 4;
+constexpr double too_short =
+    1e-7;  // share of the way between the states, below which a straight line will do
+constexpr int most_pieces = 8;
+
+}  // namespace
+
+State on_cubic(const State& a, const State& b, double t) {
+  const double h = b.t - a.t, u = (t - a.t) / h, v = 1 - u;
+  State s = a;
+  s.t = t;
+  s.z = v * v * (1 + 2 * u) * a.z + u * v * v * h * a.w + u * u * (3 - 2 * u) * b.z - u * u * v * h * b.w;
+  s.w = 6 * u * v / h * (b.z - a.z) + v * (1 - 3 * u) * a.w + u * (1 - 3 * v) * b.w;
+  return s;
+}
+
+DenseOutput::Engine DenseOutput::borrow(const std::shared_ptr<const Model>& model) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found =
+        std::find_if(idle_.begin(), idle_.end(), [&](const Engine& e) { return e.model == model; });
+    if (found != idle_.end()) {
+      Engine engine = std::move(*found);
+      idle_.erase(found);
+      return engine;
+    }
+  }
+  return {model, find_method(options_.method)->make(model->system, options_)};
+}
+
+void DenseOutput::give_back(Engine engine) {
+  const std::lock_guard lock(mutex_);
+  if (idle_.size() == most_idle) idle_.erase(idle_.begin());
+  idle_.push_back(std::move(engine));
+}
+
+State DenseOutput::between(const std::shared_ptr<const Model>& model, const State& a, const State& b,
+                           double t) {
+  const double h = t - a.t;
+  if (!(h > 0)) return a;
+  if (t >= b.t) return b;
+  State state = a;
+  if (h <= too_short * (b.t - a.t)) {
+    state.t = t;
+    state.z += h * a.w;
+    state.w += h / (b.t - a.t) * (b.w - a.w);
+    return state;
+  }
+  Engine engine = borrow(model);
+  bool solved = false;
+  for (int pieces = 1; pieces <= most_pieces && !solved; pieces *= 2) {
+    state = a;
+    engine.integrator->restart();
+    solved = true;
+    for (int i = 0; i < pieces && solved; ++i) solved = engine.integrator->step(state, h / pieces).ok();
+  }
+  give_back(std::move(engine));
+  if (!solved) {
+    state = on_cubic(a, b, t);
+    project(model->system, state);
+  }
+  state.t = t;
+  return state;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,43 @@
+// The motion of a run between its states.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "core/integrators/integrator.hpp"
+#include "core/model/state.hpp"
+
+namespace unfurl {
+
+struct Model;
+
+// Hermite's cubic through the coordinates and rates of two states of one model: a guess, not a solution.
+State on_cubic(const State& a, const State& b, double t);
+
+// The state at a time t between two neighbouring states of a run is that of a step of the run's own method
+// from the earlier one to t: as accurate as the states themselves and on the constraints like them, whatever
+// the method, its order and the length of its steps, and never across an event, which has a state of its own.
+// No interpolant does that: a step of high order may turn a rod by two radians. Threads may share one.
+class DenseOutput {
+ public:
+  explicit DenseOutput(const SolverOptions& options) : options_(options) {}
+
+  // a.t <= t <= b.t, both states of `model`. Where no step to t can be solved (next to a singular pose), the
+  // cubic through both states, projected on the constraints.
+  State between(const std::shared_ptr<const Model>& model, const State& a, const State& b, double t);
+
+ private:
+  struct Engine {
+    std::shared_ptr<const Model> model;
+    std::unique_ptr<Integrator> integrator;
+  };
+  Engine borrow(const std::shared_ptr<const Model>& model);
+  void give_back(Engine engine);
+
+  SolverOptions options_;
+  std::mutex mutex_;
+  std::vector<Engine> idle_;
+};
+
+}  // namespace unfurl

@@ -1,0 +1,500 @@
+#include "core/simulate/stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "core/integrators/integrator.hpp"
+#include "core/simulate/deployed_event.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "core/simulate/latch.hpp"
+#include "core/simulate/one_sided.hpp"
+#include "core/simulate/step_control.hpp"
+#include "core/simulate/time_grid.hpp"
+
+namespace unfurl {
+namespace {
+
+// A state whose sin(fold) is below this has lost digits to the singular deployed pose and counts as having
+// reached it.
+constexpr double singular_margin = 1e-4, deployed_already = 1e-12;
+// Impacts of one stop that follow each other within this share of a step have accumulated: the stop holds.
+// With restitution e the rest of their series takes e / (1 - e) times as long.
+constexpr double accumulated = 1e-4;
+// Where more than this many switches, and twice as many for each stop and cable, come at one time, no order
+// of them leads on: what touches is held. Where that is of no use either, the rest of the step is taken as it
+// is.
+constexpr int most_switches = 20;
+constexpr double one_time = 1e-9;  // share of a step
+constexpr long most_in_step = 50;  // times as many in one step, at whatever times
+// Steps of the method are at least so long, as a share of solver.step: below, multipliers are noise divided
+// by the step.
+constexpr double shortest = 1e-7;
+// So many steps before the deployed pose a failed step is put down to it.
+constexpr double near_deployed = 5;
+// Parts of a step for the hints where margins dip between solved states.
+constexpr int parts = 8;
+
+const char* reason(StepStatus status) {
+  switch (status) {
+    case StepStatus::converged:
+      return "converged";
+    case StepStatus::stalled:
+      return "the Newton iteration did not converge to round-off";
+    case StepStatus::diverged:
+      return "the Newton matrix could not be factorised";
+    case StepStatus::not_finite:
+      return "the state is not finite any more";
+  }
+  return "";
+}
+
+std::string seconds(double t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g s", t);
+  return text;
+}
+
+}  // namespace
+
+class Stepper::Loop {
+ public:
+  Loop(Simulation& run, std::shared_ptr<const Model> model)
+      : run_(run),
+        base_(std::move(model)),
+        deployment_(run.trajectory.structure().deployment),
+        sides_(run.trajectory.structure(), run.options),
+        grid_(now().t, run.options, time_edges(run.trajectory.structure(), run.options.step)),
+        last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {
+    model_changed();
+    if (!deployment_.empty() && fold(now()) > deployed_already)
+      margin_ = std::min(margin_, 0.1 * fold(now()));
+    if (sides_.empty()) return;
+    sides_.find_modes(system(), now());
+    if (sides_.any_active()) set_model(sides_.model(*base_), false);
+  }
+
+  bool step() { return !ended_ && now().t < grid_.end() && go(next_target()); }
+
+  bool advance_to(double t) {
+    const double until = std::min(t, grid_.end());
+    while (!ended_ && now().t < until) {
+      TimeGrid::Target target = next_target();
+      if (target.t > until) target = {until, until - now().t};
+      if (!go(target)) return false;
+    }
+    return !ended_;
+  }
+
+  void end() { ended_ = true; }
+  std::function<void(const State&, const StepReport&)> on_step;
+
+ private:
+  const Model& model() const { return run_.trajectory.last_model(); }
+  const System& system() const { return model().system; }
+  const State& now() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
+  std::unique_ptr<Integrator> fresh_integrator() const {
+    return find_method(run_.options.method)->make(system(), run_.options);
+  }
+
+  TimeGrid::Target next_target() {
+    if (!run_.options.adaptive) return grid_.next(now().t);
+    if (controlled_ != &system()) {  // the first step, or the model has changed
+      controlled_ = &system();
+      control_.emplace(run_.trajectory.structure(), *controlled_, run_.options);
+    }
+    return grid_.next(now().t, control_->next(now()));
+  }
+
+  // False where the run ends.
+  bool go(const TimeGrid::Target& target) {
+    target_ = target.t;
+    double h = target.h;
+    in_step_ = 0;
+    while (now().t < target_) {
+      if (!part(h)) return ended_ = true, false;
+      h = target_ - now().t;
+    }
+    if (target.edge) integrator_->restart();
+    if (target.jumps) jump(target.jump);
+    return true;
+  }
+
+  // The rest of the step, of size h, or what comes before the first event on it. False where the run ends.
+  bool part(double h) {
+    const bool watched = !sides_.empty() && now().t >= unwatched_until_;
+    if (watched) {
+      begin();
+      std::vector<std::size_t> over;
+      for (Index i = 0; i < begin_.margins.size(); ++i)
+        if (begin_.margins[i] < -1) over.push_back(static_cast<std::size_t>(i));
+      if (!over.empty()) return act(over);
+    }
+    Probe to{.at = h, .state = now()};
+    to.report = take_step(*integrator_, to.state, h);
+    std::optional<State> event;
+    if (!find_deployed(to, h, event)) return false;
+    if (watched && to.report.ok())
+      if (auto crossing = find_crossing(to); crossing && (!event || now().t + crossing->probe.at < event->t))
+        return go_to(std::move(*crossing));
+    if (event) return deployed(*event, to, h);
+    return accept(to, target_);
+  }
+
+  bool accept(Probe& to, double t) {
+    if (!to.report.ok()) return fail(reason(to.report.status));
+    to.state.t = t;
+    have_begin_ = to.margins.size() > 0;
+    if (have_begin_) begin_ = to;
+    append(std::move(to.state), to.report);
+    ++run_.steps;
+    return true;
+  }
+
+  void append(State state, const StepReport& report) {
+    run_.trajectory.append(std::move(state), report);
+    if (on_step) on_step(now(), report);
+  }
+
+  // What follows is no continuation of the states before.
+  void append_after_impulse(State state) {
+    append(std::move(state), StepReport{});
+    integrator_->restart();
+    have_begin_ = false;
+  }
+
+  bool fail(const std::string& why) {
+    run_.status = RunStatus::failed;
+    run_.message = "at t = " + seconds(now().t) + ": " + why;
+    return false;
+  }
+
+  // A drive's velocity jumps: what it drives is taken along by an impulse of the constraints.
+  void jump(double t) {
+    State before = now();
+    before.t = t;
+    append_after_impulse(hand_over(model(), before, model()).state);
+  }
+
+  // --- steps ---
+
+  StepReport take_step(Integrator& integrator, State& state, double h) {
+    if (h < shortest * run_.options.step) return drift(state, h);
+    const StepReport report = integrator.step(state, h);
+    run_.newton_iterations += report.newton_iterations;
+    run_.factorisations += report.factorisations;
+    return report;
+  }
+
+  // What is too short for a step of the method: two terms of Taylor's series.
+  StepReport drift(State& state, double h) {
+    VectorXd acceleration(state.w.size());
+    VectorXd lambda = state.lambda;
+    const System followed = system().at(state);
+    Index1 index1(followed);
+    StepReport report;
+    if (!index1.evaluate(state.t, state.z, state.w, acceleration, lambda)) acceleration.setZero();
+    state.t += h;
+    state.z += h * state.w + 0.5 * h * h * acceleration;
+    state.w += h * acceleration;
+    return report;
+  }
+
+  // A failed step is tried again in 2, 4, ... 64 parts.
+  void retry(Integrator& integrator, Probe& to, double h) {
+    for (int count = 2; count <= 64 && !to.report.ok(); count *= 2) {
+      to.state = now();
+      integrator.restart();
+      to.report = StepReport{};
+      for (int i = 0; i < count && to.report.ok(); ++i)
+        to.report = take_step(integrator, to.state, h / count);
+    }
+    if (!to.report.ok()) to.state = now();
+  }
+
+  // --- stops and cables ---
+
+  // Margins of the present state, those of the last accepted one where they still hold.
+  void begin() {
+    if (have_begin_ && !(begin_.margins.minCoeff() < 0)) return;
+    sides_.touch(system(), now());
+    sides_.measure(model(), now(), true, begin_);
+    have_begin_ = true;
+  }
+
+  std::optional<Crossing> find_crossing(Probe& to) {
+    sides_.measure(model(), to.state, true, to);
+    begin_.at = 0;
+    const Solve solve = [this](double length, Probe& probe) {
+      if (!probing_) probing_ = fresh_integrator();
+      probing_->restart();
+      probe.at = length;
+      probe.state = now();
+      probe.report = take_step(*probing_, probe.state, length);
+      if (probe.report.ok()) sides_.measure(model(), probe.state, true, probe);
+      return probe.report.ok();
+    };
+    return first_crossing(begin_, to, between(to), solve);
+  }
+
+  // Margins on the cubic through the coordinates and rates of both ends of a step.
+  MatrixXd between(const Probe& to) {
+    MatrixXd margins(static_cast<Index>(sides_.size()), parts - 1);
+    Probe p;
+    for (int k = 1; k < parts; ++k) {
+      p.state = on_cubic(now(), to.state, now().t + to.at * k / parts);
+      sides_.measure(model(), p.state, 2 * k == parts, p);
+      margins.col(k - 1) = p.margins;
+    }
+    return margins;
+  }
+
+  bool go_to(Crossing crossing) {
+    if (const double t = now().t + crossing.probe.at; t > now().t) {
+      crossing.probe.state.t = t;
+      append(std::move(crossing.probe.state), crossing.probe.report);
+      ++run_.steps;
+      integrator_->restart();
+    }
+    have_begin_ = false;
+    return act(crossing.which);
+  }
+
+  // What comes of it that these have crossed, now. False where the run ends.
+  bool act(const std::vector<std::size_t>& which) {
+    if (now().t - crowd_time_ > one_time * run_.options.step) crowd_time_ = now().t, crowd_ = 0;
+    const long most = most_switches + 2 * static_cast<long>(sides_.size());
+    const bool crowded = ++crowd_ == most || ++in_step_ == most_in_step * most;
+    if (crowded) return hold_what_touches();
+    if (crowd_ > 2 * most || in_step_ > (most_in_step + 1) * most) return stop_watching();
+    std::vector<std::size_t> turned;
+    for (const std::size_t i : which) {
+      if (sides_.is_stop(i) && !sides_.active(i)) {
+        if (!strike(i)) return false;
+        continue;
+      }
+      sides_.set_active(i, !sides_.active(i));
+      turned.push_back(i);
+    }
+    change_modes(turned);
+    return true;
+  }
+
+  // Rebound or rest.
+  bool strike(std::size_t i) {
+    const StopSide& stop = sides_.stops()[i];
+    State after = now();
+    const double approach = -sides_.stops().gap_rate(i, system(), after), flight = after.t - last_touch_[i];
+    last_touch_[i] = after.t;
+    if (approach < 0) return true;  // thrown back already, by another stop at this time
+    const bool series = stop.restitution < 1 && flight > 0 && flight <= accumulated * run_.options.step;
+    if (series || stop.restitution * approach <= stop.rest_speed) return hold({i});
+    const double taken = sides_.stops().rebound(i, system(), after);
+    if (std::isnan(taken)) return fail("a drive pushes against the stop " + stop.name);
+    run_.events.push_back({"stop " + stop.name, after.t, taken});
+    append_after_impulse(std::move(after));
+    return true;
+  }
+
+  bool hold(const std::vector<std::size_t>& touched) {
+    std::vector<std::size_t> turned;
+    for (const std::size_t i : touched) {
+      State trial = now();
+      const double approach = -sides_.stops().gap_rate(i, system(), trial);
+      if (std::isnan(sides_.stops().rebound(i, system(), trial))) {
+        // No impulse moves it. What others hold needs no hold of its own.
+        if (approach <= std::max(sides_.stops()[i].rest_speed, 1e-9 * trial.w.lpNorm<Eigen::Infinity>()))
+          continue;
+        return fail("a drive pushes against the stop " + sides_.stops()[i].name);
+      }
+      sides_.set_active(i, true);
+      turned.push_back(i);
+    }
+    change_modes(turned);
+    return true;
+  }
+
+  bool hold_what_touches() {
+    begin();
+    std::vector<std::size_t> touched;
+    for (std::size_t i = 0; i < sides_.stops().size(); ++i)
+      if (!sides_.active(i) && begin_.margins[static_cast<Index>(i)] <= 1) touched.push_back(i);
+    if (!touched.empty())
+      run_.warnings.push_back("at t = " + seconds(now().t) +
+                              ": impacts without end; what touches a stop is held");
+    return hold(touched);
+  }
+
+  bool stop_watching() {
+    unwatched_until_ = target_;
+    if (!std::exchange(unwatched_said_, true))
+      run_.warnings.push_back(
+          "at t = " + seconds(now().t) +
+          ": stops or cables switch without end; what they do in this step is not located");
+    if (sides_.relax_cables()) set_model(sides_.model(*base_), true);
+    return true;
+  }
+
+  void change_modes(const std::vector<std::size_t>& turned) {
+    if (turned.empty()) return;
+    const double taken = set_model(sides_.model(*base_), true);
+    for (const std::size_t i : turned)
+      run_.events.push_back({sides_.text(i), now().t, i == turned.front() ? taken : 0.0});
+  }
+
+  // Goes on with another model of the same structure; the energy taken in the impulse that it takes [J].
+  double set_model(const std::shared_ptr<const Model>& next, bool handed_over) {
+    Handover after = hand_over(model(), now(), *next);
+    run_.trajectory.change_model(next);
+    if (!handed_over) run_.trajectory.pop_back();  // the first state of all
+    append(std::move(after.state), StepReport{});
+    model_changed();
+    return after.energy_lost * run_.trajectory.structure().sectors;
+  }
+
+  void model_changed() {
+    integrator_ = fresh_integrator();
+    probing_.reset();
+    sides_.forget_model();
+    have_begin_ = false;
+  }
+
+  // --- the deployed pose ---
+
+  double fold(const State& state) {
+    q_.resize(system().coordinates());
+    system().expand(state.z, q_);
+    return deployment_.remaining_sine(q_);
+  }
+
+  bool crosses(const State& next) {
+    if (deployment_.empty() || deployed_) return false;
+    return fold(now()) > margin_ && fold(next) <= margin_;
+  }
+
+  // Could the fold angle reach zero within a time? Where sine * rate is constant it does so after sine / 2
+  // rate.
+  bool may_cross(double within) {
+    if (deployment_.empty() || deployed_) return false;
+    const double sine = fold(now());
+    system().expand_rate(now().w, q_);
+    return sine > 0 && (sine <= singular_margin || sine + 2 * within * deployment_.remaining_rate(q_) <= 0);
+  }
+
+  std::optional<State> locate(double h, double latest) {
+    const auto fresh = fresh_integrator();
+    std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
+    if (event && event->t > latest) event.reset();
+    return event;
+  }
+
+  // The deployed pose where this step reaches it; a step that failed without that is tried in parts. False
+  // where the run ends.
+  bool find_deployed(Probe& to, double h, std::optional<State>& event) {
+    if (!to.report.ok() && may_cross(1.5 * h)) event = locate(h, now().t + 1.05 * h);
+    if (!event && !to.report.ok()) retry(*integrator_, to, h);
+    if (!event && !to.report.ok() && may_cross(near_deployed * h))
+      event = locate(h, now().t + 2 * near_deployed * h);
+    if (event || !to.report.ok() || !crosses(to.state)) return true;
+    event = locate(h, std::numeric_limits<double>::infinity());
+    return event || fail("the deployed pose was passed but its time could not be located");
+  }
+
+  bool deployed(State& event, Probe& to, double h) {
+    deployed_ = true;
+    run_.events.push_back({"deployed", event.t});
+    if (run_.options.at_deployed == "pass")
+      return !to.report.ok() || std::abs(fold(to.state)) < margin_ ? step_over(h) : accept(to, target_);
+    project(system(), event);
+    while (run_.trajectory.size() > 1 && run_.trajectory.end_time() >= event.t) run_.trajectory.pop_back();
+    append(std::move(event), StepReport{.singular_event = true});
+    ++run_.steps;
+    if (run_.options.at_deployed == "latch") return latch();
+    run_.status = RunStatus::deployed;
+    return false;
+  }
+
+  // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
+  // on a stop is locked there.
+  bool latch() {
+    if (sides_.any_held()) base_ = sides_.lock_held(*base_);
+    base_ = latched_model(*base_, run_.options.eliminate_linear);
+    const double taken = set_model(sides_.any_active() ? sides_.model(*base_) : base_, true);
+    run_.events.push_back({"latched", now().t, taken});
+    return true;
+  }
+
+  // The step would land on the singular pose: end it a little behind instead. The grid goes on after that.
+  bool step_over(double h) {
+    Probe to;
+    for (const double length : {1.41, 1.73, 1.19, 2.24}) {
+      to.state = now();
+      integrator_->restart();
+      to.report = take_step(*integrator_, to.state, length * h);
+      if (to.report.ok()) return accept(to, target_ + (length - 1) * h);
+    }
+    return accept(to, target_);
+  }
+
+  Simulation& run_;
+  std::shared_ptr<const Model> base_;  // the model without what is held or pulls
+  const Deployment& deployment_;
+  OneSided sides_;
+  TimeGrid grid_;
+  double target_ = 0;  // of the present step
+  std::unique_ptr<Integrator> integrator_, probing_;
+  std::optional<StepControl> control_;
+  const System* controlled_ = nullptr;
+  Probe begin_;  // the present state
+  bool have_begin_ = false;
+  std::vector<double> last_touch_;  // of each stop
+  double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
+  long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
+  bool unwatched_said_ = false, deployed_ = false, ended_ = false;
+  double margin_ = singular_margin;  // a tenth of where the run began, if that is less
+  VectorXd q_;
+};
+
+Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& options)
+    : Stepper(model, options, initial_state(model->structure, model->system).state) {}
+
+Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& options, State start)
+    : run_{.trajectory = Trajectory(model, options), .options = options} {
+  if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);
+  run_.trajectory.append(std::move(start), StepReport{});
+  loop_ = std::make_unique<Loop>(run_, std::move(model));
+}
+
+Stepper::~Stepper() = default;
+
+bool Stepper::step() {
+  return loop_->step();
+}
+bool Stepper::advance_to(double t) {
+  return loop_->advance_to(t);
+}
+const State& Stepper::state() const {
+  return run_.trajectory.state(run_.trajectory.size() - 1);
+}
+const Model& Stepper::model() const {
+  return run_.trajectory.last_model();
+}
+const Simulation& Stepper::run() const {
+  return run_;
+}
+Simulation Stepper::take() {
+  return std::move(run_);
+}
+void Stepper::stop() {
+  loop_->end();
+  run_.status = RunStatus::stopped;
+  run_.message = "stopped by the user at t = " + seconds(time());
+}
+void Stepper::on_step(std::function<void(const State&, const StepReport&)> callback) {
+  loop_->on_step = std::move(callback);
+}
+
+}  // namespace unfurl

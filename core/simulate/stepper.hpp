@@ -1,0 +1,45 @@
+// A run step by step: what `simulate` drives from the start to the end.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "core/simulate/simulation.hpp"
+
+namespace unfurl {
+
+// Advances a model with the method, steps and limits of its options, and sees to all that happens on the way:
+// the edges of time, end stops, cables, the deployed pose, latches. A step that such an event divides is
+// solved in parts, each a step of the method that ends at the event.
+class Stepper {
+ public:
+  // From the model's start. Throws std::invalid_argument on an unknown method.
+  Stepper(std::shared_ptr<const Model> model, const SolverOptions& options);
+  // From a state of the model at any time before options.end_time; the grid of steps begins there.
+  Stepper(std::shared_ptr<const Model> model, const SolverOptions& options, State start);
+  ~Stepper();
+
+  // To the next time of the grid (an edge of time is one). False where the run has ended, at the end time, at
+  // the deployed pose or by a failure; run().status and run().message say which.
+  bool step();
+  // To this time, at most the end time; the step before it is shortened, the grid stays as it is. False where
+  // the run ended before.
+  bool advance_to(double t);
+
+  double time() const { return state().t; }
+  const State& state() const;
+  const Model& model() const;     // that the state belongs to: it changes with what is held or pulls
+  const Simulation& run() const;  // all so far
+  Simulation take();              // the same, for good: the stepper is of no use after it
+  void stop();                    // ends the run as stopped by the user
+
+  // Called with every state that is appended to the run, in order, the report of its step beside it.
+  void on_step(std::function<void(const State&, const StepReport&)> callback);
+
+ private:
+  class Loop;
+  Simulation run_;
+  std::unique_ptr<Loop> loop_;
+};
+
+}  // namespace unfurl

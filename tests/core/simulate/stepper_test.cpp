@@ -1,0 +1,130 @@
+// Runs step by step, and what is shown between steps.
+#include "core/simulate/stepper.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/integrators/integrator.hpp"
+#include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace stepper_test {
+
+TEST_CASE("a run step by step is the run of simulate, and can go on from any of its states") {
+  const auto model = make_model(double_pendulum());
+  const SolverOptions options = dvm_options(4, 0.01, 1.0);
+  const Simulation whole = simulate(model, options);
+  std::vector<double> seen;
+  Stepper stepper(model, options);
+  stepper.on_step([&](const State& s, const StepReport& report) {
+    CHECK(report.ok());
+    seen.push_back(s.t);
+  });
+  while (stepper.step()) {
+  }
+  CHECK(stepper.run().status == RunStatus::completed);
+  REQUIRE(seen.size() == 100);
+  CHECK(seen.back() == 1.0);
+  CHECK(stepper.state().z == whole.trajectory.state(100).z);
+  // From the middle: the same steps, but for their predictors, which leave round-off.
+  Stepper second(model, options, whole.trajectory.state(50));
+  while (second.step()) {
+  }
+  CHECK(second.run().steps == 50);
+  CHECK((second.state().z - whole.trajectory.state(100).z).lpNorm<Eigen::Infinity>() <= 1e-12);
+}
+
+TEST_CASE("a stepper goes to any time and keeps its grid") {
+  const auto model = make_model(double_pendulum());
+  Stepper stepper(model, dvm_options(5, 0.02, 1.0));
+  CHECK(stepper.advance_to(0.3137));
+  CHECK(stepper.time() == 0.3137);
+  CHECK(stepper.step());
+  CHECK(stepper.time() == Approx(0.32).epsilon(1e-15));
+  CHECK(stepper.advance_to(7.0));
+  CHECK(stepper.time() == 1.0);
+  CHECK_FALSE(stepper.step());
+  const Simulation whole = simulate(model, dvm_options(5, 0.02, 1.0));
+  // One step was divided: the method's error of order 8 in two of its parts.
+  CHECK((stepper.state().z - whole.trajectory.state(50).z).lpNorm<Eigen::Infinity>() <= 1e-9);
+}
+
+TEST_CASE("between its steps a motion is as accurate as at them") {
+  // The upright of the ladder turns by up to 1.5 rad in a step: a cubic through the ends is centimetres off.
+  const Simulation run = simulate(make_model(ladder_structure(1, 1.0)), dvm_options(7, 0.1, 3.0));
+  REQUIRE(run.status == RunStatus::completed);
+  double worst_length = 0, worst = 0;
+  const Simulation fine = simulate(make_model(ladder_structure(1, 1.0)), dvm_options(7, 0.1 / 8, 3.0));
+  for (std::size_t i = 0; i < fine.trajectory.size(); ++i) {
+    const double t = fine.trajectory.time(i);
+    const VectorXd q = run.trajectory.positions_at(t);
+    for (const Rod& rod : run.trajectory.structure().rods)
+      worst_length =
+          std::max(worst_length,
+                   std::abs((q.segment<3>(3 * rod.b) - q.segment<3>(3 * rod.a)).norm() / rod.length - 1));
+    worst = std::max(worst, (q - fine.trajectory.positions(i)).lpNorm<Eigen::Infinity>());
+    CHECK((run.trajectory.velocities_at(t) - fine.trajectory.velocities(i)).lpNorm<Eigen::Infinity>() <=
+          1e-6);
+  }
+  double at_steps = 0;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i)
+    at_steps = std::max(
+        at_steps, (run.trajectory.positions(i) - fine.trajectory.positions(8 * i)).lpNorm<Eigen::Infinity>());
+  CHECK(worst_length <= 1e-9);
+  CHECK(worst <= 3 * at_steps + 1e-11);
+}
+
+TEST_CASE("every method's motion is shown to its own accuracy between steps") {
+  const auto model = make_model(double_pendulum());
+  for (const Method& method : methods()) {
+    SolverOptions options = dvm_options(4, 0.05, 1.0);
+    options.method = method.name;
+    const Simulation run = simulate(model, options);
+    const Simulation truth = simulate(model, dvm_options(7, 0.01, 1.0));
+    double at = 0, between = 0;
+    for (std::size_t i = 0; i < truth.trajectory.size(); ++i) {
+      const double off =
+          (run.trajectory.positions_at(truth.trajectory.time(i)) - truth.trajectory.positions(i))
+              .lpNorm<Eigen::Infinity>();
+      (i % 5 == 0 ? at : between) = std::max(i % 5 == 0 ? at : between, off);
+    }
+    INFO(method.name << ": " << at << " at steps, " << between << " between");
+    CHECK(between <= 2 * at + 1e-10);
+  }
+}
+
+TEST_CASE("what is shown goes through impacts without ringing") {
+  const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "A"
+position = [0, 0, 0.2]
+mass = 2
+[[constraints]]
+kind = "coordinate_stop"
+name = "floor"
+nodes = ["A"]
+direction = [0, 0, 1]
+min = 0
+restitution = 0.5
+[gravity]
+acceleration = [0, 0, -10]
+[solver]
+stages = 4
+step = 0.15
+end_time = 0.5
+)");
+  for (int k = 0; k <= 100; ++k) {
+    const double t = 0.005 * k;
+    const double z = t < 0.2   ? 0.2 - 5 * t * t
+                     : t < 0.4 ? (t - 0.2) - 5 * (t - 0.2) * (t - 0.2)
+                               : 0.5 * (t - 0.4) - 5 * (t - 0.4) * (t - 0.4);
+    CHECK(run.trajectory.positions_at(t)[2] == Approx(z).margin(1e-10));
+  }
+}
+
+}  // namespace stepper_test
