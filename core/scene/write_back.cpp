@@ -162,14 +162,23 @@ std::optional<std::string> edited(std::string text, const std::string& name,
   return text;
 }
 
+bool sets_title(const std::vector<std::string>& overrides) {
+  return std::ranges::any_of(overrides, [](const std::string& text) { return text.starts_with("title="); });
+}
+
 }  // namespace
 
 WrittenBack write_back(std::string_view text, const std::string& name,
                        const std::vector<std::string>& overrides, const std::string& folder) {
-  const std::string meant = scene_text(read_scene_text(text, name, overrides, folder));
+  const Scene scene = read_scene_text(text, name, overrides, folder);
+  const std::string meant = scene_text(scene);
   try {
-    if (auto result = edited(std::string(text), name, overrides))
-      if (scene_text(read_scene_text(*result, name, {}, folder)) == meant) return {*std::move(result), false};
+    if (auto result = edited(std::string(text), name, overrides)) {
+      Scene written = read_scene_text(*result, name, {}, folder);
+      // The file keeps its title, which the command line drops where it may not fit any more (title.hpp).
+      if (!sets_title(overrides)) written.title = scene.title;
+      if (scene_text(written) == meant) return {*std::move(result), false};
+    }
   } catch (const SceneError&) {  // the text has the key in a way that the search above does not know
   }
   return {meant, true};
