@@ -213,8 +213,9 @@ void refuse_unknown_variable(const TomlTree& root, const std::string& override_t
     for (const auto& [variable, value] : table->entries) known.push_back(variable);
   for (const auto& variable : known)
     if (variable == name) return;
-  problems.push_back(
-      {{override_source, 0, 0}, key, "the scene has no such variable" + did_you_mean(name, known)});
+  SceneProblem problem{{override_source, 0, 0}, key, "the scene has no such variable"};
+  problem.message += did_you_mean(name, known);
+  problems.push_back(std::move(problem));
 }
 
 }  // namespace

@@ -36,9 +36,9 @@ TEST_CASE("a document becomes a tree with locations") {
 
 TEST_CASE("entries keep the file's order") {
   const TomlTree tree = parse_toml("z = 1\na = 2\nm = 3\n", "x.toml");
-  CHECK(tree.entries[0].first == "z");
-  CHECK(tree.entries[1].first == "a");
-  CHECK(tree.entries[2].first == "m");
+  CHECK(tree.entries[0].key == "z");
+  CHECK(tree.entries[1].key == "a");
+  CHECK(tree.entries[2].key == "m");
 }
 
 TEST_CASE("a UTF-8 byte-order mark is skipped, others are named") {
