@@ -54,7 +54,11 @@ class Alignment : public ConstraintBlock {
   double length_;
 };
 
-// With u = b - a, w = c - a: du x w + u x dw; by a: -(d/du + d/dw).
+// With u = b - a, w = c - a: d(u x w) = du x w + u x dw; by a: -(d/du + d/dw). The cross product has no share
+// along the line e, whatever the pose: one of the rows follows from the others. Off the line the derivatives
+// would have one, of the size of the error: a third equation where there are two, which the stages of an
+// explicit method would answer with accelerations of order one. So they are taken across the line,
+// P = 1 - e e^T, and the rows have rank two everywhere; on the line nothing changes.
 class Collinear final : public Alignment {
  public:
   using Alignment::Alignment;
@@ -75,8 +79,9 @@ class Collinear final : public Alignment {
   void jacobian(const double* q, double* g) const override {
     for (const Entry& e : entries_) {
       Eigen::Map<Eigen::Matrix<double, 3, 9, Eigen::RowMajor>> rows(g);
-      rows.middleCols<3>(3) = -cross_matrix(edge(e, 2, q)) / length_;
-      rows.middleCols<3>(6) = cross_matrix(edge(e, 1, q)) / length_;
+      const Mat3 P = across(e, q) / length_;
+      rows.middleCols<3>(3) = -P * cross_matrix(edge(e, 2, q));
+      rows.middleCols<3>(6) = P * cross_matrix(edge(e, 1, q));
       rows.leftCols<3>() = -rows.middleCols<3>(3) - rows.middleCols<3>(6);
       g += 27;
     }
@@ -84,7 +89,7 @@ class Collinear final : public Alignment {
   // lambda . (u x w): gradient w x lambda by u, lambda x u by w.
   void add_force(const double* q, const double* lambda, double scale, double* f) const override {
     for (const Entry& e : entries_) {
-      const Vec3 l = scale / length_ * Eigen::Map<const Vec3>(lambda);
+      const Vec3 l = scale / length_ * (across(e, q) * Eigen::Map<const Vec3>(lambda));
       const Vec3 by_u = edge(e, 2, q).cross(l), by_w = l.cross(edge(e, 1, q));
       Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[0])) -= by_u + by_w;
       Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[1])) += by_u;
@@ -92,16 +97,19 @@ class Collinear final : public Alignment {
       lambda += 3;
     }
   }
-  void bias(const double*, const double* v, double* phi_dd) const override {
+  void bias(const double* q, const double* v, double* phi_dd) const override {
     for (const Entry& e : entries_) {
-      three(phi_dd) = 2 / length_ * edge(e, 1, v).cross(edge(e, 2, v));
+      three(phi_dd) = 2 / length_ * (across(e, q) * edge(e, 1, v).cross(edge(e, 2, v)));
       phi_dd += 3;
     }
   }
-  // Row k of u x w: d^2/du dw = -[e_k]_x, spread over a, b, c.
-  void curvature(const double*, const double* lambda, double* hess) const override {
+  // Row k of u x w: d^2/du dw = -[e_k]_x, spread over a, b, c. Of multipliers across the line.
+  void curvature(const double* q, const double* lambda, double* hess) const override {
     for (std::size_t row = 0; row < 3 * entries_.size(); ++row) {
-      const Mat3 B = -lambda[row] / length_ * cross_matrix(Vec3::Unit(static_cast<Index>(row % 3)));
+      const Entry& e = entries_[row / 3];
+      const auto k = static_cast<Index>(row % 3);
+      const double l = across(e, q).row(k).dot(Eigen::Map<const Vec3>(lambda + row - row % 3));
+      const Mat3 B = -l / length_ * cross_matrix(Vec3::Unit(k));
       Eigen::Matrix<double, 9, 9> H;
       H << B + B.transpose(), -B.transpose(), -B, -B, Mat3::Zero(), B, -B.transpose(), B.transpose(),
           Mat3::Zero();
@@ -112,6 +120,13 @@ class Collinear final : public Alignment {
  private:
   static Vec3 edge(const Entry& e, std::size_t k, const double* x) {
     return at(x, e.nodes[k]) - at(x, e.nodes[0]);
+  }
+  // P, with the line along the longer of u and w.
+  static Mat3 across(const Entry& e, const double* q) {
+    const Vec3 u = edge(e, 1, q), w = edge(e, 2, q), along = u.squaredNorm() >= w.squaredNorm() ? u : w;
+    const double square = along.squaredNorm();
+    if (!(square > 0)) return Mat3::Identity();
+    return Mat3::Identity() - along * along.transpose() / square;
   }
 };
 

@@ -1,5 +1,6 @@
 // Every row of the constraint table: Jacobian, curvature, bias and force against finite differences of the
 // values.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -48,6 +49,17 @@ MatrixXd dense_jacobian(const ConstraintBlock& block, const VectorXd& q) {
   return G;
 }
 
+// Rows of collinear nodes are differentiated across their line, which is what their value does on it: nodes
+// 0, 1 and 2 on a line e, velocities that keep them there, multipliers across it.
+void put_on_a_line(VectorXd& q, VectorXd& v, VectorXd& lambda) {
+  const Vec3 e = Vec3(0.36, -0.48, 0.8), spin(0.3, 0.7, -0.2);
+  q.segment<3>(3) = q.segment<3>(0) + 0.9 * e;
+  q.segment<3>(6) = q.segment<3>(0) - 0.4 * e;
+  v.segment<3>(3) = v.segment<3>(0) + 0.9 * spin.cross(e) + 0.15 * e;
+  v.segment<3>(6) = v.segment<3>(0) - 0.4 * spin.cross(e) - 0.65 * e;
+  lambda -= e.dot(lambda) * e;
+}
+
 }  // namespace
 
 TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
@@ -62,6 +74,7 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
     VectorXd q(n), v(n), lambda(m);
     for (VectorXd* x : {&q, &v, &lambda})
       for (Index i = 0; i < x->size(); ++i) (*x)[i] = uniform(random);
+    if (kind.kind == "collinear") put_on_a_line(q, v, lambda);
     const MatrixXd G = dense_jacobian(*block, q);
     // Central differences: round-off 1e-16 / 3e-6 = 3e-11; truncation step^2 = 1e-11 times derivatives of up
     // to 100 for angles.
@@ -113,6 +126,33 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
       block->add_target(order - 1, 0.8 - step, 1.0, earlier.data());
       CHECK(((later - earlier) / (2 * step) - rate).cwiseAbs().maxCoeff() <= 1e-7);
     }
+  }
+}
+
+TEST_CASE("collinear rows have rank two off their line, too") {
+  const Structure structure = sample();
+  const auto kinds = constraint_kinds();
+  const auto kind =
+      std::find_if(kinds.begin(), kinds.end(), [](const auto& k) { return k.kind == "collinear"; });
+  REQUIRE(kind != kinds.end());
+  const auto block = kind->make(structure);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const double off : {1e-1, 1e-4, 1e-8}) {
+    VectorXd q(12), v(12), lambda = VectorXd::Zero(3);
+    for (Index i = 0; i < 12; ++i) {
+      q[i] = uniform(random);
+      v[i] = uniform(random);
+    }
+    put_on_a_line(q, v, lambda);
+    q.segment<3>(3) += off * Vec3(0.5, 0.6, -0.2);
+    const MatrixXd G = dense_jacobian(*block, q);
+    // Three rows across one direction: the sum that is left is round-off of entries of order one.
+    VectorXd bias(3);
+    block->bias(q.data(), v.data(), bias.data());
+    const Vec3 e = (q.segment<3>(3) - q.segment<3>(0)).normalized();
+    CHECK((e.transpose() * G).cwiseAbs().maxCoeff() <= 1e-14);
+    CHECK(std::abs(e.dot(bias)) <= 1e-14);
   }
 }
 
