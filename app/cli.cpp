@@ -9,7 +9,9 @@
 #include "app/command.hpp"
 #include "app/failure.hpp"
 #include "app/help.hpp"
+#include "app/interrupt.hpp"
 #include "app/own_options.hpp"
+#include "app/printable_output.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/study/table.hpp"
 
@@ -201,6 +203,9 @@ int dispatch(const std::vector<std::string>& words) {
 
 int run_command_line(const std::vector<std::string>& words) {
   int code = exit_internal;
+  const PrintableOutput out(std::cout), err(std::cerr);
+  end_on_signals();
+  end_in_words();
   try {
     code = dispatch(words);
   } catch (...) {

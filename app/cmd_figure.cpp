@@ -8,7 +8,6 @@
 #include "app/run_figures.hpp"
 #include "app/scene_run.hpp"
 #include "core/model/nearest_name.hpp"
-#include "core/scene/build.hpp"
 #include "render/plot/figure_data.hpp"
 
 namespace unfurl {
@@ -52,14 +51,18 @@ int cmd_figure(const Arguments& arguments) {
   const std::filesystem::path output(arguments.output);
   const bool file = single_file(output, arguments);
   const Scene scene = scene_of(arguments);
-  auto model = build_model(scene);
+  auto model = model_of(scene, arguments);
   if (file) require_writable(output);
+  // A directory may hold whatever it does: nothing but figures of ours is replaced in it.
+  OwnDirectory directory(file ? "" : arguments.output, true, "figure", DirectoryLock::Use::shareable);
+  if (!file) directory.lock().share();
   std::unique_ptr<GlContext> context;
   if (!file || output.extension() == ".png") context = make_offscreen_context();
 
   const InterruptGuard guard;
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose_run(run);
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  throw_if_interrupted();
+  const Diagnostics diagnostics = judge_run(run);
   if (arguments.names.size() == 2 && kinds.size() == 1) require_data(*kinds[0], scene, run, diagnostics);
   const auto writer =
       context ? std::make_unique<FigureWriter>(*context, options) : std::make_unique<FigureWriter>(options);

@@ -8,7 +8,6 @@
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
 #include "app/scene_run.hpp"
-#include "core/scene/build.hpp"
 #include "render/image/image_scale.hpp"
 #include "render/image/png.hpp"
 #include "render/scene/frame_builder.hpp"
@@ -32,14 +31,13 @@ FrameStyle panel_style(const Scene& scene, const Simulation& run, const Diagnost
   return style;
 }
 
-// Empty where it was interrupted.
 Image draw_poses(const FrameStyle& style, const Trajectory& run, std::size_t poses, int supersample,
                  GlContext& context) {
   const FrameBuilder builder(run, style);
   Renderer renderer(context, style.width, style.height);
   std::vector<Image> images;
   for (const double t : pose_times(run, poses)) {
-    if (interrupted()) return {};
+    throw_if_interrupted();
     DrawList list = builder.build(t);
     list.ground.grid = false;  // its lines would break where two poses meet
     list.stars = 0;
@@ -54,19 +52,16 @@ int cmd_poster(const Arguments& arguments) {
   const std::filesystem::path output(arguments.output);
   require_writable_png(output, "a poster");
   const Scene scene = scene_of(arguments);
-  auto model = build_model(scene);
+  auto model = model_of(scene, arguments);
   const auto context = make_offscreen_context(arguments.threads);
 
   const InterruptGuard guard;
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose_run(run);
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  throw_if_interrupted();
+  const Diagnostics diagnostics = judge_run(run);
   const FrameStyle style = panel_style(scene, run, diagnostics);
   const Image poster = draw_poses(style, run.trajectory, static_cast<std::size_t>(arguments.poses),
                                   scene.render.supersample, *context);
-  if (poster.rgba.empty()) {
-    std::cerr << "unfurl: interrupted before there was anything to write\n";
-    return exit_interrupted;
-  }
   write_png(output, poster, has_alpha(scene.render));
   report_run(run, diagnostics, arguments);
   return exit_code_of(run, diagnostics);

@@ -1,8 +1,8 @@
 // unfurl render SCENE -o DIR: simulate; write data, frames, animation and figures.
 #include <iostream>
+#include <optional>
 
 #include "app/command.hpp"
-#include "app/directory_lock.hpp"
 #include "app/film.hpp"
 #include "app/frame_range.hpp"
 #include "app/interrupt.hpp"
@@ -10,7 +10,6 @@
 #include "app/run_figures.hpp"
 #include "app/scene_run.hpp"
 #include "core/export/atomic_file.hpp"
-#include "core/scene/build.hpp"
 
 namespace unfurl {
 
@@ -19,16 +18,16 @@ int cmd_render(const Arguments& arguments) {
   const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
   check_film(scene);
-  auto model = build_model(scene);
-  const auto directory = open_output_directory(arguments.output, arguments.force);
-  DirectoryLock lock(directory, DirectoryLock::Use::shareable);
-  if (lock.alone()) remove_unfinished(directory);
+  auto model = model_of(scene, arguments);
+  OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
+  const std::filesystem::path& directory = output.path();
+  DirectoryLock& lock = output.lock();
   const FilmFolder folder(directory, scene);
   if (folder.holds_another() && !arguments.force)
     throw FileError(directory,
                     "holds frames of another film (the scene, its settings or the program changed); "
                     "use --force to start over, or another -o");
-  if (!lock.alone() && !folder.holds_this())
+  if (lock.shared() && !folder.holds_this())
     throw FileError(directory, "another unfurl is writing another film into it; use another -o");
   if (!arguments.frames.empty()) frame_range(arguments.frames, 100000);
   if (folder.fresh()) folder.claim();  // others may join before the simulation ends
@@ -37,13 +36,15 @@ int cmd_render(const Arguments& arguments) {
       make_offscreen_context(arguments.threads);  // missing graphics are found before the work
 
   const InterruptGuard guard;
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose_run(run);
-  if (!folder.holds_this()) clear_old_results(directory);
+  std::optional<FinishedWork> keeping(std::in_place);  // of a motion that is interrupted too
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  const Diagnostics diagnostics = judge_run(run);
+  if (!folder.holds_this()) FilmFolder::clear(output.written());
   folder.claim();
   lock.share();
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics);
+  keeping.reset();
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary << std::flush;
   if (exit_code_of(run, diagnostics) == exit_interrupted) return exit_interrupted;

@@ -6,7 +6,6 @@
 #include "app/interrupt.hpp"
 #include "app/output_directory.hpp"
 #include "app/scene_run.hpp"
-#include "core/scene/build.hpp"
 
 namespace unfurl {
 
@@ -18,9 +17,10 @@ bool keeps_film(const std::filesystem::path& directory, const Scene& scene, bool
   if (!std::filesystem::exists(directory / "film.json", error)) return false;
   const FilmFolder folder(directory, scene);
   if (folder.holds_another() && !force)
-    throw FileError(directory,
-                    "holds the film of another scene (or of other settings, or drawn by another version); use "
-                    "--force to replace it, or another -o");
+    throw FileError(
+        directory,
+        "holds the film of another scene (or of other settings, or drawn by another version); use "
+        "--force to replace it, or another -o");
   return folder.holds_this();
 }
 
@@ -31,15 +31,16 @@ int cmd_run(const Arguments& arguments) {
     throw UsageError("-o DIR is missing (or --json, for the summary alone)");
   const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
-  auto model = build_model(scene);
-  const OwnDirectory output(arguments.output, arguments.force);
+  auto model = model_of(scene, arguments);
+  OwnDirectory output(arguments.output, arguments.force, "run");
   const std::filesystem::path& directory = output.path();
   const bool film = !directory.empty() && keeps_film(directory, scene, arguments.force);
 
   const InterruptGuard guard;
-  const Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = diagnose_run(run);
-  if (!directory.empty() && !film) clear_old_results(directory);
+  const FinishedWork keeping;  // of a motion that is interrupted too
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  const Diagnostics diagnostics = judge_run(run);
+  if (!directory.empty() && !film) FilmFolder::clear(output.written());
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);

@@ -46,7 +46,7 @@ int cmd_stress(const Arguments& arguments) {
   StudySession session(arguments, "stressing", scene_text(scene), "stress.csv");
   Stress stress;
   {
-    Journal journal(session.journal(), stress_columns(), stress_key_columns);
+    Journal journal(session.journal(), stress_columns(), stress_key_columns, stress_number_columns());
     stress = run_stress(plan, journal, session.hooks());
   }
   if (stress.complete && arguments.study.extremes.empty())

@@ -5,7 +5,6 @@
 #include "app/interrupt.hpp"
 #include "app/scene_run.hpp"
 #include "app/study_session.hpp"
-#include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/write.hpp"
 #include "core/study/models.hpp"
@@ -38,9 +37,8 @@ Report study_report(const Study& study, const Scene& scene, const std::vector<st
   report.paragraph("Errors are the largest distance of a node from the reference at " +
                    std::string("equally spaced times up to ") + short_number(study.end, 6) + " s" +
                    (study.before.empty() ? "" : ", shortly before " + study.before) +
-                   ". The reference: " + study.reference + "; its last two solutions agree to " +
-                   short_number(study.reference_uncertainty) +
-                   " m. CPU times are medians of runs that had the machine's "
+                   ". The reference: " + study.reference + "; " + reference_words(study) +
+                   ". CPU times are medians of runs that had the machine's "
                    "core to themselves; smallest and largest are in `study.csv`.");
   report.heading("Observed orders");
   report.add(orders_table(study));
@@ -80,7 +78,7 @@ int cmd_study(const Arguments& arguments) {
   if (arguments.study.models) return study_models(arguments);
   const Range range = step_range(arguments.study.ladder);
   const Scene scene = scene_of(arguments);
-  auto model = build_model(scene);
+  auto model = model_of(scene, arguments);
   const InterruptGuard guard;
   StudySession session(arguments, "measuring", scene_text(scene), "study.csv");
   const StudyHooks hooks = session.hooks();
@@ -90,7 +88,7 @@ int cmd_study(const Arguments& arguments) {
   if (arguments.study.repeats > 0) plan.timing.repeats = arguments.study.repeats;
   Study study;
   {
-    Journal journal(session.journal(), study_columns(), study_key_columns);
+    Journal journal(session.journal(), study_columns(), study_key_columns, study_number_columns());
     study = run_study(plan, journal, hooks);
   }
   if (study.complete) session.write("study.csv", csv_text(points_table(study)));

@@ -17,11 +17,8 @@ DirectoryLock::DirectoryLock(const std::filesystem::path& directory, Use use)
   using namespace std::chrono_literals;
   for (int attempt = 0; attempt < 20; ++attempt) {  // who begins to share holds it alone for a moment
     if (attempt > 0) std::this_thread::sleep_for(50ms);
-    if (take(LOCK_EX)) return;
-    if (use == Use::shareable && take(LOCK_SH)) {
-      alone_ = false;
-      return;
-    }
+    if (take(LOCK_EX, Held::alone)) return;
+    if (use == Use::shareable && take(LOCK_SH, Held::shared)) return;
   }
   ::close(file_);
   throw FileError(directory,
@@ -32,13 +29,19 @@ DirectoryLock::~DirectoryLock() {
   if (file_ >= 0) ::close(file_);
 }
 
-bool DirectoryLock::take(int mode) {
-  return file_ < 0 || ::flock(file_, mode | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+// False where another holds it.
+bool DirectoryLock::take(int mode, Held held) {
+  if (file_ >= 0 && ::flock(file_, mode | LOCK_NB) == 0) {
+    held_ = held;
+    return true;
+  }
+  if (file_ >= 0 && errno == EWOULDBLOCK) return false;
+  held_ = Held::unknown;
+  return true;
 }
 
 void DirectoryLock::share() {
-  take(LOCK_SH);
-  alone_ = false;
+  take(LOCK_SH, Held::shared);
 }
 
 }  // namespace unfurl

@@ -5,7 +5,8 @@
 namespace unfurl {
 
 // Held while a verb writes into a directory, so that two of them do not mix their files there. It ends with
-// the object or the process, whichever comes first. Where the file system knows no locks there is none.
+// the object or the process, whichever comes first. Where the file system knows no locks nobody can tell who
+// else is at work.
 class DirectoryLock {
  public:
   enum class Use { alone, shareable };
@@ -17,14 +18,17 @@ class DirectoryLock {
   DirectoryLock(const DirectoryLock&) = delete;
   DirectoryLock& operator=(const DirectoryLock&) = delete;
 
-  bool alone() const { return alone_; }
+  bool alone() const { return held_ == Held::alone; }    // for certain
+  bool shared() const { return held_ == Held::shared; }  // others may be at work
+  bool unknown() const { return held_ == Held::unknown; }
   void share();  // lets in others whose use is shareable
 
  private:
-  bool take(int mode);
+  enum class Held { alone, shared, unknown };
+  bool take(int mode, Held held);
 
   int file_ = -1;
-  bool alone_ = true;
+  Held held_ = Held::unknown;
 };
 
 }  // namespace unfurl

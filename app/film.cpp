@@ -96,7 +96,7 @@ bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation&
   for (std::size_t k = range.first; k < range.end; ++k)
     if (!folder.finished(k)) missing.push_back(k);
   if (missing.empty()) return true;
-  folder.set_encoded(false);
+  folder.forget_films();
   const bool alpha = has_alpha(options);
   const FrameStyle style = film_style(scene, run, diagnostics);
   const FrameBuilder builder(run.trajectory, style);
@@ -111,11 +111,12 @@ bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation&
     progress.show(static_cast<double>(i) / static_cast<double>(missing.size()));
     auto image = std::make_shared<const Image>(renderer.draw(builder.build(shots[missing[i]])));
     writers.add([image = std::move(image), path = folder.frame(missing[i]), &options, alpha] {
-      if (options.supersample == 1) return write_png(path, *image, alpha);
-      write_png(path, scaled_down(*image, options.width, options.height), alpha);
+      if (options.supersample == 1) return write_png(path, *image, alpha, Flush::later);
+      write_png(path, scaled_down(*image, options.width, options.height), alpha, Flush::later);
     });
   }
   writers.finish();
+  flush_files(folder.frame(0).parent_path());
   return true;
 }
 

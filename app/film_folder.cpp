@@ -1,14 +1,14 @@
 #include "app/film_folder.hpp"
 
 #include <array>
-#include <cstdint>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/export/atomic_file.hpp"
+#include "core/export/checksum.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
+#include "render/image/png.hpp"
 
 namespace unfurl {
 
@@ -16,24 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// FNV-1a with 64 bits: tells films apart, does not protect from malice.
-class Hash {
- public:
-  void add(std::string_view bytes) {
-    for (const char c : bytes) value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  }
-  std::string text() const {
-    std::array<char, 17> digits{};
-    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(value_));
-    return digits.data();
-  }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ULL;
-};
-
 std::string text_of(const fs::path& path) {
   return read_text_file(path.string()).text;
+}
+
+bool holds_frames(const fs::path& directory) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory / "frames", error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("frame_") && name.ends_with(".png")) return true;
+  }
+  return false;
 }
 
 nlohmann::json record_of(const fs::path& directory) {
@@ -41,12 +34,18 @@ nlohmann::json record_of(const fs::path& directory) {
   return json.is_object() ? json : nlohmann::json::object();
 }
 
+// Empty where there is no such text: the file may be anybody's.
+std::string text_in(const nlohmann::json& record, const char* key) {
+  const auto found = record.is_object() ? record.find(key) : record.end();
+  return found != record.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
 }  // namespace
 
 std::string film_fingerprint(const Scene& scene) {
   Scene bare = scene;
   bare.render = without_encoding(scene.render);
-  Hash hash;
+  Checksum hash;
   hash.add(scene_text(bare));
   hash.add(text_of("/proc/self/exe"));  // another build may draw otherwise
   hash.add(UNFURL_VERSION);
@@ -54,25 +53,26 @@ std::string film_fingerprint(const Scene& scene) {
 }
 
 FilmFolder::FilmFolder(fs::path directory, const Scene& scene)
-    : directory_(std::move(directory)), fingerprint_(film_fingerprint(scene)) {
-  Hash hash;
+    : directory_(std::move(directory)),
+      fingerprint_(film_fingerprint(scene)),
+      size_(scene.render.width, scene.render.height) {
+  Checksum hash;
   hash.add(fingerprint_);
   hash.add(scene_text(scene));
   encoding_ = hash.text();
 }
 
 bool FilmFolder::holds_this() const {
-  return record_of(directory_).value("fingerprint", "") == fingerprint_;
+  return text_in(record_of(directory_), "fingerprint") == fingerprint_;
 }
 
 bool FilmFolder::holds_another() const {
-  if (holds_this()) return false;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(directory_ / "frames", error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("frame_") && name.ends_with(".png")) return true;
-  }
-  return false;
+  return !holds_this() && holds_frames(directory_);
+}
+
+void FilmFolder::clear(WrittenFiles& written) {
+  written.remove_all();
+  if (holds_frames(written.directory())) written.keep_aside("frames");
 }
 
 bool FilmFolder::fresh() const {
@@ -85,7 +85,7 @@ void FilmFolder::claim() const {
   std::error_code error;
   fs::create_directories(frames, error);
   if (error) throw FileError(frames, error.value());
-  if (!holds_this()) set_encoded(false);
+  if (!holds_this()) forget_films();
 }
 
 fs::path FilmFolder::frame(std::size_t index) const {
@@ -94,24 +94,32 @@ fs::path FilmFolder::frame(std::size_t index) const {
   return directory_ / "frames" / name.data();
 }
 
-// Our frames appear whole or not at all, but a copy between machines may have been cut short.
+// Our frames appear whole or not at all, but a copy between machines may have been cut short, and disks fail.
 bool FilmFolder::finished(std::size_t index) const {
-  std::ifstream in(frame(index), std::ios::binary | std::ios::ate);
-  constexpr std::string_view end("IEND\xae\x42\x60\x82", 8);
-  if (!in || in.tellg() < static_cast<std::streamoff>(end.size())) return false;
-  std::string tail(end.size(), '\0');
-  in.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
-  in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
-  return tail == end;
+  if (whole_.contains(index)) return true;
+  if (whole_png(frame(index)) != size_) return false;
+  whole_.insert(index);
+  return true;
 }
 
-bool FilmFolder::encoded() const {
-  return record_of(directory_).value("encoded", "") == encoding_;
+bool FilmFolder::encoded(const std::string& film) const {
+  const nlohmann::json record = record_of(directory_);
+  const auto films = record.find("films");
+  if (films == record.end() || !films->is_object() || !films->contains(film)) return false;
+  const std::string sum = text_in((*films)[film], "checksum");
+  return !sum.empty() && text_in((*films)[film], "settings") == encoding_ &&
+         sum == checksum_of_file(directory_ / film);
 }
 
-void FilmFolder::set_encoded(bool encoded) const {
+void FilmFolder::set_encoded(const std::string& film) const {
+  nlohmann::json record = record_of(directory_);
+  record["films"][film] = {{"settings", encoding_}, {"checksum", checksum_of_file(directory_ / film)}};
+  write_file_atomically(directory_ / "film.json", record.dump(2) + "\n");
+}
+
+void FilmFolder::forget_films() const {
   const nlohmann::ordered_json record = {
-      {"unfurl", UNFURL_VERSION}, {"fingerprint", fingerprint_}, {"encoded", encoded ? encoding_ : ""}};
+      {"unfurl", UNFURL_VERSION}, {"fingerprint", fingerprint_}, {"films", nlohmann::json::object()}};
   write_file_atomically(directory_ / "film.json", record.dump(2) + "\n");
 }
 

@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "app/output_directory.hpp"
 
-#include <chrono>
+#include <iostream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "app/exit_code.hpp"
 #include "core/export/atomic_file.hpp"
@@ -15,12 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Put into directories that were empty before, so that a run that was killed can be repeated without --force.
-constexpr const char* marker = ".unfurl";
-
 bool holds_our_results(const fs::path& directory) {
-  std::error_code error;
-  if (fs::exists(directory / marker, error)) return true;
+  if (WrittenFiles::begun_here(directory)) return true;
   const TextFile summary = read_text_file((directory / "summary.json").string());
   const auto json = nlohmann::json::parse(summary.text, nullptr, false);
   return json.is_object() && json.contains("unfurl");
@@ -32,59 +30,61 @@ std::string cause_of(const FileError& error) {
   return text.substr(text.rfind(": ") + 2);
 }
 
-// A directory that cannot be written to, or a full disk, is found now rather than after the work.
-void probe(const fs::path& directory, bool leave_marker) {
-  try {
-    write_file_atomically(directory / marker, "Made by unfurl " UNFURL_VERSION "\n");
-  } catch (const FileError& error) {
-    throw FileError(directory, cause_of(error));
-  }
-  std::error_code ignored;
-  if (!leave_marker) fs::remove(directory / marker, ignored);
+// Nothing is in it but what another unfurl that just begins has not finished.
+bool holds_nothing(const fs::path& directory) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (!is_unfinished_name(entry.path().filename().string())) return false;
+  if (error) throw FileError(directory, error.value());
+  return true;
 }
 
-void remove_matching(const fs::path& folder, std::string_view prefix, std::string_view suffix) {
+// Remove what programs that were killed left half written. Only for who is alone there.
+void remove_unfinished(const fs::path& directory) {
+  std::vector<std::string> folders{"", "frames", "figures"};
+  for (const ExportFormat& format : export_formats()) folders.emplace_back(format.result);
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(prefix) && name.ends_with(suffix)) fs::remove(entry.path(), error);
+  for (const std::string& folder : folders) {
+    if (fs::is_symlink(directory / folder, error) && !folder.empty()) continue;
+    for (const auto& entry : fs::directory_iterator(directory / folder, error))
+      if (is_unfinished_name(entry.path().filename().string())) remove_abandoned(entry.path());
   }
 }
 
 }  // namespace
 
-fs::path open_output_directory(const std::string& path, bool force) {
-  const fs::path directory(path);
-  std::error_code error;
-  if (fs::exists(directory, error) && !fs::is_directory(directory, error))
-    throw FileError(directory, "is a file; -o names a directory");
-  fs::create_directories(directory, error);
-  if (error) throw FileError(directory, error.value());
-  const bool empty = fs::is_empty(directory, error);
-  if (error) throw FileError(directory, error.value());
-  const bool ours = empty || holds_our_results(directory);
-  if (!ours && !force)
-    throw FileError(directory, "is not empty and holds no earlier results; use --force to write into it");
-  probe(directory, ours);
-  return directory;
-}
-
-OwnDirectory::OwnDirectory(const std::string& path, bool force) {
+OwnDirectory::OwnDirectory(const std::string& path, bool force, const std::string& owner,
+                           DirectoryLock::Use use)
+    : path_(path) {
   if (path.empty()) return;
-  path_ = open_output_directory(path, force);
-  lock_.emplace(path_, DirectoryLock::Use::alone);
-  remove_unfinished(path_);
+  std::error_code error;
+  if (fs::exists(path_, error) && !fs::is_directory(path_, error))
+    throw FileError(path_, "is a file; -o names a directory");
+  fs::create_directories(path_, error);
+  if (error) throw FileError(path_, error.value());
+  const bool empty = holds_nothing(path_);
+  if (!empty && !force && !holds_our_results(path_))
+    throw FileError(path_, "is not empty and holds no earlier results; use --force to write into it");
+  lock_.emplace(path_, use);
+  try {
+    require_writable(path_ / WrittenFiles::list_name);
+    written_.emplace(path_, owner, empty);
+  } catch (const FileError& problem) {
+    if (fs::is_symlink(path_ / WrittenFiles::list_name, error)) throw;
+    throw FileError(path_, cause_of(problem));
+  }
+  if (lock_->alone()) remove_unfinished(path_);
 }
 
-void remove_unfinished(const fs::path& directory) {
-  const auto old = fs::file_time_type::clock::now() - std::chrono::minutes(1);
-  std::error_code error;
-  for (const char* folder : {"", "frames", "figures"})
-    for (const auto& entry : fs::directory_iterator(directory / folder, error)) {
-      const std::string name = entry.path().filename().string();
-      if (!name.starts_with(".") || !name.ends_with(unfinished_suffix)) continue;
-      if (entry.last_write_time(error) < old && !error) fs::remove(entry.path(), error);
-    }
+OwnDirectory::~OwnDirectory() {
+  if (!written_) return;
+  const auto kept = written_->kept();
+  if (kept.empty()) return;
+  const std::string_view first = kept.front();
+  std::cerr << "unfurl: warning: " << first.substr(0, first.rfind(".kept-"))
+            << " was not, or not any more, what unfurl wrote; it is kept as " << first;
+  if (kept.size() > 1) std::cerr << ", and " << kept.size() - 1 << " more likewise";
+  std::cerr << "\n";
 }
 
 void require_writable(const fs::path& file) {
@@ -92,7 +92,8 @@ void require_writable(const fs::path& file) {
   if (fs::is_directory(file, ignored)) throw FileError(file, "is a directory");
   try {
     const PendingFile pending(file);
-    write_file_atomically(pending.name(), std::string_view("can this directory be written to?\n"));
+    write_file_atomically(pending.name(), std::string_view("can this directory be written to?\n"),
+                          Flush::later);
   } catch (const FileError& error) {
     throw FileError(file, cause_of(error));
   }
@@ -102,22 +103,6 @@ void require_writable_png(const fs::path& file, const std::string& what) {
   if (file.extension() != ".png")
     throw UsageError(what + " is written as .png, not " + in_quotes(file.extension().string()));
   require_writable(file);
-}
-
-void clear_old_results(const fs::path& directory) {
-  std::error_code error;
-  for (const char* name : {"summary.json", "series.csv", "trajectory.csv", "rod_forces.csv", "scene.toml",
-                           "animation.webp", "animation.mp4", "animation.gif", "film.json"})
-    fs::remove(directory / name, error);
-  for (const ExportFormat& format : export_formats()) {
-    for (const char* suffix : {".pvd", ".vtu", ".csv", ".npy"})
-      remove_matching(directory / format.result, "", suffix);
-    fs::remove(directory / format.result, error);
-  }
-  remove_matching(directory / "frames", "frame_", ".png");
-  for (const char* suffix : {".png", ".svg"}) remove_matching(directory / "figures", "", suffix);
-  fs::remove(directory / "frames", error);  // only where it is empty now
-  fs::remove(directory / "figures", error);
 }
 
 }  // namespace unfurl

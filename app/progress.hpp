@@ -1,6 +1,9 @@
 #pragma once
 
+#include <condition_variable>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace unfurl {
 
@@ -18,6 +21,21 @@ class Progress {
   std::string task_;
   bool shown_;
   int percent_ = -1;
+};
+
+// For work that cannot say how far it is: after a second, what it is and for how long it has been at it.
+class Waiting {
+ public:
+  Waiting(std::string task, bool quiet);
+  ~Waiting();
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool over_ = false, shown_ = false;
+  std::thread thread_;
 };
 
 }  // namespace unfurl

@@ -45,8 +45,10 @@ bool write_figures(const std::filesystem::path& directory, const std::vector<con
     if (!kinds[i]->applies(run, diagnostics)) continue;
     const Figure figure = kinds[i]->make(run, diagnostics);
     const std::string name(kinds[i]->name);
-    for (const char* extension : {".svg", ".pdf", ".png"})
+    for (const char* extension : {".svg", ".pdf", ".png"}) {
+      if (interrupted()) return false;
       writer.write(figure, directory / (name + extension));
+    }
     write_figure_data(figure, directory / (name + ".png"));
   }
   return true;

@@ -12,6 +12,7 @@
 #include "core/export/atomic_file.hpp"
 #include "core/export/csv.hpp"
 #include "core/export/summary.hpp"
+#include "core/math/largest.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
@@ -24,20 +25,19 @@ namespace unfurl {
 
 namespace {
 
-double max_abs(const Series& series) {
-  double largest = 0.0;
-  for (const double x : series.values) largest = std::max(largest, std::abs(x));
-  return largest;
-}
-
 bool waited_enough() {
-  return interrupted_for(1.0);
+  return interrupted_for(0.5);
 }
 
 }  // namespace
 
 Scene scene_of(const Arguments& arguments) {
   return read_scene_file(find_scene(arguments.names.front()), arguments.overrides);
+}
+
+std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& arguments) {
+  const Waiting waiting("building the structure", arguments.quiet);
+  return build_model(scene);
 }
 
 Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model,
@@ -87,7 +87,7 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
 }
 
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {
-  for (const auto& warnings : {run.warnings, accuracy_warnings(diagnostics)})
+  for (const auto& warnings : {run.warnings, accuracy_warnings(run, diagnostics)})
     for (const auto& warning : warnings) std::cerr << "unfurl: warning: " << warning << "\n";
   if (run.status == RunStatus::failed)
     std::cerr << "unfurl: the solver failed: " << run.message
@@ -97,13 +97,14 @@ void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arg
   std::ostringstream text;
   text << std::setprecision(9) << to_string(run.status) << " at " << run.trajectory.end_time()
        << " s: " << run.steps << (run.steps == 1 ? " step, " : " steps, ") << std::setprecision(3)
-       << run.cpu_s << " s of CPU time, constraint error " << max_abs(diagnostics.at("constraint_max_m"))
-       << " m, energy balance " << max_abs(diagnostics.at("energy_balance_J")) << " J\n";
+       << run.cpu_s << " s of CPU time, constraint error "
+       << largest_magnitude(diagnostics.at("constraint_max_m").values) << " m, energy balance "
+       << largest_magnitude(diagnostics.at("energy_balance_J").values) << " J\n";
   std::cerr << text.str();
 }
 
-Diagnostics diagnose_run(const Simulation& run) {
-  return diagnose(run, waited_enough);
+Diagnostics judge_run(Simulation& run) {
+  return judge(run, waited_enough);
 }
 
 int exit_code_of(const Simulation& run, const Diagnostics& diagnostics) {

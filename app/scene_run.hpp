@@ -15,6 +15,9 @@ namespace unfurl {
 // The scene that the first word names, with the overrides.
 Scene scene_of(const Arguments& arguments);
 
+// Its structure and equations; a large one says that it takes long.
+std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& arguments);
+
 // Simulate with a progress bar; Ctrl-C stops it. Warnings and the reason of a failure go to stderr.
 Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model, const Arguments& arguments);
 
@@ -33,8 +36,9 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
 // A few lines for a person on stderr; nothing where `quiet` was asked for.
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments);
 
-// The run's diagnostics; a second after Ctrl-C what is not computed yet is left open.
-Diagnostics diagnose_run(const Simulation& run);
+// The run's diagnostics, which decide its end (judge()); half a second after Ctrl-C what is not computed yet is
+// left open.
+Diagnostics judge_run(Simulation& run);
 
 // 0, solver failed, or interrupted.
 int exit_code_of(const Simulation& run, const Diagnostics& diagnostics);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <iostream>
+#include <string_view>
 #include <thread>
 
 #include "app/interrupt.hpp"
-#include "app/output_directory.hpp"
 #include "app/run_figures.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
@@ -15,13 +15,33 @@ namespace unfurl {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// "_3_of_16.csv", or ".csv" alone.
+bool ends_as_journal(std::string_view end) {
+  const auto digits = [&end] {
+    const std::size_t count = std::min(end.find_first_not_of("0123456789"), end.size());
+    end.remove_prefix(count);
+    return count > 0;
+  };
+  const auto word = [&end](std::string_view text) {
+    if (!end.starts_with(text)) return false;
+    end.remove_prefix(text.size());
+    return true;
+  };
+  return end == ".csv" || (word("_") && digits() && word("_of_") && digits() && end == ".csv");
+}
+
+}  // namespace
+
 std::vector<fs::path> journals_like(const std::string& journal, const fs::path& directory) {
   const std::string begin = journal.substr(0, journal.find_first_of("_."));
   std::vector<fs::path> found;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(directory, error)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with(begin) && name.ends_with(".csv")) found.push_back(entry.path());
+    if (name.starts_with(begin) && ends_as_journal(std::string_view(name).substr(begin.size())))
+      found.push_back(entry.path());
   }
   if (error) throw FileError(directory, error.value());
   std::sort(found.begin(), found.end());
@@ -37,28 +57,44 @@ void require_identity(const fs::path& directory, const std::string& identity, co
 StudySession::StudySession(const Arguments& arguments, std::string task, const std::string& identity,
                            std::string journal)
     : arguments_(arguments),
-      directory_(open_output_directory(arguments.output, arguments.force)),
+      output_(
+          arguments.output, arguments.force, journal.substr(0, journal.find_first_of("_.")),
+          journal.find('_') != std::string::npos ? DirectoryLock::Use::shareable : DirectoryLock::Use::alone),
       journal_(std::move(journal)),
-      lock_(directory_, shard() ? DirectoryLock::Use::shareable : DirectoryLock::Use::alone),
       progress_(std::move(task), arguments.quiet),
       writer_(figure_options(arguments)) {
   begin(identity);
 }
 
 void StudySession::begin(const std::string& identity) {
-  if (lock_.alone()) remove_unfinished(directory_);
-  const auto earlier = journals_like(journal_, directory_);
+  if (arguments_.force && output_.lock().unknown())
+    throw FileError(directory(),
+                    "is on a file system without locks, so --force could remove what another "
+                    "unfurl is writing; use another directory");
+  if (arguments_.force && output_.lock().alone()) begin_anew(identity);
+  if (!journals_like(journal_, directory()).empty())
+    require_identity(directory(), identity, "use another directory, or --force to begin anew");
+  if (!identity.empty()) write_file_atomically(directory() / "scene.toml", identity);
+  output_.written().grows(journal_);
   std::error_code error;
-  if (!arguments_.force || !lock_.alone()) {
-    if (!earlier.empty())
-      require_identity(directory_, identity, "use another directory, or --force to begin anew");
-  } else {
-    for (const auto& path : earlier) fs::remove(path, error);
+  fs::create_directories(directory() / "figures", error);
+  if (error) throw FileError(directory() / "figures", error.value());
+  if (shard()) output_.lock().share();
+}
+
+// Another study's results go, those of this one too; but a shard leaves alone what other shards of the same
+// sweep have finished. What is called as a journal and is not ours is put aside.
+void StudySession::begin_anew(const std::string& identity) {
+  const TextFile scene = read_text_file((directory() / "scene.toml").string());
+  if (shard() && scene.error.empty() && scene.text == identity) {
+    output_.written().remove(journal_);
+    std::error_code error;
+    if (fs::exists(journal(), error)) output_.written().keep_aside(journal_);
+    return;
   }
-  if (!identity.empty()) write_file_atomically(directory_ / "scene.toml", identity);
-  fs::create_directories(directory_ / "figures", error);
-  if (error) throw FileError(directory_ / "figures", error.value());
-  if (shard()) lock_.share();
+  output_.written().remove_all();
+  for (const auto& path : journals_like(journal_, directory()))
+    output_.written().keep_aside(path.filename().string());
 }
 
 StudyHooks StudySession::hooks() {
@@ -71,14 +107,16 @@ StudyHooks StudySession::hooks() {
 }
 
 void StudySession::write(const std::string& name, const std::string& text) const {
-  write_file_atomically(directory_ / name, text);
+  write_file_atomically(directory() / name, text);
 }
 
 std::string StudySession::write(const Figure& figure) {
   const std::string stem = "figures/" + figure.name;
-  for (const char* extension : {".svg", ".pdf", ".png"})
-    writer_.write(figure, directory_ / (stem + extension));
-  write_figure_data(figure, directory_ / (stem + ".png"));
+  for (const char* extension : {".svg", ".pdf", ".png"}) {
+    throw_if_interrupted();  // the points are kept, and figures are made of them again
+    writer_.write(figure, directory() / (stem + extension));
+  }
+  write_figure_data(figure, directory() / (stem + ".png"));
   return stem + ".png";
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/command.hpp"
-#include "app/directory_lock.hpp"
+#include "app/output_directory.hpp"
 #include "app/progress.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/report.hpp"
@@ -16,8 +16,8 @@
 
 namespace unfurl {
 
-// Results in the directory that are called as `journal` is up to its first '_' or '.': those of other shards
-// too. Throws FileError where the directory cannot be read.
+// The journals in the directory: `journal` ("sweep.csv", or that of a shard, "sweep_1_of_4.csv") and those of
+// all shards. Throws FileError where the directory cannot be read.
 std::vector<std::filesystem::path> journals_like(const std::string& journal,
                                                  const std::filesystem::path& directory);
 // Throws FileError, with what can be done, where DIR/scene.toml tells of other results than `identity`.
@@ -33,8 +33,8 @@ class StudySession {
                std::string journal);
 
   StudyHooks hooks();
-  const std::filesystem::path& directory() const { return directory_; }
-  std::filesystem::path journal() const { return directory_ / journal_; }
+  const std::filesystem::path& directory() const { return output_.path(); }
+  std::filesystem::path journal() const { return directory() / journal_; }
 
   void write(const std::string& name, const std::string& text) const;  // DIR/name
   // DIR/figures/NAME.svg, .pdf and .png, its numbers and caption, as --style and --dpi say; returns
@@ -44,21 +44,21 @@ class StudySession {
  private:
   const Arguments& arguments_;
   void begin(const std::string& identity);
+  void begin_anew(const std::string& identity);
   bool shard() const { return journal_.find('_') != std::string::npos; }
 
-  std::filesystem::path directory_;
+  OwnDirectory output_;
   std::string journal_;
-  DirectoryLock lock_;
   Progress progress_;
   FigureWriter writer_;
 };
 
-// What a person asked for cannot be: std::invalid_argument of the studies as UsageError.
+// What a person asked for cannot be: StudyError as UsageError.
 template <class Work>
 auto as_usage(const Work& work) {
   try {
     return work();
-  } catch (const std::invalid_argument& error) {
+  } catch (const StudyError& error) {
     throw UsageError(error.what());
   }
 }

@@ -1,12 +1,16 @@
 #include "app/panel/control_panel.hpp"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <thread>
 
 #include "app/panel/panes/panes.hpp"
 #include "app/panel/shortcuts.hpp"
+#include "render/gl/graphics_error.hpp"
 #include "render/plot/imgui_canvas.hpp"
 #include "render/plot/style.hpp"
 #include "render/ui/fonts.hpp"
@@ -30,9 +34,15 @@ struct Pane {
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
   }
-  ~Pane() { ImGui::End(); }
+  // Where an exception passes, ImGui closes what is open, in its order (ControlPanel::draw).
+  ~Pane() {
+    if (std::uncaught_exceptions() == before_) ImGui::End();
+  }
   Pane(const Pane&) = delete;
   Pane& operator=(const Pane&) = delete;
+
+ private:
+  int before_ = std::uncaught_exceptions();
 };
 
 }  // namespace
@@ -67,7 +77,7 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
 
 ControlPanel::~ControlPanel() {
   context_.make_current();
-  ImGui::DestroyContext(imgui_);
+  imgui_.reset();
 }
 
 PanelSettings ControlPanel::settings() {
@@ -83,8 +93,8 @@ PanelSettings ControlPanel::settings() {
 }
 
 void ControlPanel::make_context() {
-  imgui_ = ImGui::CreateContext();
-  ImGui::SetCurrentContext(imgui_);
+  imgui_.reset(ImGui::CreateContext());
+  ImGui::SetCurrentContext(imgui_.get());
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
@@ -319,6 +329,15 @@ void ControlPanel::draw_panes() {
     ImGui::PopStyleVar();
     draw_view_pane(ui_, state_, view_);
   }
+  // Of the panes, which no click brings to the front, ImGui puts a new one below those that there are: the
+  // lines of the present time have theirs first, and are drawn into it when the figures have said where they
+  // are.
+  const auto cursors = [&](const auto& draw) {
+    const Pane pane("cursors", width - right, top, right, bottom - top,
+                    ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoBackground);
+    draw();
+  };
+  if (right > 0) cursors([] {});
   if (right > 0) {
     const Pane pane("figures", width - right, top, right, bottom - top,
                     ImGuiWindowFlags_AlwaysVerticalScrollbar);
@@ -331,11 +350,7 @@ void ControlPanel::draw_panes() {
         draw_figure_pane(ui_, state_, cards_);
     });
   }
-  if (right > 0) {
-    const Pane pane("cursors", width - right, top, right, bottom - top,
-                    ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoBackground);
-    draw_cursors(ui_);
-  }
+  if (right > 0) cursors([this] { draw_cursors(ui_); });
   {
     const Pane pane("timeline", 0, bottom, width, height - bottom, ImGuiWindowFlags_NoScrollWithMouse);
     draw_timeline(ui_, state_);
@@ -385,11 +400,25 @@ void ControlPanel::settle() {
   for (int i = 0; i < 4; ++i) frame(0);
 }
 
+// What goes wrong in a part of a frame is said, and the window with its changes stays. Graphics that are lost
+// are another matter.
+template <class Part>
+void ControlPanel::survive(const Part& part) {
+  try {
+    part();
+  } catch (const GraphicsError&) {
+    throw;
+  } catch (const std::exception& error) {
+    state_.message = error.what();
+    settling_ = std::max(settling_, 2);
+  }
+}
+
 bool ControlPanel::frame(double seconds, bool visible) {
   context_.make_current();
-  ImGui::SetCurrentContext(imgui_);
+  ImGui::SetCurrentContext(imgui_.get());
   take_events();
-  take_results();
+  survive([this] { take_results(); });
   if (state_.shown) {
     const Trajectory& trajectory = state_.shown->simulation.trajectory;
     if (state_.playback.playing && seconds > 0) {
@@ -410,13 +439,17 @@ bool ControlPanel::frame(double seconds, bool visible) {
   double building = 0;
   timed(building, [&] {
     ImGui::NewFrame();
-    ImGui::PushFont(ui_.regular);
-    draw_panes();
-    ImGui::PopFont();
+    survive([this] {
+      ImGui::PushFont(ui_.regular);
+      draw_panes();
+      ImGui::PopFont();
+    });
+    ImGui::ErrorCheckEndFrameRecover(nullptr);  // does nothing after a frame that came to its end
+    imgui_->FontStack.clear();                  // which it leaves as it is
     ImGui::Render();
   });
   times_.widgets = building - times_.scene - times_.figures;
-  follow_document();
+  survive([this] { follow_document(); });
   const std::pair jobs(study_.running(), export_.running());
   if (std::exchange(jobs_, jobs) != jobs) settling_ = std::max(settling_, 2);  // other widgets, other sizes
   if (visible) paint(coarse_view(seconds));

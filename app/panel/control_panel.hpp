@@ -84,6 +84,8 @@ class ControlPanel {
   void draw_splitter(const char* name, float x, float top, float bottom, float& width, float way);
   bool coarse_view(double seconds);
   void paint(bool coarse);
+  template <class Part>
+  void survive(const Part& part);
   // Runs a part of a frame and adds its time to `sum`.
   template <class Part>
   void timed(double& sum, const Part& part);
@@ -91,7 +93,10 @@ class ControlPanel {
   GlContext& context_;
   PanelOptions options_;
   PanelState state_;
-  ImGuiContext* imgui_ = nullptr;
+  struct ImguiEnd {
+    void operator()(ImGuiContext* imgui) const { ImGui::DestroyContext(imgui); }
+  };
+  std::unique_ptr<ImGuiContext, ImguiEnd> imgui_;
   DrawDamage damage_;
   int slow_frames_ = 0;  // in a row, while something moves
   std::unique_ptr<ImguiPainter> painter_;

@@ -1,4 +1,7 @@
 // The window: events in, finished pictures out, redrawn only when something changes.
+#include <dlfcn.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -19,6 +22,7 @@
 #include "app/window/window.hpp"
 #include "render/gl/functions.hpp"
 #include "render/gl/graphics_error.hpp"
+#include "render/image/child_process.hpp"
 #include "render/image/png.hpp"
 
 namespace unfurl {
@@ -105,6 +109,22 @@ bool has_display() {
          std::strcmp(driver, "evdev") != 0;
 }
 
+// The X library ends the program when its server does; with what code and words is ours to say. SDL has
+// loaded it where it is used.
+void end_in_words_without_display() {
+  void* x11 = dlopen("libX11.so.6", RTLD_NOW | RTLD_NOLOAD);
+  using Handler = int (*)(void*);
+  if (x11 == nullptr) return;
+  const auto set = reinterpret_cast<Handler (*)(Handler)>(dlsym(x11, "XSetIOErrorHandler"));
+  if (set == nullptr) return;
+  set([](void*) -> int {
+    constexpr std::string_view line = "unfurl: the display went away\n";
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+    end_children();
+    ::_exit(exit_no_graphics);
+  });
+}
+
 SdlWindow::SdlWindow(int width, int height) {
   const std::string nowhere = "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)";
   const bool x11 = variable_set("DISPLAY"), wayland = variable_set("WAYLAND_DISPLAY");
@@ -117,6 +137,7 @@ SdlWindow::SdlWindow(int width, int height) {
     sdl().Quit();
     fail(cause);
   }
+  end_in_words_without_display();
   sdl().GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 3);
   sdl().GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 3);
   sdl().GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK, SDL_GL_CONTEXT_PROFILE_CORE);
@@ -282,6 +303,7 @@ bool display_named() {
 int show_window(SceneDocument document, const WindowOptions& options) {
   const InterruptGuard guard;
   Host host(std::move(document), options);
+  const FinishedWork keeping;  // what the window remembers
   return options.bench ? host.bench() : host.run();
 }
 

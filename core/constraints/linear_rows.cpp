@@ -161,8 +161,11 @@ std::unique_ptr<ConstraintBlock> fixed_block(const Structure& structure) {
 
 std::unique_ptr<ConstraintBlock> relation_block(const Structure& structure) {
   return block_of(structure, "relation", [](const Constraint& c, double length, std::vector<Row>& rows) {
-    Row row{c.name, -1, {}, {}, c.value, length};
-    for (std::size_t i = 0; i < c.nodes.size(); ++i) append(row, c.nodes[i], c.vectors[i]);
+    double longest = 0;
+    for (const Vec3& vector : c.vectors) longest = std::max(longest, vector.stableNorm());
+    const double scale = longest > 0 ? longest : 1.0;
+    Row row{c.name, -1, {}, {}, c.value / scale, length};
+    for (std::size_t i = 0; i < c.nodes.size(); ++i) append(row, c.nodes[i], c.vectors[i] / scale);
     rows.push_back(std::move(row));
   });
 }

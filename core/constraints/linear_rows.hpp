@@ -12,7 +12,9 @@ namespace unfurl {
 //   plane     n . x = value                                    one row;  vectors = {unit normal n}
 //   line      the two directions across `vectors[0]` are held  two rows; the line passes through the node at
 //   t = 0 fixed     the node stays where it is at t = 0              three rows relation  sum_i vectors[i] .
-//   x_{nodes[i]} = value          one row: mirror, equality, any affine relation
+//   x_{nodes[i]} = value          one row: mirror, equality, any affine relation; divided by
+//             its longest vector, so that errors are metres of a node whatever the size of the coefficients
+
 // The length that an error is compared with where a row has none of its own: the mean rod length, a metre
 // where there are no rods.
 double reference_length(const Structure& structure);

@@ -63,15 +63,7 @@ class MeasureRows final : public ConstraintBlock {
     }
   }
   void bias(const double* q, const double* v, double* phi_dd) const override {
-    for (const Measured& row : rows_) {
-      const auto& stencil = row.measure.stencil();
-      const auto size = static_cast<Index>(stencil.size());
-      MatrixXd hess(size, size);
-      VectorXd rates(size);
-      row.measure.hessian(q, hess.data());
-      for (Index i = 0; i < size; ++i) rates[i] = v[stencil[static_cast<std::size_t>(i)]];
-      *phi_dd++ = row.scale * rates.dot(hess * rates);
-    }
+    for (const Measured& row : rows_) *phi_dd++ = row.scale * row.measure.curvature_along(q, v);
   }
   void curvature(const double* q, const double* lambda, double* hess) const override {
     for (const Measured& row : rows_) {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/diagnostics/books.hpp"
 #include "core/integrators/stage_equations.hpp"
+#include "core/math/largest.hpp"
 
 namespace unfurl {
 namespace {
@@ -12,20 +14,137 @@ namespace {
 // Shares of the energy turned over and of a rod's length beyond which a motion is wrong to the eye.
 constexpr double energy_share = 1e-3, length_share = 1e-3;
 
-double largest(const Series& series) {
-  double m = 0;
-  for (const double x : series.values) m = std::max(m, std::abs(x));
-  return m;
+// The energies of a run but for their balance; the first is the kinetic energy.
+std::vector<const Series*> energies(const Diagnostics& d) {
+  std::vector<const Series*> found{&d.at("kinetic_energy_J")};
+  for (const Series& column : d.columns)
+    if (column.unit == "J" && column.name != "energy_balance_J" && column.name != "kinetic_energy_J")
+      found.push_back(&column);
+  return found;
 }
 
-double range(const Series& series) {
-  const auto [low, high] = std::minmax_element(series.values.begin(), series.values.end());
-  return series.values.empty() ? 0.0 : *high - *low;
+void add_state(const std::vector<const Series*>& energies, std::size_t i, EnergyTurnedOver& turned) {
+  std::vector<double> others;
+  for (std::size_t k = 1; k < energies.size(); ++k) others.push_back(energies[k]->values[i]);
+  turned.add(energies[0]->values[i], others);
+}
+
+bool finite(const Simulation& run, const Diagnostics& d, std::size_t i) {
+  const State& state = run.trajectory.state(i);
+  for (const Series& column : d.columns)
+    if ((column.unit == "J" || column.name.starts_with("constraint_")) && !std::isfinite(column.values[i]))
+      return false;
+  return state.z.allFinite() && state.w.allFinite();
+}
+
+// The longest beginning that can be trusted, and why it is not longer.
+struct GoodPart {
+  std::size_t states = 0;
+  std::string why = {};
+  std::string text(const Diagnostics& d) const {
+    std::ostringstream out;
+    if (states < d.t.size() - d.left_open) out << "from t = " << d.t[states] << " s on " << why;
+    return out.str();
+  }
+};
+
+GoodPart good_part(const Simulation& run, const Diagnostics& d) {
+  const std::size_t judged = d.t.size() - d.left_open;
+  const Series &balance = d.at("energy_balance_J"), &stretch = d.at("constraint_relative_max");
+  const auto columns = energies(d);
+  const std::vector<double> round_off_error = energy_round_off(run);
+  EnergyTurnedOver turned;
+  GoodPart part;
+  std::ostringstream why;
+  why.precision(3);
+  double off = 0;
+  for (std::size_t i = 0; i < judged; ++i) {
+    if (!finite(run, d, i)) {
+      if (part.states == i) why << "the state is not finite any more";
+      break;
+    }
+    if (!(stretch.values[i] <= trusted_share)) {
+      if (part.states == i)
+        why << "constraints are violated by " << 100 * stretch.values[i] << " % of a rod's length";
+      break;
+    }
+    off = larger(off, std::abs(balance.values[i]));
+    add_state(columns, i, turned);
+    const double energy = turned.value();
+    if (off <= trusted_share * energy + round_off_error[i]) {
+      part.states = i + 1;
+      why.str("");
+    } else if (part.states == i) {
+      why << "the energy balance is off by " << off << " J, "
+          << (energy > 0 ? 100 * off / energy : std::numeric_limits<double>::infinity())
+          << " % of the energy turned over";
+    }
+  }
+  part.why = why.str();
+  part.states = std::max<std::size_t>(part.states, std::min<std::size_t>(judged, 1));
+  return part;
+}
+
+void keep_states(std::size_t states, Simulation& run, Diagnostics& d) {
+  while (run.trajectory.size() > states) run.trajectory.pop_back();
+  d.t.resize(states);
+  for (Series& column : d.columns) column.values.resize(states);
+  d.axial_force.conservativeResize(static_cast<Index>(states), Eigen::NoChange);
+  std::erase_if(run.events, [&](const Event& event) { return event.t > run.trajectory.end_time(); });
+}
+
+std::string percent_of(double part, double whole) {
+  std::ostringstream text;
+  text.precision(3);
+  if (part <= whole)
+    text << 100 * part / whole << " %";
+  else
+    text << "more than all";
+  return text.str();
 }
 
 }  // namespace
 
-std::vector<std::string> accuracy_warnings(const Diagnostics& d) {
+void EnergyTurnedOver::add(double kinetic, std::span<const double> others) {
+  kinetic_ = larger(kinetic_, kinetic);
+  if (low_.empty()) low_.assign(others.begin(), others.end()), high_ = low_;
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    low_[k] = -larger(-low_[k], -others[k]);
+    high_[k] = larger(high_[k], others[k]);
+  }
+}
+
+double EnergyTurnedOver::value() const {
+  double most = kinetic_;
+  for (std::size_t k = 0; k < low_.size(); ++k) most = larger(most, high_[k] - low_[k]);
+  return most;
+}
+
+double energy_turned_over(const Diagnostics& d) {
+  const auto columns = energies(d);
+  EnergyTurnedOver turned;
+  for (std::size_t i = 0; i < d.t.size() - d.left_open; ++i) add_state(columns, i, turned);
+  return turned.value();
+}
+
+Diagnostics judge(Simulation& run, const std::function<bool()>& cancelled) {
+  Diagnostics d = diagnose(run, cancelled);
+  const std::size_t judged = d.t.size() - d.left_open;
+  GoodPart part = good_part(run, d);
+  if (part.states == judged) return d;
+  run.message = (run.status == RunStatus::failed ? run.message + "; " : "") + part.text(d) +
+                ": what follows is left out";
+  run.status = RunStatus::failed;
+  d.left_open = 0;
+  keep_states(part.states, run, d);
+  return d;
+}
+
+std::string mistrust(const Simulation& run, const Diagnostics& d) {
+  return good_part(run, d).text(d);
+}
+
+std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnostics& d) {
   if (d.left_open > 0) {
     std::ostringstream text;
     text << "the run was judged up to t = " << d.t[d.t.size() - std::min(d.left_open + 1, d.t.size())]
@@ -33,21 +152,21 @@ std::vector<std::string> accuracy_warnings(const Diagnostics& d) {
     return {text.str()};
   }
   std::vector<std::string> warnings;
-  const double off = largest(d.at("energy_balance_J"));
-  const double turned =
-      std::max({largest(d.at("kinetic_energy_J")), range(d.at("potential_energy_J")), range(d.at("work_J"))});
+  const bool dvm = run.options.method == "dvm";
+  const double off = largest_magnitude(d.at("energy_balance_J").values), turned = energy_turned_over(d);
   std::ostringstream text;
   text.precision(3);
-  if (off > energy_share * turned) {
-    text << "the energy balance is off by " << off << " J, " << 100 * off / turned
-         << " % of the energy turned over: take a smaller solver.step or more solver.stages";
+  if (!(off <= energy_share * turned + energy_round_off(run).back())) {
+    text << "the energy balance is off by " << off << " J, " << percent_of(off, turned)
+         << " of the energy turned over: take a smaller solver.step" << (dvm ? " or more solver.stages" : "");
     warnings.push_back(text.str());
   }
-  const double stretch = largest(d.at("constraint_relative_max"));
-  if (stretch > length_share) {
+  const double stretch = largest_magnitude(d.at("constraint_relative_max").values);
+  if (!(stretch <= length_share)) {
     text.str("");
     text << "constraints are violated by " << 100 * stretch
-         << " % of a rod's length: take a smaller solver.step, or method dvm, which holds them";
+         << " % of a rod's length: take a smaller solver.step"
+         << (dvm ? "" : ", or method dvm, which holds them");
     warnings.push_back(text.str());
   }
   return warnings;

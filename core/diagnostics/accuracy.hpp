@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -7,9 +8,36 @@
 
 namespace unfurl {
 
+// A run is trusted as far as its energy balance is off by no more than this share of the energy that was
+// turned over until then, no constraint by more than this share of a rod's length, and every number is
+// finite.
+inline constexpr double trusted_share = 0.1;
+
+// The energy turned over in a motion: the largest kinetic energy or, where that is more, the span between the
+// smallest and the largest potential energy, work of the loads or drives, or energy taken by dampers and
+// impacts [J]. A constant added to a potential does not count. Given state by state.
+class EnergyTurnedOver {
+ public:
+  void add(double kinetic, std::span<const double> others);  // the same others in every state
+  double value() const;
+
+ private:
+  double kinetic_ = 0;
+  std::vector<double> low_, high_;
+};
+double energy_turned_over(const Diagnostics& diagnostics);
+
+// diagnose(), and what is known about the run decides its end: the longest beginning of it that can be
+// trusted is kept, in trajectory, events and diagnostics; where that is not all, its status is `failed` and
+// its message says when and why. `cancelled` as for diagnose(): states that were left open are not judged.
+Diagnostics judge(Simulation& run, const std::function<bool()>& cancelled = {});
+
+// "from t = 0.3 s on ...": why judge() would not keep all of the run; empty where it would.
+std::string mistrust(const Simulation& run, const Diagnostics& diagnostics);
+
 // What a finished run says against itself: an energy balance or a constraint error too large for the result
-// to be trusted. Each text names the size and the cure; empty where nothing is wrong.
-std::vector<std::string> accuracy_warnings(const Diagnostics& diagnostics);
+// to be trusted blindly. Each text names the size and the cure; empty where nothing is wrong.
+std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnostics& diagnostics);
 
 // The constraint error relative to rod length up to which a step's Newton iteration goes on: some units of
 // the round-off of coordinates, which are as large as the structure; 0 for methods without one. Taken at the

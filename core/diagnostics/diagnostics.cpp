@@ -5,10 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
+#include "core/diagnostics/books.hpp"
 #include "core/diagnostics/energy_flow.hpp"
+#include "core/diagnostics/force_uniqueness.hpp"
 #include "core/integrators/index1.hpp"
 
 namespace unfurl {
@@ -19,16 +22,18 @@ struct Instant {
   const Simulation& run;
   std::size_t i;
   const State& state;
-  const VectorXd &q, &v;          // node coordinates, velocities
-  const VectorXd &phi, &lengths;  // of all constraints [m]
-  const VectorXd& velocity_phi;   // G v of all constraints [m/s]
-  const VectorXd& axial_force;    // of the solved rods [N]
-  const VectorXd& acceleration;   // of the nodes; NaN where the equations have no solution [m/s^2]
-  const Model& model;             // that the state belongs to
+  const VectorXd &q, &v;                  // node coordinates, velocities
+  const VectorXd &phi, &lengths;          // of all constraints [m]
+  const VectorXd& velocity_phi;           // G v of all constraints [m/s]
+  const VectorXd& axial_force;            // of the solved rods [N]
+  const std::vector<char>& force_unique;  // of the solved rods
+  const VectorXd& acceleration;           // of the nodes; NaN where the equations have no solution [m/s^2]
+  const System& equations;                // that the state belongs to, near its angles
+  double fold_angle;                      // [rad]
   const EnergyFlow& flow;
   double first_energy;  // kinetic + potential at t = 0 [J]
 
-  const System& system() const { return model.system; }
+  const System& system() const { return equations; }
   const Deployment& deployment() const { return run.trajectory.structure().deployment; }
   double work() const { return system().load_work(q) + flow.load_work[i]; }
   double kinetic() const { return system().kinetic_energy(state.w); }
@@ -39,6 +44,16 @@ struct Instant {
 
 double max_norm(const VectorXd& v) {
   return v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
+}
+
+// Whether the force that is largest in this direction is unique; of no rods it is.
+double extreme_unique(const Instant& s, double sign) {
+  if (s.axial_force.size() == 0) return 1.0;
+  const double most = (sign * s.axial_force).maxCoeff();
+  const double close = 1e-9 * std::abs(most);  // equal ones differ by round-off
+  for (Index r = 0; r < s.axial_force.size(); ++r)
+    if (!(sign * s.axial_force[r] < most - close) && !s.force_unique[static_cast<std::size_t>(r)]) return 0.0;
+  return 1.0;
 }
 
 // What a scene must have for a column to mean something.
@@ -77,8 +92,7 @@ const std::array rows{
         [](const Instant& s) { return s.relative_constraint() / ulp; }},
     Row{"constraint_velocity_max_m_s", "velocity constraint error", "m/s", Needs::nothing,
         [](const Instant& s) { return max_norm(s.velocity_phi); }},
-    Row{"fold_angle_rad", "fold angle", "rad", Needs::fold,
-        [](const Instant& s) { return s.deployment().fold_angle(s.q); }},
+    Row{"fold_angle_rad", "fold angle", "rad", Needs::fold, [](const Instant& s) { return s.fold_angle; }},
     Row{"fold_rate_rad_s", "fold rate", "rad/s", Needs::fold,
         [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v); }},
     Row{"deployed_fraction", "deployed fraction", "", Needs::fold,
@@ -91,6 +105,10 @@ const std::array rows{
         [](const Instant& s) { return s.i == 0 ? 0.0 : s.state.t - s.run.trajectory.time(s.i - 1); }},
     Row{"newton_iterations", "Newton iterations", "", Needs::nothing,
         [](const Instant& s) { return static_cast<double>(s.run.trajectory.report(s.i).newton_iterations); }},
+    Row{"axial_force_max_unique", "largest axial force is unique", "", Needs::nothing,
+        [](const Instant& s) { return extreme_unique(s, 1.0); }},
+    Row{"axial_force_min_unique", "smallest axial force is unique", "", Needs::nothing,
+        [](const Instant& s) { return extreme_unique(s, -1.0); }},
 };
 
 // -(across'/across) / (along'/along): the ratio of the strain increments of the motion that goes on, which at
@@ -148,6 +166,24 @@ VectorXd multipliers(Index1& index1, const Model& model, const State& state, boo
   return ok ? lambda : VectorXd::Constant(lambda.size(), nan);
 }
 
+// The fold angle, which counts on where it passes half a turn.
+class FoldAngle {
+ public:
+  explicit FoldAngle(const Deployment& deployment) : deployment_(deployment) {}
+  double at(double t, const VectorXd& q, const VectorXd& v) {
+    if (deployment_.empty()) return nan;
+    const double angle = deployment_.fold_angle(q), rate = deployment_.fold_rate(q, v);
+    const double expected = std::isnan(t_) ? angle : angle_ + 0.5 * (t - t_) * (rate_ + rate);
+    t_ = t;
+    rate_ = rate;
+    return angle_ = angle - 2 * pi * std::round((angle - expected) / (2 * pi));
+  }
+
+ private:
+  const Deployment& deployment_;
+  double t_ = nan, angle_ = nan, rate_ = nan;
+};
+
 // Per rod of the whole structure [N].
 void axial_forces(const Model& model, const VectorXd& lambda, VectorXd& force) {
   for (Index r = 0; r < force.size(); ++r) {
@@ -156,7 +192,8 @@ void axial_forces(const Model& model, const VectorXd& lambda, VectorXd& force) {
   }
 }
 
-// Three columns for each drive: what it prescribes, what the motor gives for it, and the power.
+// Four columns for each drive: what it prescribes, what the motor gives for it, the power, and whether the
+// effort is unique.
 class DriveColumns {
  public:
   DriveColumns(const System& system, std::vector<Series>& columns)
@@ -173,10 +210,14 @@ class DriveColumns {
                          drive.angle ? "N m" : "N",
                          {}});
       columns.push_back({name + ".power_W", name + " power", "W", {}});
+      columns.push_back({name + (drive.angle ? ".torque_unique" : ".force_unique"),
+                         name + (drive.angle ? " torque" : " force") + " is unique",
+                         "",
+                         {}});
     }
   }
   // `system`: that of the state, whose rows may be others than at the start.
-  void append(const System& system, double t, const VectorXd& lambda) {
+  void append(const System& system, double t, const VectorXd& lambda, const std::vector<char>& unique) {
     std::size_t column = first_;
     for (const Drive& wanted : drives_) {
       const Drive* drive = nullptr;
@@ -186,6 +227,7 @@ class DriveColumns {
       columns_[column++].values.push_back(wanted.target(t));
       columns_[column++].values.push_back(effort);
       columns_[column++].values.push_back(effort * wanted.target.derivative(1, t));
+      columns_[column++].values.push_back(drive && unique[static_cast<std::size_t>(drive->row)] ? 1.0 : 0.0);
     }
   }
 
@@ -223,60 +265,105 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
   while (out.t.size() < trajectory.size()) out.t.push_back(trajectory.time(out.t.size()));
   for (Series& column : out.columns) column.values.resize(out.t.size(), nan);
   out.axial_force.bottomRows(static_cast<Index>(out.left_open)).setConstant(nan);
+  out.force_unique.bottomRows(static_cast<Index>(out.left_open)).setConstant(false);
 }
 
-}  // namespace
-
-Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
+Diagnostics diagnosed(const Simulation& run, bool books, const std::function<bool()>& cancelled) {
   const Trajectory& trajectory = run.trajectory;
   Diagnostics out;
   std::vector<const Row*> used;
   for (const Row& row : rows) {
-    if (!present(row.needs, run)) continue;
+    const bool book =
+        row.unit == std::string_view("J") || std::string_view(row.name).starts_with("constraint_");
+    if (!present(row.needs, run) || (books && !book)) continue;
     used.push_back(&row);
     out.columns.push_back({row.name, row.label, row.unit, {}});
   }
-  DriveColumns drives(trajectory.model().system, out.columns);
+  std::optional<DriveColumns> drives;
+  if (!books) drives.emplace(trajectory.model().system, out.columns);
   const std::size_t first_own = out.columns.size();
-  add_own_columns(trajectory.structure(), out);
+  if (!books) add_own_columns(trajectory.structure(), out);
   const EnergyFlow flow = energy_flow(run);
-  const auto rods = static_cast<Index>(trajectory.structure().rods.size());
+  const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
+  out.force_unique.resize(out.axial_force.rows(), rods);
+  out.rod_unique.assign(static_cast<std::size_t>(rods), 1);
+  std::vector<char> unique(out.rod_unique);
+  std::optional<ForceUniqueness> uniqueness;
+  if (!books) uniqueness.emplace(run);
   VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
   std::vector<double> scratch;
   const Model* model = nullptr;
+  std::unique_ptr<System> followed;
   std::unique_ptr<Index1> index1;
+  FoldAngle fold(trajectory.structure().deployment);
   double first_energy = 0;
   for (std::size_t i = 0; i < trajectory.size() && !(cancelled && cancelled()); ++i) {
     const State& state = trajectory.state(i);
     if (model != &trajectory.model(i)) {
       model = &trajectory.model(i);
-      index1 = std::make_unique<Index1>(model->system, true);
+      followed = std::make_unique<System>(model->system);
+      if (!books) index1 = std::make_unique<Index1>(*followed, true);
       lengths = model->system.all_lengths();
       phi.resize(lengths.size());
       velocity_phi.resize(lengths.size());
     }
-    const System& system = model->system;
+    followed->follow(state);
+    const System& system = *followed;
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
     system.all_constraint_values(state.t, q, phi);
     system.all_constraint_rates(state.t, q, v, velocity_phi, scratch);
-    const VectorXd lambda =
-        multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
-    axial_forces(*model, lambda, force);
+    VectorXd lambda;
+    if (!books) {
+      lambda = multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
+      axial_forces(*model, lambda, force);
+      const std::vector<char>& rows_unique = uniqueness->at(i);
+      for (std::size_t r = 0; r < unique.size(); ++r) {
+        unique[r] = rows_unique[static_cast<std::size_t>(system.rod_rows()[r])];
+        if (uniqueness->regular(i)) out.rod_unique[r] = static_cast<char>(out.rod_unique[r] & unique[r]);
+        out.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
+            unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);
+      }
+    }
     out.axial_force.row(static_cast<Index>(i)) = force.transpose();
     if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
-    const Instant instant{run,          i,     state,        q,      v,    phi,         lengths,
-                          velocity_phi, force, acceleration, *model, flow, first_energy};
+    const Instant instant{run,
+                          i,
+                          state,
+                          q,
+                          v,
+                          phi,
+                          lengths,
+                          velocity_phi,
+                          force,
+                          unique,
+                          acceleration,
+                          system,
+                          fold.at(state.t, q, v),
+                          flow,
+                          first_energy};
     out.t.push_back(state.t);
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
-    add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
-    drives.append(system, state.t, lambda);
+    if (!books) {
+      add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
+      drives->append(system, state.t, lambda, uniqueness->at(i));
+    }
   }
   leave_open(trajectory, out);
   for (Series& column : out.columns)
     if (column.unit == "J")
       for (double& energy : column.values) energy *= trajectory.structure().sectors;
   return out;
+}
+
+}  // namespace
+
+Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
+  return diagnosed(run, false, cancelled);
+}
+
+Diagnostics diagnose_books(const Simulation& run) {
+  return diagnosed(run, true, {});
 }
 
 }  // namespace unfurl

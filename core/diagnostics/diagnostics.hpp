@@ -23,7 +23,12 @@ struct Diagnostics {
   std::vector<double> t;        // [s], one entry per state
   std::vector<Series> columns;  // in the table's order; each as long as t
   std::size_t left_open = 0;    // states at the end that were not looked at: NaN
-  MatrixXd axial_force;         // [states x rods of the solved model], tension positive [N]
+  // [states x rods of the solved model], tension positive [N]. A rod's multiplier is by virtual work the mean
+  // of its axial force over its length: one with mass carries more at one end than at the other.
+  MatrixXd axial_force;
+  // The same shape: whether the rigid model determines that force (force_uniqueness.hpp).
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> force_unique;
+  std::vector<char> rod_unique;  // per rod of the solved model: at every pose that is not singular
   const Series* find(std::string_view name) const;  // nullptr where the scene has no such column
   const Series& at(std::string_view name) const;    // throws std::out_of_range
 };
@@ -31,10 +36,11 @@ struct Diagnostics {
 // Column names: kinetic_energy_J potential_energy_J work_J energy_balance_J constraint_max_m
 // constraint_relative_max constraint_round_off_max constraint_velocity_max_m_s fold_angle_rad fold_rate_rad_s
 // dissipated_J, drive_work_J and impact_loss_J only where a scene has dampers, drives, impacts; each drive
-// adds NAME.angle_rad NAME.torque_N_m NAME.power_W (or NAME.value_m NAME.force_N). deployed_fraction
-// axial_force_max_N axial_force_min_N step_s newton_iterations; fold columns only where the structure has a
-// fold angle. Then the structure's own lengths and, where it names strains, poisson_ratio.
-// `cancelled` is asked before every state: once it says so, the rest stays NaN.
+// adds NAME.angle_rad NAME.torque_N_m NAME.power_W NAME.torque_unique (or NAME.value_m NAME.force_N ...).
+// deployed_fraction axial_force_max_N axial_force_min_N step_s newton_iterations axial_force_max_unique
+// axial_force_min_unique (1: the rod with that force has no other, 0: one choice of many); fold columns only
+// where the structure has a fold angle. Then the structure's own lengths and, where it names strains,
+// poisson_ratio. `cancelled` is asked before every state: once it says so, the rest stays NaN.
 Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled = {});
 
 // Names of all columns that a scene may have.

@@ -2,83 +2,58 @@
 
 #include <memory>
 
+#include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/quadrature.hpp"
 #include "core/model/time_edges.hpp"
 
 namespace unfurl {
-namespace {
+EnergyMeter::EnergyMeter(const System& system)
+    : system_(system),
+      loads_(system.has_power(false)),
+      dampers_(system.has_power(true)),
+      drives_(!system.drives().empty()) {
+  if (idle()) return;
+  index1_ = std::make_unique<Index1>(system_);
+  q_.resize(system.coordinates());
+  v_.resize(system.coordinates());
+  unused_.resize(system.solved_coordinates());
+  lambda_.resize(system.constraints());
+}
 
-// Quintic Hermite interpolation on a step of length h at u = (t - t_0) / h.
-struct Ends {
-  const State &a, &b;
-  const VectorXd &accel_a, &accel_b;
-  double h;
+VectorXd EnergyMeter::acceleration(const State& state) {
+  VectorXd a(state.z.size());
+  system_.follow(state);
+  if (!index1_->evaluate(state.t, state.z, state.w, a, lambda_)) a.setZero();
+  return a;
+}
 
-  VectorXd value(double u) const {
-    const double v = 1 - u, u3 = u * u * u, v3 = v * v * v;
-    return v3 * (1 + 3 * u + 6 * u * u) * a.z + h * u * v3 * (1 + 3 * u) * a.w +
-           h * h / 2 * u * u * v3 * accel_a + u3 * (1 + 3 * v + 6 * v * v) * b.z -
-           h * v * u3 * (1 + 3 * v) * b.w + h * h / 2 * v * v * u3 * accel_b;
+void EnergyMeter::add(const State& a, const State& b) {
+  if (idle()) return;
+  static const Quadrature gauss = gauss_legendre(3);
+  before_ = after_.size() && last_ == a.t ? after_ : acceleration(a);
+  after_ = acceleration(b);
+  last_ = b.t;
+  const Quintic ends{a, b, before_, after_, b.t - a.t};
+  system_.follow(a);
+  for (Index i = 0; i < gauss.nodes.size(); ++i) {
+    const double u = gauss.nodes[i], t = a.t + u * ends.h, weight = ends.h * gauss.weights[i];
+    const VectorXd z = ends.value(u), w = ends.rate(u);
+    system_.expand(z, q_);
+    system_.expand_rate(w, v_);
+    if (loads_) load_work += weight * system_.power(false, t, q_, v_);
+    if (dampers_) dissipated -= weight * system_.power(true, t, q_, v_);
+    if (!drives_ || !index1_->evaluate(t, z, w, unused_, lambda_)) continue;
+    for (const Drive& d : system_.drives())
+      drive_work -= weight * d.scale * lambda_[d.row] * d.target.derivative(1, t);
   }
-  VectorXd rate(double u) const {
-    const double v = 1 - u, u2 = u * u, v2 = v * v;
-    return 30 * u2 * v2 / h * (b.z - a.z) + v2 * (1 - 3 * u) * (1 + 5 * u) * a.w +
-           u2 * (1 - 3 * v) * (1 + 5 * v) * b.w + h / 2 * u * v2 * (2 - 5 * u) * accel_a -
-           h / 2 * v * u2 * (2 - 5 * v) * accel_b;
-  }
-};
-
-class FlowIntegrator {
- public:
-  explicit FlowIntegrator(const System& system)
-      : system_(system),
-        index1_(system),
-        loads_(system.has_power(false)),
-        dampers_(system.has_power(true)),
-        drives_(!system.drives().empty()),
-        lambda_(system.constraints()) {}
-
-  bool idle() const { return !loads_ && !dampers_ && !drives_; }
-
-  VectorXd acceleration(const State& state) {
-    VectorXd a(state.z.size());
-    if (!index1_.evaluate(state.t, state.z, state.w, a, lambda_)) a.setZero();
-    return a;
-  }
-
-  // Adds the step's work to the last entries.
-  void add(const Ends& ends, EnergyFlow& flow) {
-    static const Quadrature gauss = gauss_legendre(3);
-    VectorXd q(system_.coordinates()), v(q.size()), unused(ends.a.z.size());
-    for (Index i = 0; i < gauss.nodes.size(); ++i) {
-      const double u = gauss.nodes[i], t = ends.a.t + u * ends.h, weight = ends.h * gauss.weights[i];
-      const VectorXd z = ends.value(u), w = ends.rate(u);
-      system_.expand(z, q);
-      system_.expand_rate(w, v);
-      if (loads_) flow.load_work.back() += weight * system_.power(false, t, q, v);
-      if (dampers_) flow.dissipated.back() -= weight * system_.power(true, t, q, v);
-      if (!drives_ || !index1_.evaluate(t, z, w, unused, lambda_)) continue;
-      for (const Drive& d : system_.drives())
-        flow.drive_work.back() -= weight * d.scale * lambda_[d.row] * d.target.derivative(1, t);
-    }
-  }
-
- private:
-  const System& system_;
-  Index1 index1_;
-  bool loads_, dampers_, drives_;
-  VectorXd lambda_;
-};
-
-}  // namespace
+}
 
 EnergyFlow energy_flow(const Simulation& run) {
   const Trajectory& trajectory = run.trajectory;
   EnergyFlow flow{{0.0}, {0.0}, {0.0}, {0.0}};
-  std::unique_ptr<FlowIntegrator> integrator;
+  std::unique_ptr<EnergyMeter> meter;
   const Model* model = nullptr;
-  VectorXd before, after;
   for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
     for (auto* list : {&flow.load_work, &flow.dissipated, &flow.drive_work, &flow.impact_loss})
       list->push_back(list->back());
@@ -87,18 +62,18 @@ EnergyFlow energy_flow(const Simulation& run) {
       const double gain =
           trajectory.model(i + 1).system.kinetic_energy(b.w) - trajectory.model(i).system.kinetic_energy(a.w);
       (b.t > a.t ? flow.drive_work : flow.impact_loss).back() += b.t > a.t ? gain : -gain;
-      after.resize(0);
+      if (meter) meter->jump();
       continue;
     }
     if (model != &trajectory.model(i + 1)) {
       model = &trajectory.model(i + 1);
-      integrator = std::make_unique<FlowIntegrator>(model->system);
-      after.resize(0);
+      meter = std::make_unique<EnergyMeter>(model->system);
     }
-    if (integrator->idle()) continue;
-    before = after.size() ? after : integrator->acceleration(a);
-    after = integrator->acceleration(b);
-    integrator->add({a, b, before, after, b.t - a.t}, flow);
+    const double load_work = meter->load_work, dissipated = meter->dissipated, drive_work = meter->drive_work;
+    meter->add(a, b);
+    flow.load_work.back() += meter->load_work - load_work;
+    flow.dissipated.back() += meter->dissipated - dissipated;
+    flow.drive_work.back() += meter->drive_work - drive_work;
   }
   return flow;
 }

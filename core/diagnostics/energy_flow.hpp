@@ -2,8 +2,10 @@
 // dampers, drives and impacts.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "core/integrators/index1.hpp"
 #include "core/simulate/simulation.hpp"
 
 namespace unfurl {
@@ -18,5 +20,25 @@ struct EnergyFlow {
 // method, of order 6 where the forces are smooth within steps. A drive's power -l lambda f' takes its
 // multiplier from the index-1 equations at those points.
 EnergyFlow energy_flow(const Simulation& run);
+
+// The same step after step, for motions that are not kept.
+class EnergyMeter {
+ public:
+  explicit EnergyMeter(const System& system);
+  // Nothing goes in or out but by potentials and constant loads: no step needs to be added.
+  bool idle() const { return !loads_ && !dampers_ && !drives_; }
+  void add(const State& a, const State& b);  // the step from a to b, which follows on the last one
+  void jump() { after_.resize(0); }          // velocities have changed within no time
+  double load_work = 0, dissipated = 0, drive_work = 0;  // so far [J]
+
+ private:
+  VectorXd acceleration(const State& state);
+
+  System system_;  // follows the states
+  bool loads_, dampers_, drives_;
+  std::unique_ptr<Index1> index1_;
+  VectorXd before_, after_, q_, v_, unused_, lambda_;
+  double last_ = 0;  // time of the state that after_ is of
+};
 
 }  // namespace unfurl

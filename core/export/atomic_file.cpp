@@ -1,16 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/export/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
+#include <random>
 #include <system_error>
+#include <utility>
+#include <vector>
+
+#include "core/export/checksum.hpp"
 
 namespace unfurl {
 namespace {
+
+constexpr std::string_view unfinished_prefix = ".unfurl-", unfinished_suffix = ".part";
+constexpr std::size_t unfinished_digits = 16;
+
+std::atomic<FileWatcher*> file_watcher{nullptr};
 
 // "no space left on device": as the end of a sentence, so in lower case.
 std::string cause_text(int error_number) {
@@ -19,12 +35,11 @@ std::string cause_text(int error_number) {
   return text;
 }
 
-// Unique among the threads and the running processes of one machine.
-std::filesystem::path temporary_name(const std::filesystem::path& target) {
-  static std::atomic<unsigned> count{0};
-  const std::string name = "." + target.filename().string() + "." + std::to_string(::getpid()) + "-" +
-                           std::to_string(count++) + unfinished_suffix;
-  return target.parent_path() / name;
+std::filesystem::path random_name(const std::filesystem::path& folder) {
+  std::random_device random;
+  std::array<char, unfinished_digits + 1> digits{};
+  std::snprintf(digits.data(), digits.size(), "%08x%08x", random(), random());
+  return folder / (std::string(unfinished_prefix) + digits.data() + std::string(unfinished_suffix));
 }
 
 int write_all(int file, const std::byte* data, std::size_t size) {
@@ -38,13 +53,14 @@ int write_all(int file, const std::byte* data, std::size_t size) {
   return 0;
 }
 
-// 0, or the errno of what failed; some file systems report a full disk only at close.
-int write_new_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) return errno;
-  const int error = write_all(file, bytes.data(), bytes.size());
-  const int close_error = ::close(file) == 0 ? 0 : errno;
-  return error != 0 ? error : close_error;
+// A file's new name is in its directory, which is a file too. What cannot be flushed is not an error: there
+// are file systems that know no such thing.
+void flush_directory_of(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  ::fsync(file);
+  ::close(file);
 }
 
 }  // namespace
@@ -55,28 +71,108 @@ FileError::FileError(const std::filesystem::path& path, const std::string& cause
 FileError::FileError(const std::filesystem::path& path, int error_number)
     : FileError(path, cause_text(error_number)) {}
 
-void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+std::string checksum_of(int file) {
+  struct stat status {};
+  if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return "";
+  Checksum sum;
+  std::vector<std::byte> block(std::size_t{1} << 16U);
+  while (true) {
+    const ssize_t got = ::read(file, block.data(), block.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return "";
+    if (got == 0) return sum.text();
+    sum.add(std::span(block.data(), static_cast<std::size_t>(got)));
+  }
+}
+
+std::string checksum_of_file(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return "";
+  std::string text = checksum_of(file);
+  ::close(file);
+  return text;
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes, Flush flush) {
   PendingFile pending(path);
-  if (const int error = write_new_file(pending.name(), bytes); error != 0) throw FileError(path, error);
-  pending.commit();
+  if (const int error = write_all(pending.file(), bytes.data(), bytes.size()); error != 0)
+    throw FileError(path, error);
+  pending.commit(flush);
 }
 
-void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
-  write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+void write_file_atomically(const std::filesystem::path& path, std::string_view text, Flush flush) {
+  write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())), flush);
 }
 
-PendingFile::PendingFile(std::filesystem::path target)
-    : target_(std::move(target)), temporary_(temporary_name(target_)) {
+void flush_files(const std::filesystem::path& directory) {
+  const int file = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  ::syncfs(file);
+  ::close(file);
+}
+
+bool is_unfinished_name(std::string_view name) {
+  if (name.size() != unfinished_prefix.size() + unfinished_digits + unfinished_suffix.size()) return false;
+  if (!name.starts_with(unfinished_prefix) || !name.ends_with(unfinished_suffix)) return false;
+  const std::string_view digits = name.substr(unfinished_prefix.size(), unfinished_digits);
+  return digits.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+void remove_abandoned(const std::filesystem::path& unfinished) {
+  const int file = ::open(unfinished.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return;
+  struct stat status {};
+  const bool regular = ::fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+  const bool locked = ::flock(file, LOCK_EX | LOCK_NB) == 0;
+  const bool held = !locked && errno == EWOULDBLOCK;
+  std::error_code error;
+  const auto old = std::filesystem::file_time_type::clock::now() - std::chrono::minutes(1);
+  if (regular && !held && (locked || std::filesystem::last_write_time(unfinished, error) < old))
+    ::unlink(unfinished.c_str());
+  ::close(file);
+}
+
+PendingFile::PendingFile(std::filesystem::path target) : target_(std::move(target)) {
   if (!target_.has_filename()) throw FileError(target_, EISDIR);
+  while (file_ < 0) {
+    temporary_ = random_name(target_.parent_path());
+    file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file_ < 0 && errno == EEXIST) continue;
+    if (file_ < 0) throw FileError(target_, errno);
+    ::flock(file_, LOCK_EX | LOCK_NB);
+    struct stat status {};
+    // Taken for abandoned in the moment before it was locked: again.
+    if (::fstat(file_, &status) == 0 && status.st_nlink == 0) ::close(std::exchange(file_, -1));
+  }
 }
 
 PendingFile::~PendingFile() {
-  if (pending_) ::unlink(temporary_.c_str());
+  if (file_ < 0) return;
+  ::close(file_);
+  ::unlink(temporary_.c_str());
 }
 
-void PendingFile::commit() {
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) throw FileError(target_, errno);
-  pending_ = false;
+void PendingFile::commit(Flush flush) {
+  if (flush == Flush::at_once && ::fsync(file_) != 0 && errno != EINVAL && errno != EROFS)
+    throw FileError(target_, errno);
+  if (FileWatcher* watcher = file_watcher; watcher)
+    watcher->before_file(target_, checksum_of_file(temporary_));
+  // Some file systems report a full disk only at close.
+  if (::close(std::exchange(file_, -1)) != 0) {
+    const int error = errno;
+    ::unlink(temporary_.c_str());
+    throw FileError(target_, error);
+  }
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    const int error = errno;
+    ::unlink(temporary_.c_str());
+    throw FileError(target_, error);
+  }
+  if (flush == Flush::at_once) flush_directory_of(target_);
+}
+
+FileWatcher* watch_files(FileWatcher* watcher) {
+  return file_watcher.exchange(watcher);
 }
 
 }  // namespace unfurl

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files appear whole or not at all: written under a temporary name in the same directory, then renamed.
 #pragma once
 
@@ -22,27 +23,58 @@ class FileError : public std::runtime_error {
   std::filesystem::path path_;
 };
 
+// When a new file is on the disk and not only in memory. `at_once`: before it has its name, so that a power
+// cut leaves the old file or the new one; 5 ms a file were measured. `later`: for the many files of a film,
+// which are checked when they are used again; one flush_files() at the end of them costs as much as one.
+enum class Flush { at_once, later };
+
 // Replace `path` by a file with these bytes. Throws FileError and leaves what was there before.
-void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
-void write_file_atomically(const std::filesystem::path& path, std::string_view text);
+void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes,
+                           Flush flush = Flush::at_once);
+void write_file_atomically(const std::filesystem::path& path, std::string_view text,
+                           Flush flush = Flush::at_once);
 
-// What the temporary names end in; they begin with a dot.
-inline constexpr const char* unfinished_suffix = ".part";
+// Wait until what was written to the file system of this directory is on its disk.
+void flush_files(const std::filesystem::path& directory);
 
-// A file that another program writes: hand it name(), then commit(). What is not committed is removed again.
+// Temporary names are ".unfurl-", 16 random digits and ".part": never longer than a name may be, and
+// different among processes, containers and machines.
+bool is_unfinished_name(std::string_view name);
+// Remove a file of such a name that nobody is writing any more: its writer would hold a lock on it. Where the
+// file system knows no locks a minute must have gone by.
+void remove_abandoned(const std::filesystem::path& unfinished);
+
+// A file that another program or a stream writes: hand it name(), then commit(). It is made empty, under a
+// name that nothing had (also no link); what is not committed is removed again.
 class PendingFile {
  public:
-  explicit PendingFile(std::filesystem::path target);
+  explicit PendingFile(std::filesystem::path target);  // throws FileError
   ~PendingFile();
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
 
   const std::filesystem::path& name() const { return temporary_; }  // beside the target, hidden
-  void commit();  // rename onto the target; throws FileError
+  int file() const { return file_; }                                // open for writing
+  void commit(Flush flush = Flush::at_once);  // rename onto the target; throws FileError
 
  private:
   std::filesystem::path target_, temporary_;
-  bool pending_ = true;
+  int file_ = -1;
 };
+
+// Is told of every file just before it takes its place, with the checksum (core/export/checksum.hpp) of its
+// bytes; may be called by several threads at once, may throw FileError: then the file does not appear.
+class FileWatcher {
+ public:
+  virtual void before_file(const std::filesystem::path& target, const std::string& checksum) = 0;
+
+ protected:
+  FileWatcher() = default;
+  FileWatcher(const FileWatcher&) = default;
+  FileWatcher& operator=(const FileWatcher&) = default;
+  ~FileWatcher() = default;
+};
+// One for the whole program; nullptr: none. Returns the one before.
+FileWatcher* watch_files(FileWatcher* watcher);
 
 }  // namespace unfurl

@@ -1,5 +1,7 @@
 #include "core/export/csv.hpp"
 
+#include <unistd.h>
+
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -16,7 +18,7 @@ namespace {
 class CsvFile {
  public:
   explicit CsvFile(const std::filesystem::path& path)
-      : path_(path), pending_(path), file_(std::fopen(pending_.name().c_str(), "wb")) {
+      : path_(path), pending_(path), file_(::fdopen(::dup(pending_.file()), "wb")) {
     if (!file_) throw FileError(path_, errno);
   }
   ~CsvFile() {
@@ -107,10 +109,13 @@ void write_rod_forces_csv(const std::filesystem::path& path, const Trajectory& t
   file.cell("t_s");
   const auto& rods = trajectory.structure().rod_copies;
   for (const auto& rod : rods) file.cell(rod.name + ".axial_force_N");
+  for (const auto& rod : rods) file.cell(rod.name + ".axial_force_unique");
   file.end_row();
   for (std::size_t i = 0; i < diagnostics.t.size(); ++i) {
+    const auto state = static_cast<Index>(i);
     file.cell(diagnostics.t[i]);
-    for (const auto& rod : rods) file.cell(diagnostics.axial_force(static_cast<Index>(i), rod.source));
+    for (const auto& rod : rods) file.cell(diagnostics.axial_force(state, rod.source));
+    for (const auto& rod : rods) file.cell(diagnostics.force_unique(state, rod.source) ? "1" : "0");
     file.end_row();
   }
   file.commit();
@@ -139,7 +144,8 @@ void write_long_nodes(const std::filesystem::path& path, const Trajectory& traje
 void write_long_rods(const std::filesystem::path& path, const Trajectory& trajectory,
                      const Diagnostics& diagnostics) {
   CsvFile file(path);
-  for (const char* name : {"t_s", "rod", "node_a", "node_b", "group", "length_m", "axial_force_N"})
+  for (const char* name :
+       {"t_s", "rod", "node_a", "node_b", "group", "length_m", "axial_force_N", "axial_force_unique"})
     file.cell(name);
   file.end_row();
   const Structure& structure = trajectory.structure();
@@ -153,6 +159,7 @@ void write_long_rods(const std::filesystem::path& path, const Trajectory& trajec
       file.cell(structure.rods[static_cast<std::size_t>(rod.source)].group);
       file.cell((x.segment<3>(3 * rod.b) - x.segment<3>(3 * rod.a)).norm());
       file.cell(diagnostics.axial_force(static_cast<Index>(i), rod.source));
+      file.cell(diagnostics.force_unique(static_cast<Index>(i), rod.source) ? "1" : "0");
       file.end_row();
     }
   }

@@ -16,7 +16,11 @@ void write_series_csv(const std::filesystem::path& path, const Diagnostics& diag
 // structure.
 void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& trajectory);
 
-// t_s, then NAME.axial_force_N for every rod of the whole structure, tension positive.
+// t_s, then NAME.axial_force_N for every rod of the whole structure, tension positive, the mean over the
+// rod's length; after all of them NAME.axial_force_unique for every rod in the same order: 1 where the rigid
+// model determines that force, 0 where it is one choice of many. A column beside each force, since it may
+// change from state to state (a latch closes, a pose is singular); behind them, so that forces keep their
+// places.
 void write_rod_forces_csv(const std::filesystem::path& path, const Trajectory& trajectory,
                           const Diagnostics& diagnostics);
 

@@ -154,6 +154,27 @@ class GltfWriter {
   // A rod's own radius where it has one, a sixtieth of its length where not.
   static double radius(const Rod& rod) { return rod.radius > 0 ? rod.radius : rod.length / 60; }
 
+  // Of a node at which no rod ends, a payload or a pin: the middle one of all joints, else a hundredth of the
+  // motion's size.
+  double point_radius() const {
+    std::vector<double> known;
+    for (const double r : joint_radius_)
+      if (r > 0.0) known.push_back(r);
+    if (!known.empty()) {
+      const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+      std::nth_element(known.begin(), middle, known.end());
+      return *middle;
+    }
+    Vec3 low = point(poses_.front(), 0), high = low;
+    for (const VectorXd& pose : poses_)
+      for (int n = 0; n < static_cast<int>(structure_.node_copies.size()); ++n) {
+        low = low.cwiseMin(point(pose, n));
+        high = high.cwiseMax(point(pose, n));
+      }
+    const double size = (high - low).norm();
+    return size > 0.0 ? 0.01 * size : 0.01;
+  }
+
   static Vec3 point(const VectorXd& pose, int node) { return pose.segment<3>(3 * node); }
 
   void add_node(const std::string& name, std::size_t mesh, const Json& place) {
@@ -195,13 +216,12 @@ class GltfWriter {
   }
 
   void add_joint(std::size_t n) {
-    if (n >= joint_radius_.size() || joint_radius_[n] == 0.0) return;
     Motion motion{glb_.json["nodes"].size(), {}, {}, {}};
     for (const VectorXd& pose : poses_) {
       const Vec3 p = point(pose, static_cast<int>(n));
       append(motion.translation, {p[0], p[1], p[2]});
     }
-    const double r = joint_radius_[n];
+    const double r = n < joint_radius_.size() && joint_radius_[n] > 0.0 ? joint_radius_[n] : point_radius();
     add_node(structure_.node_copies[n].name, groups_.size(),
              {{"translation", first(motion.translation, 3)}, {"scale", {r, r, r}}});
     motions_.push_back(std::move(motion));

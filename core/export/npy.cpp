@@ -34,19 +34,23 @@ void export_npy(const ExportJob& job) {
                     rods = structure.rod_copies.size();
   std::vector<double> time, position, velocity, force;
   std::vector<std::int64_t> ends;
+  std::vector<std::uint8_t> unique;  // numpy's bool
   for (const RodCopy& rod : structure.rod_copies) ends.insert(ends.end(), {rod.a, rod.b});
   for (std::size_t i = 0; i < steps; ++i) {
     time.push_back(trajectory.time(i));
     const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
     position.insert(position.end(), x.begin(), x.end());
     velocity.insert(velocity.end(), v.begin(), v.end());
-    for (const RodCopy& rod : structure.rod_copies)
+    for (const RodCopy& rod : structure.rod_copies) {
       force.push_back(job.diagnostics.axial_force(static_cast<Index>(i), rod.source));
+      unique.push_back(job.diagnostics.force_unique(static_cast<Index>(i), rod.source) ? 1 : 0);
+    }
   }
   write_array(folder / "t_s.npy", "<f8", {steps}, time);
   write_array(folder / "positions_m.npy", "<f8", {steps, nodes, 3}, position);
   write_array(folder / "velocities_m_s.npy", "<f8", {steps, nodes, 3}, velocity);
   write_array(folder / "axial_forces_N.npy", "<f8", {steps, rods}, force);
+  write_array(folder / "axial_forces_unique.npy", "|b1", {steps, rods}, unique);
   write_array(folder / "rod_nodes.npy", "<i8", {rods, 2}, ends);
 }
 

@@ -5,6 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/peaks.hpp"
+#include "core/math/largest.hpp"
+#include "core/study/measures.hpp"
 
 namespace unfurl {
 
@@ -12,12 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Largest magnitude of a column; NaN where any entry is NaN.
 double max_abs(const Diagnostics& diagnostics, std::string_view name) {
-  double largest = 0.0;
-  for (const double x : diagnostics.at(name).values)
-    largest = std::isnan(x) ? x : std::max(largest, std::abs(x));
-  return largest;
+  return largest_magnitude(diagnostics.at(name).values);
 }
 
 Json model_json(const Structure& structure, const System& system, const Mobility& mobility) {
@@ -38,6 +38,29 @@ Json solver_json(const Simulation& run) {
           {"cpu_s", run.cpu_s}};
 }
 
+// What the run is asked for most: "deploy_time_s", "peak_rod_force_N", ...; null where there is none.
+Json measures_json(const Simulation& run, const Diagnostics& diagnostics) {
+  Json object = Json::object();
+  for (const char* name : {"deploy_time", "deployed_fraction", "peak_speed", "peak_energy", "peak_tension",
+                           "peak_compression"}) {
+    const RunMeasure measure = find_measure(name);
+    object[measure.column] = measure.value(run, diagnostics);
+  }
+  return object;
+}
+
+// The largest magnitude of what each drive gives: "motor": {"peak_torque_N_m": 2005, "peak_power_W": 812}.
+Json drives_json(const Simulation& run, const Diagnostics& diagnostics) {
+  Json object = Json::object();
+  for (const Series& column : diagnostics.columns)
+    for (const std::string_view end : {".torque_N_m", ".force_N", ".power_W"})
+      if (column.name.ends_with(end))
+        object[column.name.substr(0, column.name.size() - end.size())]["peak_" + std::string(end.substr(1))] =
+            larger(largest_of_column(run, diagnostics, column.name),
+                   -smallest_of_column(run, diagnostics, column.name));
+  return object;
+}
+
 Json by_node(const Structure& structure, const VectorXd& x) {
   Json object = Json::object();
   for (std::size_t i = 0; i < structure.node_copies.size(); ++i) {
@@ -54,6 +77,20 @@ Json final_json(const Trajectory& trajectory) {
           {"velocities_m_s", by_node(trajectory.structure(), trajectory.velocities(last))}};
 }
 
+// The rod that carries the peak by the name of its first copy.
+Json forces_json(const Structure& structure, const Diagnostics& diagnostics) {
+  const PeakForce peak = peak_rod_force(diagnostics);
+  const auto shown = std::find_if(structure.rod_copies.begin(), structure.rod_copies.end(),
+                                  [&](const RodCopy& copy) { return copy.source == peak.rod; });
+  Json forces = {{"rods", structure.rod_copies.size()}, {"unique_rods", unique_rods(structure, diagnostics)}};
+  if (shown == structure.rod_copies.end()) return forces;
+  forces["peak_rod_force_N"] = std::abs(peak.force_N);
+  forces["peak_rod"] = shown->name;
+  forces["peak_t_s"] = peak.t;
+  forces["peak_unique"] = peak.unique;
+  return forces;
+}
+
 }  // namespace
 
 std::string summary_json(const std::string& scene_name, const Simulation& run, const Diagnostics& diagnostics,
@@ -62,19 +99,22 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   Json summary = {{"unfurl", UNFURL_VERSION}, {"scene", scene_name}, {"status", to_string(run.status)}};
   summary["message"] = run.message;
   summary["warnings"] = run.warnings;
-  for (const auto& warning : accuracy_warnings(diagnostics)) summary["warnings"].push_back(warning);
+  for (const auto& warning : accuracy_warnings(run, diagnostics)) summary["warnings"].push_back(warning);
   summary["model"] = model_json(model.structure, model.system, mobility);
   summary["solver"] = solver_json(run);
   for (const char* name : {"constraint_max_m", "constraint_relative_max", "constraint_velocity_max_m_s"})
     summary["errors"][name] = max_abs(diagnostics, name);
   summary["errors"]["energy_balance_max_J"] = max_abs(diagnostics, "energy_balance_J");
   if (!std::isnan(run.position_estimate)) summary["errors"]["position_estimate_m"] = run.position_estimate;
+  summary["forces"] = forces_json(model.structure, diagnostics);
   summary["events"] = Json::array();
   for (const auto& event : run.events) {
     summary["events"].push_back({{"name", event.name}, {"t_s", event.t}});
     if (event.energy_lost != 0.0) summary["events"].back()["energy_lost_J"] = event.energy_lost;
     if (!std::isnan(event.singular_value)) summary["events"].back()["singular_value"] = event.singular_value;
   }
+  summary["measures"] = measures_json(run, diagnostics);
+  if (Json drives = drives_json(run, diagnostics); !drives.empty()) summary["drives"] = std::move(drives);
   if (!run.trajectory.empty()) summary["final"] = final_json(run.trajectory);
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -61,9 +61,12 @@ std::string grid(const ExportJob& job, const Cells& cells, std::size_t i) {
   const auto& structure = trajectory.structure();
   const auto rods = static_cast<Index>(structure.rod_copies.size());
   VectorXd force(rods);
-  for (Index r = 0; r < rods; ++r)
-    force[r] = job.diagnostics.axial_force(static_cast<Index>(i),
-                                           structure.rod_copies[static_cast<std::size_t>(r)].source);
+  std::vector<std::uint8_t> unique;
+  for (Index r = 0; r < rods; ++r) {
+    const int source = structure.rod_copies[static_cast<std::size_t>(r)].source;
+    force[r] = job.diagnostics.axial_force(static_cast<Index>(i), source);
+    unique.push_back(job.diagnostics.force_unique(static_cast<Index>(i), source) ? 1 : 0);
+  }
   const VectorXd time = VectorXd::Constant(1, trajectory.time(i));
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
@@ -75,6 +78,7 @@ std::string grid(const ExportJob& job, const Cells& cells, std::size_t i) {
   text += "<PointData Vectors=\"velocity_m_s\">\n" + reals("velocity_m_s", 3, trajectory.velocities(i)) +
           "</PointData>\n";
   text += "<CellData Scalars=\"axial_force_N\">\n" + reals("axial_force_N", 1, force) +
+          data_array<std::uint8_t>("UInt8", "axial_force_unique", 1, unique) +
           data_array<std::int64_t>("Int64", "group", 1, cells.group) + "</CellData>\n";
   text += "<Points>\n" + reals("Points", 3, trajectory.positions(i)) + "</Points>\n<Cells>\n" +
           data_array<std::int64_t>("Int64", "connectivity", 1, cells.connectivity) +
@@ -96,10 +100,11 @@ void export_vtk(const ExportJob& job) {
     char suffix[32];
     std::snprintf(suffix, sizeof suffix, "_%06zu.vtu", i);
     const std::string name = std::string(job.name) + suffix;
-    write_file_atomically(folder / name, grid(job, cells, i));
+    write_file_atomically(folder / name, grid(job, cells, i), Flush::later);
     collection += "<DataSet timestep=\"" + number(trajectory.time(i)) + "\" part=\"0\" file=\"" +
                   xml_text(name) + "\"/>\n";
   }
+  flush_files(folder);
   write_file_atomically(folder / (std::string(job.name) + ".pvd"),
                         collection + "</Collection>\n</VTKFile>\n");
 }

@@ -7,7 +7,7 @@ class ConstantForce final : public ForceBlock {
  public:
   explicit ConstantForce(VectorXd force) : force_(std::move(force)) {}
   bool constant() const override { return true; }
-  void add(double, const double*, const double*, double scale, double* f) const override {
+  void add(const Moment&, const double*, const double*, double scale, double* f) const override {
     Eigen::Map<VectorXd>(f, force_.size()) += scale * force_;
   }
 

@@ -17,16 +17,16 @@ class Drag final : public ForceBlock {
   bool constant() const override { return false; }
   bool has_power() const override { return true; }
   bool dissipative() const override { return true; }
-  void add(double, const double*, const double* v, double scale, double* f) const override {
+  void add(const Moment&, const double*, const double* v, double scale, double* f) const override {
     for (const auto& [node, c] : points_)
       Eigen::Map<Vec3>(f + 3 * static_cast<Index>(node)) -= scale * c * node_vector(v, node);
   }
-  double power(double, const double*, const double* v) const override {
+  double power(const Moment&, const double*, const double* v) const override {
     double sum = 0;
     for (const auto& [node, c] : points_) sum -= c * node_vector(v, node).squaredNorm();
     return sum;
   }
-  void derivatives(double, const double*, const double*, ForceDerivative&,
+  void derivatives(const Moment&, const double*, const double*, ForceDerivative&,
                    ForceDerivative& by_v) const override {
     for (const auto& [node, c] : points_)
       for (int k = 0; k < 3; ++k) by_v.emplace_back(3 * node + k, 3 * node + k, -c);
@@ -71,6 +71,10 @@ std::unique_ptr<ForceBlock> joint_damping_block(const Structure& structure, cons
 const std::vector<ParamSpec>& joint_damping_params() {
   static const auto params = one_damping("N m s/rad", "torque per rad/s between any two rods at the node");
   return params;
+}
+
+void fill_damping(const ParamSet& values, Force& force) {
+  force.damping = values.real("damping");
 }
 
 const std::vector<ParamSpec>& drag_params() {

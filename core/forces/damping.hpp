@@ -15,5 +15,6 @@ std::unique_ptr<ForceBlock> joint_damping_block(const Structure& structure, cons
 std::unique_ptr<ForceBlock> drag_block(const Structure& structure, const SparseRows& node_mass);
 const std::vector<ParamSpec>& joint_damping_params();
 const std::vector<ParamSpec>& drag_params();
+void fill_damping(const ParamSet& values, Force& force);
 
 }  // namespace unfurl

@@ -14,16 +14,16 @@ std::span<const ForceKind> force_kinds() {
       ForceKind{"load", "a constant force on nodes: [[loads]] nodes, force (N)", nodal_load_block},
       ForceKind{"gravity", "weight of rods and nodes: [gravity] acceleration (m/s^2)", gravity_block},
       ForceKind{"load_over_time", "a force on nodes that changes with time", load_over_time_block,
-                Members::each_node, load_over_time_params},
+                Members::each_node, load_over_time_params, fill_load_over_time},
       ForceKind{"follower", "a force along a rod that turns with it", follower_block, Members::rod,
-                follower_params},
+                follower_params, fill_follower},
       ForceKind{"spring", "spring and damper between two nodes; tension_only: a cable", axial_spring_block,
-                Members::two_nodes, axial_spring_params},
+                Members::two_nodes, axial_spring_params, fill_axial_spring},
       ForceKind{"torsion_spring", "spring and damper at the hinge between two rods, or on the fold angle",
-                torsion_spring_block, Members::angle, torsion_spring_params},
+                torsion_spring_block, Members::angle, torsion_spring_params, fill_torsion_spring},
       ForceKind{"joint_damping", "viscous torque between the rods that meet at a node", joint_damping_block,
-                Members::each_node, joint_damping_params},
-      ForceKind{"drag", "viscous force on nodes", drag_block, Members::each_node, drag_params},
+                Members::each_node, joint_damping_params, fill_damping},
+      ForceKind{"drag", "viscous force on nodes", drag_block, Members::each_node, drag_params, fill_damping},
   };
   return kinds;
 }

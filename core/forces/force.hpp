@@ -18,21 +18,39 @@ inline Eigen::Map<const Vec3> node_vector(const double* x, int node) {
   return Eigen::Map<const Vec3>(x + 3 * static_cast<Index>(node));
 }
 
+// When forces are asked for, and near which values angles that count their turns are taken: those of a state,
+// carried on with its rates, so that a step may turn by any angle that its acceleration does not change by
+// half a turn.
+struct Moment {
+  Moment(double time) : t(time) {}  // NOLINT: a time alone is a moment of a structure that follows no angle
+  double t;                         // [s]
+  double since = 0.0;               // the time of the state [s]
+  // Of each followed angle (measure.hpp) [rad], [rad/s]; nullptr: as at t = 0.
+  const double* angles = nullptr;
+  const double* rates = nullptr;
+
+  double near(int followed, double otherwise) const {
+    if (followed < 0 || !angles) return otherwise;
+    return angles[followed] + (t - since) * rates[followed];
+  }
+};
+
 class ForceBlock {
  public:
   virtual ~ForceBlock() = default;
   virtual bool constant() const = 0;  // does not depend on t, q or v: evaluated once per model
   // f += scale * F(t, q, v), in node coordinates [N].
-  virtual void add(double t, const double* q, const double* v, double scale, double* f) const = 0;
+  virtual void add(const Moment& at, const double* q, const double* v, double scale, double* f) const = 0;
 
   // The energy that the conservative part of F has stored [J]: F = -dV/dq + the rest.
-  virtual double potential(const double*) const { return 0.0; }
+  virtual double potential(const Moment&, const double*) const { return 0.0; }
   // The power of the rest [W]: F . v + dV/dt. Loads put energy in, dampers (dissipative() is true) take it.
   virtual bool has_power() const { return false; }
   virtual bool dissipative() const { return false; }
-  virtual double power(double, const double*, const double*) const { return 0.0; }
+  virtual double power(const Moment&, const double*, const double*) const { return 0.0; }
   // dF/dq and dF/dv, for Newton matrices; what is left out costs iterations, not accuracy.
-  virtual void derivatives(double, const double*, const double*, ForceDerivative&, ForceDerivative&) const {}
+  virtual void derivatives(const Moment&, const double*, const double*, ForceDerivative&,
+                           ForceDerivative&) const {}
 };
 
 // Which members of a structure an entry of a kind names.
@@ -46,12 +64,25 @@ enum class Members {
 };
 
 struct ForceKind {
+  // The block of all forces of a kind; nullptr where the structure has none.
+  using Make = std::unique_ptr<ForceBlock> (*)(const Structure&, const SparseRows& node_mass);
+  // The values of an entry of [[forces]] into a force that has its name, nodes and measure already; `rest` is
+  // the measure's value at t = 0. Throws StructureError with the parameter that cannot be so.
+  using Fill = void (*)(const ParamSet& values, Force& force);
+
+  // Of what a table of its own says (loads, gravity), and of an entry of [[forces]].
+  ForceKind(std::string_view kind_, std::string_view help_, Make make_)
+      : kind(kind_), help(help_), make(make_) {}
+  ForceKind(std::string_view kind_, std::string_view help_, Make make_, Members members_,
+            const std::vector<ParamSpec>& (*params_)(), Fill fill_)
+      : kind(kind_), help(help_), make(make_), members(members_), params(params_), fill(fill_) {}
+
   std::string_view kind;
   std::string_view help;
-  // The block of all forces of this kind; nullptr where the structure has none.
-  std::unique_ptr<ForceBlock> (*make)(const Structure&, const SparseRows& node_mass);
+  Make make;
   Members members = Members::none;
-  const std::vector<ParamSpec>& (*params)() = nullptr;  // keys of [[forces]]; nullptr: not listed there
+  const std::vector<ParamSpec>& (*params)() = nullptr;
+  Fill fill = nullptr;
 };
 std::span<const ForceKind> force_kinds();
 

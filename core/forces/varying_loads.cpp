@@ -17,13 +17,14 @@ class LoadsOverTime final : public ForceBlock {
   explicit LoadsOverTime(std::vector<Force> loads) : loads_(std::move(loads)) {}
   bool constant() const override { return false; }
   bool has_power() const override { return true; }
-  void add(double t, const double*, const double*, double scale, double* f) const override {
+  void add(const Moment& at, const double*, const double*, double scale, double* f) const override {
     for (const Force& load : loads_)
-      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(load.nodes[0])) += scale * load.size(t) * load.direction;
+      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(load.nodes[0])) += scale * load.size(at.t) * load.direction;
   }
-  double power(double t, const double*, const double* v) const override {
+  double power(const Moment& at, const double*, const double* v) const override {
     double sum = 0;
-    for (const Force& load : loads_) sum += load.size(t) * load.direction.dot(node_vector(v, load.nodes[0]));
+    for (const Force& load : loads_)
+      sum += load.size(at.t) * load.direction.dot(node_vector(v, load.nodes[0]));
     return sum;
   }
 
@@ -36,23 +37,24 @@ class Followers final : public ForceBlock {
   explicit Followers(std::vector<Force> loads) : loads_(std::move(loads)) {}
   bool constant() const override { return false; }
   bool has_power() const override { return true; }
-  void add(double t, const double* q, const double*, double scale, double* f) const override {
+  void add(const Moment& at, const double* q, const double*, double scale, double* f) const override {
     for (const Force& load : loads_)
-      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(load.nodes[1])) += scale * load.size(t) * along(load, q);
+      Eigen::Map<Vec3>(f + 3 * static_cast<Index>(load.nodes[1])) += scale * load.size(at.t) * along(load, q);
   }
-  double power(double t, const double* q, const double* v) const override {
+  double power(const Moment& at, const double* q, const double* v) const override {
     double sum = 0;
-    for (const Force& load : loads_) sum += load.size(t) * along(load, q).dot(node_vector(v, load.nodes[1]));
+    for (const Force& load : loads_)
+      sum += load.size(at.t) * along(load, q).dot(node_vector(v, load.nodes[1]));
     return sum;
   }
   // d/dx of the unit vector n of d: (I - n n^T) / |d|
-  void derivatives(double t, const double* q, const double*, ForceDerivative& by_q,
+  void derivatives(const Moment& at, const double* q, const double*, ForceDerivative& by_q,
                    ForceDerivative&) const override {
     for (const Force& load : loads_) {
       const int a = load.nodes[0], b = load.nodes[1];
       const Vec3 n = along(load, q);
       const double length = (node_vector(q, b) - node_vector(q, a)).norm();
-      const Mat3 turn = load.size(t) / length * (Mat3::Identity() - n * n.transpose());
+      const Mat3 turn = load.size(at.t) / length * (Mat3::Identity() - n * n.transpose());
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
           by_q.emplace_back(3 * b + i, 3 * b + j, turn(i, j));
@@ -78,6 +80,19 @@ ParamSpec table_param() {
   return text_param("table", "", "CSV file beside the scene, in place of times and values: t,value");
 }
 
+// `size` times the factor over time, which is 1 where no table is given.
+TimeFunction over_time(const ParamSet& values, double size) {
+  TimeFunction f;
+  f.offset = size;
+  if (values.vector("times").empty()) return f;
+  f.kind = TimeFunction::Kind::linear;
+  f.offset = 0;
+  f.times = values.vector("times");
+  f.values = values.vector("values");
+  for (double& x : f.values) x *= size;
+  return f;
+}
+
 }  // namespace
 
 std::unique_ptr<ForceBlock> load_over_time_block(const Structure& structure, const SparseRows&) {
@@ -99,6 +114,16 @@ const std::vector<ParamSpec>& load_over_time_params() {
     return std::vector<ParamSpec>{force, times_param(), values_param(), table_param()};
   }();
   return params;
+}
+
+void fill_load_over_time(const ParamSet& values, Force& force) {
+  const auto& f = values.vector("force");
+  force.direction = {f[0], f[1], f[2]};
+  force.size = over_time(values, 1.0);
+}
+
+void fill_follower(const ParamSet& values, Force& force) {
+  force.size = over_time(values, values.real("force"));
 }
 
 const std::vector<ParamSpec>& follower_params() {

@@ -13,5 +13,7 @@ std::unique_ptr<ForceBlock> load_over_time_block(const Structure& structure, con
 std::unique_ptr<ForceBlock> follower_block(const Structure& structure, const SparseRows& node_mass);
 const std::vector<ParamSpec>& load_over_time_params();
 const std::vector<ParamSpec>& follower_params();
+void fill_load_over_time(const ParamSet& values, Force& force);
+void fill_follower(const ParamSet& values, Force& force);
 
 }  // namespace unfurl

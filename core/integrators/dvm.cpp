@@ -1,8 +1,11 @@
 #include "core/integrators/dvm.hpp"
 
+#include <stdexcept>
+
 #include "core/integrators/full_newton.hpp"
 #include "core/integrators/stage_equations.hpp"
 #include "core/math/saddle_solver.hpp"
+#include "core/math/twofold.hpp"
 
 namespace unfurl {
 namespace {
@@ -15,6 +18,10 @@ constexpr double wanted = 1.5, wanted_constraint = constraint_level_wanted, acce
 constexpr Index full_newton_unknowns = 2500;
 constexpr int max_frozen_iterations = 30;
 constexpr int slow_iterations = 8;
+// Weak modes: what the level accepts of a constraint's error, divided by the smallest singular value, may
+// move the structure by this share of the motion of the step; else the step is solved with care. Singular
+// values above `strong` are never looked at.
+constexpr double harmless = 1e-8, harmless_in_large = 1e-6, strong = 1e-3;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool is_small(const System& system, int stages) {
@@ -37,7 +44,7 @@ class Dvm final : public Integrator {
     previous_.setZero(n, c_.s - 1);
     consistent_f_.setZero(n, c_.s - 1);
     y_to_lambda_.setZero(c_.s - 1, c_.s - 1);
-    for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_}) v->setZero(n);
+    for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_, &rest_, &solved_z_}) v->setZero(n);
     end_q_.setZero(system.coordinates());
     for (VectorXd* v : {&mu_, &rate_}) v->setZero(m);
     pose_.setZero(system.coordinates());
@@ -53,12 +60,11 @@ class Dvm final : public Integrator {
     eq_.start(state.t, state.z, state.w, h);
     if (h != matrices_h_) set_matrices(h);
     predict(state, h);
-    if (slow_)
-      freeze_in_the_middle(report);
-    else if (!frozen_)
-      freeze(eq_.start_pose(), report);
-    iterate(state, h, report);
-    slow_ = report.newton_iterations > slow_iterations;
+    if (!frozen_) freeze(eq_.start_pose(), report);
+    tight_ = !eq_.at_ends && needs_care();
+    if (slow_ && !tight_) freeze_in_the_middle(report);
+    if (!(tight_ && tight_iterations(state, report))) iterate(state, h, report);
+    slow_ = !tight_ && report.newton_iterations > slow_iterations;
     if (report.ok()) finish(state, h, report);
     if (!report.ok()) restart();
     return report;
@@ -78,6 +84,9 @@ class Dvm final : public Integrator {
   void freeze_in_the_middle(StepReport& report);
   void iterate(const State& state, double h, StepReport& report);
   bool frozen_iterations(StepReport& report);
+  bool needs_care();
+  bool tight_iterations(const State& state, StepReport& report);
+  void arrive(State& state);
   void correct(StepReport& report);
   template <int K>
   void correct_stages();
@@ -105,6 +114,10 @@ class Dvm final : public Integrator {
   bool small_ = true;
   bool slow_ = false;    // the last step took many iterations
   bool frozen_ = false;  // saddle_ holds a factorisation near the present pose
+
+  double needed_pivot_ = 0;   // of the weakest mode, for this step to do without care
+  bool tight_ = false;        // this step is solved with care for weak modes
+  VectorXd rest_, solved_z_;  // what rounding took from the last step's end, z [m]
 };
 
 void Dvm::analyse_mass() {
@@ -116,7 +129,8 @@ void Dvm::analyse_mass() {
   SparseRows upper(M.rows(), M.cols());
   upper.setFromTriplets(entries.begin(), entries.end());
   mass_factor_.analyse(upper, minimum_degree_order(upper));
-  mass_factor_.factorise(upper.valuePtr());
+  if (!mass_factor_.factorise(upper.valuePtr()))
+    throw std::logic_error("the mass matrix is not positive definite");
 }
 
 void Dvm::set_matrices(double h) {
@@ -158,6 +172,57 @@ void Dvm::freeze_in_the_middle(StepReport& report) {
   eq_.place_nodes();
   pose_.noalias() = eq_.Q * halfway_;
   freeze(pose_, report);
+}
+
+// Is there a mode so weak that the errors which count as round-off elsewhere would show in the motion? Next
+// to a dead centre, where the motion is small and the constraints hold it by small angles.
+bool Dvm::needs_care() {
+  if (!frozen_ || eq_.phi.rows() == 0) return false;
+  const double motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
+  const double reach =
+      std::max(eq_.start_pose().lpNorm<Eigen::Infinity>(), system_.constraint_lengths().maxCoeff());
+  const double needed = saddle_.motion_of_error() * constraint_noise(reach, reach) /
+                        ((small_ ? harmless : harmless_in_large) * std::max(motion, 1e-300));
+  needed_pivot_ = std::pow(std::min(needed, strong), 2);
+  if (needed > 1) {  // so small a motion that every error shows
+    saddle_.weakest_pivot(needed_pivot_);
+    return true;
+  }
+  return saddle_.weakest_pivot(needed_pivot_) < needed_pivot_;
+}
+
+// The constraints in increments, corrections from factors that see every mode, until the corrections no
+// longer get smaller: residuals do not tell, because a small one may be a large error of a weak mode.
+bool Dvm::tight_iterations(const State& state, StepReport& report) {
+  constexpr int most = 40;
+  eq_.in_increments = true;
+  careful_ = true;
+  feed_ = true;
+  double best = infinity;
+  int without_gain = 0;
+  bool done = false, good = false;
+  for (int it = 0; it <= most; ++it) {
+    eq_.evaluate();
+    report.residual = eq_.level();
+    if (done) good = report.residual <= accepted;
+    if (done || !std::isfinite(report.residual)) break;
+    ++report.newton_iterations;
+    correct(report);
+    const double size = largest_magnitude(rhs_f_.data(), eq_.dX.size()),
+                 motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
+    without_gain = size < 0.5 * best ? 0 : without_gain + 1;
+    best = std::min(best, size);
+    done = size <= std::numeric_limits<double>::epsilon() * motion || without_gain >= 2;
+  }
+  eq_.in_increments = false;
+  if (good) {
+    report.status = StepStatus::converged;
+    return true;
+  }
+  tight_ = false;
+  predict(state, eq_.h);
+  freeze(eq_.start_pose(), report);
+  return false;
 }
 
 void Dvm::iterate(const State& state, double h, StepReport& report) {
@@ -230,7 +295,7 @@ void Dvm::correct_stages() {
   mix<K>(eq_.momentum.data(), n, momentum_to_f_.data(), f);
   const double* const phi = eq_.phi.data();
   for (Index r = 0; r < m; ++r) {
-    const double noise = feed_ ? wanted_constraint * eq_.constraint_noise(r) : infinity;
+    const double noise = tight_ ? 0.0 : feed_ ? wanted_constraint * eq_.constraint_noise(r) : infinity;
     for (Index i = r * K; i < (r + 1) * K; ++i) g[i] = std::abs(phi[i]) > noise ? -phi[i] : 0.0;
   }
   if (careful_) std::copy(rhs_f_.begin(), rhs_f_.end(), consistent_f_.data());
@@ -302,6 +367,7 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   eq_.end_momentum(p1_);
   eq_.pose(c_.s - 1, pose_);
   freeze(pose_, report);
+  if (tight_ && frozen_) saddle_.weakest_pivot(needed_pivot_);
   if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
   saddle_.solve(p1_, rate_, w1_, mu_);
   report.right_hand_sides += 1;
@@ -309,15 +375,36 @@ void Dvm::finish(State& state, double h, StepReport& report) {
     report.status = StepStatus::not_finite;
     return;
   }
-  if (!eq_.at_ends) settle_end();
-  report.constraint_norm = rate_.size() ? eq_.phi.col(c_.s - 2).lpNorm<Eigen::Infinity>() : 0.0;
+  if (tight_)
+    system_.constraint(state.t + h, pose_, rate_);
+  else if (!eq_.at_ends)
+    settle_end();
+  const auto norm = [](const auto& phi) { return phi.size() ? phi.template lpNorm<Eigen::Infinity>() : 0.0; };
+  report.constraint_norm = tight_ ? norm(rate_) : norm(eq_.phi.col(c_.s - 2));
   previous_ = eq_.dX;
   previous_h_ = h;
   have_history_ = true;
   state.t += h;
-  state.z += eq_.dX.col(c_.s - 2);
+  arrive(state);
   state.w = w1_;
   state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
+}
+
+// z_1 = z_0 + dX. In steps with care what rounding takes from the sum is added to the next one: near a dead
+// centre the motion so far may be a thousand ulp of the coordinates.
+void Dvm::arrive(State& state) {
+  const auto dz = eq_.dX.col(c_.s - 2);
+  if (!tight_) {
+    state.z += dz;
+    return;
+  }
+  if (!(solved_z_.array() == state.z.array()).all()) rest_.setZero();
+  for (Index i = 0; i < state.z.size(); ++i) {
+    const Twofold sum = Twofold::sum(state.z[i], dz[i] + rest_[i]);
+    state.z[i] = sum.hi;
+    rest_[i] = sum.lo;
+  }
+  solved_z_ = state.z;
 }
 
 }  // namespace

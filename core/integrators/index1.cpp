@@ -2,11 +2,20 @@
 
 namespace unfurl {
 
+namespace {
+
+constexpr double clean_regularisation = 1e-7;
+
+}  // namespace
+
+// Refinement leaves (e / sigma^2)^refinements of a direction: weaker ones than `weak_` need finer factors.
 Index1::Index1(const System& system, bool clean_multipliers)
     : system_(system),
       G_(system.jacobian_pattern()),
-      saddle_(system.mass(), G_, 1, clean_multipliers ? 1e-7 : SaddleSolver::standard_regularisation),
+      saddle_(system.mass(), G_, 1,
+              clean_multipliers ? clean_regularisation : SaddleSolver::standard_regularisation),
       refinements_(clean_multipliers ? 40 : 8),
+      weak_(clean_multipliers ? 3 * clean_regularisation : 100 * SaddleSolver::standard_regularisation),
       q_(system.coordinates()),
       v_(system.coordinates()),
       f_(system.coordinates()),
@@ -19,6 +28,7 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   system_.expand_rate(w, v_);
   system_.jacobian(q_, G_, scratch_);
   if (!saddle_.factorise(G_)) return false;
+  saddle_.weakest_pivot(weak_);
   f_.setZero();
   system_.add_applied_force(t, q_, v_, 1.0, f_);
   system_.reduce_force(f_, force_);

@@ -29,6 +29,7 @@ class Index1 {
   std::vector<double> scratch_;
   SaddleSolver saddle_;
   int refinements_;
+  double weak_;  // pivots below this are solved for in twice the digits
   double alpha_ = 0;
   VectorXd q_, v_, f_, force_, bias_, phi_;
 };

@@ -15,7 +15,7 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   // Advance `state` by h [s]. Where the report is not ok, `state` is unchanged.
-  virtual StepReport step(State& state, double h) = 0;
+  [[nodiscard]] virtual StepReport step(State& state, double h) = 0;
   // Forget what was learnt from earlier steps (predictors): the next state does not follow the last one.
   virtual void restart() = 0;
 };
@@ -35,8 +35,12 @@ struct Method {
   std::string_view name;
   std::string_view help;
   Claims (*claims)(const SolverOptions&);
-  // `system` must outlive the integrator. Workspaces are allocated here, once.
-  std::unique_ptr<Integrator> (*make)(const System& system, const SolverOptions& options);
+  // Workspaces are allocated here, once.
+  std::unique_ptr<Integrator> (*plain)(const System& system, const SolverOptions& options);
+
+  // The method on a system that must outlive it; every step begins near the angles of its state and counts
+  // them on.
+  std::unique_ptr<Integrator> make(const System& system, const SolverOptions& options) const;
 };
 
 std::span<const Method> methods();

@@ -26,6 +26,33 @@ std::span<const Method> methods() {
   return rows;
 }
 
+namespace {
+
+// Steps of a method on a system of its own, which follows the state that each of them begins with.
+class Following final : public Integrator {
+ public:
+  Following(const Method& method, const System& system, const SolverOptions& options)
+      : system_(system), plain_(method.plain(system_, options)) {}
+  StepReport step(State& state, double h) override {
+    system_.follow(state);
+    const StepReport report = plain_->step(state, h);
+    if (report.ok()) system_.count_on(state);
+    return report;
+  }
+  void restart() override { plain_->restart(); }
+
+ private:
+  System system_;
+  std::unique_ptr<Integrator> plain_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> Method::make(const System& system, const SolverOptions& options) const {
+  if (system.followed_angles() == 0) return plain(system, options);
+  return std::make_unique<Following>(*this, system, options);
+}
+
 const Method* find_method(std::string_view name) {
   const auto rows = methods();
   const auto it = std::find_if(rows.begin(), rows.end(), [&](const Method& m) { return m.name == name; });

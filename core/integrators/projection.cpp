@@ -10,6 +10,8 @@ namespace {
 constexpr int max_projections = 20, refreeze_after = 6;
 constexpr double accepted_error =
     30.0;  // level of constraint error at which a stalled iteration counts as done
+// Pivots that eight refinements do not resolve.
+constexpr double weak = 100 * SaddleSolver::standard_regularisation;
 
 }  // namespace
 
@@ -17,7 +19,7 @@ Projection::Projection(const System& system)
     : system_(system), G_(system.jacobian_pattern()), saddle_(system.mass(), G_) {
   q_.setZero(system.coordinates());
   for (VectorXd* v : {&phi_, &offset_, &y_}) v->setZero(system.constraints());
-  for (VectorXd* v : {&force_, &x_}) v->setZero(system.solved_coordinates());
+  for (VectorXd* v : {&force_, &x_, &move_}) v->setZero(system.solved_coordinates());
 }
 
 double Projection::level() {
@@ -32,7 +34,43 @@ double Projection::level() {
   return worst;
 }
 
-bool Projection::positions(double t, VectorXd& z) {
+// As in Dvm: do errors at round-off of the coordinates show in the motion?
+bool Projection::needs_care(const VectorXd& z0, const VectorXd& z) {
+  constexpr double harmless = 1e-8, strong = 1e-3;
+  system_.expand(z0, q_);
+  system_.jacobian(q_, G_, scratch_);
+  if (phi_.size() == 0 || !saddle_.factorise(G_)) return false;
+  const double reach = std::max(q_.lpNorm<Eigen::Infinity>(), system_.constraint_lengths().maxCoeff());
+  const double motion = std::max((z - z0).lpNorm<Eigen::Infinity>(), 1e-300);
+  const double needed =
+      std::min(strong, saddle_.motion_of_error() * 2 * std::numeric_limits<double>::epsilon() * reach /
+                           (harmless * motion));
+  return saddle_.weakest_pivot(needed * needed) < needed * needed;
+}
+
+bool Projection::positions_of_weak_modes(double t0, const VectorXd& z0, double t, VectorXd& z) {
+  if (!increment_) increment_ = std::make_unique<ConstraintIncrement>(system_);
+  system_.expand(z0, q_);
+  increment_->start(t0, q_);
+  move_ = z - z0;
+  double best = std::numeric_limits<double>::infinity();
+  for (iterations_ = 0; iterations_ < max_projections; ++iterations_) {
+    increment_->evaluate(t, move_, phi_);
+    force_.setZero();
+    offset_ = -phi_;
+    saddle_.solve(force_, offset_, x_, y_, 1);
+    if (!x_.allFinite()) return false;
+    move_ += x_;
+    const double size = x_.lpNorm<Eigen::Infinity>();
+    if (size > 0.5 * best) break;
+    best = size;
+  }
+  z = z0 + move_;
+  return true;
+}
+
+bool Projection::positions(double t0, const VectorXd& z0, double t, VectorXd& z) {
+  if (needs_care(z0, z)) return positions_of_weak_modes(t0, z0, t, z);
   double best = std::numeric_limits<double>::infinity();
   for (iterations_ = 0;; ++iterations_) {
     system_.expand(z, q_);
@@ -58,6 +96,7 @@ bool Projection::velocities(double t, const VectorXd& z, VectorXd& w) {
   system_.expand(z, q_);
   system_.jacobian(q_, G_, scratch_);
   if (!saddle_.factorise(G_)) return false;
+  saddle_.weakest_pivot(weak);
   force_.noalias() = system_.mass() * w;
   system_.target_rate(t, offset_);
   saddle_.solve(force_, offset_, x_, y_);

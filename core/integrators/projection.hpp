@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+
+#include "core/integrators/constraint_increment.hpp"
 #include "core/math/saddle_solver.hpp"
 #include "core/model/system.hpp"
 
@@ -12,18 +15,23 @@ namespace unfurl {
 class Projection {
  public:
   explicit Projection(const System& system);
-  // False where the iteration does not reach the constraints. Leaves |Phi| at round-off of the coordinates.
-  bool positions(double t, VectorXd& z);
-  bool velocities(double t, const VectorXd& z, VectorXd& w);
+  // False where the iteration does not reach the constraints. Leaves |Phi| at round-off of the coordinates;
+  // where that would move a weak mode by more than 1e-8 of the motion z - z0, what the motion from z0 at t0
+  // changes of Phi at round-off of the motion instead.
+  [[nodiscard]] bool positions(double t0, const VectorXd& z0, double t, VectorXd& z);
+  [[nodiscard]] bool velocities(double t, const VectorXd& z, VectorXd& w);
   int iterations() const { return iterations_; }  // of the last call of positions
 
  private:
+  bool needs_care(const VectorXd& z0, const VectorXd& z);
+  bool positions_of_weak_modes(double t0, const VectorXd& z0, double t, VectorXd& z);
   double level();  // of phi_: 1 is what rounding the coordinates leaves
   const System& system_;
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
-  VectorXd q_, phi_, force_, offset_, x_, y_;
+  std::unique_ptr<ConstraintIncrement> increment_;  // made when first needed
+  VectorXd q_, phi_, force_, offset_, x_, y_, move_;
   int iterations_ = 0;
 };
 

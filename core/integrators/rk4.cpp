@@ -35,7 +35,7 @@ StepReport RungeKutta4::step(State& state, double h) {
   }
   z_ = state.z + h / 6.0 * (dz_[0] + 2.0 * dz_[1] + 2.0 * dz_[2] + dz_[3]);
   w_ = state.w + h / 6.0 * (dw_[0] + 2.0 * dw_[1] + 2.0 * dw_[2] + dw_[3]);
-  if (!settle(state.t + h, z_, w_, report)) {
+  if (!settle(state, state.t + h, z_, w_, report)) {
     if (report.ok()) report.status = StepStatus::stalled;
     return report;
   }

@@ -15,7 +15,10 @@ class RungeKutta4 : public Integrator {
 
  protected:
   // Called with the end of a step before it is accepted: a method may move it. False: the step has failed.
-  virtual bool settle(double /*t*/, VectorXd& /*z*/, VectorXd& /*w*/, StepReport& /*report*/) { return true; }
+  virtual bool settle(const State& /*from*/, double /*t*/, VectorXd& /*z*/, VectorXd& /*w*/,
+                      StepReport& /*report*/) {
+    return true;
+  }
   const System& system_;
 
  private:

@@ -11,8 +11,8 @@ class ProjectedRungeKutta4 final : public RungeKutta4 {
   explicit ProjectedRungeKutta4(const System& system) : RungeKutta4(system), projection_(system) {}
 
  protected:
-  bool settle(double t, VectorXd& z, VectorXd& w, StepReport& report) override {
-    const bool placed = projection_.positions(t, z);
+  bool settle(const State& from, double t, VectorXd& z, VectorXd& w, StepReport& report) override {
+    const bool placed = projection_.positions(from.t, from.z, t, z);
     report.newton_iterations += projection_.iterations();
     report.right_hand_sides += projection_.iterations() + 1;
     report.factorisations += 2;

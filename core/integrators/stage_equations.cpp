@@ -70,11 +70,25 @@ void StageEquations::place_nodes() {
 
 void StageEquations::evaluate() {
   place_nodes();
-  system.constraint_stages(time_.data(), Q, 1, phi, scratch_);
+  if (in_increments)
+    constraint_changes();
+  else
+    system.constraint_stages(time_.data(), Q, 1, phi, scratch_);
   if (at_ends) phi.leftCols(c.s - 2).setZero();
   if (!system.constant_forces()) applied_forces();
   with_columns(c.s - 1, [this](auto k) { evaluate_momentum<k()>(); });
   measure();
+}
+
+void StageEquations::constraint_changes() {
+  if (!increment_) increment_ = std::make_unique<ConstraintIncrement>(system);
+  increment_->start(t, q_0_);
+  phi_j_.resize(phi.rows());
+  for (Index j = 0; j < phi.cols(); ++j) {
+    dX_j_ = dX.col(j);
+    increment_->evaluate(time_[j], dX_j_, phi_j_);
+    phi.col(j) = phi_j_;
+  }
 }
 
 void StageEquations::applied_forces() {

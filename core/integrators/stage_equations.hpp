@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <vector>
+#include <memory>
 
+#include "core/integrators/constraint_increment.hpp"
 #include "core/integrators/galerkin.hpp"
 #include "core/model/system.hpp"
 
@@ -29,7 +30,10 @@ class StageEquations {
 
   void start(double t, const ConstVec& z0, const ConstVec& w0, double h);  // w0: p_0 = M w0
   void place_nodes();                                                      // Q of the present dX
-  void evaluate();               // residuals of the present dX, lambda
+  void evaluate();  // residuals of the present dX, lambda
+  // true: phi is what the step changes, Phi(Q_j) - Phi(Q_1), whose round-off is relative to that change and
+  // not to the coordinates; the start's own residual is left alone. Slower; for nearly singular poses.
+  bool in_increments = false;
   void end_momentum(MutVec p1);  // p_1 without the share of lambda_s
 
   // Residuals in units of what round-off leaves of them: 1 is as small as they get, give or take.
@@ -64,6 +68,7 @@ class StageEquations {
   template <int K>
   void measure_constraints();
   void applied_forces();
+  void constraint_changes();
   void measure();
   void find_stiffness();
 
@@ -77,6 +82,8 @@ class StageEquations {
   double C_size_ = 0;      // largest entry of C
   VectorXd f_end_, q_tau_, v_tau_;
   System::StageScratch scratch_;
+  std::unique_ptr<ConstraintIncrement> increment_;  // made when first needed
+  VectorXd dX_j_, phi_j_;
   double momentum_level_ = 0, constraint_level_ = 0;
   // Largest magnitudes: forces, coordinates, M dX, momentum; whether all residuals are finite.
   double force_scale_ = 0, reach_ = 0, inertia_size_ = 0, momentum_size_ = 0;

@@ -87,6 +87,7 @@ SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_col
 }
 
 bool SaddleSolver::factorise(const SparseRows& G) {
+  fine_ready_ = false;
   const int* start = G.outerIndexPtr();
   const int* column = G.innerIndexPtr();
   const double* from = G.valuePtr();
@@ -106,6 +107,7 @@ bool SaddleSolver::factorise(const SparseRows& G) {
 }
 
 void SaddleSolver::apply(double* f, double* g, int columns) const {
+  if (fine_ready_) return apply_finely(f, g, columns);
   with_columns(columns, [&](auto k) {
     constexpr int K = k();
     double* const b = packed_.data();
@@ -138,6 +140,10 @@ double SaddleSolver::residual_norm(const double* r) const {
 // residual no longer halves, which round-off and inconsistent right-hand sides bring about.
 double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y,
                            int max_refinements) const {
+  if (fine_ready_) {
+    solve_finely(f, g, x, y);
+    return 0.0;
+  }
   double* const r = packed_.data();
   const int* const coordinate = place_.data();
   const int* const row = place_.data() + n_;
@@ -163,7 +169,7 @@ double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVe
     const bool slow = residual > 0.5 * best;
     best = residual;
     best_ = try_;
-    if (it > 0 && (slow || residual <= 1e-17 * size)) break;
+    if (it > 0 && (slow || residual <= 2e-16 * size)) break;
     ldlt_.solve_ordered(r, 1);
     for (Index i = 0; i < n_ + m_; ++i) try_[i] += r[i];
   }

@@ -10,6 +10,8 @@
 // none.
 #pragma once
 
+#include <cmath>
+#include <memory>
 #include <vector>
 
 #include "core/math/sparse_ldlt.hpp"
@@ -27,9 +29,24 @@ class SaddleSolver {
   // are not unique (it is 1e-16 / e) and needs more refinements for directions of small singular values.
   SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns = 1,
                double regularisation = standard_regularisation);
+  ~SaddleSolver();
 
   // Numeric factorisation with the values of G (same pattern). False where it broke down.
-  bool factorise(const SparseRows& G);
+  [[nodiscard]] bool factorise(const SparseRows& G);
+
+  // The smallest pivot of a row of G that no redundant row explains, about the square of the smallest
+  // singular value of G^; looked for below `bound` only, which is returned where there is none. Pivots that
+  // regularisation or round-off hide are found by factorise_finely, whose factors are then in use.
+  double weakest_pivot(double bound);
+
+  // The same matrix again in twice the digits and with e = 1e-23, which apply and solve use from then on
+  // until the next factorise: L D L^T squares singular values, so doubles see none below sqrt(e) or 1e-8.
+  // Directions down to 1e-11 are resolved, rows below that count as redundant and get multipliers of least
+  // norm. Slow. False where it broke down.
+  [[nodiscard]] bool factorise_finely();
+
+  // The largest motion [m] that answers a row's error [m], but for the singular values of G^.
+  double motion_of_error() const;
 
   // One application of K_e^{-1}, no refinement: right for the corrections of an iteration that computes its
   // own residuals. f [n], g [m] are overwritten by x, y; row by row for several columns: f[i * columns + c].
@@ -45,6 +62,11 @@ class SaddleSolver {
 
  private:
   double residual_norm(const double* r) const;
+  double pivot_of_row(Index r) const {
+    return std::abs(ldlt_.pivot(place_[static_cast<std::size_t>(n_ + r)]));
+  }
+  void apply_finely(double* f, double* g, int columns) const;
+  void solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) const;
 
   Index n_ = 0, m_ = 0;
   VectorXd column_scale_, row_scale_;  // D, R
@@ -56,6 +78,13 @@ class SaddleSolver {
   // Unknowns and right-hand sides, in the order of elimination.
   mutable std::vector<double> packed_;
   mutable VectorXd rhs_, best_, try_;
+
+  struct Fine;  // the factors in twice the digits
+  std::unique_ptr<Fine> fine_;
+  bool fine_ready_ = false;  // fine_ holds the present matrix
+  Index redundant_ = 0;      // rows that depend on others, by the last fine factorisation
+  double weakest_ = 1.0;     // the smallest pivot of the other rows, there
+  std::vector<double> pivots_;
 };
 
 }  // namespace unfurl

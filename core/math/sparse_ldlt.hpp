@@ -18,7 +18,7 @@ class SparseLdlt {
   void analyse(const SparseRows& upper, const std::vector<int>& order);
 
   // values: as the nonzeros of `upper` in their storage order. False where a pivot is zero or not finite.
-  bool factorise(const double* values);
+  [[nodiscard]] bool factorise(const double* values);
 
   // Solve for `columns` right-hand sides held row by row: x[row * columns + c], in place, in the caller's row
   // order.
@@ -33,8 +33,10 @@ class SparseLdlt {
   Index size() const { return n_; }
   Index factor_nonzeros() const { return static_cast<Index>(row_index_.size()); }
   int negative_pivots() const;
+  double pivot(Index k) const { return pivot_[static_cast<std::size_t>(k)]; }  // of the row eliminated k-th
 
  private:
+  friend class TwofoldLdlt;
   template <int R>
   void solve_fixed(double* b) const;
 

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "core/model/structure_error.hpp"
@@ -11,7 +12,8 @@ namespace unfurl {
 namespace {
 
 constexpr Index max_coordinates = 900;
-// Share of a row's length: positions typed with nine digits pass, a missing digit does not.
+// Share of a row's length, or of the structure's if that is longer: positions typed with nine digits pass, a
+// missing digit does not.
 constexpr double violated = 1e-7;
 // Of unit rows: round-off of a dense factorisation, far below the distance of real poses from singular ones.
 constexpr double dependent = 1e-10;
@@ -39,9 +41,7 @@ class Checker {
     if (system_.coordinates() > max_coordinates) return;
     const bool driven = !system_.drives().empty();
     if (!driven && system_.all_constraints() < system_.coordinates()) return;
-    G_ = MatrixXd(system_.all_jacobian(q_));
-    for (Index r = 0; r < G_.rows(); ++r)
-      if (const double norm = G_.row(r).norm(); norm > 0) G_.row(r) /= norm;
+    G_ = unit_rows(q_, norms_);
     if (driven)
       for (const Drive& drive : system_.drives()) check_drive(drive);
     else
@@ -51,15 +51,24 @@ class Checker {
  private:
   const std::string& name(Index row) const { return names_[static_cast<std::size_t>(row)]; }
 
+  double reach() const { return q_.size() ? q_.lpNorm<Eigen::Infinity>() : 0.0; }
+
+  // The longest side of the box that holds the nodes [m]: where the origin lies is no excuse for an error.
+  double extent_of_nodes() const {
+    if (q_.size() == 0) return 0.0;
+    const Eigen::Map<const Eigen::Matrix3Xd> x(q_.data(), 3, q_.size() / 3);
+    return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+  }
+
   void check_positions() const {
     VectorXd phi(system_.all_constraints());
     system_.all_constraint_values(0.0, q_, phi);
     const VectorXd lengths = system_.all_lengths();
-    const double reach = q_.size() ? q_.lpNorm<Eigen::Infinity>() : 0.0;
+    const double extent = extent_of_nodes(), noise = 64 * std::numeric_limits<double>::epsilon() * reach();
     std::vector<std::string> wrong;
     double worst = 0;
     for (Index r = 0; r < phi.size(); ++r) {
-      if (std::abs(phi[r]) <= violated * std::max(lengths[r], reach)) continue;
+      if (std::abs(phi[r]) <= violated * std::max(lengths[r], extent) + noise) continue;
       wrong.push_back(name(r));
       worst = std::max(worst, std::abs(phi[r]));
     }
@@ -70,37 +79,89 @@ class Checker {
     throw StructureError("", text.str());
   }
 
-  // The other rows whose combination is row r; empty where there is none.
-  std::vector<Index> combination(Index r) const {
-    std::vector<Index> others;
-    for (Index k = 0; k < G_.rows(); ++k)
-      if (k != r) others.push_back(k);
-    if (others.empty()) return {};
-    const MatrixXd A = G_(others, Eigen::all).transpose();
+  // Rows of unit size of the Jacobian at q, and what they were divided by.
+  MatrixXd unit_rows(const VectorXd& q, VectorXd& norms) const {
+    MatrixXd G(system_.all_jacobian(q));
+    norms = G.rowwise().norm();
+    for (Index r = 0; r < G.rows(); ++r)
+      if (norms[r] > 0) G.row(r) /= norms[r];
+    return G;
+  }
+
+  // Row r as a sum of the others, share by share; empty where it is none.
+  static VectorXd combination(const MatrixXd& G, Index r) {
+    MatrixXd A = G.transpose();
+    A.col(r).setZero();
     const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(A);
-    const VectorXd row = G_.row(r).transpose(), y = solver.solve(row);
+    const VectorXd row = G.row(r).transpose(), y = solver.solve(row);
     if ((A * y - row).norm() > dependent * std::max(1.0, y.norm())) return {};
+    return y;
+  }
+  static std::vector<Index> members_of(const VectorXd& shares) {
     std::vector<Index> found;
-    for (std::size_t k = 0; k < others.size(); ++k)
-      if (std::abs(y[static_cast<Index>(k)]) > 1e-6) found.push_back(others[k]);
+    for (Index k = 0; k < shares.size(); ++k)
+      if (std::abs(shares[k]) > 1e-6) found.push_back(k);
     return found;
+  }
+  bool is_drive(Index row) const {
+    const int source = sources_[static_cast<std::size_t>(row)];
+    return std::any_of(system_.drives().begin(), system_.drives().end(),
+                       [&](const Drive& d) { return d.constraint == source; });
   }
 
   // A drive whose row follows from rows that stand still asks them to move.
   void check_drive(const Drive& drive) const {
     const auto row = std::find(sources_.begin(), sources_.end(), drive.constraint) - sources_.begin();
     std::vector<std::string> held;
-    for (const Index k : combination(row)) {
-      const auto is_it = [&](const Drive& d) {
-        return d.constraint == sources_[static_cast<std::size_t>(k)];
-      };
-      if (std::any_of(system_.drives().begin(), system_.drives().end(), is_it))
-        return;  // two drives may agree
+    const VectorXd shares = combination(G_, row);
+    for (const Index k : members_of(shares)) {
+      if (is_drive(k)) return check_agreement(row, shares);
       held.push_back(name(k));
     }
     if (held.empty()) return;
     throw StructureError("", "the drive " + drive.name + " moves what other constraints hold: " +
                                  listed(held) + "; remove the drive, or one of these");
+  }
+
+  // Rows that depend on each other in every pose must ask for the same: g'_r = sum share_k g'_k at all times.
+  void check_agreement(Index row, const VectorXd& shares) const {
+    VectorXd moved = q_, norms_moved;
+    const double shift = 1e-3 * extent_of_nodes();
+    for (Index i = 0; i < moved.size(); ++i) moved[i] += shift * std::sin(1.0 + 2.3 * static_cast<double>(i));
+    const VectorXd shares_moved = combination(unit_rows(moved, norms_moved), row);
+    if (shares_moved.size() == 0 || (shares_moved - shares).norm() > 1e-6 * shares.norm()) return;
+    const VectorXd still = VectorXd::Zero(q_.size());
+    VectorXd rate(G_.rows());  // -g'
+    std::vector<double> scratch;
+    for (const double t : times_of_drives()) {
+      system_.all_constraint_rates(t, q_, still, rate, scratch);
+      VectorXd wanted = rate;
+      for (Index r = 0; r < wanted.size(); ++r)
+        if (norms_[r] > 0) wanted[r] /= norms_[r];
+      if (std::abs(wanted[row] - shares.dot(wanted)) <= 1e-9 * wanted.lpNorm<Eigen::Infinity>()) continue;
+      std::vector<std::string> names{name(row)};
+      for (const Index k : members_of(shares)) names.push_back(name(k));
+      std::ostringstream text;
+      text << "drives contradict each other at t = " << t << " s: " << listed(names)
+           << " hold or drive the same motion; remove one, or let them agree";
+      throw StructureError("", text.str());
+    }
+  }
+
+  // Between all times at which something begins, ends or is tabled, and after the last.
+  std::vector<double> times_of_drives() const {
+    std::vector<double> knots{0.0};
+    for (const Drive& drive : system_.drives()) {
+      const TimeFunction& f = drive.target;
+      knots.insert(knots.end(), f.times.begin(), f.times.end());
+      for (const double t : {f.start, f.start + f.ramp, f.start + f.duration}) knots.push_back(t);
+    }
+    std::sort(knots.begin(), knots.end());
+    knots.push_back(knots.back() + 1);
+    std::vector<double> times;
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+      for (const double u : {0.0, 0.3, 0.7}) times.push_back(knots[i] + u * (knots[i + 1] - knots[i]));
+    return times;
   }
 
   void check_freedom() const {
@@ -121,6 +182,7 @@ class Checker {
   std::vector<int> sources_;
   VectorXd q_;
   MatrixXd G_;  // unit rows
+  VectorXd norms_;
 };
 
 }  // namespace

@@ -46,7 +46,28 @@ Matrix atan2_hessian(double s, double c, const Vector& ds, const Vector& dc, con
                            r4;
 }
 
+double on_branch(double angle, double near) {
+  return angle - 2 * pi * std::round((angle - near) / (2 * pi));
+}
+
 }  // namespace
+
+bool counts_turns(const Measure& measure) {
+  return measure.kind == MeasureKind::fold ||
+         (measure.kind == MeasureKind::angle && !measure.axis.isZero(0.0));
+}
+
+FollowedAngles followed_angles(const Structure& structure) {
+  FollowedAngles out;
+  const auto index = [&](const Measure& measure) {
+    if (!counts_turns(measure)) return -1;
+    out.measures.push_back(measure);
+    return static_cast<int>(out.measures.size()) - 1;
+  };
+  for (const Force& force : structure.forces) out.of_force.push_back(index(force.measure));
+  for (const Stop& stop : structure.stops) out.of_stop.push_back(index(stop.measure));
+  return out;
+}
 
 MeasureFunction::MeasureFunction(const Measure& measure, const Deployment& deployment)
     : kind_(measure.kind), axis_(measure.axis), reference_(measure.reference) {
@@ -88,10 +109,6 @@ double MeasureFunction::linear(const VectorXd& coefficients, double offset, cons
   return sum;
 }
 
-double MeasureFunction::on_branch(double angle) const {
-  return angle - 2 * pi * std::round((angle - reference_) / (2 * pi));
-}
-
 // s and c of the angle and their first derivatives by (d_1, d_2).
 struct MeasureFunction::Angle {
   Vec3 d1, d2;
@@ -124,7 +141,7 @@ MeasureFunction::Angle MeasureFunction::angle_terms(const double* q) const {
   return a;
 }
 
-double MeasureFunction::value_and_gradient(const double* q, double* gradient) const {
+double MeasureFunction::value_and_gradient(const double* q, double* gradient, double near) const {
   const auto size = static_cast<Index>(stencil_.size());
   Eigen::Map<VectorXd> g(gradient, size);
   if (kind_ == MeasureKind::coordinate) {
@@ -142,20 +159,20 @@ double MeasureFunction::value_and_gradient(const double* q, double* gradient) co
   if (kind_ == MeasureKind::fold) {
     const double s = linear(sine_, sine_offset_, q), c = linear(cosine_, cosine_offset_, q);
     g = (c * sine_ - s * cosine_) / (s * s + c * c);
-    return on_branch(std::atan2(s, c));
+    return on_branch(std::atan2(s, c), near);
   }
   const Angle a = angle_terms(q);
   const double square = a.s * a.s + a.c * a.c;
   g = spread(Vec6((a.c * a.ds - a.s * a.dc) / square));
-  return axis_.isZero(0.0) ? std::atan2(a.s, a.c) : on_branch(std::atan2(a.s, a.c));
+  return axis_.isZero(0.0) ? std::atan2(a.s, a.c) : on_branch(std::atan2(a.s, a.c), near);
 }
 
-double MeasureFunction::value(const double* q) const {
+double MeasureFunction::value(const double* q, double near) const {
   if (kind_ == MeasureKind::coordinate) return linear(sine_, 0.0, q);
   if (kind_ == MeasureKind::fold)
-    return on_branch(std::atan2(linear(sine_, sine_offset_, q), linear(cosine_, cosine_offset_, q)));
+    return on_branch(std::atan2(linear(sine_, sine_offset_, q), linear(cosine_, cosine_offset_, q)), near);
   std::array<double, 12> unused{};
-  return value_and_gradient(q, unused.data());
+  return value_and_gradient(q, unused.data(), near);
 }
 
 void MeasureFunction::hessian(const double* q, double* hess) const {
@@ -170,6 +187,22 @@ void MeasureFunction::hessian(const double* q, double* hess) const {
     case MeasureKind::fold:
       return fold_hessian(q, hess);
   }
+}
+
+double MeasureFunction::curvature_along(const double* q, const double* v) const {
+  if (kind_ == MeasureKind::coordinate) return 0.0;
+  if (kind_ == MeasureKind::fold) {  // atan2_hessian's form, with ds . v = s', dc . v = c'
+    const double s = linear(sine_, sine_offset_, q), c = linear(cosine_, cosine_offset_, q);
+    const double s1 = linear(sine_, 0.0, v), c1 = linear(cosine_, 0.0, v), r2 = s * s + c * c;
+    return 2 * (s * c * (c1 * c1 - s1 * s1) + (s * s - c * c) * s1 * c1) / (r2 * r2);
+  }
+  std::array<double, 144> hess{};
+  hessian(q, hess.data());
+  double sum = 0;
+  const std::size_t size = stencil_.size();
+  for (std::size_t j = 0; j < size; ++j)
+    for (std::size_t i = 0; i < size; ++i) sum += v[stencil_[i]] * hess[j * size + i] * v[stencil_[j]];
+  return sum;
 }
 
 // (I - n n^T) / length, n the unit direction.

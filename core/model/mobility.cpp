@@ -98,14 +98,15 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
   const bool dense = G.cols() <= max_dense_coordinates;
   const MatrixXd full = dense ? MatrixXd(G) : MatrixXd();
   const VectorXd values = dense && full.size() > 0 ? singular_values(full) : VectorXd();
-  const std::vector<int> dependent = dense ? dependent_rows(full, values)
-                                           : eliminate(G, VectorXd::Zero(G.rows()), tolerance).redundant;
+  const std::vector<int> dependent =
+      dense ? dependent_rows(full, values) : eliminate(G, VectorXd::Zero(G.rows()), tolerance).redundant;
 
   mobility.rank = G.rows() - static_cast<Index>(dependent.size());
   mobility.degrees_of_freedom = mobility.coordinates - mobility.rank;
   mobility.count = mobility.coordinates - mobility.constraints;
   mobility.rigid_motions = rigid_motions(G, q);
   const auto names = system.all_names();
+  mobility.redundant_rows = dependent;
   for (const int row : dependent) mobility.redundant.push_back(names[static_cast<std::size_t>(row)]);
   if (dense && mobility.rank > 0) mobility.smallest_singular_value = values[mobility.rank - 1];
   return mobility;

@@ -13,6 +13,7 @@ struct Mobility {
   Index constraints = 0;               // rows of G, eliminated linear ones included
   Index rank = 0;                      // of G
   std::vector<std::string> redundant;  // rows that follow from the rows before them, in order
+  std::vector<int> redundant_rows;     // the same by number
   Index degrees_of_freedom = 0;        // coordinates - rank
   Index count = 0;                     // coordinates - constraints: Maxwell's count, blind to redundant rows
   Index rigid_motions = 0;             // of the degrees of freedom: motions of the whole as one rigid body

@@ -271,4 +271,12 @@ const std::vector<double>& ParamSet::vector(std::string_view name) const {
   return get<std::vector<double>>(value(name), name);
 }
 
+bool means_something(const ParamSpec& spec, const ParamSet& values) {
+  if (spec.only_with.empty() || !values.has(spec.only_with)) return true;
+  const ParamValue& other = values.value(spec.only_with);
+  const auto* on = std::get_if<bool>(&other);
+  const std::string_view now = on ? (*on ? "true" : "false") : std::string_view(std::get<std::string>(other));
+  return std::ranges::find(spec.only_values, now) != spec.only_values.end();
+}
+
 }  // namespace unfurl

@@ -58,6 +58,10 @@ std::string range_text(const ParamSpec& spec);
 // of 3 numbers".
 std::string wanted_text(const ParamSpec& spec);
 
+// False where `spec` means nothing with the values that the other parameters of its table have.
+class ParamSet;
+bool means_something(const ParamSpec& spec, const ParamSet& values);
+
 // Empty when `value` is of the spec's kind and inside its range; else the reason ("must be > 0 m; got -3").
 std::string range_error(const ParamSpec& spec, const ParamValue& value);
 

@@ -10,6 +10,7 @@ struct State {
   VectorXd z;       // solved coordinates [m]
   VectorXd w;       // their rates [m/s]
   VectorXd lambda;  // multipliers of the kept constraints [N]; warm start of the next step
+  VectorXd angles;  // FollowedAngles (measure.hpp), counted on from turn to turn [rad]; none: those at t = 0
 };
 
 enum class StepStatus { converged, stalled, diverged, not_finite };

@@ -37,7 +37,8 @@ struct Measure {
   MeasureKind kind = MeasureKind::length;
   std::vector<int> nodes;  // coordinate: 1 or 2; length: 2; angle: 4; fold: none
   Vec3 axis = Vec3::Zero();
-  double reference = 0.0;  // angles with a sign: the branch within pi of it [rad]
+  double reference =
+      0.0;  // angles with a sign: at t = 0 they are counted on the branch within pi of it [rad]
 };
 
 // One constraint of a kind in the constraint table (constraints/constraint.hpp says how each kind reads the

@@ -6,7 +6,6 @@
 #include "core/constraints/linear_rows.hpp"
 #include "core/model/elimination_choice.hpp"
 #include "core/model/mass_matrix.hpp"
-#include "core/model/structure_error.hpp"
 #include "core/model/system_data.hpp"
 
 namespace unfurl {
@@ -140,12 +139,6 @@ void System::Data::build_coordinates() {
 }
 
 void System::Data::build_forces(const Structure& structure) {
-  for (std::size_t i = 0; i < structure.forces.size(); ++i)
-    if (std::ranges::none_of(force_kinds(), [&](const ForceKind& kind) {
-          return kind.params && kind.kind == structure.forces[i].kind;
-        }))
-      throw StructureError("forces[" + std::to_string(i) + "].kind",
-                           "there is no force kind \"" + structure.forces[i].kind + "\"");
   constant_force = loads = gravity_force = VectorXd::Zero(coordinates);
   for (const ForceKind& kind : force_kinds()) {
     auto block = kind.make(structure, node_mass);
@@ -159,17 +152,8 @@ void System::Data::build_forces(const Structure& structure) {
   gravity_force = node_mass * structure.gravity.replicate(coordinates / 3, 1);
 }
 
-// Every constraint must be in some block, or it would not act, and nobody would know.
-void System::Data::find_constraint_rows(const Structure& structure) {
-  std::vector<char> taken(structure.constraints.size());
-  for (const ConstraintBlock* block : all)
-    for (int r = 0; r < block->rows(); ++r)
-      if (const int source = block->source(r); source >= 0) taken[static_cast<std::size_t>(source)] = 1;
-  for (std::size_t i = 0; i < taken.size(); ++i)
-    if (!taken[i])
-      throw StructureError("constraints[" + std::to_string(i) + "].kind",
-                           "there is no constraint kind \"" + structure.constraints[i].kind + "\"");
-  constraint_rows.assign(taken.size(), -1);
+void System::Data::find_constraint_rows(std::size_t constraints) {
+  constraint_rows.assign(constraints, -1);
   int row = 0;
   for (const ConstraintBlock* block : kept)
     for (int r = 0; r < block->rows(); ++r, ++row)
@@ -224,18 +208,6 @@ void System::Data::build_stencils() {
   }
 }
 
-// A coordinate without inertia has no equation of motion.
-void System::Data::check_mass(const Structure& structure) const {
-  for (Index i = 0; i < mass.rows(); ++i)
-    if (!(mass.coeff(i, i) > 0)) {
-      const auto node = static_cast<std::size_t>(free_coordinates[static_cast<std::size_t>(i)] / 3);
-      throw StructureError(
-          "nodes[" + std::to_string(node) + "].mass",
-          "node " + structure.nodes[node].name +
-              " can move but has no mass: give it a mass, or a mass to a rod that ends there");
-    }
-}
-
 System::System(const Structure& structure, bool eliminate_linear) {
   auto data = std::make_unique<Data>();
   data->coordinates = 3 * static_cast<Index>(structure.nodes.size());
@@ -245,9 +217,12 @@ System::System(const Structure& structure, bool eliminate_linear) {
   data->node_mass = node_mass_matrix(structure);
   data->build_blocks(structure, eliminate_linear);
   data->build_coordinates();
-  data->find_constraint_rows(structure);
+  data->check_kinds(structure);
+  data->find_constraint_rows(structure.constraints.size());
   data->check_mass(structure);
   data->build_forces(structure);
+  for (const Measure& angle : unfurl::followed_angles(structure).measures)
+    data->followed.emplace_back(angle, structure.deployment);
   data->build_jacobian_map();
   data->build_stencils();
   data->rod_rows.assign(structure.rods.size(), -1);
@@ -258,6 +233,7 @@ System::System(const Structure& structure, bool eliminate_linear) {
 }
 
 System::~System() = default;
+System::System(const System&) = default;
 System::System(System&&) noexcept = default;
 
 Index System::coordinates() const {
@@ -338,7 +314,7 @@ void System::reduce_force(const ConstVec& f, MutVec r) const {
 
 void System::add_applied_force(double t, const ConstVec& q, const ConstVec& v, double scale, MutVec f) const {
   f += scale * data_->constant_force;
-  for (const auto& block : data_->forces) block->add(t, q.data(), v.data(), scale, f.data());
+  for (const auto& block : data_->forces) block->add(moment(t), q.data(), v.data(), scale, f.data());
 }
 
 bool System::constant_forces() const {
@@ -421,7 +397,7 @@ double System::kinetic_energy(const ConstVec& w) const {
 }
 double System::potential_energy(const ConstVec& q) const {
   double sum = -data_->gravity_force.dot(q);
-  for (const auto& block : data_->forces) sum += block->potential(q.data());
+  for (const auto& block : data_->forces) sum += block->potential(moment(since_), q.data());
   return sum;
 }
 double System::load_work(const ConstVec& q) const {
@@ -441,14 +417,15 @@ bool System::has_power(bool dissipative) const {
 double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const {
   double sum = 0;
   for (const auto& block : data_->forces)
-    if (block->has_power() && block->dissipative() == dissipative) sum += block->power(t, q.data(), v.data());
+    if (block->has_power() && block->dissipative() == dissipative)
+      sum += block->power(moment(t), q.data(), v.data());
   return sum;
 }
 
 void System::force_derivatives(double t, const ConstVec& q, const ConstVec& v, SparseRows& by_z,
                                SparseRows& by_w) const {
   ForceDerivative by_q, by_v;
-  for (const auto& block : data_->forces) block->derivatives(t, q.data(), v.data(), by_q, by_v);
+  for (const auto& block : data_->forces) block->derivatives(moment(t), q.data(), v.data(), by_q, by_v);
   const auto reduced = [&](const ForceDerivative& entries) {
     SparseRows A(coordinates(), coordinates());
     A.setFromTriplets(entries.begin(), entries.end());

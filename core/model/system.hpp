@@ -7,8 +7,11 @@
 // prescribe a motion.
 //
 // Node coordinates are q = q_0 + B z. With elimination, B spans the null space of the linear constraints,
-// which then hold exactly and leave the equations; without it, B = I. A System is immutable and may be shared
-// by threads.
+// which then hold exactly and leave the equations; without it, B = I.
+//
+// Angles that count their turns are taken near those of the state that the System follows; at first, of t =
+// 0. A copy shares the equations and follows a state of its own. What is not told to follow another state is
+// immutable and may be shared by threads.
 #pragma once
 
 #include <memory>
@@ -16,6 +19,7 @@
 #include <vector>
 
 #include "core/constraints/constraint.hpp"
+#include "core/forces/force.hpp"
 #include "core/math/interleaved.hpp"
 #include "core/math/linear_elimination.hpp"
 #include "core/math/types.hpp"
@@ -28,7 +32,15 @@ class System {
  public:
   System(const Structure& structure, bool eliminate_linear);
   ~System();
+  System(const System&);
   System(System&&) noexcept;
+
+  // Angles that count turns (followed_angles of the structure), and taking them near those of a state.
+  Index followed_angles() const;
+  void follow(const State& state);
+  System at(const State& state) const;  // a copy that follows it; of no cost where no angle is followed
+  // The angles of a later state, counted on from those of the state that is followed.
+  void count_on(State& later);
 
   // Keep every entry of the mass matrix, zeros too: factorisations are dense then. For comparison.
   void fill_mass();
@@ -114,7 +126,15 @@ class System {
 
  private:
   struct Data;
-  std::unique_ptr<Data> data_;
+  Moment moment(double t) const;
+  void measure_angles(const State& state);
+
+  std::shared_ptr<Data> data_;
+  // Of the state that is followed, and where it was measured last; empty: none is followed.
+  VectorXd angles_, rates_, measured_, measured_rates_;
+  VectorXd q_, v_;  // where it was measured
+  std::vector<double> gradient_;
+  double since_ = 0.0;
 };
 
 }  // namespace unfurl

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/forces/force.hpp"
+#include "core/model/measure.hpp"
 #include "core/model/system.hpp"
 
 namespace unfurl {
@@ -23,6 +24,7 @@ struct System::Data {
   std::vector<std::string> names;
   std::vector<int> rod_rows, constraint_rows;
   std::vector<Drive> drives;
+  std::vector<MeasureFunction> followed;  // angles that count turns
   // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e,
   // start_{e+1}).
   SparseRows pattern;
@@ -40,7 +42,8 @@ struct System::Data {
   void build_forces(const Structure& structure);
   void build_jacobian_map();
   void build_stencils();
-  void find_constraint_rows(const Structure& structure);
+  void find_constraint_rows(std::size_t constraints);
+  void check_kinds(const Structure& structure) const;
   void check_mass(const Structure& structure) const;
 };
 

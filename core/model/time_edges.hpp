@@ -10,8 +10,10 @@
 namespace unfurl {
 
 struct TimeEdge {
-  double t = 0.0;     // [s]
-  bool jump = false;  // a prescribed velocity jumps: an impact of the drive; otherwise something bends
+  double t = 0.0;  // [s]
+  // A prescribed velocity jumps, an impact of the drive, or its acceleration does: steps that end there must
+  // not see what is behind. Otherwise something bends.
+  bool jump = false;
 };
 
 // The time of a state before a jump at t: so little earlier that the sum of a step and its start does not
@@ -31,8 +33,8 @@ inline bool same_instant(double before, double after) {
 //   drive, rate      start: the velocity jumps (no ramp); otherwise start and start + ramp, where f''' jumps
 //                    and with it the slope of the forces that inertia takes
 //   drive, smooth    start and start + duration, for the same reason
-//   drive, spline    the ends, where the velocity jumps unless it is zero there; of the points between, where
-//                    f''' jumps, those with both neighbours at least a `step` away. Points that lie closer
+//   drive, spline    the ends, where the acceleration jumps; of the points between, where f''' jumps, those
+//   with both neighbours at least a `step` away. Points that lie closer
 //                    sample a motion finer than steps do: f''' jumps by f'''' times their distance there,
 //                    which is the spline's own error in the motion that it was sampled from, and a table of
 //                    thousands of points would shatter the grid for it.

@@ -37,7 +37,7 @@ double linear_part(const TimeFunction& f, int order, double t) {
   return order == 1 && inside == t ? slope : 0.0;
 }
 
-// Continuous from the right: at the last point the slope is already that of what is held.
+// Continuous from the right: at the last point the bend is already that of what is held.
 double spline_part(const TimeFunction& f, int order, double t) {
   if (t < f.times.front()) return order == 0 ? f.values.front() : 0.0;
   if (t >= f.times.back()) return order == 0 ? f.values.back() : 0.0;
@@ -69,24 +69,32 @@ double TimeFunction::derivative(int order, double t) const {
   return base;
 }
 
-// Natural spline: f'' from the tridiagonal system of continuous slopes, zero at both ends.
+// Clamped spline: the bends f'' from the tridiagonal system of continuous slopes, which are zero at both
+// ends,
+//
+//     h_{i-1} f''_{i-1} + 2 (h_{i-1} + h_i) f''_i + h_i f''_{i+1} = 6 (s_i - s_{i-1}),   s_i = (y_{i+1} -
+//     y_i) / h_i
+//
+// with h_{-1} = h_{n-1} = s_{-1} = s_{n-1} = 0.
 TimeFunction make_spline(std::vector<double> times, std::vector<double> values) {
   const auto n = static_cast<Index>(times.size());
   const Eigen::Map<const VectorXd> x(times.data(), n), y(values.data(), n);
-  VectorXd diagonal = VectorXd::Ones(n), right = VectorXd::Zero(n), upper = VectorXd::Zero(n);
-  for (Index i = 1; i + 1 < n; ++i) {
-    const double h0 = x[i] - x[i - 1], h1 = x[i + 1] - x[i];
-    const double factor = i > 1 ? h0 / diagonal[i - 1] : 0.0;
-    upper[i] = i + 2 < n ? h1 : 0.0;
-    diagonal[i] = 2 * (h0 + h1) - factor * upper[i - 1];
-    right[i] = 6 * ((y[i + 1] - y[i]) / h1 - (y[i] - y[i - 1]) / h0) - factor * right[i - 1];
+  VectorXd diagonal(n), right(n), upper = VectorXd::Zero(n);
+  for (Index i = 0; i < n; ++i) {
+    const double h0 = i > 0 ? x[i] - x[i - 1] : 0.0, s0 = i > 0 ? (y[i] - y[i - 1]) / h0 : 0.0;
+    const double h1 = i + 1 < n ? x[i + 1] - x[i] : 0.0, s1 = i + 1 < n ? (y[i + 1] - y[i]) / h1 : 0.0;
+    const double factor = i > 0 ? h0 / diagonal[i - 1] : 0.0;
+    upper[i] = h1;
+    diagonal[i] = 2 * (h0 + h1) - (i > 0 ? factor * upper[i - 1] : 0.0);
+    right[i] = 6 * (s1 - s0) - (i > 0 ? factor * right[i - 1] : 0.0);
   }
   TimeFunction f;
   f.kind = TimeFunction::Kind::spline;
   f.bends.assign(times.size(), 0.0);
   const Eigen::Map<VectorXd> bend(f.bends.data(), n);
-  for (Index i = n - 2; i >= 1; --i)
-    f.bends[static_cast<std::size_t>(i)] = (right[i] - upper[i] * bend[i + 1]) / diagonal[i];
+  for (Index i = n - 1; i >= 0; --i)
+    f.bends[static_cast<std::size_t>(i)] =
+        (right[i] - (i + 1 < n ? upper[i] * bend[i + 1] : 0.0)) / diagonal[i];
   f.times = std::move(times);
   f.values = std::move(values);
   return f;

@@ -11,8 +11,9 @@ namespace unfurl {
 //   rate      f' rises from 0 to `rate` within `ramp` s (a cubic, f'' continuous inside), then stays
 //   smooth    from offset to offset + rise between start and start + duration: 10 u^3 - 15 u^4 + 6 u^5, twice
 //             continuously differentiable
-//   spline    natural cubic spline through the points (times, values), held before the first and behind the
-//             last: twice continuously differentiable between them; at the ends its velocity may jump
+//   spline    clamped cubic spline through the points (times, values): at rest at its ends, held beyond them,
+//   twice
+//             continuously differentiable between them
 //   linear    straight lines through the points, held beyond its ends: for loads; not for drives, whose
 //             velocity must not jump
 struct TimeFunction {

@@ -1,105 +1,87 @@
-// [[forces]] of a scene into a structure.
+// [[forces]] of a scene into a structure: the kinds are those of the force table (forces/force.hpp).
 #include <cmath>
 
+#include "core/model/measure.hpp"
+#include "core/model/structure_error.hpp"
 #include "core/scene/element_members.hpp"
 
 namespace unfurl {
 
 namespace {
 
-// The factor over time, 1 where no table is given.
-TimeFunction factor(const ParamSet& values, double size) {
-  TimeFunction f;
-  f.offset = size;
-  if (values.vector("times").empty()) return f;
-  f.kind = TimeFunction::Kind::linear;
-  f.offset = 0;
-  f.times = values.vector("times");
-  f.values = values.vector("values");
-  for (double& x : f.values) x *= size;
-  return f;
+const ForceKind& force_kind(std::string_view kind) {
+  for (const ForceKind& row : force_kinds())
+    if (row.kind == kind) return row;
+  throw std::logic_error("no force kind " + std::string(kind));
 }
 
-class ForceAdder {
- public:
-  explicit ForceAdder(Structure& structure) : structure_(structure), find_(structure) {}
-
-  void add(const SceneElement& e) {
-    if (e.kind == "load_over_time")
-      add_loads(e);
-    else if (e.kind == "follower")
-      add_follower(e);
-    else if (e.kind == "spring" || e.kind == "torsion_spring")
-      add_spring(e);
-    else
-      for (const int node : find_.nodes(e, true)) {
-        Force& f = append(e);
-        f.nodes = {node};
-        f.damping = e.values.real("damping");
+// What all forces of an entry have in common, once for each node or other member that it names.
+std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinder& find) {
+  Force one;
+  one.kind = e.kind;
+  one.name = e.name;
+  std::vector<Force> forces;
+  const auto measured = [&](const std::optional<Measure>& measure) {
+    if (!measure) return;
+    one.measure = *measure;
+    one.rest = find.initial(*measure);
+    forces.push_back(one);
+  };
+  switch (members) {
+    case Members::none:
+      break;
+    case Members::each_node:
+      for (const int node : find.nodes(e, true)) {
+        forces.push_back(one);
+        forces.back().nodes = {node};
       }
+      break;
+    case Members::node_list:
+      one.nodes = find.nodes(e, true);
+      if (!one.nodes.empty()) forces.push_back(one);
+      break;
+    case Members::rod:
+      if (const Rod* rod = find.rod(e, 0)) {
+        one.nodes = {rod->a, rod->b};
+        forces.push_back(one);
+      }
+      break;
+    case Members::two_nodes:
+      measured(length_of(e, find));
+      break;
+    case Members::angle:
+      measured(angle_of(e, find));
+      break;
   }
-  void finish() { find_.throw_problems(); }
+  return forces;
+}
 
- private:
-  Force& append(const SceneElement& e) {
-    structure_.forces.push_back({});
-    structure_.forces.back().kind = e.kind;
-    structure_.forces.back().name = e.name;
-    return structure_.forces.back();
-  }
-
-  void add_loads(const SceneElement& e) {
-    for (const int node : find_.nodes(e, true)) {
-      Force& f = append(e);
-      f.nodes = {node};
-      f.direction = vec3(e.values, "force");
-      f.size = factor(e.values, 1.0);
+void add_force(const SceneElement& e, ElementAdder& to) {
+  const ForceKind& kind = force_kind(e.kind);
+  for (Force& force : forces_on(e, kind.members, to.find)) {
+    try {
+      kind.fill(e.values, force);
+    } catch (const StructureError& error) {
+      return to.find.problem(e, error.key, error.message);
     }
+    to.structure.forces.push_back(std::move(force));
   }
-
-  void add_follower(const SceneElement& e) {
-    const Rod* rod = find_.rod(e, 0);
-    if (!rod) return;
-    Force& f = append(e);
-    f.nodes = {rod->a, rod->b};
-    f.size = factor(e.values, e.values.real("force"));
-  }
-
-  void add_spring(const SceneElement& e) {
-    const bool axial = e.kind == "spring";
-    Measure measure;
-    if (axial) {
-      measure.nodes = find_.nodes(e, false);
-      if (measure.nodes.size() != 2) return;
-      if (measure.nodes[0] == measure.nodes[1])
-        return find_.problem(e, "nodes", "a spring from a node to itself");
-    } else if (!find_.angle(e, vec3(e.values, "axis"), measure)) {
-      return;
-    }
-    double rest = e.values.real(axial ? "free_length" : "free_angle");
-    if (!axial) rest *= radians_per_degree;
-    if (!std::isnan(rest)) measure.reference = rest;
-    if (std::isnan(rest)) rest = measure.reference = find_.initial(measure);
-    Force& f = append(e);
-    f.stiffness = e.values.real("stiffness");
-    f.damping = e.values.real("damping");
-    f.rest = rest;
-    f.one_sided = axial && e.values.boolean("tension_only");
-    f.measure = std::move(measure);
-  }
-
-  Structure& structure_;
-  MemberFinder find_;
-};
+}
 
 }  // namespace
 
-void add_forces(const std::vector<SceneElement>& elements, Structure& structure) {
-  if (elements.empty()) return;
-  ForceAdder adder(structure);
-  for (const SceneElement& element : elements)
-    if (element.enabled) adder.add(element);
-  adder.finish();
+const std::vector<ElementKind>& scene_forces() {
+  static const std::vector<ElementKind> kinds = [] {
+    std::vector<ElementKind> found;
+    for (const ForceKind& row : force_kinds())
+      if (row.params)
+        found.push_back({row.kind, row.help, row.members, row.params, add_force,
+                         row.members == Members::two_nodes ? length_of
+                         : row.members == Members::angle   ? angle_of
+                                                           : nullptr});
+    return found;
+  }();
+  return kinds;
 }
 
 }  // namespace unfurl

@@ -1,11 +1,13 @@
 #include "core/scene/build.hpp"
 
+#include <set>
 #include <utility>
 
 #include "core/model/consistency.hpp"
 #include "core/model/fit_lengths.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/model/structure_error.hpp"
+#include "core/scene/size_limits.hpp"
 #include "core/structures/family.hpp"
 #include "core/structures/name_index.hpp"
 
@@ -32,6 +34,7 @@ SourceLocation location_of(const Scene& scene, const std::string& key) {
 
 Structure bare_structure(const Scene& scene) {
   try {
+    require_buildable(scene);
     if (const Family* family = find_family(scene.kind)) return family->build(scene.structure);
     return build_custom(scene.custom);
   } catch (const StructureError& error) {
@@ -82,11 +85,20 @@ void add_loads(const Scene& scene, Structure& structure) {
   for (std::size_t i = 0; i < scene.loads.size(); ++i) {
     const auto& load = scene.loads[i];
     if (!load.enabled) continue;
+    const std::string key = "loads[" + std::to_string(i) + "].nodes";
+    std::set<int> loaded;
     for (const auto& pattern : load.nodes) {
       const auto found = names.matching(pattern);
-      for (const int node : found) add_load(structure, node, load.force);
+      for (const int node : found) {
+        if (loaded.insert(node).second)
+          add_load(structure, node, load.force);
+        else
+          problems.push_back({load.where, key,
+                              "names " + in_quotes(structure.nodes[static_cast<std::size_t>(node)].name) +
+                                  " more than once"});
+      }
       if (found.empty())
-        problems.push_back({load.where, "loads[" + std::to_string(i) + "].nodes",
+        problems.push_back({load.where, key,
                             "no node matches " + in_quotes(pattern) + did_you_mean(pattern, names.names())});
     }
   }
@@ -103,6 +115,11 @@ void fill_mass(const Scene& scene, System& system) {
   system.fill_mass();
 }
 
+void refuse_endless_runs(const Scene& scene, const Model& model) {
+  const std::string problem = too_many_states(scene, model, machine_memory());
+  if (!problem.empty()) throw SceneError({{location_of(scene, "solver.step"), "solver.step", problem}});
+}
+
 }  // namespace
 
 Structure build_structure(const Scene& scene) {
@@ -110,8 +127,9 @@ Structure build_structure(const Scene& scene) {
   add_gravity(scene, structure);
   add_loads(scene, structure);
   if (is_sector(structure)) refuse_elements(scene);
-  add_forces(scene.forces, structure);
-  add_constraints(scene.constraints, structure);
+  add_elements(scene.forces, scene_forces(), scene.solver.end_time, structure);
+  add_elements(scene.constraints, scene_constraints(), scene.solver.end_time, structure);
+  for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   return structure;
 }
 
@@ -122,7 +140,9 @@ std::shared_ptr<const Model> build_model(const Scene& scene) {
     System system(structure, scene.solver.eliminate_linear);
     check_consistency(structure, system);
     if (!scene.solver.sparse) fill_mass(scene, system);
-    return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+    auto model = std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+    refuse_endless_runs(scene, *model);
+    return model;
   } catch (const StructureError& error) {
     refuse(scene, error);
   }

@@ -11,6 +11,8 @@ namespace unfurl {
 
 namespace {
 
+constexpr const char* mass_twice = "give mass, or density and area, not both";
+
 std::string entry_key(std::string_view table, std::size_t index) {
   return "structure." + std::string(table) + "[" + std::to_string(index) + "]";
 }
@@ -37,9 +39,19 @@ void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
                   values.real("density"), values.real("area"),  values.text("group")};
     entry.finish();
     if (!entry.has("mass")) rod.mass = -1.0;
+    if (entry.has("mass") && entry.has("density")) entry.problem("density", mass_twice);
     if (entry.has("length")) rod.length = values.real("length");
     spec.rods.push_back(std::move(rod));
   }
+}
+
+// "length" of a row, which must be a length where it is given; 0: it is not.
+double length_cell(const CsvRow& row, const std::string& key, SceneNotes& notes) {
+  const auto it = row.numbers.find("length");
+  if (it == row.numbers.end()) return 0.0;
+  if (!(it->second > 0))
+    notes.add(row.where, key + ".length", "must be > 0 m; leave it out for the distance of its nodes");
+  return it->second;
 }
 
 bool is_custom_kind(const TomlTree& tree) {
@@ -59,6 +71,7 @@ void read_constraints(TableReader& table, const std::string& folder, CustomSpec&
       TableReader entry(tree, key, tree->where, own);
       general.push_back(read_element(entry, key, scene_constraints(), folder, own));
       notes.problems.insert(notes.problems.end(), own.problems.begin(), own.problems.end());
+      notes.warnings.insert(notes.warnings.end(), own.warnings.begin(), own.warnings.end());
       continue;
     }
     ++count;
@@ -124,14 +137,17 @@ void read_rods_file(TableReader& table, const std::string& name, const std::stri
       {"a", "", false, true},     {"b", "", false, true}, {"name", ""},  {"mass", "kg", true},
       {"density", "kg_m3", true}, {"area", "m2", true},   {"group", ""}, {"length", "m", true}};
   for (const auto& row : file_rows(table, "rods_file", name, folder, columns, notes)) {
-    notes.locations[entry_key("rods", spec.rods.size())] = row.where;
+    const std::string key = entry_key("rods", spec.rods.size());
+    notes.locations[key] = row.where;
+    if (row.numbers.contains("mass") && row.numbers.contains("density"))
+      notes.add(row.where, key + ".density", mass_twice);
     spec.rods.push_back({text_cell(row, "name", ""),
                          {text_cell(row, "a", ""), text_cell(row, "b", "")},
                          cell(row, "mass", -1.0),
                          cell(row, "density", 0.0),
                          cell(row, "area", 0.0),
                          text_cell(row, "group", "rod"),
-                         cell(row, "length", 0.0)});
+                         length_cell(row, key, notes)});
   }
 }
 
@@ -196,14 +212,16 @@ const std::vector<ParamSpec>& custom_rod_params() {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     ParamSpec name = text_param("name", "", "\"A-B\" from its nodes by default");
     ParamSpec group = text_param("group", "rod", "what colours and groups of rod forces go by");
+    ParamSpec length = positive_param(
+        "length", "m", 0.0,
+        "the distance of its nodes by default; where it differs by up to 1 %, nodes are moved");
     return std::vector<ParamSpec>{
         name,
         real_param("mass", "kg", 0.0, 0.0, infinity, "0: a pure distance constraint"),
         real_param("density", "kg/m^3", 0.0, 0.0, infinity, "in place of mass, with area"),
         real_param("area", "m^2", 0.0, 0.0, infinity, "cross section"),
         group,
-        real_param("length", "m", 0.0, 0.0, infinity,
-                   "the distance of its nodes by default; where it differs by up to 1 %, nodes are moved")};
+        length};
   }();
   return params;
 }

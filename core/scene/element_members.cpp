@@ -1,5 +1,7 @@
 #include "core/scene/element_members.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
 
 #include "core/model/measure.hpp"
@@ -30,7 +32,16 @@ std::vector<int> MemberFinder::nodes(const SceneElement& element, bool globs) {
   for (const auto& name : element.nodes) {
     const int one = node_names_.find(name);
     const auto matches = globs ? node_names_.matching(name) : one < 0 ? std::vector<int>{} : std::vector{one};
-    found.insert(found.end(), matches.begin(), matches.end());
+    for (const int node : matches) {
+      if (std::ranges::find(found, node) == found.end()) {
+        found.push_back(node);
+        continue;
+      }
+      problem(
+          element, "nodes",
+          "names " + in_quotes(structure_.nodes[static_cast<std::size_t>(node)].name) + " more than once");
+      return {};
+    }
     if (!matches.empty()) continue;
     problem(element, "nodes",
             "there is no node " + in_quotes(name) + did_you_mean(name, node_names_.names()));
@@ -43,12 +54,16 @@ const Rod* MemberFinder::rod(const SceneElement& element, std::size_t index) {
   const std::string& name = element.rods[index];
   const int found = rod_names_.find(name);
   if (found >= 0) return &structure_.rods[static_cast<std::size_t>(found)];
-  problem(element, "rods", "there is no rod " + in_quotes(name) + did_you_mean(name, rod_names_.names()));
+  problem(element, element.rods.size() == 1 ? "rod" : "rods",
+          "there is no rod " + in_quotes(name) + did_you_mean(name, rod_names_.names()));
   return nullptr;
 }
 
+// In (-180, 180] degrees where it has a sign: round-off of a position does not decide on which side of the
+// cut it lies.
 double MemberFinder::initial(const Measure& measure) const {
-  return MeasureFunction(measure, structure_.deployment).value(start_.data());
+  const double value = MeasureFunction(measure, structure_.deployment).value(start_.data(), 0.0);
+  return counts_turns(measure) && value < -pi + 1e-9 ? value + 2 * pi : value;
 }
 
 // Two rods that share a node open at it; others are taken from their first node to their second.
@@ -57,6 +72,7 @@ bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure&
   measure.axis = axis.isZero(0.0) ? axis : Vec3(axis.stableNormalized());
   if (element.fold_angle) {
     measure.kind = MeasureKind::fold;
+    measure.axis.setZero();
     if (!structure_.deployment.empty()) return true;
     problem(element, "fold_angle", "this structure has no fold angle; name rods or nodes");
     return false;
@@ -77,26 +93,76 @@ bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure&
     problem(element, "nodes", "an angle needs three different nodes");
     return false;
   }
+  return axis_is_across(element, measure);
+}
+
+// An angle about an axis is that of the projections across it: a rod along the axis has none.
+bool MemberFinder::axis_is_across(const SceneElement& element, const Measure& measure) {
+  if (measure.axis.isZero(0.0)) return true;
+  for (const std::size_t first : {0U, 2U}) {
+    const Vec3 d =
+        start_.segment<3>(3 * measure.nodes[first + 1]) - start_.segment<3>(3 * measure.nodes[first]);
+    if (measure.axis.cross(d).norm() > 1e-9 * d.norm()) continue;
+    const auto name = [&](std::size_t i) {
+      return structure_.nodes[static_cast<std::size_t>(measure.nodes[i])].name;
+    };
+    problem(element, "axis",
+            "is along the line from " + in_quotes(name(first)) + " to " + in_quotes(name(first + 1)) +
+                " at t = 0: there is no angle about it; give the axis of the hinge");
+    return false;
+  }
   return true;
 }
 
+std::optional<Measure> length_of(const SceneElement& element, MemberFinder& find) {
+  Measure measure;
+  measure.nodes = find.nodes(element, false);
+  if (measure.nodes.size() != 2) return {};
+  if (find.initial(measure) > 0) return measure;
+  find.problem(element, "nodes", "must not be at the same place at t = 0");
+  return {};
+}
+
+std::optional<Measure> angle_of(const SceneElement& element, MemberFinder& find) {
+  const Vec3 axis = element.values.has("axis") ? vec3(element.values, "axis") : Vec3::Zero();
+  Measure measure;
+  if (!find.angle(element, axis, measure)) return {};
+  measure.reference = find.initial(measure);
+  return measure;
+}
+
 double start_value(const SceneElement& element, const Structure& structure) {
-  const auto of = [&](const Measure& measure) {
-    const double value = MemberFinder(structure).initial(measure);
-    return measure.kind == MeasureKind::angle || measure.kind == MeasureKind::fold
-               ? value / radians_per_degree
-               : value;
-  };
-  if (element.key.starts_with("forces")) {
-    for (const Force& f : structure.forces)
-      if (f.name == element.name && (f.kind == "spring" || f.kind == "torsion_spring")) return of(f.measure);
-  } else {
-    for (const Constraint& c : structure.constraints)
-      if (c.name == element.name && c.kind == "measure") return of(c.measure);
-    for (const Stop& stop : structure.stops)
-      if (stop.name == element.name) return of(stop.measure);
-  }
-  return std::numeric_limits<double>::quiet_NaN();
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const bool force = element.key.starts_with("forces");
+  const ElementKind* kind = find_kind(force ? scene_forces() : scene_constraints(), element.kind);
+  if (!kind || !kind->measure) return unknown;
+  MemberFinder find(structure);
+  const std::optional<Measure> measure = kind->measure(element, find);
+  if (!measure) return unknown;
+  const bool angle = measure->kind == MeasureKind::angle || measure->kind == MeasureKind::fold;
+  return find.initial(*measure) / (angle ? radians_per_degree : 1.0);
+}
+
+ParamSpec direction_param(std::string_view name, std::string_view help) {
+  ParamSpec param = vector_param(name, "", {0, 0, 0}, help);
+  param.required = true;
+  return param;
+}
+
+Vec3 ElementAdder::direction(const SceneElement& element, const std::string& key) {
+  const Vec3 d = vec3(element.values, key);
+  if (d.stableNorm() > 0) return d.stableNormalized();
+  find.problem(element, key, "must not be zero");
+  return Vec3::Zero();
+}
+
+void add_elements(const std::vector<SceneElement>& elements, const std::vector<ElementKind>& kinds,
+                  double end_time, Structure& structure) {
+  if (elements.empty()) return;
+  ElementAdder adder{structure, end_time, MemberFinder(structure)};
+  for (const SceneElement& element : elements)
+    if (element.enabled) find_kind(kinds, element.kind)->add(element, adder);
+  adder.find.throw_problems();
 }
 
 }  // namespace unfurl

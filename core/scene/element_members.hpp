@@ -20,7 +20,7 @@ class MemberFinder {
   explicit MemberFinder(const Structure& structure);
 
   // Each collects what is wrong instead of throwing; an empty result says that something was.
-  std::vector<int> nodes(const SceneElement& element, bool globs);  // in the entry's order
+  std::vector<int> nodes(const SceneElement& element, bool globs);  // in the entry's order, none twice
   const Rod* rod(const SceneElement& element, std::size_t index);
   // The angle that an entry names, with a sign where `axis` is not zero. False: a problem was noted.
   bool angle(const SceneElement& element, const Vec3& axis, Measure& measure);
@@ -30,10 +30,29 @@ class MemberFinder {
   void throw_problems();  // SceneError, where there are any
 
  private:
+  bool axis_is_across(const SceneElement& element, const Measure& measure);
+
   const Structure& structure_;
   NameIndex node_names_, rod_names_;
   VectorXd start_;
   std::vector<SceneProblem> problems_;
 };
+
+// Where the `add` of an ElementKind puts what an entry means.
+struct ElementAdder {
+  Structure& structure;
+  double end_time;  // of the run: drives are looked at until then [s]
+  MemberFinder find;
+
+  const Node& node(int index) const { return structure.nodes[static_cast<std::size_t>(index)]; }
+  // A direction of length 1; zero after a problem was noted.
+  Vec3 direction(const SceneElement& element, const std::string& key);
+};
+
+// A required direction, of any length but 0.
+ParamSpec direction_param(std::string_view name, std::string_view help);
+
+// Kinds of [[constraints]] that hold, drive or bound a measure.
+const std::vector<ElementKind>& measured_kinds();
 
 }  // namespace unfurl

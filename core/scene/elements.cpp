@@ -1,7 +1,6 @@
 // The kinds of [[forces]] and [[constraints]] and how an entry is read.
 #include "core/scene/elements.hpp"
 
-#include <limits>
 #include <map>
 
 #include "core/model/nearest_name.hpp"
@@ -12,116 +11,9 @@ namespace unfurl {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double as_built = std::numeric_limits<double>::quiet_NaN();
-
 ParamSpec required(ParamSpec spec) {
   spec.required = true;
   return spec;
-}
-
-ParamSpec direction_param(std::string_view name, std::string_view help) {
-  return required(vector_param(name, "", {0, 0, 0}, help));
-}
-
-// How a held or driven value moves; the unit is that of the measure.
-std::vector<ParamSpec> motion_params(std::string_view unit) {
-  return {
-      choice_param("motion", "hold", {"hold", "rate", "smooth", "table"},
-                   "hold the value at t = 0, or drive it: at a constant rate, smoothly to a value, along a "
-                   "table"),
-      only_with(
-          "motion", {"rate"},
-          real_param("rate", unit == "m" ? "m/s" : "deg/s", 0.0, -infinity, infinity, "rate: per second")),
-      only_with("motion", {"rate"},
-                real_param("ramp", "s", 0.0, 0.0, infinity, "rate: how long it takes to reach the rate")),
-      only_with("motion", {"smooth"},
-                real_param("to", unit, as_built, -infinity, infinity, "smooth: the value in the end")),
-      only_with("motion", {"rate", "smooth"},
-                real_param("start", "s", 0.0, 0.0, infinity, "rate, smooth: when the motion begins")),
-      only_with("motion", {"smooth"},
-                positive_param("duration", "s", 1.0, "smooth: how long the motion takes")),
-      only_with("motion", {"table"}, vector_param("times", "s", {}, "table: ascending, with values")),
-      only_with("motion", {"table"},
-                vector_param("values", unit, {}, "table: at the times; a natural cubic spline between them, held before and after")),
-      only_with("motion", {"table"},
-                text_param("table", "",
-                           "table: CSV file beside the scene, in place of times and values: t,value"))};
-}
-
-std::vector<ParamSpec> operator+(std::vector<ParamSpec> a, const std::vector<ParamSpec>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-template <class Make>
-const std::vector<ParamSpec>& once(Make make) {
-  static const std::vector<ParamSpec> params = make();
-  return params;
-}
-
-const std::vector<ParamSpec>& no_params() {
-  return once([] { return std::vector<ParamSpec>{}; });
-}
-const std::vector<ParamSpec>& plane_params() {
-  return once([] { return std::vector{direction_param("normal", "of the plane")}; });
-}
-const std::vector<ParamSpec>& line_params() {
-  return once([] { return std::vector{direction_param("direction", "of the line")}; });
-}
-const std::vector<ParamSpec>& equal_params() {
-  return once(
-      [] { return std::vector{direction_param("direction", "along which the coordinates are equal")}; });
-}
-const std::vector<ParamSpec>& mirror_params() {
-  return once([] {
-    return std::vector{direction_param("normal", "of the mirror plane"),
-                       vector_param("point", "m", {0, 0, 0}, "in the mirror plane")};
-  });
-}
-const std::vector<ParamSpec>& relation_params() {
-  return once([] {
-    return std::vector{
-        required(vector_param("coefficients", "", {}, "three for each node: sum of c . x = value")),
-        real_param("value", "m", as_built, -infinity, infinity, "by default that at t = 0")};
-  });
-}
-const std::vector<ParamSpec>& length_params() {
-  return once([] { return motion_params("m"); });
-}
-const std::vector<ParamSpec>& coordinate_params() {
-  return once(
-      [] { return std::vector{direction_param("direction", "of the coordinate")} + motion_params("m"); });
-}
-const std::vector<ParamSpec>& angle_params() {
-  return once([] {
-    return std::vector{
-               vector_param("axis", "", {0, 0, 0},
-                            "of the hinge: the angle then has a sign and may go round; none: in [0, 180]")} +
-           motion_params("deg");
-  });
-}
-
-std::vector<ParamSpec> stop_params(std::string_view unit) {
-  ParamSpec restitution =
-      real_param("restitution", "", 0.0, 0.0, 1.0, "rebound speed over approach speed; 0: no rebound");
-  return {real_param("min", unit, as_built, -infinity, infinity, "lower limit; none by default"),
-          real_param("max", unit, as_built, -infinity, infinity, "upper limit; none by default"), restitution,
-          real_param("rest_speed", unit == "m" ? "m/s" : "deg/s", 1e-3, 0.0, infinity,
-                     "rebounds slower than this rest on the stop")};
-}
-const std::vector<ParamSpec>& length_stop_params() {
-  return once([] { return stop_params("m"); });
-}
-const std::vector<ParamSpec>& coordinate_stop_params() {
-  return once(
-      [] { return std::vector{direction_param("direction", "of the coordinate")} + stop_params("m"); });
-}
-const std::vector<ParamSpec>& angle_stop_params() {
-  return once([] {
-    return std::vector{vector_param("axis", "", {0, 0, 0}, "of the hinge, as for angle")} +
-           stop_params("deg");
-  });
 }
 
 // Times and values of a CSV table, into the entry's parameters.
@@ -204,45 +96,6 @@ std::string made_name(const SceneElement& element) {
 
 }  // namespace
 
-const std::vector<ElementKind>& scene_forces() {
-  static const std::vector<ElementKind> kinds = [] {
-    std::vector<ElementKind> found;
-    for (const ForceKind& row : force_kinds())
-      if (row.params) found.push_back({row.kind, row.help, row.members, row.params});
-    return found;
-  }();
-  return kinds;
-}
-
-const std::vector<ElementKind>& scene_constraints() {
-  static const std::vector<ElementKind> kinds = {
-      {"plane", "keeps nodes in the planes through their positions at t = 0", Members::each_node,
-       plane_params},
-      {"line", "keeps nodes on the lines through their positions at t = 0", Members::each_node, line_params},
-      {"fixed", "keeps nodes where they are at t = 0", Members::each_node, no_params},
-      {"equal", "nodes share one coordinate", Members::node_list, equal_params},
-      {"mirror", "the second node is the mirror image of the first", Members::two_nodes, mirror_params},
-      {"relation", "a linear relation between nodes", Members::node_list, relation_params},
-      {"collinear", "the third and further nodes stay on the line through the first two", Members::node_list,
-       no_params},
-      {"coplanar", "the fourth and further nodes stay in the plane through the first three",
-       Members::node_list, no_params},
-      {"length", "the distance of two nodes is held, or driven by an actuator", Members::two_nodes,
-       length_params},
-      {"coordinate", "a node's coordinate along a direction, or the difference of two, is held or driven",
-       Members::node_list, coordinate_params},
-      {"angle", "the angle between two rods, or the fold angle, is held or driven by a motor", Members::angle,
-       angle_params},
-      {"length_stop", "end stop: the distance of two nodes stays within limits", Members::two_nodes,
-       length_stop_params},
-      {"coordinate_stop", "end stop: a node's coordinate, or the difference of two, stays within limits",
-       Members::node_list, coordinate_stop_params},
-      {"angle_stop", "end stop: the angle between two rods, or the fold angle, stays within limits",
-       Members::angle, angle_stop_params},
-  };
-  return kinds;
-}
-
 const ElementKind* find_kind(const std::vector<ElementKind>& kinds, std::string_view kind) {
   for (const ElementKind& row : kinds)
     if (row.kind == kind) return &row;
@@ -293,6 +146,11 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
     check_table(entry, element.values);
   }
   if (element.values.has("motion")) check_motion(entry, element.values);
+  entry.warn_idle(kind->params(), element.values);
+  if (element.values.has("stiffness") && !entry.has("stiffness") && !entry.has("damping"))
+    entry.problem("stiffness", "is missing, and so is damping: it would do nothing");
+  if (element.fold_angle && entry.has("axis"))
+    notes.warnings.push_back({element.where, key + ".axis", "does nothing with fold_angle = true"});
   entry.finish();
   element.name = head.text("name");
   return element;

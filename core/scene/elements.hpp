@@ -1,6 +1,7 @@
 // The entries of [[forces]] and [[constraints]]: a kind, the members it acts on, its parameters.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,12 +24,18 @@ struct SceneElement {
   SourceLocation where;  // of the entry
 };
 
-// What the reader needs to know about a kind, whichever table it is from.
+struct ElementAdder;
+class MemberFinder;
+
+// A kind of entry: how it is read, and what it adds to a structure.
 struct ElementKind {
   std::string_view kind;
   std::string_view help;
   Members members;
   const std::vector<ParamSpec>& (*params)();
+  void (&add)(const SceneElement&, ElementAdder&);  // a reference: a row without one does not compile
+  // What it measures, its branch that of t = 0; none: a problem was noted. nullptr: it measures nothing.
+  std::optional<Measure> (*measure)(const SceneElement&, MemberFinder&) = nullptr;
 };
 const std::vector<ElementKind>& scene_forces();  // kinds of [[forces]]
 const std::vector<ElementKind>&
@@ -49,12 +56,17 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
 // A-B-C", "angle of A-B-C (2)". Notes two enabled elements that were given the same.
 void settle_names(std::vector<SceneElement>& elements, SceneNotes& notes);
 
-// What an element that measures something (a drive, a stop, a spring) measures at the start of the structure
-// that was built with it, in the scene's unit [m or deg]; NaN: nothing, or it was not built.
+// The measures of kinds that name two nodes or an angle.
+std::optional<Measure> length_of(const SceneElement& element, MemberFinder& find);
+std::optional<Measure> angle_of(const SceneElement& element, MemberFinder& find);
+
+// What an element that measures something (a drive, a stop, a spring) measures at the start of a structure,
+// in the scene's unit [m or deg]; NaN: nothing, or its members are not there.
 double start_value(const SceneElement& element, const Structure& structure);
 
-// Adds what the elements say to the structure. Throws SceneError with every member that is not there.
-void add_forces(const std::vector<SceneElement>& elements, Structure& structure);
-void add_constraints(const std::vector<SceneElement>& elements, Structure& structure);
+// Adds what the elements of one of the tables of kinds say to the structure; `end_time` is that of the run
+// [s]. Throws SceneError with all that cannot be.
+void add_elements(const std::vector<SceneElement>& elements, const std::vector<ElementKind>& kinds,
+                  double end_time, Structure& structure);
 
 }  // namespace unfurl

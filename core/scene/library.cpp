@@ -7,7 +7,7 @@
 #include "core/model/nearest_name.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/text_file.hpp"
-#include "core/scene/toml_tree.hpp"
+#include "core/scene/title.hpp"
 
 namespace unfurl {
 
@@ -18,8 +18,7 @@ namespace fs = std::filesystem;
 std::string title_of(const std::string& path) {
   try {
     const TomlTree tree = parse_toml(read_text_file(path).text, path);
-    const TomlTree* title = tree.find("title");
-    return title ? title->text : "";
+    return scene_title(tree, tree, "");
   } catch (const SceneError&) {
     return "";
   }

@@ -20,7 +20,8 @@ struct Refusal {
 struct Step {
   std::string name;
   bool quoted = false;
-  std::optional<std::size_t> index;  // [3]; `name` is empty then
+  std::optional<std::size_t>
+      index;  // [3]; `name` is empty then. [motor] is the step to an entry of that name
 };
 
 std::string quoted_step(std::string_view key, std::size_t& i) {
@@ -33,13 +34,17 @@ std::string quoted_step(std::string_view key, std::size_t& i) {
 
 Step index_step(std::string_view key, std::size_t& i) {
   const std::size_t end = key.find(']', i);
-  const std::string_view digits = key.substr(i + 1, end == std::string_view::npos ? end : end - i - 1);
-  std::size_t index = 0;
-  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-  if (end == std::string_view::npos || error != std::errc() || stop != digits.data() + digits.size())
-    throw Refusal{"an index must be a whole number in brackets, [0] the first"};
+  if (end == std::string_view::npos) throw Refusal{"a bracket in the key stays open"};
+  std::string_view text = key.substr(i + 1, end - i - 1);
   i = end + 1;
-  return {"", false, index};
+  std::size_t index = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error == std::errc() && stop == text.data() + text.size()) return {"", false, index};
+  if (text.size() >= 2 && (text[0] == '"' || text[0] == '\'') && text.back() == text[0])
+    text = text.substr(1, text.size() - 2);
+  if (text.empty() || text[0] == '-' || text[0] == '+')
+    throw Refusal{"an index must be a whole number in brackets, [0] the first, or a name"};
+  return {std::string(text), true, std::nullopt};
 }
 
 std::vector<Step> parse_key(std::string_view key) {
@@ -80,7 +85,7 @@ TomlTree parse_value(std::string_view text) {
   try {
     TomlTree parsed = parse_toml("value = " + std::string(text) + "\n", override_source);
     if (parsed.entries.size() != 1) throw Refusal{"the value must be one TOML value"};
-    value = std::move(parsed.entries[0].second);
+    value = std::move(parsed.entries[0].value);
   } catch (const SceneError& error) {
     if (!is_bare_word(text)) {
       const bool none = text.find_first_not_of(" \t") == std::string_view::npos;
@@ -142,15 +147,15 @@ TomlTree& step_into(TomlTree& tree, const Step& step, std::string_view so_far) {
     throw Refusal{std::string(so_far) + " is " + tree.describe() + ", not a table"};
   if (step.index) throw Refusal{std::string(so_far) + " is not a list"};
   if (TomlTree* found = tree.find(step.name)) return *found;
-  tree.entries.emplace_back(step.name, made_here(TomlTree::Kind::table));
-  return tree.entries.back().second;
+  tree.entries.push_back({step.name, made_here(TomlTree::Kind::table)});
+  return tree.entries.back().value;
 }
 
 void apply(TomlTree& root, std::string_view key, std::string_view text) {
   const auto steps = parse_key(key);
   TomlTree value = parse_value(text);
   if (steps.size() > 1 && steps[1].index && grows(steps[0].name) && !root.find(steps[0].name))
-    root.entries.emplace_back(steps[0].name, made_here(TomlTree::Kind::array));
+    root.entries.push_back({steps[0].name, made_here(TomlTree::Kind::array)});
   TomlTree* target = &root;
   std::string so_far;
   for (const auto& step : steps) {

@@ -11,6 +11,7 @@
 #include "core/scene/overrides.hpp"
 #include "core/scene/table_reader.hpp"
 #include "core/scene/text_file.hpp"
+#include "core/scene/title.hpp"
 #include "core/structures/family.hpp"
 
 namespace unfurl {
@@ -130,8 +131,12 @@ void read_render(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
   read_camera_keys(keys, scene.render, notes);
 }
 
-void read_title(TableReader& root, Scene& scene) {
-  scene.title = root.read({text_param("title", scene.name, "")}).text("title");
+void read_title(TableReader& root, const TomlTree& tree, const TomlTree& own, Scene& scene) {
+  const std::string given = root.read({text_param("title", scene.name, "")}).text("title");
+  std::string unknown;
+  scene.title = scene_title(tree, own, scene.name, &unknown);
+  if (is_title_pattern(given)) scene.title_pattern = given;
+  if (!unknown.empty()) root.problem("title", "{" + unknown + "} names no number or text of [structure]");
 }
 
 // Overrides first, then each file from its top to its end.
@@ -150,13 +155,14 @@ void sort_problems(std::vector<SceneProblem>& problems) {
 
 Scene read_scene_text(std::string_view text, const std::string& name,
                       const std::vector<std::string>& overrides, const std::string& folder) {
-  TomlTree tree = parse_toml(text, name);
+  const TomlTree own = parse_toml(text, name);
+  TomlTree tree = own;
   SceneNotes notes;
   apply_overrides(tree, overrides, notes.problems);
   Scene scene;
   scene.name = std::filesystem::path(name).stem().string();
   TableReader root(&tree, "", tree.where, notes);
-  read_title(root, scene);
+  read_title(root, tree, own, scene);
   read_structure(root, tree, folder, scene, notes);
   read_gravity(root, tree, scene, notes);
   read_loads(root, scene, notes);
@@ -171,13 +177,14 @@ Scene read_scene_text(std::string_view text, const std::string& name,
     sort_problems(notes.problems);
     throw SceneError(std::move(notes.problems));
   }
+  scene.warnings = std::move(notes.warnings);
   scene.locations = std::move(notes.locations);
   scene.units = std::move(notes.units);
   return scene;
 }
 
 Scene read_scene_file(const std::string& path, const std::vector<std::string>& overrides) {
-  const TextFile file = read_text_file(path);
+  const TextFile file = read_text_file(path, TextSource::pipe_too);
   if (!file.error.empty()) throw UnreadableScene("cannot read scene " + path + ": " + file.error);
   std::string folder = std::filesystem::path(path).parent_path().string();
   return read_scene_text(file.text, path, overrides, folder.empty() ? "." : folder);

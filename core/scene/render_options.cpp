@@ -77,6 +77,10 @@ std::vector<Key> picture_keys() {
       {vector_param("colour_range", "", {0, 0},
                     "from which value to which the colours run; [0, 0]: the run's"),
        &R::colour_range},
+      {real_param(
+           "rod_scale", "", 0, 0, 1000,
+           "rods are drawn so many times as thick as they are, 1 = true; 0: no thinner than can be seen"),
+       &R::rod_scale},
   };
 }
 

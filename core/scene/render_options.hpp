@@ -29,6 +29,8 @@ struct RenderOptions {
   // What colours the rods: their group or a quantity, over a range that stays fixed through the film.
   std::string colour_by = "group";
   std::array<double, 2> colour_range{0.0, 0.0};  // in the quantity's unit; equal ends: from the run
+  double rod_scale =
+      0.0;  // rods are drawn so many times as thick as they are; 0: as far as they must be seen
   // What is written or drawn over the picture.
   bool title = true, time = true, legend = true, loads = true;
   bool method = false, errors = false, scale_bar = false, axes = false, dimensions = false;

@@ -23,8 +23,9 @@ struct SceneLoad {
 };
 
 struct Scene {
-  std::string name;  // file stem or built-in name: "hoop6"
-  std::string title;
+  std::string name;             // file stem or built-in name: "hoop6"
+  std::string title;            // with the parameters that it names
+  std::string title_pattern;    // as given, "{units}-unit ring antenna"; empty: the title itself
   std::string kind;             // structure.kind
   ParamSet structure;           // the family's parameters (empty for custom)
   CustomSpec custom;            // for kind = "custom"
@@ -33,6 +34,7 @@ struct Scene {
   std::vector<SceneElement> forces, constraints;
   SolverOptions solver;
   RenderOptions render;
+  std::vector<SceneProblem> warnings;               // what is given and does nothing
   std::map<std::string, SourceLocation> locations;  // dotted key -> where it was given, for later messages
   std::map<std::string, std::string> units;         // of the keys that overrides change: dotted key -> unit
 };

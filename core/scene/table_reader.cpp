@@ -178,6 +178,16 @@ std::vector<const TomlTree*> TableReader::tables(std::string_view name) {
   return found;
 }
 
+void TableReader::warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values) {
+  for (const ParamSpec& spec : specs) {
+    if (!has(spec.name) || means_something(spec, values)) continue;
+    const std::string other(spec.only_with);
+    std::string text = "does nothing with " + other + " = ";
+    text += std::holds_alternative<bool>(values.value(other)) ? "false" : in_quotes(values.text(other));
+    notes_.warnings.push_back({table_->find(spec.name)->where, key(spec.name), text});
+  }
+}
+
 void TableReader::finish() {
   if (!table_) return;
   for (const auto& [name, value] : table_->entries) {

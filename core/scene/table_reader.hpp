@@ -14,6 +14,7 @@ namespace unfurl {
 // What a reading collects: all mistakes, and where each key was given.
 struct SceneNotes {
   std::vector<SceneProblem> problems;
+  std::vector<SceneProblem> warnings;               // what is given and does nothing
   std::map<std::string, SourceLocation> locations;  // dotted key -> place of its value
   std::map<std::string, std::string> units;         // of what overrides change: dotted key -> unit
 
@@ -40,6 +41,8 @@ class TableReader {
   const TomlTree* table(std::string_view key);
   std::vector<const TomlTree*> tables(std::string_view key);
   void finish();
+  // Warns of every key that is given although it means nothing with the values that the others have.
+  void warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values);
 
   std::string key(std::string_view name) const;  // dotted
   bool has(std::string_view name) const { return table_ && table_->find(name); }

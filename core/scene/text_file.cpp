@@ -1,5 +1,9 @@
 #include "core/scene/text_file.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -15,6 +19,7 @@ namespace fs = std::filesystem;
 
 std::string outside_error(const std::string& folder, const std::string& name) {
   const fs::path path(name);
+  if (name.find('\0') != std::string::npos) return "holds the character \\u0000, which no file name can";
   if (folder.empty()) return "a scene that is not a file cannot name other files";
   if (path.is_absolute()) return "must be relative to the scene's folder";
   std::error_code error;
@@ -27,16 +32,26 @@ std::string outside_error(const std::string& folder, const std::string& name) {
 
 }  // namespace
 
-TextFile read_text_file(const std::string& path) {
+TextFile read_text_file(const std::string& path, TextSource source) {
   TextFile result{path, "", ""};
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
+  // Opening a pipe that nobody writes to waits, unless it is told not to.
+  const int descriptor =
+      ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (source == TextSource::regular_file ? O_NONBLOCK : 0));
+  struct stat status {};
+  if (descriptor < 0 || ::fstat(descriptor, &status) != 0)
+    result.error = std::strerror(errno);
+  else if (S_ISDIR(status.st_mode))
     result.error = "is a directory";
+  else if (source == TextSource::regular_file && !S_ISREG(status.st_mode))
+    result.error = "is not a regular file";
+  if (!result.error.empty()) {
+    if (descriptor >= 0) ::close(descriptor);
     return result;
   }
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(::fdopen(descriptor, "rb"), &std::fclose);
   if (!file) {
-    result.error = std::strerror(errno);
+    ::close(descriptor);
+    result.error = std::strerror(ENOMEM);
     return result;
   }
   std::vector<char> block(std::size_t{1} << 16U);

@@ -12,9 +12,13 @@ struct TextFile {
   std::string error;  // empty: the text is there
 };
 
+// A scene may also come through a pipe, which a person names and waits for (/dev/stdin); what a scene or a
+// directory of results names may not: it could wait for ever.
+enum class TextSource { regular_file, pipe_too };
+
 // The whole file. Refuses what is not readable as a file and more than max_text_file_bytes (also of an
 // endless device).
-TextFile read_text_file(const std::string& path);
+TextFile read_text_file(const std::string& path, TextSource source = TextSource::regular_file);
 
 // A file whose name is relative to the folder and that lies inside it, links followed.
 TextFile read_file_beside(const std::string& folder, const std::string& name);

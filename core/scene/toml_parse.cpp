@@ -58,11 +58,11 @@ TomlTree convert(const toml::node& node, const std::string& file) {
   } else if (const auto* table = node.as_table()) {
     tree.kind = TomlTree::Kind::table;
     for (const auto& [key, value] : *table) {
-      tree.entries.emplace_back(std::string(key.str()), convert(value, file));
-      tree.entries.back().second.key_where = location(key.source(), file);
+      tree.entries.push_back({std::string(key.str()), convert(value, file)});
+      tree.entries.back().value.key_where = location(key.source(), file);
     }
     std::stable_sort(tree.entries.begin(), tree.entries.end(), [](const auto& a, const auto& b) {
-      const SourceLocation &x = a.second.key_where, &y = b.second.key_where;
+      const SourceLocation &x = a.value.key_where, &y = b.value.key_where;
       return x.line != y.line ? x.line < y.line : x.column < y.column;
     });
   } else {

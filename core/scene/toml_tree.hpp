@@ -3,12 +3,13 @@
 
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/scene/scene_error.hpp"
 
 namespace unfurl {
+
+struct TomlEntry;
 
 struct TomlTree {
   enum class Kind { boolean, integer, real, text, array, table, time };
@@ -18,15 +19,20 @@ struct TomlTree {
   long integer = 0;
   double real = 0.0;
   std::string text;
-  std::vector<TomlTree> items;                            // of an array
-  std::vector<std::pair<std::string, TomlTree>> entries;  // of a table, in the file's order
-  SourceLocation where;                                   // of the value
-  SourceLocation key_where;                               // of its key, in a table
+  std::vector<TomlTree> items;     // of an array
+  std::vector<TomlEntry> entries;  // of a table, in the file's order
+  SourceLocation where;            // of the value
+  SourceLocation key_where;        // of its key, in a table
 
   const TomlTree* find(std::string_view key) const;  // entry of a table; nullptr where it has none
   TomlTree* find(std::string_view key);
   // "true", "a whole number", "text", "a table", ...: for error messages.
   std::string describe() const;
+};
+
+struct TomlEntry {
+  std::string key;
+  TomlTree value;
 };
 
 // Throws SceneError with the place of the mistake. `file` is the name that locations carry. The text must be

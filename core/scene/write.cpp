@@ -89,7 +89,7 @@ std::string element_text(std::string_view table, const SceneElement& element, co
   if (element.fold_angle) text += line("fold_angle", "true");
   for (const auto& spec : kind.params()) {
     const ParamValue& value = element.values.value(spec.name);
-    if (!worth_writing(value)) continue;
+    if (!worth_writing(value) || !means_something(spec, element.values)) continue;
     text += line(spec.name, toml_value(value));
     if (!spec.unit.empty()) text.insert(text.size() - 1, "  # " + std::string(spec.unit));
   }
@@ -154,7 +154,9 @@ std::string toml_value(const ParamValue& value) {
 }
 
 std::string scene_text(const Scene& scene) {
-  std::string text = line("title", toml_string(scene.title)) + structure_text(scene);
+  std::string text =
+      line("title", toml_string(scene.title_pattern.empty() ? scene.title : scene.title_pattern)) +
+      structure_text(scene);
   text += "\n[gravity]\n" + line("acceleration", vec_text(scene.gravity));
   for (const auto& load : scene.loads)
     text += "\n[[loads]]\n" + (load.enabled ? "" : line("enabled", "false")) +

@@ -101,7 +101,7 @@ std::string member_lines(const std::string& table) {
   const std::string text = "value = " + table;
   const TomlTree root = parse_toml(text, "");
   std::string lines;
-  for (const auto& [name, value] : root.entries.front().second.entries) {
+  for (const auto& [name, value] : root.entries.front().value.entries) {
     const std::size_t begin = offset_of(text, value.where);
     lines += name + " = " + text.substr(begin, value_end(text, begin) - begin) + "\n";
   }

@@ -22,8 +22,8 @@ constexpr int points = 9;
 // at four stages.
 constexpr double short_enough = 2.3e-3;
 constexpr int most_stations = 200;
-constexpr int most_lengths =
-    40;  // of a step that is to end near a sine: starts next to the pose need short ones
+constexpr int most_lengths = 40;           // of a step to a sine: a start next to the pose needs short ones
+constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 
 struct Sample {
   double sine;
@@ -36,7 +36,8 @@ class Locator {
       : trajectory_(trajectory),
         integrator_(integrator),
         h_(h),
-        index1_(trajectory.last_model().system, true) {}
+        followed_(trajectory.last_model().system),
+        index1_(followed_, true) {}
 
   std::optional<State> locate() {
     const double start = sine(trajectory_.state(0));
@@ -82,14 +83,18 @@ class Locator {
     return std::abs(0.5 * (b.t - a.t) * (sine_rate(a) + sine_rate(b)) / change - 1);
   }
 
-  // The last state of the run behind a step that was short enough; where none was, the last one.
+  // The last state of the run behind a step that was short enough; where none was, behind the best one. Not
+  // as far back as a dead centre: there a motion grows by the same share in every step, however short its
+  // way.
   void find_resolved() {
     resolved_ = trajectory_.size() - 1;
-    for (std::size_t i = resolved_; i > 0; --i)
-      if (unevenness(trajectory_.state(i - 1), trajectory_.state(i)) <= short_enough) {
-        resolved_ = i;
-        return;
-      }
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t i = resolved_; i > 0 && sine(trajectory_.state(i - 1)) < near_dead_centre; --i) {
+      const double now = unevenness(trajectory_.state(i - 1), trajectory_.state(i));
+      if (now < best) resolved_ = i;
+      best = std::min(best, now);
+      if (best <= short_enough) return;
+    }
   }
 
   State last_before(double target) {
@@ -160,12 +165,13 @@ class Locator {
   // coordinates.
   void keep(double at, State state) {
     VectorXd acceleration(state.w.size());
+    followed_.follow(state);
     if (index1_.evaluate(state.t, state.z, state.w, acceleration, state.lambda))
       samples_.push_back({at, std::move(state)});
   }
 
   // Lagrange extrapolation of everything, as functions of the sine, to zero.
-  std::optional<State> extrapolate() const {
+  std::optional<State> extrapolate() {
     State out = samples_.front().state;
     out.t = 0;
     for (VectorXd* v : {&out.z, &out.w, &out.lambda}) v->setZero();
@@ -179,12 +185,15 @@ class Locator {
       out.lambda += weight * samples_[i].state.lambda;
     }
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
+    followed_.follow(samples_.front().state);
+    followed_.count_on(out);
     return out;
   }
 
   const Trajectory& trajectory_;
   Integrator& integrator_;
   double h_;
+  System followed_;
   Index1 index1_;
   std::vector<Sample> samples_;
   std::vector<Sample> stations_;  // solved on the way, by falling sine

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <stdexcept>
 
 #include "core/integrators/index1.hpp"
 #include "core/math/saddle_solver.hpp"
@@ -40,7 +41,8 @@ VectorXd fitted_rates(const System& system, double t, const ConstVec& q, const C
   std::vector<double> scratch;
   system.jacobian(q, G, scratch);
   SaddleSolver saddle(system.mass(), G);
-  saddle.factorise(G);
+  if (!saddle.factorise(G))
+    throw std::runtime_error("the constraint matrix at the start cannot be factorised");
   VectorXd p(system.solved_coordinates()), w(p.size()), y(system.constraints()), rate(y.size());
   system.target_rate(t, rate);
   system.reduce_force(system.node_mass() * v, p);
@@ -68,8 +70,10 @@ InitialState initial_state(const Structure& structure, const System& system) {
     system.expand_rate(s.w, back);
     out.velocity_change = (back - v).lpNorm<Eigen::Infinity>();
   }
+  System followed = system.at(s);
+  followed.count_on(s);
   VectorXd acceleration(system.solved_coordinates());
-  Index1 index1(system);
+  Index1 index1(followed);
   if (!index1.evaluate(0.0, s.z, s.w, acceleration, s.lambda)) s.lambda.setZero();
   return out;
 }

@@ -76,7 +76,11 @@ double OneSided::stretch(const Cable& cable, const VectorXd& q, const VectorXd& 
 }
 
 void OneSided::measure_pushes(const Model& model, const State& state, Probe& probe) {
-  if (!index1_) index1_ = std::make_unique<Index1>(model.system);
+  if (!index1_) {
+    followed_.emplace(model.system);
+    index1_ = std::make_unique<Index1>(*followed_);
+  }
+  followed_->follow(state);
   acceleration_.resize(state.z.size());
   lambda_ = state.lambda;
   State with_forces = state;
@@ -101,7 +105,7 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
     if (i < stops && active_[k]) continue;
     double rate = 0, margin = 0;
     if (i < stops) {
-      margin = stops_.gap(k, q, v, rate) - shift_[i];
+      margin = stops_.gap(k, state, q, v, rate) - shift_[i];
     } else {
       const double sign = active_[k] ? 1.0 : -1.0;
       margin = sign * stretch(cables_[k - stops_.size()], q, v, rate);

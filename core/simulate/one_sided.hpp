@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,7 @@ class OneSided {
   double step_;
   bool eliminate_linear_;
   VectorXd gradient_, acceleration_, lambda_;
+  std::optional<System> followed_;  // by the equations of forces
   std::unique_ptr<Index1> index1_;
 };
 

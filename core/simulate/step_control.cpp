@@ -13,7 +13,7 @@ constexpr double smallest_share = 1e-5;  // of the largest step: slower than thi
 StepControl::StepControl(const Structure& structure, const System& system, const SolverOptions& options)
     : structure_(structure),
       system_(system),
-      index1_(system),
+      index1_(system_),
       largest_(options.step),
       turn_(options.turn),
       acceleration_(system.solved_coordinates()),
@@ -21,6 +21,7 @@ StepControl::StepControl(const Structure& structure, const System& system, const
       v_(system.coordinates()) {}
 
 double StepControl::density(const State& state) {
+  system_.follow(state);
   system_.expand_rate(state.w, v_);
   double omega = 0;
   for (const Rod& rod : structure_.rods)

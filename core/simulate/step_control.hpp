@@ -32,7 +32,7 @@ class StepControl {
   double density(const State& state);  // Q
 
   const Structure& structure_;
-  const System& system_;
+  System system_;  // follows the states
   Index1 index1_;
   double largest_, turn_;
   double previous_ = 0;  // the last step [s]; 0 before the first

@@ -193,7 +193,8 @@ class Stepper::Loop {
   StepReport drift(State& state, double h) {
     VectorXd acceleration(state.w.size());
     VectorXd lambda = state.lambda;
-    Index1 index1(system());
+    const System followed = system().at(state);
+    Index1 index1(followed);
     StepReport report;
     if (!index1.evaluate(state.t, state.z, state.w, acceleration, lambda)) acceleration.setZero();
     state.t += h;

@@ -17,23 +17,27 @@ std::string held_name(const StopSide& stop) {
 }  // namespace
 
 Stops::Stops(const Structure& structure) : touching_(1e-11 * reference_length(structure)) {
-  for (const Stop& stop : structure.stops)
+  const std::vector<int> followed = followed_angles(structure).of_stop;
+  for (std::size_t i = 0; i < structure.stops.size(); ++i) {
+    const Stop& stop = structure.stops[i];
     for (const double sign : {1.0, -1.0})
       if (const double limit = sign > 0 ? stop.min : stop.max; std::isfinite(limit))
         stops_.push_back({stop.name, stop.measure, MeasureFunction(stop.measure, structure.deployment), limit,
-                          sign, stop.restitution, stop.rest_speed});
+                          sign, stop.restitution, stop.rest_speed, followed[i]});
+  }
 }
 
 double Stops::gap(std::size_t i, const System& system, const State& state) const {
   VectorXd q(system.coordinates());
   system.expand(state.z, q);
-  return stops_[i].sign * (stops_[i].function.value(q.data()) - stops_[i].limit);
+  return stops_[i].sign * (stops_[i].function.value(q.data(), stops_[i].near(state)) - stops_[i].limit);
 }
 
-double Stops::gap(std::size_t i, const VectorXd& q, const VectorXd& v, double& rate) const {
+double Stops::gap(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v,
+                  double& rate) const {
   const MeasureFunction& s = stops_[i].function;
   VectorXd gradient(static_cast<Index>(s.stencil().size()));
-  const double value = s.value_and_gradient(q.data(), gradient.data());
+  const double value = s.value_and_gradient(q.data(), gradient.data(), stops_[i].near(state));
   rate = stops_[i].sign * s.rate(gradient.data(), v.data());
   return stops_[i].sign * (value - stops_[i].limit);
 }
@@ -43,7 +47,7 @@ double Stops::gap_rate(std::size_t i, const System& system, const State& state) 
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
   double rate = 0;
-  gap(i, q, v, rate);
+  gap(i, state, q, v, rate);
   return rate;
 }
 
@@ -61,7 +65,7 @@ double Stops::rebound(std::size_t i, const System& system, State& state) const {
   std::vector<double> scratch;
   system.jacobian(q, G, scratch);
   SaddleSolver saddle(system.mass(), G);
-  saddle.factorise(G);
+  if (!saddle.factorise(G)) return std::numeric_limits<double>::quiet_NaN();
   VectorXd response(n_z.size()), mu(system.constraints());
   saddle.solve(n_z, VectorXd::Zero(mu.size()), response, mu);
   const double a = n_z.dot(response), free = n_z.cwiseAbs2().maxCoeff() / system.mass().diagonal().maxCoeff();

@@ -25,6 +25,11 @@ struct StopSide {
   MeasureFunction function;
   double limit, sign;
   double restitution, rest_speed;
+  int followed;  // index in State::angles; -1: it counts no turns
+
+  double near(const State& state) const {
+    return followed >= 0 && followed < state.angles.size() ? state.angles[followed] : function.reference();
+  }
 };
 
 class Stops {
@@ -37,8 +42,8 @@ class Stops {
   const StopSide& operator[](std::size_t i) const { return stops_[i]; }
 
   double gap(std::size_t i, const System& system, const State& state) const;
-  // The same, of node coordinates and velocities, with its rate.
-  double gap(std::size_t i, const VectorXd& q, const VectorXd& v, double& rate) const;
+  // The same with its rate, of the state's node coordinates and velocities.
+  double gap(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v, double& rate) const;
   double gap_rate(std::size_t i, const System& system, const State& state) const;
   // Gaps within this count as touching [m] or [rad].
   double touching() const { return touching_; }

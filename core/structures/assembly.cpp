@@ -12,6 +12,16 @@ RodSection rod_section(const ParamSet& params) {
   return {params.real("density") * area, std::sqrt(area / pi)};
 }
 
+ParamSpec below_max(ParamSpec spec) {
+  spec.max_open = true;
+  return spec;
+}
+
+ParamSpec inside(ParamSpec spec) {
+  spec.min_open = true;
+  return below_max(std::move(spec));
+}
+
 ParamSpec density_param() {
   return positive_param("density", "kg/m^3", 2700.0, "density of the rods");
 }

@@ -16,6 +16,9 @@ struct RodSection {
 };
 RodSection rod_section(const ParamSet& params);
 ParamSpec density_param();
+// The same parameter without its largest value, and without both ends of its range.
+ParamSpec below_max(ParamSpec spec);
+ParamSpec inside(ParamSpec spec);
 ParamSpec section_area_param(double fallback);  // fallback [m^2]
 
 // Throws StructureError unless deployed_angle < fold_angle [deg].

@@ -95,23 +95,19 @@ void set_deployment(Structure& out, const BricardShape& s, double deployed_degre
 }  // namespace
 
 const std::vector<ParamSpec>& bricard_params() {
-  static const std::vector<ParamSpec> params = [] {
-    std::vector<ParamSpec> p{
-        positive_param("bar_length", "m", 1.0, "length of a bar"),
-        positive_param("pin_length", "m", 0.15, "length of a hinge's pin"),
-        density_param(),
-        section_area_param(2e-4),
-        real_param("twist_angle", "deg", 120.0, 90.0, 150.0,
-                   "angle between the hinge axes of a bar; at 120 the loop folds to a bundle"),
-        real_param("opening_angle", "deg", 30.0, 0.0, 180.0,
-                   "angle between the bars at hinges 1, 3, 5 at t = 0"),
-        real_param("deployed_angle", "deg", 3.0, 0.0, 90.0,
-                   "fold angle, of the bars above the triangle's plane, when deployed; 0 is flat"),
-        real_param("radial_force", "N", 5.0, -1e12, 1e12, "outward force on each of the hinges 2, 4, 6"),
-    };
-    p[5].min_open = p[5].max_open = p[6].max_open = true;
-    return p;
-  }();
+  static const std::vector<ParamSpec> params{
+      positive_param("bar_length", "m", 1.0, "length of a bar"),
+      positive_param("pin_length", "m", 0.15, "length of a hinge's pin"),
+      density_param(),
+      section_area_param(2e-4),
+      real_param("twist_angle", "deg", 120.0, 90.0, 150.0,
+                 "angle between the hinge axes of a bar; at 120 the loop folds to a bundle"),
+      inside(real_param("opening_angle", "deg", 30.0, 0.0, 180.0,
+                        "angle between the bars at hinges 1, 3, 5 at t = 0")),
+      below_max(real_param("deployed_angle", "deg", 3.0, 0.0, 90.0,
+                           "fold angle, of the bars above the triangle's plane, when deployed; 0 is flat")),
+      real_param("radial_force", "N", 5.0, -1e12, 1e12, "outward force on each of the hinges 2, 4, 6"),
+  };
   return params;
 }
 

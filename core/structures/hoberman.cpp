@@ -68,20 +68,16 @@ void set_deployment(Structure& out, const HobermanShape& s, double deployed_degr
 }  // namespace
 
 const std::vector<ParamSpec>& hoberman_params() {
-  static const std::vector<ParamSpec> params = [] {
-    std::vector<ParamSpec> p{
-        integer_param("units", 12, 3, 100000, "pairs of angulated elements around the ring"),
-        positive_param("bar_length", "m", 0.5, "length of one of the two bars of an element"),
-        density_param(),
-        section_area_param(2e-4),
-        real_param("fold_angle", "deg", 70.0, 0.0, 90.0,
-                   "fold angle at t = 0: 0 is the largest ring, 90 - 180/units the closed one"),
-        real_param("deployed_angle", "deg", 10.0, 0.0, 90.0, "fold angle when deployed"),
-        real_param("radial_force", "N", 10.0, -1e12, 1e12, "outward force on every pin"),
-    };
-    p[4].min_open = p[4].max_open = p[5].max_open = true;
-    return p;
-  }();
+  static const std::vector<ParamSpec> params{
+      integer_param("units", 12, 3, 100000, "pairs of angulated elements around the ring"),
+      positive_param("bar_length", "m", 0.5, "length of one of the two bars of an element"),
+      density_param(),
+      section_area_param(2e-4),
+      inside(real_param("fold_angle", "deg", 70.0, 0.0, 90.0,
+                        "fold angle at t = 0: 0 is the largest ring, 90 - 180/units the closed one")),
+      below_max(real_param("deployed_angle", "deg", 10.0, 0.0, 90.0, "fold angle when deployed")),
+      real_param("radial_force", "N", 10.0, -1e12, 1e12, "outward force on every pin"),
+  };
   return params;
 }
 

@@ -152,32 +152,27 @@ Structure build_sector(const HoopShape& s) {
 }  // namespace
 
 const std::vector<ParamSpec>& hoop_params() {
-  static const std::vector<ParamSpec> params = [] {
-    std::vector<ParamSpec> p{
-        integer_param("units", 6, 3, 100000, "number of units around the ring"),
-        positive_param("chord_rod_length", "m", 3.0, "length of a chord rod, half a chord"),
-        positive_param("post_length", "m", 1.2, "length of a post"),
-        positive_param("density", "kg/m^3", 3000.0, "density of the rods"),
-        positive_param("section_area", "m^2", 9e-4, "cross section of the rods"),
-        real_param("fold_angle", "deg", 89.34053637766085, 0.0, 90.0,
-                   "fold angle at t = 0; 0 is fully deployed"),
-        real_param("hinge_force", "N", 200.0, -1e12, 1e12,
-                   "the paper's f: -f along z on each bottom hinge, +f on each top hinge"),
-        choice_param(
-            "model", "full", {"full", "sector", "joints"},
-            "full: every unit is solved, with planes of symmetry; sector: one, replicated; joints: every "
-            "unit, floating free, symmetric or not"),
-        choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"),
-        boolean_param("closed", true, "true: a ring; false: an open arc (model joints)"),
-        real_param("arc_angle", "deg", 180.0, 0.0, 360.0, "angle that the units of an open arc span"),
-        integer_param("perturbed_unit", -1, -1, 99999,
-                      "the unit, from 0, whose hinges perturbed_force drives (model joints); -1: none"),
-        real_param("perturbed_force", "N", 0.0, -1e12, 1e12, "force on the hinges of perturbed_unit"),
-    };
-    p[5].max_open = true;
-    p[10].min_open = p[10].max_open = true;
-    return p;
-  }();
+  static const std::vector<ParamSpec> params{
+      integer_param("units", 6, 3, 100000, "number of units around the ring"),
+      positive_param("chord_rod_length", "m", 3.0, "length of a chord rod, half a chord"),
+      positive_param("post_length", "m", 1.2, "length of a post"),
+      positive_param("density", "kg/m^3", 3000.0, "density of the rods"),
+      positive_param("section_area", "m^2", 9e-4, "cross section of the rods"),
+      below_max(real_param("fold_angle", "deg", 89.34053637766085, 0.0, 90.0,
+                           "fold angle at t = 0; 0 is fully deployed")),
+      real_param("hinge_force", "N", 200.0, -1e12, 1e12,
+                 "the paper's f: -f along z on each bottom hinge, +f on each top hinge"),
+      choice_param(
+          "model", "full", {"full", "sector", "joints"},
+          "full: every unit is solved, with planes of symmetry; sector: one, replicated; joints: every "
+          "unit, floating free, symmetric or not"),
+      choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"),
+      boolean_param("closed", true, "true: a ring; false: an open arc (model joints)"),
+      inside(real_param("arc_angle", "deg", 180.0, 0.0, 360.0, "angle that the units of an open arc span")),
+      integer_param("perturbed_unit", -1, -1, 99999,
+                    "the unit, from 0, whose hinges perturbed_force drives (model joints); -1: none"),
+      real_param("perturbed_force", "N", 0.0, -1e12, 1e12, "force on the hinges of perturbed_unit"),
+  };
   return params;
 }
 

@@ -104,23 +104,19 @@ void set_measures(Structure& out, const SheetShape& s, double deployed_degrees) 
 }  // namespace
 
 const std::vector<ParamSpec>& reentrant_sheet_params() {
-  static const std::vector<ParamSpec> params = [] {
-    std::vector<ParamSpec> p{
-        integer_param("rows", 4, 1, 10000, "rows of units, along z"),
-        integer_param("columns", 5, 1, 10000, "units of a row, along x"),
-        positive_param("chord_rod_length", "m", 0.5, "length of a chord rod, half a chord"),
-        positive_param("post_length", "m", 1.0, "length of a post"),
-        density_param(),
-        section_area_param(1e-4),
-        real_param("fold_angle", "deg", 60.0, 0.0, 90.0, "angle of the chord rods with the x axis at t = 0"),
-        real_param("deployed_angle", "deg", 10.0, 0.0, 90.0,
-                   "angle of the chord rods when deployed; 0 is flat"),
-        real_param("stretch_force", "N", 20.0, -1e12, 1e12,
-                   "pull along x on either side, shared by its nodes"),
-    };
-    p[6].min_open = p[6].max_open = p[7].max_open = true;
-    return p;
-  }();
+  static const std::vector<ParamSpec> params{
+      integer_param("rows", 4, 1, 10000, "rows of units, along z"),
+      integer_param("columns", 5, 1, 10000, "units of a row, along x"),
+      positive_param("chord_rod_length", "m", 0.5, "length of a chord rod, half a chord"),
+      positive_param("post_length", "m", 1.0, "length of a post"),
+      density_param(),
+      section_area_param(1e-4),
+      inside(real_param("fold_angle", "deg", 60.0, 0.0, 90.0,
+                        "angle of the chord rods with the x axis at t = 0")),
+      below_max(real_param("deployed_angle", "deg", 10.0, 0.0, 90.0,
+                           "angle of the chord rods when deployed; 0 is flat")),
+      real_param("stretch_force", "N", 20.0, -1e12, 1e12, "pull along x on either side, shared by its nodes"),
+  };
   return params;
 }
 

@@ -94,22 +94,18 @@ void set_deployment(Structure& out, const MastShape& s, const ParamSet& p) {
 }  // namespace
 
 const std::vector<ParamSpec>& scissor_mast_params() {
-  static const std::vector<ParamSpec> params = [] {
-    std::vector<ParamSpec> p{
-        integer_param("cells", 6, 1, 100000, "number of cells, the storeys of the mast"),
-        integer_param("sides", 1, 1, 26, "1: planar; 3 and more: that many faces around the axis"),
-        positive_param("rod_length", "m", 1.0, "length of a rod from end to end"),
-        density_param(),
-        section_area_param(4e-4),
-        real_param("fold_angle", "deg", 85.0, 0.0, 90.0, "angle of the rods with the axis at t = 0"),
-        real_param("deployed_angle", "deg", 30.0, 0.0, 90.0, "angle of the rods with the axis when deployed"),
-        real_param("tip_force", "N", 20.0, -1e12, 1e12, "force along the axis, shared by the tip's corners"),
-        real_param("tip_mass", "kg", 0.0, 0.0, 1e12, "payload, shared by the tip's corners"),
-    };
-    for (int i : {5, 6})
-      p[static_cast<std::size_t>(i)].min_open = i == 5, p[static_cast<std::size_t>(i)].max_open = true;
-    return p;
-  }();
+  static const std::vector<ParamSpec> params{
+      integer_param("cells", 6, 1, 100000, "number of cells, the storeys of the mast"),
+      integer_param("sides", 1, 1, 26, "1: planar; 3 and more: that many faces around the axis"),
+      positive_param("rod_length", "m", 1.0, "length of a rod from end to end"),
+      density_param(),
+      section_area_param(4e-4),
+      inside(real_param("fold_angle", "deg", 85.0, 0.0, 90.0, "angle of the rods with the axis at t = 0")),
+      below_max(real_param("deployed_angle", "deg", 30.0, 0.0, 90.0,
+                           "angle of the rods with the axis when deployed")),
+      real_param("tip_force", "N", 20.0, -1e12, 1e12, "force along the axis, shared by the tip's corners"),
+      real_param("tip_mass", "kg", 0.0, 0.0, 1e12, "payload, shared by the tip's corners"),
+  };
   return params;
 }
 

@@ -49,20 +49,17 @@ void set_deployment(Structure& out, const RingShape& s, double deployed_degrees)
 }  // namespace
 
 const std::vector<ParamSpec>& scissor_ring_params() {
-  static const std::vector<ParamSpec> params = [] {
-    std::vector<ParamSpec> p{
-        integer_param("units", 12, 3, 100000, "number of scissors around the ring"),
-        positive_param("rod_length", "m", 1.0, "length of a rod from end to end"),
-        density_param(),
-        section_area_param(4e-4),
-        real_param("fold_angle", "deg", 85.0, 0.0, 90.0, "angle of the rods with the ring's plane at t = 0"),
-        real_param("deployed_angle", "deg", 20.0, 0.0, 90.0,
-                   "angle of the rods with the ring's plane when deployed"),
-        real_param("radial_force", "N", 10.0, -1e12, 1e12, "outward force on every corner node"),
-    };
-    p[4].min_open = p[4].max_open = p[5].max_open = true;
-    return p;
-  }();
+  static const std::vector<ParamSpec> params{
+      integer_param("units", 12, 3, 100000, "number of scissors around the ring"),
+      positive_param("rod_length", "m", 1.0, "length of a rod from end to end"),
+      density_param(),
+      section_area_param(4e-4),
+      inside(real_param("fold_angle", "deg", 85.0, 0.0, 90.0,
+                        "angle of the rods with the ring's plane at t = 0")),
+      below_max(real_param("deployed_angle", "deg", 20.0, 0.0, 90.0,
+                           "angle of the rods with the ring's plane when deployed")),
+      real_param("radial_force", "N", 10.0, -1e12, 1e12, "outward force on every corner node"),
+  };
   return params;
 }
 

@@ -5,7 +5,7 @@
 namespace unfurl {
 
 Extrapolation::Extrapolation(const System& system)
-    : system_(system), index1_(system, true), n_(system.solved_coordinates()) {
+    : system_(system), index1_(system_, true), n_(system.solved_coordinates()) {
   for (VectorXd* v : {&y0_, &before_, &now_, &after_, &f_, &f0_}) v->setZero(2 * n_);
   lambda_.setZero(system.constraints());
 }
@@ -32,6 +32,7 @@ bool Extrapolation::midpoint(const State& state, double H, int n, VectorXd& out)
 }
 
 bool Extrapolation::step(State& state, double H) {
+  system_.follow(state);
   y0_ << state.z, state.w;
   if (!rate(state.t, y0_, f0_)) return false;
   for (int j = 0; j < columns; ++j) {
@@ -50,6 +51,7 @@ bool Extrapolation::step(State& state, double H) {
   state.z = tableau_[columns - 1].head(n_);
   state.w = tableau_[columns - 1].tail(n_);
   project(system_, state);
+  system_.count_on(state);
   return state.z.allFinite() && state.w.allFinite();
 }
 

@@ -21,7 +21,7 @@ class Extrapolation {
   bool midpoint(const State& state, double H, int n, VectorXd& out);
   bool rate(double t, const VectorXd& y, VectorXd& f);
 
-  const System& system_;
+  System system_;  // follows the state that a step begins with
   Index1 index1_;
   Index n_;
   VectorXd y0_, before_, now_, after_, f_, f0_, lambda_;

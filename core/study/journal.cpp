@@ -1,5 +1,6 @@
 #include "core/study/journal.hpp"
 
+#include <algorithm>
 #include <cerrno>
 
 #include "core/export/atomic_file.hpp"
@@ -8,8 +9,9 @@
 
 namespace unfurl {
 
-Journal::Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys)
-    : path_(std::move(path)), columns_(std::move(columns)), keys_(keys) {
+Journal::Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys,
+                 std::vector<std::size_t> numbers)
+    : path_(std::move(path)), columns_(std::move(columns)), keys_(keys), numbers_(std::move(numbers)) {
   if (path_.empty()) return;
   read();
   std::string text = csv_line(columns_);
@@ -33,10 +35,14 @@ void Journal::read() {
   auto records = csv_records(std::string_view(file.text).substr(0, whole + 1));
   if (records.empty()) return;
   if (records.front() != columns_)
-    throw JournalMismatch(path_.string() + ": holds results with other columns");
+    throw JournalMismatch(
+        path_.string() +
+        ": holds results with other columns, of another version or another question; use another "
+        "directory, or --force to begin anew");
   for (std::size_t i = 1; i < records.size(); ++i) {
     auto& row = records[i];
     if (row.size() != columns_.size()) continue;
+    if (!std::ranges::all_of(numbers_, [&](std::size_t c) { return is_number(row[c]); })) continue;
     rows_[{row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_)}] = row;
   }
 }

@@ -19,8 +19,10 @@ struct JournalMismatch : std::runtime_error {
 // kill or a full disk left torn is dropped at the next opening. An empty path keeps nothing.
 class Journal {
  public:
-  // Reads what is there. Throws JournalMismatch where its columns are others, FileError.
-  Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys);
+  // Reads what is there; a row whose cells in the columns `numbers` (indices) are not all numbers is no
+  // result. Throws JournalMismatch where its columns are others, FileError.
+  Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys,
+          std::vector<std::size_t> numbers = {});
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
@@ -35,6 +37,7 @@ class Journal {
   std::filesystem::path path_;
   std::vector<std::string> columns_;
   std::size_t keys_;
+  std::vector<std::size_t> numbers_;
   std::map<std::vector<std::string>, std::vector<std::string>> rows_;
   std::FILE* file_ = nullptr;
 };

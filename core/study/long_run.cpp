@@ -1,7 +1,11 @@
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/energy_flow.hpp"
 #include "core/integrators/integrator.hpp"
+#include "core/math/largest.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/measured_run.hpp"
@@ -16,7 +20,7 @@ constexpr double seconds_each = 40.0;  // of CPU time, which does not count what
 // far at some three hundred counts, spaced by equal factors.
 class Marathon {
  public:
-  Marathon(const Model& model, const Setting& setting) : system_(model.system) {
+  Marathon(const Model& model, const Setting& setting) : system_(model.system), flow_(model.system) {
     state_ = initial_state(model.structure, system_).state;
     method_ = find_method(setting.options.method)->make(system_, setting.options);
     out_.setting = setting.name;
@@ -24,7 +28,7 @@ class Marathon {
     q_.resize(system_.coordinates());
     phi_.resize(system_.all_constraints());
     lengths_ = system_.all_lengths();
-    first_ = energy();
+    look();
   }
 
   LongRun run(long steps, const StudyHooks& hooks) {
@@ -33,10 +37,12 @@ class Marathon {
     double next = 1;
     for (long k = 1; k <= steps; ++k) {
       if (k % 256 == 0 && !may_go_on(begin, hooks)) break;
+      before_ = state_;
       if (!method_->step(state_, out_.step).ok()) {
         out_.end = "solver failed";
         break;
       }
+      flow_.add(before_, state_);
       look();
       out_.steps = k;
       if (!(constraint_ < 0.1)) {
@@ -58,29 +64,33 @@ class Marathon {
     if (spent > seconds_each) out_.end = "time is up";
     return spent <= seconds_each;
   }
-  double energy() {
-    system_.expand(state_.z, q_);
-    kinetic_ = std::max(kinetic_, system_.kinetic_energy(state_.w));
-    return system_.kinetic_energy(state_.w) + system_.potential_energy(q_) - system_.load_work(q_);
-  }
   void look() {
-    energy_error_ = std::max(energy_error_, std::abs(energy() - first_));
+    system_.expand(state_.z, q_);
+    const double kinetic = system_.kinetic_energy(state_.w), potential = system_.potential_energy(q_),
+                 work = system_.load_work(q_) + flow_.load_work;
+    turned_over_.add(kinetic, std::array{potential, work, flow_.dissipated, flow_.drive_work});
+    const double energy = kinetic + potential - work + flow_.dissipated - flow_.drive_work;
+    if (!first_) first_ = energy;
+    energy_error_ = larger(energy_error_, std::abs(energy - *first_));
     system_.all_constraint_values(state_.t, q_, phi_);
     if (phi_.size())
-      constraint_ = std::max(constraint_, phi_.cwiseQuotient(lengths_).lpNorm<Eigen::Infinity>());
+      constraint_ = larger(constraint_, phi_.cwiseQuotient(lengths_).lpNorm<Eigen::Infinity>());
   }
   void sample(long k) {
     out_.step_count.push_back(static_cast<double>(k));
-    out_.energy_error.push_back(energy_error_ / kinetic_);
+    out_.energy_error.push_back(energy_error_ / turned_over_.value());
     out_.constraint.push_back(constraint_);
   }
 
   const System& system_;
-  State state_;
+  State state_, before_;
+  EnergyMeter flow_;
+  EnergyTurnedOver turned_over_;
   std::unique_ptr<Integrator> method_;
   LongRun out_;
   VectorXd q_, phi_, lengths_;
-  double first_ = 0, kinetic_ = 0, energy_error_ = 0, constraint_ = 0;
+  std::optional<double> first_;
+  double energy_error_ = 0, constraint_ = 0;
 };
 
 }  // namespace

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/books.hpp"
+#include "core/math/largest.hpp"
+
 namespace unfurl {
 namespace {
-
-double max_norm(const VectorXd& v) {
-  return v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
-}
 
 // One run that is given up after `limit` seconds of CPU time: how busy the machine is shall not matter.
 Simulation run_once(const std::shared_ptr<const Model>& model, const SolverOptions& options, double limit,
@@ -51,27 +51,18 @@ double thread_cpu_seconds() {
 }
 
 void measure_invariants(const Simulation& run, MeasuredRun& out) {
-  const System& system = run.trajectory.model().system;
-  const VectorXd lengths = system.all_lengths();
-  VectorXd phi(system.all_constraints());
-  std::vector<double> scratch;
-  double first = 0;
-  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
-    const VectorXd q = run.trajectory.node_positions(i), v = run.trajectory.node_velocities(i);
-    system.all_constraint_values(run.trajectory.time(i), q, phi);
-    out.constraint_max = std::max(out.constraint_max, max_norm(phi));
-    out.constraint_relative_max =
-        std::max(out.constraint_relative_max, max_norm(VectorXd(phi.cwiseQuotient(lengths))));
-    system.all_constraint_rates(run.trajectory.time(i), q, v, phi, scratch);
-    out.constraint_velocity_max = std::max(out.constraint_velocity_max, max_norm(phi));
-    const double whole = run.trajectory.structure().sectors;
-    const double kinetic = whole * system.kinetic_energy(run.trajectory.state(i).w);
-    const double potential = whole * system.potential_energy(q), work = whole * system.load_work(q);
-    const double energy = kinetic + potential - work;
-    out.energy_scale = std::max({out.energy_scale, kinetic, std::abs(potential), std::abs(work)});
-    out.kinetic_energy_max = std::max(out.kinetic_energy_max, kinetic);
-    if (i == 0) first = energy;
-    out.energy_error = std::max(out.energy_error, std::abs(energy - first));
+  const Diagnostics books = diagnose_books(run);
+  const auto most = [&](std::string_view column) { return largest_magnitude(books.at(column).values); };
+  out.constraint_max = most("constraint_max_m");
+  out.constraint_relative_max = most("constraint_relative_max");
+  out.constraint_velocity_max = most("constraint_velocity_max_m_s");
+  out.energy_error = most("energy_balance_J");
+  out.kinetic_energy_max = most("kinetic_energy_J");
+  out.energy_turned_over = energy_turned_over(books);
+  out.energy_round_off = energy_round_off(run).back();
+  if (const std::string why = mistrust(run, books); out.ok() && !why.empty()) {
+    out.outcome = "not trusted";
+    out.message = why;
   }
 }
 
@@ -82,7 +73,7 @@ double position_error(const Trajectory& trajectory, const Reference& reference) 
   for (std::size_t k = 0; k < reference.t.size(); ++k) {
     while (i < trajectory.size() && trajectory.time(i) < reference.t[k] - near) ++i;
     if (i == trajectory.size() || trajectory.time(i) > reference.t[k] + near) return nan;
-    largest = std::max(largest, node_distance(trajectory.node_positions(i), reference.q[k]));
+    largest = larger(largest, node_distance(trajectory.node_positions(i), reference.q[k]));
   }
   return largest;
 }

@@ -12,7 +12,8 @@ namespace unfurl {
 inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct MeasuredRun {
-  std::string outcome;  // "ok", or in a word or two why there is no answer: "solver failed", "too slow"
+  // "ok", or in a word or two why there is no answer: "solver failed", "too slow", "not trusted"
+  std::string outcome;
   std::string message = {};
   long steps = 0;
   double step = 0;            // [s]
@@ -20,9 +21,10 @@ struct MeasuredRun {
   double constraint_max = 0;  // over all states and constraints [m]
   double constraint_relative_max = 0;  // relative to rod length
   double constraint_velocity_max = 0;  // [m/s]
-  double energy_error = 0;             // largest |kinetic + potential - work - start| [J]
-  double kinetic_energy_max = 0;       // [J]
-  double energy_scale = 0;  // largest kinetic or potential energy or work: what round-off goes by [J]
+  double energy_error = 0;        // largest magnitude of the energy balance, of all that goes in and out [J]
+  double kinetic_energy_max = 0;  // [J]
+  double energy_turned_over = 0;  // (accuracy.hpp) [J]
+  double energy_round_off = 0;    // what the balance may be off by rounding alone [J]
   long newton_iterations = 0, factorisations = 0, linear_solves = 0;
   double cpu_median = 0, cpu_min = 0, cpu_max = 0;  // of the stepping loop [s]
   int repeats = 0;
@@ -45,7 +47,8 @@ MeasuredRun measure_run(const std::shared_ptr<const Model>& model, SolverOptions
 double deployment_time(const Simulation& run);  // of the event "deployed" [s]; NaN: there was none
 double thread_cpu_seconds();                    // of the calling thread so far
 
-// Errors that a run shows about itself, written into `out`.
+// Errors that a run shows about itself, written into `out`; where they are beyond what judge() trusts, a good
+// outcome becomes "not trusted".
 void measure_invariants(const Simulation& run, MeasuredRun& out);
 
 // Largest distance of a node from the reference [m]; NaN where the run lacks a state at a comparison time.

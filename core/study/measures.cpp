@@ -6,25 +6,15 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/peaks.hpp"
+#include "core/math/largest.hpp"
 #include "core/model/nearest_name.hpp"
+#include "core/simulate/initial_state.hpp"
 #include "core/study/measured_run.hpp"
 
 namespace unfurl {
 namespace {
-
-double largest(const std::vector<double>& values) {
-  double m = -std::numeric_limits<double>::infinity();
-  for (const double x : values)
-    if (!std::isnan(x)) m = std::max(m, x);
-  return std::isfinite(m) ? m : nan;
-}
-
-double smallest(const std::vector<double>& values) {
-  double m = std::numeric_limits<double>::infinity();
-  for (const double x : values)
-    if (!std::isnan(x)) m = std::min(m, x);
-  return std::isfinite(m) ? m : nan;
-}
 
 double last(const std::vector<double>& values) {
   return values.empty() ? nan : values.back();
@@ -39,51 +29,80 @@ double deploy_time(const Simulation& run, const Diagnostics&) {
              : std::numeric_limits<double>::infinity();
 }
 
-double peak_rod_force(const Simulation&, const Diagnostics& d) {
-  return std::max(largest(d.at("axial_force_max_N").values), -smallest(d.at("axial_force_min_N").values));
+double last_of(const Simulation&, const Diagnostics& d, std::string_view column) {
+  const Series* series = d.find(column);
+  return series ? last(series->values) : nan;
 }
 
-double column(const Diagnostics& d, std::string_view name, double (*of)(const std::vector<double>&)) {
-  const Series* series = d.find(name);
-  return series ? of(series->values) : nan;
+double peak_force(const Simulation& run, const Diagnostics& d) {
+  return larger(largest_of_column(run, d, "axial_force_max_N"),
+                -smallest_of_column(run, d, "axial_force_min_N"));
 }
 
-double largest_magnitude(const std::vector<double>& values) {
-  return std::max(largest(values), -smallest(values));
+template <Pull pull>
+double peak_unique(const Simulation&, const Diagnostics& d) {
+  return peak_rod_force(d, pull).unique ? 1.0 : 0.0;
+}
+
+double largest_magnitude_of(const Diagnostics& d, std::string_view column) {
+  const Series* series = d.find(column);
+  return series ? largest_magnitude(series->values) : nan;
+}
+
+// Of every state.
+std::vector<double> speeds(const Simulation& run) {
+  std::vector<double> fastest;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+    const VectorXd v = run.trajectory.node_velocities(i);
+    fastest.push_back(0);
+    for (Index k = 0; k + 2 < v.size(); k += 3)
+      fastest.back() = larger(fastest.back(), v.segment<3>(k).norm());
+  }
+  return fastest;
 }
 
 double peak_speed(const Simulation& run, const Diagnostics&) {
-  double fastest = 0;
-  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
-    const VectorXd v = run.trajectory.node_velocities(i);
-    for (Index k = 0; k + 2 < v.size(); k += 3) fastest = std::max(fastest, v.segment<3>(k).norm());
-  }
-  return fastest;
+  return largest_in_motion(run, speeds(run), speeds);
 }
 
 const std::array rows{
     NamedMeasure{"deploy_time", "deployment time", "s", "when the structure is fully deployed", deploy_time},
     NamedMeasure{"peak_rod_force", "peak rod force", "N",
-                 "largest axial force of any rod, tension or compression", peak_rod_force},
-    NamedMeasure{
-        "peak_tension", "peak tension", "N", "largest tension of any rod",
-        [](const Simulation&, const Diagnostics& d) { return column(d, "axial_force_max_N", largest); }},
-    NamedMeasure{
-        "peak_compression", "peak compression", "N", "largest compression of any rod",
-        [](const Simulation&, const Diagnostics& d) { return -column(d, "axial_force_min_N", smallest); }},
-    NamedMeasure{"energy", "kinetic energy at the end", "J", "kinetic energy at the end of the run",
-                 [](const Simulation&, const Diagnostics& d) { return column(d, "kinetic_energy_J", last); }},
-    NamedMeasure{
-        "peak_energy", "peak kinetic energy", "J", "largest kinetic energy",
-        [](const Simulation&, const Diagnostics& d) { return column(d, "kinetic_energy_J", largest); }},
-    NamedMeasure{"peak_speed", "peak speed", "m/s", "largest speed of any node", peak_speed},
-    NamedMeasure{"energy_error", "energy error", "J", "largest error of the energy balance",
-                 [](const Simulation&, const Diagnostics& d) {
-                   return column(d, "energy_balance_J", largest_magnitude);
+                 "largest axial force of any rod, tension or compression; the mean over the rod's length",
+                 peak_force},
+    NamedMeasure{"peak_tension", "peak tension", "N", "largest tension of any rod",
+                 [](const Simulation& run, const Diagnostics& d) {
+                   return largest_of_column(run, d, "axial_force_max_N");
+                 }},
+    NamedMeasure{"peak_compression", "peak compression", "N", "largest compression of any rod",
+                 [](const Simulation& run, const Diagnostics& d) {
+                   return -smallest_of_column(run, d, "axial_force_min_N");
                  }},
     NamedMeasure{
+        "peak_rod_force_unique", "peak rod force is unique", "",
+        "1: the rigid model determines the peak rod force; 0: it is one choice of many (`unfurl check`)",
+        peak_unique<Pull::either>},
+    NamedMeasure{"peak_tension_unique", "peak tension is unique", "", "the same of the peak tension",
+                 peak_unique<Pull::tension>},
+    NamedMeasure{"peak_compression_unique", "peak compression is unique", "",
+                 "the same of the peak compression", peak_unique<Pull::compression>},
+    NamedMeasure{
+        "energy", "kinetic energy at the end", "J", "kinetic energy at the end of the run",
+        [](const Simulation& run, const Diagnostics& d) { return last_of(run, d, "kinetic_energy_J"); }},
+    NamedMeasure{"peak_energy", "peak kinetic energy", "J", "largest kinetic energy",
+                 [](const Simulation& run, const Diagnostics& d) {
+                   return largest_of_column(run, d, "kinetic_energy_J");
+                 }},
+    NamedMeasure{
+        "deployed_fraction", "deployed fraction", "", "share of the deployment at the end of the run",
+        [](const Simulation& run, const Diagnostics& d) { return last_of(run, d, "deployed_fraction"); }},
+    NamedMeasure{"peak_speed", "peak speed", "m/s", "largest speed of any node", peak_speed},
+    NamedMeasure{
+        "energy_error", "energy error", "J", "largest error of the energy balance",
+        [](const Simulation&, const Diagnostics& d) { return largest_magnitude_of(d, "energy_balance_J"); }},
+    NamedMeasure{
         "constraint_error", "constraint error", "m", "largest constraint error",
-        [](const Simulation&, const Diagnostics& d) { return column(d, "constraint_max_m", largest); }},
+        [](const Simulation&, const Diagnostics& d) { return largest_magnitude_of(d, "constraint_max_m"); }},
     NamedMeasure{"end_time", "end of the run", "s", "when the run ended, by whatever reason",
                  [](const Simulation& run, const Diagnostics&) { return run.trajectory.end_time(); }},
     NamedMeasure{"cpu", "CPU time", "s", "CPU time of the stepping loop",
@@ -95,10 +114,11 @@ const std::array rows{
 
 struct Statistic {
   std::string_view name, label;
-  double (*of)(const std::vector<double>&);
+  double (*of)(const Simulation&, const Diagnostics&, std::string_view column);
 };
-constexpr std::array statistics{Statistic{"max", "largest ", largest},
-                                Statistic{"min", "smallest ", smallest}, Statistic{"final", "final ", last}};
+constexpr std::array statistics{Statistic{"max", "largest ", largest_of_column},
+                                Statistic{"min", "smallest ", smallest_of_column},
+                                Statistic{"final", "final ", last_of}};
 
 std::string with_unit(std::string_view label, std::string_view unit) {
   return std::string(label) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
@@ -116,7 +136,24 @@ std::span<const NamedMeasure> named_measures() {
   return rows;
 }
 
-RunMeasure find_measure(const std::string& name) {
+std::string uniqueness_of(std::string_view measure) {
+  const std::string name = std::string(measure) + "_unique";
+  const bool known =
+      std::any_of(rows.begin(), rows.end(), [&](const NamedMeasure& m) { return m.name == name; });
+  return known ? name : "";
+}
+
+std::vector<std::string> columns_of(const std::shared_ptr<const Model>& model) {
+  Simulation start{.trajectory = Trajectory(model)};
+  start.trajectory.append(initial_state(model->structure, model->system).state, StepReport{});
+  std::vector<std::string> names;
+  for (const std::string_view name : diagnostic_names()) names.emplace_back(name);
+  for (const Series& column : diagnose(start).columns)
+    if (std::find(names.begin(), names.end(), column.name) == names.end()) names.push_back(column.name);
+  return names;
+}
+
+RunMeasure find_measure(const std::string& name, const std::vector<std::string>& columns) {
   std::vector<std::string_view> known;
   for (const NamedMeasure& row : rows) {
     if (row.name == name) return {name, name + suffix(row.unit), with_unit(row.label, row.unit), row.value};
@@ -126,14 +163,15 @@ RunMeasure find_measure(const std::string& name) {
   for (const Statistic& s : statistics) {
     if (colon == std::string::npos || name.substr(0, colon) != s.name) continue;
     const std::string of = name.substr(colon + 1);
-    const auto columns = diagnostic_names();
-    if (std::find(columns.begin(), columns.end(), of) == columns.end())
-      throw std::invalid_argument("no column " + in_quotes(of) + " to measure" + did_you_mean(of, columns));
+    std::vector<std::string_view> there(columns.begin(), columns.end());
+    if (there.empty()) there = diagnostic_names();
+    if (std::find(there.begin(), there.end(), of) == there.end())
+      throw StudyError("no column " + in_quotes(of) + " to measure" + did_you_mean(of, there));
     return {name, std::string(s.name) + "_" + of, std::string(s.label) + of,
-            [of, f = s.of](const Simulation&, const Diagnostics& d) { return column(d, of, f); }};
+            [of, f = s.of](const Simulation& run, const Diagnostics& d) { return f(run, d, of); }};
   }
-  throw std::invalid_argument("no measure " + in_quotes(name) + did_you_mean(name, known) +
-                              " (or max:, min:, final: and a column of series.csv)");
+  throw StudyError("no measure " + in_quotes(name) + did_you_mean(name, known) +
+                   " (or max:, min:, final: and a column of series.csv)");
 }
 
 }  // namespace unfurl

@@ -24,8 +24,16 @@ struct NamedMeasure {
 // To add one: a function and a row.
 std::span<const NamedMeasure> named_measures();
 
-// A row of the table, or max:, min:, final: with the name of a column of series.csv. Throws
-// std::invalid_argument with the nearest name.
-RunMeasure find_measure(const std::string& name);
+// The measure that says whether this one is unique (1) or one choice of many (0): "peak_rod_force_unique" of
+// "peak_rod_force". Empty where there is none.
+std::string uniqueness_of(std::string_view measure);
+
+// All columns that a series.csv of this model has, its drives' and lengths' too.
+std::vector<std::string> columns_of(const std::shared_ptr<const Model>& model);
+
+// A row of the table, or max:, min:, final: with the name of one of `columns` (none given: of those that do
+// not depend on the scene). Largest and smallest values are those of the motion, not only at the ends of
+// steps. Throws StudyError with the nearest name.
+RunMeasure find_measure(const std::string& name, const std::vector<std::string>& columns = {});
 
 }  // namespace unfurl

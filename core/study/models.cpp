@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/diagnostics/accuracy.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/toml_tree.hpp"
@@ -92,6 +93,7 @@ Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hoo
   out.cpu_min = times.front();
   out.cpu_median = times[times.size() / 2];
   out.cpu_max = times.back();
+  judge(*first);
   out.outcome = to_string(first->status);
   out.deployment_time = deployment_time(*first);
   return std::move(*first);

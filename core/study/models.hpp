@@ -26,7 +26,8 @@ struct MeasuredModel {
   double deployment_time = 0;  // NaN: none [s]
 };
 
-// One after another, timed alone; last, what the single precision of the display changes. Throws Cancelled; SceneError where the scene itself is wrong.
+// One after another, timed alone; last, what the single precision of the display changes. Throws Cancelled;
+// SceneError where the scene itself is wrong.
 std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats, const StudyHooks& hooks);
 
 Table models_table(const std::vector<MeasuredModel>& models);    // exact

@@ -1,10 +1,13 @@
 #include "core/study/reference.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "core/integrators/integrator.hpp"
+#include "core/math/largest.hpp"
+#include "core/model/time_edges.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/extrapolation.hpp"
 #include "core/study/table.hpp"
@@ -15,6 +18,22 @@ namespace {
 using Solution = std::optional<std::vector<VectorXd>>;
 using Stepper = std::function<bool(State&, double h)>;
 
+// Ends of steps inside one interval: so many equal parts, cut at the edges of time, which no step may
+// straddle.
+std::vector<double> step_ends(double begin, double end, int parts, const std::vector<TimeEdge>& edges) {
+  std::vector<double> ends;
+  auto edge = std::upper_bound(edges.begin(), edges.end(), begin,
+                               [](double t, const TimeEdge& e) { return same_instant(t, e.t) || t < e.t; });
+  for (int k = 1; k <= parts; ++k) {
+    const double target = k == parts ? end : begin + (end - begin) * k / parts;
+    for (; edge != edges.end() && edge->t < target; ++edge)
+      if (!same_instant(edge->t, target) && !same_instant(ends.empty() ? begin : ends.back(), edge->t))
+        ends.push_back(edge->t);
+    ends.push_back(target);
+  }
+  return ends;
+}
+
 // Node coordinates at the comparison times, with so many equal steps between two of them.
 Solution solve(const Model& model, const Stepper& step, double end, int intervals, int parts,
                const StudyHooks& hooks) {
@@ -23,11 +42,12 @@ Solution solve(const Model& model, const Stepper& step, double end, int interval
   model.system.expand(state.z, q);
   std::vector<VectorXd> out{q};
   const double H = end / intervals;
+  const std::vector<TimeEdge> edges = time_edges(model.structure, H / parts);
   for (int i = 0; i < intervals; ++i) {
-    for (int k = 0; k < parts; ++k) {
+    for (const double target : step_ends(H * i, H * (i + 1), parts, edges)) {
       if (hooks.stopped()) throw Cancelled();
-      if (!step(state, H / parts)) return std::nullopt;
-      state.t = H * (i + static_cast<double>(k + 1) / parts);
+      if (!step(state, target - state.t)) return std::nullopt;
+      state.t = target;
     }
     model.system.expand(state.z, q);
     out.push_back(q);
@@ -37,7 +57,7 @@ Solution solve(const Model& model, const Stepper& step, double end, int interval
 
 double difference(const std::vector<VectorXd>& a, const std::vector<VectorXd>& b) {
   double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, node_distance(a[i], b[i]));
+  for (std::size_t i = 0; i < a.size(); ++i) largest = larger(largest, node_distance(a[i], b[i]));
   return largest;
 }
 
@@ -93,13 +113,26 @@ Ladder variational(const Model& model, double end, int intervals, const StudyHoo
           6};
 }
 
+// How near a second method comes to a solution, with finer and finer steps until that is enough or it comes
+// no nearer; infinite where it never runs through.
+double distance_of_other(const Ladder& other, const std::vector<VectorXd>& solution, double enough) {
+  double nearest = std::numeric_limits<double>::infinity();
+  int worse = 0;
+  for (int level = 0; level < other.levels && worse < 2 && nearest > enough; ++level) {
+    const Solution next = other.solve(level);
+    const double apart = next ? difference(*next, solution) : std::numeric_limits<double>::quiet_NaN();
+    worse = std::isinf(nearest) || apart < 0.5 * nearest ? 0 : worse + 1;
+    if (apart < nearest) nearest = apart;
+  }
+  return nearest;
+}
+
 }  // namespace
 
 double node_distance(const ConstVec& a, const ConstVec& b) {
   double largest = 0;
   for (Index i = 0; i + 2 < a.size(); i += 3) {
-    const double distance = (a.segment<3>(i) - b.segment<3>(i)).norm();
-    if (!(distance <= largest)) largest = distance;  // keeps a NaN
+    largest = larger(largest, (a.segment<3>(i) - b.segment<3>(i)).norm());
   }
   return largest;
 }
@@ -116,28 +149,43 @@ double structure_size(const Model& model) {
 Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
                           const StudyHooks& hooks, double goal) {
   const double size = structure_size(*model);
+  for (const TimeEdge& edge : time_edges(model->structure, end / intervals))
+    if (edge.jump && edge.t > 0 && edge.t < end)
+      throw ReferenceError(
+          "there is no reference across the time of " + short_number(edge.t, 6) +
+          " s, where the velocity of a drive jumps; an earlier solver.end_time, or a ramp, helps");
   goal = std::max(goal, 64 * std::numeric_limits<double>::epsilon() * size);
+  const double least = 1e-6 * size;
   Best best = tighten(extrapolated(*model, end, intervals, hooks), goal);
+  double apart = std::numeric_limits<double>::infinity();
   Reference out;
   out.how = "Bulirsch-Stoer extrapolation of order 16 on the index-1 equations with " +
             std::to_string(intervals << best.level) + " basic steps";
   if (!(best.uncertainty <= std::max(goal, 1e-9 * size))) {
     Best other = tighten(variational(*model, end, intervals, hooks), goal);
+    if (best.solution && other.solution) apart = difference(*best.solution, *other.solution);
     if (other.uncertainty < best.uncertainty) {
       best = std::move(other);
       out.how = "dvm with " + std::string(best.level % 2 ? "7" : "8") + " nodes and " +
                 std::to_string(intervals << (best.level + 1)) +
                 " steps, because the index-1 equations do not pass this motion";
     }
+  } else {
+    apart = distance_of_other(variational(*model, end, intervals, hooks), *best.solution,
+                              std::max(goal, best.uncertainty));
   }
-  if (!(best.uncertainty < 1e-6 * size))
+  if (!(best.uncertainty < least))
     throw ReferenceError(
         "the reference does not converge: its best two solutions differ by " +
         short_number(best.uncertainty) +
         " m; give the motion an earlier solver.end_time, before it becomes chaotic or singular");
+  if (apart > least && !std::isinf(apart))
+    throw ReferenceError("there is no reference: two methods, each of which agrees with itself to " +
+                         short_number(best.uncertainty) + " m, differ by " + short_number(apart) + " m");
+  out.confirmed = !std::isinf(apart);
   for (int i = 0; i <= intervals; ++i) out.t.push_back(end * i / intervals);
   out.q = std::move(*best.solution);
-  out.uncertainty = best.uncertainty;
+  out.uncertainty = out.confirmed ? std::max(best.uncertainty, apart) : best.uncertainty;
   return out;
 }
 

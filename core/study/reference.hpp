@@ -27,6 +27,11 @@ struct Cancelled : std::runtime_error {
   Cancelled() : std::runtime_error("cancelled") {}
 };
 
+// What a person asked of a study cannot be; what() says what can.
+struct StudyError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 // No two solutions agree well enough to judge anything by.
 struct ReferenceError : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -35,13 +40,18 @@ struct ReferenceError : std::runtime_error {
 struct Reference {
   std::vector<double> t;    // comparison times [s], equally spaced from 0 to the end
   std::vector<VectorXd> q;  // node coordinates there [3 n]
-  double uncertainty = 0;   // largest distance of a node between the last two solutions [m]
-  std::string how;          // "Bulirsch-Stoer extrapolation of order 16 with 120 steps"
+  // Largest distance of a node between the last two solutions and, where there is one, from that of a second
+  // method [m].
+  double uncertainty = 0;
+  bool confirmed = false;  // by a second method; if not, the one only agrees with itself
+  std::string how;         // "Bulirsch-Stoer extrapolation of order 16 with 120 steps"
 };
 
 // Solved with step after halved step until two solutions agree to round-off or come no closer: by
 // extrapolation of the index-1 equations, and where singular poses stop those, by dvm with 8 nodes against 7.
-// Throws ReferenceError where no two solutions agree to a millionth of the structure's size, Cancelled.
+// Solutions of one kind share much, their round-off above all: the other method is then brought as near as it
+// comes. Throws ReferenceError where no two solutions, or not both methods, agree to a millionth of the
+// structure's size; Cancelled.
 // `goal`: an agreement that is enough [m]; 0: round-off.
 Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
                           const StudyHooks& hooks, double goal = 0);

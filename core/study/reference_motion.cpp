@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/math/largest.hpp"
 #include "core/study/measured_run.hpp"
 #include "core/study/table.hpp"
 
@@ -156,8 +157,7 @@ std::size_t ReferenceMotion::bytes() const {
 double ReferenceMotion::compare(const ReferenceMotion& coarser) {
   uncertainty_ = 0;
   const auto look = [&](const VectorXd& ours, double t) {
-    const double apart = node_distance(coarser.positions(t), ours);
-    if (!(apart <= uncertainty_)) uncertainty_ = apart;  // keeps a NaN
+    uncertainty_ = larger(uncertainty_, node_distance(coarser.positions(t), ours));
   };
   for (std::size_t i = 0; i < t_.size(); ++i) look(q_[i], t_[i]);
   for (std::size_t i = 1; i < coarser.t_.size(); ++i) {
@@ -199,8 +199,8 @@ double position_error(const Simulation& run, const ReferenceMotion& reference) {
   if (!whole && run.status != RunStatus::deployed) return nan;
   double largest = 0;
   for (std::size_t i = 0; i < trajectory.size() && trajectory.time(i) <= reference.end(); ++i)
-    largest = std::max(largest,
-                       node_distance(reference.positions(trajectory.time(i)), trajectory.node_positions(i)));
+    largest =
+        larger(largest, node_distance(reference.positions(trajectory.time(i)), trajectory.node_positions(i)));
   return largest;
 }
 

@@ -76,14 +76,15 @@ void Report::picture(std::string file, std::string caption) {
 }
 
 std::string report_markdown(const Report& report) {
-  std::string text = "# " + report.title + "\n";
+  std::string text = "# " + markdown_line(report.title) + "\n";
   for (const ReportBlock& block : report.blocks) {
     text += "\n";
-    if (block.kind == ReportBlock::Kind::heading) text += "## " + block.text + "\n";
-    if (block.kind == ReportBlock::Kind::paragraph) text += block.text + "\n";
+    if (block.kind == ReportBlock::Kind::heading) text += "## " + markdown_line(block.text) + "\n";
+    if (block.kind == ReportBlock::Kind::paragraph) text += markdown_line(block.text) + "\n";
     if (block.kind == ReportBlock::Kind::table)
-      text += (block.text.empty() ? "" : block.text + "\n\n") + markdown_text(block.table);
-    if (block.kind == ReportBlock::Kind::picture) text += "![" + block.text + "](" + block.file + ")\n";
+      text += (block.text.empty() ? "" : markdown_line(block.text) + "\n\n") + markdown_text(block.table);
+    if (block.kind == ReportBlock::Kind::picture)
+      text += "![" + markdown_line(block.text) + "](" + block.file + ")\n";
   }
   return text;
 }

@@ -90,7 +90,8 @@ void fit(ReproducedScheme& scheme, double floor) {
   std::vector<double> step, error;
   for (const ReproducedRun& run : scheme.runs) {
     const MeasuredRun& m = run.measured;
-    if (!m.ok() || m.position_error < floor) break;
+    if (!m.ok()) continue;
+    if (m.position_error < floor) break;
     if (!error.empty() && m.position_error > error.back() * std::pow(m.step / step.back(), claimed / 2.0))
       break;
     step.push_back(m.step);

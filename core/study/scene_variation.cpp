@@ -12,7 +12,10 @@ Scene SceneSource::read(const std::vector<std::string>& changes) const {
   return text ? read_scene_text(*text, path, all, folder) : read_scene_file(path, all);
 }
 
-std::optional<double> scene_number(const Scene& scene, const std::string& key) {
+namespace {
+
+// What stands at a dotted key of the scene written out, where every parameter has the form of its kind.
+std::optional<TomlTree> value_at(const Scene& scene, const std::string& key) {
   const TomlTree root = parse_toml(scene_text(scene), scene.name);
   const TomlTree* at = &root;
   for (std::size_t begin = 0; at && begin <= key.size();) {
@@ -21,9 +24,21 @@ std::optional<double> scene_number(const Scene& scene, const std::string& key) {
                                            : nullptr;
     begin = end + 1;
   }
+  return at ? std::optional(*at) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> scene_number(const Scene& scene, const std::string& key) {
+  const auto at = value_at(scene, key);
   if (at && at->kind == TomlTree::Kind::real) return at->real;
   if (at && at->kind == TomlTree::Kind::integer) return static_cast<double>(at->integer);
   return std::nullopt;
+}
+
+bool is_whole_number(const Scene& scene, const std::string& key) {
+  const auto at = value_at(scene, key);
+  return at && at->kind == TomlTree::Kind::integer;
 }
 
 }  // namespace unfurl

@@ -25,5 +25,7 @@ struct SceneSource {
 
 // The number at a dotted key, written out in the scene or a default; nothing where there is none.
 std::optional<double> scene_number(const Scene& scene, const std::string& key);
+// Is that a parameter of whole numbers (which cannot be searched, nor lie between two of them)?
+bool is_whole_number(const Scene& scene, const std::string& key);
 
 }  // namespace unfurl

@@ -1,11 +1,15 @@
 #include "core/study/stress.hpp"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <thread>
+
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/books.hpp"
+#include "core/study/parallel_for.hpp"
+#include "core/study/row_columns.hpp"
 
 namespace unfurl {
 namespace {
@@ -21,7 +25,7 @@ struct Site {
 
 constexpr double probing_seconds = 3.0;
 
-// When the structure is deployed, looked for up to `end`; NaN where it is not.
+// When the structure is deployed, looked for up to `end`; NaN where it is not, or not by a run to be trusted.
 double deployment_by(const Site& site, SolverOptions options, double end, const StudyHooks& hooks) {
   options.end_time = end;
   options.step = end / 4000;
@@ -30,40 +34,63 @@ double deployment_by(const Site& site, SolverOptions options, double end, const 
   bounded.cancelled = [&] { return hooks.stopped() || thread_cpu_seconds() - begin > probing_seconds; };
   const Simulation run = simulate(site.model, options, bounded);
   if (hooks.stopped()) throw Cancelled();
-  for (const Event& event : run.events)
-    if (event.name == "deployed") return event.t;
-  return std::numeric_limits<double>::quiet_NaN();
+  return mistrust(run, diagnose_books(run)).empty() ? deployment_time(run) : nan;
 }
 
-// How long the motion is: to 99 % of the deployment where there is one, however late; else to the scene's
-// end, which moves with the square root of the forces. Found with the first of these methods that gets there.
-// NaN: it never deploys.
-double duration(const Site& site, SolverOptions options, const StudyHooks& hooks) {
+// How long the motion is, and whether it ends right before the deployed pose.
+struct Duration {
+  double end = 0;  // [s]
+  bool deploys = false;
+};
+
+// To 99 % of the deployment where there is one, however late (a motion that is driven: within the scene's
+// time); else to the scene's end, which moves with the square root of the forces. Two methods of different
+// principle must agree on a deployment: one alone may find it in the noise of its start. Throws
+// ReferenceError.
+Duration duration(const Site& site, SolverOptions options, const StudyHooks& hooks) {
   double end = options.end_time;
   if (site.extreme->name == "force") end /= std::sqrt(site.value);
-  if (site.model->structure.deployment.empty()) return end;
+  if (site.model->structure.deployment.empty()) return {end};
   options.nodes = "lobatto";
   options.constraints_at = "nodes";
-  for (const double factor : {2.0, 20.0, 400.0, 8000.0, 160000.0})
-    for (const auto& [method, stages] : {std::pair{"dvm", 4}, {"dvm", 3}, {"rk4", 3}}) {
+  const bool driven = !site.model->system.drives().empty();
+  for (const double factor : {driven ? 1.0 : 2.0, 20.0, 400.0, 8000.0, 160000.0}) {
+    std::vector<double> by_dvm, by_rk4;
+    for (const auto& [method, stages] : {std::pair{"dvm", 4}, {"rk4_projected", 3}, {"dvm", 3}, {"rk4", 3}}) {
       options.method = method;
       options.stages = stages;
       const double t = deployment_by(site, options, factor * end, hooks);
-      if (!std::isnan(t)) return 0.99 * t;
+      if (std::isnan(t)) continue;
+      const bool dvm = options.method == "dvm";
+      for (const double other : dvm ? by_rk4 : by_dvm)
+        if (std::abs(t - other) <= 1e-3 * t) return {0.99 * std::min(t, other), true};
+      (dvm ? by_dvm : by_rk4).push_back(t);
     }
-  return std::numeric_limits<double>::quiet_NaN();
+    const auto when = [](const std::vector<double>& times) {
+      return times.empty() ? "never" : "at " + short_number(times[0]) + " s";
+    };
+    if (!by_dvm.empty() || !by_rk4.empty())
+      throw ReferenceError("no two methods agree on when it deploys: dvm " + when(by_dvm) +
+                           ", rk4 and its kin " + when(by_rk4));
+    if (driven) return {end};
+  }
+  throw ReferenceError("it does not deploy");
 }
+
+// The share of the deployment that the reference must show: a motion that has not begun tells nothing.
+constexpr double deployed_share = 0.5;
 
 void prepare(Site& site, int intervals, const StudyHooks& hooks) {
   try {
     SolverOptions options;
     site.model = site.extreme->build(site.value, options);
     const double enough = 1e-6 * structure_size(*site.model);
-    const double end = duration(site, options, hooks);
-    if (std::isnan(end))
-      site.trouble = "it does not deploy";
-    else
-      site.reference = solve_reference(site.model, end, intervals, hooks, enough);
+    const Duration motion = duration(site, options, hooks);
+    Reference reference = solve_reference(site.model, motion.end, intervals, hooks, enough);
+    const Deployment& deployment = site.model->structure.deployment;
+    if (motion.deploys && !(deployment.fraction(reference.q.back()) >= deployed_share))
+      throw ReferenceError("the reference has not deployed at " + short_number(motion.end) + " s");
+    site.reference = std::move(reference);
   } catch (const ReferenceError& error) {
     site.trouble = error.what();
   } catch (const SceneError& error) {
@@ -75,60 +102,61 @@ Verdict judge(const MeasuredRun& run, double size, const StressLimits& limits) {
   if (run.outcome == "solver failed") return Verdict::solver_failed;
   if (run.outcome == "too slow") return Verdict::too_slow;
   if (!(run.constraint_relative_max <= limits.constraint)) return Verdict::constraint_lost;
-  const double round_off = 1e-12 * run.energy_scale;
-  if (!(run.energy_error <= limits.energy * run.kinetic_energy_max + round_off))
+  if (!(run.energy_error <= limits.energy * run.energy_turned_over + run.energy_round_off))
     return Verdict::energy_growth;
   if (!(run.position_error <= limits.branch * size)) return Verdict::wrong_branch;
   return run.position_error <= limits.right * size ? Verdict::right : Verdict::inaccurate;
 }
 
-std::vector<std::string> row_of(const StressCell& c) {
-  std::vector<std::string> row{c.extreme, exact_number(c.value), c.setting, std::to_string(c.steps),
-                               std::string(to_string(c.verdict))};
-  for (const double x : {c.run.step, c.run.position_error, c.run.constraint_relative_max, c.run.energy_error,
-                         c.run.kinetic_energy_max, c.run.cpu_median})
-    row.push_back(exact_number(x));
-  row.push_back(c.run.message);
-  return row;
+template <auto member>
+constexpr RowColumn<StressCell> run_number(const char* name) {
+  return number_column < StressCell, [](auto& cell) -> auto& {
+    return cell.run;
+  }
+  , member > (name);
 }
+
+template <auto member>
+constexpr RowColumn<StressCell> cell_number(const char* name) {
+  return number_column < StressCell, [](auto& cell) -> auto& {
+    return cell;
+  }
+  , member > (name);
+}
+
+template <std::string StressCell::*member>
+constexpr RowColumn<StressCell> cell_word(const char* name) {
+  return {name, [](const StressCell& c) { return c.*member; },
+          [](StressCell& c, const std::string& cell) { c.*member = cell; }, false};
+}
+
+void read_verdict(StressCell& c, const std::string& cell) {
+  for (const Verdict v : verdicts())
+    if (to_string(v) == cell) c.verdict = v;
+}
+
+constexpr std::array stress_rows{
+    cell_word<&StressCell::extreme>("extreme"),
+    cell_number<&StressCell::value>("value"),
+    cell_word<&StressCell::setting>("setting"),
+    cell_number<&StressCell::steps>("steps"),
+    RowColumn<StressCell>{"verdict", [](const StressCell& c) { return std::string(to_string(c.verdict)); },
+                          read_verdict, false},
+    run_number<&MeasuredRun::step>("step_s"),
+    run_number<&MeasuredRun::position_error>("position_error_m"),
+    run_number<&MeasuredRun::constraint_relative_max>("constraint_relative_max"),
+    run_number<&MeasuredRun::energy_error>("energy_error_max_J"),
+    run_number<&MeasuredRun::kinetic_energy_max>("kinetic_energy_max_J"),
+    run_number<&MeasuredRun::cpu_median>("cpu_s"),
+    RowColumn<StressCell>{"message", [](const StressCell& c) { return c.run.message; },
+                          [](StressCell& c, const std::string& cell) { c.run.message = cell; }, false},
+};
+constexpr std::span<const RowColumn<StressCell>> cell_columns(stress_rows);
 
 StressCell cell_of(const std::vector<std::string>& row) {
-  StressCell c;
-  c.extreme = row[0];
-  c.value = number_of(row[1]);
-  c.setting = row[2];
-  c.steps = std::lround(number_of(row[3]));
-  for (const Verdict v : verdicts())
-    if (to_string(v) == row[4]) c.verdict = v;
-  c.run.step = number_of(row[5]);
-  c.run.position_error = number_of(row[6]);
-  c.run.constraint_relative_max = number_of(row[7]);
-  c.run.energy_error = number_of(row[8]);
-  c.run.kinetic_energy_max = number_of(row[9]);
-  c.run.cpu_median = number_of(row[10]);
-  c.run.message = row[11];
-  return c;
-}
-
-// Jobs 0 .. count-1 on so many threads; the first exception is thrown here.
-void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& job) {
-  std::atomic<std::size_t> next = 0;
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    for (std::size_t i; (i = next++) < count;) try {
-        job(i);
-      } catch (...) {
-        next = count;
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-      }
-  };
-  std::vector<std::thread> team;
-  for (int i = 1; i < threads; ++i) team.emplace_back(work);
-  work();
-  for (auto& member : team) member.join();
-  if (failure) std::rethrow_exception(failure);
+  StressCell cell;
+  read_cells(cell_columns, row, cell);
+  return cell;
 }
 
 std::vector<std::string> key_of(const Site& site, const Setting& setting, long steps) {
@@ -152,25 +180,18 @@ void fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mute
       cell.run = measure_run(site.model, setting.options, steps, *site.reference, once, hooks);
       cell.verdict = judge(cell.run, structure_size(*site.model), plan.limits);
       const std::lock_guard lock(mutex);
-      journal.append(row_of(cell));
+      journal.append(cells_of(cell_columns, cell));
     }
 }
 
 }  // namespace
 
 std::vector<std::string> stress_columns() {
-  return {"extreme",
-          "value",
-          "setting",
-          "steps",
-          "verdict",
-          "step_s",
-          "position_error_m",
-          "constraint_relative_max",
-          "energy_error_max_J",
-          "kinetic_energy_max_J",
-          "cpu_s",
-          "message"};
+  return column_names(cell_columns);
+}
+
+std::vector<std::size_t> stress_number_columns() {
+  return number_columns(cell_columns);
 }
 
 Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& hooks) {
@@ -181,7 +202,7 @@ Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& ho
   std::mutex mutex;
   std::size_t done = 0;
   try {
-    in_parallel(sites.size(), hooks.threads, [&](std::size_t i) {
+    parallel_for(sites.size(), hooks.threads, [&](std::size_t i) {
       fill(plan, sites[i], journal, mutex, hooks);
       const std::lock_guard lock(mutex);
       hooks.tell(static_cast<double>(++done) / static_cast<double>(sites.size() + 2));
@@ -203,7 +224,7 @@ Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& ho
 
 Table cells_table(const Stress& stress) {
   Table table{stress_columns(), {}};
-  for (const StressCell& cell : stress.cells) table.rows.push_back(row_of(cell));
+  for (const StressCell& cell : stress.cells) table.rows.push_back(cells_of(cell_columns, cell));
   return table;
 }
 

@@ -24,7 +24,7 @@ std::string criterion(Verdict verdict);  // in words
 struct StressLimits {
   double seconds = 3.0;      // a run that takes more CPU time is too slow
   double constraint = 1e-3;  // of a rod's length
-  double energy = 0.05;      // of the largest kinetic energy
+  double energy = 0.05;      // of the energy turned over
   double branch = 0.1;       // position error, of the structure's size
   double right = 0.01;       // position error, of the structure's size
 };
@@ -45,7 +45,7 @@ struct LongRun {
   long steps = 0;   // done; fewer than asked for where the time was up or the solver failed
   std::string end;  // "done", "time is up", "solver failed", "constraints lost"
   std::vector<double> step_count, energy_error,
-      constraint;  // samples: largest so far; relative to the largest kinetic energy, to length
+      constraint;  // samples: largest so far; relative to the energy turned over, to length
 };
 
 struct StressPlan {
@@ -58,7 +58,7 @@ struct StressPlan {
 };
 
 // All extremes that the scene can be driven to, or those named. A long run of 10^6 steps where the scene does
-// not deploy. Throws std::invalid_argument.
+// not deploy. Throws StudyError.
 StressPlan plan_stress(const SceneSource& source, const std::vector<std::string>& names);
 
 struct Stress {
@@ -72,6 +72,7 @@ Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& ho
 
 std::vector<std::string> stress_columns();
 inline constexpr std::size_t stress_key_columns = 4;
+std::vector<std::size_t> stress_number_columns();  // whose cells are numbers
 
 Table cells_table(const Stress& stress);
 Table summary_table(const StressPlan& plan, const Stress& stress);  // verdicts per setting

@@ -34,7 +34,7 @@ std::string criterion(Verdict verdict) {
              " % of a rod's length";
     case Verdict::energy_growth:
       return "the energy balance is off by more than " + short_number(100 * limits.energy) +
-             " % of the largest kinetic energy";
+             " % of the energy turned over";
     case Verdict::wrong_branch:
       return "a node is off by more than " + short_number(100 * limits.branch) + " % of the structure's size";
     case Verdict::inaccurate:
@@ -56,13 +56,12 @@ StressPlan plan_stress(const SceneSource& source, const std::vector<std::string>
     if (extreme)
       plan.extremes.push_back(std::move(*extreme));
     else if (!names.empty())
-      throw std::invalid_argument("the scene cannot be driven to the extreme " + in_quotes(kind.name));
+      throw StudyError("the scene cannot be driven to the extreme " + in_quotes(kind.name));
   }
   for (const auto& name : names)
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw std::invalid_argument("no extreme " + in_quotes(name) + did_you_mean(name, known));
-  if (plan.extremes.empty())
-    throw std::invalid_argument("the scene has nothing that can be driven to an extreme");
+      throw StudyError("no extreme " + in_quotes(name) + did_you_mean(name, known));
+  if (plan.extremes.empty()) throw StudyError("the scene has nothing that can be driven to an extreme");
   const Scene scene = source.read();
   for (Setting& setting : study_settings(scene.solver))
     if (!setting.name.ends_with("s=3") && !setting.name.ends_with("s=5") && !setting.name.ends_with("s=6"))

@@ -1,47 +1,68 @@
 #include "core/study/study.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include "core/study/row_columns.hpp"
 
 namespace unfurl {
 namespace {
 
-// A run's row and back; exact, so that a journal and a fresh run say the same.
-std::vector<std::string> row_of(const Setting& setting, const MeasuredRun& r) {
-  const SolverOptions& o = setting.options;
-  std::vector<std::string> row{setting.name, std::to_string(r.steps), o.method, std::to_string(o.stages),
-                               o.nodes,      o.constraints_at,        r.outcome};
-  for (const double x : {r.step, r.position_error, r.constraint_max, r.constraint_relative_max,
-                         r.constraint_velocity_max, r.energy_error})
-    row.push_back(exact_number(x));
-  for (const long n : {r.newton_iterations, r.factorisations, r.linear_solves})
-    row.push_back(std::to_string(n));
-  for (const double x : {r.cpu_median, r.cpu_min, r.cpu_max}) row.push_back(exact_number(x));
-  row.push_back(std::to_string(r.repeats));
-  return row;
+// A run's row and back, so that a journal and a fresh run say the same.
+struct Point {
+  const Setting& setting;
+  MeasuredRun run = {};
+};
+
+template <auto member>
+constexpr RowColumn<Point> number(const char* name) {
+  return number_column < Point, [](auto& point) -> auto& {
+    return point.run;
+  }
+  , member > (name);
 }
 
-MeasuredRun run_of(const std::vector<std::string>& row) {
-  MeasuredRun r;
-  const auto real = [&](std::size_t i) { return number_of(row[i]); };
-  const auto whole = [&](std::size_t i) { return std::lround(number_of(row[i])); };
-  r.steps = whole(1);
-  r.outcome = row[6];
-  r.step = real(7);
-  r.position_error = real(8);
-  r.constraint_max = real(9);
-  r.constraint_relative_max = real(10);
-  r.constraint_velocity_max = real(11);
-  r.energy_error = real(12);
-  r.newton_iterations = whole(13);
-  r.factorisations = whole(14);
-  r.linear_solves = whole(15);
-  r.cpu_median = real(16);
-  r.cpu_min = real(17);
-  r.cpu_max = real(18);
-  r.repeats = static_cast<int>(whole(19));
-  return r;
+// Of the setting, which is known by its name.
+constexpr RowColumn<Point> known(const char* name, std::string (*get)(const Point&), bool number = false) {
+  return {name, get, [](Point&, const std::string&) {}, number};
+}
+
+constexpr std::array study_rows{
+    known("setting", [](const Point& p) { return p.setting.name; }),
+    number<&MeasuredRun::steps>("steps"),
+    known("method", [](const Point& p) { return p.setting.options.method; }),
+    known(
+        "stages", [](const Point& p) { return std::to_string(p.setting.options.stages); }, true),
+    known("nodes", [](const Point& p) { return p.setting.options.nodes; }),
+    known("constraints_at", [](const Point& p) { return p.setting.options.constraints_at; }),
+    RowColumn<Point>{"outcome", [](const Point& p) { return p.run.outcome; },
+                     [](Point& p, const std::string& cell) { p.run.outcome = cell; }, false},
+    number<&MeasuredRun::step>("step_s"),
+    number<&MeasuredRun::position_error>("position_error_m"),
+    number<&MeasuredRun::constraint_max>("constraint_max_m"),
+    number<&MeasuredRun::constraint_relative_max>("constraint_relative_max"),
+    number<&MeasuredRun::constraint_velocity_max>("constraint_velocity_max_m_s"),
+    number<&MeasuredRun::energy_error>("energy_error_max_J"),
+    number<&MeasuredRun::newton_iterations>("newton_iterations"),
+    number<&MeasuredRun::factorisations>("factorisations"),
+    number<&MeasuredRun::linear_solves>("linear_solves"),
+    number<&MeasuredRun::cpu_median>("cpu_median_s"),
+    number<&MeasuredRun::cpu_min>("cpu_min_s"),
+    number<&MeasuredRun::cpu_max>("cpu_max_s"),
+    number<&MeasuredRun::repeats>("repeats"),
+};
+constexpr std::span<const RowColumn<Point>> point_columns(study_rows);
+
+std::vector<std::string> row_of(const Setting& setting, const MeasuredRun& run) {
+  return cells_of(point_columns, Point{setting, run});
+}
+
+MeasuredRun run_of(const Setting& setting, const std::vector<std::string>& row) {
+  Point point{setting};
+  read_cells(point_columns, row, point);
+  return point.run;
 }
 
 bool gains(const MeasuredRun& now, const MeasuredRun& before) {
@@ -85,26 +106,11 @@ bool exhausted(const std::vector<MeasuredRun>& runs, double size) {
 }  // namespace
 
 std::vector<std::string> study_columns() {
-  return {"setting",
-          "steps",
-          "method",
-          "stages",
-          "nodes",
-          "constraints_at",
-          "outcome",
-          "step_s",
-          "position_error_m",
-          "constraint_max_m",
-          "constraint_relative_max",
-          "constraint_velocity_max_m_s",
-          "energy_error_max_J",
-          "newton_iterations",
-          "factorisations",
-          "linear_solves",
-          "cpu_median_s",
-          "cpu_min_s",
-          "cpu_max_s",
-          "repeats"};
+  return column_names(point_columns);
+}
+
+std::vector<std::size_t> study_number_columns() {
+  return number_columns(point_columns);
 }
 
 Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks) {
@@ -118,6 +124,7 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
         solve_reference(plan.model, plan.end, static_cast<int>(plan.ladder.grid), hooks);
     study.reference = reference.how;
     study.reference_uncertainty = reference.uncertainty;
+    study.reference_confirmed = reference.confirmed;
     double done = 0;
     double all = 0;
     for (const long steps : plan.ladder.steps)
@@ -128,7 +135,7 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
         done += static_cast<double>(steps);
         if (exhausted(curve.runs, study.size)) continue;
         if (const auto* row = journal.find({curve.setting.name, std::to_string(steps)})) {
-          curve.runs.push_back(run_of(*row));
+          curve.runs.push_back(run_of(curve.setting, *row));
           continue;
         }
         if (hooks.stopped()) throw Cancelled();
@@ -144,6 +151,12 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
   const double floor = floor_of(study);
   for (StudyCurve& curve : study.curves) curve.order = order_of(curve, floor, study.size);
   return study;
+}
+
+std::string reference_words(const Study& study) {
+  const std::string size = short_number(study.reference_uncertainty, 2) + " m";
+  return study.reference_confirmed ? "dvm and extrapolation agree to " + size
+                                   : "it agrees with itself to " + size;
 }
 
 Table points_table(const Study& study) {
@@ -168,10 +181,13 @@ Table orders_table(const Study& study) {
     else
       row.insert(row.end(), {"too few points", ""});
     row.push_back(std::to_string(o.points));
-    if (best)
-      for (const double x :
-           {best->position_error, best->step, best->cpu_median, best->constraint_max, best->energy_error})
+    if (best) {
+      const bool below = best->position_error < study.reference_uncertainty;  // by how much is not known
+      row.push_back(below ? "below " + short_number(study.reference_uncertainty)
+                          : short_number(best->position_error));
+      for (const double x : {best->step, best->cpu_median, best->constraint_max, best->energy_error})
         row.push_back(short_number(x));
+    }
     row.resize(table.columns.size());
     table.rows.push_back(std::move(row));
   }

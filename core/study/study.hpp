@@ -29,7 +29,7 @@ struct StepLadder {
 };
 
 // From the largest step to the smallest [s], each halved; 0: eight times the scene's step, to a sixteenth of
-// it. Throws std::invalid_argument where there is none.
+// it. Throws StudyError where there is none.
 StepLadder make_ladder(double end, double scene_step, double largest, double smallest);
 
 struct StudyPlan {
@@ -43,11 +43,11 @@ struct StudyPlan {
 
 // The motion of a scene up to its end or, where it deploys or meets an end stop before, to 99.5 % of that
 // time (judged_span): the deployed pose is singular, and no method's error there says anything about the
-// method. Throws std::invalid_argument.
+// method. Throws StudyError.
 StudyPlan plan_study(std::shared_ptr<const Model> model, const SolverOptions& scene, double largest_step,
                      double smallest_step, const StudyHooks& hooks);
 
-// Leaves only settings of these methods; none named: all stay. Throws std::invalid_argument with the nearest
+// Leaves only settings of these methods; none named: all stay. Throws StudyError with the nearest
 // name of an unknown one.
 void keep_methods(StudyPlan& plan, const std::vector<std::string>& methods);
 
@@ -62,6 +62,7 @@ struct Study {
   double end = 0;
   std::string before = {};
   double reference_uncertainty = 0;  // [m]
+  bool reference_confirmed = false;  // by a second method
   std::string reference;             // how it was solved
   double size = 0;                   // of the structure [m]
   bool complete = true;              // false: cancelled
@@ -72,6 +73,10 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
 
 std::vector<std::string> study_columns();
 inline constexpr std::size_t study_key_columns = 2;  // setting, steps
+std::vector<std::size_t> study_number_columns();     // whose cells are numbers
+
+// "two methods agree to 1e-12 m", "agrees with itself to ...": what is known of the reference.
+std::string reference_words(const Study& study);
 
 Table points_table(const Study& study);  // every run, exact numbers
 Table orders_table(

@@ -2,21 +2,43 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/books.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/study/reference_motion.hpp"
 #include "core/study/study.hpp"
+#include "core/study/table.hpp"
 
 namespace unfurl {
 namespace {
 
 constexpr int max_levels = 14;
+constexpr double ladder_steps = 1e7, ladder_times = 1e5;  // of a run; at which errors are compared
 
 SolverOptions with(SolverOptions o, int stages, const char* nodes, const char* constraints_at) {
   o.stages = stages;
   o.nodes = nodes;
   o.constraints_at = constraints_at;
   return o;
+}
+
+// The motion as the scene runs it or, where that cannot be trusted, with smaller steps: that a step is too
+// large is what a study is asked about.
+Simulation trusted_probe(const std::shared_ptr<const Model>& model, SolverOptions options,
+                         const StudyHooks& hooks) {
+  SimulationHooks probing;
+  probing.cancelled = hooks.cancelled;
+  std::string why;
+  for (int tries = 0; tries < 3; ++tries, options.step /= 4) {
+    Simulation probe = simulate(model, options, probing);
+    if (probe.status == RunStatus::stopped) throw Cancelled();
+    const std::string doubt =
+        probe.status == RunStatus::failed ? probe.message : mistrust(probe, diagnose_books(probe));
+    if (doubt.empty()) return probe;
+    if (why.empty()) why = doubt;
+  }
+  throw StudyError("the scene as it stands does not run (" + why + "); a study needs a motion to measure");
 }
 
 }  // namespace
@@ -52,14 +74,22 @@ StepLadder make_ladder(double end, double scene_step, double largest, double sma
     smallest = scene_step / 16;
   }
   if (!(smallest > 0) || !(largest > smallest))
-    throw std::invalid_argument("a ladder of steps falls from a larger to a smaller step, both > 0 s");
+    throw StudyError("a ladder of steps falls from a larger to a smaller step, both > 0 s");
   if (given && largest > end / 2)
-    throw std::invalid_argument("the largest step must fit twice into the motion of " + std::to_string(end) +
-                                " s");
+    throw StudyError("the largest step must fit twice into the motion of " + std::to_string(end) + " s");
   const double levels = std::log2(largest / smallest);
   if (levels > max_levels)
-    throw std::invalid_argument("a ladder spans at most a factor of " + std::to_string(1L << max_levels) +
-                                " in the step");
+    throw StudyError("a ladder spans at most a factor of " + std::to_string(1L << max_levels) +
+                     " in the step");
+  if (!(end / smallest <= ladder_steps))
+    throw StudyError("the smallest step of " + short_number(smallest) +
+                     " s makes more than 1e7 steps of the motion of " + short_number(end, 6) +
+                     " s; the least is " + short_number(end / ladder_steps) + " s");
+  if (!(end / largest <= 2 * ladder_times))
+    throw StudyError("the largest step of " + short_number(largest) + " s is too small for the motion of " +
+                     short_number(end, 6) +
+                     " s: errors are compared at every second of its steps, at most 1e5; the least is " +
+                     short_number(end / (2 * ladder_times)) + " s");
   StepLadder ladder;
   ladder.grid = std::max(2L, std::lround(end / largest / 2));
   const long finest = std::lround(end / smallest / static_cast<double>(ladder.grid));
@@ -72,17 +102,10 @@ StepLadder make_ladder(double end, double scene_step, double largest, double sma
 
 StudyPlan plan_study(std::shared_ptr<const Model> model, const SolverOptions& scene, double largest_step,
                      double smallest_step, const StudyHooks& hooks) {
-  SimulationHooks probing;
-  probing.cancelled = hooks.cancelled;
-  const Simulation probe = simulate(model, scene, probing);
-  if (probe.status == RunStatus::stopped) throw Cancelled();
-  if (probe.status == RunStatus::failed)
-    throw std::invalid_argument("the scene as it stands does not run (" + probe.message +
-                                "); a study needs a motion to measure");
+  const Simulation probe = trusted_probe(model, scene, hooks);
   StudyPlan plan;
   const JudgedSpan span = judged_span(probe);
-  if (!(span.end > 0))
-    throw std::invalid_argument("the motion begins at an end stop: there is nothing to measure");
+  if (!(span.end > 0)) throw StudyError("the motion begins at an end stop: there is nothing to measure");
   plan.end = span.end;
   plan.before = span.before;
   plan.settings = study_settings(scene);
@@ -95,8 +118,7 @@ void keep_methods(StudyPlan& plan, const std::vector<std::string>& names) {
   std::vector<std::string_view> known;
   for (const Method& method : methods()) known.push_back(method.name);
   for (const std::string& name : names)
-    if (!find_method(name))
-      throw std::invalid_argument("no method " + in_quotes(name) + did_you_mean(name, known));
+    if (!find_method(name)) throw StudyError("no method " + in_quotes(name) + did_you_mean(name, known));
   if (names.empty()) return;
   std::erase_if(plan.settings, [&](const Setting& setting) {
     return std::find(names.begin(), names.end(), setting.options.method) == names.end();

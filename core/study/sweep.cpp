@@ -1,11 +1,14 @@
 #include "core/study/sweep.hpp"
 
 #include <algorithm>
-#include <atomic>
+#include <cstdint>
 #include <mutex>
-#include <thread>
+#include <numeric>
 
+#include "core/diagnostics/accuracy.hpp"
 #include "core/scene/build.hpp"
+#include "core/study/measured_run.hpp"
+#include "core/study/parallel_for.hpp"
 #include "core/study/tolerance.hpp"
 
 namespace unfurl {
@@ -20,12 +23,12 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const s
     const Scene scene = plan.source.read(changes);
     SimulationHooks own;
     own.cancelled = hooks.cancelled;
-    const Simulation run = simulate_as_asked(build_model(scene), scene.solver, own);
+    Simulation run = simulate_as_asked(build_model(scene), scene.solver, own);
     if (run.status == RunStatus::stopped) return std::nullopt;
-    const Diagnostics diagnostics = diagnose(run);
+    const Diagnostics diagnostics = judge(run);
     row.emplace_back(to_string(run.status));
     for (const RunMeasure& measure : plan.measures)
-      row.push_back(exact_number(measure.value(run, diagnostics)));
+      row.push_back(exact_number(run.status == RunStatus::failed ? nan : measure.value(run, diagnostics)));
   } catch (const SceneError&) {
     row.emplace_back("invalid");
     row.resize(key.size() + 1 + plan.measures.size(), "nan");
@@ -33,9 +36,10 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const s
   return row;
 }
 
-Sweep collect(const SweepPlan& plan, const std::function<const std::vector<std::string>*(std::size_t)>& row) {
+Sweep collect(const SweepPlan& plan, const std::vector<std::size_t>& points,
+              const std::function<const std::vector<std::string>*(std::size_t)>& row) {
   Sweep sweep{{plan.columns(), {}}};
-  for (std::size_t i = 0; i < plan.points(); ++i) {
+  for (const std::size_t i : points) {
     if (const auto* found = row(i))
       sweep.table.rows.push_back(*found);
     else
@@ -44,49 +48,46 @@ Sweep collect(const SweepPlan& plan, const std::function<const std::vector<std::
   return sweep;
 }
 
-bool in_shard(const SweepPlan& plan, std::size_t point) {
-  return point % static_cast<std::size_t>(plan.shard.count) == static_cast<std::size_t>(plan.shard.index - 1);
+// A number that tells nothing of the point's place in the grid (splitmix64: Steele, Lea, Flood 2014).
+std::uint64_t scattered(std::uint64_t point) {
+  std::uint64_t x = (point + 1) * 0x9e3779b97f4a7c15ULL;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
 }
 
 }  // namespace
 
+std::vector<std::size_t> points_of_shard(const SweepPlan& plan) {
+  std::vector<std::size_t> order(plan.points());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (plan.shard.count == 1) return order;
+  std::sort(order.begin(), order.end(),
+            [](std::size_t a, std::size_t b) { return scattered(a) < scattered(b); });
+  std::vector<std::size_t> own;
+  const auto count = static_cast<std::size_t>(plan.shard.count);
+  for (std::size_t i = static_cast<std::size_t>(plan.shard.index - 1); i < order.size(); i += count)
+    own.push_back(order[i]);
+  std::sort(own.begin(), own.end());
+  return own;
+}
+
 Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks) {
+  const std::vector<std::size_t> own = points_of_shard(plan);
   std::vector<std::size_t> open;
-  for (std::size_t i = 0; i < plan.points(); ++i)
-    if (in_shard(plan, i) && !journal.find(plan.key(i))) open.push_back(i);
-  std::atomic<std::size_t> next = 0;
+  for (const std::size_t i : own)
+    if (!journal.find(plan.key(i))) open.push_back(i);
   std::size_t done = 0;
   std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      while (!hooks.stopped()) {
-        const std::size_t at = next++;
-        if (at >= open.size()) return;
-        auto row = run_point(plan, plan.key(open[at]), hooks);
-        if (!row) return;
-        const std::lock_guard lock(mutex);
-        journal.append(std::move(*row));
-        hooks.tell(static_cast<double>(++done) / static_cast<double>(open.size()));
-      }
-    } catch (...) {
-      next = open.size();
-      const std::lock_guard lock(mutex);
-      failure = std::current_exception();
-    }
-  };
-  std::vector<std::thread> team;
-  for (int i = 1; i < hooks.threads && static_cast<std::size_t>(i) < open.size(); ++i)
-    team.emplace_back(work);
-  work();
-  for (auto& member : team) member.join();
-  if (failure) std::rethrow_exception(failure);
-  Sweep sweep =
-      collect(plan, [&](std::size_t i) { return in_shard(plan, i) ? journal.find(plan.key(i)) : nullptr; });
-  sweep.missing = 0;
-  for (std::size_t i = 0; i < plan.points(); ++i)
-    if (in_shard(plan, i) && !journal.find(plan.key(i))) ++sweep.missing;
-  return sweep;
+  parallel_for(open.size(), hooks.threads, [&](std::size_t i) {
+    if (hooks.stopped()) return;
+    auto row = run_point(plan, plan.key(open[i]), hooks);
+    if (!row) return;
+    const std::lock_guard lock(mutex);
+    journal.append(std::move(*row));
+    hooks.tell(static_cast<double>(++done) / static_cast<double>(open.size()));
+  });
+  return collect(plan, own, [&](std::size_t i) { return journal.find(plan.key(i)); });
 }
 
 std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep) {
@@ -99,8 +100,10 @@ std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep) {
 Sweep merge_sweep(const SweepPlan& plan, const std::vector<std::filesystem::path>& journals) {
   std::vector<std::unique_ptr<Journal>> open;
   for (const auto& path : journals)
-    open.push_back(std::make_unique<Journal>(path, plan.columns(), plan.axes.size()));
-  return collect(plan, [&](std::size_t i) -> const std::vector<std::string>* {
+    open.push_back(std::make_unique<Journal>(path, plan.columns(), plan.axes.size(), plan.number_columns()));
+  SweepPlan whole = plan;
+  whole.shard = {};
+  return collect(plan, points_of_shard(whole), [&](std::size_t i) -> const std::vector<std::string>* {
     for (const auto& journal : open)
       if (const auto* row = journal->find(plan.key(i))) return row;
     return nullptr;

@@ -20,13 +20,13 @@ struct SweepAxis {
 };
 
 // "key=from:to:count", evenly spaced; "key=from:to:count:log", by equal factors; "key=a,b,c". Throws
-// std::invalid_argument.
+// StudyError.
 SweepAxis parse_axis(const std::string& text);
 
 struct Shard {
-  int index = 1, count = 1;  // 1 <= index <= count: every count-th point
+  int index = 1, count = 1;  // 1 <= index <= count: every count-th of the points in a scattered order
 };
-Shard parse_shard(const std::string& text);  // "2/8"; throws std::invalid_argument
+Shard parse_shard(const std::string& text);  // "2/8"; throws StudyError
 
 struct SweepPlan {
   SceneSource source;
@@ -37,10 +37,11 @@ struct SweepPlan {
   std::size_t points() const;                             // of the whole grid
   std::vector<std::string> key(std::size_t point) const;  // its values; the last axis runs fastest
   std::vector<std::string> columns() const;               // keys, outcome, measures
+  std::vector<std::size_t> number_columns() const;        // those of the measures
 };
 
-// Throws std::invalid_argument (no axis, no measure, a key twice, too many points), SceneError where a value
-// is refused by the scene. Gives the axes their units.
+// Throws StudyError (no axis, no measure, a key twice, too many points), SceneError where a value
+// is refused by the scene. Gives the axes their units, and forces a column that says whether they are unique.
 void check_plan(SweepPlan& plan);
 
 // Points in the grid's order; those that are not there are missing. Outcome: the run's status, or "invalid"
@@ -51,6 +52,11 @@ struct Sweep {
 };
 // Points whose run failed or whose parameters made no structure.
 std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep);
+
+// The shard's points, ascending: equally many for each, scattered over the grid, since points that lie
+// together cost alike and would keep one shard at work when the others have finished. The same on every
+// machine.
+std::vector<std::size_t> points_of_shard(const SweepPlan& plan);
 
 // What the journal lacks of the shard's points is computed on hooks.threads cores, each kept as it finishes.
 Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks);

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 
 #include "core/model/nearest_name.hpp"
@@ -12,7 +13,7 @@ constexpr std::size_t max_points = 10'000'000;
 constexpr long max_count = 1'000'000;
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
-  throw std::invalid_argument(in_quotes(text) + ": " + why);
+  throw StudyError(in_quotes(text) + ": " + why);
 }
 
 std::vector<std::string> split(const std::string& text, char mark) {
@@ -119,7 +120,7 @@ Shard parse_shard(const std::string& text) {
                count = parts.size() == 2 ? number_of(parts[1]) : 0;
   if (!(count >= 1 && count <= 1e6 && index >= 1 && index <= count) || index != std::floor(index) ||
       count != std::floor(count))
-    throw std::invalid_argument("a shard is I/N with 1 <= I <= N; got " + in_quotes(text));
+    throw StudyError("a shard is I/N with 1 <= I <= N; got " + in_quotes(text));
   return {static_cast<int>(index), static_cast<int>(count)};
 }
 
@@ -146,15 +147,42 @@ std::vector<std::string> SweepPlan::columns() const {
   return names;
 }
 
+std::vector<std::size_t> SweepPlan::number_columns() const {
+  std::vector<std::size_t> numbers(measures.size());
+  std::iota(numbers.begin(), numbers.end(), axes.size() + 1);
+  return numbers;
+}
+
+namespace {
+
+// Beside each force that may not be unique, unless it is asked for anyway, whether it is.
+void add_uniqueness(std::vector<RunMeasure>& measures) {
+  for (std::size_t m = 0; m < measures.size(); ++m) {
+    const std::string name = uniqueness_of(measures[m].name);
+    const bool there = std::any_of(measures.begin(), measures.end(),
+                                   [&](const RunMeasure& have) { return have.name == name; });
+    if (!name.empty() && !there) measures.push_back(find_measure(name));
+  }
+}
+
+}  // namespace
+
 void check_plan(SweepPlan& plan) {
-  if (plan.axes.empty()) throw std::invalid_argument("nothing to vary; give --vary KEY=FROM:TO:COUNT");
-  if (plan.measures.empty()) throw std::invalid_argument("nothing to measure; give --measure NAME,...");
-  if (plan.points() > max_points) throw std::invalid_argument("the grid has more than 1e7 points");
+  if (plan.axes.empty()) throw StudyError("nothing to vary; give --vary KEY=FROM:TO:COUNT");
+  if (plan.measures.empty()) throw StudyError("nothing to measure; give --measure NAME,...");
+  add_uniqueness(plan.measures);
+  if (plan.points() > max_points) throw StudyError("the grid has more than 1e7 points");
   for (std::size_t a = 0; a < plan.axes.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
       if (plan.axes[a].key == plan.axes[b].key)
-        throw std::invalid_argument("the key " + in_quotes(plan.axes[a].key) + " is varied twice");
-  const auto known = plan.source.read().units;
+        throw StudyError("the key " + in_quotes(plan.axes[a].key) + " is varied twice");
+  const Scene scene = plan.source.read();
+  const auto& known = scene.units;
+  for (const SweepAxis& axis : plan.axes)
+    for (std::size_t i = 0; i < axis.numbers.size(); ++i)
+      if (axis.numbers[i] != std::floor(axis.numbers[i]) && is_whole_number(scene, axis.key))
+        throw StudyError(in_quotes(axis.key) + " takes whole numbers; " + axis.values[i] +
+                         " is none: give a COUNT that leads to some, or list them (" + axis.key + "=4,6,12)");
   for (SweepAxis& axis : plan.axes)
     for (const auto* value : {&axis.values.front(), &axis.values.back()})
       axis.unit = unit_of(axis.key, plan.source.read({axis.key + "=" + *value}).units, known);

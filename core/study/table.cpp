@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/export/csv.hpp"
+#include "core/export/xml_text.hpp"
 
 namespace unfurl {
 
@@ -29,18 +30,36 @@ std::string csv_text(const Table& table) {
   return text;
 }
 
+std::string markdown_line(std::string_view text) {
+  std::string out;
+  for (const char c : printable_text(text))
+    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '\n' ? " " : std::string(1, c);
+  return out;
+}
+
+namespace {
+
+// No column of its own.
+std::string markdown_cell(const std::string& text) {
+  std::string out;
+  for (const char c : markdown_line(text)) out += c == '|' ? "\\|" : std::string(1, c);
+  return out;
+}
+
+}  // namespace
+
 std::string markdown_text(const Table& table) {
   std::string text = "|", rule = "|";
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     bool numeric = !table.rows.empty();
     for (const auto& row : table.rows) numeric = numeric && (row[c].empty() || is_number(row[c]));
-    text += " " + table.columns[c] + " |";
+    text += " " + markdown_cell(table.columns[c]) + " |";
     rule += numeric ? "---:|" : "---|";
   }
   text += "\n" + rule + "\n";
   for (const auto& row : table.rows) {
     text += "|";
-    for (const auto& cell : row) text += " " + cell + " |";
+    for (const auto& cell : row) text += " " + markdown_cell(cell) + " |";
     text += "\n";
   }
   return text;

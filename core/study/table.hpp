@@ -17,6 +17,8 @@ struct Table {
 
 std::string csv_line(const std::vector<std::string>& cells);  // ends with a line break
 std::string csv_text(const Table& table);
+// Text of anybody's as one line of Markdown: neither HTML nor commands to a terminal.
+std::string markdown_line(std::string_view text);
 std::string markdown_text(const Table& table);  // a pipe table; numbers to the right
 
 // Shortest text that reads back as the same double; "nan" and "inf" where it is none.

@@ -1,11 +1,13 @@
 #include "core/study/tolerance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "core/integrators/integrator.hpp"
+#include "core/math/largest.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/table.hpp"
 
@@ -14,14 +16,18 @@ namespace {
 
 // The estimate aims here, as shares of the tolerance: below `most`, and not much more work than for `least`.
 constexpr double most = 0.5, least = 0.02, aim = 0.2;
-constexpr long first_steps = 128, max_steps = 100'000'000;
+constexpr long first_steps = 128, fewest_steps = 32, max_steps = 100'000'000;
 constexpr int tries = 8;  // per number of stages
+// Work of the whole search, in solves times unknowns: a minute or two of one core.
+constexpr double most_work = 2e8;
 
-// Two solutions, the second more accurate.
-struct Pair {
+// A solution, judged by others that are more accurate and share neither its grid nor, where it has any, its
+// stages.
+struct Judged {
   Simulation run;
   double estimate = std::numeric_limits<double>::infinity();  // [m]
   double work = 0;                                            // of `run`, in solves
+  double all_work = 0;                                        // of the others too
 };
 
 double work_of(const Simulation& run) {
@@ -30,8 +36,8 @@ double work_of(const Simulation& run) {
   return solves;
 }
 
-// Largest distance of a node at the times that both have; the located deployed pose, a third time, is not
-// compared.
+// Largest distance of a node at the times that both have, and of the deployed poses, which each locates at a
+// time of its own.
 double distance(const Simulation& a, const Simulation& b) {
   if (a.status == RunStatus::failed || b.status == RunStatus::failed || a.status != b.status)
     return std::numeric_limits<double>::infinity();
@@ -42,9 +48,11 @@ double distance(const Simulation& a, const Simulation& b) {
     while (k < b.trajectory.size() && b.trajectory.time(k) < a.trajectory.time(i) - near) ++k;
     if (k == b.trajectory.size()) break;
     if (b.trajectory.time(k) > a.trajectory.time(i) + near) continue;
-    largest =
-        std::max(largest, node_distance(a.trajectory.node_positions(i), b.trajectory.node_positions(k)));
+    largest = larger(largest, node_distance(a.trajectory.node_positions(i), b.trajectory.node_positions(k)));
   }
+  if (a.status == RunStatus::deployed)
+    largest = larger(largest, node_distance(a.trajectory.node_positions(a.trajectory.size() - 1),
+                                            b.trajectory.node_positions(b.trajectory.size() - 1)));
   return largest;
 }
 
@@ -57,7 +65,7 @@ class Picker {
         hooks_(hooks),
         method_(*find_method(options.method)),
         size_(structure_size(*model)),
-        fewest_steps_(model->structure.deployment.empty() ? 32 : 32) {
+        unknowns_(static_cast<double>(model->system.solved_coordinates() + model->system.constraints())) {
     quiet_.cancelled = hooks.cancelled;
     options_.adaptive = false;
   }
@@ -69,7 +77,7 @@ class Picker {
       if (round_off_ > 1) break;  // fewer stages and more steps would meet it all the more
       if (stages == 2 && best_ && best_->estimate <= most * options_.tolerance) break;
     }
-    if (!best_) return simulate(model_, options_, hooks_);  // nothing ran through: as the scene says
+    if (!best_) return as_the_scene_says();
     Simulation run = std::move(best_->run);
     run.position_estimate = best_->estimate;
     run.options.tolerance = options_.tolerance;
@@ -91,61 +99,91 @@ class Picker {
     return {5, 6, 7, 4, 3, 2};
   }
 
-  // A pair with so many steps to the end; nothing where the user stopped it.
-  std::optional<Pair> solve(int stages, long steps) {
-    SolverOptions o = options_, better;
+  // Nothing ran through that could be judged.
+  Simulation as_the_scene_says() {
+    Simulation run = simulate(model_, options_, hooks_);
+    run.warnings.push_back(
+        "the tolerance of " + short_number(options_.tolerance) +
+        " m could not be looked after: no two solutions ran through; this is the run with the "
+        "scene's own stages and step, and its error is not known");
+    return run;
+  }
+
+  std::optional<Simulation> run(int stages, double steps, double& work) {
+    SolverOptions o = options_;
     o.stages = stages;
-    o.step = options_.end_time / static_cast<double>(steps);
-    better = o;
-    if (by_stages())
-      ++better.stages;
-    else
-      better.step /= 2;
-    Pair pair{simulate(model_, o, quiet_)};
-    if (pair.run.status != RunStatus::stopped) {
-      const Simulation second = simulate(model_, better, quiet_);
-      if (second.status != RunStatus::stopped) {
-        pair.estimate = distance(pair.run, second);
-        pair.work = work_of(pair.run);
-        return pair;
-      }
-      pair.run.status = RunStatus::stopped;
-    }
-    stopped_ = std::move(pair.run);
+    o.step = options_.end_time / steps;
+    Simulation out = simulate(model_, o, quiet_);
+    work += work_of(out);
+    if (out.status != RunStatus::stopped) return out;
+    stopped_ = std::move(out);
     return std::nullopt;
   }
 
-  // Steps are adjusted by the claimed order until the estimate is where it should be.
+  // With so many steps to the end, a multiple of four; nothing where the user stopped it. The second solution
+  // has a stage more and 3/2 as many steps (without stages 5/2: an error of order 2 is a sixth then), which
+  // meet the first ones at every second of those, so that what happens within a step falls elsewhere in its
+  // own. One that agrees may do so by chance where the motion is not smooth: a third, with 5/4 (9/4) as many,
+  // has to agree as well.
+  std::optional<Judged> solve(int stages, long steps) {
+    double work = 0;
+    auto first = run(stages, static_cast<double>(steps), work);
+    if (!first) return std::nullopt;
+    Judged out{std::move(*first)};
+    out.work = work;
+    const int more = by_stages() ? stages + 1 : stages;
+    out.estimate = 0;
+    for (const double ratio : by_stages() ? std::array{1.5, 1.25} : std::array{2.5, 2.25}) {
+      if (out.run.status == RunStatus::failed) out.estimate = std::numeric_limits<double>::infinity();
+      if (!(out.estimate <= most * options_.tolerance)) break;
+      const auto other = run(more, ratio * static_cast<double>(steps), work);
+      if (!other) return std::nullopt;
+      out.estimate = larger(out.estimate, distance(out.run, *other));
+    }
+    out.all_work = work;
+    spent_ += work * unknowns_;
+    return out;
+  }
+
+  // Steps are adjusted by the order that the last two estimates show, at most the claimed one, until the
+  // estimate is where it should be. Given up where smaller steps gain nothing, at round-off or twice, or
+  // would take too long.
   void try_stages(int stages) {
     SolverOptions o = options_;
     o.stages = stages;
-    const double order = std::max(1, method_.claims(o).order);
-    long steps = first_steps, enough = 0;  // `enough`: the fewest steps known to suffice
+    const double claimed = std::max(1, method_.claims(o).order);
+    long steps = first_steps, enough = 0, before = 0;  // `enough`: the fewest steps known to suffice
     double last = std::numeric_limits<double>::infinity();
+    int stalls = 0;
     for (int i = 0; i < tries; ++i) {
-      auto pair = solve(stages, steps);
-      if (!pair) return;
-      const double share = pair->estimate / options_.tolerance;
-      const bool hopeless = share > most && pair->estimate > 0.7 * last && pair->estimate < 1e-6 * size_;
-      last = pair->estimate;
-      const double work = pair->work;
+      auto judged = solve(stages, steps);
+      if (!judged) return;
+      const double estimate = judged->estimate, share = estimate / options_.tolerance;
+      const double work = judged->work, all_work = judged->all_work;
+      if (share > most && steps > before && estimate > 0.7 * last) ++stalls;
+      const bool hopeless = stalls > 1 || (stalls > 0 && estimate < 1e-6 * size_);
+      const double ratio = before > 0 ? static_cast<double>(steps) / static_cast<double>(before) : 1.0;
+      const double seen = std::log(last / estimate) / std::log(ratio);
+      const double order = std::isfinite(seen) ? std::clamp(seen, 0.5, claimed) : claimed;
+      last = estimate, before = steps;
       if (share <= most) enough = enough == 0 ? steps : std::min(enough, steps);
-      keep(std::move(*pair));
+      keep(std::move(*judged));
       if (hopeless) ++round_off_;
-      if (hopeless || (share <= most && share >= least) || (share < least && steps == fewest_steps_)) return;
+      if (hopeless || (share <= most && share >= least) || (share < least && steps == fewest_steps)) return;
       const double factor = std::isfinite(share) ? std::pow(share / aim, 1 / order) : 4.0;
-      const long next = std::lround(static_cast<double>(steps) * std::clamp(factor, 0.125, 8.0));
-      const double cost = work * static_cast<double>(next) / static_cast<double>(steps);
+      const long next = 4 * std::lround(0.25 * static_cast<double>(steps) * std::clamp(factor, 0.125, 8.0));
+      const double growth = static_cast<double>(next) / static_cast<double>(steps);
       if (next == steps || next > max_steps || (enough > 0 && next >= enough)) return;
-      if (best_ && best_->estimate <= most * options_.tolerance && cost > 1.3 * best_->work) return;
-      steps = std::max(fewest_steps_, next);
+      if (best_ && best_->estimate <= most * options_.tolerance && work * growth > 1.3 * best_->work) return;
+      if (spent_ + all_work * growth * unknowns_ > most_work) return;
+      steps = std::max(fewest_steps, next);
     }
   }
 
   // The least work among those that reach the tolerance; without any, the smallest estimate.
-  void keep(Pair pair) {
+  void keep(Judged pair) {
     const double goal = most * options_.tolerance;
-    const auto reaches = [&](const Pair& p) { return p.estimate <= goal; };
+    const auto reaches = [&](const Judged& p) { return p.estimate <= goal; };
     if (!std::isfinite(pair.estimate)) return;
     if (!best_ || (reaches(pair) && (!reaches(*best_) || pair.work < best_->work)) ||
         (!reaches(pair) && !reaches(*best_) && pair.estimate < best_->estimate))
@@ -158,8 +196,9 @@ class Picker {
   SimulationHooks quiet_;
   const Method& method_;
   double size_;  // of the structure [m]
-  long fewest_steps_;
-  std::optional<Pair> best_;
+  double unknowns_;
+  double spent_ = 0;  // of most_work
+  std::optional<Judged> best_;
   std::optional<Simulation> stopped_;
   int round_off_ = 0;  // numbers of stages that met it
 };

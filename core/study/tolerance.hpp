@@ -6,10 +6,11 @@
 namespace unfurl {
 
 // As simulate(), but where options.tolerance > 0 m, stages (of a method whose order depends on them) and step
-// are picked first, so that the error of the node positions is estimated below it. The estimate comes from a
-// second solution, with one stage more or else with half the step: the largest distance of a node at the
-// times that both have. It is in position_estimate of the result; where it is not below the tolerance, a
-// warning says so.
+// are picked first, so that the error of the node positions is estimated below it. The estimate comes from
+// two more solutions on other grids, with one stage more or else with smaller steps: the largest distance of
+// a node at the times that they share with the run. It is in position_estimate of the result; where it is not
+// below the tolerance, a warning says so: after a bounded amount of work the best that was found is the
+// answer.
 //
 // The choice is the same on every machine: work is counted (a factorisation as much as eight solves), not
 // timed.

@@ -1,10 +1,10 @@
 #include "render/image/mp4_pipe.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "core/export/atomic_file.hpp"
-
-extern char** environ;
+#include "render/image/child_process.hpp"
 
 namespace unfurl {
 namespace {
 
+// What makes of pictures of any size a film that every player shows.
 std::vector<std::string> ffmpeg_arguments(const std::string& file, int width, int height, double fps) {
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   std::ostringstream rate;
@@ -37,26 +37,8 @@ std::vector<std::string> ffmpeg_arguments(const std::string& file, int width, in
           file};
 }
 
-// Start it with `input` as its standard input, in a process group of its own so that Ctrl-C at the terminal
-// reaches us and not it. 0 or an errno.
-int spawn(const std::vector<std::string>& arguments, int input, pid_t& pid) {
-  std::vector<char*> argv;
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawnattr_t attributes;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, input, 0);
-  posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&files, 2, "/dev/null", O_WRONLY, 0);
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  const int error = posix_spawnp(&pid, argv[0], &files, &attributes, argv.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  return error;
-}
+// A program that takes no frame, or does not write on after the last one, for so long hangs [s].
+constexpr int longest_silence = 60;
 
 }  // namespace
 
@@ -73,15 +55,14 @@ struct Mp4Pipe::Process {
   std::filesystem::path target;
   std::unique_ptr<PendingFile> file;
   int input = -1;  // our end: a socket, so that a dead ffmpeg is an error of send() and not a signal
-  pid_t pid = -1;
+  ChildProcess ffmpeg;
   std::string problem;
 
   void start(int width, int height, double fps);
   void send_frame(const Image& frame);
   int wait_for_end();
   ~Process() {
-    if (pid > 0) ::kill(pid, SIGKILL);
-    wait_for_end();
+    if (input >= 0) ::close(input);
   }
 };
 
@@ -90,13 +71,11 @@ void Mp4Pipe::Process::start(int width, int height, double fps) {
   int error = ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0 ? 0 : errno;
   if (error == 0) {
     input = ends[0];
-    error = spawn(ffmpeg_arguments(file->name().string(), width, height, fps), ends[1], pid);
+    ::fcntl(input, F_SETFL, O_NONBLOCK);
+    error = ffmpeg.start(ffmpeg_arguments(file->name().string(), width, height, fps), {.input = ends[1]});
     ::close(ends[1]);
   }
-  if (error != 0) {
-    pid = -1;
-    problem = "cannot start ffmpeg: " + std::generic_category().message(error);
-  }
+  if (error != 0) problem = "cannot start ffmpeg: " + std::generic_category().message(error);
 }
 
 void Mp4Pipe::Process::send_frame(const Image& frame) {
@@ -104,24 +83,35 @@ void Mp4Pipe::Process::send_frame(const Image& frame) {
   std::size_t left = frame.rgba.size();
   while (left > 0 && problem.empty()) {
     const ssize_t sent = ::send(input, data, left, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0) {
-      problem = "ffmpeg stopped early";
-      return;
+    if (sent > 0) {
+      data += sent;
+      left -= static_cast<std::size_t>(sent);
+      continue;
     }
-    data += sent;
-    left -= static_cast<std::size_t>(sent);
+    if (errno == EINTR) continue;
+    pollfd ready{input, POLLOUT, 0};
+    if (errno != EAGAIN)
+      problem = "ffmpeg stopped early";
+    else if (::poll(&ready, 1, 1000 * longest_silence) == 0)
+      problem = "ffmpeg took no frame for " + std::to_string(longest_silence) + " s";
   }
 }
 
-// ffmpeg's exit code, or -1 where it was not running or was killed.
+// ffmpeg's exit code; it is ended where it hangs: a film's last work is to write its file once more.
 int Mp4Pipe::Process::wait_for_end() {
   if (input >= 0) ::close(std::exchange(input, -1));
-  if (pid <= 0) return -1;
-  int status = 0;
-  while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
-  pid = -1;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  struct stat before {};
+  for (int silence = 0; silence < longest_silence; ++silence) {
+    if (const auto code = ffmpeg.wait(1)) return *code;
+    struct stat now {};
+    if (::stat(file->name().c_str(), &now) == 0 &&
+        (now.st_size != before.st_size || now.st_mtim.tv_sec != before.st_mtim.tv_sec))
+      silence = 0;
+    before = now;
+  }
+  ffmpeg.send(SIGKILL);
+  if (problem.empty()) problem = "ffmpeg did not end";
+  return ffmpeg.wait().value_or(-1);
 }
 
 Mp4Pipe::Mp4Pipe(std::filesystem::path target, int width, int height, double fps)
@@ -144,14 +134,15 @@ void Mp4Pipe::add(const Image& frame) {
 
 std::string Mp4Pipe::finish() {
   Process& p = *process_;
-  const int code = p.wait_for_end();
+  if (!p.problem.empty()) p.ffmpeg.send(SIGKILL);
+  const int code = p.file ? p.wait_for_end() : -1;
   if (p.problem.empty() && code != 0) p.problem = "ffmpeg failed";
   try {
     if (p.problem.empty()) p.file->commit();
   } catch (const FileError& error) {
-    return error.what();
+    return std::string("no MP4 was written: ") + error.what();
   }
-  return p.problem.empty() ? "" : p.target.string() + ": no MP4 was written: " + p.problem;
+  return p.problem.empty() ? "" : "no MP4 was written: " + p.problem;
 }
 
 }  // namespace unfurl

@@ -22,7 +22,8 @@ class Mp4Pipe {
   Mp4Pipe& operator=(Mp4Pipe&&) noexcept;
 
   void add(const Image& frame);
-  // Close the film and give it its name. Empty where all went well, else a warning for the user.
+  // Close the film and give it its name. Empty where all went well, else what went wrong. Whatever ffmpeg
+  // does, a minute of silence is the end.
   std::string finish();
 
  private:

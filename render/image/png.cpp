@@ -9,6 +9,8 @@
 #include <memory>
 #include <new>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 #include "core/export/atomic_file.hpp"
 
@@ -95,8 +97,33 @@ std::vector<std::byte> with_resolution(std::vector<std::byte> png, double dpi) {
   return png;
 }
 
-void write_png(const std::filesystem::path& path, const Image& image, bool alpha) {
-  write_file_atomically(path, encode_png(image, alpha));
+void write_png(const std::filesystem::path& path, const Image& image, bool alpha, Flush flush) {
+  write_file_atomically(path, encode_png(image, alpha), flush);
+}
+
+std::optional<std::pair<int, int>> whole_png(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const auto* data = reinterpret_cast<const Bytef*>(bytes.data());
+  const auto number = [&](std::size_t at) {
+    std::uint32_t v = 0;
+    for (std::size_t k = at; k < at + 4; ++k) v = v << 8 | data[k];
+    return v;
+  };
+  constexpr std::string_view signature("\x89PNG\r\n\x1a\n", 8);
+  if (!bytes.starts_with(signature)) return {};
+  // A chunk: length of its data, name, data, checksum of name and data.
+  for (std::size_t at = signature.size(); bytes.size() - at >= 12;) {
+    const std::size_t length = number(at);
+    if (bytes.size() - at - 12 < length) return {};
+    const std::string_view name(bytes.data() + at + 4, 4);
+    if (crc32(0, data + at + 4, static_cast<uInt>(length + 4)) != number(at + 8 + length)) return {};
+    if (at == signature.size() && (name != "IHDR" || length != 13)) return {};
+    at += 12 + length;
+    if (name == "IEND" && at == bytes.size())
+      return std::pair(static_cast<int>(number(16)), static_cast<int>(number(20)));
+  }
+  return {};
 }
 
 Image read_png(const std::filesystem::path& path) {

@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "core/export/atomic_file.hpp"
 #include "render/image/image.hpp"
 
 namespace unfurl {
@@ -15,7 +18,12 @@ std::vector<std::byte> encode_png(const Image& image, bool alpha = false);
 std::vector<std::byte> with_resolution(std::vector<std::byte> png, double dpi);
 
 // The file appears whole or not at all. Throws FileError.
-void write_png(const std::filesystem::path& path, const Image& image, bool alpha = false);
+void write_png(const std::filesystem::path& path, const Image& image, bool alpha = false,
+               Flush flush = Flush::at_once);
+
+// Width and height of a PNG file none of whose bytes is lost or changed, by the checksums in it; nothing
+// where it is not there or not whole. Its pixels are not looked at.
+std::optional<std::pair<int, int>> whole_png(const std::filesystem::path& path);
 
 // Any PNG. Throws FileError where there is none or it cannot be read.
 Image read_png(const std::filesystem::path& path);

@@ -1,8 +1,10 @@
 #include "render/plot/figures.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "core/diagnostics/jacobian_spectrum.hpp"
+#include "core/model/self_stress.hpp"
 #include "render/plot/figures/kinds.hpp"
 
 namespace unfurl {
@@ -24,14 +26,20 @@ bool has_spectrum(const Simulation& run, const Diagnostics&) {
   return spectrum_applies(run);
 }
 
+bool has_self_stress(const Simulation& run, const Diagnostics& d) {
+  return std::count(d.rod_unique.begin(), d.rod_unique.end(), 0) > 0 &&
+         run.trajectory.model().system.coordinates() <= max_listed_coordinates;
+}
+
 constexpr std::array kinds{
     FigureKind{"deployment", "fold angle and deployed fraction over time", has_fold_angle, deployment_figure},
     FigureKind{"constraint_error", "constraint error of positions, relative to rod length, and of velocities",
                always, constraint_error_figure},
-    FigureKind{"energy", "kinetic and potential energy, work of the loads, error of their balance", always,
-               energy_figure},
-    FigureKind{"rod_forces", "axial forces of the rods by group, tension positive", has_rods,
-               rod_forces_figure},
+    FigureKind{"energy",
+               "kinetic and potential energy, work of loads and drives, losses, error of their balance",
+               always, energy_figure},
+    FigureKind{"rod_forces", "axial forces of the rods by group, tension positive; dashed where not unique",
+               has_rods, rod_forces_figure},
     FigureKind{"poisson", "lengths along and across a stretch, Poisson's ratio", has_poisson_ratio,
                poisson_figure},
     FigureKind{"phase", "fold rate over fold angle", has_fold_angle, phase_figure},
@@ -39,6 +47,8 @@ constexpr std::array kinds{
                steps_figure},
     FigureKind{"jacobian", "smallest singular values of the constraints' Jacobian over time", has_spectrum,
                jacobian_figure},
+    FigureKind{"self_stress", "forces that balance themselves: what a rigid model leaves open",
+               has_self_stress, self_stress_figure},
     FigureKind{"poses", "the configuration at six times", has_rods, poses_figure},
 };
 

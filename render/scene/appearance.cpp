@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/scene/look.hpp"
 
@@ -21,9 +22,21 @@ double median_length(const Structure& s) {
   return *middle;
 }
 
-double drawn_radius(const Rod& rod, double median, double size) {
+double drawn_radius(const Rod& rod, double median, double size, double rod_scale) {
   const double wanted = rod.radius > 0 ? rod.radius : unknown_radius * median;
+  if (rod_scale > 0) return rod_scale * wanted;
   return std::max(wanted, std::min(visible_radius * size, slender * rod.length));
+}
+
+void note_scale(const Structure& s, Appearance& looks) {
+  double least = std::numeric_limits<double>::infinity(), largest = 0;
+  for (const RodCopy& copy : s.rod_copies) {
+    const auto i = static_cast<std::size_t>(copy.source);
+    if (!(s.rods[i].radius > 0)) continue;
+    least = std::min(least, looks.rod_radius[i] / s.rods[i].radius);
+    largest = std::max(largest, looks.rod_radius[i] / s.rods[i].radius);
+  }
+  if (largest > 0) looks.least_scale = least, looks.largest_scale = largest;
 }
 
 int group_index(std::vector<std::string>& groups, const std::string& group) {
@@ -62,7 +75,7 @@ Color group_color(std::size_t index) {
   return looks().front().group(index);
 }
 
-Appearance appearance_of(const Structure& s, double size) {
+Appearance appearance_of(const Structure& s, double size, double rod_scale) {
   Appearance out;
   const double median = median_length(s);
   std::vector<bool> shown(s.rods.size(), false);
@@ -71,8 +84,9 @@ Appearance appearance_of(const Structure& s, double size) {
     const Rod& rod = s.rods[i];
     out.rod_group.push_back(shown[i] ? group_index(out.groups, rod.group)
                                      : 0);  // hidden: no colour of its own
-    out.rod_radius.push_back(drawn_radius(rod, median, size));
+    out.rod_radius.push_back(drawn_radius(rod, median, size, rod_scale));
   }
+  note_scale(s, out);
   out.joint_radius.assign(s.node_copies.size(), 0.0);
   for (const RodCopy& rod : s.rod_copies) {
     for (const int end : {rod.a, rod.b}) {

@@ -13,9 +13,11 @@ namespace unfurl {
 Color group_color(std::size_t index);
 
 struct Appearance {
-  std::vector<std::string> groups;   // of the rods, in order of appearance: colour group_color(i)
-  std::vector<int> rod_group;        // per solved rod, index into groups
-  std::vector<double> rod_radius;    // per solved rod, as drawn [m]
+  std::vector<std::string> groups;  // of the rods, in order of appearance: colour group_color(i)
+  std::vector<int> rod_group;       // per solved rod, index into groups
+  std::vector<double> rod_radius;   // per solved rod, as drawn [m]
+  // The least and largest ratio of a drawn radius to the rod's own; 1 where no rod has one of its own.
+  double least_scale = 1, largest_scale = 1;
   std::vector<double> joint_radius;  // per copied node, of its ball; 0: no rod ends there [m]
   std::vector<bool> fixed;           // per copied node: held in place
   double arrow_length = 0;           // of the largest load [m]
@@ -23,8 +25,8 @@ struct Appearance {
   double largest_force = 0;          // [N]
 };
 
-// `size`: the radius of a sphere around the whole motion [m]. Rods thinner than can be seen at that size are
-// drawn thicker.
-Appearance appearance_of(const Structure& structure, double size);
+// `size`: the radius of a sphere around the whole motion [m]. rod_scale: how many times as thick as they are
+// rods are drawn; 0: those thinner than can be seen at that size are drawn thicker.
+Appearance appearance_of(const Structure& structure, double size, double rod_scale = 0.0);
 
 }  // namespace unfurl

@@ -19,6 +19,20 @@ Mat3 upright_rotation(const Vec3& gravity) {
   return Eigen::Quaterniond::FromTwoVectors(-gravity, Vec3::UnitZ()).toRotationMatrix();
 }
 
+// Where dimension lines may end: beside the corners of the box around a pose.
+void add_dimension_ends(std::vector<Vec3>& pose, double gap) {
+  if (pose.empty()) return;
+  Vec3 low = pose.front(), high = low;
+  for (const Vec3& p : pose) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  for (const double z : {low.z(), high.z()})
+    for (const double x : {low.x(), high.x()})
+      for (const double y : {low.y(), high.y()}) {
+        pose.emplace_back(x + (x == low.x() ? -gap : gap), y, z);
+        pose.emplace_back(x, y + (y == low.y() ? -gap : gap), z);
+      }
+  pose.emplace_back(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), low.z() - gap);
+}
+
 Color mixed(const Color& a, const Color& b, float u) {
   return {a.r + u * (b.r - a.r), a.g + u * (b.g - a.g), a.b + u * (b.b - a.b), a.a};
 }
@@ -57,15 +71,20 @@ double FrameBuilder::prepare_camera() {
       for (const Vec3& p : pose) visit(p);
   });
   if (bounds_.radius <= 0) bounds_.radius = 1;  // a single node that rests
-  looks_ = appearance_of(s, bounds_.radius);
+  looks_ = appearance_of(s, bounds_.radius, style_.options.rod_scale);
   const double thickest = looks_.joint_radius.empty() ? 0.0 : *std::ranges::max_element(looks_.joint_radius);
   Framing framing;
   framing.around = thickest + (style_.loads && !s.load_copies.empty() ? 0.5 * looks_.arrow_length : 0.0);
-  if (look_->dimensions || style_.options.dimensions) framing.around += 0.08 * bounds_.radius;
+  if (look_->dimensions || style_.options.dimensions)
+    for (auto& pose : poses) add_dimension_ends(pose, 1.15 * dimension_gap * still_radius(thickest));
   framing.aspect = static_cast<double>(style_.width) / style_.height;
   if (!style_.options.inset.empty() && style_.diagnostics) framing.margins.right = 0.27;
   path_ = std::make_unique<CameraPath>(std::move(poses), std::move(times), bounds_, framing, style_.options);
   return thickest;
+}
+
+double FrameBuilder::still_radius(double thickest) const {
+  return bounds_.radius + looks_.arrow_length + thickest;
 }
 
 void FrameBuilder::prepare_still(double thickest) {
@@ -78,7 +97,7 @@ void FrameBuilder::prepare_still(double thickest) {
   still_.depth_fade = look_->depth_fade;
   still_.hidden_gap = static_cast<float>(3 * thickest);
   still_.center = bounds_.center.cast<float>();
-  still_.radius = static_cast<float>(bounds_.radius + looks_.arrow_length + thickest);
+  still_.radius = static_cast<float>(still_radius(thickest));
 
   still_.ground.shown = look_->ground;
   still_.ground.z = static_cast<float>(bounds_.low.z() - thickest - 0.01 * bounds_.radius);

@@ -82,7 +82,17 @@ void FrameOverlay::add_dimension(const Vec3& a, const Vec3& b, const Vec3& away,
   const float length = (q - p).head<2>().norm(), line = std::round(0.8f * small_);
   if (p.z() <= 0 || q.z() <= 0 || length < 3 * line) return;
   const float thick = 1.2f * unit_, tick = 5 * unit_;
-  list.lines.push_back({p.x(), p.y(), q.x(), q.y(), thick, look_.ink});
+  const std::string text = length_text(metres);
+  // The line leaves its number free.
+  const Eigen::Vector2f along = (q - p).head<2>() / length, middle = 0.5f * (p + q).head<2>();
+  const float wide = 0.32f * line * static_cast<float>(text.size()) + 0.25f * line, tall = 0.75f * line;
+  const float free =
+      std::min(wide / std::max(std::abs(along.x()), 1e-3f), tall / std::max(std::abs(along.y()), 1e-3f));
+  for (const auto& [end, sign] : {std::pair(p, -1.0f), std::pair(q, 1.0f)}) {
+    if (2 * free >= length) break;
+    const Eigen::Vector2f from = middle + sign * free * along;
+    list.lines.push_back({from.x(), from.y(), end.x(), end.y(), thick, look_.ink});
+  }
   for (const auto& [end, at] : {std::pair(p, a), std::pair(q, b)}) {
     list.lines.push_back(
         {end.x() - tick, end.y() + tick, end.x() + tick, end.y() - tick, 1.4f * thick, look_.ink});
@@ -91,8 +101,8 @@ void FrameOverlay::add_dimension(const Vec3& a, const Vec3& b, const Vec3& away,
     pale.a = 0.45f;
     list.lines.push_back({from.x(), from.y(), to.x(), to.y(), 0.8f * thick, pale});
   }
-  list.labels.push_back({0.5f * (p.x() + q.x()), 0.5f * (p.y() + q.y()) - 0.5f * line, line, look_.ink,
-                         length_text(metres), 0.5f, false, clear_backing(look_)});
+  list.labels.push_back({0.5f * (p.x() + q.x()), 0.5f * (p.y() + q.y()) - 0.5f * line, line, look_.ink, text,
+                         0.5f, false, clear_backing(look_)});
 }
 
 // Of the box around what there is, in the axes of the picture: the two lower edges towards the viewer, and
@@ -104,9 +114,15 @@ void FrameOverlay::add_dimensions(const VectorXd& whole, DrawList& list) const {
     low = low.cwiseMin(p), high = high.cwiseMax(p);
   }
   const Vec3 back = (list.camera.eye - list.camera.target).cast<double>().normalized();
-  const double gap = 0.09 * static_cast<double>(list.radius);
+  const double gap = dimension_gap * static_cast<double>(list.radius);
   const Vec3 near(back.x() > 0 ? high.x() : low.x(), back.y() > 0 ? high.y() : low.y(), low.z());
-  const Vec3 outward_x(back.x() > 0 ? gap : -gap, 0, 0), outward_y(0, back.y() > 0 ? gap : -gap, 0);
+  // Outward along the floor, or down where that is straight towards the viewer.
+  const auto outward = [&](const Vec3& away) {
+    const bool seen = (away - back * back.dot(away)).norm() > 0.35 * gap;
+    return seen ? away : Vec3(0, 0, -gap);
+  };
+  const Vec3 outward_x = outward({back.x() > 0 ? gap : -gap, 0, 0}),
+             outward_y = outward({0, back.y() > 0 ? gap : -gap, 0});
   const double flat = 0.02 * static_cast<double>(list.radius);
   if (high.x() - low.x() > flat)
     add_dimension({low.x(), near.y(), low.z()}, {high.x(), near.y(), low.z()}, outward_y, list);
@@ -131,7 +147,7 @@ void FrameOverlay::add_names(const VectorXd& whole, DrawList& list) const {
   const Vec3 back = (list.camera.eye - list.camera.target).cast<double>();
   std::stable_sort(names.begin(), names.end(),
                    [&](const auto& a, const auto& b) { return back.dot(a.second) > back.dot(b.second); });
-  std::vector<Box> taken{{0, 0, width_, edge_ + 1.3f * large_},
+  std::vector<Box> taken{{0, 0, width_, edge_ + 1.3f * large_ + 1.2f * small_},
                          {0, height_ - edge_ - 1.5f * small_, width_, height_}};
   for (const auto& [name, at] : names) add_name(*name, at, taken, list);
 }

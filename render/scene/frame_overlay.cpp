@@ -39,6 +39,20 @@ double largest_until(const Diagnostics& d, std::string_view column, double t) {
   return most;
 }
 
+// What is not to scale in the picture; empty where rods are drawn as thick as they are.
+std::string scale_text(const Appearance& looks) {
+  constexpr double visible = 0.05;
+  const auto factor = [](double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, x < 9.95 ? "%.1f" : "%.0f", x);
+    return std::string(text) + " \u00D7";
+  };
+  const double least = looks.least_scale, largest = looks.largest_scale;
+  if (std::abs(least - 1) < visible && std::abs(largest - 1) < visible) return {};
+  const bool one = factor(least) == factor(largest);
+  return "rods drawn " + (one ? "" : factor(least) + " to ") + factor(largest) + " as thick";
+}
+
 // The width of a text in pixels, roughly; enough to space out a legend.
 float about_width(const std::string& text, float height) {
   const auto letters = std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; });  // of UTF-8
@@ -95,6 +109,10 @@ void FrameOverlay::add_heading(double t, DrawList& list) const {
     y += 1.35f * large_;
   }
   const float line = std::round(0.85f * small_);
+  if (const std::string note = scale_text(looks_); !note.empty() && style_.options.legend) {
+    list.labels.push_back({edge_, y, line, look_.ink, note});
+    y += 1.3f * line;
+  }
   if (style_.options.method && style_.run) {
     const SolverOptions& solver = style_.run->options;
     std::string text = solver.method;
@@ -132,6 +150,17 @@ void FrameOverlay::add_legend(DrawList& list) const {
   }
 }
 
+namespace {
+
+// Where the colours end before the values do.
+std::string end_mark(const RodField& field, double u) {
+  if (u == 0.0 && field.below) return "\u2264 ";
+  if (u == 1.0 && field.above) return "\u2265 ";
+  return {};
+}
+
+}  // namespace
+
 void FrameOverlay::add_color_bar(DrawList& list) const {
   constexpr int steps = 64;
   const float length = 280 * unit_, thick = 12 * unit_, line = std::round(0.8f * small_);
@@ -148,8 +177,8 @@ void FrameOverlay::add_color_bar(DrawList& list) const {
   for (const double u : {0.0, 0.5, 1.0}) {
     const float at = x + length * static_cast<float>(u);
     list.lines.push_back({at, y + thick, at, y + thick + 4 * unit_, 1.5f * unit_, look_.ink});
-    list.labels.push_back(
-        {at, y + thick + 5 * unit_, line, look_.ink, number_text(value(u)), static_cast<float>(u)});
+    list.labels.push_back({at, y + thick + 5 * unit_, line, look_.ink,
+                           end_mark(*field_, u) + number_text(value(u)), static_cast<float>(u)});
   }
   list.labels.push_back({x, y - 1.35f * line, line, look_.ink, field_->label});
 }

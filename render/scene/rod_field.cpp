@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/diagnostics/force_uniqueness.hpp"
 #include "render/scene/color_map.hpp"
 
 namespace unfurl {
@@ -89,6 +90,9 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
   field.t = diagnostics.t;
   if (by == "axial_force") {
     field.label = "axial force (N), tension > 0";
+    const Structure& structure = run.trajectory.structure();
+    const std::size_t rods = structure.rod_copies.size(), open = rods - unique_rods(structure, diagnostics);
+    if (open > 0) field.label += "; " + std::to_string(open) + " of " + std::to_string(rods) + " not unique";
     field.values = diagnostics.axial_force;
     field.diverging = true;
   } else if (by == "speed") {
@@ -103,6 +107,11 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
   }
   choose_range(field);
   if (range[0] < range[1] && (!field.log || range[0] > 0)) field.low = range[0], field.high = range[1];
+  for (Index i = 0; i < field.values.size(); ++i) {
+    const double value = field.values.data()[i], hair = 1e-9 * (field.high - field.low);
+    field.below = field.below || (!field.log && value < field.low - hair);
+    field.above = field.above || value > field.high + hair;
+  }
   return field;
 }
 

@@ -15,6 +15,7 @@ struct RodField {
   std::vector<double> t;  // of the rows [s]
   MatrixXd values;        // [states x solved rods]; NaN where it is not known
   double low = 0, high = 1;
+  bool below = false, above = false;  // some values lie outside of the range and have the colour of its end
   bool diverging = false;  // around zero
   bool log = false;
 

@@ -94,6 +94,9 @@ TEST_CASE("check counts the six-unit ring and names its redundant constraints") 
   CHECK(json["constraints"] == 78);
   CHECK(json["rank"] == 71);
   CHECK(json["redundant"].size() == 7);
+  CHECK(json["self_stress"].size() == 7);
+  CHECK(json["unique_rods"] == 6);
+  CHECK(json["not_unique"].size() == 78 - 6 - 12);  // all but the posts and the twelve face rows
   CHECK(json["degrees_of_freedom"] == 1);
   const std::string text = run_program({"check", "hoop6"}).out;
   CHECK(contains(text, "rank                          71\n"));

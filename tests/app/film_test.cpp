@@ -1,6 +1,7 @@
 // Slices, resuming and whose frames they are.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -81,6 +82,77 @@ TEST_CASE("a second run draws only what is missing, and the same as before") {
   CHECK(file_text(frame(out, 0)) == file_text(frame(out, 4)));
   CHECK(file_text(frame(out, 1)) == lost);
   CHECK(file_text(frame(out, 3)) == cut);
+}
+
+TEST_CASE("a frame with one wrong byte is found and drawn again, and the films with it") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  REQUIRE(run_program(film(out)).code == 0);
+  const std::string good = file_text(frame(out, 2));
+  std::string bad = good;
+  bad[bad.size() / 2] = static_cast<char>(bad[bad.size() / 2] ^ 1);
+  std::ofstream(frame(out, 2), std::ios::binary) << bad;
+  CHECK(run_program(film(out)).code == 0);
+  CHECK(file_text(frame(out, 2)) == good);
+}
+
+TEST_CASE("films that are missing or damaged are made again, those that are there are not") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  REQUIRE(run_program(film(out)).code == 0);
+  const std::string webp = file_text(out + "/animation.webp"), gif = file_text(out + "/animation.gif");
+  const auto drawn = fs::last_write_time(out + "/animation.gif");
+  fs::remove(out + "/animation.webp");
+  CHECK(run_program(film(out)).code == 0);
+  CHECK(file_text(out + "/animation.webp") == webp);
+  CHECK(fs::last_write_time(out + "/animation.gif") == drawn);
+  fs::resize_file(out + "/animation.gif", 100);
+  CHECK(run_program(film(out)).code == 0);
+  CHECK(file_text(out + "/animation.gif") == gif);
+}
+
+TEST_CASE("an MP4 that fails is exit 5 with the command by hand, and is made when ffmpeg is well again") {
+  if (std::system("command -v ffmpeg > /dev/null") != 0) return;
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  dir.write("bin/ffmpeg", "#!/bin/sh\nexit 1\n");
+  fs::permissions(dir / "bin/ffmpeg", fs::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  const ProgramResult failed = run_program(film(out), {.environment = {"PATH=" + dir / "bin" + ":" + path}});
+  CHECK(failed.code == 5);
+  CHECK(failed.err.starts_with("unfurl: " + out + "/animation.mp4: no MP4 was written: ffmpeg "));
+  CHECK(failed.err.find("by hand: ffmpeg -framerate 20 -i '" + out + "/frames/frame_%05d.png' -vf ") !=
+        std::string::npos);
+  CHECK(fs::exists(out + "/animation.webp"));  // what could be made is there
+  CHECK(fs::exists(out + "/animation.gif"));
+  CHECK(run_program(film(out)).code == 0);
+  CHECK(fs::exists(out + "/animation.mp4"));
+}
+
+TEST_CASE("without ffmpeg there is no MP4, which is an error only for who asked for one") {
+  const ScratchDirectory dir;
+  fs::create_directories(dir / "empty");
+  const ProgramOptions bare{.environment = {"PATH=" + dir / "empty"}};
+  const ProgramResult quiet = run_program(film(dir / "out"), bare);
+  CHECK(quiet.code == 0);
+  CHECK(quiet.err == "");
+  CHECK(fs::exists(dir / "out/animation.webp"));
+  const ProgramResult asked = run_program(film(dir / "out", {"--set", "render.mp4=true"}), bare);
+  CHECK(asked.code == 5);
+  CHECK(asked.err.find("no ffmpeg in the PATH") != std::string::npos);
+}
+
+TEST_CASE("a record of a film that is nonsense is that of no film") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  REQUIRE(run_program(film(out)).code == 0);
+  for (const char* record :
+       {R"({"fingerprint":5})", R"({"films":null})", "[1]", "nonsense", R"({"films":{"animation.gif":7}})"}) {
+    dir.write("out/film.json", record);
+    INFO(record);
+    CHECK(run_program(film(out)).code == 5);
+    CHECK(run_program(film(out, {"--force"})).code == 0);
+  }
 }
 
 TEST_CASE("frames of another scene are never mixed in, and --force starts over") {

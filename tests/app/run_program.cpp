@@ -40,7 +40,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
   if (child == 0) become(arguments, options.environment, out, err);
   if (options.interrupt_after_s >= 0) {
     std::this_thread::sleep_for(std::chrono::duration<double>(options.interrupt_after_s));
-    ::kill(child, SIGINT);
+    ::kill(child, options.signal);
   }
   int status = 0;
   ::waitpid(child, &status, 0);

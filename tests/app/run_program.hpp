@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,8 +14,9 @@ struct ProgramResult {
 
 struct ProgramOptions {
   std::vector<std::string> environment = {};  // "NAME=value", added to this process's
-  double interrupt_after_s = -1.0;            // send SIGINT then; negative: never
-  std::string out_file = "";                  // standard output goes there instead
+  double interrupt_after_s = -1.0;            // send the signal then; negative: never
+  int signal = SIGINT;
+  std::string out_file = "";  // standard output goes there instead
 };
 
 // Runs the program with these arguments and waits for it.

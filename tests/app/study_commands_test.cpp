@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/app/run_program.hpp"
@@ -93,10 +94,56 @@ TEST_CASE("shards of a sweep merge into the whole") {
 
 TEST_CASE("a sweep says how many of its points have no answer") {
   const ScratchDirectory dir;
-  const ProgramResult r = run_program({"sweep", "hoop6_sector", "--vary", "structure.units=5:7:5",
-                                       "--measure", "deploy_time", "-o", dir / "out"});
+  const ProgramResult r =
+      run_program({"sweep", "hoop6_sector", "--vary", "structure.units=5,6,7", "--measure", "deploy_time",
+                   "--set", "solver.step=2", "--set", "solver.method=rk4", "-o", dir / "out"});
   CHECK(r.code == 0);
-  CHECK(r.err == "5 points in " + dir / "out/sweep.csv" + ", 2 of them without an answer\n");  // 5.5 and 6.5
+  // Runge-Kutta in three steps loses every constraint: no answer, not a wrong one.
+  CHECK(r.err == "3 points in " + dir / "out/sweep.csv" + ", 3 of them without an answer\n");
+  CHECK(file_text(dir / "out/sweep.csv").find("failed,nan") != std::string::npos);
+}
+
+TEST_CASE("whole numbers are neither searched nor swept in between") {
+  const ScratchDirectory dir;
+  const ProgramResult sweep = run_program({"sweep", "hoop6_sector", "--vary", "structure.units=3:40:3",
+                                           "--measure", "deploy_time", "-o", dir / "out"});
+  CHECK(sweep.code == 2);
+  CHECK(sweep.err.find("'structure.units' takes whole numbers; 21.5 is none") != std::string::npos);
+  const ProgramResult solve =
+      run_program({"solve", "hoop6_sector", "--find", "structure.units", "--target", "deploy_time=8"});
+  CHECK(solve.code == 2);
+  CHECK(solve.err.find("takes whole numbers, which cannot be searched") != std::string::npos);
+}
+
+TEST_CASE("a study without a reference ends with a sentence") {
+  // The pendulum is chaotic: after a minute no two solutions agree.
+  const ScratchDirectory dir;
+  const ProgramResult r = run_program({"study", "double_pendulum", "--set", "solver.end_time=60", "--steps",
+                                       "5:2", "--repeats", "1", "-o", dir / "out"});
+  CHECK(r.code == 4);
+  CHECK(r.err.find("the reference does not converge") != std::string::npos);
+  CHECK(r.err.find("internal") == std::string::npos);
+}
+
+TEST_CASE("journals that hold no results are refused or measured again") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> sweep = {"sweep",     "pendulum",   "--vary", "structure.angle=40,50",
+                                          "--measure", "peak_speed", "-o",     dir / "out"};
+  REQUIRE(run_program(sweep).code == 0);
+  const std::string points = file_text(dir / "out/sweep.csv");
+  std::string damaged = points;
+  damaged.replace(damaged.rfind(',') + 1, 3, "abc");
+  std::ofstream(dir / "out/sweep.csv") << damaged;
+  CHECK(run_program(sweep).code == 0);
+  CHECK(file_text(dir / "out/sweep.csv") == points);
+  for (const char* verb : {"study", "stress"}) {
+    const std::string out = dir / verb;
+    REQUIRE(fs::create_directories(out));
+    std::ofstream(out + "/" + verb + ".csv") << "setting,steps,other\n";
+    const ProgramResult r = run_program({verb, "pendulum", "-o", out});
+    CHECK(r.code == 5);
+    CHECK(r.err.find("--force to begin anew") != std::string::npos);
+  }
 }
 
 TEST_CASE("points of another sweep are neither joined nor merged") {

@@ -272,4 +272,15 @@ TEST_CASE("the window is as large as the monitor's fine pixels ask for, or as th
   }
 }
 
+TEST_CASE("a display that goes away ends the window with its exit code, in one line") {
+  if (tools_missing()) return;
+  const ScratchDirectory scratch;
+  auto server = std::make_unique<XServer>();
+  const pid_t window = open_window(*server, scratch, "hoop6 --set solver.step=0.05");
+  REQUIRE(server->tool("search --sync --name Unfurl") == 0);
+  server.reset();
+  CHECK(end_of(window, 10) == 6);
+  CHECK(file_text(scratch / "log").find("unfurl: the display went away\n") != std::string::npos);
+}
+
 }  // namespace window_test

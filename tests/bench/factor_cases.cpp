@@ -129,7 +129,7 @@ double our_seconds(const System& system, const SparseRows& G) {
   std::vector<double> f(columns * static_cast<std::size_t>(G.cols())),
       g(columns * static_cast<std::size_t>(G.rows()));
   return seconds_of([&] {
-    saddle.factorise(G);
+    if (!saddle.factorise(G)) throw std::runtime_error("the factorisation broke down");
     for (int i = 0; i < solutions; ++i) {
       std::fill(f.begin(), f.end(), 1.0);
       std::fill(g.begin(), g.end(), 1.0);

@@ -26,6 +26,9 @@ numbers = np.array(table[1:], dtype=float)
 t, states = numbers[:, 0], numbers[:, 1:].reshape(len(numbers), len(names), 6)
 rods = list(csv.reader(open(f"{out}/rod_forces.csv")))
 forces = np.array(rods[1:], dtype=float)[:, 1:]
+count = sum(h.endswith(".axial_force_N") for h in rods[0])
+forces, unique = forces[:, :count], forces[:, count:] != 0
+assert [h.removesuffix("_N") for h in rods[0][1:1 + count]] == [h.removesuffix("_unique") for h in rods[0][1 + count:]]
 
 # numpy: the same bits as the tables.
 load = lambda name: np.load(f"{out}/npy/{name}.npy")
@@ -33,6 +36,7 @@ assert np.array_equal(load("t_s"), t)
 assert np.array_equal(load("positions_m"), states[:, :, :3])
 assert np.array_equal(load("velocities_m_s"), states[:, :, 3:])
 assert np.array_equal(load("axial_forces_N"), forces, equal_nan=True)
+assert np.array_equal(load("axial_forces_unique"), unique)
 ends = load("rod_nodes")
 assert ends.shape == (forces.shape[1], 2)
 print("npy: equal to trajectory.csv, bit for bit")
@@ -48,6 +52,7 @@ for i in range(0, len(t), 10):
     assert np.array_equal(vtk_to_numpy(grid.GetPoints().GetData()), states[i, :, :3])
     assert np.array_equal(vtk_to_numpy(grid.GetPointData().GetArray("velocity_m_s")), states[i, :, 3:])
     assert np.array_equal(vtk_to_numpy(grid.GetCellData().GetArray("axial_force_N")), forces[i], equal_nan=True)
+    assert np.array_equal(vtk_to_numpy(grid.GetCellData().GetArray("axial_force_unique")) != 0, unique[i])
     assert grid.GetFieldData().GetArray("TimeValue").GetValue(0) == t[i]
     for r in range(grid.GetNumberOfCells()):
         cell = grid.GetCell(r)

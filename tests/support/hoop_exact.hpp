@@ -17,6 +17,7 @@ struct Hoop {
   double l1 = 3.0, l2 = 1.2, density = 3000.0, area = 9e-4, fold_angle_deg = 89.34053637766085, f = 200.0;
 
   double theta0() const { return fold_angle_deg * M_PI / 180.0; }
+  double e0() const { return (90.0 - fold_angle_deg) * M_PI / 180.0; }  // keeps its digits near 90 degrees
   double G(double theta) const {
     const double k = 1 / std::sin(M_PI / n), c = std::cos(M_PI / n), s = std::sin(theta);
     const double m1 = density * area * l1, m2 = density * area * l2;
@@ -34,7 +35,7 @@ struct Hoop {
   double time(double theta) const {
     const auto integrand = [&](double u) {
       const double difference =
-          2 * std::cos(theta0() - 0.5 * u * u) * std::sin(0.5 * u * u);  // sin theta0 - sin theta
+          2 * std::sin(e0() + 0.5 * u * u) * std::sin(0.5 * u * u);  // sin theta0 - sin theta
       return 2 * u * std::sqrt(l1 * G(theta0() - u * u) / (2 * f * difference));
     };
     const double end = std::sqrt(theta0() - theta);

@@ -13,7 +13,7 @@ SceneDocument open_document(const std::string& scene, std::vector<std::string> o
   SceneDocument document;
   document.path = find_scene(scene);
   document.name = document.path;
-  const TextFile file = read_text_file(document.path);
+  const TextFile file = read_text_file(document.path, TextSource::pipe_too);
   if (!file.error.empty()) throw UnreadableScene("cannot read scene " + document.path + ": " + file.error);
   document.text = std::make_shared<const std::string>(file.text);
   document.folder = std::filesystem::path(document.path).parent_path().string();

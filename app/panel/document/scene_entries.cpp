@@ -129,8 +129,8 @@ bool has_param(const ElementKind& kind, std::string_view name) {
 // What an entry measures at t = 0, to six digits behind the point; 0 where that cannot be told.
 double value_at_start(const SceneDocument& document, const std::string& key, const std::string& members) {
   try {
+    const Structure structure = build_structure(base_scene(document));
     const Scene scene = base_scene(with_entry(document, key + "={" + members + "}"));
-    const Structure structure = build_structure(scene);
     for (const SceneElement& element : scene.constraints)
       if (const double x = start_value(element, structure); element.key == key && std::isfinite(x))
         return std::round(1e6 * x) / 1e6;
@@ -152,8 +152,7 @@ void add_start(std::string& text, const ElementKind& kind, const SceneDocument& 
                const std::string& key, double end_time) {
   const bool stop = has_param(kind, "restitution");
   if (!stop && !has_param(kind, "motion")) return;
-  // Held, or with a limit that no motion comes to, it can be built: then its measure is known.
-  const double now = value_at_start(document, key, stop ? text + ", min = -1e300" : text);
+  const double now = value_at_start(document, key, text);
   if (stop) return add_member(text, "min", now);
   add_member(text, "motion", std::string("smooth"));
   add_member(text, "to", now);

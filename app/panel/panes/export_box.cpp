@@ -46,7 +46,8 @@ void save_as(Ui& ui, PanelState& state, float width) {
   heading(ui, "Scene");
   text_field(ui, "scene path", state.export_path, width - ui.px(90));
   ImGui::SameLine();
-  const bool exists = std::filesystem::exists(state.export_path);
+  std::error_code unknown;  // a name that is too long, a folder that may not be looked into
+  const bool exists = std::filesystem::exists(state.export_path, unknown);
   const bool same = state.export_path == state.history.now().path;
   const bool sound = state.problems.empty() && !state.export_path.empty();
   if (button(ui, "save", same ? "Save" : "Save as",

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/diagnostics/force_uniqueness.hpp"
 #include "render/plot/ticks.hpp"
 
 namespace unfurl {
@@ -29,12 +30,8 @@ double deployed_at(const LiveRun& run) {
 }
 
 double peak_force(const LiveRun& run) {
-  double most = none;
-  for (Index i = 0; i < run.diagnostics.axial_force.size(); ++i) {
-    const double f = std::abs(run.diagnostics.axial_force.data()[i]);
-    if (std::isfinite(f)) most = std::isnan(most) ? f : std::max(most, f);
-  }
-  return most;
+  const PeakForce peak = peak_rod_force(run.diagnostics);
+  return peak.rod < 0 ? none : std::abs(peak.force_N);
 }
 
 struct Quantity {
@@ -75,7 +72,18 @@ std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b, const Tra
   };
   const auto error = [](const TradePoint* point) { return point ? point->position_error : none; };
   add("position error", "m", error(point_a), error(point_b), true);
+  for (auto [point, text] : {std::pair{point_a, &ComparisonRow::a}, std::pair{point_b, &ComparisonRow::b}})
+    if (point && below_uncertainty(*point)) {
+      rows.back().*text = "below " + number(point->uncertainty, "m");
+      rows.back().change.clear();
+    }
   for (const Quantity& q : quantities) add(q.label, q.unit, q.of(a), q.of(b), q.factor);
+  for (ComparisonRow& row : rows) {
+    if (row.label != "peak rod force") continue;
+    if (!peak_rod_force(a.diagnostics).unique) row.a += "*";
+    if (!peak_rod_force(b.diagnostics).unique) row.b += "*";
+    if (row.a.ends_with("*") || row.b.ends_with("*")) row.label += " (* not unique)";
+  }
   return rows;
 }
 

@@ -190,7 +190,9 @@ void ErrorMeter::work() {
       lock.lock();
     }
     working_ = false;
+    lock.unlock();  // who is woken may ask this object at once
     if (wake_) wake_();
+    lock.lock();
   }
 }
 

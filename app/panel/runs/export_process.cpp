@@ -2,8 +2,6 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,11 +17,24 @@ namespace unfurl {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// OUTPUT.toml, or OUTPUT-2.toml, ...: the first that is not there or holds this very text.
+std::string free_name(const std::string& output, const std::string& text) {
+  std::error_code unknown;
+  for (int number = 1;; ++number) {
+    std::string name = output + (number == 1 ? "" : "-" + std::to_string(number)) + ".toml";
+    if (!fs::exists(fs::symlink_status(name, unknown)) || read_text_file(name).text == text) return name;
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> export_words(const SceneDocument& document, const std::string& verb,
                                       const std::string& output) {
   std::string scene = document.path;
   if (scene.empty()) {
-    scene = output + ".toml";
+    scene = free_name(output, *document.text);
     write_file_atomically(scene, *document.text);
   }
   std::vector<std::string> words{verb, scene};
@@ -50,7 +61,7 @@ std::string own_program() {
 }
 
 ExportProcess::~ExportProcess() {
-  if (running_ && pid_ > 0) ::kill(pid_, SIGTERM);
+  child_.send(SIGTERM);
   if (thread_.joinable()) thread_.join();
 }
 
@@ -58,20 +69,11 @@ void ExportProcess::start(const std::string& program, const std::vector<std::str
   if (running_) return;
   if (thread_.joinable()) thread_.join();
   std::string log = (fs::temp_directory_path() / "unfurl_export_XXXXXX").string();
-  const int file = ::mkstemp(log.data());
+  const int file = ::mkostemp(log.data(), O_CLOEXEC);
   if (file < 0) throw FileError(log, errno);
   std::vector<std::string> all{program};
   all.insert(all.end(), words.begin(), words.end());
-  std::vector<char*> argv;
-  for (std::string& word : all) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t streams;
-  posix_spawn_file_actions_init(&streams);
-  posix_spawn_file_actions_addopen(&streams, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&streams, file, STDERR_FILENO);
-  pid_t pid = 0;
-  const int error = ::posix_spawn(&pid, program.c_str(), &streams, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&streams);
+  const int error = child_.start(all, {.error = file});
   ::close(file);
   if (error != 0) {
     ::unlink(log.c_str());
@@ -79,21 +81,18 @@ void ExportProcess::start(const std::string& program, const std::vector<std::str
   }
   const auto output = std::find(words.begin(), words.end(), "-o");
   running_ = true;
-  pid_ = pid;
-  thread_ = std::thread(
-      [this, pid, log, where = output == words.end() ? "" : *(output + 1)] { wait(pid, log, where); });
+  thread_ =
+      std::thread([this, log, where = output == words.end() ? "" : *(output + 1)] { wait(log, where); });
 }
 
-void ExportProcess::wait(int pid, const std::string& log, const std::string& output) {
-  int status = 0;
-  ::waitpid(pid, &status, 0);
+void ExportProcess::wait(const std::string& log, const std::string& output) {
+  const int code = child_.wait().value_or(-1);
   std::string text = read_text_file(log).text;
   ::unlink(log.c_str());
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  const bool good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   {
     const std::lock_guard lock(mutex_);
-    report_ = good ? "exported to " + output : text.substr(text.rfind('\n') + 1);
+    report_ = code == 0 ? "exported to " + output : text.substr(text.rfind('\n') + 1);
     if (report_.empty()) report_ = "the export was ended";
   }
   running_ = false;

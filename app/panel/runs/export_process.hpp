@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/panel/document/scene_document.hpp"
+#include "render/image/child_process.hpp"
 
 namespace unfurl {
 
@@ -35,13 +36,13 @@ class ExportProcess {
   std::string take_report();
 
  private:
-  void wait(int pid, const std::string& log, const std::string& output);
+  void wait(const std::string& log, const std::string& output);
 
   std::function<void()> wake_;
   std::atomic<bool> running_{false};
-  std::atomic<int> pid_{0};
   std::mutex mutex_;
   std::string report_;
+  ChildProcess child_;
   std::thread thread_;
 };
 

@@ -65,9 +65,9 @@ SimulationOutcome Simulator::run(long id, const SceneDocument& document) {
     Simulation simulation = simulate_as_asked(build_model(scene), scene.solver, hooks);
     record_singular_poses(simulation);
     if (stale(id)) return outcome;
-    Diagnostics diagnostics = diagnose(simulation);
+    Diagnostics diagnostics = judge(simulation);
     std::vector<std::string> warnings = simulation.warnings;
-    for (auto& warning : accuracy_warnings(diagnostics)) warnings.push_back(std::move(warning));
+    for (auto& warning : accuracy_warnings(simulation, diagnostics)) warnings.push_back(std::move(warning));
     MotionKey motion = motion_of(scene);
     outcome.run = std::make_shared<const LiveRun>(LiveRun{id, document, std::move(scene), std::move(motion),
                                                           std::move(simulation), std::move(diagnostics),
@@ -98,7 +98,9 @@ void Simulator::work() {
     lock.lock();
     running_ = false;
     if (!stale(id)) finished_ = std::move(outcome);
+    lock.unlock();  // who is woken may ask this object at once
     if (wake_) wake_();
+    lock.lock();
   }
 }
 

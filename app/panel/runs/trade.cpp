@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/diagnostics/accuracy.hpp"
 #include "core/study/tolerance.hpp"
 #include "render/plot/ticks.hpp"
 
@@ -39,8 +40,7 @@ std::string setting_caption(const SolverOptions& options) {
 
 TradePoint trade_point(const LiveRun& run) {
   const Diagnostics& d = run.diagnostics;
-  const double energy =
-      std::max({largest(d, "kinetic_energy_J"), largest(d, "potential_energy_J"), largest(d, "work_J")});
+  const double energy = energy_turned_over(d);
   const double error = largest(d, "energy_balance_J");
   const SolverOptions& options = run.simulation.options;  // with a tolerance: as they were picked
   return {.method = options.method,
@@ -74,13 +74,26 @@ const TradePoint* point_of(const std::vector<TradePoint>& points, const LiveRun&
   return at == points.end() ? nullptr : &*at;
 }
 
+bool below_uncertainty(const TradePoint& point) {
+  return point.accuracy == Accuracy::known && point.position_error < point.uncertainty;
+}
+
+namespace {
+
+std::string error_text(const TradePoint& point) {
+  if (below_uncertainty(point)) return "below " + format_number(point.uncertainty, 2) + " m";
+  return format_number(point.position_error, 3) + " m";
+}
+
+}  // namespace
+
 std::string point_caption(const TradePoint& point) {
   std::string text = point.setting + "\nCPU time " + cpu_text(point.cpu_s);
   if (point.cpu_s != point.whole_cpu_s)
     text += " up to " + format_number(point.end, 4) + " s, " + cpu_text(point.whole_cpu_s) + " in all";
   if (point.accuracy == Accuracy::known)
-    text += "\nposition error " + format_number(point.position_error, 3) +
-            " m\nthe reference is certain to " + format_number(point.uncertainty, 2) + " m";
+    text += "\nposition error " + error_text(point) + "\nthe reference agrees with itself to " +
+            format_number(point.uncertainty, 2) + " m";
   if (std::isfinite(point.estimate))
     text += "\nestimated position error " + format_number(point.estimate, 3) + " m";
   return text + "\nenergy error " + format_number(point.error, 3) + " of the energy\nconstraint error " +
@@ -93,7 +106,7 @@ std::string present_sentence(const TradePoint& point) {
     case Accuracy::waiting:
       return cpu + "; measuring the position error ...";
     case Accuracy::known:
-      return "position error " + format_number(point.position_error, 3) + " m in " + cpu;
+      return "position error " + error_text(point) + " in " + cpu;
     case Accuracy::no_answer:
       return cpu + "; the run did not get to its end";
     case Accuracy::no_reference:

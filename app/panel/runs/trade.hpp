@@ -47,7 +47,9 @@ const TradePoint* point_of(const std::vector<TradePoint>& points, const LiveRun&
 // Position errors are shown, the present one's or, while that is measured, the last one's; else energy
 // errors.
 bool shows_positions(const std::vector<TradePoint>& points);
-// The error that a point is drawn at; NaN: it is not drawn.
+// A position error smaller than what is known of its reference: all that is known is that it is below that.
+bool below_uncertainty(const TradePoint& point);
+// The error that a point is drawn at, no lower than it is known; NaN: it is not drawn.
 double shown_error(const TradePoint& point, bool positions);
 
 // CPU time across, error up, both logarithmic; a thin line along the latest points of the present motion

@@ -96,7 +96,7 @@ void add_study(Panel& panel, const Study& study) {
     Curve curve;
     for (const MeasuredRun& run : from.runs) {
       curve.x.push_back(run.cpu_median);
-      curve.y.push_back(run.ok() ? run.position_error : no_value);
+      curve.y.push_back(run.ok() ? std::max(run.position_error, study.reference_uncertainty) : no_value);
     }
     curve.color = color_of(from.setting.options.method);
     curve.width = 0.6f;
@@ -114,7 +114,8 @@ bool shows_positions(const std::vector<TradePoint>& points) {
 }
 
 double shown_error(const TradePoint& point, bool positions) {
-  return positions ? point.position_error : point.error;
+  if (!positions) return point.error;
+  return below_uncertainty(point) ? point.uncertainty : point.position_error;
 }
 
 Figure trade_figure(const std::vector<TradePoint>& points, const Study* study) {

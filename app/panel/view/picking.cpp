@@ -69,7 +69,10 @@ std::vector<Reading> rod_readings(int index, const LiveRun& run, double t) {
   if (force.rows() > static_cast<Index>(at.j) && force.cols() > copy.source) {
     const double f = (1 - at.share) * force(static_cast<Index>(at.i), copy.source) +
                      at.share * force(static_cast<Index>(at.j), copy.source);
-    rows.insert(rows.begin(), {f < 0 ? "compression" : "tension", quantity(std::abs(f), "N")});
+    const bool unique = run.diagnostics.force_unique(static_cast<Index>(at.i), copy.source) &&
+                        run.diagnostics.force_unique(static_cast<Index>(at.j), copy.source);
+    rows.insert(rows.begin(), {f < 0 ? "compression" : "tension",
+                               quantity(std::abs(f), "N") + (unique ? "" : ", not unique")});
   }
   return rows;
 }

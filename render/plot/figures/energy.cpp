@@ -9,14 +9,22 @@
 namespace unfurl {
 namespace {
 
+// The terms of the balance, kinetic + potential - the energy at the start - work of the loads + ... = 0, as
+// far as a run has them.
 struct Share {
   const char *column, *label;
   int color;
   Dash dash;
+  const char* sign;
 };
-constexpr Share shares[] = {{"kinetic_energy_J", "kinetic energy", 0, Dash::solid},
-                            {"potential_energy_J", "potential energy", 2, Dash::dash_dot},
-                            {"work_J", "work of the loads", 1, Dash::dashed}};
+constexpr Share shares[] = {
+    {"kinetic_energy_J", "kinetic energy", 0, Dash::solid, "+"},
+    {"potential_energy_J", "potential energy", 2, Dash::dash_dot, "+"},
+    {"work_J", "work of the loads", 1, Dash::dashed, "\u2212"},
+    {"dissipated_J", "energy taken by dampers", 5, Dash::dash_dot, "+"},
+    {"drive_work_J", "work of the drives", 4, Dash::dashed, "\u2212"},
+    {"impact_loss_J", "energy lost in impacts", 6, Dash::dotted, "+"},
+};
 
 // Energies that hardly change are shown from zero on: their ripple is the lower panel's business.
 void show_from_zero(Panel& p) {
@@ -35,13 +43,15 @@ void show_from_zero(Panel& p) {
 Figure energy_figure(const Simulation& run, const Diagnostics& diagnostics) {
   Panel top = time_panel(run, "energy (J)");
   double largest = 0;
+  std::string balance;
   for (const Share& s : shares) {
-    const std::vector<double>& values = diagnostics.at(s.column).values;
-    const double size = largest_magnitude(values);
+    const Series* series = diagnostics.find(s.column);
+    const double size = series ? largest_magnitude(series->values) : 0.0;
     largest = std::max(largest, size);
-    if (size == 0 && s.color != 0) continue;  // a scene without loads or gravity
-    top.curves.push_back(over_time(diagnostics, values, s.label, s.color));
+    if (size == 0 && s.color != 0) continue;  // a scene without loads, gravity, dampers, ...
+    top.curves.push_back(over_time(diagnostics, series->values, s.label, s.color));
     top.curves.back().dash = s.dash;
+    balance += (balance.empty() ? std::string() : std::string(" ") + s.sign + " ") + s.label;
   }
   show_from_zero(top);
 
@@ -58,12 +68,10 @@ Figure energy_figure(const Simulation& run, const Diagnostics& diagnostics) {
   f.title = "Energy";
   f.rows = 2;
   f.height_mm = 105;
-  f.caption =
-      "Above: energies and the work done by the loads. Below: magnitude of kinetic + potential energy \u2212 "
-      "work \u2212 "
-      "the energy at the start, at most " +
-      plot::format_number(largest_magnitude(error), 2) + " J." + zeros_sentence(error) + " " +
-      method_sentence(run);
+  f.caption = "Above: energies and work since the start. Below: magnitude of " + balance +
+              " \u2212 the energy at the start (kinetic + potential), at most " +
+              plot::format_number(largest_magnitude(error), 2) + " J." + zeros_sentence(error) + " " +
+              method_sentence(run);
   share_time_axis(top, bottom);
   f.panels = {std::move(top), std::move(bottom)};
   return f;

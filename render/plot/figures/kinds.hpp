@@ -15,6 +15,7 @@ Figure poisson_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure phase_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure steps_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure jacobian_figure(const Simulation& run, const Diagnostics& diagnostics);
+Figure self_stress_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure poses_figure(const Simulation& run, const Diagnostics& diagnostics);
 
 }  // namespace unfurl

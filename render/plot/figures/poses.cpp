@@ -3,6 +3,7 @@
 #include <set>
 
 #include "render/plot/figures/kinds.hpp"
+#include "render/plot/figures/pose_view.hpp"
 #include "render/plot/figures/rod_groups.hpp"
 #include "render/plot/figures/run_facts.hpp"
 #include "render/plot/ticks.hpp"
@@ -13,47 +14,19 @@ namespace {
 constexpr int rows = 2, columns = 3;
 constexpr std::size_t poses = rows * columns;
 
-// A parallel projection: right and up span the page, `towards` points to the reader.
-struct View {
-  Vec3 right, up, towards;
-  bool flat = false;  // along the axis in which a plane mechanism has no extent
-};
-
-struct Box {
-  Vec3 lo = Vec3::Constant(1e300), hi = Vec3::Constant(-1e300);
-  void add(const Vec3& p) { lo = lo.cwiseMin(p), hi = hi.cwiseMax(p); }
-  Vec3 size() const { return hi - lo; }
-};
-
-View view_of(const Vec3& extent) {
-  const double thin = 1e-6 * extent.maxCoeff();
-  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
-  if (extent.y() <= thin) return {x, z, -y, true};
-  if (extent.x() <= thin) return {y, z, x, true};
-  if (extent.z() <= thin) return {x, y, z, true};
-  const double azimuth = -70 * radians_per_degree, elevation = 24 * radians_per_degree;
-  const double ca = std::cos(azimuth), sa = std::sin(azimuth), ce = std::cos(elevation),
-               se = std::sin(elevation);
-  return {{-sa, ca, 0}, {-se * ca, -se * sa, ce}, {ce * ca, ce * sa, se}};
-}
-
-Vec3 node(const VectorXd& q, int i) {
-  return q.segment<3>(3 * i);
-}
-
-struct Moment {
+struct Shot {
   double t;
   std::string title;
 };
 
 // Six equal steps of the deployed fraction where the run unfolds from its start to its end without turning
 // back; an empty list where it does not.
-std::vector<Moment> moments_of_deployment(const Diagnostics& d) {
+std::vector<Shot> moments_of_deployment(const Diagnostics& d) {
   const Series* fraction = d.find("deployed_fraction");
   if (!fraction) return {};
   const std::vector<double>& f = fraction->values;
   if (f.size() < poses || !std::is_sorted(f.begin(), f.end()) || f.back() - f.front() < 0.05) return {};
-  std::vector<Moment> moments;
+  std::vector<Shot> moments;
   for (std::size_t k = 0; k < poses; ++k) {
     const double wanted = f.front() + (f.back() - f.front()) * static_cast<double>(k) / (poses - 1);
     const auto i = static_cast<std::size_t>(
@@ -68,8 +41,8 @@ std::vector<Moment> moments_of_deployment(const Diagnostics& d) {
   return moments;
 }
 
-std::vector<Moment> equal_moments(const Trajectory& run) {
-  std::vector<Moment> moments;
+std::vector<Shot> equal_moments(const Trajectory& run) {
+  std::vector<Shot> moments;
   for (std::size_t k = 0; k < poses; ++k) {
     const double t =
         run.start_time() + (run.end_time() - run.start_time()) * static_cast<double>(k) / (poses - 1);
@@ -88,7 +61,7 @@ double bar_length(double width) {
 
 class PosePainter {
  public:
-  PosePainter(const Structure& s, const View& view) : structure_(s), view_(view), groups_(rod_groups(s)) {
+  PosePainter(const Structure& s, const PoseView& view) : structure_(s), view_(view), groups_(rod_groups(s)) {
     const double many = std::sqrt(60.0 / static_cast<double>(std::max<std::size_t>(s.rod_copies.size(), 1)));
     width_ = static_cast<float>(std::clamp(1.3 * many, 0.4, 1.5));
     color_.assign(s.rods.size(), 0);
@@ -98,7 +71,7 @@ class PosePainter {
       if (c.kind == "fixed") fixed_.insert(c.nodes.begin(), c.nodes.end());
   }
 
-  Vec3 project(const Vec3& p) const { return {p.dot(view_.right), p.dot(view_.up), p.dot(view_.towards)}; }
+  Vec3 project(const Vec3& p) const { return view_.project(p); }
 
   Panel panel(const VectorXd& q, const std::string& title) const {
     Panel p;
@@ -106,7 +79,7 @@ class PosePainter {
     p.bare = p.equal_scale = true;
     std::vector<double> front(structure_.node_copies.size(), -1e300);  // depth of the nearest rod at a node
     for (const RodCopy& rod : structure_.rod_copies) {
-      const Vec3 a = project(node(q, rod.a)), b = project(node(q, rod.b));
+      const Vec3 a = project(pose_node(q, rod.a)), b = project(pose_node(q, rod.b));
       const double depth = (a.z() + b.z()) / 2;
       p.segments.push_back(
           {a.x(), a.y(), b.x(), b.y(), depth, color_[static_cast<std::size_t>(rod.source)], width_});
@@ -114,7 +87,7 @@ class PosePainter {
         front[static_cast<std::size_t>(n)] = std::max(front[static_cast<std::size_t>(n)], depth);
     }
     for (std::size_t i = 0; i < structure_.node_copies.size(); ++i) {
-      const Vec3 at = project(node(q, static_cast<int>(i)));
+      const Vec3 at = project(pose_node(q, static_cast<int>(i)));
       const bool fixed = fixed_.count(structure_.node_copies[i].source) > 0;
       p.dots.push_back({at.x(), at.y(), std::max(front[i], at.z()), 6, (fixed ? 1.4f : 0.75f) * width_});
     }
@@ -135,7 +108,7 @@ class PosePainter {
 
  private:
   const Structure& structure_;
-  View view_;
+  PoseView view_;
   std::vector<RodGroup> groups_;
   std::vector<int> color_;
   std::set<int> fixed_;
@@ -146,20 +119,20 @@ class PosePainter {
 
 Figure poses_figure(const Simulation& run, const Diagnostics& diagnostics) {
   const Structure& structure = run.trajectory.structure();
-  std::vector<Moment> moments = moments_of_deployment(diagnostics);
+  std::vector<Shot> moments = moments_of_deployment(diagnostics);
   const bool by_fraction = !moments.empty();
   if (!by_fraction) moments = equal_moments(run.trajectory);
   std::vector<VectorXd> q;
-  Box space;
-  for (const Moment& m : moments) {
+  PoseBox space;
+  for (const Shot& m : moments) {
     q.push_back(run.trajectory.positions_at(m.t));
-    for (int i = 0; i < q.back().size() / 3; ++i) space.add(node(q.back(), i));
+    for (int i = 0; i < q.back().size() / 3; ++i) space.add(pose_node(q.back(), i));
   }
-  const View view = view_of(space.size());
+  const PoseView view = pose_view(space.size());
   const PosePainter painter(structure, view);
-  Box page;
+  PoseBox page;
   for (const VectorXd& pose : q)
-    for (int i = 0; i < pose.size() / 3; ++i) page.add(painter.project(node(pose, i)));
+    for (int i = 0; i < pose.size() / 3; ++i) page.add(painter.project(pose_node(pose, i)));
   const Vec3 size = page.size().cwiseMax(1e-3 * std::max(page.size().maxCoeff(), 1e-9));
 
   Figure f;

@@ -1,8 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 
+#include "core/diagnostics/force_uniqueness.hpp"
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/rod_groups.hpp"
 #include "render/plot/figures/run_facts.hpp"
@@ -40,19 +41,41 @@ double widest(const Band& band) {
   return width;
 }
 
-std::string rods_text(const RodGroup& g) {
-  return g.name + (g.shown == 1 ? " (1 rod)" : " (" + std::to_string(g.shown) + " rods)");
+// The rods of a group whose forces are unique, or those whose are not.
+struct Part {
+  std::vector<int> rods;  // of the solved structure
+  int shown = 0;          // of the whole
+  bool unique = true;
+};
+
+std::array<Part, 2> parts_of(const RodGroup& group, const Structure& structure, const Diagnostics& d) {
+  std::array<Part, 2> parts{Part{{}, 0, true}, Part{{}, 0, false}};
+  const auto part = [&](int rod) -> Part& {
+    return parts[d.rod_unique[static_cast<std::size_t>(rod)] ? 0 : 1];
+  };
+  for (const int r : group.rods) part(r).rods.push_back(r);
+  for (const RodCopy& copy : structure.rod_copies)
+    if (std::find(group.rods.begin(), group.rods.end(), copy.source) != group.rods.end())
+      ++part(copy.source).shown;
+  return parts;
 }
 
-// One line where all rods of the group carry the same to within the line's width, else the band between the
-// extremes.
-void add_group(const Diagnostics& d, const RodGroup& g, double same, Panel& p) {
-  Band band = extremes(d, g.rods);
-  const Dash dash = g.color % 2 == 0 ? Dash::solid : Dash::dashed;
+std::string rods_text(const RodGroup& g, const Part& part) {
+  return g.name + (part.shown == 1 ? " (1 rod)" : " (" + std::to_string(part.shown) + " rods)");
+}
+
+constexpr const char* open_text = ", not unique";
+
+// One line where all rods of the part carry the same to within the line's width, else the band between the
+// extremes; dashed where the forces are not unique.
+void add_part(const Diagnostics& d, const RodGroup& g, const Part& part, double same, Panel& p) {
+  Band band = extremes(d, part.rods);
+  const Dash dash = part.unique ? Dash::solid : Dash::dashed;
+  const std::string text = rods_text(g, part) + (part.unique ? "" : open_text);
   if (widest(band) <= same) {
     std::vector<double> middle(band.x.size());
     for (std::size_t i = 0; i < middle.size(); ++i) middle[i] = (band.lower[i] + band.upper[i]) / 2;
-    p.curves.push_back(over_time(d, std::move(middle), rods_text(g), g.color));
+    p.curves.push_back(over_time(d, std::move(middle), text, g.color));
     p.curves.back().dash = dash;
     return;
   }
@@ -61,7 +84,7 @@ void add_group(const Diagnostics& d, const RodGroup& g, double same, Panel& p) {
     p.curves.back().width = 0.8f;
     p.curves.back().dash = dash;
   }
-  band.label = rods_text(g) + ", smallest to largest";
+  band.label = text + ", smallest to largest";
   band.color = g.color;
   p.bands.push_back(std::move(band));
 }
@@ -70,16 +93,35 @@ void add_rods(const Simulation& run, const Diagnostics& d, Panel& p) {
   const std::vector<Rod>& rods = run.trajectory.structure().rods;
   for (std::size_t r = 0; r < rods.size(); ++r) {
     const auto i = static_cast<int>(r);
-    p.curves.push_back(over_time(d, column(d.axial_force, i), rods[r].name, i));
-    p.curves.back().dash = static_cast<Dash>(i % 4);
+    const bool unique = d.rod_unique[r] != 0;
+    p.curves.push_back(over_time(d, column(d.axial_force, i), rods[r].name + (unique ? "" : open_text), i));
+    p.curves.back().dash = unique ? Dash::solid : Dash::dashed;
   }
+}
+
+std::string uniqueness_sentence(const Structure& structure, const Diagnostics& d) {
+  const std::size_t rods = structure.rod_copies.size(), open = rods - unique_rods(structure, d);
+  const char* symmetric = structure.sectors > 1 ? " under the symmetry of the sector" : "";
+  if (open == 0) return std::string(" The model determines all of them") + symmetric + ".";
+  return " Dashed: not unique, the rigid model does not determine the force of " + std::to_string(open) +
+         " of the " + std::to_string(rods) + " rods" + symmetric + "; shown is the choice of least norm, scaled by mass.";
+}
+
+std::string peak_sentence(const Structure& structure, const Diagnostics& d) {
+  const PeakForce peak = peak_rod_force(d);
+  std::string text = " Largest magnitude " + plot::format_number(std::abs(peak.force_N), 4) + " N";
+  if (peak.rod >= 0)
+    text += " (rod " + structure.rods[static_cast<std::size_t>(peak.rod)].name + " at " +
+            plot::format_number(peak.t, 5) + " s" + (peak.unique ? "" : open_text) + ")";
+  return text + ".";
 }
 
 }  // namespace
 
 Figure rod_forces_figure(const Simulation& run, const Diagnostics& d) {
-  const std::vector<RodGroup> groups = rod_groups(run.trajectory.structure());
-  const auto rods = run.trajectory.structure().rods.size();
+  const Structure& structure = run.trajectory.structure();
+  const std::vector<RodGroup> groups = rod_groups(structure);
+  const auto rods = structure.rods.size();
   const bool one_by_one = rods <= 6 && groups.size() == 1;
   double largest = 0;
   for (Index i = 0; i < d.axial_force.size(); ++i)
@@ -95,14 +137,16 @@ Figure rod_forces_figure(const Simulation& run, const Diagnostics& d) {
   if (one_by_one)
     add_rods(run, d, p);
   else
-    for (const RodGroup& g : groups) add_group(d, g, 3e-3 * largest, p);
-  f.caption = "Axial force of every rod, tension positive.";
+    for (const RodGroup& g : groups)
+      for (const Part& part : parts_of(g, structure, d))
+        if (part.shown > 0) add_part(d, g, part, 3e-3 * largest, p);
+  f.caption = "Axial force of every rod, tension positive, the mean over its length.";
   if (!one_by_one)
     f.caption =
-        "Axial force of the rods by group, tension positive: one line where the forces of a group differ by "
-        "less than "
-        "its width, else the range between the extremes.";
-  f.caption += " Largest magnitude " + plot::format_number(largest, 4) + " N. " + method_sentence(run);
+        "Axial force of the rods by group, tension positive, the mean over a rod's length: one line where "
+        "the "
+        "forces of a group differ by less than its width, else the range between the extremes.";
+  f.caption += uniqueness_sentence(structure, d) + peak_sentence(structure, d) + " " + method_sentence(run);
   f.panels.push_back(std::move(p));
   return f;
 }

@@ -1,5 +1,6 @@
 #include "render/plot/figures/study_figures.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -24,6 +25,11 @@ Curve looks_of(std::size_t i) {
   return c;
 }
 
+// A position error as far as it is known: no smaller than the uncertainty of what it is measured by.
+double known_error(const Study& study, const MeasuredRun& run) {
+  return std::max(run.position_error, study.reference_uncertainty);
+}
+
 // A member or function of the run over another; NaN where the run has no answer.
 template <class X>
 Curve curve_of(const Study& study, std::size_t i, X x, double MeasuredRun::*y) {
@@ -31,7 +37,7 @@ Curve curve_of(const Study& study, std::size_t i, X x, double MeasuredRun::*y) {
   Curve c = looks_of(i);
   for (const MeasuredRun& run : study.curves[i].runs) {
     c.x.push_back(static_cast<double>(std::invoke(x, run)));
-    c.y.push_back(run.ok() ? run.*y : nan);
+    c.y.push_back(!run.ok() ? nan : y == &MeasuredRun::position_error ? known_error(study, run) : run.*y);
   }
   return c;
 }
@@ -56,7 +62,7 @@ Panel key_panel(const Study& study) {
 }
 
 // From the fastest to the slowest of the repeated runs, as a thin line.
-void add_spread(const StudyCurve& from, int color, Panel& panel) {
+void add_spread(const Study& study, const StudyCurve& from, int color, Panel& panel) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Curve c;
   c.color = color;
@@ -64,9 +70,22 @@ void add_spread(const StudyCurve& from, int color, Panel& panel) {
   for (const MeasuredRun& run : from.runs) {
     if (!run.ok()) continue;
     c.x.insert(c.x.end(), {run.cpu_min, run.cpu_max, nan});
-    c.y.insert(c.y.end(), {run.position_error, run.position_error, nan});
+    const double error = known_error(study, run);
+    c.y.insert(c.y.end(), {error, error, nan});
   }
   panel.curves.push_back(std::move(c));
+}
+
+// What curves that run along the reference's uncertainty mean.
+std::string below_sentence(const Study& study) {
+  long below = 0;
+  for (const StudyCurve& curve : study.curves)
+    below += std::count_if(curve.runs.begin(), curve.runs.end(), [&](const MeasuredRun& run) {
+      return run.ok() && run.position_error < study.reference_uncertainty;
+    });
+  if (below == 0) return {};
+  return " Errors below it (" + std::to_string(below) + (below == 1 ? " point" : " points") +
+         ") are drawn at it.";
 }
 
 void add_floor(const Study& study, Panel& panel) {
@@ -77,7 +96,7 @@ void add_floor(const Study& study, Panel& panel) {
 std::string span_sentence(const Study& study) {
   return "Motion from 0 to " + format_number(study.end, 4) + " s" +
          (study.before.empty() ? "" : ", just before " + study.before) + ". Reference: " + study.reference +
-         ", certain to " + format_number(study.reference_uncertainty, 2) + " m.";
+         "; " + reference_words(study) + "." + below_sentence(study);
 }
 
 }  // namespace
@@ -97,7 +116,7 @@ Figure work_precision_figure(const Study& study, const std::string& scene) {
   Panel solves = log_panel("linear solves", "position error (m)");
   for (std::size_t i = 0; i < study.curves.size(); ++i) {
     time.curves.push_back(curve_of(study, i, &MeasuredRun::cpu_median, &MeasuredRun::position_error));
-    add_spread(study.curves[i], time.curves.back().color, time);
+    add_spread(study, study.curves[i], time.curves.back().color, time);
     solves.curves.push_back(curve_of(study, i, &MeasuredRun::linear_solves, &MeasuredRun::position_error));
   }
   add_floor(study, time);

@@ -28,6 +28,25 @@ std::string count_sentence(const SweepPlan& plan, const Sweep& sweep) {
   return text + ".";
 }
 
+// Of a force: in how many of the runs the rigid model does not determine it.
+std::string uniqueness_sentence(const SweepPlan& plan, const Sweep& sweep, std::size_t measure) {
+  const std::string name = uniqueness_of(plan.measures[measure].name);
+  const auto at = std::find_if(plan.measures.begin(), plan.measures.end(),
+                               [&](const RunMeasure& m) { return m.name == name; });
+  if (name.empty() || at == plan.measures.end()) return {};
+  const auto column = static_cast<std::size_t>(at - plan.measures.begin());
+  const auto open = std::count_if(sweep.table.rows.begin(), sweep.table.rows.end(),
+                                  [&](const auto& row) { return value_of(plan, row, column) == 0.0; });
+  if (open == 0) return {};
+  return " Not unique in " + std::to_string(open) +
+         " of them: there the rigid model does not determine this force, and shown is the choice of least "
+         "norm.";
+}
+
+bool is_flag(const RunMeasure& measure) {
+  return measure.name.ends_with("_unique");
+}
+
 std::string file_name(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == ':' || c == '/'; }, '_');
@@ -202,6 +221,7 @@ std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, con
           : 0;
   if (!map && (!numeric(across) || (axes == 2 && plan.axes[1 - across].values.size() > 12))) return figures;
   for (std::size_t m = 0; m < plan.measures.size(); ++m) {
+    if (is_flag(plan.measures[m])) continue;
     Figure f;
     if (map) {
       f = map_figure(plan, sweep, m);
@@ -211,7 +231,7 @@ std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, con
     }
     f.name = "sweep_" + file_name(plan.measures[m].name);
     f.title = heading(plan.measures[m].label) + ": " + scene;
-    f.caption += count_sentence(plan, sweep);
+    f.caption += count_sentence(plan, sweep) + uniqueness_sentence(plan, sweep, m);
     if (f.panels[0].y.zeros_at_floor) {
       std::vector<double> drawn;
       for (const Curve& c : f.panels[0].curves) drawn.insert(drawn.end(), c.y.begin(), c.y.end());

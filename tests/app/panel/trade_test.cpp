@@ -147,4 +147,19 @@ TEST_CASE("methods keep their colours whatever else is shown") {
   CHECK(labelled(two, "dvm").at(0).color != labelled(two, "rk4").at(0).color);
 }
 
+TEST_CASE("an error below what is known of its reference is shown as that, not as known") {
+  TradePoint below = point("dvm", "a", 0.2, 2.95e-12), above = point("dvm", "a", 0.3, 5e-9);
+  below.uncertainty = above.uncertainty = 4e-11;
+  CHECK(shown_error(below, true) == 4e-11);
+  CHECK(shown_error(above, true) == 5e-9);
+  CHECK(present_sentence(below).find("position error below " + plot::format_number(4e-11, 2) + " m") !=
+        std::string::npos);
+  CHECK(point_caption(below).find("position error below " + plot::format_number(4e-11, 2) + " m") !=
+        std::string::npos);
+  CHECK(present_sentence(above).find("position error " + plot::format_number(5e-9, 3) + " m") !=
+        std::string::npos);
+  for (const Curve& curve : labelled(trade_figure({above, below}), "now"))
+    CHECK(curve.y == std::vector<double>{4e-11});  // on the line of the reference's uncertainty
+}
+
 }  // namespace trade_test

@@ -33,7 +33,7 @@ TEST_CASE("diagnostics that are cancelled keep what they have and leave the rest
   }
   CHECK(part.axial_force.topRows(20) == whole.axial_force.topRows(20));
   CHECK(part.axial_force.bottomRows(31).array().isNaN().all());
-  const auto warnings = accuracy_warnings(part);
+  const auto warnings = accuracy_warnings(run, part);
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].find("judged up to t = 0.19 s only") != std::string::npos);
 }

@@ -82,6 +82,55 @@ TEST_CASE("a pending file that is not committed is removed") {
   CHECK(entries(scratch.path) == 0);
 }
 
+TEST_CASE("temporary names are new ones: random, never behind a link, and short enough for every target") {
+  const ScratchFolder scratch;
+  const PendingFile one(scratch.path / "a.txt"), other(scratch.path / "a.txt");
+  CHECK(one.name() != other.name());
+  CHECK(is_unfinished_name(one.name().filename().string()));
+  CHECK_FALSE(is_unfinished_name(".unfurl-notes.part"));
+  CHECK_FALSE(is_unfinished_name(".a.txt.1-0.part"));
+  // The longest name that Linux knows; a name with the target's in front would be longer.
+  const fs::path longest = scratch.path / std::string(255, 'n');
+  write_file_atomically(longest, "x");
+  CHECK(content(longest) == "x");
+}
+
+TEST_CASE("a link in the place of a file is replaced, what it leads to stays") {
+  const ScratchFolder scratch;
+  write_file_atomically(scratch.path / "precious", "mine");
+  fs::create_symlink("precious", scratch.path / "out.svg");
+  write_file_atomically(scratch.path / "out.svg", "ours");
+  CHECK(content(scratch.path / "precious") == "mine");
+  CHECK_FALSE(fs::is_symlink(scratch.path / "out.svg"));
+}
+
+TEST_CASE("an unfinished file is abandoned only when nobody writes it any more") {
+  const ScratchFolder scratch;
+  const PendingFile writing(scratch.path / "a.txt");
+  remove_abandoned(writing.name());
+  CHECK(fs::exists(writing.name()));
+  const fs::path left = scratch.path / ".unfurl-0123456789abcdef.part";
+  std::ofstream(left) << "half";
+  remove_abandoned(left);
+  CHECK_FALSE(fs::exists(left));
+}
+
+TEST_CASE("the watcher is told the name and the checksum of every file before it appears") {
+  struct Watcher final : FileWatcher {
+    std::string seen;
+    void before_file(const fs::path& target, const std::string& checksum) override {
+      seen += target.filename().string() + (fs::exists(target) ? "! " : " ") + checksum + "\n";
+    }
+  } watcher;
+  const ScratchFolder scratch;
+  FileWatcher* const before = watch_files(&watcher);
+  write_file_atomically(scratch.path / "empty", "");
+  write_file_atomically(scratch.path / "a", "a");
+  CHECK(watch_files(before) == &watcher);
+  // Published values of FNV-1a with 64 bits: of no byte, and of "a".
+  CHECK(watcher.seen == "empty cbf29ce484222325\na af63dc4c8601ec8c\n");
+}
+
 TEST_CASE("a full disk is reported by its cause and the old file stays") {
   const ScratchFolder scratch;
   const std::string folder = scratch.path.string();

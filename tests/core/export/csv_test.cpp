@@ -86,13 +86,29 @@ TEST_CASE("rod forces of a sector are written for every rod of the whole") {
   const TemporaryFile file;
   write_rod_forces_csv(file.path, run.trajectory, diagnose(run));
   const auto rows = table(file.path);
-  CHECK(rows[0].size() == 1 + 30);
-  CHECK(rows[1].size() == 1 + 30);
+  CHECK(rows[0].size() == 1 + 2 * 30);
+  CHECK(rows[1].size() == 1 + 2 * 30);
   // All posts of a ring that keeps its symmetry carry the same force: they are copies of one.
   const std::size_t first_post = 5, second_post = 10;
   REQUIRE(rows[0][first_post] == "B0-T0.axial_force_N");
   REQUIRE(rows[0][second_post] == "B1-T1.axial_force_N");
   CHECK(rows[5][first_post] == rows[5][second_post]);
+}
+
+TEST_CASE("beside each rod force stands whether it is unique, behind all forces") {
+  const Simulation run = short_run("hoop6", {"solver.end_time=0.05"});
+  const TemporaryFile file;
+  write_rod_forces_csv(file.path, run.trajectory, diagnose(run));
+  const auto rows = table(file.path);
+  const auto& rods = run.trajectory.structure().rod_copies;
+  REQUIRE(rows[0].size() == 1 + 2 * rods.size());
+  for (std::size_t r = 0; r < rods.size(); ++r) {
+    CHECK(rows[0][1 + r] == rods[r].name + ".axial_force_N");
+    CHECK(rows[0][1 + rods.size() + r] == rods[r].name + ".axial_force_unique");
+    const bool post =
+        run.trajectory.structure().rods[static_cast<std::size_t>(rods[r].source)].group == "post";
+    for (std::size_t i = 1; i < rows.size(); ++i) CHECK(rows[i][1 + rods.size() + r] == (post ? "1" : "0"));
+  }
 }
 
 TEST_CASE("cells that would break the table are quoted") {

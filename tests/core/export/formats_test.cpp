@@ -91,6 +91,7 @@ TEST_CASE("a VTU of each state and their times in the PVD") {
   CHECK(vtu.find("Name=\"Points\" NumberOfComponents=\"3\" format=\"binary\">" + plain(body)) !=
         std::string::npos);
   CHECK(vtu.find("Name=\"axial_force_N\"") != std::string::npos);
+  CHECK(vtu.find("<DataArray type=\"UInt8\" Name=\"axial_force_unique\"") != std::string::npos);
 }
 
 TEST_CASE("NPY arrays hold the trajectory in C order") {
@@ -113,7 +114,8 @@ TEST_CASE("long tables have a row per state and member") {
   const std::string nodes = e.text("csv/nodes.csv"), rods = e.text("csv/rods.csv");
   CHECK(nodes.starts_with("t_s,node,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s\n0,O,0,0,0,0,0,0\n"));
   CHECK(std::count(nodes.begin(), nodes.end(), '\n') == 1 + 21 * 3);
-  CHECK(rods.starts_with("t_s,rod,node_a,node_b,group,length_m,axial_force_N\n0,OA,O,A,rod,1,"));
+  CHECK(rods.starts_with(
+      "t_s,rod,node_a,node_b,group,length_m,axial_force_N,axial_force_unique\n0,OA,O,A,rod,1,"));
   CHECK(std::count(rods.begin(), rods.end(), '\n') == 1 + 21 * 2);
 }
 
@@ -156,6 +158,39 @@ TEST_CASE("glTF: keys put the ends of every rod on its nodes") {
       // The length is that at t = 0, between states the dense output stretches rods by 1e-4 at this step.
       CHECK((end.cast<double>() - x.segment<3>(3 * rod.b)).norm() <= 1e-3);
     }
+  }
+}
+
+TEST_CASE("glTF: nodes at which no rod ends are there too") {
+  CustomSpec spec;  // a stone that falls beside a rod, and one alone
+  spec.nodes = {{"O", {0, 0, 0}, {0, 0, 0}, 0.0, true},
+                {"A", {1, 0, 0}, {0, 0, 0}, 0.0, false},
+                {"stone", {2, 0, 3}, {0, 0, 0}, 1.5, false}};
+  spec.rods = {{"OA", {"O", "A"}, 2.0}};
+  CustomSpec lonely;
+  lonely.nodes = {{"stone", {2, 0, 3}, {0, 0, 0}, 1.5, false}};
+  for (const CustomSpec& given : {spec, lonely}) {
+    Structure structure = build_custom(given);
+    structure.gravity = {0, 0, -9.81};
+    const Simulation run = simulate(make_model(structure), dvm_options(3, 0.05, 0.5));
+    const Diagnostics diagnostics = diagnose(run);
+    const fs::path directory = fs::temp_directory_path() / ("unfurl_stone_" + std::to_string(::getpid()));
+    fs::create_directories(directory);
+    find_export_format("gltf")->write({run, diagnostics, directory, "fall", 0.1, 1.0});
+    std::ostringstream file;
+    file << std::ifstream(directory / "animation.glb", std::ios::binary).rdbuf();
+    fs::remove_all(directory);
+    const auto json = nlohmann::json::parse(
+        file.str().substr(20, as<std::uint32_t>(std::string_view(file.str()).substr(12, 4))[0]));
+    std::size_t found = 0;
+    for (const auto& node : json["nodes"]) {
+      if (node["name"] != "stone") continue;
+      ++found;
+      CHECK(node["translation"] == nlohmann::json({2.0, 0.0, 3.0}));
+      CHECK(node["scale"][0].get<double>() > 0);
+    }
+    CHECK(found == 1);
+    CHECK(json["nodes"][0]["children"].size() == given.rods.size() + given.nodes.size());
   }
 }
 

@@ -1,6 +1,7 @@
 #include "core/export/summary.hpp"
 
 #include <catch2/catch.hpp>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/scene/build.hpp"
@@ -34,7 +35,9 @@ using Names = std::vector<std::string>;
 TEST_CASE("the summary has exactly its documented keys") {
   const auto s = summary_of("hoop6", {"solver.end_time=0.05"});
   CHECK(keys(s) == Names{"unfurl", "scene", "status", "message", "warnings", "model", "solver", "errors",
-                         "events", "final"});
+                         "forces", "events", "measures", "final"});
+  CHECK(keys(s["forces"]) ==
+        Names{"rods", "unique_rods", "peak_rod_force_N", "peak_rod", "peak_t_s", "peak_unique"});
   CHECK(keys(s["model"]) == Names{"nodes", "rods", "coordinates", "solved_coordinates", "constraints", "rank",
                                   "redundant", "degrees_of_freedom"});
   CHECK(keys(s["solver"]) == Names{"method", "stages", "nodes", "constraints_at", "step_s", "steps",
@@ -54,6 +57,51 @@ TEST_CASE("the model of the six-unit ring is counted as documented") {
   CHECK(s["solver"]["steps"] == 5);
   CHECK(s["final"]["t_s"].get<double>() == Approx(0.05).epsilon(1e-12));  // five times 0.01, rounded
   CHECK(s["final"]["positions_m"].size() == 24);
+}
+
+TEST_CASE("the largest error is the largest magnitude, whatever its sign") {
+  const Scene scene = read_scene_file(find_scene("pendulum"), {"solver.end_time=0.1"});
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  Diagnostics d = diagnose(run);
+  for (Series& column : d.columns)
+    if (column.name == "energy_balance_J") column.values = std::vector<double>(d.t.size(), 0.25);
+  const auto off = [&](double last) {
+    for (Series& column : d.columns)
+      if (column.name == "energy_balance_J") column.values.back() = last;
+    const auto text =
+        summary_json("x", run, d, analyse_mobility(run.trajectory.model().system, Vec3::Zero()));
+    return nlohmann::json::parse(text)["errors"]["energy_balance_max_J"];
+  };
+  CHECK(off(-29.5) == 29.5);
+  CHECK(off(-0.1) == 0.25);
+  CHECK(off(std::numeric_limits<double>::quiet_NaN()).is_null());
+}
+
+TEST_CASE("a summary tells what a run is asked for most") {
+  const auto ring = summary_of("hoop6", {});
+  // 4.92 s and 7199.5 J of the paper's ring; at its own step these are good to 1e-6.
+  CHECK(ring["measures"]["deploy_time_s"].get<double>() == Approx(ring["final"]["t_s"].get<double>()));
+  CHECK(ring["measures"]["deployed_fraction"] == 1.0);
+  CHECK(ring["measures"]["peak_energy_J"].get<double>() == Approx(7199.523).epsilon(1e-5));
+  CHECK_FALSE(ring.contains("drives"));
+  const auto driven = summary_of("hoop6_motor", {});
+  CHECK(driven["measures"]["deploy_time_s"].is_null());  // it stops at 5 degrees
+  // 80 of 85 degrees, of the sine: fractions are of the fold angle or of its sine, in any case most of it.
+  CHECK(driven["measures"]["deployed_fraction"].get<double>() > 0.9);
+  CHECK(driven["drives"]["motor"]["peak_torque_N_m"].get<double>() > 100);
+  CHECK(driven["drives"]["motor"]["peak_power_W"].get<double>() > 100);
+}
+
+TEST_CASE("the summary says which rod carries most, when, and whether the model determines it") {
+  const auto full = summary_of("hoop6", {"solver.end_time=0.05"})["forces"];
+  CHECK(full["rods"] == 30);
+  CHECK(full["unique_rods"] == 6);
+  CHECK_FALSE(full["peak_unique"].get<bool>());  // a chord's
+  CHECK(full["peak_rod_force_N"].get<double>() > 0);
+  const auto swing = summary_of("double_pendulum", {"solver.end_time=0.05"})["forces"];
+  CHECK(swing["unique_rods"] == swing["rods"]);
+  CHECK(swing["peak_unique"].get<bool>());
+  CHECK(swing["peak_t_s"].get<double>() <= 0.05 + 1e-12);
 }
 
 TEST_CASE("a sector counts the nodes of the whole and the coordinates of what was solved") {

@@ -95,4 +95,39 @@ TEST_CASE("several right-hand sides at once give what each gives alone") {
             Approx((c + 1) * f1[i]).epsilon(1e-10).margin(1e-12));
 }
 
+// Rows (1, 0, 0), (cos a, sin a, 0) and the second once more: x = (g_1, (g_2 - g_1 cos a) / sin a, f_3 /
+// M_33).
+TEST_CASE("a direction of singular value 1e-9 beside a redundant row is solved in twice the digits") {
+  const double a = 1e-9;
+  MatrixXd G(3, 3), M = MatrixXd::Identity(3, 3);
+  G << 1, 0, 0, std::cos(a), std::sin(a), 0, std::cos(a), std::sin(a), 0;
+  SaddleSolver solver(sparse_rows(M), sparse_rows(G));
+  REQUIRE(solver.factorise(sparse_rows(G)));
+  const double pivot = solver.weakest_pivot(1e-3);
+  CHECK(pivot == Approx(a * a).epsilon(0.01));  // 1 - cos^2 a
+  const Eigen::Vector3d f(0.0, 0.2 * a, 0.7), g(0.0, 0.3 * a, 0.3 * a);
+  VectorXd x(3), y(3);
+  solver.solve(f, g, x, y);
+  CHECK(x[0] == Approx(0.0).margin(1e-15));
+  CHECK(x[1] == Approx(0.3).epsilon(1e-13));
+  CHECK(x[2] == Approx(0.7).epsilon(1e-15));
+  // (y_2 + y_3) sin a = f_2 - x_2, in equal parts: least norm.
+  CHECK(y[1] * a == Approx(0.5 * (0.2 * a - 0.3)).epsilon(1e-9));
+  CHECK(y[2] == Approx(y[1]).epsilon(1e-9));
+  // One application, as iterations use it: e / a^2 = 1e-5 short of it.
+  std::vector<double> xs(f.data(), f.data() + 3), ys(g.data(), g.data() + 3);
+  solver.apply(xs.data(), ys.data(), 1);
+  CHECK(xs[1] == Approx(0.3).epsilon(1e-4));
+}
+
+TEST_CASE("doubles serve where no direction is weak, whatever is redundant") {
+  MatrixXd G(3, 3), M = MatrixXd::Identity(3, 3);
+  G << 1, 0, 0, 0.6, 0.8, 0, 0.6, 0.8, 0;
+  SaddleSolver solver(sparse_rows(M), sparse_rows(G));
+  REQUIRE(solver.factorise(sparse_rows(G)));
+  CHECK(solver.weakest_pivot(1e-3) == 1e-3);  // none below
+  REQUIRE(solver.factorise(sparse_rows(G)));
+  CHECK(solver.weakest_pivot(0.9) == Approx(0.64).epsilon(1e-9));
+}
+
 }  // namespace saddle_solver_test

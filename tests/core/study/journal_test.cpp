@@ -43,6 +43,16 @@ TEST_CASE("a line that a kill left torn is dropped") {
   CHECK((*Journal(file.path, {"n", "value"}, 1).find({"2"}))[1] == "0.25");
 }
 
+TEST_CASE("rows of another length are no results") {
+  const File file;
+  { Journal(file.path, {"n", "value", "unit"}, 1).append({"1", "0.5", "m"}); }
+  std::ofstream(file.path, std::ios::app) << "2,0.25\n3,0.125,m,4,0.06,m\n5,0.03,m\n";
+  const Journal journal(file.path, {"n", "value", "unit"}, 1);
+  CHECK(journal.size() == 2);
+  CHECK(journal.find({"5"}));
+  CHECK_FALSE(journal.find({"3"}));
+}
+
 TEST_CASE("a journal of other columns is refused") {
   const File file;
   { Journal(file.path, {"n", "value"}, 1).append({"1", "0.5"}); }

@@ -1,6 +1,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/extrapolation.hpp"
 #include "core/study/reference.hpp"
@@ -19,6 +22,42 @@ TEST_CASE("the reference of the ring is the quadrature of its energy") {
     CHECK(std::abs(model->structure.deployment.fold_angle(reference.q[k]) - exact.angle(reference.t[k])) <
           1e-11);
   CHECK(reference.uncertainty < 1e-11);
+}
+
+TEST_CASE("a reference is known as well as two methods agree, where there are two") {
+  const Reference swing = solve_reference(make_model(double_pendulum()), 1.2, 12, {});
+  CHECK(swing.confirmed);
+  CHECK(swing.uncertainty < 1e-11);
+  // Collinear poses stop the index-1 equations: dvm is left alone, and agrees with itself.
+  const auto ladder = make_model(ladder_structure(1, 6.0));
+  const Reference turning = solve_reference(ladder, 2.0, 20, {});
+  CHECK_FALSE(turning.confirmed);
+  CHECK(turning.how.find("dvm") == 0);
+}
+
+TEST_CASE("a reference knows of a load that acts between two of its times") {
+  // 3 kg, free; 840 N along x, up within 0.1 ms, on for 1 ms and down again: 0.924 kg m/s in all, symmetric
+  // about its middle, so that x goes on from there with 0.308 m/s.
+  const Scene scene = read_scene_text(
+      "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'P'\nposition = [0.3, 0.2, 0.1]\nmass = "
+      "3.0\n"
+      "[[structure.nodes]]\nname = 'O'\nposition = [1.3, 0.2, 0.7]\nfixed = true\n"
+      "[[forces]]\nkind = 'load_over_time'\nnodes = ['P']\nforce = [840, 0, 0]\n"
+      "times = [0.5031, 0.5032, 0.5042, 0.5043]\nvalues = [0, 1, 1, 0]\n",
+      "blow.toml", {});
+  const Reference reference = solve_reference(build_model(scene), 1.2, 6, {});
+  // Six intervals of 0.2 s: straight on before and after.
+  CHECK(reference.q[2][0] == Approx(0.3).epsilon(1e-14));
+  CHECK(reference.q[6][0] == Approx(0.3 + 840 * 0.0011 / 3 * (1.2 - 0.5037)).epsilon(1e-12));
+  CHECK(reference.uncertainty < 1e-13);
+}
+
+TEST_CASE("distances keep what is not a number") {
+  VectorXd a = VectorXd::LinSpaced(9, 0, 1), b = a;
+  b[8] += 0.25;
+  CHECK(node_distance(a, b) == Approx(0.25));
+  b[1] = std::numeric_limits<double>::quiet_NaN();  // of the first node, with a larger distance after it
+  CHECK(std::isnan(node_distance(a, b)));
 }
 
 TEST_CASE("extrapolation is of order 16") {

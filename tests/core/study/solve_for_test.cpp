@@ -18,6 +18,20 @@ TEST_CASE("a root is bracketed from where the search starts") {
   CHECK(s.evaluations.size() < 40);
 }
 
+TEST_CASE("a root between two ends is found on either side of where the scene stands") {
+  const auto f = [](double x) { return x * x - 7.3; };
+  for (const double start : {1.1, 5.9}) {
+    const Solved s = solve_for(f, 0, {.start = start, .low = 1.3, .high = 4.7}, {});
+    CHECK(s.x == Approx(std::sqrt(7.3)).epsilon(1e-11));
+    for (const Evaluation& e : s.evaluations) CHECK((e.x >= 1.3 && e.x <= 4.7));
+  }
+  const Solved exact =
+      solve_for([](double x) { return 3 * x; }, 7.5, {.start = 2.5, .f_tolerance = 1e-12}, {});
+  CHECK(exact.x == 2.5);
+  CHECK(exact.low == 2.5);
+  CHECK(exact.high == 2.5);
+}
+
 TEST_CASE("the search approaches a wall behind which parameters are invalid") {
   // Like the deployment time near dead centre: it grows without end towards 90.
   const auto f = [](double x) { return x < 90 ? -std::log(90 - x) : none; };

@@ -101,4 +101,40 @@ TEST_CASE("a ladder falls by halves and two thirds, and all its runs meet") {
   CHECK_THROWS_WITH(make_ladder(8, 0.01, 1, 1e-9), Catch::Contains("at most a factor"));
 }
 
+TEST_CASE("ladders of more steps than a run may have are refused") {
+  for (const auto& [largest, smallest] :
+       {std::pair{1e-9, 1e-10}, {2e-9, 1e-9}, {1e-300, 1e-302}, {1e-6, 5e-7}}) {
+    INFO(largest);
+    CHECK_THROWS_AS(make_ladder(4.9, 0.01, largest, smallest), StudyError);
+  }
+  CHECK_THROWS_WITH(make_ladder(4.9, 0.01, 1e-4, 1e-8), Catch::Contains("more than 1e7 steps"));
+  CHECK(make_ladder(4.9, 0.01, 1e-3, 1e-5).steps.back() > 400000);
+  CHECK_THROWS_AS(make_ladder(1e9, 1e-3, 0, 0), StudyError);  // of the scene's own step
+}
+
+TEST_CASE("a step that is too large to trust is what a study is for") {
+  // Runge-Kutta in steps of 0.3 s on a pendulum of 1 m: h omega = 0.9, and it swings through.
+  SolverOptions scene = dvm_options(3, 0.3, 1.2);
+  scene.method = "rk4";
+  const StudyPlan plan = plan_study(make_model(double_pendulum()), scene, 0.1, 0.01, {});
+  CHECK(plan.end == Approx(1.2));
+}
+
+TEST_CASE("a scene with adaptive steps is studied like one without") {
+  SolverOptions scene = dvm_options(3, 0.01, 0.6);
+  const auto names = [](const std::vector<Setting>& settings) {
+    std::vector<std::string> out;
+    for (const Setting& s : settings) {
+      CHECK_FALSE(s.options.adaptive);
+      CHECK(s.options.tolerance == 0);
+      out.push_back(s.name);
+    }
+    return out;
+  };
+  const auto fixed = names(study_settings(scene));
+  scene.adaptive = true;
+  scene.tolerance = 1e-6;
+  CHECK(names(study_settings(scene)) == fixed);
+}
+
 }  // namespace study_test

@@ -1,6 +1,10 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <set>
 
+#include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
 #include "core/study/sweep.hpp"
 #include "tests/support/hoop_exact.hpp"
 
@@ -25,7 +29,12 @@ TEST_CASE("axes are ranges, log ranges or lists") {
   CHECK(parse_axis("solver.method=dvm,rk4").numbers.empty());
   for (const char* bad : {"a", "a=", "=1:2:3", "a=1:2", "a=1:2:0", "a=1:2:2.5", "a=1:1:3", "a=0:1:3:log",
                           "a=1:2:3:lin", "a=x:2:3", "a=1,,2", "a=1,1"})
-    CHECK_THROWS_AS(parse_axis(bad), std::invalid_argument);
+    CHECK_THROWS_AS(parse_axis(bad), StudyError);
+}
+
+TEST_CASE("a range of one is its beginning") {
+  CHECK(parse_axis("a=2.5:7:1").numbers == std::vector<double>{2.5});
+  CHECK(parse_axis("a=2.5:7:1:log").numbers == std::vector<double>{2.5});
 }
 
 TEST_CASE("shards part the points and nothing else is one") {
@@ -53,7 +62,42 @@ TEST_CASE("a sweep finds the deployment times of the exact ring, on any number o
   const Sweep shard = run_sweep(plan, other, {});
   REQUIRE(shard.table.rows.size() == 1);
   CHECK(shard.missing == 0);
-  CHECK(shard.table.rows[0] == sweep.table.rows[1]);
+  CHECK(shard.table.rows[0] == sweep.table.rows[points_of_shard(plan)[0]]);
+}
+
+TEST_CASE("shards part a grid evenly, and none gets one value of an axis alone") {
+  // As many shards as the last axis has values: every fourth point would give each of them one of those, and
+  // larger structures cost more.
+  SweepPlan plan = ring_plan();
+  plan.axes = {parse_axis("structure.fold_angle=40:80:50"), parse_axis("structure.units=4,8,16,64")};
+  std::vector<int> seen(plan.points(), 0);
+  for (int index = 1; index <= 4; ++index) {
+    plan.shard = {index, 4};
+    std::set<std::string> units;
+    const auto points = points_of_shard(plan);
+    CHECK(points.size() == 50);
+    std::size_t large = 0;
+    for (const std::size_t point : points) {
+      ++seen[point];
+      units.insert(plan.key(point)[1]);
+      large += plan.key(point)[1] == "64" ? 1 : 0;
+    }
+    CHECK(units.size() == 4);
+    // 12.5 on average, with a deviation of 2.7 in a random order: no shard with twice its part.
+    CHECK(large < 25);
+  }
+  CHECK(std::all_of(seen.begin(), seen.end(), [](int times) { return times == 1; }));
+}
+
+TEST_CASE("a column that only this scene has is a measure") {
+  const auto ring = build_model(read_scene_file(find_scene("hoop6_motor"), {}));
+  const auto columns = columns_of(ring);
+  CHECK(find_measure("max:motor.torque_N_m", columns).column == "max_motor.torque_N_m");
+  CHECK_THROWS_WITH(find_measure("max:motor.torque_Nm", columns),
+                    Catch::Contains("did you mean 'motor.torque_N_m'"));
+  CHECK_THROWS_AS(
+      find_measure("max:motor.torque_N_m", columns_of(build_model(read_scene_file(find_scene("hoop6"), {})))),
+      StudyError);
 }
 
 TEST_CASE("axes of figures are called by words and units") {

@@ -1,7 +1,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <random>
 
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/study/measured_run.hpp"
 #include "core/study/reference.hpp"
+#include "core/study/table.hpp"
 #include "core/study/tolerance.hpp"
 #include "tests/support/models.hpp"
 
@@ -49,3 +54,126 @@ TEST_CASE("tighter tolerances cost more work, by stages or steps") {
   CHECK(loose.newton_iterations < tight.newton_iterations * 2);
   CHECK(tight.position_estimate < loose.position_estimate);
 }
+
+namespace tolerance_test {
+
+namespace {
+
+struct Case {
+  std::string scene;
+  double end, exact;  // x or z of P at the end, the coordinate `axis`
+  Index axis;
+};
+
+std::string text_of(double x) {
+  return exact_number(x);
+}
+
+std::string mass_point(const std::string& position, double mass) {
+  return "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'O'\nposition = [0, 0, 0]\nfixed = true\n"
+         "[[structure.nodes]]\nname = 'P'\nposition = " +
+         position + "\nmass = " + text_of(mass) + "\n";
+}
+
+// A blow on a free mass: up, on and down along straight lines; a momentum J about the middle t_m of the
+// trapezium.
+Case blow(std::mt19937& random) {
+  const auto any = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const double mass = any(0.5, 5), force = any(100, 3000), start = any(0.1, 0.6), up = any(1e-5, 1e-3),
+               on = any(1e-4, 5e-3), end = any(0.8, 1.5);
+  const double middle = start + up + on / 2, momentum = force * (up + on);
+  return {mass_point("[1, 0.3, 0]", mass) + "[[forces]]\nkind = 'load_over_time'\nnodes = ['P']\nforce = [" +
+              text_of(force) + ", 0, 0]\ntimes = [" + text_of(start) + ", " + text_of(start + up) + ", " +
+              text_of(start + up + on) + ", " + text_of(start + up + on + up) + "]\nvalues = [0, 1, 1, 0]\n",
+          end, 1 + momentum / mass * (end - middle), 3};
+}
+
+// A mass that rests on a stop until a load that grows like r t lifts it at t_0 = m g / r: z = r (t - t_0)^3 /
+// 6 m.
+Case lifted(std::mt19937& random) {
+  const auto any = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const double mass = any(0.5, 5), start = any(0.2, 0.7), rate = mass * 9.81 / start,
+               end = start + any(0.2, 0.6);
+  return {mass_point("[1, 0, 0.4]", mass) +
+              "[[forces]]\nkind = 'load_over_time'\nnodes = ['P']\nforce = [0, 0, " + text_of(rate) +
+              "]\ntimes = [0, 3]\nvalues = [0, 3]\n[[constraints]]\nkind = 'coordinate_stop'\nname = "
+              "'floor'\nnodes = "
+              "['P']\ndirection = [0, 0, 1]\nmin = 0.4\n[gravity]\nacceleration = [0, 0, -9.81]\n",
+          end, 0.4 + rate * std::pow(end - start, 3) / (6 * mass), 5};
+}
+
+// A mass on a cable, drawn out by a: a quarter of a swing, then free flight with a omega.
+Case cable(std::mt19937& random) {
+  const auto any = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const double mass = any(0.5, 5), omega = any(3, 12), drawn = any(0.1, 0.4),
+               slack = 0.5 * std::acos(-1.0) / omega, end = slack + any(0.3, 1.5) / (drawn * omega);
+  return {mass_point("[" + text_of(1 + drawn) + ", 0, 0]", mass) +
+              "[[structure.constraints]]\nkind = 'line'\nnodes = ['P']\ndirection = [1, 0, "
+              "0]\n[[forces]]\nkind = "
+              "'spring'\nnodes = ['O', 'P']\nstiffness = " +
+              text_of(mass * omega * omega) + "\nfree_length = 1\ntension_only = true\n",
+          end, 1 - drawn * omega * (end - slack), 3};
+}
+
+}  // namespace
+
+TEST_CASE("what a tolerance claims of blows, stops that let go and cables that slacken is true") {
+  std::mt19937 random(20261);
+  int kept = 0;
+  for (int i = 0; i < 24; ++i) {
+    const Case c = i % 3 == 0 ? blow(random) : i % 3 == 1 ? lifted(random) : cable(random);
+    for (const double tolerance : {1e-4, 1e-8}) {
+      const Scene scene = read_scene_text(
+          c.scene + "[solver]\ntolerance = " + text_of(tolerance) + "\nend_time = " + text_of(c.end) + "\n",
+          "random.toml", {});
+      const Simulation run = simulate_as_asked(build_model(scene), scene.solver);
+      REQUIRE(run.status == RunStatus::completed);
+      const double error = std::abs(run.trajectory.positions(run.trajectory.size() - 1)[c.axis] - c.exact);
+      INFO(c.scene << "tolerance " << tolerance << ", error " << error << ", estimate "
+                   << run.position_estimate);
+      const bool said =
+          !run.warnings.empty() && run.warnings.back().find("out of reach") != std::string::npos;
+      CHECK((said || error <= tolerance));
+      CHECK((said || run.position_estimate <= tolerance));
+      kept += said ? 0 : 1;
+    }
+  }
+  CHECK(kept > 40);
+}
+
+TEST_CASE("a tolerance ends in bounded time where it cannot be met") {
+  // The ring of joints next to its dead centre: round-off decides when it begins to move.
+  const auto model = make_model(hoop_structure({{"model", std::string("joints")},
+                                                {"units", 5L},
+                                                {"chord_rod_length", 1.7},
+                                                {"fold_angle", 89.86},
+                                                {"hinge_force", 20.0}}));
+  SolverOptions options = dvm_options(3, 0.01, 38.0);
+  options.tolerance = 1e-8;
+  const double begin = thread_cpu_seconds();
+  const Simulation run = simulate_as_asked(model, options);
+  CHECK(run.status == RunStatus::deployed);
+  CHECK(std::isfinite(run.position_estimate));
+  CHECK(thread_cpu_seconds() - begin < 40);  // some ten on a machine of 2020, before 54 and more
+}
+
+TEST_CASE("a pick that is cancelled has stopped, whichever of its runs it was") {
+  const auto model = make_model(double_pendulum());
+  SolverOptions options = dvm_options(3, 0.01, 0.5);
+  options.tolerance = 1e-6;
+  long asked = 0;
+  SimulationHooks counting;
+  counting.cancelled = [&] { return ++asked < 0; };
+  simulate_as_asked(model, options, counting);
+  const long all = asked;
+  REQUIRE(all > 300);  // three runs of 128 steps and more
+  for (long when = 1; when <= all; when += 37) {
+    asked = 0;
+    SimulationHooks hooks;
+    hooks.cancelled = [&] { return ++asked >= when; };
+    INFO(when << " of " << all);
+    CHECK(simulate_as_asked(model, options, hooks).status == RunStatus::stopped);
+  }
+}
+
+}  // namespace tolerance_test

@@ -1,9 +1,12 @@
 #include "render/image/png.hpp"
 
+#include <unistd.h>
 #include <zlib.h>
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <stdexcept>
+#include <string>
 
 using namespace unfurl;
 
@@ -52,6 +55,34 @@ TEST_CASE("a PNG keeps alpha when asked") {
 TEST_CASE("a picture whose size does not fit its pixels is refused") {
   CHECK_THROWS_AS(encode_png(Image{}), std::invalid_argument);
   CHECK_THROWS_AS(encode_png(Image{2, 2, {1, 2, 3, 4}}), std::invalid_argument);
+}
+
+TEST_CASE("a PNG file with any one byte changed, cut or added is not whole") {
+  Image image{7, 5, std::vector<std::uint8_t>(4 * 7 * 5)};
+  for (std::size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = static_cast<std::uint8_t>(37 * i);
+  const std::vector<std::byte> good = with_resolution(encode_png(image), 300);
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("unfurl_png_" + std::to_string(::getpid()));
+  const auto size_of = [&](const std::vector<std::byte>& bytes) {
+    write_file_atomically(path, bytes);
+    return whole_png(path);
+  };
+  CHECK(size_of(good) == std::pair(7, 5));
+  int unseen = 0;
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    std::vector<std::byte> bad = good;
+    bad[i] ^= std::byte{4};
+    write_file_atomically(path, bad, Flush::later);
+    unseen += whole_png(path).has_value();
+  }
+  CHECK(unseen == 0);
+  std::vector<std::byte> cut(good.begin(), good.end() - 1), more = good;
+  more.push_back(std::byte{0});
+  CHECK_FALSE(size_of(cut));
+  CHECK_FALSE(size_of(more));
+  CHECK_FALSE(size_of({}));
+  std::filesystem::remove(path);
+  CHECK_FALSE(whole_png(path));
 }
 
 }  // namespace png_test

@@ -189,4 +189,55 @@ TEST_CASE("frames come at the film's rate and the last one shows the end") {
   CHECK(slow[slow.size() - 2] < slow.back());
 }
 
+TEST_CASE("rods drawn thicker than they are say by how much, and rod_scale = 1 draws them as they are") {
+  const Simulation r = run(ring);
+  const double own = std::sqrt(9e-4 / pi);  // of the section's area, 9e-4 m^2
+  const auto drawn = [&](double rod_scale, double& radius) {
+    FrameStyle style;
+    style.options.rod_scale = rod_scale;
+    const DrawList list = FrameBuilder(r.trajectory, style).build(0.0);
+    radius = static_cast<double>(list.tubes.at(0).radius);
+    std::string note;
+    for (const TextLabel& label : list.labels)
+      if (label.text.find("rods drawn") != std::string::npos) note += label.text;
+    return note;
+  };
+  double radius = 0;
+  CHECK(drawn(1.0, radius).empty());
+  CHECK(radius == Approx(own));
+  CHECK(drawn(3.0, radius) == "rods drawn 3.0 \u00D7 as thick");
+  CHECK(radius == Approx(3 * own));
+  const std::string note = drawn(0.0, radius);
+  REQUIRE(radius > 1.5 * own);  // a ring of 12 m, seen whole
+  char factor[32];
+  std::snprintf(factor, sizeof factor, "%.1f", radius / own);
+  CHECK(note == "rods drawn " + std::string(factor) + " \u00D7 as thick");
+}
+
+TEST_CASE(
+    "dimension lines and their numbers stay inside the picture and off what is written in its corners") {
+  const Simulation r = run(ring);
+  for (const char* camera : {"auto", "front", "side", "iso"}) {
+    FrameStyle style;
+    style.options.dimensions = true;
+    style.options.camera = camera;
+    const FrameBuilder with(r.trajectory, style);
+    style.options.dimensions = false;
+    const FrameBuilder without(r.trajectory, style);
+    for (const double share : {0.0, 0.4, 0.8, 1.0}) {
+      INFO(camera << " at " << share);
+      const DrawList list = with.build(share * r.trajectory.end_time());
+      const std::size_t plain = without.build(share * r.trajectory.end_time()).lines.size();
+      REQUIRE(list.lines.size() > plain);
+      for (const OverlayLine& line : list.lines)
+        for (const auto& [x, y] : {std::pair(line.x0, line.y0), std::pair(line.x1, line.y1)}) {
+          CHECK(x > 0);
+          CHECK(x < 1280);
+          CHECK(y > 0);
+          CHECK(y < 720 - 51);  // the legend and the time: an edge of 30 and a line of 21 pixels
+        }
+    }
+  }
+}
+
 }  // namespace frame_builder_test

@@ -80,6 +80,9 @@ TEST_CASE("a given range is kept, beyond it the colour is that of its end, and g
   const RodField field = rod_field("speed", {1, 3}, r.run, r.diagnostics);
   CHECK(field.low == 1);
   CHECK(field.high == 3);
+  CHECK(field.above);  // it moves at 5 m/s, and the bar must say that its end is not the largest value
+  CHECK_FALSE(field.below);
+  CHECK_FALSE(rod_field("speed", {0, 0}, r.run, r.diagnostics).above);
   CHECK(field.color(99).g == sequential_color(1).g);
   CHECK(field.color(-1).b == sequential_color(0).b);
   const Color unknown = field.color(std::nan(""));
@@ -108,6 +111,11 @@ TEST_CASE("the picture of a run shows the field's colour, its bar and what else 
   style.diagnostics = &r.diagnostics;
   const FrameBuilder builder(r.run.trajectory, style);
   const DrawList list = builder.build(0.25);
+  style.options.colour_range = {0, 3};
+  std::string bar;
+  for (const TextLabel& label : FrameBuilder(r.run.trajectory, style).build(0.25).labels)
+    bar += label.text + "|";
+  CHECK_THAT(bar, Catch::Contains("|\u2265 3|"));
   CHECK(list.tubes[0].color.g == Approx(sequential_color(0.5).g).margin(1e-4));
   CHECK(list.areas.size() == 64);
   std::string texts = "|";

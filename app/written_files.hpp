@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/export/atomic_file.hpp"
+
+namespace unfurl {
+
+// The list DIR/.unfurl of what unfurl wrote into DIR: nothing else there is ever removed or replaced.
+//
+//   Made by unfurl 0.1.0                     DIR was empty before; else "Written into by unfurl 0.1.0"
+//   cbf29ce484222325 run series.csv          checksum of its bytes, whose result it is, name in DIR
+//   ---------------- sweep sweep.csv         of a file that grows: whatever its bytes are
+//
+// A line is appended before the file gets its name, so that a kill leaves no file without one; a name may
+// have several lines, and a file is ours where one of them fits it. While the object lives every file that
+// the program writes into DIR is entered under `owner`. A file in the way that is not ours, or was changed
+// since, is kept beside ours as NAME.kept-1 (-2, ...).
+class WrittenFiles : public FileWatcher {
+ public:
+  // Reads the list, or begins one. Throws FileError where it cannot be written.
+  WrittenFiles(std::filesystem::path directory, std::string owner, bool was_empty);
+  ~WrittenFiles();
+  WrittenFiles(const WrittenFiles&) = delete;
+  WrittenFiles& operator=(const WrittenFiles&) = delete;
+
+  void before_file(const std::filesystem::path& target, const std::string& checksum) override;
+  // The file grows after it was written.
+  void grows(const std::string& name);
+
+  // Has DIR/name a line of this owner, and is it a file with the checksum of one?
+  bool ours(const std::string& name) const;
+  // Removes what is ours, but nothing behind a link, and directories that are empty then. The list forgets
+  // it.
+  void remove_all();
+  // The same for this one.
+  void remove(const std::string& name);
+
+  // DIR/name, a file, a folder or a link, gets the name name.kept-1, or the next that is free.
+  void keep_aside(const std::string& name);
+
+  const std::filesystem::path& directory() const { return directory_; }
+  // What was kept aside, for a word to the person.
+  std::vector<std::string> kept() const;
+
+  // Is there a list that was begun in an empty directory? False also where it cannot be read.
+  static bool begun_here(const std::filesystem::path& directory);
+  static constexpr const char* list_name = ".unfurl";
+
+ private:
+  struct Line {
+    std::string checksum, owner;
+    auto operator<=>(const Line&) const = default;
+  };
+
+  void read();
+  void append(const Line& line, const std::string& name);
+  void write_anew(bool was_empty);
+  bool known(const std::string& name, const std::string& checksum) const;
+  std::string name_of(const std::filesystem::path& target) const;
+  void put_aside(const std::filesystem::path& target);
+
+  std::filesystem::path directory_;
+  std::string owner_, title_;
+  mutable std::mutex mutex_;
+  std::map<std::string, std::set<Line>> lines_;  // by name
+  std::vector<std::string> kept_;
+  FileWatcher* before_ = nullptr;
+};
+
+}  // namespace unfurl

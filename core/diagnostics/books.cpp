@@ -1,0 +1,33 @@
+#include "core/diagnostics/books.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace unfurl {
+
+std::vector<double> energy_round_off(const Simulation& run) {
+  constexpr double noise = 64 * std::numeric_limits<double>::epsilon();
+  const Trajectory& trajectory = run.trajectory;
+  std::vector<double> out;
+  VectorXd force;
+  double reach = 0, work = 0;  // so far; a state that is not finite leaves them as they are
+  const auto grow = [](double& most, double x) { most = x > most ? x : most; };
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const System& system = trajectory.model(i).system;
+    const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
+    force.setZero(q.size());
+    system.add_applied_force(trajectory.time(i), q, v, 1.0, force);
+    if (q.size()) grow(reach, q.lpNorm<Eigen::Infinity>());
+    grow(work,
+         force.lpNorm<1>() * reach + std::abs(system.potential_energy(q)) + std::abs(system.load_work(q)));
+    const auto steps = static_cast<double>(i);
+    const double elapsed = trajectory.time(i) - trajectory.start_time();
+    const double speed = elapsed > 0 ? noise * reach * steps / elapsed : 0.0;
+    const double energy =
+        std::sqrt(steps + 1) * noise * work + system.node_mass().diagonal().sum() * speed * speed;
+    out.push_back(energy * trajectory.structure().sectors);
+  }
+  return out;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,87 @@
+#include "core/diagnostics/force_uniqueness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/math/determined_rows.hpp"
+
+namespace unfurl {
+namespace {
+
+// States of [first, last] that are looked at.
+std::set<std::size_t> looked_at(const Simulation& run, std::size_t first, std::size_t last) {
+  constexpr std::size_t parts = 4;
+  const Trajectory& trajectory = run.trajectory;
+  std::set<std::size_t> states;
+  for (std::size_t k = 0; k <= parts; ++k) states.insert(first + (last - first) * k / parts);
+  for (const Event& event : run.events) {
+    if (std::isnan(event.singular_value)) continue;
+    std::size_t after = first;
+    while (after < last && trajectory.time(after) < event.t) ++after;
+    states.insert(after);
+    if (after > first) states.insert(after - 1);
+  }
+  return states;
+}
+
+std::vector<char> determined_at(const Trajectory& trajectory, std::size_t i) {
+  const System& system = trajectory.model(i).system;
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  system.jacobian(trajectory.node_positions(i), G, scratch);
+  return determined_rows(G);
+}
+
+}  // namespace
+
+ForceUniqueness::ForceUniqueness(const Simulation& run) {
+  const Trajectory& trajectory = run.trajectory;
+  for (std::size_t first = 0, last = 0; first < trajectory.size(); first = last + 1) {
+    last = first;
+    while (last + 1 < trajectory.size() && &trajectory.model(last + 1) == &trajectory.model(first)) ++last;
+    examine(run, first, last);
+  }
+}
+
+void ForceUniqueness::examine(const Simulation& run, std::size_t first, std::size_t last) {
+  std::map<std::size_t, std::vector<char>> seen;
+  for (const std::size_t i : looked_at(run, first, last)) seen[i] = determined_at(run.trajectory, i);
+  std::vector<char>& usual = usual_[first];
+  usual.assign(seen.begin()->second.size(), 0);
+  for (const auto& [i, determined] : seen)
+    for (std::size_t r = 0; r < usual.size(); ++r) usual[r] = static_cast<char>(usual[r] | determined[r]);
+  for (auto& [i, determined] : seen)
+    if (determined != usual && !run.trajectory.report(i).singular_event) singular_[i] = std::move(determined);
+}
+
+const std::vector<char>& ForceUniqueness::at(std::size_t state) const {
+  const auto singular = singular_.find(state);
+  return singular != singular_.end() ? singular->second : std::prev(usual_.upper_bound(state))->second;
+}
+
+PeakForce peak_rod_force(const Diagnostics& d, Pull pull) {
+  constexpr double equal = 1e-9;  // of the peak: what multipliers of redundant rows carry of round-off
+  const auto size = [pull](double force) {
+    return pull == Pull::either ? std::abs(force) : pull == Pull::tension ? force : -force;
+  };
+  const MatrixXd& force = d.axial_force;
+  PeakForce peak;
+  for (Index i = 0; i < force.rows(); ++i)
+    for (Index r = 0; r < force.cols(); ++r)
+      if (!std::isnan(force(i, r)) && (peak.rod < 0 || size(force(i, r)) > size(peak.force_N)))
+        peak = {force(i, r), r, d.t[static_cast<std::size_t>(i)], true};
+  const double most = size(peak.force_N);
+  for (Index k = 0; k < force.size(); ++k)
+    if (size(force.data()[k]) >= most - equal * std::abs(most) && !d.force_unique.data()[k])
+      peak.unique = false;
+  return peak;
+}
+
+std::size_t unique_rods(const Structure& structure, const Diagnostics& d) {
+  return static_cast<std::size_t>(std::count_if(
+      structure.rod_copies.begin(), structure.rod_copies.end(),
+      [&](const RodCopy& copy) { return d.rod_unique[static_cast<std::size_t>(copy.source)] != 0; }));
+}
+
+}  // namespace unfurl

@@ -1,0 +1,49 @@
+// Which forces of a run the rigid model determines.
+//
+// Where constraints are redundant, any state of self-stress may be added to their forces: the multipliers
+// that are reported are those of least norm, one choice among many. A multiplier that no such state contains
+// is unique (math/determined_rows.hpp). That is a matter of the structure's shape, not of its pose: it
+// changes only where the constraints change (contact, latch) and, for a moment, at singular poses.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics/diagnostics.hpp"
+
+namespace unfurl {
+
+// Per kept row of a run's constraints, at every state. A few states of each model are examined: its ends,
+// three between them and those beside the singular poses that the run names.
+class ForceUniqueness {
+ public:
+  explicit ForceUniqueness(const Simulation& run);
+
+  // 1: unique, per kept row of the model that the state belongs to. At a singular pose without redundancy the
+  // forces that are carried over as the limit along the motion (StepReport::singular_event) stay unique.
+  const std::vector<char>& at(std::size_t state) const;
+  // False: a singular pose, where more than usual is open.
+  bool regular(std::size_t state) const { return singular_.count(state) == 0; }
+
+ private:
+  void examine(const Simulation& run, std::size_t first, std::size_t last);
+
+  std::map<std::size_t, std::vector<char>> usual_;  // by the first state of a model
+  std::map<std::size_t, std::vector<char>> singular_;
+};
+
+// The largest axial force among all rods and states: its magnitude, or of tensions or compressions alone.
+enum class Pull { either, tension, compression };
+struct PeakForce {
+  double force_N = 0.0;  // tension positive; 0 where there is no rod
+  Index rod = -1;        // of the solved structure; -1: there is none, or nothing is known
+  double t = 0.0;        // [s]
+  bool unique = true;    // of this rod at this state, and of any other that has the same force
+};
+PeakForce peak_rod_force(const Diagnostics& diagnostics, Pull pull = Pull::either);
+
+// How many of the shown rods have a unique force, at every pose that is not singular.
+std::size_t unique_rods(const Structure& structure, const Diagnostics& diagnostics);
+
+}  // namespace unfurl

@@ -1,0 +1,187 @@
+#include "core/diagnostics/peaks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/diagnostics/quintic.hpp"
+#include "core/integrators/index1.hpp"
+#include "core/model/time_edges.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr std::size_t most_candidates = 3;
+constexpr double good_constraint =
+    1e-4;  // of a rod's length: beyond it the quintic is no motion of the structure
+
+// The motion around state i: two steps at most, where they are smooth.
+class Neighbourhood {
+ public:
+  Neighbourhood(const Simulation& run, std::size_t i) : run_(run), i_(i), first_(i), last_(i) {
+    const Trajectory& t = run.trajectory;
+    const Model* model = &t.model(i);
+    if (i > 0 && joined(i - 1, i)) first_ = i - 1;
+    if (i + 1 < t.size() && joined(i, i + 1)) last_ = i + 1;
+    from_ = first_;
+    Index1 index1(model->system);
+    VectorXd lambda(model->system.constraints());
+    for (std::size_t k = first_; k <= last_; ++k) {
+      VectorXd a(t.state(k).z.size());
+      const State& s = t.state(k);
+      const bool known = index1.evaluate(s.t, s.z, s.w, a, lambda);
+      accelerations_.push_back(known ? a : VectorXd());
+    }
+    if (first_ < i && !known(first_)) first_ = i;
+    if (last_ > i && !known(last_)) last_ = i;
+    if (!known(i)) first_ = last_ = i;
+  }
+
+  double begin() const { return run_.trajectory.time(first_); }
+  double end() const { return run_.trajectory.time(last_); }
+  bool empty() const { return first_ == last_; }
+
+  // Values at these times; NaN where the quintic is no motion of the structure.
+  std::vector<double> sample(const std::vector<double>& times, const StateValues& values) const {
+    const Model& model = run_.trajectory.model(i_);
+    const std::shared_ptr<const Model> shared(std::shared_ptr<const Model>(), &model);
+    Simulation piece{.trajectory = Trajectory(shared), .options = run_.options};
+    for (const double t : times) piece.trajectory.append(state_at(t), StepReport{});
+    std::vector<double> out = values(piece);
+    const VectorXd lengths = model.system.all_lengths();
+    VectorXd phi(lengths.size());
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      model.system.all_constraint_values(times[k], piece.trajectory.node_positions(k), phi);
+      if (phi.size() && !(phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() <= good_constraint))
+        out[k] = std::numeric_limits<double>::quiet_NaN();
+    }
+    return out;
+  }
+
+ private:
+  bool joined(std::size_t a, std::size_t b) const {
+    const Trajectory& t = run_.trajectory;
+    return !same_instant(t.time(a), t.time(b)) && &t.model(a) == &t.model(b) && !t.report(a).singular_event &&
+           !t.report(b).singular_event;
+  }
+  bool known(std::size_t k) const {
+    return acceleration(k).size() > 0 || run_.trajectory.state(k).z.size() == 0;
+  }
+  const VectorXd& acceleration(std::size_t k) const { return accelerations_[k - from_]; }
+  State state_at(double t) const {
+    const Trajectory& run = run_.trajectory;
+    const std::size_t k = t < run.time(i_) || last_ == i_ ? first_ : i_;
+    const State &a = run.state(k), &b = run.state(k + 1);
+    const Quintic motion{a, b, acceleration(k), acceleration(k + 1), b.t - a.t};
+    State state = a;
+    const double u = (t - a.t) / (b.t - a.t);
+    state.t = t;
+    state.z = motion.value(u);
+    state.w = motion.rate(u);
+    return state;
+  }
+
+  const Simulation& run_;
+  std::size_t i_, first_, last_, from_ = 0;
+  std::vector<VectorXd> accelerations_;  // at state from_ and those after it; empty where there is none
+};
+
+struct Vertex {
+  double t, value;
+};
+
+// Of the parabola through three points, within their times; the middle one where there is none.
+Vertex vertex(const std::array<double, 3>& t, const std::array<double, 3>& x) {
+  const double left = (x[1] - x[0]) / (t[1] - t[0]), right = (x[2] - x[1]) / (t[2] - t[1]);
+  const double bend = (right - left) / (t[2] - t[0]);
+  if (!(bend < 0)) return {t[1], x[1]};
+  const double at = std::clamp(0.5 * (t[0] + t[1]) - left / (2 * bend), t[0], t[2]);
+  return {at, x[0] + (at - t[0]) * (left + bend * (at - t[1]))};
+}
+
+// States around which the motion may top `best`: local maxima whose parabola reaches it, the highest first.
+std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<double>& x, double best) {
+  std::vector<std::pair<double, std::size_t>> found;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool inner =
+        i > 0 && i + 1 < x.size() && run.time(i) > run.time(i - 1) && run.time(i + 1) > run.time(i);
+    if (std::isnan(x[i]) || (i > 0 && x[i - 1] > x[i]) || (i + 1 < x.size() && x[i + 1] > x[i])) continue;
+    double reach = x[i];
+    if (inner && std::isfinite(x[i - 1]) && std::isfinite(x[i + 1]))
+      reach = vertex({run.time(i - 1), run.time(i), run.time(i + 1)}, {x[i - 1], x[i], x[i + 1]}).value;
+    if (reach >= best) found.push_back({reach, i});
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < std::min(found.size(), most_candidates); ++k) out.push_back(found[k].second);
+  return out;
+}
+
+// The largest value between two times: of 9 in all of it, 9 around the largest of those, and the parabola
+// there.
+double closer(const Neighbourhood& around, const StateValues& values, double best) {
+  double begin = around.begin(), end = around.end();
+  for (int round = 0; round < 2; ++round) {
+    std::vector<double> times;
+    for (int k = 0; k <= 8; ++k) times.push_back(begin + (end - begin) * k / 8);
+    const std::vector<double> x = around.sample(times, values);
+    std::size_t at = x.size();
+    for (std::size_t k = 0; k < x.size(); ++k)
+      if (!std::isnan(x[k]) && (at == x.size() || x[k] > x[at])) at = k;
+    if (at == x.size()) return best;
+    best = std::max(best, x[at]);
+    if (at > 0 && at + 1 < x.size() && std::isfinite(x[at - 1]) && std::isfinite(x[at + 1]) && round == 1)
+      best = std::max(best,
+                      vertex({times[at - 1], times[at], times[at + 1]}, {x[at - 1], x[at], x[at + 1]}).value);
+    begin = times[at > 0 ? at - 1 : 0];
+    end = times[std::min(at + 1, times.size() - 1)];
+  }
+  return best;
+}
+
+// Whether a column is a function of the state alone.
+bool of_the_state(const Series& column) {
+  if (column.unit == "J") return column.name == "kinetic_energy_J" || column.name == "potential_energy_J";
+  return !column.name.starts_with("constraint_") && !column.name.ends_with("_unique") &&
+         column.name != "step_s" && column.name != "newton_iterations";
+}
+
+double extreme_of_column(const Simulation& run, const Diagnostics& d, std::string_view name, double sign) {
+  const Series* column = d.find(name);
+  if (!column) return std::numeric_limits<double>::quiet_NaN();
+  const auto signed_values = [sign](const Series& series) {
+    std::vector<double> out = series.values;
+    for (double& x : out) x *= sign;
+    return out;
+  };
+  const StateValues values = [&](const Simulation& piece) { return signed_values(diagnose(piece).at(name)); };
+  return sign *
+         largest_in_motion(run, signed_values(*column), of_the_state(*column) ? values : StateValues());
+}
+
+}  // namespace
+
+double largest_in_motion(const Simulation& run, const std::vector<double>& at_states,
+                         const StateValues& values) {
+  double best = std::numeric_limits<double>::quiet_NaN();
+  for (const double x : at_states)
+    if (!std::isnan(x) && !(x <= best)) best = x;
+  if (std::isnan(best) || !values) return best;
+  for (const std::size_t i : candidates(run.trajectory, at_states, best)) {
+    const Neighbourhood around(run, i);
+    if (!around.empty()) best = closer(around, values, best);
+  }
+  return best;
+}
+
+double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {
+  return extreme_of_column(run, diagnostics, column, 1.0);
+}
+
+double smallest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {
+  return extreme_of_column(run, diagnostics, column, -1.0);
+}
+
+}  // namespace unfurl

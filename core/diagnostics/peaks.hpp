@@ -1,0 +1,28 @@
+// The largest value of something over a motion, which is seldom at the end of a step.
+#pragma once
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "core/diagnostics/diagnostics.hpp"
+
+namespace unfurl {
+
+// One value per state of a run: a function of the state alone, not of what went before.
+using StateValues = std::function<std::vector<double>(const Simulation&)>;
+
+// The largest value over the motion. `at_states`: the values at the run's own states, NaN where there is
+// none. Around the largest of them and others that may top it the motion within the steps is that of the
+// quintic through positions, velocities and accelerations, and `values` is asked at a few times of it, closer
+// and closer. Steps that touch a singular pose, an impact or a change of the model have only their ends. NaN
+// where all values are.
+double largest_in_motion(const Simulation& run, const std::vector<double>& at_states,
+                         const StateValues& values);
+
+// Largest and smallest value of a column of series.csv over the motion. Columns that are sums over the run's
+// steps (energies that went in or out, errors, counts) are taken at the states.
+double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
+double smallest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
+
+}  // namespace unfurl

@@ -1,0 +1,32 @@
+#include "core/integrators/constraint_increment.hpp"
+
+namespace unfurl {
+
+ConstraintIncrement::ConstraintIncrement(const System& system)
+    : system_(system), G_(system.jacobian_pattern()) {
+  for (VectorXd* v : {&q0_, &pose_, &move_}) v->setZero(system.coordinates());
+  for (VectorXd* v : {&sum_, &target0_, &target_}) v->setZero(system.constraints());
+}
+
+void ConstraintIncrement::start(double t, const ConstVec& q0) {
+  t0_ = t;
+  q0_ = q0;
+  if (system_.rheonomic()) system_.constraint(t, q0_, target0_);
+}
+
+void ConstraintIncrement::evaluate(double t, const ConstVec& D, MutVec change) {
+  system_.expand_rate(D, move_);
+  sum_.setZero();
+  for (Index i = 0; i < gauss_.nodes.size(); ++i) {
+    pose_ = q0_ + gauss_.nodes[i] * move_;
+    system_.jacobian(pose_, G_, scratch_);
+    sum_.noalias() += gauss_.weights[i] * (G_ * D);
+  }
+  if (system_.rheonomic() && t != t0_) {
+    system_.constraint(t, q0_, target_);
+    sum_ += target_ - target0_;
+  }
+  change = sum_;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "core/math/types.hpp"
+
+namespace unfurl {
+
+/// Which entries of y are determined by G^T y = f [1: yes], for every right-hand side that has a solution.
+///
+/// Entry i is determined if and only if row i of a basis of null(G^T) is zero, that is if the rank falls when
+/// row i of G is removed (Wojtyra and Fraczek, Multibody Syst. Dyn. 30 (2013) 153). The basis is not formed:
+/// a vector r without structure is projected on the null space, w = r - G x with G^T w = 0, which is the
+/// saddle-point system [I G; G^T 0] [w; x] = [r; 0]. Each w_i is then a random multiple of the norm of row i
+/// of the basis, and a few such vectors tell zero from not zero. One sparse factorisation, any size.
+///
+/// Rows of G may have any scale; directions whose singular value is below some 1e-6 of that of unit rows
+/// count as lost, entries below 1e-11 as round-off. A row of zeros is not determined.
+std::vector<char> determined_rows(const SparseRows& G);
+
+}  // namespace unfurl

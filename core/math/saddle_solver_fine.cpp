@@ -1,0 +1,128 @@
+// The parts of SaddleSolver that work in twice the digits.
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/saddle_solver.hpp"
+#include "core/math/twofold_ldlt.hpp"
+
+namespace unfurl {
+namespace {
+
+// e, and the pivot up to which a row counts as redundant. Rounding the entries of G leaves rows that depend
+// on each other with pivots of 1e-32 to 1e-30.
+constexpr double fine_regularisation = 1e-23, redundant_pivot = 1e-22;
+// Pivots in doubles say something of a row where they are this many times e.
+constexpr double clear_of_regularisation = 1000;
+
+}  // namespace
+
+// Vectors are in the order of elimination.
+struct SaddleSolver::Fine {
+  Fine(const SparseLdlt& pattern, std::size_t size)
+      : factors(pattern), shift(size, 0.0), right(size), x(size), r(size) {}
+  TwofoldLdlt factors;
+  std::vector<double> shift;  // of the diagonal, from -e in doubles
+  std::vector<Twofold> right, x, r;
+};
+
+SaddleSolver::~SaddleSolver() = default;
+
+double SaddleSolver::weakest_pivot(double bound) {
+  Index below = 0;
+  for (Index r = 0; r < m_; ++r) below += pivot_of_row(r) < bound + 2 * regularisation_ ? 1 : 0;
+  if (below <= redundant_) return bound;
+  if (!fine_ready_) {
+    pivots_.resize(static_cast<std::size_t>(m_));
+    for (Index r = 0; r < m_; ++r) pivots_[static_cast<std::size_t>(r)] = pivot_of_row(r);
+    const auto next = pivots_.begin() + redundant_;
+    std::nth_element(pivots_.begin(), next, pivots_.end());
+    if (*next > clear_of_regularisation * regularisation_) return std::min(bound, *next);
+    if (!factorise_finely()) return 0.0;
+    fine_ready_ = weakest_ <= clear_of_regularisation * regularisation_;
+  }
+  return std::min(bound, weakest_);
+}
+
+bool SaddleSolver::factorise_finely() {
+  const auto row_place = [this](Index r) {
+    return static_cast<std::size_t>(place_[static_cast<std::size_t>(n_ + r)]);
+  };
+  if (!fine_) {
+    fine_ = std::make_unique<Fine>(ldlt_, static_cast<std::size_t>(n_ + m_));
+    for (Index r = 0; r < m_; ++r) fine_->shift[row_place(r)] = regularisation_ - fine_regularisation;
+  }
+  fine_ready_ = fine_->factors.factorise(values_.data(), fine_->shift.data());
+  redundant_ = 0;
+  weakest_ = 1.0;
+  for (Index r = 0; r < m_ && fine_ready_; ++r) {
+    const double pivot = std::abs(fine_->factors.pivot(static_cast<Index>(row_place(r))));
+    if (pivot < redundant_pivot)
+      ++redundant_;
+    else
+      weakest_ = std::min(weakest_, pivot);
+  }
+  return fine_ready_;
+}
+
+double SaddleSolver::motion_of_error() const {
+  return m_ == 0 ? 0.0 : row_scale_.maxCoeff() * column_scale_.maxCoeff();
+}
+
+// Solves twice: the second time for what the rows can reach, G x instead of g. The rest of g, round-off above
+// all, would come back in the multipliers of redundant rows as (rest / e).
+void SaddleSolver::apply_finely(double* f, double* g, int columns) const {
+  Fine& fine = *fine_;
+  const auto place = [this](Index i) {
+    return static_cast<std::size_t>(place_[static_cast<std::size_t>(i)]);
+  };
+  for (int c = 0; c < columns; ++c) {
+    for (Index i = 0; i < n_; ++i) fine.right[place(i)] = Twofold(f[i * columns + c]) * column_scale_[i];
+    for (Index i = 0; i < m_; ++i) fine.right[place(n_ + i)] = Twofold(g[i * columns + c]) * row_scale_[i];
+    fine.x = fine.right;
+    fine.factors.solve_ordered(fine.x.data());
+    for (Index i = 0; i < m_; ++i) fine.x[place(n_ + i)] = 0.0;
+    std::fill(fine.r.begin(), fine.r.end(), Twofold());
+    fine.factors.subtract_product(values_.data(), fine.x.data(), fine.r.data());
+    for (Index i = 0; i < m_; ++i) fine.right[place(n_ + i)] = -fine.r[place(n_ + i)];
+    fine.factors.solve_ordered(fine.right.data());
+    for (Index i = 0; i < n_; ++i)
+      f[i * columns + c] = static_cast<double>(fine.right[place(i)] * column_scale_[i]);
+    for (Index i = 0; i < m_; ++i)
+      g[i * columns + c] = static_cast<double>(fine.right[place(n_ + i)] * row_scale_[i]);
+  }
+}
+
+// What e leaves of a weak direction, e / sigma^2 <= 0.1, two refinements take below 1e-3, and below round-off
+// from sigma = 1e-9 on; then the multipliers, as above.
+void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) const {
+  Fine& fine = *fine_;
+  const auto place = [this](Index i) {
+    return static_cast<std::size_t>(place_[static_cast<std::size_t>(i)]);
+  };
+  for (Index i = 0; i < n_; ++i) fine.right[place(i)] = Twofold(f[i]) * column_scale_[i];
+  for (Index i = 0; i < m_; ++i) fine.right[place(n_ + i)] = Twofold(g[i]) * row_scale_[i];
+  const auto residual = [&] {
+    fine.r = fine.right;
+    fine.factors.subtract_product(values_.data(), fine.x.data(), fine.r.data());
+  };
+  const auto refine = [&](int passes) {
+    std::fill(fine.x.begin(), fine.x.end(), Twofold());
+    for (int pass = 0; pass < passes; ++pass) {
+      residual();
+      for (Index i = 0; i < m_; ++i)
+        fine.r[place(n_ + i)] = fine.r[place(n_ + i)] - Twofold(regularisation_) * fine.x[place(n_ + i)];
+      fine.factors.solve_ordered(fine.r.data());
+      for (std::size_t i = 0; i < fine.x.size(); ++i) fine.x[i] = fine.x[i] + fine.r[i];
+    }
+  };
+  refine(3);
+  for (Index i = 0; i < m_; ++i) fine.x[place(n_ + i)] = 0.0;
+  residual();
+  for (Index i = 0; i < m_; ++i)
+    fine.right[place(n_ + i)] = fine.right[place(n_ + i)] - fine.r[place(n_ + i)];
+  refine(3);
+  for (Index i = 0; i < n_; ++i) x[i] = static_cast<double>(fine.x[place(i)] * column_scale_[i]);
+  for (Index i = 0; i < m_; ++i) y[i] = static_cast<double>(fine.x[place(n_ + i)] * row_scale_[i]);
+}
+
+}  // namespace unfurl

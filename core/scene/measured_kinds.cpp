@@ -1,0 +1,255 @@
+// The kinds of [[constraints]] that hold, drive or bound a measure: their parameters, and what each adds to a
+// structure.
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "core/model/measure.hpp"
+#include "core/scene/element_members.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double as_built = std::numeric_limits<double>::quiet_NaN();
+
+// How a held or driven value moves; the unit is that of the measure.
+std::vector<ParamSpec> motion_params(std::string_view unit) {
+  return {
+      choice_param("motion", "hold", {"hold", "rate", "smooth", "table"},
+                   "hold the value at t = 0, or drive it: at a constant rate, smoothly to a value, along a "
+                   "table"),
+      only_with(
+          "motion", {"rate"},
+          real_param("rate", unit == "m" ? "m/s" : "deg/s", 0.0, -infinity, infinity, "rate: per second")),
+      only_with("motion", {"rate"},
+                real_param("ramp", "s", 0.0, 0.0, infinity, "rate: how long it takes to reach the rate")),
+      only_with("motion", {"smooth"},
+                real_param("to", unit, as_built, -infinity, infinity, "smooth: the value in the end")),
+      only_with("motion", {"rate", "smooth"},
+                real_param("start", "s", 0.0, 0.0, infinity, "rate, smooth: when the motion begins")),
+      only_with("motion", {"smooth"},
+                positive_param("duration", "s", 1.0, "smooth: how long the motion takes")),
+      only_with("motion", {"table"}, vector_param("times", "s", {}, "table: ascending, with values")),
+      only_with("motion", {"table"},
+                vector_param("values", unit, {},
+                             "table: at the times; a clamped cubic spline goes through them, at rest at both "
+                             "ends, held before "
+                             "and behind them")),
+      only_with("motion", {"table"},
+                text_param("table", "",
+                           "table: CSV file beside the scene, in place of times and values: t,value"))};
+}
+
+std::vector<ParamSpec> operator+(std::vector<ParamSpec> a, const std::vector<ParamSpec>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+template <class Make>
+const std::vector<ParamSpec>& measured_once(Make make) {
+  static const std::vector<ParamSpec> params = make();
+  return params;
+}
+
+const std::vector<ParamSpec>& length_params() {
+  return measured_once([] { return motion_params("m"); });
+}
+const std::vector<ParamSpec>& coordinate_params() {
+  return once(
+      [] { return std::vector{direction_param("direction", "of the coordinate")} + motion_params("m"); });
+}
+const std::vector<ParamSpec>& angle_params() {
+  return measured_once([] {
+    return std::vector{vector_param(
+               "axis", "", {0, 0, 0},
+               "of the hinge: the angle then has a sign and counts any number of turns; none: in [0, 180]")} +
+           motion_params("deg");
+  });
+}
+
+std::vector<ParamSpec> stop_params(std::string_view unit) {
+  ParamSpec restitution =
+      real_param("restitution", "", 0.0, 0.0, 1.0, "rebound speed over approach speed; 0: no rebound");
+  return {real_param("min", unit, as_built, -infinity, infinity, "lower limit; none by default"),
+          real_param("max", unit, as_built, -infinity, infinity, "upper limit; none by default"), restitution,
+          real_param("rest_speed", unit == "m" ? "m/s" : "deg/s", 1e-3, 0.0, infinity,
+                     "rebounds slower than this rest on the stop")};
+}
+const std::vector<ParamSpec>& length_stop_params() {
+  return measured_once([] { return stop_params("m"); });
+}
+const std::vector<ParamSpec>& coordinate_stop_params() {
+  return once(
+      [] { return std::vector{direction_param("direction", "of the coordinate")} + stop_params("m"); });
+}
+const std::vector<ParamSpec>& angle_stop_params() {
+  return measured_once([] {
+    return std::vector{vector_param("axis", "", {0, 0, 0}, "of the hinge, as for angle")} +
+           stop_params("deg");
+  });
+}
+
+// Of the scene's numbers in those of the measure.
+double unit_of(const Measure& measure) {
+  return measure.kind == MeasureKind::angle || measure.kind == MeasureKind::fold ? radians_per_degree : 1.0;
+}
+
+// Angles without an axis stay above 0 and below 180 degrees, where they have no direction to go on in;
+// lengths stay above 0.
+bool is_unsigned(const Measure& measure) {
+  return measure.kind == MeasureKind::angle && !counts_turns(measure);
+}
+
+// A drive that leaves the values that its measure can take is refused, with the time when it does.
+void check_reach(const SceneElement& e, ElementAdder& to, const Measure& measure, const TimeFunction& f) {
+  const bool length = measure.kind == MeasureKind::length;
+  if ((!length && !is_unsigned(measure)) || !f.moves()) return;
+  // A run may end before a constant rate comes that far: where it is deployed.
+  if (f.kind == TimeFunction::Kind::rate && !to.structure.deployment.empty()) return;
+  constexpr int samples = 4000;
+  for (int i = 0; i <= samples; ++i) {
+    const double t = to.end_time * i / samples, value = f(t);
+    if (value > 0 && (length || value < pi)) continue;
+    const char* key = f.kind == TimeFunction::Kind::rate     ? "rate"
+                      : f.kind == TimeFunction::Kind::smooth ? "to"
+                                                             : "values";
+    std::ostringstream text;
+    text.precision(4);
+    text << "takes the " << (length ? "length" : "angle") << " to " << value / unit_of(measure)
+         << (length ? " m" : " deg") << " at t = " << t << " s: "
+         << (length ? "it must stay > 0"
+                    : "without an axis it stays between 0 and 180 deg; give the axis of the hinge");
+    return to.find.problem(e, key, text.str());
+  }
+}
+
+void check_begin(const SceneElement& e, ElementAdder& to, const Measure& measure, double begin,
+                 double initial) {
+  double apart = begin - initial;
+  if (counts_turns(measure)) apart = std::remainder(apart, 2 * pi);  // counted from another turn
+  if (std::abs(apart) <= 1e-9 * std::max(1.0, std::abs(initial))) return;
+  std::ostringstream text;
+  text.precision(15);
+  text << "the table is at " << begin / unit_of(measure) << " when t = 0, the structure at "
+       << initial / unit_of(measure) << ": they must agree";
+  to.find.problem(e, "values", text.str());
+}
+
+void push_drive(const SceneElement& e, ElementAdder& to, const Measure& measure) {
+  const double initial = to.find.initial(measure), unit = unit_of(measure);
+  const ParamSet& v = e.values;
+  const std::string& motion = v.text("motion");
+  TimeFunction f;
+  f.offset = initial;
+  f.start = v.real("start");
+  if (motion == "rate") {
+    f.kind = TimeFunction::Kind::rate;
+    f.rate = unit * v.real("rate");
+    f.ramp = v.real("ramp");
+  } else if (motion == "smooth") {
+    f.kind = TimeFunction::Kind::smooth;
+    f.rise = unit * v.real("to") - initial;
+    f.duration = v.real("duration");
+  } else if (motion == "table") {
+    std::vector<double> values = v.vector("values");
+    for (double& x : values) x *= unit;
+    f = make_spline(v.vector("times"), std::move(values));
+    check_begin(e, to, measure, f(0.0), initial);
+  }
+  check_reach(e, to, measure, f);
+  to.structure.constraints.push_back({"measure", e.name, measure.nodes, {}, 0.0, measure, std::move(f)});
+}
+
+void push_stop(const SceneElement& e, ElementAdder& to, Measure measure) {
+  const double unit = unit_of(measure), minimum = unit * e.values.real("min"),
+               maximum = unit * e.values.real("max");
+  double initial = to.find.initial(measure);
+  const double round_off = 1e-9 * std::max(1.0, std::abs(initial));
+  const auto within = [&](double x) { return !(x < minimum - round_off) && !(x > maximum + round_off); };
+  if (std::isnan(minimum) && std::isnan(maximum))
+    return to.find.problem(e, "min", "is missing, and so is max: a stop needs a limit");
+  // Half a turn from zero is 180 degrees and -180: the limits say which.
+  if (counts_turns(measure) && initial > pi - 1e-9 && !within(initial) && within(initial - 2 * pi)) {
+    initial -= 2 * pi;
+    measure.reference = initial;
+  }
+  Stop stop{.name = e.name, .measure = measure};
+  for (const bool lower : {true, false}) {
+    const char* key = lower ? "min" : "max";
+    const double limit = lower ? minimum : maximum;
+    if (std::isnan(limit)) continue;
+    (lower ? stop.min : stop.max) = limit;
+    if (is_unsigned(measure) && !(limit >= 0 && limit <= pi))
+      to.find.problem(e, key,
+                      "is never met: without an axis the angle stays between 0 and 180 deg; give the axis of "
+                      "the hinge");
+    if (lower ? initial >= limit - round_off : initial <= limit + round_off) continue;
+    std::ostringstream text;
+    text << "is passed already at t = 0, where the value is " << initial / unit;
+    to.find.problem(e, key, text.str());
+  }
+  stop.restitution = e.values.real("restitution");
+  stop.rest_speed = unit * e.values.real("rest_speed");
+  to.structure.stops.push_back(std::move(stop));
+}
+
+std::optional<Measure> coordinate_of(const SceneElement& e, MemberFinder& find) {
+  Measure measure;
+  measure.kind = MeasureKind::coordinate;
+  measure.nodes = find.nodes(e, false);
+  measure.axis = vec3(e.values, "direction");
+  if (measure.nodes.empty()) return {};
+  if (measure.nodes.size() > 2) {
+    find.problem(e, "nodes", "must be one or two");
+    return {};
+  }
+  if (!(measure.axis.stableNorm() > 0)) {
+    find.problem(e, "direction", "must not be zero");
+    return {};
+  }
+  measure.axis.stableNormalize();
+  return measure;
+}
+
+std::optional<Measure> driven_angle(const SceneElement& e, MemberFinder& find) {
+  const auto measure = angle_of(e, find);
+  if (!measure || !is_unsigned(*measure) || std::abs(std::sin(measure->reference)) >= 1e-6) return measure;
+  find.problem(e, "axis",
+               "is missing: the rods are in line at t = 0, where an angle without an axis has no direction "
+               "to grow in");
+  return {};
+}
+
+template <std::optional<Measure> (*measure_of)(const SceneElement&, MemberFinder&)>
+void add_drive(const SceneElement& e, ElementAdder& to) {
+  if (const auto measure = measure_of(e, to.find)) push_drive(e, to, *measure);
+}
+template <std::optional<Measure> (*measure_of)(const SceneElement&, MemberFinder&)>
+void add_stop(const SceneElement& e, ElementAdder& to) {
+  if (const auto measure = measure_of(e, to.find)) push_stop(e, to, *measure);
+}
+
+}  // namespace
+
+const std::vector<ElementKind>& measured_kinds() {
+  static const std::vector<ElementKind> kinds = {
+      {"length", "the distance of two nodes is held, or driven by an actuator", Members::two_nodes,
+       length_params, add_drive<length_of>, length_of},
+      {"coordinate", "a node's coordinate along a direction, or the difference of two, is held or driven",
+       Members::node_list, coordinate_params, add_drive<coordinate_of>, coordinate_of},
+      {"angle", "the angle between two rods, or the fold angle, is held or driven by a motor", Members::angle,
+       angle_params, add_drive<driven_angle>, angle_of},
+      {"length_stop", "end stop: the distance of two nodes stays within limits", Members::two_nodes,
+       length_stop_params, add_stop<length_of>, length_of},
+      {"coordinate_stop", "end stop: a node's coordinate, or the difference of two, stays within limits",
+       Members::node_list, coordinate_stop_params, add_stop<coordinate_of>, coordinate_of},
+      {"angle_stop", "end stop: the angle between two rods, or the fold angle, stays within limits",
+       Members::angle, angle_stop_params, add_stop<driven_angle>, angle_of},
+  };
+  return kinds;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,146 @@
+#include "core/scene/title.hpp"
+
+#include <array>
+#include <charconv>
+#include <optional>
+
+#include "core/structures/family.hpp"
+
+namespace unfurl {
+namespace {
+
+// One place "{key}" of a title.
+struct Place {
+  std::size_t begin, end;  // of the braces and what is between
+  std::string key;
+};
+
+std::optional<Place> next_place(const std::string& text, std::size_t from) {
+  for (std::size_t open = text.find('{', from); open != std::string::npos; open = text.find('{', open + 1)) {
+    const std::size_t close = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789", open + 1);
+    if (close != std::string::npos && text[close] == '}' && close > open + 1)
+      return Place{open, close + 1, text.substr(open + 1, close - open - 1)};
+  }
+  return std::nullopt;
+}
+
+std::string shortest(double x) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr};
+}
+
+std::string number_word(long x, bool first) {
+  static constexpr std::array words{"one",   "two",   "three", "four", "five",   "six",
+                                    "seven", "eight", "nine",  "ten",  "eleven", "twelve"};
+  if (x < 1 || x > static_cast<long>(words.size())) return std::to_string(x);
+  std::string word = words[static_cast<std::size_t>(x - 1)];
+  if (first) word[0] = static_cast<char>(word[0] - 'a' + 'A');
+  return word;
+}
+
+// A value as a title says it; nothing where it has none that fits into a line.
+std::optional<std::string> said(const TomlTree& value, bool first) {
+  switch (value.kind) {
+    case TomlTree::Kind::integer:
+      return number_word(value.integer, first);
+    case TomlTree::Kind::real:
+      return shortest(value.real);
+    case TomlTree::Kind::text:
+      return value.text;
+    case TomlTree::Kind::boolean:
+      return value.boolean ? "true" : "false";
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<std::string> said_default(const TomlTree& structure, const std::string& key, bool first) {
+  const TomlTree* kind = structure.find("kind");
+  const Family* family = kind && kind->kind == TomlTree::Kind::text ? find_family(kind->text) : nullptr;
+  if (!family) return std::nullopt;
+  for (const ParamSpec& spec : family->params()) {
+    if (spec.name != key) continue;
+    if (const auto* i = std::get_if<long>(&spec.fallback)) return number_word(*i, first);
+    if (const auto* x = std::get_if<double>(&spec.fallback)) return shortest(*x);
+    if (const auto* s = std::get_if<std::string>(&spec.fallback)) return *s;
+    if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";
+  }
+  return std::nullopt;
+}
+
+const TomlTree& structure_of(const TomlTree& tree) {
+  static const TomlTree none;
+  const TomlTree* structure = tree.find("structure");
+  return structure && structure->kind == TomlTree::Kind::table ? *structure : none;
+}
+
+bool same(const TomlTree& a, const TomlTree& b) {
+  const auto number = [](const TomlTree& t) {
+    return t.kind == TomlTree::Kind::integer ? static_cast<double>(t.integer) : t.real;
+  };
+  const auto is_number = [](const TomlTree& t) {
+    return t.kind == TomlTree::Kind::integer || t.kind == TomlTree::Kind::real;
+  };
+  if (is_number(a) && is_number(b)) return number(a) == number(b);
+  if (a.kind != b.kind || a.boolean != b.boolean || a.text != b.text || a.items.size() != b.items.size() ||
+      a.entries.size() != b.entries.size())
+    return false;
+  for (std::size_t i = 0; i < a.items.size(); ++i)
+    if (!same(a.items[i], b.items[i])) return false;
+  for (const auto& [key, value] : a.entries) {
+    const TomlTree* other = b.find(key);
+    if (!other || !same(value, *other)) return false;
+  }
+  return true;
+}
+
+// "angle = 30, bob_mass = 2": keys of the structure that are not what they were.
+std::string changes(const TomlTree& now, const TomlTree& before) {
+  std::string text;
+  for (const auto& [key, value] : now.entries) {
+    const TomlTree* old = before.find(key);
+    const bool short_one = said(value, false).has_value();
+    if (old ? same(*old, value) : short_one && said_default(now, key, false) == said(value, false)) continue;
+    const bool number = value.kind == TomlTree::Kind::integer || value.kind == TomlTree::Kind::real;
+    text += (text.empty() ? "" : ", ") + key;
+    if (number)
+      text += " = " +
+              shortest(value.kind == TomlTree::Kind::real ? value.real : static_cast<double>(value.integer));
+    else
+      text += short_one ? " = " + *said(value, false) : " changed";
+  }
+  return text;
+}
+
+}  // namespace
+
+bool is_title_pattern(const std::string& title) {
+  return next_place(title, 0).has_value();
+}
+
+std::string scene_title(const TomlTree& tree, const TomlTree& own, const std::string& name,
+                        std::string* unknown) {
+  const TomlTree *given = tree.find("title"), *before = own.find("title");
+  if (!given || given->kind != TomlTree::Kind::text) return name;
+  std::string title = given->text;
+  if (!is_title_pattern(title)) {
+    const bool as_in_file = before && before->kind == TomlTree::Kind::text && before->text == title;
+    const std::string changed = as_in_file ? changes(structure_of(tree), structure_of(own)) : "";
+    return changed.empty() ? title : name + ": " + changed;
+  }
+  const TomlTree& structure = structure_of(tree);
+  for (auto place = next_place(title, 0); place; place = next_place(title, place->begin)) {
+    const TomlTree* value = structure.find(place->key);
+    const bool first = place->begin == 0;
+    const auto text = value ? said(*value, first) : said_default(structure, place->key, first);
+    if (!text) {
+      if (unknown) *unknown = place->key;
+      return title;
+    }
+    title.replace(place->begin, place->end - place->begin, *text);
+    place->begin += text->size();
+  }
+  return title;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Titles, names and paths of strangers never command a terminal or a page.
+#include "app/printable_output.hpp"
+
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <sstream>
+
+#include "core/export/xml_text.hpp"
+#include "core/study/report.hpp"
+#include "tests/app/run_program.hpp"
+
+namespace unfurl::printable_output_test {
+
+namespace {
+
+// A window's title, a colour, a bell, a C1 command, a mark that turns the direction.
+const std::string evil =
+    "\x1b]0;owned\x07 \x1b[31mred \xc2\x9b"
+    "31m \xe2\x80\xae"
+    "gpj.exe <script>alert(1)</script> | x";
+
+bool commands_in(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if ((c < 0x20 && c != '\n' && c != '\t') || c == 0x7F) return true;
+    if (c == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0) return true;
+  }
+  return text.find("\xe2\x80\xae") != std::string::npos;
+}
+
+std::string toml_string(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    char code[8];
+    std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    out += static_cast<unsigned char>(c) < 0x20 ? std::string(code) : std::string(1, c);
+  }
+  return out + '"';
+}
+
+}  // namespace
+
+TEST_CASE("what is printable passes a stream as it is, what is a command is written out") {
+  REQUIRE(commands_in(evil));
+  std::ostringstream target;
+  {
+    const PrintableOutput filter(target);
+    target << "m\u00e8tres, \u4e2d\u6587, tabs\tand\nlines" << std::flush << "\x1b[2J" << '\x07' << "\xff";
+  }
+  CHECK(target.str() == "m\u00e8tres, \u4e2d\u6587, tabs\tand\nlines\\x1b[2J\\x07\\xff");
+  CHECK(target.good());
+  CHECK_FALSE(commands_in(printable_text(evil)));
+}
+
+TEST_CASE("a stream that fails says so through the filter") {
+  std::ostream nowhere(nullptr);
+  std::ostringstream closed;
+  closed.setstate(std::ios::badbit);
+  {
+    const PrintableOutput filter(closed);
+    closed << "x\n" << std::flush;
+  }
+  CHECK(closed.fail());
+}
+
+TEST_CASE("titles and paths reach neither the terminal nor a report as commands") {
+  const ScratchDirectory dir;
+  const std::string scene =
+      dir.write("s.toml", "title = " + toml_string(evil) + "\n[structure]\nkind = \"pendulum\"\n");
+  const ProgramResult check = run_program({"check", scene});
+  CHECK(check.code == 0);
+  CHECK(check.out.find("red") != std::string::npos);
+  CHECK_FALSE(commands_in(check.out));
+  const ProgramResult missing = run_program({"run", dir / ("no" + evil.substr(0, 9)), "-o", dir / "x"});
+  CHECK(missing.code == 5);
+  CHECK_FALSE(commands_in(missing.err));
+  CHECK(run_program(
+            {"sweep", scene, "--vary", "solver.step=0.1,0.2", "--measure", "cpu_time", "-o", dir / "out"})
+            .code == 0);
+  const std::string markdown = file_text(dir / "out/sweep.md");
+  CHECK(markdown.find("red") != std::string::npos);
+  CHECK_FALSE(commands_in(markdown));
+  CHECK(markdown.find("<script>") == std::string::npos);
+}
+
+TEST_CASE("reports hold anybody's text as text") {
+  Report report{"a <b> & c"};
+  report.paragraph(evil);
+  report.add(Table{{"k|ey"}, {{"v|alue\n<i>"}}});
+  const std::string markdown = report_markdown(report), html = report_html(report, ".");
+  CHECK(markdown.starts_with("# a &lt;b&gt; &amp; c\n"));
+  CHECK(markdown.find("| k\\|ey |") != std::string::npos);
+  CHECK(markdown.find("| v\\|alue &lt;i&gt; |") != std::string::npos);
+  CHECK_FALSE(commands_in(markdown));
+  CHECK(html.find("<script>") == std::string::npos);
+  CHECK(html.find("<i>") == std::string::npos);
+}
+
+TEST_CASE("a pipe in the place of a file is refused at once") {
+  const ScratchDirectory dir;
+  dir.write("s.toml", "[structure]\nkind = \"custom\"\nnodes_file = \"n.csv\"\n");
+  REQUIRE(::mkfifo((dir / "n.csv").c_str(), 0600) == 0);
+  const ProgramResult named = run_program({"check", dir / "s.toml"});
+  CHECK(named.code == 3);
+  CHECK(named.err.find("is not a regular file") != std::string::npos);
+  std::filesystem::create_directories(dir / "out");
+  REQUIRE(::mkfifo((dir / "out/summary.json").c_str(), 0600) == 0);
+  CHECK(run_program({"run", "pendulum", "-o", dir / "out"}).code == 5);
+  REQUIRE(::mkfifo((dir / "out/.unfurl").c_str(), 0600) == 0);
+  CHECK(run_program({"run", "pendulum", "--force", "-o", dir / "out"}).code == 5);
+}
+
+}  // namespace unfurl::printable_output_test

@@ -1,0 +1,139 @@
+#include "core/diagnostics/force_uniqueness.hpp"
+
+#include <Eigen/QR>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/library.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace force_uniqueness_test {
+
+using testing::run_scene;
+
+namespace {
+
+Simulation library_run(const char* scene, const std::vector<std::string>& changes) {
+  const Scene s = read_scene_file(find_scene(scene), changes);
+  return simulate(build_model(s), s.solver);
+}
+
+Index rank(const MatrixXd& A) {
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
+  qr.setThreshold(1e-9);
+  return A.size() > 0 ? qr.rank() : 0;
+}
+
+// By the definition: removing a rod's row lowers the rank.
+bool unique_by_rank(const Trajectory& trajectory, std::size_t state, Index rod) {
+  const System& system = trajectory.model(state).system;
+  MatrixXd G(system.all_jacobian(trajectory.node_positions(state)));
+  for (Index r = 0; r < G.rows(); ++r)
+    if (const double norm = G.row(r).norm(); norm > 0) G.row(r) /= norm;
+  const auto rods = static_cast<Index>(trajectory.structure().rods.size());
+  const Index all = rank(G);
+  G.row(G.rows() - rods + rod).setZero();
+  return rank(G) < all;
+}
+
+}  // namespace
+
+TEST_CASE("at every state of a run a force is unique where removing its rod lowers the rank") {
+  const std::vector<std::pair<const char*, std::vector<std::string>>> runs{
+      {"hoop6", {"structure.units=4", "solver.step=0.2"}},
+      {"hoop6", {"structure.units=4", "solver.step=0.2", "solver.at_deployed=latch"}},
+      {"hoop6_motor", {"structure.units=3", "solver.step=0.5"}},
+      {"hoop6_sector", {"solver.step=0.2"}},
+      {"bricard", {"solver.step=0.2"}},
+      {"four_bar", {"solver.end_time=1"}},
+      {"hoop_arc", {"solver.end_time=0.5"}},
+      {"scissor_mast", {"solver.step=0.2"}}};
+  for (const auto& [scene, changes] : runs) {
+    const Simulation run = library_run(scene, changes);
+    const Diagnostics d = diagnose(run);
+    const auto rods = static_cast<Index>(run.trajectory.structure().rods.size());
+    int compared = 0;
+    for (std::size_t i = 0; i < run.trajectory.size(); i += 7) {
+      if (run.trajectory.report(i).singular_event) continue;  // carried over as a limit
+      for (Index r = 0; r < rods; ++r, ++compared) {
+        INFO(scene << ", state " << i << ", rod " << r);
+        CHECK(d.force_unique(static_cast<Index>(i), r) == unique_by_rank(run.trajectory, i, r));
+      }
+    }
+    CHECK(compared > 0);
+  }
+}
+
+TEST_CASE("rods that are parallel or there twice are not unique, and carry together what one would") {
+  const std::string twice =
+      "[structure]\nkind = 'custom'\n"
+      "[[structure.nodes]]\nname = 'O'\nposition = [0.2, 0, 0]\nfixed = true\n"
+      "[[structure.nodes]]\nname = 'A'\nposition = [1.3, 0, -0.4]\nmass = 1.7\n"
+      "[[structure.nodes]]\nname = 'B'\nposition = [1.9, 0, -1.3]\nmass = 0.6\n"
+      "[[structure.rods]]\nname = 'upper'\nnodes = ['O', 'A']\n"
+      "[[structure.rods]]\nname = 'lower'\nnodes = ['A', 'B']\n";
+  const std::string rest =
+      "[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nstages = 4\nstep = 0.01\nend_time = 0.5\n";
+  const Diagnostics one = diagnose(run_scene(twice + rest)),
+                    two = diagnose(
+                        run_scene(twice + "[[structure.rods]]\nname = 'again'\nnodes = ['O', 'A']\n" + rest));
+  REQUIRE(one.t.size() == two.t.size());
+  CHECK(one.rod_unique == std::vector<char>{1, 1});
+  CHECK(two.rod_unique == std::vector<char>{0, 1, 0});
+  double off = 0, largest = 0;
+  for (Index i = 0; i < one.axial_force.rows(); ++i) {
+    off = std::max({off, std::abs(two.axial_force(i, 0) + two.axial_force(i, 2) - one.axial_force(i, 0)),
+                    std::abs(two.axial_force(i, 1) - one.axial_force(i, 1))});
+    largest = std::max(largest, std::abs(one.axial_force(i, 0)));
+  }
+  // The reported multipliers carry 1e-9 of round-off in redundant directions (index1.hpp).
+  CHECK(off < 1e-8 * largest);
+  CHECK(peak_rod_force(one).unique);
+}
+
+TEST_CASE("a parallelogram that starts flat opens its forces at the start alone") {
+  const Simulation run = run_scene(
+      "[structure]\nkind = 'custom'\n"
+      "[[structure.nodes]]\nname = 'O'\nposition = [0, 0, 0]\nfixed = true\n"
+      "[[structure.nodes]]\nname = 'P'\nposition = [2, 0, 0]\nfixed = true\n"
+      "[[structure.nodes]]\nname = 'A'\nposition = [1, 0, 0]\nvelocity = [0, 0, 1]\nmass = 1.3\n"
+      "[[structure.nodes]]\nname = 'B'\nposition = [3, 0, 0]\nvelocity = [0, 0, 1]\nmass = 0.7\n"
+      "[[structure.constraints]]\nkind = 'plane'\nnodes = ['A', 'B']\nnormal = [0, 1, 0]\n"
+      "[[structure.rods]]\nname = 'left'\nnodes = ['O', 'A']\n"
+      "[[structure.rods]]\nname = 'right'\nnodes = ['P', 'B']\n"
+      "[[structure.rods]]\nname = 'coupler'\nnodes = ['A', 'B']\n"
+      "[solver]\nstages = 4\nstep = 0.013\nend_time = 1.0\n");
+  REQUIRE(run.status == RunStatus::completed);
+  const Diagnostics d = diagnose(run);
+  CHECK(d.rod_unique == std::vector<char>{1, 1, 1});
+  for (Index r = 0; r < 3; ++r) {
+    CHECK_FALSE(d.force_unique(0, r));
+    for (Index i = 1; i < d.force_unique.rows(); ++i) CHECK(d.force_unique(i, r));
+  }
+  CHECK(d.at("axial_force_max_unique").values.front() == 0.0);
+  CHECK(d.at("axial_force_max_unique").values.back() == 1.0);
+}
+
+TEST_CASE("the largest force names its rod, its time and whether it is unique") {
+  const Simulation run = library_run("hoop6", {"structure.units=4", "solver.step=0.1"});
+  const Diagnostics d = diagnose(run);
+  const PeakForce peak = peak_rod_force(d);
+  REQUIRE(peak.rod >= 0);
+  CHECK(std::abs(peak.force_N) == d.axial_force.cwiseAbs().maxCoeff());
+  CHECK(run.trajectory.structure().rods[static_cast<std::size_t>(peak.rod)].group == "chord");
+  CHECK_FALSE(peak.unique);
+  CHECK(unique_rods(run.trajectory.structure(), d) == 4);  // the posts
+  for (const double flag : d.at("axial_force_max_unique").values) CHECK((flag == 0.0 || flag == 1.0));
+
+  const Simulation sector = library_run("hoop6_sector", {"solver.step=0.1"});
+  CHECK(peak_rod_force(diagnose(sector)).unique);  // under the sector's symmetry
+}
+
+TEST_CASE("what a drive gives is unique unless something else holds the same") {
+  const Diagnostics d = diagnose(library_run("hoop6_motor", {"structure.units=3", "solver.step=0.25"}));
+  for (const double flag : d.at("motor.torque_unique").values) CHECK(flag == 1.0);
+}
+
+}  // namespace force_uniqueness_test

@@ -1,0 +1,83 @@
+// Peaks are those of the motion, not of the ends of steps.
+#include "core/diagnostics/peaks.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/study/measures.hpp"
+
+using namespace unfurl;
+
+namespace peaks_test {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846, g = 9.81;
+
+double measured(const std::string& name, const Simulation& run) {
+  return find_measure(name).value(run, diagnose(run));
+}
+
+// A bob on a massless rod of 0.8 m, let go at an angle to the vertical.
+Simulation swing(double degrees, double step, const std::string& method = "dvm") {
+  const double x = 0.8 * std::sin(degrees * pi / 180), z = -0.8 * std::cos(degrees * pi / 180);
+  const Scene scene = read_scene_text(
+      "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'O'\nposition = [0, 0, 0]\nfixed = true\n"
+      "[[structure.nodes]]\nname = 'P'\nposition = [" +
+          std::to_string(x) + ", 0, " + std::to_string(z) +
+          "]\nmass = 2.5\n[[structure.rods]]\nnodes = ['O', 'P']\nmass = 0\n[gravity]\nacceleration = [0, 0, "
+          "-9.81]\n[solver]\nstages = 4\nend_time = 1.3\nmethod = '" +
+          method + "'\nstep = " + std::to_string(step) + "\n",
+      "swing.toml", {});
+  return simulate(build_model(scene), scene.solver);
+}
+
+}  // namespace
+
+TEST_CASE("peaks of a pendulum are those of its lowest point, wherever steps end") {
+  const double m = 2.5, length = 0.8, degrees = 73.0;
+  const double energy = m * g * length * (1 - std::cos(degrees * pi / 180));
+  for (const double step : {0.11, 0.05, 0.013}) {
+    const Simulation run = swing(degrees, step);
+    INFO(step);
+    // The interpolation is of order 6 with a constant of some 1e-5, omega = 3.5 rad/s: 2e-8 at the largest
+    // step, and the run itself is as good; the node positions are written with six digits.
+    const double close = step > 0.1 ? 2e-5 : 2e-6;
+    CHECK(measured("peak_energy", run) == Approx(energy).epsilon(close));
+    CHECK(measured("max:kinetic_energy_J", run) == Approx(energy).epsilon(close));
+    CHECK(measured("peak_speed", run) == Approx(std::sqrt(2 * energy / m)).epsilon(close));
+    // Tension m g (3 - 2 cos phi_0) at the lowest point, m g cos phi_0 where it turns.
+    const double tension = m * g * (3 - 2 * std::cos(degrees * pi / 180));
+    CHECK(measured("peak_rod_force", run) == Approx(tension).epsilon(close));
+    CHECK(measured("peak_tension", run) == Approx(tension).epsilon(close));
+    CHECK(measured("min:axial_force_max_N", run) ==
+          Approx(m * g * std::cos(degrees * pi / 180)).epsilon(close));
+    CHECK(measured("min:potential_energy_J", run) == Approx(-m * g * length).epsilon(close));
+    CHECK(measured("final:kinetic_energy_J", run) == diagnose(run).at("kinetic_energy_J").values.back());
+  }
+}
+
+TEST_CASE("a peak in a corner is that of the corner") {
+  // Off a floor with restitution: the speed is largest right before the impact, at states that both have its
+  // time.
+  const Scene scene = read_scene_text(
+      "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'P'\nposition = [0.2, 0.4, 1.7]\nmass = "
+      "2.5\n"
+      "[[constraints]]\nkind = 'coordinate_stop'\nname = 'floor'\nnodes = ['P']\ndirection = [0, 0, 1]\nmin "
+      "= 0.45\n"
+      "restitution = 0.6\n[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nstep = 0.07\nend_time = 1.1\n",
+      "floor.toml", {});
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  CHECK(measured("peak_speed", run) == Approx(std::sqrt(2 * g * 1.25)).epsilon(1e-9));
+}
+
+TEST_CASE("what grows to the end has its peak there, and what is not there has none") {
+  const Simulation run = swing(40, 0.05);
+  const Diagnostics d = diagnose(run);
+  CHECK(largest_of_column(run, d, "step_s") == Approx(0.05).epsilon(1e-12));
+  CHECK(std::isnan(largest_of_column(run, d, "fold_angle_rad")));
+}
+
+}  // namespace peaks_test

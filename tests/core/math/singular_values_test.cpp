@@ -1,0 +1,41 @@
+#include "core/math/singular_values.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/math/types.hpp"
+
+using namespace unfurl;
+
+TEST_CASE("singular values of a bidiagonal matrix by iteration and by bisection agree with the closed form") {
+  for (const Index n : {1, 2, 7, 40}) {
+    // c on the diagonal and beside it: B^T B is c^2 times tridiagonal (1, 2, 1) with 1 in the first corner,
+    // whose eigenvalues are 4 cos^2(k pi / (2 n + 1)), k = 1..n.
+    const double c = 0.37;
+    const VectorXd entries = VectorXd::Constant(2 * n - 1, c);
+    for (const bool by_bisection : {false, true}) {
+      const VectorXd values = singular_values_of_bidiagonal(entries, by_bisection);
+      REQUIRE(values.size() == n);
+      for (Index k = 0; k < n; ++k)
+        // Round-off of n rotations or 50 halvings, relative to the largest.
+        CHECK(values[k] ==
+              Approx(2 * c * std::cos(static_cast<double>(k + 1) * pi / static_cast<double>(2 * n + 1)))
+                  .margin(1e-15 * static_cast<double>(n)));
+    }
+  }
+}
+
+TEST_CASE("singular values by bisection find zeros and clusters") {
+  VectorXd entries = VectorXd::Zero(11);
+  for (const Index i : {0, 2, 6, 8}) entries[i] = 0.73;  // diagonal (0.73, 0.73, 0, 0.73, 0.73, 0)
+  const VectorXd values = singular_values_of_bidiagonal(entries, true);
+  for (Index k = 0; k < 4; ++k) CHECK(values[k] == Approx(0.73).epsilon(1e-15));
+  CHECK(values[4] == 0.0);
+  CHECK(values[5] == 0.0);
+}
+
+TEST_CASE("singular values of a matrix that is not finite are not numbers") {
+  MatrixXd A = MatrixXd::Identity(3, 4);
+  A(1, 2) = std::numeric_limits<double>::infinity();
+  CHECK(singular_values(A).array().isNaN().all());
+}

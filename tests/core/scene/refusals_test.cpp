@@ -1,0 +1,214 @@
+// What a scene says must act, or be refused or warned of with its place: nothing is accepted in silence.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <sstream>
+
+#include "core/integrators/integrator.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace refusals_test {
+
+namespace {
+
+using testing::run_scene;
+
+std::string error_of(const std::string& text, const std::vector<std::string>& changes = {}) {
+  try {
+    build_model(read_scene_text(text, "s.toml", changes));
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+bool refused(const std::string& text, const std::string& why, const std::vector<std::string>& changes = {}) {
+  const std::string error = error_of(text, changes);
+  if (error.find(why) != std::string::npos) return true;
+  UNSCOPED_INFO("said: " << error << "\nnot: " << why);
+  return false;
+}
+std::string warnings_of(const std::string& text, const std::vector<std::string>& changes = {}) {
+  std::string all;
+  for (const std::string& warning : run_scene(text, changes).warnings) all += warning + "\n";
+  return all;
+}
+
+// An arm O-A of 1.3 m and a second one A-B, in space, and a fixed point P.
+const std::string arms = R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "O"
+position = [0, 0, 0]
+fixed = true
+[[structure.nodes]]
+name = "P"
+position = [0, -1, 0.5]
+fixed = true
+[[structure.nodes]]
+name = "A"
+position = [0.5, 1.2, 0]
+mass = 0.7
+[[structure.nodes]]
+name = "B"
+position = [0.5, 1.2, 0.9]
+mass = 1.1
+[[structure.rods]]
+nodes = ["O", "A"]
+mass = 2
+[[structure.rods]]
+nodes = ["A", "B"]
+mass = 0.5
+[solver]
+step = 0.01
+end_time = 0.2
+)";
+
+std::string entry(const std::string& table, const std::string& lines) {
+  return "[[" + table + "]]\n" + lines + "\n";
+}
+std::string constraint(const std::string& lines) {
+  return arms + entry("constraints", lines);
+}
+std::string force(const std::string& lines) {
+  return arms + entry("forces", lines);
+}
+
+// A mass at x = 0.3 m, `far` metres from the origin along y.
+std::string point(double far, const std::string& rest) {
+  std::ostringstream text;
+  text << "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'A'\nposition = [0.3, " << far
+       << ", 0.1]\nvelocity = [0, 0, 0.4]\nmass = 2\n[solver]\nstep = 0.01\nend_time = 0.5\n"
+       << rest;
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("an angle about an axis that its rods are parallel to is refused with its place") {
+  // A-B points along z.
+  for (const char* kind : {"kind = 'angle'", "kind = 'angle_stop'\nmax = 90"})
+    CHECK(refused(constraint(std::string(kind) + "\nnodes = ['O', 'A', 'B']\naxis = [0, 0, 2]"),
+                  "constraints[0].axis: is along the line from 'A' to 'B' at t = 0"));
+  CHECK(refused(force("kind = 'torsion_spring'\nstiffness = 1\nnodes = ['O', 'A', 'B']\naxis = [0, 0, 2]"),
+                "forces[0].axis: is along the line from 'A' to 'B' at t = 0"));
+  CHECK(error_of(force("kind = 'torsion_spring'\nstiffness = 1\nnodes = ['O', 'A', 'B']\naxis = [0, 0.1, 2]"))
+            .empty());
+}
+
+TEST_CASE("relations of any size hold the structure where it is") {
+  for (const double size : {1e-9, 1e-3, 1.0, 1e9}) {
+    std::ostringstream wrong, right;
+    wrong << "[[constraints]]\nkind = 'relation'\nnodes = ['A']\ncoefficients = [" << size
+          << ", 0, 0]\nvalue = " << 0.30001 * size << "\n";
+    right << "[[constraints]]\nkind = 'relation'\nnodes = ['A']\ncoefficients = [" << size << ", 0, "
+          << 2 * size << "]\n[gravity]\nacceleration = [3, 0, -10]\n";
+    CHECK(refused(point(0, wrong.str()), "is violated at t = 0"));
+    // Wherever the origin lies.
+    CHECK(refused(point(1e6, wrong.str()), "is violated at t = 0"));
+    // x + 2 z stays: along (2, -1) / sqrt 5 of x and z the acceleration (3, -10) is 16 / sqrt 5 and the
+    // velocity (0, 0.4) is -0.4 / sqrt 5, in x thus 6.4 and -0.16.
+    const Simulation run = run_scene(point(0, right.str()));
+    const double t = 0.5;
+    CHECK(run.trajectory.positions(run.trajectory.size() - 1)[0] ==
+          Approx(0.3 - 0.16 * t + 3.2 * t * t).epsilon(1e-12));
+  }
+  // A second one that says otherwise is not dropped as if it followed from the first.
+  CHECK(refused(
+      point(0,
+            "[[constraints]]\nkind = 'relation'\nnodes = ['A']\ncoefficients = [1, 0, 0]\n"
+            "[[constraints]]\nkind = 'relation'\nname = 'small'\nnodes = ['A']\ncoefficients = [1e-10, 0, "
+            "0]\nvalue = 6e-11\n"),
+      "small is violated at t = 0"));
+}
+
+TEST_CASE("contradictory drives are named when the scene is read, for every method") {
+  const auto drive = [](const char* name, double to) {
+    std::ostringstream text;
+    text << "[[constraints]]\nkind = 'coordinate'\nname = '" << name
+         << "'\nnodes = ['A']\ndirection = [1, 0, 0]\nmotion = 'smooth'\nduration = 0.4\nto = " << to << "\n";
+    return text.str();
+  };
+  for (const Method& method : methods())
+    CHECK(refused(point(0, drive("one", 1) + drive("two", 2)), "one, two hold or drive the same motion",
+                  {"solver.method=" + std::string(method.name)}));
+  CHECK(
+      refused(point(0, drive("one", 1) + drive("two", 1) + "start = 0.1\n"), "drives contradict each other"));
+  CHECK(run_scene(point(0, drive("one", 1) + drive("two", 1))).status == RunStatus::completed);  // they agree
+}
+
+TEST_CASE("drives that leave what their measure can be are refused with the time") {
+  CHECK(refused(constraint("kind = 'length'\nnodes = ['P', 'A']\nmotion = 'smooth'\nto = -1\nduration = 0.2"),
+                "constraints[0].to: takes the length to "));
+  CHECK(refused(constraint("kind = 'length'\nnodes = ['P', 'A']\nmotion = 'smooth'\nto = 0\nduration = 0.2"),
+                "it must stay > 0"));
+  CHECK(refused(constraint("kind = 'length'\nnodes = ['P', 'A']\nmotion = 'rate'\nrate = -20"),
+                "constraints[0].rate: takes the length to "));
+  CHECK(refused(
+      constraint("kind = 'angle'\nnodes = ['P', 'O', 'A']\nmotion = 'smooth'\nto = 190\nduration = 0.1"),
+      "without an axis it stays between 0 and 180 deg; give the axis of the hinge"));
+  CHECK(refused(constraint("kind = 'angle_stop'\nnodes = ['P', 'O', 'A']\nmax = 190"),
+                "constraints[0].max: is never met"));
+  // Not within the run.
+  CHECK(error_of(constraint("kind = 'length'\nnodes = ['P', 'A']\nmotion = 'rate'\nrate = -1")).empty());
+}
+
+TEST_CASE("a table of motion holds its last value, and starts clean") {
+  const Simulation run = run_scene(
+      point(0,
+            "[[constraints]]\nkind = 'coordinate'\nname = 'slide'\nnodes = ['A']\ndirection = [1, 0, 0]\n"
+            "motion = 'table'\ntimes = [0, 0.5, 1]\nvalues = [0.3, 0.5, 1.3]\n"),
+      {"solver.end_time=3", "structure.nodes.A.velocity=[0,0,0]"});
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.warnings.empty());
+  CHECK(run.trajectory.positions(run.trajectory.size() - 1)[0] == Approx(1.3).epsilon(1e-13));
+  CHECK(run.trajectory.velocities(0)[0] == Approx(0).margin(1e-14));
+}
+
+TEST_CASE("entries that would say nothing, or twice the same, are refused") {
+  CHECK(refused(constraint("kind = 'relation'\nnodes = ['A', 'B']\ncoefficients = [0, 0, 0, 0, 0, 0]"),
+                "constraints[0].coefficients: must not all be zero"));
+  CHECK(refused(constraint("kind = 'equal'\nnodes = ['A', 'A']\ndirection = [1, 0, 0]"),
+                "constraints[0].nodes: names 'A' more than once"));
+  CHECK(refused(constraint("kind = 'coordinate'\nnodes = ['A', 'A']\ndirection = [1, 0, 0]"),
+                "constraints[0].nodes: names 'A' more than once"));
+  CHECK(refused(force("kind = 'drag'\nnodes = ['A*', 'A']\ndamping = 1"),
+                "forces[0].nodes: names 'A' more than once"));
+  CHECK(refused(arms + entry("loads", "nodes = ['*', 'A']\nforce = [1, 0, 0]"),
+                "loads[0].nodes: names 'A' more than once"));
+  CHECK(refused(force("kind = 'spring'\nnodes = ['O', 'B']"), "forces[0].stiffness: "));
+  CHECK(refused(arms, "structure.rods[0].length: must be ", {"structure.rods[0].length=0"}));
+  CHECK(refused(arms, "structure.rods[0].density: give mass, or density and area, not both",
+                {"structure.rods[0].density=7800", "structure.rods[0].area=1e-4"}));
+  CHECK(refused("[structure]\nkind = 'custom'\nnodes_file = \"nodes.csv\\u0000x\"\n", "u0000"));
+}
+
+TEST_CASE("keys that do nothing as the others are given are warned of with their place") {
+  const std::string hold = "kind = 'coordinate'\nnodes = ['A']\ndirection = [1, 0, 0]\n";
+  CHECK(warnings_of(constraint(hold)).empty());
+  for (const char* idle : {"to = 2", "rate = 1", "duration = 3"}) {
+    const std::string key(idle, std::string_view(idle).find(' '));
+    const std::string warnings = warnings_of(constraint(hold + idle));
+    INFO(warnings);
+    CHECK(warnings.find("test.toml:33:") != std::string::npos);
+    CHECK(warnings.find("constraints[0]." + key + ": does nothing with motion = 'hold'") !=
+          std::string::npos);
+  }
+}
+
+TEST_CASE("entries are addressed by name in brackets, too") {
+  const std::string text =
+      constraint(
+          "kind = 'coordinate'\nname = 'push'\nnodes = ['A']\ndirection = [1, 0, 0]\nmotion = 'smooth'\nto = "
+          "2") +
+      entry("constraints", "kind = 'plane'\nname = 'my plane'\nnodes = ['B']\nnormal = [0, 0, 1]");
+  const Scene scene = read_scene_text(
+      text, "s.toml", {"constraints[push].duration=0.7", "constraints['my plane'].normal=[0,1,0]"});
+  CHECK(scene.constraints[0].values.real("duration") == 0.7);
+  CHECK(scene.constraints[1].values.vector("normal") == std::vector<double>{0, 1, 0});
+  CHECK(refused(text, "constraints has no entry named 'pull'; did you mean 'push'?",
+                {"constraints[pull].duration=1"}));
+}
+
+}  // namespace refusals_test

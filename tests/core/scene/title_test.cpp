@@ -1,0 +1,73 @@
+#include "core/scene/title.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "core/scene/write.hpp"
+
+using namespace unfurl;
+
+namespace title_test {
+
+namespace {
+
+std::string library_title(const char* scene, const std::vector<std::string>& changes) {
+  return read_scene_file(find_scene(scene), changes).title;
+}
+
+Scene written(const std::string& title, const std::vector<std::string>& changes = {}) {
+  return read_scene_text("title = '" + title + "'\n[structure]\nkind = 'hoop'\nunits = 9\n", "mine.toml",
+                         changes);
+}
+
+}  // namespace
+
+TEST_CASE("the titles of the library say how many parts there are, whatever the file says") {
+  CHECK(library_title("hoop6", {}) == "Six-unit ring antenna");
+  CHECK(library_title("hoop6", {"structure.units=24"}) == "24-unit ring antenna");
+  CHECK(library_title("hoop6", {"structure.units=3"}) == "Three-unit ring antenna");
+  CHECK(library_title("hoop6_motor", {"structure.units=7"}) == "Seven-unit ring antenna, opened by a motor");
+  CHECK(library_title("hoop12", {}) == "Twelve-unit ring antenna");
+  CHECK(library_title("scissor_mast", {"structure.cells=13"}) == "Scissor mast of 13 cells");
+  CHECK(library_title("scissor_mast_square", {"structure.sides=3"}) == "Scissor mast with three sides");
+  for (const LibraryScene& scene : library_scenes()) {
+    INFO(scene.name);
+    CHECK(scene.title == read_scene_file(scene.path).title);
+    CHECK(scene.title.find('{') == std::string::npos);
+  }
+}
+
+TEST_CASE("a title that names no parameter is dropped where the structure is another") {
+  CHECK(library_title("pendulum", {}) == library_title("pendulum", {"solver.end_time=1", "render.fps=10"}));
+  CHECK(library_title("pendulum", {"structure.angle=33"}) == "pendulum: angle = 33");
+  CHECK(written("Nine bays").title == "Nine bays");
+  CHECK(written("Nine bays", {"structure.units=9"}).title == "Nine bays");
+  CHECK(written("Nine bays", {"structure.units=11", "structure.density=2e3"}).title ==
+        "mine: units = 11, density = 2000");
+  CHECK(written("Nine bays", {"structure.units=11", "title=Eleven bays"}).title == "Eleven bays");
+  CHECK(written("Nine bays", {"structure.model=full"}).title == "Nine bays");  // its default
+}
+
+TEST_CASE("a place in a title takes a key of the structure, its default too, and must be one") {
+  CHECK(written("{units} bays of {chord_rod_length} m, {model}").title == "Nine bays of 3 m, full");
+  try {
+    written("Ring {of} braces");
+    FAIL("was read");
+  } catch (const SceneError& error) {
+    REQUIRE(error.problems().size() == 1);
+    CHECK(error.problems()[0].key == "title");
+    CHECK(error.problems()[0].message == "{of} names no number or text of [structure]");
+  }
+  CHECK(written("A set {1, 2} or {a b}").title == "A set {1, 2} or {a b}");
+}
+
+TEST_CASE("the scene as run keeps the title's places") {
+  const Scene scene = written("{units}-bay ring", {"structure.units=5"});
+  CHECK(scene.title == "Five-bay ring");
+  const std::string text = scene_text(scene);
+  CHECK(read_scene_text(text, "again.toml").title == "Five-bay ring");
+  CHECK(read_scene_text(text, "again.toml", {"structure.units=6"}).title == "Six-bay ring");
+}
+
+}  // namespace title_test
