@@ -49,7 +49,8 @@ constexpr ShortCut short_cuts[] = {{"--size", "render.size"},
                                    {"--fps", "render.fps"},
                                    {"--look", "render.look"},
                                    {"--supersample", "render.supersample"},
-                                   {"--transparent", "render.transparent", true}};
+                                   {"--transparent", "render.transparent", true},
+                                   {"--tolerance", "solver.tolerance"}};
 
 // WIDTHxHEIGHT as the list that the key wants; anything else stays, for the key's own message.
 std::string list_of_size(const std::string& text) {
@@ -97,6 +98,16 @@ struct Parsed {
   bool help = false;
 };
 
+// Two ways to say the same key: one of them would be silently over the other.
+void refuse_doubled_keys(const CLI::App& parser, const std::vector<std::string>& overrides) {
+  for (const ShortCut& s : short_cuts)
+    if (parser.count(s.option) > 0)
+      for (const auto& text : overrides)
+        if (text.starts_with(std::string(s.key) + "="))
+          throw UsageError(std::string(s.option) + " and --set " + s.key +
+                           " say the same key: give one of them");
+}
+
 // An option of another verb.
 void refuse_foreign_options(const CLI::App& parser, const Command& command) {
   for (const OwnOption& own : own_options())
@@ -109,6 +120,7 @@ void add_study_options(CLI::App& parser, StudyArguments& study) {
   parser.add_option("--repeats", study.repeats)->check(within(1, 1000, true));
   parser.add_option("--methods", study.methods)->allow_extra_args(false)->delimiter(',');
   parser.add_flag("--models", study.models);
+  parser.add_flag("--validation", study.validation);
   parser.add_option("--extreme", study.extremes)->allow_extra_args(false);
   parser.add_option("--vary", study.vary)->allow_extra_args(false);
   parser.add_option("--measure", study.measure);
@@ -129,7 +141,6 @@ void add_view_options(CLI::App& parser, ViewArguments& view) {
 Parsed parse(const Command& command, const std::vector<std::string>& words) {
   Parsed parsed;
   Arguments& a = parsed.arguments;
-  std::string tolerance;
   CLI::App parser;
   parser.set_help_flag();
   parser.allow_extras();
@@ -138,17 +149,19 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_option("-o,--output", a.output);
   parser.add_option("--frames", a.frames);
   parser.add_option("--poses", a.poses)->check(within(1, 20, true));
-  add_short_cuts(parser, a.overrides);
+  std::vector<std::string> short_keys;
+  add_short_cuts(parser, short_keys);
   parser.add_option("--export", a.exports)->allow_extra_args(false)->delimiter(',');
   parser.add_flag("--force", a.force);
   parser.add_flag("--quiet", a.quiet);
   parser.add_flag("--json", a.json);
+  parser.add_flag("--all", a.all);
+  parser.add_flag("--markdown", a.markdown);
   parser.add_option("--threads", a.threads)->check(within(1, 1024, true));
   parser.add_option("--style", a.style);
   parser.add_option("--dpi", a.dpi)->check(within(20, 2400, false));
   parser.add_option("--ui-scale", a.ui_scale)->check(within(0.5, 4, false));
   parser.add_flag("-h,--help", parsed.help);
-  parser.add_option("--tolerance", tolerance);
   add_study_options(parser, a.study);
   add_view_options(parser, a.view);
   try {
@@ -156,9 +169,10 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(words_of(error));
   }
-  if (!tolerance.empty()) a.overrides.push_back("solver.tolerance=" + tolerance);
   refuse_unknown_options(parser);
   refuse_foreign_options(parser, command);
+  refuse_doubled_keys(parser, a.overrides);
+  a.overrides.insert(a.overrides.end(), short_keys.begin(), short_keys.end());
   for (const auto& word : parser.remaining()) a.names.push_back(word);
   return parsed;
 }

@@ -32,10 +32,12 @@ struct Judged {
   std::vector<std::string> names;  // of all constraints
 
   std::string name(int row) const { return names[static_cast<std::size_t>(row)]; }
-  // Shown rods whose force is unique. Rods are the last constraints.
+  // Rods are the last constraints.
+  int first_rod() const { return static_cast<int>(names.size() - model.structure.rods.size()); }
+  // Shown rods whose force is unique.
   Index unique_rods() const {
     const auto& rods = model.structure.rod_copies;
-    const std::size_t first = names.size() - model.structure.rods.size();
+    const auto first = static_cast<std::size_t>(first_rod());
     return std::count_if(rods.begin(), rods.end(), [&](const RodCopy& rod) {
       return balance.determined[first + static_cast<std::size_t>(rod.source)] != 0;
     });
@@ -86,14 +88,23 @@ void print_row(const char* name, Index value) {
 // A redundant member with those that it can be pre-stressed against.
 void print_state(const Judged& judged, const SelfStress& state, int redundant) {
   constexpr std::size_t most = 4;
-  std::string others;
-  std::size_t count = 0;
+  std::string rods;
+  std::size_t named = 0, more_rods = 0, others = 0;
   for (const auto& member : state.members) {
-    if (member.row == redundant || ++count > most) continue;
-    others += (others.empty() ? "" : ", ") + judged.name(member.row);
+    if (member.row == redundant) continue;
+    if (member.row < judged.first_rod())
+      ++others;
+    else if (named == most)
+      ++more_rods;
+    else
+      rods += (named++ ? ", " : "") + judged.name(member.row);
   }
-  if (count > most) others += " and " + std::to_string(count - most) + " more";
-  std::cout << "  " << judged.name(redundant) << (others.empty() ? " alone" : " against " + others) << "\n";
+  std::string against = rods;
+  if (more_rods > 0) against += " and " + std::to_string(more_rods) + " more";
+  if (others > 0)
+    against += (against.empty() ? "" : ", ") + std::to_string(others) + (rods.empty() ? " other" : "") +
+               (others == 1 ? " constraint" : " constraints");
+  std::cout << "  " << judged.name(redundant) << (against.empty() ? " alone" : " against " + against) << "\n";
 }
 
 // Last, since it may be long.

@@ -1,19 +1,21 @@
-// unfurl list structures|methods|figures|scenes|constraints|forces|looks|measures: what there is to choose
-// from.
+// unfurl list structures|methods|figures|scenes|constraints|forces|looks|measures|columns|keys: what there is
+// to choose from.
 #include <algorithm>
-#include <cmath>
-#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "app/command.hpp"
+#include "app/key_list.hpp"
+#include "core/diagnostics/columns.hpp"
 #include "core/forces/force.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/model/nearest_name.hpp"
 #include "core/scene/elements.hpp"
+#include "core/scene/key_tables.hpp"
 #include "core/scene/library.hpp"
 #include "core/structures/family.hpp"
 #include "core/study/measures.hpp"
+#include "core/text/wrapped.hpp"
 #include "render/plot/figures.hpp"
 #include "render/scene/look.hpp"
 
@@ -63,6 +65,13 @@ std::vector<Item> measure_items() {
   return items;
 }
 
+std::vector<Item> column_items() {
+  std::vector<Item> items = {{"t_s", "time", nullptr}};
+  for (const auto& column : diagnostic_columns())
+    items.push_back({std::string(column.name), std::string(column.label), nullptr});
+  return items;
+}
+
 std::string element_help(std::string_view help, Members members) {
   const std::string_view names = members_text(members);
   return std::string(help) + (names.empty() ? "" : "; " + std::string(names));
@@ -93,6 +102,11 @@ constexpr std::string_view entry_note =
     "Every entry may also have a name, for messages and columns, and enabled = false, as if it were not "
     "there.";
 
+constexpr std::string_view column_note =
+    "A drive NAME adds NAME.angle_rad, NAME.torque_N_m and NAME.power_W (of a length NAME.value_m and "
+    "NAME.force_N), a structure its own lengths. Energies of dampers, drives and impacts and what belongs to "
+    "a fold angle are there where the scene has them.";
+
 struct List {
   std::string_view name;
   std::vector<Item> (*items)();
@@ -106,33 +120,26 @@ constexpr List lists[] = {{"structures", structure_items},
                           {"constraints", constraint_items, entry_note},
                           {"forces", force_items, entry_note},
                           {"looks", look_items},
-                          {"measures", measure_items}};
+                          {"measures", measure_items},
+                          {"columns", column_items, column_note}};
 
-std::string default_text(const ParamSpec& spec) {
-  if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";
-  if (const auto* text = std::get_if<std::string>(&spec.fallback)) return text->empty() ? "none" : *text;
-  if (const auto* i = std::get_if<long>(&spec.fallback)) return std::to_string(*i);
-  std::ostringstream out;
-  if (const auto* x = std::get_if<double>(&spec.fallback)) {
-    if (std::isnan(*x)) return "as built";
-    out << std::setprecision(16) << *x;
-  }
-  if (const auto* v = std::get_if<std::vector<double>>(&spec.fallback); v && v->empty()) return "none";
-  if (const auto* v = std::get_if<std::vector<double>>(&spec.fallback))
-    for (std::size_t k = 0; k < v->size(); ++k)
-      out << (k ? ", " : "[") << (*v)[k] << (k + 1 < v->size() ? "" : "]");
-  return out.str();
-}
+constexpr std::size_t line_width = 80;
 
 void print_text(const std::vector<Item>& items) {
   std::size_t width = 0;
-  for (const auto& item : items) width = std::max(width, item.name.size());
+  for (const auto& item : items) width = std::max(width, item.name.size() + 2);
+  const std::string indent(width, ' '), key_indent(23, ' ');
   for (const auto& item : items) {
-    std::cout << std::left << std::setw(static_cast<int>(width) + 2) << item.name << item.help << "\n";
+    std::cout << wrapped(item.help, line_width, item.name + std::string(width - item.name.size(), ' '),
+                         indent);
     if (!item.params) continue;
-    for (const auto& spec : *item.params)
-      std::cout << "    " << std::setw(18) << spec.name << " " << spec.help << "; " << range_text(spec)
-                << (spec.required ? "; required" : "; default " + default_text(spec)) << "\n";
+    for (const auto& spec : *item.params) {
+      std::string first = "    " + std::string(spec.name) + " ";
+      first.resize(std::max(first.size(), key_indent.size()), ' ');
+      std::cout << wrapped(std::string(spec.help) + "; " + range_text(spec) +
+                               (spec.required ? "; required" : "; default " + default_text(spec)),
+                           line_width, first, key_indent);
+    }
   }
 }
 
@@ -154,19 +161,51 @@ void print_json(const std::vector<Item>& items) {
 
 }  // namespace
 
+namespace {
+
+// The keys of scene files; `table` is empty for all of them.
+int list_keys(const std::string& table, const Arguments& arguments) {
+  std::vector<const KeyTable*> tables = find_key_tables(table);
+  std::vector<std::string_view> names;
+  for (const KeyTable& row : key_tables()) {
+    names.push_back(row.name);
+    if (table.empty()) tables.push_back(&row);
+  }
+  if (tables.empty()) throw UsageError("no table of keys " + in_quotes(table) + did_you_mean(table, names));
+  std::cout << (arguments.json       ? keys_json(tables)
+                : arguments.markdown ? keys_markdown(tables)
+                                     : keys_text(tables));
+  return exit_ok;
+}
+
+bool is_key_table(std::string_view name) {
+  return name == "solver" || name == "render" || name == "scene";
+}
+
+int list_items(const List& list, const Arguments& arguments) {
+  if (arguments.json) {
+    print_json(list.items());
+    return exit_ok;
+  }
+  print_text(list.items());
+  if (!list.note.empty()) std::cout << "\n" << wrapped(list.note, line_width);
+  return exit_ok;
+}
+
+}  // namespace
+
 int cmd_list(const Arguments& arguments) {
   const std::string& name = arguments.names.front();
-  std::vector<std::string_view> names;
+  const bool keys = name == "keys" || is_key_table(name);
+  if (!keys && arguments.names.size() > 1)
+    throw UsageError("unexpected argument " + in_quotes(arguments.names[1]) + "; only keys has tables");
+  if (!keys && arguments.markdown) throw UsageError("--markdown is for list keys");
+  if (name == "keys") return list_keys(arguments.names.size() > 1 ? arguments.names[1] : "", arguments);
+  if (keys) return list_keys(name, arguments);
+  std::vector<std::string_view> names = {"keys", "solver", "render", "scene"};
   for (const auto& list : lists) {
     names.push_back(list.name);
-    if (list.name != name) continue;
-    if (arguments.json) {
-      print_json(list.items());
-      return exit_ok;
-    }
-    print_text(list.items());
-    if (!list.note.empty()) std::cout << "\n" << list.note << "\n";
-    return exit_ok;
+    if (list.name == name) return list_items(list, arguments);
   }
   throw UsageError("no list " + in_quotes(name) + did_you_mean(name, names));
 }

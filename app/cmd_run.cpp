@@ -40,7 +40,7 @@ int cmd_run(const Arguments& arguments) {
   const FinishedWork keeping;  // of a motion that is interrupted too
   Simulation run = simulate_scene(scene, std::move(model), arguments);
   const Diagnostics diagnostics = judge_run(run);
-  if (!directory.empty() && !film) FilmFolder::clear(output.written());
+  if (!directory.empty() && !film) output.written().remove_all();
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics);
   report_run(run, diagnostics, arguments);

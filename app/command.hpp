@@ -16,6 +16,7 @@ struct StudyArguments {
   int repeats = 0;                    // --repeats
   std::vector<std::string> methods;   // --methods NAME,...
   bool models = false;                // --models
+  bool validation = false;            // --validation
   std::vector<std::string> extremes;  // --extreme NAME
   std::vector<std::string> vary;      // --vary KEY=FROM:TO:COUNT
   std::string measure;                // --measure NAME,NAME
@@ -42,10 +43,12 @@ struct Arguments {
   bool force = false;
   bool quiet = false;
   bool json = false;
-  double ui_scale = 0;  // --ui-scale of the window; 0: the monitor's
-  int threads = 0;      // 0: as many as the machine has
-  std::string style;    // --style, of figures; empty: screen
-  double dpi = 0;       // --dpi, of figures; 0: the style's
+  bool all = false;       // --all, of show
+  bool markdown = false;  // --markdown, of list keys
+  double ui_scale = 0;    // --ui-scale of the window; 0: the monitor's
+  int threads = 0;        // 0: as many as the machine has
+  std::string style;      // --style, of figures; empty: screen
+  double dpi = 0;         // --dpi, of figures; 0: the style's
   StudyArguments study;
   ViewArguments view;
 };
@@ -56,8 +59,9 @@ struct Command {
   std::string_view help;   // one line
   std::size_t min_names, max_names;
   bool needs_output;
-  int (*run)(const Arguments&);   // returns an ExitCode
-  std::string_view options = {};  // of its own, beside the common ones: "--steps --repeats" (own_options.hpp)
+  int (*run)(const Arguments&);    // returns an ExitCode
+  std::string_view options = {};   // all that it takes: "-o --set --steps" (own_options.hpp)
+  std::string_view examples = {};  // command lines, one a line
 };
 
 std::span<const Command> commands();
@@ -74,5 +78,7 @@ int cmd_solve(const Arguments& arguments);
 int cmd_reproduce(const Arguments& arguments);
 int cmd_view(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
+int cmd_show(const Arguments& arguments);
+int cmd_new(const Arguments& arguments);
 
 }  // namespace unfurl

@@ -5,31 +5,65 @@ namespace unfurl {
 namespace {
 
 constexpr Command table[] = {
-    {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run, "--tolerance --export"},
+    {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run,
+     "-o --set --tolerance --export --size --fps --look --supersample --transparent --force --json --quiet",
+     "unfurl run hoop6 -o data\n"
+     "unfurl run hoop6 -o data --set structure.units=12 --set solver.step=0.005\n"
+     "unfurl run my.toml -o data --tolerance 1e-8 --export vtk,npy"},
     {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
-     "--tolerance --export --frames --style --dpi"},
+     "-o --set --tolerance --export --frames --style --dpi --size --fps --look --supersample --transparent "
+     "--force --threads --json --quiet",
+     "unfurl render hoop6 -o film\n"
+     "unfurl render hoop6 -o film --size 640x360 --look space --frames 0:20"},
     {"figure", "SCENE NAME... -o FILE",
      "one figure, PNG, SVG or PDF by extension; NAME all: every figure, into a directory", 2, 100, true,
-     cmd_figure, "--tolerance --style --dpi"},
+     cmd_figure, "-o --set --tolerance --style --dpi --quiet",
+     "unfurl figure hoop6 energy -o energy.pdf --style single-column\n"
+     "unfurl figure hoop6 all -o figures"},
     {"study", "SCENE -o DIR", "speed against accuracy: every method over a ladder of steps", 1, 1, true,
-     cmd_study, "--steps --repeats --methods --models --style --dpi"},
+     cmd_study, "-o --set --steps --repeats --methods --models --style --dpi --force --threads --quiet",
+     "unfurl study hoop6 -o study\n"
+     "unfurl study hoop6 -o two --methods dvm,rk4 --steps 0.04:0.005 --repeats 1"},
     {"stress", "SCENE -o DIR", "stability at the extremes: every method and step", 1, 1, true, cmd_stress,
-     "--extreme --style --dpi"},
+     "-o --set --extreme --style --dpi --force --threads --quiet",
+     "unfurl stress hoop6 --extreme mass_ratio -o stress"},
     {"sweep", "SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR",
      "measures of the scene over a grid of parameters", 1, 1, true, cmd_sweep,
-     "--tolerance --vary --measure --shard --merge --style --dpi"},
+     "-o --set --tolerance --vary --measure --shard --merge --style --dpi --force --threads --quiet",
+     "unfurl sweep hoop6_sector --vary structure.fold_angle=30:85:12 --measure deploy_time -o sweep"},
     {"solve", "SCENE --find KEY --target NAME=VALUE [-o DIR]",
-     "the parameter for which a measure takes a value", 1, 1, false, cmd_solve, "--tolerance --find --target --between"},
+     "the parameter for which a measure takes a value", 1, 1, false, cmd_solve,
+     "-o --set --tolerance --find --target --between --force --threads --json --quiet",
+     "unfurl solve hoop6 --find structure.hinge_force --target deploy_time=4"},
     {"reproduce", "-o DIR", "the paper's tables and figures, beside ours", 0, 0, true, cmd_reproduce,
-     "--style --dpi"},
+     "-o --validation --style --dpi --force --threads --quiet",
+     "unfurl reproduce -o paper\n"
+     "unfurl reproduce --validation -o validation"},
     {"poster", "SCENE -o FILE.png", "a strip of poses side by side, from start to end", 1, 1, true,
-     cmd_poster, "--tolerance --poses"},
+     cmd_poster, "-o --set --tolerance --poses --size --look --supersample --transparent --threads --quiet",
+     "unfurl poster hoop6 -o poster.png --size 960x540 --poses 4"},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
-     1, 1, false, cmd_check},
+     1, 1, false, cmd_check, "--set --json", "unfurl check bricard"},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
-     "--tolerance --picture --at --dark --bench --ui-scale"},
-    {"list", "structures|methods|figures|scenes|constraints|forces|looks|measures",
-     "what there is to choose from", 1, 1, false, cmd_list},
+     "--set --tolerance --picture --at --dark --bench --ui-scale --size --fps --look --supersample "
+     "--transparent --threads",
+     "unfurl view hoop6 --picture window.png --at 4.6"},
+    {"list", "WHAT [TABLE]",
+     "what there is to choose from: structures, methods, figures, scenes, constraints, forces, looks, "
+     "measures, "
+     "columns, and keys [TABLE]: those of scenes with type, unit, range and default",
+     1, 2, false, cmd_list, "--json --markdown",
+     "unfurl list keys solver\n"
+     "unfurl list keys hoop\n"
+     "unfurl list scenes"},
+    {"show", "SCENE", "print a scene, with --set written into it", 1, 1, false, cmd_show,
+     "--set --all --size --fps --look --supersample --transparent",
+     "unfurl show hoop6\n"
+     "unfurl show hoop6 --set structure.units=12 > twelve.toml"},
+    {"new", "KIND", "print a commented scene of a kind (unfurl list structures), to begin your own from", 1,
+     1, false, cmd_new, "",
+     "unfurl new custom > mine.toml\n"
+     "unfurl new hoop > ring.toml"},
 };
 
 }  // namespace

@@ -1,32 +1,38 @@
 #include "app/help.hpp"
 
+#include <algorithm>
+
 #include "app/own_options.hpp"
+#include "core/text/wrapped.hpp"
 
 namespace unfurl {
 
 namespace {
 
+constexpr std::size_t help_width = 80;
+
 // Two columns; what is too long for the first has a line of its own.
-std::string row(const std::string& name, std::string_view help, std::size_t width) {
-  const std::string gap =
-      name.size() < width ? std::string(width - name.size(), ' ') : "\n" + std::string(width + 2, ' ');
-  return "  " + name + gap + std::string(help) + "\n";
+std::string row(const std::string& name, std::string_view help, std::size_t column) {
+  const std::string indent(column, ' ');
+  std::string first = "  " + name + " ";
+  if (first.size() > column)
+    first += "\n" + indent;
+  else
+    first.resize(column, ' ');
+  const std::size_t behind_break = first.find('\n') == std::string::npos ? 0 : first.find('\n') + 1;
+  return first.substr(0, behind_break) + wrapped(help, help_width, first.substr(behind_break), indent);
 }
 
-constexpr std::string_view common_options =
-    "options:\n"
-    "  -o DIR             where results go\n"
-    "  --set KEY=VALUE    change a key of the scene (repeatable); the value is TOML, a bare word is a "
-    "string:\n"
-    "                     --set solver.step=0.005 --set structure.model=sector --set "
-    "structure.nodes.B0.mass=2\n"
-    "  --size WxH, --fps N, --look NAME, --supersample N, --transparent\n"
-    "                     short for --set render.size=[W, H], render.fps=N, ...\n"
-    "  --force            write into a directory that holds other files, start another film there over\n"
-    "  --quiet            no progress and no report\n"
-    "  --json             the summary or the list as JSON on standard output\n"
-    "  --threads N        at most N threads\n"
-    "  --help, --version\n";
+std::string examples_of(const Command& command) {
+  if (command.examples.empty()) return "";
+  std::string text = "\nexamples:\n";
+  for (std::string_view rest = command.examples; !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    text += wrapped(rest.substr(0, end), help_width - 2, "  ", "      ");
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -35,26 +41,26 @@ std::string usage_line(const Command& command) {
 }
 
 std::string command_help(const Command& command) {
-  std::string text = "usage: " + usage_line(command) + " [options]\n" + std::string(command.help) + "\n\n";
-  if (!command.options.empty()) text += "options of its own:\n";
+  std::string text = wrapped("usage: " + usage_line(command) + " [options]", help_width, "", "    ") +
+                     wrapped(command.help, help_width) + "\noptions:\n";
   for (const OwnOption& own : own_options())
-    if (takes(command, own.name))
+    if (shows(command, own.name))
       text += row(std::string(own.name) + " " + std::string(own.value), own.help, 30);
-  return text + (command.options.empty() ? "" : "\n") + std::string(common_options);
+  return text + row("--help", "this text", 30) + examples_of(command);
 }
 
 std::string program_help() {
   std::string text = "Unfurl simulates deployable structures, renders and plots them.\n\nusage:\n";
-  for (const auto& command : commands()) text += row(usage_line(command), command.help, 40);
-  text +=
-      "\nSCENE is a scene file or a built-in one (unfurl list scenes).\n"
-      "unfurl help COMMAND, or COMMAND --help, tells the options of each.\n\n" +
-      std::string(common_options);
+  for (const auto& command : commands())
+    text += wrapped(usage_line(command), help_width, "  ", "      ") +
+            wrapped(command.help, help_width, "      ", "      ");
   return text +
-         "\nexit codes: 0 ok, 1 internal, 2 usage, 3 scene invalid, 4 solver failed (the good part is "
-         "saved),\n"
-         "  5 file error, 6 no display or GL, 7 verification failed, 130 interrupted (what is finished is "
-         "kept)\n";
+         "\nSCENE is a scene file or a built-in one (unfurl list scenes); its keys: unfurl\n"
+         "list keys. unfurl help COMMAND, or COMMAND --help, tells the options of each,\n"
+         "with examples; unfurl --version the version.\n"
+         "\nexit codes: 0 ok, 1 internal, 2 usage, 3 scene invalid, 4 solver failed (the\n"
+         "  good part is saved), 5 file error, 6 no display or GL, 7 verification failed,\n"
+         "  130 interrupted (what is finished is kept)\n";
 }
 
 }  // namespace unfurl

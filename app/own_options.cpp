@@ -5,6 +5,10 @@ namespace unfurl {
 namespace {
 
 constexpr OwnOption rows[] = {
+    {"-o", "PATH", "where results go"},
+    {"--set", "KEY=VALUE",
+     "change a key of the scene (unfurl list keys); the value is TOML, a bare word is a string (repeatable)"},
+    {"--all", "", "every key with its value and unit, also those that the file leaves out"},
     {"--tolerance", "METRES", "pick stages and step for this error of node positions (solver.tolerance)"},
     {"--steps", "LARGEST:SMALLEST", "the ladder of steps [s], each half the one before"},
     {"--repeats", "N", "timed runs per point, at most (5)"},
@@ -29,6 +33,17 @@ constexpr OwnOption rows[] = {
     {"--dpi", "N", "pixels per inch of figures as PNG, 20 to 2400"},
     {"--ui-scale", "X", "size of the window's text and widgets, 0.5 to 4; else the monitor's"},
     {"--models", "", "compare models of the scene instead of methods"},
+    {"--validation", "", "published benchmarks with digits instead of the paper: our error in each"},
+    {"--size", "WxH", "of pictures in pixels: short for --set render.size=[W, H]"},
+    {"--fps", "N", "frames a second: short for --set render.fps=N"},
+    {"--look", "NAME", "of pictures (unfurl list looks): short for --set render.look=NAME"},
+    {"--supersample", "N", "every pixel is the mean of N x N: short for --set render.supersample=N"},
+    {"--transparent", "", "no background: short for --set render.transparent=true"},
+    {"--force", "", "write into a directory that holds other files, start another film there over"},
+    {"--threads", "N", "at most N threads"},
+    {"--json", "", "the result as JSON on standard output"},
+    {"--markdown", "", "the list of keys as a page in Markdown"},
+    {"--quiet", "", "no progress and no report"},
 };
 
 }  // namespace
@@ -38,6 +53,12 @@ std::span<const OwnOption> own_options() {
 }
 
 bool takes(const Command& command, std::string_view option) {
+  // Upper bounds that every verb keeps.
+  if (option == "--quiet" || option == "--threads") return true;
+  return shows(command, option);
+}
+
+bool shows(const Command& command, std::string_view option) {
   std::string_view rest = command.options;
   while (!rest.empty()) {
     const std::size_t end = rest.find(' ');

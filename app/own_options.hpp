@@ -1,4 +1,4 @@
-// The options that only some verbs take. To add one: a row in own_options.cpp, its name at the verb's row in
+// Every option. To add one: a row in own_options.cpp, its name at the rows of the verbs that take it in
 // command_table.cpp, and where it goes in cli.cpp.
 #pragma once
 
@@ -16,6 +16,7 @@ struct OwnOption {
 };
 
 std::span<const OwnOption> own_options();
-bool takes(const Command& command, std::string_view option);
+bool takes(const Command& command, std::string_view option);  // false: it would mean nothing there
+bool shows(const Command& command, std::string_view option);  // it stands in the verb's help
 
 }  // namespace unfurl

@@ -40,14 +40,19 @@ class PrintableOutput::Filter : public std::streambuf {
 };
 
 PrintableOutput::PrintableOutput(std::ostream& stream)
-    : stream_(stream),
-      filter_(std::make_unique<Filter>(stream.rdbuf())),
-      before_(stream.rdbuf(filter_.get())) {}
+    : stream_(stream), filter_(std::make_unique<Filter>(stream.rdbuf())), before_(stream.rdbuf()) {
+  replace(filter_.get());
+}
 
 PrintableOutput::~PrintableOutput() {
   stream_.flush();
-  const auto state = stream_.rdstate();  // rdbuf() clears it
-  stream_.rdbuf(before_);
+  replace(before_);
+}
+
+// What went wrong before is not forgotten with the buffer.
+void PrintableOutput::replace(std::streambuf* buffer) {
+  const auto state = stream_.rdstate();
+  stream_.rdbuf(buffer);
   stream_.setstate(state);
 }
 

@@ -17,6 +17,7 @@ class PrintableOutput {
 
  private:
   class Filter;
+  void replace(std::streambuf* buffer);
   std::ostream& stream_;
   std::unique_ptr<Filter> filter_;
   std::streambuf* before_;

@@ -9,6 +9,7 @@
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/ending.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/csv.hpp"
 #include "core/export/summary.hpp"
@@ -100,6 +101,7 @@ void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arg
        << run.cpu_s << " s of CPU time, constraint error "
        << largest_magnitude(diagnostics.at("constraint_max_m").values) << " m, energy balance "
        << largest_magnitude(diagnostics.at("energy_balance_J").values) << " J\n";
+  if (const std::string note = ending_note(run, diagnostics); !note.empty()) text << note << "\n";
   std::cerr << text.str();
 }
 

@@ -24,7 +24,7 @@ namespace unfurl {
 // have several lines, and a file is ours where one of them fits it. While the object lives every file that
 // the program writes into DIR is entered under `owner`. A file in the way that is not ours, or was changed
 // since, is kept beside ours as NAME.kept-1 (-2, ...).
-class WrittenFiles : public FileWatcher {
+class WrittenFiles final : public FileWatcher {
  public:
   // Reads the list, or begins one. Throws FileError where it cannot be written.
   WrittenFiles(std::filesystem::path directory, std::string owner, bool was_empty);

@@ -13,7 +13,7 @@ std::vector<double> energy_round_off(const Simulation& run) {
   double reach = 0, work = 0;  // so far; a state that is not finite leaves them as they are
   const auto grow = [](double& most, double x) { most = x > most ? x : most; };
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const System& system = trajectory.model(i).system;
+    const System system = trajectory.model(i).system.at(trajectory.state(i));
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
     force.setZero(q.size());
     system.add_applied_force(trajectory.time(i), q, v, 1.0, force);

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "core/diagnostics/books.hpp"
+#include "core/diagnostics/columns.hpp"
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/integrators/index1.hpp"
@@ -249,6 +250,12 @@ const Series& Diagnostics::at(std::string_view name) const {
   const Series* s = find(name);
   if (!s) throw std::out_of_range("no diagnostic " + std::string(name));
   return *s;
+}
+
+std::vector<DiagnosticColumn> diagnostic_columns() {
+  std::vector<DiagnosticColumn> columns;
+  for (const Row& row : rows) columns.push_back({row.name, row.label});
+  return columns;
 }
 
 std::vector<std::string_view> diagnostic_names() {

@@ -25,11 +25,13 @@ class Neighbourhood {
     if (i > 0 && joined(i - 1, i)) first_ = i - 1;
     if (i + 1 < t.size() && joined(i, i + 1)) last_ = i + 1;
     from_ = first_;
-    Index1 index1(model->system);
+    System system = model->system;  // follows the states
+    Index1 index1(system);
     VectorXd lambda(model->system.constraints());
     for (std::size_t k = first_; k <= last_; ++k) {
       VectorXd a(t.state(k).z.size());
       const State& s = t.state(k);
+      system.follow(s);
       const bool known = index1.evaluate(s.t, s.z, s.w, a, lambda);
       accelerations_.push_back(known ? a : VectorXd());
     }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/ending.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/peaks.hpp"
 #include "core/math/largest.hpp"
@@ -100,6 +101,8 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   summary["message"] = run.message;
   summary["warnings"] = run.warnings;
   for (const auto& warning : accuracy_warnings(run, diagnostics)) summary["warnings"].push_back(warning);
+  summary["notes"] = Json::array();
+  if (const std::string note = ending_note(run, diagnostics); !note.empty()) summary["notes"].push_back(note);
   summary["model"] = model_json(model.structure, model.system, mobility);
   summary["solver"] = solver_json(run);
   for (const char* name : {"constraint_max_m", "constraint_relative_max", "constraint_velocity_max_m_s"})

@@ -44,7 +44,8 @@ const std::vector<ParamSpec>& solver_params() {
                          "with `adaptive`: about how far a rod may turn, or velocities change, in a step")),
       real_param("tolerance", "m", fallback.tolerance, 0.0, 1e6,
                  "of node positions; stages and step are picked for it; 0: they are as given"),
-      positive_param("end_time", "s", fallback.end_time, "the run ends here at the latest"),
+      positive_param("end_time", "s", fallback.end_time,
+                     "the run ends here at the latest; where the structure can deploy 60 by default"),
       choice_param("at_deployed", fallback.at_deployed, {"stop", "pass", "latch"},
                    "when fully deployed: the run stops, the motion passes through, or the structure locks"),
       boolean_param(

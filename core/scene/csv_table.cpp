@@ -109,11 +109,17 @@ void read_number(const std::string& cell, const CsvColumn& column, CsvRow& row, 
     if (column.required) notes.add(row.where, std::string(column.name), "is empty");
     return;
   }
+  if (column.boolean && (cell == "true" || cell == "false")) {
+    row.numbers[std::string(column.name)] = cell == "true" ? 1.0 : 0.0;
+    return;
+  }
   const char* begin = cell.data() + (cell[0] == '+' ? 1 : 0);
   double x = 0.0;
   const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
   if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x))
-    notes.add(row.where, std::string(column.name), "must be a finite number; got " + in_quotes(cell));
+    notes.add(row.where, std::string(column.name),
+              std::string("must be ") + (column.boolean ? "true or false" : "a finite number") + "; got " +
+                  in_quotes(cell));
   else
     row.numbers[std::string(column.name)] = x;
 }

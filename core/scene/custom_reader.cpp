@@ -17,7 +17,17 @@ std::string entry_key(std::string_view table, std::size_t index) {
   return "structure." + std::string(table) + "[" + std::to_string(index) + "]";
 }
 
+// `nodes = "nodes.csv"`: the key that names a file is another one.
+bool names_a_file(TableReader& table, const std::string& name) {
+  const TomlTree* tree = table.member(name);
+  if (!tree || tree->kind != TomlTree::Kind::text) return false;
+  table.problem(name, "must be an array of tables, [[structure." + name + "]]; a CSV file is named by " +
+                          name + "_file = " + in_quotes(tree->text));
+  return true;
+}
+
 void read_nodes(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
+  if (names_a_file(table, "nodes")) return;
   for (const TomlTree* tree : table.tables("nodes")) {
     const std::string key = entry_key("nodes", spec.nodes.size());
     notes.locations[key] = tree->where;
@@ -30,6 +40,7 @@ void read_nodes(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
 }
 
 void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
+  if (names_a_file(table, "rods")) return;
   for (const TomlTree* tree : table.tables("rods")) {
     const std::string key = entry_key("rods", spec.rods.size());
     notes.locations[key] = tree->where;
@@ -54,41 +65,12 @@ double length_cell(const CsvRow& row, const std::string& key, SceneNotes& notes)
   return it->second;
 }
 
-bool is_custom_kind(const TomlTree& tree) {
-  const TomlTree* kind = tree.find("kind");
-  for (const auto& row : custom_constraint_kinds())
-    if (kind && kind->kind == TomlTree::Kind::text && kind->text == row.kind) return true;
-  return false;
-}
-
-void read_constraints(TableReader& table, const std::string& folder, CustomSpec& spec, SceneNotes& notes,
-                      std::vector<SceneElement>& general) {
-  std::size_t count = 0;
+void read_constraints(TableReader& table, const std::string& folder, SceneNotes& notes,
+                      std::vector<SceneElement>& constraints) {
   for (const TomlTree* tree : table.tables("constraints")) {
-    if (!is_custom_kind(*tree)) {
-      SceneNotes own;  // its places must not be taken for those of an entry of spec.constraints
-      const std::string key = entry_key("constraints", count++);
-      TableReader entry(tree, key, tree->where, own);
-      general.push_back(read_element(entry, key, scene_constraints(), folder, own));
-      notes.problems.insert(notes.problems.end(), own.problems.begin(), own.problems.end());
-      notes.warnings.insert(notes.warnings.end(), own.warnings.begin(), own.warnings.end());
-      continue;
-    }
-    ++count;
-    const std::string key = entry_key("constraints", spec.constraints.size());
-    notes.locations[key] = tree->where;
+    const std::string key = entry_key("constraints", constraints.size());
     TableReader entry(tree, key, tree->where, notes);
-    CustomConstraint constraint;
-    constraint.kind = entry.read({text_param("kind", "", "")}).text("kind");
-    constraint.nodes = entry.names("nodes");
-    for (const auto& row : custom_constraint_kinds()) {
-      if (row.kind != constraint.kind || row.direction.empty()) continue;
-      ParamSpec direction = vector_param(row.direction, "", {0, 0, 0}, "");
-      direction.required = true;
-      constraint.normal = vec3(entry.read({direction}), row.direction);
-    }
-    entry.finish();
-    spec.constraints.push_back(std::move(constraint));
+    constraints.push_back(read_element(entry, key, scene_constraints(), folder, notes));
   }
 }
 
@@ -120,7 +102,7 @@ void read_nodes_file(TableReader& table, const std::string& name, const std::str
   static const std::vector<CsvColumn> columns = {
       {"name", "", false, true}, {"x", "m", true, true}, {"y", "m", true, true},
       {"z", "m", true, true},    {"vx", "m_s", true},    {"vy", "m_s", true},
-      {"vz", "m_s", true},       {"mass", "kg", true},   {"fixed", "", true}};
+      {"vz", "m_s", true},       {"mass", "kg", true},   {"fixed", "", true, false, true}};
   for (const auto& row : file_rows(table, "nodes_file", name, folder, columns, notes)) {
     notes.locations[entry_key("nodes", spec.nodes.size())] = row.where;
     spec.nodes.push_back({text_cell(row, "name", ""),
@@ -236,7 +218,7 @@ CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes
   read_nodes_file(table, values.text("nodes_file"), folder, spec, notes);
   read_rods(table, spec, notes);
   read_rods_file(table, values.text("rods_file"), folder, spec, notes);
-  read_constraints(table, folder, spec, notes, constraints);
+  read_constraints(table, folder, notes, constraints);
   note_problems(spec, before, table, notes);
   return spec;
 }

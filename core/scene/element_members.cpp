@@ -18,8 +18,9 @@ MemberFinder::MemberFinder(const Structure& structure)
 }
 
 void MemberFinder::problem(const SceneElement& element, const std::string& key, std::string message) {
-  problems_.push_back(
-      {element.where, key.empty() ? element.key : element.key + "." + key, std::move(message)});
+  const auto place = element.places.find(key);
+  problems_.push_back({place == element.places.end() ? element.where : place->second,
+                       key.empty() ? element.key : element.key + "." + key, std::move(message)});
 }
 
 void MemberFinder::throw_problems() {

@@ -153,6 +153,7 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
     notes.warnings.push_back({element.where, key + ".axis", "does nothing with fold_angle = true"});
   entry.finish();
   element.name = head.text("name");
+  element.places = entry.places();
   return element;
 }
 

@@ -1,6 +1,7 @@
 // The entries of [[forces]] and [[constraints]]: a kind, the members it acts on, its parameters.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,8 +21,9 @@ struct SceneElement {
   bool enabled = true;      // false: as if it were not there
   std::string table;        // CSV file that times and values came from; empty: none
   ParamSet values;
-  std::string key;       // "forces[2]"
-  SourceLocation where;  // of the entry
+  std::string key;                                            // "forces[2]"
+  SourceLocation where;                                       // of the entry
+  std::map<std::string, SourceLocation, std::less<>> places;  // of the keys that it gives
 };
 
 struct ElementAdder;

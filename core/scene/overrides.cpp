@@ -19,9 +19,8 @@ struct Refusal {
 
 struct Step {
   std::string name;
-  bool quoted = false;
-  std::optional<std::size_t>
-      index;  // [3]; `name` is empty then. [motor] is the step to an entry of that name
+  bool entry = false;                // [motor]: the entry of that name in a list
+  std::optional<std::size_t> index;  // [3]; `name` is empty then
 };
 
 std::string quoted_step(std::string_view key, std::size_t& i) {
@@ -52,7 +51,7 @@ std::vector<Step> parse_key(std::string_view key) {
   std::size_t i = 0;
   while (true) {
     if (i < key.size() && (key[i] == '"' || key[i] == '\'')) {
-      steps.push_back({quoted_step(key, i), true, std::nullopt});
+      steps.push_back({quoted_step(key, i), false, std::nullopt});
     } else {
       const std::size_t end = std::min(key.find_first_of(".[", i), key.size());
       if (end == i) throw Refusal{"the key has an empty part"};
@@ -145,7 +144,7 @@ TomlTree& step_into(TomlTree& tree, const Step& step, std::string_view so_far) {
   if (tree.kind == TomlTree::Kind::array) return step_into_array(tree, step, so_far);
   if (tree.kind != TomlTree::Kind::table)
     throw Refusal{std::string(so_far) + " is " + tree.describe() + ", not a table"};
-  if (step.index) throw Refusal{std::string(so_far) + " is not a list"};
+  if (step.index || step.entry) throw Refusal{std::string(so_far) + " is not a list"};
   if (TomlTree* found = tree.find(step.name)) return *found;
   tree.entries.push_back({step.name, made_here(TomlTree::Kind::table)});
   return tree.entries.back().value;

@@ -4,14 +4,16 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "core/model/nearest_name.hpp"
 #include "core/scene/custom_reader.hpp"
-#include "core/scene/overrides.hpp"
+#include "core/scene/key_tables.hpp"
 #include "core/scene/table_reader.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/title.hpp"
+#include "core/scene/variables.hpp"
 #include "core/structures/family.hpp"
 
 namespace unfurl {
@@ -19,6 +21,7 @@ namespace unfurl {
 namespace {
 
 constexpr double max_steps = 1e9;
+constexpr double time_to_deploy = 60.0;  // end_time where a scene gives none and its structure can deploy [s]
 
 // Where a table is, or would be.
 const SourceLocation& place(const TomlTree* table, const TomlTree& root) {
@@ -52,28 +55,21 @@ void read_structure(TableReader& root, const TomlTree& tree, const std::string& 
 }
 
 void read_gravity(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
-  static const std::vector<ParamSpec> params = {
-      vector_param("acceleration", "m/s^2", {0, 0, 0}, "acceleration of free fall")};
   const TomlTree* found = root.table("gravity");
   TableReader table(found, "gravity", place(found, tree), notes);
-  const auto values = table.read(params);
+  const auto values = table.read(gravity_params());
   const auto& a = values.vector("acceleration");
   scene.gravity = {a[0], a[1], a[2]};
   table.finish();
 }
 
 void read_loads(TableReader& root, Scene& scene, SceneNotes& notes) {
-  static const std::vector<ParamSpec> params = [] {
-    ParamSpec force = vector_param("force", "N", {0, 0, 0}, "constant force on each node");
-    force.required = true;
-    return std::vector<ParamSpec>{force, enabled_param()};
-  }();
   for (const TomlTree* tree : root.tables("loads")) {
     const std::string key = "loads[" + std::to_string(scene.loads.size()) + "]";
     TableReader entry(tree, key, tree->where, notes);
     SceneLoad load;
     load.nodes = entry.names("nodes");
-    const auto values = entry.read(params);
+    const auto values = entry.read(load_params());
     const auto& f = values.vector("force");
     load.force = {f[0], f[1], f[2]};
     load.enabled = values.boolean("enabled");
@@ -97,6 +93,8 @@ void read_solver(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
   const TomlTree* found = root.table("solver");
   TableReader table(found, "solver", place(found, tree), notes);
   scene.solver = solver_options(table.read(solver_params()));
+  const Family* family = find_family(scene.kind);
+  if (!table.has("end_time") && family && family->deploys) scene.solver.end_time = time_to_deploy;
   table.finish();
   const double steps = scene.solver.end_time / scene.solver.step;
   if (steps > max_steps)
@@ -129,14 +127,40 @@ void read_render(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
     table.problem("size", "must be whole numbers of pixels");
   scene.render = render_options(values);
   read_camera_keys(keys, scene.render, notes);
+  const RenderOptions& r = scene.render;
+  if (r.follow && (!r.camera_keys.empty() || r.orbit != 0 || r.turntable != 0))
+    table.problem("follow",
+                  "means nothing with camera_keys, orbit or turntable: they say where the camera is");
 }
 
 void read_title(TableReader& root, const TomlTree& tree, const TomlTree& own, Scene& scene) {
-  const std::string given = root.read({text_param("title", scene.name, "")}).text("title");
+  const std::string given = root.read(scene_params()).text("title");
   std::string unknown;
   scene.title = scene_title(tree, own, scene.name, &unknown);
   if (is_title_pattern(given)) scene.title_pattern = given;
   if (!unknown.empty()) root.problem("title", "{" + unknown + "} names no number or text of [structure]");
+}
+
+// "structure.nodes[3].mass" -> "structure.nodes[].mass"
+std::string without_indices(std::string_view key) {
+  std::string text;
+  bool inside = false;
+  for (const char c : key) {
+    if (c == ']') inside = false;
+    if (!inside) text += c;
+    if (c == '[') inside = true;
+  }
+  return text;
+}
+
+// The same mistake of an entry that stands many times (variables.hpp) is told once.
+void drop_repetitions(std::vector<SceneProblem>& problems) {
+  std::set<std::tuple<std::string, int, int, std::string, std::string>> told;
+  std::erase_if(problems, [&](const SceneProblem& p) {
+    return p.where.line > 0 &&
+           !told.emplace(p.where.file, p.where.line, p.where.column, without_indices(p.key), p.message)
+                .second;
+  });
 }
 
 // Overrides first, then each file from its top to its end.
@@ -151,14 +175,22 @@ void sort_problems(std::vector<SceneProblem>& problems) {
   });
 }
 
+[[noreturn]] void refuse(std::vector<SceneProblem>& problems) {
+  drop_repetitions(problems);
+  sort_problems(problems);
+  throw SceneError(std::move(problems));
+}
+
 }  // namespace
 
 Scene read_scene_text(std::string_view text, const std::string& name,
                       const std::vector<std::string>& overrides, const std::string& folder) {
-  const TomlTree own = parse_toml(text, name);
+  TomlTree own = parse_toml(text, name);
   TomlTree tree = own;
   SceneNotes notes;
-  apply_overrides(tree, overrides, notes.problems);
+  if (!apply_overrides_and_expand(tree, overrides, notes.problems)) refuse(notes.problems);
+  std::vector<SceneProblem> told_already;
+  apply_overrides_and_expand(own, {}, told_already);
   Scene scene;
   scene.name = std::filesystem::path(name).stem().string();
   TableReader root(&tree, "", tree.where, notes);
@@ -173,10 +205,7 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   read_solver(root, tree, scene, notes);
   read_render(root, tree, scene, notes);
   root.finish();
-  if (!notes.problems.empty()) {
-    sort_problems(notes.problems);
-    throw SceneError(std::move(notes.problems));
-  }
+  if (!notes.problems.empty()) refuse(notes.problems);
   scene.warnings = std::move(notes.warnings);
   scene.locations = std::move(notes.locations);
   scene.units = std::move(notes.units);

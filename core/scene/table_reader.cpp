@@ -188,13 +188,22 @@ void TableReader::warn_idle(const std::vector<ParamSpec>& specs, const ParamSet&
   }
 }
 
+std::map<std::string, SourceLocation, std::less<>> TableReader::places() const {
+  std::map<std::string, SourceLocation, std::less<>> places;
+  if (table_)
+    for (const auto& [name, value] : table_->entries) places[name] = value.where;
+  return places;
+}
+
 void TableReader::finish() {
   if (!table_) return;
   for (const auto& [name, value] : table_->entries) {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const auto& where =
         value.key_where.line > 0 || value.key_where.file == override_source ? value.key_where : value.where;
-    notes_.add(where, key(name), "unknown key" + did_you_mean(name, known_));
+    std::string message = "unknown key" + did_you_mean(name, known_);
+    if (message.ends_with("...")) message += "; all of them: unfurl list keys";
+    notes_.add(where, key(name), std::move(message));
   }
 }
 

@@ -47,6 +47,7 @@ class TableReader {
   std::string key(std::string_view name) const;  // dotted
   bool has(std::string_view name) const { return table_ && table_->find(name); }
   const SourceLocation& where() const { return where_; }
+  std::map<std::string, SourceLocation, std::less<>> places() const;  // of the values that are given
   void problem(std::string_view name,
                std::string message);  // located at the member, or at the table without it
 

@@ -63,15 +63,6 @@ std::string rod_text(const CustomRod& rod) {
   return text;
 }
 
-std::string constraint_text(const CustomConstraint& constraint) {
-  std::string text = "\n[[structure.constraints]]\n" + line("kind", toml_string(constraint.kind));
-  text += line("nodes", names_text(constraint.nodes));
-  for (const auto& row : custom_constraint_kinds())
-    if (row.kind == constraint.kind && !row.direction.empty())
-      text += line(row.direction, vec_text(constraint.normal));
-  return text;
-}
-
 bool worth_writing(const ParamValue& value) {
   if (const auto* x = std::get_if<double>(&value)) return !std::isnan(*x);
   if (const auto* text = std::get_if<std::string>(&value)) return !text->empty();
@@ -103,7 +94,6 @@ std::string structure_text(const Scene& scene) {
   text += line("mass", toml_string(scene.custom.lumped_mass ? "lumped" : "consistent"));
   for (const auto& node : scene.custom.nodes) text += node_text(node);
   for (const auto& rod : scene.custom.rods) text += rod_text(rod);
-  for (const auto& constraint : scene.custom.constraints) text += constraint_text(constraint);
   return text;
 }
 

@@ -22,8 +22,9 @@ constexpr int points = 9;
 // at four stages.
 constexpr double short_enough = 2.3e-3;
 constexpr int most_stations = 200;
-constexpr int most_lengths = 40;           // of a step to a sine: a start next to the pose needs short ones
 constexpr double near_dead_centre = 0.95;  // sine of the fold angle
+// Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
+constexpr int most_lengths = 40;
 
 struct Sample {
   double sine;

@@ -74,8 +74,8 @@ class OneSided {
   double step_;
   bool eliminate_linear_;
   VectorXd gradient_, acceleration_, lambda_;
-  std::optional<System> followed_;  // by the equations of forces
-  std::unique_ptr<Index1> index1_;
+  std::optional<System> followed_;  // the present model's, near a state's angles
+  std::unique_ptr<Index1> index1_;  // of that
 };
 
 }  // namespace unfurl

@@ -42,7 +42,7 @@ class Stops {
   const StopSide& operator[](std::size_t i) const { return stops_[i]; }
 
   double gap(std::size_t i, const System& system, const State& state) const;
-  // The same with its rate, of the state's node coordinates and velocities.
+  // The same, of the state's node coordinates and velocities, with its rate.
   double gap(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v, double& rate) const;
   double gap_rate(std::size_t i, const System& system, const State& state) const;
   // Gaps within this count as touching [m] or [rad].

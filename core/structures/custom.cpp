@@ -9,12 +9,6 @@ namespace unfurl {
 
 namespace {
 
-constexpr CustomConstraintKind kinds[] = {
-    {"plane", "normal", "keeps nodes in the planes through their positions at t = 0 with this normal"},
-    {"line", "direction", "keeps nodes on the lines through their positions at t = 0 with this direction"},
-    {"fixed", "", "keeps nodes where they are at t = 0"},
-};
-
 double rod_mass(const CustomRod& rod, double length) {
   return rod.mass >= 0.0 ? rod.mass : rod.density * rod.area * length;
 }
@@ -24,30 +18,16 @@ double rod_radius(const CustomRod& rod) {
   return rod.area > 0.0 ? std::sqrt(rod.area / pi) : 0.0;
 }
 
-Constraint constraint_on(const std::string& kind, const Vec3& direction, int index, const Node& node) {
-  Constraint constraint;
-  constraint.kind = kind;
-  constraint.name = kind + " of " + node.name;
-  constraint.nodes = {index};
-  if (kind == "plane" || kind == "line") constraint.vectors = {direction.stableNormalized()};
-  if (kind == "plane") constraint.value = constraint.vectors[0].dot(node.position);
-  return constraint;
-}
-
 void add_nodes(const CustomSpec& spec, Structure& structure) {
   for (const auto& entry : spec.nodes) {
     const int index = static_cast<int>(structure.nodes.size());
     structure.nodes.push_back({entry.name, entry.position, entry.velocity, entry.mass});
     if (entry.fixed)
-      structure.constraints.push_back(constraint_on("fixed", Vec3::Zero(), index, structure.nodes.back()));
+      structure.constraints.push_back({"fixed", "fixed of " + entry.name, {index}, {}, 0.0, {}, {}});
   }
 }
 
 }  // namespace
-
-std::span<const CustomConstraintKind> custom_constraint_kinds() {
-  return kinds;
-}
 
 std::string rod_name(const CustomRod& rod) {
   if (!rod.name.empty() || rod.nodes.size() != 2) return rod.name;
@@ -77,11 +57,6 @@ Structure build_custom(const CustomSpec& spec) {
     structure.rods.push_back(
         {rod_name(entry), a, b, rod_mass(entry, length), length, entry.group, rod_radius(entry), 1.0});
   }
-  for (const auto& entry : spec.constraints)
-    for (const auto& pattern : entry.nodes)
-      for (const int node : names.matching(pattern))
-        structure.constraints.push_back(
-            constraint_on(entry.kind, entry.normal, node, structure.nodes[static_cast<std::size_t>(node)]));
   show_as_solved(structure);
   return structure;
 }

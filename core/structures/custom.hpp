@@ -28,29 +28,14 @@ struct CustomRod {
   double length = 0.0;  // [m]; 0: the distance of its nodes
 };
 
-struct CustomConstraint {
-  std::string kind;
-  std::vector<std::string> nodes;  // names or globs
-  Vec3 normal = Vec3::Zero();      // plane: its normal; line: its direction; any length but 0
-};
-
-// Which constraint kinds a list may use, and what each reads.
-struct CustomConstraintKind {
-  std::string_view kind;
-  std::string_view direction;  // key of its direction: "normal", "direction"; empty: it has none
-  std::string_view help;
-};
-std::span<const CustomConstraintKind> custom_constraint_kinds();
-
 struct CustomSpec {
   std::vector<CustomNode> nodes;
   std::vector<CustomRod> rods;
-  std::vector<CustomConstraint> constraints;
   bool lumped_mass = false;
 };
 
 struct CustomProblem {
-  std::string table;  // "nodes", "rods", "constraints"
+  std::string table;  // "nodes", "rods"
   int index = -1;     // entry of the table; -1: the table itself
   std::string key;    // "nodes", "position", ...
   std::string message;

@@ -1,4 +1,4 @@
-// Everything that can be wrong with a list of nodes, rods and constraints.
+// Everything that can be wrong with a list of nodes and rods.
 #include <cmath>
 #include <unordered_map>
 #include <utility>
@@ -18,8 +18,6 @@ class Checker {
   std::vector<CustomProblem> run() {
     check_nodes();
     check_rods();
-    check_constraints();
-    if (nodes_found_) check_masses();  // else a node may lack only what was to be attached to it
     return std::move(problems_);
   }
 
@@ -76,7 +74,7 @@ class Checker {
   bool check_rod_nodes(const CustomRod& rod, std::size_t i) {
     if (rod.nodes.size() != 2) {
       add("rods", i, "nodes", "a rod joins 2 nodes; got " + std::to_string(rod.nodes.size()));
-      return nodes_found_ = false;
+      return false;
     }
     bool known = true;
     for (const auto& name : rod.nodes) {
@@ -84,7 +82,7 @@ class Checker {
       add("rods", i, "nodes", "there is no node " + in_quotes(name) + hint(name));
       known = false;
     }
-    if (!known) return nodes_found_ = false;
+    if (!known) return false;
     if (rod.nodes[0] == rod.nodes[1]) {
       add("rods", i, "nodes", "a rod from " + in_quotes(rod.nodes[0]) + " to itself");
       return false;
@@ -114,55 +112,9 @@ class Checker {
       add("rods", i, "mass", "give mass (0: a pure distance constraint), or both density and area");
   }
 
-  void check_constraints() {
-    for (std::size_t i = 0; i < spec_.constraints.size() && !full(); ++i) {
-      const auto& constraint = spec_.constraints[i];
-      const CustomConstraintKind* kind = nullptr;
-      std::vector<std::string_view> kinds;
-      for (const auto& row : custom_constraint_kinds()) {
-        kinds.push_back(row.kind);
-        if (row.kind == constraint.kind) kind = &row;
-      }
-      if (!kind)
-        add("constraints", i, "kind",
-            "there is no constraint kind " + in_quotes(constraint.kind) +
-                did_you_mean(constraint.kind, kinds));
-      else if (!kind->direction.empty() &&
-               !(constraint.normal.stableNorm() > 0.0 && constraint.normal.allFinite()))
-        add("constraints", i, std::string(kind->direction), "must not be zero");
-      if (constraint.nodes.empty()) add("constraints", i, "nodes", "names no node");
-      for (const auto& pattern : constraint.nodes)
-        if (names_.matching(pattern).empty()) {
-          add("constraints", i, "nodes", "no node matches " + in_quotes(pattern) + hint(pattern));
-          nodes_found_ = false;
-        }
-    }
-  }
-
-  // A node that moves needs mass: its own or a share of a rod's.
-  void check_masses() {
-    std::vector<bool> has_mass(spec_.nodes.size());
-    for (std::size_t i = 0; i < spec_.nodes.size(); ++i)
-      has_mass[i] = spec_.nodes[i].mass != 0.0 || spec_.nodes[i].fixed || spec_.nodes[i].name.empty();
-    for (const auto& rod : spec_.rods)
-      if (rod.mass != 0.0)
-        for (const auto& name : rod.nodes)
-          if (const int node = names_.find(name); node >= 0) has_mass[static_cast<std::size_t>(node)] = true;
-    for (const auto& constraint : spec_.constraints)
-      if (constraint.kind == "fixed")
-        for (const auto& pattern : constraint.nodes)
-          for (const int node : names_.matching(pattern)) has_mass[static_cast<std::size_t>(node)] = true;
-    for (std::size_t i = 0; i < has_mass.size() && !full(); ++i)
-      if (!has_mass[i])
-        add("nodes", i, "mass",
-            in_quotes(spec_.nodes[i].name) +
-                " has no mass: give it some, attach a rod that has mass, or fix it");
-  }
-
   const CustomSpec& spec_;
   std::vector<CustomProblem> problems_;
   NameIndex names_;
-  bool nodes_found_ = true;  // all that rods and constraints name
 };
 
 }  // namespace

@@ -17,22 +17,24 @@ namespace unfurl {
 
 std::span<const Family> families() {
   static const std::array rows{
-      Family{"hoop", "ring antenna of n re-entrant units that share their posts", hoop_params, build_hoop},
+      Family{"hoop", "ring antenna of n re-entrant units that share their posts", hoop_params, build_hoop,
+             true},
       Family{"scissor_mast", "mast of crossed rods pinned at their middles, planar or with 3 and more sides",
-             scissor_mast_params, build_scissor_mast},
+             scissor_mast_params, build_scissor_mast, true},
       Family{"scissor_ring", "closed ring of crossed rods pinned at their middles, which opens from a bundle",
-             scissor_ring_params, build_scissor_ring},
+             scissor_ring_params, build_scissor_ring, true},
       Family{"hoberman", "Hoberman's ring of angulated elements, which grows in its plane", hoberman_params,
-             build_hoberman},
+             build_hoberman, true},
       Family{"reentrant_sheet", "sheet of re-entrant units: a negative Poisson's ratio",
-             reentrant_sheet_params, build_reentrant_sheet},
+             reentrant_sheet_params, build_reentrant_sheet, true},
       Family{"bricard",
              "overconstrained loop of six bars and six hinges, which opens from a bundle to a triangle",
-             bricard_params, build_bricard},
-      Family{"chain", "rigid links in a row, hanging, falling or free", chain_params, build_chain},
-      Family{"pendulum", "a rod with a bob, swinging from a fixed point", pendulum_params, build_pendulum},
+             bricard_params, build_bricard, true},
+      Family{"chain", "rigid links in a row, hanging, falling or free", chain_params, build_chain, false},
+      Family{"pendulum", "a rod with a bob, swinging from a fixed point", pendulum_params, build_pendulum,
+             false},
       Family{"four_bar_ladder", "row of four-bar windows that passes poses with all rods collinear",
-             four_bar_ladder_params, build_four_bar_ladder},
+             four_bar_ladder_params, build_four_bar_ladder, false},
   };
   return rows;
 }

@@ -17,6 +17,7 @@ struct Family {
   const std::vector<ParamSpec>& (*params)();
   // Throws StructureError where the parameters, each fine alone, cannot make a structure.
   Structure (*build)(const ParamSet& params);
+  bool deploys;  // has a fold angle and a deployed pose: what its scenes run to where they give no end
 };
 
 // Every family with parameters of its own; `custom` is built from a list (custom.hpp) and is not among them.

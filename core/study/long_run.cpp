@@ -65,6 +65,7 @@ class Marathon {
     return spent <= seconds_each;
   }
   void look() {
+    system_.follow(state_);
     system_.expand(state_.z, q_);
     const double kinetic = system_.kinetic_energy(state_.w), potential = system_.potential_energy(q_),
                  work = system_.load_work(q_) + flow_.load_work;
@@ -82,7 +83,7 @@ class Marathon {
     out_.constraint.push_back(constraint_);
   }
 
-  const System& system_;
+  System system_;  // follows the states
   State state_, before_;
   EnergyMeter flow_;
   EnergyTurnedOver turned_over_;

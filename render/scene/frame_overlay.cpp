@@ -50,7 +50,7 @@ std::string scale_text(const Appearance& looks) {
   const double least = looks.least_scale, largest = looks.largest_scale;
   if (std::abs(least - 1) < visible && std::abs(largest - 1) < visible) return {};
   const bool one = factor(least) == factor(largest);
-  return "rods drawn " + (one ? "" : factor(least) + " to ") + factor(largest) + " as thick";
+  return "rods drawn at " + (one ? "" : factor(least) + " to ") + factor(largest) + " their thickness";
 }
 
 // The width of a text in pixels, roughly; enough to space out a legend.
@@ -180,7 +180,9 @@ void FrameOverlay::add_color_bar(DrawList& list) const {
     list.labels.push_back({at, y + thick + 5 * unit_, line, look_.ink,
                            end_mark(*field_, u) + number_text(value(u)), static_cast<float>(u)});
   }
-  list.labels.push_back({x, y - 1.35f * line, line, look_.ink, field_->label});
+  const bool longer = about_width(field_->label, line) > length;  // it then ends where the bar ends
+  list.labels.push_back(
+      {longer ? x + length : x, y - 1.35f * line, line, look_.ink, field_->label, longer ? 1.0f : 0.0f});
 }
 
 }  // namespace unfurl

@@ -5,7 +5,7 @@
 
 Draws N errors from a seed over all folders of core, no file more than a third of its folder, compiles them in
 at once, each behind a switch (tests/mutation/switch.hpp), and runs the core tests with one switched on at a
-time, the quick ones first, until one fails. Errors that do not compile are dropped and others drawn. Prints
+time, the quick ones first, and 60 random mechanisms, until one fails. Errors that do not compile are dropped and others drawn. Prints
 what survived, by folder and place, and writes build/mutation/SEED.tsv, from which --resume goes on.
 """
 import argparse
@@ -202,8 +202,13 @@ def snapshot():
         os.makedirs(os.path.dirname(target), exist_ok=True)
         (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, target)
     os.symlink(os.path.join(ROOT, "assets"), os.path.join(WORK, "source", "assets"))
-    commands = run(["ninja", "-C", RELEASE, "-t", "commands", "tests/core_tests"]).stdout.strip().split("\n")
-    link = commands[-1].split(" && ")[1].split()
+    return [linked("tests/core_tests", "core_tests"), linked("tests/random/random_mechanisms", "random_mechanisms")]
+
+
+def linked(target, name):
+    """The command that links a test program of the release build with the mutants' library instead."""
+    commands = run(["ninja", "-C", RELEASE, "-t", "commands", target]).stdout.strip().split("\n")
+    link = next(c for c in commands if f" -o {target} " in c).split(" && ")[1].split()
     for i, word in enumerate(link):
         if word.endswith(".o") or word.endswith("libunfurl_ida.a"):
             link[i] = os.path.join(WORK, "objects", word)
@@ -211,8 +216,8 @@ def snapshot():
             shutil.copy(os.path.join(RELEASE, word), link[i])
         elif word == "core/libunfurl_core.a":
             link[i] = os.path.join(WORK, "build", word)
-        elif word == "tests/core_tests":
-            link[i] = os.path.join(WORK, "core_tests")
+        elif word == target:
+            link[i] = os.path.join(WORK, name)
     return link
 
 
@@ -237,8 +242,8 @@ def write_tree(mutants):
     return tree
 
 
-def build(mutants, link):
-    """Compiles core and links the tests with it; the mutants that do not compile, by the lines named."""
+def build(mutants, links):
+    """Compiles core and links the test programs with it; the mutants that do not compile, by the lines named."""
     tree, folder = write_tree(mutants), os.path.join(WORK, "build")
     launcher = re.findall(r"^UNFURL_CCACHE:\w+=(.*)$", open(os.path.join(RELEASE, "CMakeCache.txt")).read(), re.M)
     done = run(["cmake", "-S", tree, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DUNFURL_TESTS=OFF",
@@ -248,9 +253,10 @@ def build(mutants, link):
         sys.exit(done.stdout + done.stderr)
     done = run(["cmake", "--build", folder, "--target", "unfurl_core", "--", "-k", "0"])
     if done.returncode == 0:
-        done = run(link, cwd=RELEASE)
-        if done.returncode:
-            sys.exit(done.stderr)
+        for link in links:
+            done = run(link, cwd=RELEASE)
+            if done.returncode:
+                sys.exit(done.stderr)
         return set()
     bad = set()
     for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", done.stdout):
@@ -261,10 +267,10 @@ def build(mutants, link):
 
 
 def compiled(seed, n):
-    dropped, link = set(), snapshot()
+    dropped, links = set(), snapshot()
     while True:
         mutants = draw(seed, n, dropped)
-        bad = build(mutants, link)
+        bad = build(mutants, links)
         print(f"{len(mutants)} errors drawn, {len(bad)} do not compile", flush=True)
         if not bad:
             return mutants
@@ -284,7 +290,7 @@ class Tests:
         times = [(float(t), name) for t, name in re.findall(r"^(\d+\.\d+) s: (.+)$", done.stdout, re.M)]
         times.sort()
         self.portions, spent, portion = [], 0.0, []
-        limits = [0.03, 0.15, 0.4, 2.0]
+        limits = [0.02, 0.08, 0.2, 0.4, 2.0]
         total = sum(t for t, _ in times)
         for t, name in times:
             spent += t
@@ -298,7 +304,9 @@ class Tests:
             with open(os.path.join(WORK, f"portion_{i}"), "w", encoding="utf-8") as file:
                 for name in names:
                     file.write('"' + re.sub(r'([\\,\[\]"*])', r"\\\1", name) + '"\n')
-        print(f"{len(times)} tests, {self.whole:.0f} s", flush=True)
+        self.commands = [[self.program, "--abort", "-f", os.path.join(WORK, f"portion_{i}")] for i in range(len(self.portions))]
+        self.commands.insert(2, [os.path.join(WORK, "random_mechanisms"), "60", "1", "43"])
+        print(f"{len(times)} tests, {self.whole:.0f} s, and 60 random mechanisms", flush=True)
 
     @staticmethod
     def environment(k):
@@ -306,17 +314,16 @@ class Tests:
 
     def verdict(self, k):
         """What finds error k; empty: nothing."""
-        for i in range(len(self.portions)):
-            words = [self.program, "--abort", "-f", os.path.join(WORK, f"portion_{i}")]
+        for words in self.commands:
             try:
-                done = run(words, env=self.environment(k), cwd=ROOT, timeout=60 + 5 * self.whole)
+                done = run(words, env=self.environment(k), cwd=WORK, timeout=60 + 5 * self.whole)
             except subprocess.TimeoutExpired:
                 return "no end"
             if done.returncode == 0:
                 continue
             if done.returncode < 0:
                 return f"signal {-done.returncode}"
-            names = re.findall(r"^-{70,}\n(.+)\n", done.stdout, re.M)
+            names = re.findall(r"^-{70,}\n(.+)\n", done.stdout, re.M) + re.findall(r"^seed \d+: [^:]*", done.stdout, re.M)
             return names[0].strip() if names else "failed"
         return ""
 

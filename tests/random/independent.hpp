@@ -32,13 +32,4 @@ struct IndependentOptions {
 IndependentRun solve_independently(const Mechanism& mechanism, const std::vector<double>& times,
                                    const IndependentOptions& options = {});
 
-// Of a state, by formulas of its own.
-double kinetic_energy(const Mechanism& m, const Vector& v);
-double potential_energy(const Mechanism& m, const Vector& q);  // gravity, springs, constant loads
-Vec3 momentum(const Mechanism& m, const Vector& v);
-Vec3 angular_momentum(const Mechanism& m, const Vector& q, const Vector& v);
-double load_factor(const Load& load, double t);
-// Integral of the factor from 0 to t [s]: its pieces are trapezia.
-double load_impulse(const Load& load, double t);
-
 }  // namespace unfurl::random

@@ -10,6 +10,7 @@
 #include "core/scene/reader.hpp"
 #include "core/simulate/simulation.hpp"
 #include "tests/random/independent.hpp"
+#include "tests/random/quantities.hpp"
 
 namespace unfurl::random {
 
@@ -127,7 +128,8 @@ class Judge {
   bool energy_holds() {
     const bool damped =
         std::any_of(m_.springs.begin(), m_.springs.end(), [](auto& s) { return s.damping > 0; }) ||
-        std::any_of(m_.twists.begin(), m_.twists.end(), [](auto& t) { return t.damping > 0; });
+        std::any_of(m_.twists.begin(), m_.twists.end(),
+                    [](auto& t) { return t.damping > 0 || !t.axis.isZero(); });
     const bool varying =
         std::any_of(m_.loads.begin(), m_.loads.end(), [](auto& l) { return !l.times.empty(); });
     if (damped || varying || !m_.drives.empty() || !m_.followers.empty() || !m_.drags.empty() ||

@@ -8,7 +8,11 @@
 
 namespace unfurl::random {
 
-// SplitMix64 (Steele, Lea & Flood 2014).
+// SplitMix64 (Steele, Lea & Flood 2014). Seeds in a row would give one stream, shifted: each is scrambled
+// first.
+Dice::Dice(std::uint64_t seed) : state_(seed) {
+  state_ = next() ^ (seed << 32U);
+}
 std::uint64_t Dice::next() {
   std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
   z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9u;
@@ -184,6 +188,9 @@ class Generator {
         m_.twists.push_back({p.a == hinge ? p.b : p.a, hinge, q.a == hinge ? q.b : q.a,
                              dice_.log_between(1, 30), dice_.chance(0.4) ? dice_.log_between(0.05, 1) : 0,
                              dice_.between(0.5, 2.6)});
+        if (!planar_ || !wanted(with_turns) || dice_.chance(0.4)) return;
+        m_.twists.back().axis = normal_;
+        m_.twists.back().free_angle = dice_.between(-5, 5);
         return;
       }
   }
@@ -313,6 +320,7 @@ std::string force_text(const Mechanism& m) {
          "\nstiffness = " + number(f.stiffness) + "\nfree_angle = " + number(f.free_angle * 180 / M_PI) +
          "\n";
     if (f.damping > 0) s += "damping = " + number(f.damping) + "\n";
+    if (!f.axis.isZero()) s += "axis = " + list(f.axis) + "\n";
   }
   for (const Load& f : m.loads) {
     s += f.times.empty() ? "[[loads]]\n" : "[[forces]]\nkind = \"load_over_time\"\n";
@@ -363,6 +371,7 @@ Mechanism turned(const Mechanism& mechanism, const Eigen::Matrix3d& turn) {
     for (Vec3& c : row.coefficients) rotate(c);
   for (Drive& d : m.drives) rotate(d.direction);
   for (Load& load : m.loads) rotate(load.force);
+  for (Twist& t : m.twists) rotate(t.axis);
   for (Stop& s : m.stops) rotate(s.direction);
   rotate(m.gravity);
   return m;

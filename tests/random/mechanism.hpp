@@ -50,10 +50,12 @@ struct Spring {
   double stiffness, damping, free_length;
   bool cable = false;
 };
-// Torque on the angle of the rods hinge-a and hinge-b, in [0, pi].
+// Torque on the angle from hinge-a to hinge-b: in [0, pi], or with an axis (normal to all motion) followed
+// through any number of turns.
 struct Twist {
   int a, hinge, b;
   double stiffness, damping, free_angle;  // [N m/rad], [N m s/rad], [rad]
+  Vec3 axis = Vec3::Zero();
 };
 struct Load {
   int node;
@@ -101,7 +103,8 @@ enum Feature : unsigned {
   with_pulses = 16,
   with_redundant = 32,
   with_rests = 64,
-  all_features = 127
+  with_turns = 128,
+  all_features = 255
 };
 
 Mechanism draw(std::uint64_t seed, unsigned features = all_features);
@@ -114,7 +117,7 @@ Mechanism renumbered(const Mechanism& mechanism, const std::vector<int>& order);
 // Numbers that are the same on every machine: the standard's distributions are not.
 class Dice {
  public:
-  explicit Dice(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15u + 0x632BE59BD9B4E019u) {}
+  explicit Dice(std::uint64_t seed);
   std::uint64_t next();
   double between(double low, double high);
   int below(int n) { return static_cast<int>(next() % static_cast<std::uint64_t>(n)); }

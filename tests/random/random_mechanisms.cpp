@@ -15,6 +15,7 @@ int main(int count, char** words) {
                       first = count > 2 ? std::strtoull(words[2], nullptr, 10) : 1;
   const unsigned features =
       count > 3 ? static_cast<unsigned>(std::strtoul(words[3], nullptr, 10)) : all_features;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   std::map<std::string, std::uint64_t> aside, failures;
   std::uint64_t set_aside = 0, failed = 0;
   double worst = 0;

@@ -161,6 +161,35 @@ TEST_CASE("glTF: keys put the ends of every rod on its nodes") {
   }
 }
 
+TEST_CASE("every rotation in a glTF file has length 1") {
+  const Exported out("gltf");
+  const std::string glb = out.text("animation.glb");
+  const auto word = [&](std::size_t at) { return as<std::uint32_t>(std::string_view(glb).substr(at, 4))[0]; };
+  const auto json = nlohmann::json::parse(glb.substr(20, word(12)));
+  const std::string_view data = std::string_view(glb).substr(20 + word(12) + 8);
+  int nodes = 0, keys = 0;
+  const auto is_unit = [](const auto& x) {
+    return std::abs(
+               std::hypot(std::hypot(double(x[0]), double(x[1])), std::hypot(double(x[2]), double(x[3]))) -
+               1) < 1e-6;  // single precision
+  };
+  for (const auto& node : json["nodes"]) {
+    if (!node.contains("rotation")) continue;
+    CHECK(is_unit(node["rotation"].get<std::vector<double>>()));
+    ++nodes;
+  }
+  for (const auto& accessor : json["accessors"]) {
+    if (accessor["type"] != "VEC4") continue;
+    const auto& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+    const auto floats = as<float>(data.substr(view.value("byteOffset", 0U) + accessor.value("byteOffset", 0U),
+                                              16 * accessor["count"].get<std::size_t>()));
+    for (std::size_t i = 0; i < floats.size(); i += 4) CHECK(is_unit(&floats[i]));
+    ++keys;
+  }
+  CHECK(nodes >= 1);
+  CHECK(keys >= 2);  // both rods turn
+}
+
 TEST_CASE("glTF: nodes at which no rod ends are there too") {
   CustomSpec spec;  // a stone that falls beside a rod, and one alone
   spec.nodes = {{"O", {0, 0, 0}, {0, 0, 0}, 0.0, true},

@@ -34,8 +34,8 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("the summary has exactly its documented keys") {
   const auto s = summary_of("hoop6", {"solver.end_time=0.05"});
-  CHECK(keys(s) == Names{"unfurl", "scene", "status", "message", "warnings", "model", "solver", "errors",
-                         "forces", "events", "measures", "final"});
+  CHECK(keys(s) == Names{"unfurl", "scene", "status", "message", "warnings", "notes", "model", "solver",
+                         "errors", "forces", "events", "measures", "final"});
   CHECK(keys(s["forces"]) ==
         Names{"rods", "unique_rods", "peak_rod_force_N", "peak_rod", "peak_t_s", "peak_unique"});
   CHECK(keys(s["model"]) == Names{"nodes", "rods", "coordinates", "solved_coordinates", "constraints", "rank",

@@ -23,16 +23,20 @@ void check_derivatives(const TimeFunction& f, const std::vector<double>& times) 
 }  // namespace
 
 TEST_CASE("every kind of function over time has the derivatives that it says") {
-  TimeFunction rate{.kind = TimeFunction::Kind::rate, .offset = 0.3, .rate = -1.7, .ramp = 0.6, .start = 0.2};
+  TimeFunction rate;
+  rate.kind = TimeFunction::Kind::rate, rate.offset = 0.3, rate.rate = -1.7, rate.ramp = 0.6,
+  rate.start = 0.2;
   check_derivatives(rate, {0.1, 0.35, 0.7, 0.9, 2.0});
   CHECK(rate(0.1) == 0.3);
   CHECK(rate.derivative(1, 2.0) == -1.7);
   CHECK(rate(2.0) == Approx(0.3 - 1.7 * (1.8 - 0.3)));  // the ramp costs half of its time
-  TimeFunction smooth{
-      .kind = TimeFunction::Kind::smooth, .offset = 0.3, .rise = 1.1, .start = 0.2, .duration = 0.9};
+  TimeFunction smooth;
+  smooth.kind = TimeFunction::Kind::smooth, smooth.offset = 0.3, smooth.rise = 1.1, smooth.start = 0.2;
+  smooth.duration = 0.9;
   check_derivatives(smooth, {0.1, 0.4, 0.65, 1.0, 1.4});
   CHECK(smooth(5) == Approx(1.4));
-  TimeFunction linear{.kind = TimeFunction::Kind::linear, .times = {0.1, 0.5, 1.3}, .values = {2, 1, 4}};
+  TimeFunction linear;
+  linear.kind = TimeFunction::Kind::linear, linear.times = {0.1, 0.5, 1.3}, linear.values = {2, 1, 4};
   check_derivatives(linear, {0.05, 0.3, 0.9, 1.5});
   CHECK(linear(9) == 4);
   check_derivatives(make_spline({0.1, 0.5, 1.3, 1.4}, {2, 1, 4, 3.7}), {0.05, 0.3, 0.9, 1.35, 1.5});

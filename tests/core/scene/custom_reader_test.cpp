@@ -28,7 +28,7 @@ struct Folder {
 
 std::string error_of(std::string_view text) {
   try {
-    read_scene_text(text, "s.toml");
+    build_structure(read_scene_text(text, "s.toml"));
   } catch (const SceneError& error) {
     return error.what();
   }
@@ -86,7 +86,50 @@ TEST_CASE("mistakes in a list carry the entry's place") {
         "s.toml:12:1: structure.constraints[0].normal: is missing; must be a list of 3 numbers");
   CHECK(error_of(head + two_nodes +
                  "[[structure.constraints]]\nkind = 'fixed'\nnodes = 'B'\nnormal = [0, 0, 1]\n") ==
-        "s.toml:15:1: structure.constraints[0].normal: unknown key; known: kind, nodes");
+        "s.toml:15:1: structure.constraints[0].normal: unknown key; known: kind, name, enabled, nodes");
+}
+
+TEST_CASE("a plane passes through each node's start, its normal made a unit vector") {
+  for (const char* normal : {"[0, 0, 1e-200]", "[0, 0, 7]", "[0, 0, 1e200]"}) {
+    const Structure s = build_structure(read_scene_text(
+        head + two_nodes + "[[structure.constraints]]\nkind = 'plane'\nnodes = ['?']\nnormal = " + normal +
+            "\n",
+        "x"));
+    REQUIRE(s.constraints.size() == 3);  // A is fixed
+    CHECK(s.constraints[1].vectors[0] == Vec3(0, 0, 1));
+    CHECK(s.constraints[1].value == 0);
+    CHECK(s.constraints[2].value == 2);
+    CHECK(s.constraints[2].name == "plane of B");
+  }
+}
+
+TEST_CASE("constraints find their nodes by pattern, a literal name first") {
+  const Structure s = build_structure(
+      read_scene_text(head + two_nodes + "[[structure.nodes]]\nname = '*'\nposition = [1, 1, 1]\nmass = 1\n" +
+                          "[[structure.constraints]]\nkind = 'fixed'\nnodes = '*'\n" +
+                          "[[structure.constraints]]\nkind = 'fixed'\nnodes = '?'\n",
+                      "x"));
+  REQUIRE(s.constraints.size() == 1 + 1 + 3);
+  CHECK(s.constraints[1].nodes == std::vector<int>{2});
+  CHECK(error_of(head + two_nodes + "[[structure.constraints]]\nkind = 'fixed'\nnodes = ['X*']\n") ==
+        "s.toml:14:9: structure.constraints[0].nodes: there is no node 'X*'; known: A, B");
+}
+
+TEST_CASE("a node that moves without mass is refused, one that follows others is not") {
+  const std::string third = "[[structure.nodes]]\nname = 'C'\nposition = [0, 3, 1]\n";
+  try {
+    build_model(read_scene_text(head + two_nodes + third, "s.toml"));
+    FAIL("a node without mass");
+  } catch (const SceneError& error) {
+    CHECK(std::string(error.what()) ==
+          "s.toml:12:1: structure.nodes[2].mass: node C can move but has no mass: give it a mass, or a mass "
+          "to a rod "
+          "that ends there");
+  }
+  CHECK_NOTHROW(build_model(read_scene_text(head + two_nodes + third +
+                                                "[[structure.constraints]]\nkind = 'mirror'\nnodes = ['B', "
+                                                "'C']\nnormal = [0, 3, -1]\npoint = [0, 1.5, 1.5]\n",
+                                            "s.toml")));
 }
 
 TEST_CASE("one wrong node does not set off messages about what refers to it") {
@@ -99,16 +142,19 @@ TEST_CASE("one wrong node does not set off messages about what refers to it") {
 
 TEST_CASE("nodes and rods come from CSV files beside the scene") {
   const Folder folder;
-  folder.write("n.csv", "name,x_m,y,z,mass_kg,fixed\nA,0,0,0,,1\n\"B, 2\",1e0,0.5,-2,3.25,0\n");
-  folder.write("r.csv", "\xEF\xBB\xBF# rods\r\na,b,mass\r\nA,\"B, 2\",1.5\r\n");
+  folder.write("n.csv",
+               "name,x_m,y,z,mass_kg,fixed\nA,0,0,0,,true\n\"B, 2\",1e0,0.5,-2,3.25,false\nC,9,9,9,1,1\n");
+  folder.write("r.csv", "\xEF\xBB\xBF# rods\r\na,b,mass\r\nA,\"B, 2\",1.5\r\n\"B, 2\",C,0.5\r\n");
   const auto path = folder.write("s.toml", head + "nodes_file = 'n.csv'\nrods_file = 'r.csv'\n");
   const Scene scene = read_scene_file(path);
-  REQUIRE(scene.custom.nodes.size() == 2);
+  REQUIRE(scene.custom.nodes.size() == 3);
   CHECK(scene.custom.nodes[0].fixed);
+  CHECK_FALSE(scene.custom.nodes[1].fixed);
+  CHECK(scene.custom.nodes[2].fixed);
   CHECK(scene.custom.nodes[1].name == "B, 2");
   CHECK(scene.custom.nodes[1].position == Vec3(1, 0.5, -2));
   CHECK(scene.custom.nodes[1].mass == 3.25);
-  REQUIRE(scene.custom.rods.size() == 1);
+  REQUIRE(scene.custom.rods.size() == 2);
   CHECK(scene.custom.rods[0].mass == 1.5);
 }
 
@@ -123,6 +169,8 @@ TEST_CASE("mistakes in CSV files carry file and line") {
   CHECK(error("name,x,y,z\nA,0,0,one\n") == dir + "n.csv:2:1: z: must be a finite number; got 'one'");
   CHECK(error("name,x,y,z\nA,0,0,nan\n") == dir + "n.csv:2:1: z: must be a finite number; got 'nan'");
   CHECK(error("name,x,y,z\n\nA,0,0\n") == dir + "n.csv:3:1: has 3 cells; the header has 4");
+  CHECK(error("name,x,y,z,fixed\nA,0,0,0,yes\n") ==
+        dir + "n.csv:2:1: fixed: must be true or false; got 'yes'");
   CHECK(error("name,x,y\nA,0,0\n") == dir + "n.csv:1:1: column 'z' is missing");
   CHECK(error("name,x,y,z,mas\nA,0,0,0,1\n") ==
         dir + "n.csv:1:1: unknown column 'mas'; did you mean 'mass'?");
@@ -133,6 +181,13 @@ TEST_CASE("mistakes in CSV files carry file and line") {
   CHECK(error("name,x,y,z,mass\nA,0,0,0,-1\n") ==
         dir + "n.csv:2:1: structure.nodes[0].mass: must be >= 0 kg");
   CHECK(error("name,x,y,z\n\xFF,0,0,0\n") == dir + "n.csv:2:1: not valid UTF-8");
+}
+
+TEST_CASE("a list that is the name of a file is told which key names files") {
+  const std::string told =
+      "s.toml:3:9: structure.nodes: must be an array of tables, [[structure.nodes]]; a CSV file is named by "
+      "nodes_file = 'n.csv'";
+  CHECK(error_of(head + "nodes = 'n.csv'").find(told) != std::string::npos);
 }
 
 TEST_CASE("files outside the scene's folder are not read") {

@@ -207,8 +207,8 @@ TEST_CASE("entries are addressed by name in brackets, too") {
       text, "s.toml", {"constraints[push].duration=0.7", "constraints['my plane'].normal=[0,1,0]"});
   CHECK(scene.constraints[0].values.real("duration") == 0.7);
   CHECK(scene.constraints[1].values.vector("normal") == std::vector<double>{0, 1, 0});
-  CHECK(refused(text, "constraints has no entry named 'pull'; did you mean 'push'?",
-                {"constraints[pull].duration=1"}));
+  CHECK(refused(text, "constraints has no entry named 'pus'; did you mean 'push'?",
+                {"constraints[pus].duration=1"}));
 }
 
 }  // namespace refusals_test

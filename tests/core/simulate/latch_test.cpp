@@ -50,8 +50,9 @@ TEST_CASE("a folding rod that latches while it flies keeps its momentum and its 
                 {"H", {0, 0, 0}, {0, 0, 0}, 0, false},
                 {"B", {0, 1, 0}, {2, 0, 0}, 0, false}};
   spec.rods = {{"AH", {"A", "H"}, 1.0}, {"HB", {"H", "B"}, 1.0}};
-  spec.constraints = {{"plane", {"*"}, {0, 0, 1}}};
   Structure structure = build_custom(spec);
+  for (const int node : {0, 1, 2})
+    structure.constraints.push_back({"plane", "plane", {node}, {Vec3::UnitZ()}, 0.0, {}, {}});
   // In the frame of the first rod there is no linear measure of the angle: latch the collinear pose as the
   // relation x_A - 2 x_H + x_B = 0 of the ends with the middle, reached by y alone.
   structure.deployment.fold_sine = {{0, 1, 2}, {Vec3(0, 1, 0), Vec3(0, -2, 0), Vec3(0, 1, 0)}, 0.0};

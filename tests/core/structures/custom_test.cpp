@@ -60,34 +60,6 @@ TEST_CASE("a list becomes a structure with measured rods") {
   CHECK(s.rod_copies.size() == 3);
 }
 
-TEST_CASE("a plane passes through each node's start, its normal made a unit vector") {
-  CustomSpec spec = triangle();
-  spec.constraints = {{"plane", {"B", "C"}, {0, 2, 0}}};
-  const Structure s = build_custom(spec);
-  REQUIRE(s.constraints.size() == 2);
-  CHECK(s.constraints[0].vectors[0] == Vec3(0, 1, 0));
-  CHECK(s.constraints[0].value == 0.0);
-  CHECK(s.constraints[1].value == 4.0);
-  CHECK(s.constraints[1].name == "plane of C");
-}
-
-TEST_CASE("a normal of any length will do") {
-  for (const double length : {1e-200, 1.0, 1e200}) {
-    CustomSpec spec = triangle();
-    spec.constraints = {{"plane", {"B"}, {0, 0, length}}};
-    CHECK(build_custom(spec).constraints[0].vectors[0] == Vec3(0, 0, 1));
-  }
-}
-
-TEST_CASE("constraints find their nodes by pattern, a literal name first") {
-  CustomSpec spec = triangle();
-  spec.nodes.push_back(node("*", {1, 1, 1}));
-  spec.constraints = {{"fixed", {"*"}, Vec3::Zero()}, {"fixed", {"?"}, Vec3::Zero()}};
-  const Structure s = build_custom(spec);
-  REQUIRE(s.constraints.size() == 1 + 4);
-  CHECK(s.constraints[0].nodes == std::vector<int>{3});
-}
-
 TEST_CASE("globs match as in a shell") {
   CHECK(glob_match("B*", "B12"));
   CHECK(glob_match("*", ""));
@@ -150,27 +122,6 @@ TEST_CASE("each mistake is found, with its place and its cure") {
   SECTION("negative mass of a node") {
     spec.nodes[0].mass = -1;
     CHECK(problems_of(spec) == "nodes[0].mass: must be >= 0 kg\n");
-  }
-  SECTION("a node that moves without mass") {
-    spec.nodes.push_back(node("D", {9, 9, 9}, 0.0));
-    spec.rods.push_back(rod("A", "D", 0.0));
-    CHECK(problems_of(spec) ==
-          "nodes[3].mass: 'D' has no mass: give it some, attach a rod that has mass, or fix it\n");
-    spec.nodes[3].fixed = true;
-    CHECK(problems_of(spec) == "");
-  }
-  SECTION("a plane without a direction") {
-    spec.constraints = {{"plane", {"A"}, Vec3::Zero()}};
-    CHECK(problems_of(spec) == "constraints[0].normal: must not be zero\n");
-  }
-  SECTION("an unknown kind") {
-    spec.constraints = {{"plan", {"A"}, Vec3::UnitX()}};
-    CHECK(problems_of(spec) ==
-          "constraints[0].kind: there is no constraint kind 'plan'; did you mean 'plane'?\n");
-  }
-  SECTION("a pattern that matches nothing") {
-    spec.constraints = {{"fixed", {"X*"}, Vec3::Zero()}};
-    CHECK(problems_of(spec) == "constraints[0].nodes: no node matches 'X*'; known: A, B, C\n");
   }
   SECTION("what is not finite") {
     spec.nodes[1].position[0] = std::nan("");

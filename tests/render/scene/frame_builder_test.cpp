@@ -205,13 +205,13 @@ TEST_CASE("rods drawn thicker than they are say by how much, and rod_scale = 1 d
   double radius = 0;
   CHECK(drawn(1.0, radius).empty());
   CHECK(radius == Approx(own));
-  CHECK(drawn(3.0, radius) == "rods drawn 3.0 \u00D7 as thick");
+  CHECK(drawn(3.0, radius) == "rods drawn at 3.0 \u00D7 their thickness");
   CHECK(radius == Approx(3 * own));
   const std::string note = drawn(0.0, radius);
   REQUIRE(radius > 1.5 * own);  // a ring of 12 m, seen whole
   char factor[32];
   std::snprintf(factor, sizeof factor, "%.1f", radius / own);
-  CHECK(note == "rods drawn " + std::string(factor) + " \u00D7 as thick");
+  CHECK(note == "rods drawn at " + std::string(factor) + " \u00D7 their thickness");
 }
 
 TEST_CASE(

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/scene/variables.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/model/nearest_name.hpp"
+#include "core/scene/expression.hpp"
+#include "core/scene/overrides.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr std::size_t max_turns = 100'000;  // of all loops of repeated entries together
+constexpr std::string_view of_variables = "variables.";
+using Kind = TomlTree::Kind;
+
+// A number as it stands in a name: 3, not 3.0.
+std::string plain_number(double x) {
+  std::array<char, 32> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), x == 0.0 ? 0.0 : x);
+  return {buffer.data(), end};
+}
+
+bool is_expression(const TomlTree& tree) {
+  return tree.kind == Kind::text && tree.text.starts_with('=');
+}
+
+// Works out one tree: its expressions, its braces, its repeated entries.
+class Expansion {
+ public:
+  explicit Expansion(std::vector<SceneProblem>& problems) : problems_(problems) {}
+
+  // Takes [variables] out of the root: each may use those above it.
+  void read_variables(TomlTree& root) {
+    TomlTree* table = root.find("variables");
+    if (!table) return;
+    braces_ = true;
+    if (table->kind == Kind::table)
+      for (const auto& [name, value] : table->entries) read_variable(name, value);
+    else
+      note(*table, "variables", "must be a table, [variables]; got " + table->describe());
+    std::erase_if(root.entries, [](const auto& entry) { return entry.key == "variables"; });
+  }
+
+  // What is filled in by overrides afterwards has expressions, but no braces.
+  void leave_braces() { braces_ = false; }
+
+  void expand(TomlTree& tree, const std::string& key) {
+    if (key == "title") return;  // its braces are parameters of the structure (title.hpp)
+    if (is_expression(tree)) {
+      if (const auto value = value_of(tree, key)) become(tree, *value);
+    } else if (tree.kind == Kind::text && braces_) {
+      fill_braces(tree, key);
+    }
+    if (tree.kind == Kind::array) expand_items(tree, key);
+    for (auto& [name, entry] : tree.entries) expand(entry, key.empty() ? name : key + "." + name);
+  }
+
+ private:
+  void note(const TomlTree& at, const std::string& key, std::string message) {
+    problems_.push_back({at.where, key, std::move(message)});
+  }
+
+  void read_variable(const std::string& name, const TomlTree& tree) {
+    const std::string key = std::string(of_variables) + name;
+    if (!is_variable_name(name))
+      return note(tree, key, "must be a letter, then letters, digits or _, and no constant or function");
+    if (const auto value = value_of(tree, key)) variables_[name] = *value;
+  }
+
+  // The number that a value is or works out to; nothing where that is noted.
+  std::optional<double> value_of(const TomlTree& tree, const std::string& key) {
+    if (tree.kind == Kind::integer) return static_cast<double>(tree.integer);
+    if (tree.kind == Kind::real && std::isfinite(tree.real)) return tree.real;
+    if (is_expression(tree)) return evaluated(tree, std::string_view(tree.text).substr(1), key);
+    note(tree, key, "must be a finite number or an expression, \"=...\"; got " + tree.describe());
+    return std::nullopt;
+  }
+
+  std::optional<double> evaluated(const TomlTree& at, std::string_view text, const std::string& key) {
+    try {
+      return evaluate(text, variables_);
+    } catch (const ExpressionError& error) {
+      note(at, key,
+           "in the expression " + in_quotes(text) + ", character " + std::to_string(error.place) + ": " +
+               error.what());
+      return std::nullopt;
+    }
+  }
+
+  static void become(TomlTree& tree, double value) {
+    constexpr double exact = 9007199254740992.0;  // 2^53: every whole number up to here is a double
+    tree.text.clear();
+    tree.kind = value == std::floor(value) && std::abs(value) <= exact ? Kind::integer : Kind::real;
+    tree.integer = tree.kind == Kind::integer ? static_cast<long>(value) : 0;
+    tree.real = value;
+  }
+
+  void fill_braces(TomlTree& tree, const std::string& key) {
+    std::string filled;
+    const std::string_view text = tree.text;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      const bool doubled = i + 1 < text.size() && text[i + 1] == text[i];
+      if ((text[i] != '{' && text[i] != '}') || doubled) {
+        filled += text[i];
+        if (doubled && (text[i] == '{' || text[i] == '}')) ++i;
+        continue;
+      }
+      const std::size_t end = text.find('}', i);
+      if (text[i] == '}' || end == text.npos)
+        return note(tree, key, "a brace stands alone in " + in_quotes(text) + "; write it twice to mean it");
+      const auto value = evaluated(tree, text.substr(i + 1, end - i - 1), key);
+      if (!value) return;
+      filled += plain_number(*value);
+      i = end;
+    }
+    tree.text = std::move(filled);
+  }
+
+  void expand_items(TomlTree& array, const std::string& key) {
+    std::vector<TomlTree> items;
+    for (std::size_t i = 0; i < array.items.size(); ++i) {
+      TomlTree& item = array.items[i];
+      if (item.kind == Kind::table && item.find("repeat")) {
+        repeat(std::move(item), key, items);
+      } else {
+        expand(item, key + "[" + std::to_string(items.size()) + "]");
+        items.push_back(std::move(item));
+      }
+    }
+    array.items = std::move(items);
+  }
+
+  // The entry once for each value of the variables of its `repeat`.
+  void repeat(TomlTree entry, const std::string& key, std::vector<TomlTree>& items) {
+    const std::string place = key + "[" + std::to_string(items.size()) + "].repeat";
+    const TomlTree ranges = std::move(*entry.find("repeat"));
+    std::erase_if(entry.entries, [](const auto& member) { return member.key == "repeat"; });
+    if (ranges.kind != Kind::table || ranges.entries.empty())
+      return note(ranges, place, "must be a table such as {i = \"0:n\"}; got " + ranges.describe());
+    const bool braces = std::exchange(braces_, true);
+    repeat_over(ranges, 0, entry, key, items);
+    braces_ = braces;
+  }
+
+  void repeat_over(const TomlTree& ranges, std::size_t which, const TomlTree& entry, const std::string& key,
+                   std::vector<TomlTree>& items) {
+    const std::string here = key + "[" + std::to_string(items.size()) + "]";
+    if (which == ranges.entries.size()) {
+      items.push_back(entry);
+      return expand(items.back(), here);
+    }
+    const auto& [name, range] = ranges.entries[which];
+    const std::string place = here + ".repeat." + name;
+    if (!is_variable_name(name))
+      return note(range, place, "must be a letter, then letters, digits or _, and no constant or function");
+    if (variables_.contains(name)) return note(range, place, "is the name of another variable");
+    const std::size_t problems = problems_.size();
+    for (const double value : values_of(range, place)) {
+      if (++turns_ == max_turns + 1) note(range, place, too_many());
+      if (turns_ > max_turns || problems_.size() > problems) break;  // the others have the same mistake
+      variables_[name] = value;
+      repeat_over(ranges, which + 1, entry, key, items);
+    }
+    variables_.erase(name);
+  }
+
+  static std::string too_many() { return "would make more than " + std::to_string(max_turns) + " entries"; }
+
+  // "A:B": A, A + 1, ..., B - 1; or a list of numbers and expressions.
+  std::vector<double> values_of(const TomlTree& range, const std::string& key) {
+    std::vector<double> values;
+    if (range.kind == Kind::array) {
+      for (const TomlTree& item : range.items)
+        if (const auto value = value_of(item, key)) values.push_back(*value);
+      return values;
+    }
+    const std::size_t colon = range.text.find(':');
+    if (range.kind != Kind::text || colon == std::string::npos) {
+      note(range, key,
+           "must be a range \"FROM:END\", END not included, or a list of numbers; got " + range.describe());
+      return values;
+    }
+    const auto from = evaluated(range, std::string_view(range.text).substr(0, colon), key);
+    const auto end = evaluated(range, std::string_view(range.text).substr(colon + 1), key);
+    if (!from || !end) return values;
+    if (*end - *from > static_cast<double>(max_turns))
+      note(range, key, too_many());
+    else
+      for (double x = *from; x < *end; x = *from + static_cast<double>(values.size())) values.push_back(x);
+    return values;
+  }
+
+  std::vector<SceneProblem>& problems_;
+  Variables variables_;
+  bool braces_ = false;
+  std::size_t turns_ = 0;
+};
+
+// A variable that an override names must be there: it would mean nothing.
+void refuse_unknown_variable(const TomlTree& root, const std::string& override_text,
+                             std::vector<SceneProblem>& problems) {
+  const std::string key = override_text.substr(0, override_text.find('='));
+  const std::string name = key.substr(of_variables.size());
+  const TomlTree* table = root.find("variables");
+  std::vector<std::string_view> known;
+  if (table)
+    for (const auto& [variable, value] : table->entries) known.push_back(variable);
+  for (const auto& variable : known)
+    if (variable == name) return;
+  problems.push_back(
+      {{override_source, 0, 0}, key, "the scene has no such variable" + did_you_mean(name, known)});
+}
+
+}  // namespace
+
+bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& overrides,
+                                std::vector<SceneProblem>& problems) {
+  std::vector<std::string> first, then;
+  for (const auto& text : overrides) (text.starts_with(of_variables) ? first : then).push_back(text);
+  for (const auto& text : first) refuse_unknown_variable(root, text, problems);
+  if (!problems.empty()) return false;
+  apply_overrides(root, first, problems);
+  Expansion expansion(problems);
+  expansion.read_variables(root);
+  expansion.expand(root, "");
+  if (!problems.empty()) return false;
+  apply_overrides(root, then, problems);
+  const std::size_t before = problems.size();
+  expansion.leave_braces();
+  expansion.expand(root, "");
+  return problems.size() == before;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,118 @@
+// Forces where more than one acts, or where a term is only seen off its special value.
+#include <catch2/catch.hpp>
+
+#include "core/model/system.hpp"
+#include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using testing::run_scene;
+
+namespace force_sums_test {
+
+namespace {
+
+const std::string point = R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "A"
+position = [1, 2, 3]
+velocity = [0.5, -0.25, 0.125]
+mass = 1.6
+[[structure.nodes]]
+name = "O"
+position = [0, 0, 0]
+fixed = true
+[solver]
+step = 0.05
+end_time = 0.7
+)";
+
+}  // namespace
+
+TEST_CASE("loads on one node add up, constant ones and those over time") {
+  const Simulation run = run_scene(point + R"(
+[[loads]]
+nodes = ["A"]
+force = [3, -1, 0.5]
+[[loads]]
+nodes = ["*"]
+force = [-0.8, 2.2, 1.7]
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [0.4, 0.6, -2]
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [1, 5, 7]
+times = [0, 10]
+values = [0.3, 0.3]
+)");
+  REQUIRE(run.status == RunStatus::completed);
+  const Vec3 force(3 - 0.8 + 0.4 + 0.3, -1 + 2.2 + 0.6 + 1.5, 0.5 + 1.7 - 2 + 2.1);
+  const Vec3 expected = Vec3(1, 2, 3) + 0.7 * Vec3(0.5, -0.25, 0.125) + 0.5 * 0.49 / 1.6 * force;
+  // A parabola, which the method follows to round-off.
+  CHECK((run.trajectory.node_positions(run.trajectory.size() - 1).head<3>() - expected).norm() <= 1e-12);
+}
+
+TEST_CASE("a stretched cable whose damper would push does nothing") {
+  // k (s - s_0) - c u = 50 (0.1) - 20 (1.5) < 0 at the start, and less with every moment of free flight until
+  // it is slack at s_0: straight on at 1.5 m/s.
+  const Simulation run =
+      run_scene(point + R"(
+[[forces]]
+kind = "spring"
+nodes = ["O", "A"]
+stiffness = 50
+damping = 20
+free_length = 1.9
+tension_only = true
+)",
+                {"structure.nodes.A.position=[0,0,2]", "structure.nodes.A.velocity=[0,0,-1.5]"});
+  REQUIRE(run.status == RunStatus::completed);
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i)
+    CHECK(run.trajectory.node_positions(i)[2] == Approx(2 - 1.5 * run.trajectory.time(i)).margin(1e-12));
+}
+
+TEST_CASE("a step is solved where a damper is far stiffer than it") {
+  // h c / m = 0.05 * 400 / 1.6 = 12.5: only a Newton matrix with dF/dz' finds it.
+  const Simulation run = run_scene(point + R"(
+[[forces]]
+kind = "spring"
+nodes = ["O", "A"]
+stiffness = 30
+damping = 400
+free_length = 1.9
+)",
+                                   {"solver.end_time=0.05", "solver.stages=4"});
+  INFO(run.message);
+  CHECK(run.status == RunStatus::completed);
+  CHECK(run.newton_iterations <= 30);  // after the frozen iteration has given up, some ten are enough
+}
+
+TEST_CASE("lumped rods weigh half at either end, consistent ones a third and a sixth") {
+  CustomSpec spec;
+  spec.nodes = {{"A", {0.1, 0.2, 0.3}, {1, 2, -1}, 0.4, false},
+                {"B", {1.3, -0.4, 0.6}, {0, 0, 0}, 0.0, false}};
+  spec.rods = {{"AB", {"A", "B"}, 2.7}};
+  for (const bool lumped : {true, false}) {
+    spec.lumped_mass = lumped;
+    const Structure structure = build_custom(spec);
+    const System system(structure, true);
+    const MatrixXd M = MatrixXd(system.node_mass());
+    MatrixXd expected(2, 2);
+    if (lumped)
+      expected << 0.4 + 1.35, 0, 0, 1.35;
+    else
+      expected << 0.4 + 0.9, 0.45, 0.45, 0.9;
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        for (int k = 0; k < 3; ++k)
+          for (int l = 0; l < 3; ++l)
+            CHECK(M(3 * i + k, 3 * j + l) == Approx(k == l ? expected(i, j) : 0.0).margin(1e-15));
+  }
+}
+
+}  // namespace force_sums_test

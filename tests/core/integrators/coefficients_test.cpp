@@ -1,0 +1,174 @@
+// What whole runs cannot tell apart: coefficients whose errors cost iterations or damping, not the order.
+#include <Eigen/LU>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/integrators/galerkin.hpp"
+#include "core/integrators/index1.hpp"
+#include "core/integrators/integrator.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace coefficients_test {
+
+TEST_CASE("a step's polynomial is prolonged exactly") {
+  // p(c) = c - 2 c^2 + 3 c^3 ... of degree s - 1: its increments over this step at the control times,
+  // prolonged to those of the next, which is `ratio` times as long.
+  for (const char* family : {"lobatto", "equidistant", "chebyshev"})
+    for (int s = 2; s <= 6; ++s) {
+      const GalerkinCoefficients c(family, s);
+      const auto p = [&](double x) {
+        double sum = 0;
+        for (int k = 1; k < s; ++k) sum += (k % 2 ? k : -k) * std::pow(x, k);
+        return sum;
+      };
+      const VectorXd& nodes = c.basis.nodes();
+      VectorXd now(s - 1);
+      for (int j = 1; j < s; ++j) now[j - 1] = p(nodes[j]);
+      for (const double ratio : {1.0, 0.6, 1.9}) {
+        MatrixXd E;
+        c.extrapolate(ratio, E);
+        if (ratio == 1.0) CHECK((E - c.extrapolation).norm() == 0);
+        const VectorXd next = E * now;
+        for (int i = 1; i < s; ++i) {
+          INFO(family << ", s = " << s << ", ratio " << ratio);
+          const double exact = p(1 + nodes[i] * ratio) - p(1);
+          CHECK(next[i - 1] == Approx(exact).epsilon(1e-11).margin(1e-12));  // l_k(2.9) is up to 1e3
+        }
+      }
+    }
+}
+
+TEST_CASE("the coefficients of a step integrate polynomials exactly") {
+  for (const char* family : {"lobatto", "equidistant", "chebyshev"})
+    for (int s = 2; s <= 6; ++s) {
+      const GalerkinCoefficients c(family, s);
+      const VectorXd& nodes = c.basis.nodes();
+      for (int d = 0; d < s; ++d) {
+        VectorXd powers(s);
+        for (int k = 0; k < s; ++k) powers[k] = std::pow(nodes[k], d);
+        INFO(family << ", s = " << s << ", degree " << d);
+        CHECK(c.b.dot(powers) == Approx(1.0 / (d + 1)).epsilon(1e-13));
+        // integral of (c^d)'^2 = d^2 / (2 d - 1)
+        CHECK(powers.dot(c.K * powers) == Approx(d == 0 ? 0.0 : d * d / (2.0 * d - 1)).margin(1e-11));
+      }
+      CHECK((c.C * c.C_inverse - MatrixXd::Identity(s - 1, s - 1)).norm() <= 1e-11);
+    }
+}
+
+TEST_CASE("Baumgarte's terms are 2 alpha G w and alpha^2 Phi") {
+  const Structure structure = double_pendulum();
+  const System system(structure, true);
+  State state = initial_state(structure, system).state;
+  for (Index i = 0; i < state.z.size(); ++i) {  // off the constraints, in place and velocity
+    state.z[i] += 1e-3 * std::sin(3.0 + static_cast<double>(i));
+    state.w[i] += 1e-2 * std::cos(2.0 * static_cast<double>(i));
+  }
+  VectorXd q(system.coordinates()), v(q.size()), a(state.z.size()), lambda(system.constraints());
+  system.expand(state.z, q);
+  system.expand_rate(state.w, v);
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  system.jacobian(q, G, scratch);
+  VectorXd bias(lambda.size()), phi(lambda.size());
+  system.constraint_bias(0, q, v, bias);
+  system.constraint(0, q, phi);
+  const VectorXd rate = G * state.w;
+  for (const double alpha : {0.0, 7.0, 30.0}) {
+    Index1 equations(system);
+    equations.stabilise(alpha);
+    REQUIRE(equations.evaluate(0, state.z, state.w, a, lambda));
+    const VectorXd left = G * a + bias + 2 * alpha * rate + alpha * alpha * phi;
+    CHECK(left.lpNorm<Eigen::Infinity>() <= 1e-10 * (1 + alpha * alpha));  // regularisation, refined away
+  }
+}
+
+TEST_CASE("a step ends with the multipliers that the equations of motion give there") {
+  // They are the start of the next step's iteration; between nodes of order 4 they agree to some h^3.
+  const auto model = make_model(double_pendulum());
+  State state = initial_state(model->structure, model->system).state;
+  for (const int stages : {2, 3, 4}) {
+    State next = state;
+    const auto integrator = find_method("dvm")->make(model->system, dvm_options(stages, 1e-3, 1));
+    REQUIRE(integrator->step(next, 1e-3).ok());
+    VectorXd a(next.z.size()), exact(next.lambda.size());
+    REQUIRE(Index1(model->system).evaluate(next.t, next.z, next.w, a, exact));
+    INFO(stages << " stages");
+    // Two stages take the mean over half a step, which is h/2 of the multiplier's rate away: 1e-2 of its
+    // size.
+    CHECK((next.lambda - exact).norm() <= 2e-2 * exact.norm());
+  }
+}
+
+TEST_CASE("the Newton iteration starts near and ends soon") {
+  // Four stages at h = 0.01 on the ring: two corrections from a prolonged step, and one that confirms.
+  const Simulation run = simulate(make_model(hoop_structure()), dvm_options(4, 0.01, 3.0));
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.newton_iterations <= 4 * run.steps);
+}
+
+// Chung & Hulbert (1993, J. Appl. Mech. 60): the method on x'' = -omega^2 x, as a matrix on (x, h v, h^2 a).
+Eigen::Matrix3d amplification(double rho, double wh) {
+  const double am = (2 * rho - 1) / (rho + 1), af = rho / (rho + 1), gamma = 0.5 - am + af,
+               beta = 0.25 * std::pow(1 - am + af, 2), w2 = wh * wh;
+  // (1 - am) a1 + am a0 + w2 ((1 - af) x1 + af x0) = 0, x1 = x0 + v0 + (1/2 - beta) a0 + beta a1,
+  // v1 = v0 + (1 - gamma) a0 + gamma a1
+  Eigen::Matrix3d left, right;
+  left << 1, 0, -beta, 0, 1, -gamma, w2 * (1 - af), 0, 1 - am;
+  right << 1, 1, 0.5 - beta, 0, 1, 1 - gamma, -w2 * af, 0, -am;
+  return left.inverse() * right;
+}
+
+TEST_CASE("generalized-alpha is the published recursion, for every rho_inf") {
+  // A mass between two equal springs in line, of which each gives k x: omega^2 = 2 k / m.
+  constexpr double h = 0.02, wh = 0.9, x0 = 0.01;
+  const std::string k = std::to_string(0.5 * 1.3 * std::pow(wh / h, 2));
+  const std::string scene = R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "A"
+position = [0.01, 0, 0]
+mass = 1.3
+[[structure.nodes]]
+name = "L"
+position = [-1, 0, 0]
+fixed = true
+[[structure.nodes]]
+name = "R"
+position = [1, 0, 0]
+fixed = true
+[[forces]]
+kind = "spring"
+nodes = ["A", "L"]
+free_length = 1
+stiffness = )" + k + R"(
+[[forces]]
+kind = "spring"
+nodes = ["A", "R"]
+free_length = 1
+stiffness = )" + k + R"(
+[solver]
+method = "generalized_alpha"
+step = 0.02
+end_time = 0.8
+)";
+  for (const double rho : {0.25, 0.6, 0.95}) {
+    const Simulation run = run_scene(scene, {"solver.rho_inf=" + std::to_string(rho)});
+    INFO("rho_inf " << rho << ": " << run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    REQUIRE(run.trajectory.size() == 41);
+    Eigen::Vector3d y(x0, 0, -wh * wh * x0);  // the method starts with the true acceleration
+    for (std::size_t i = 0; i < 41; ++i, y = amplification(rho, wh) * y) {
+      // 40 steps of an iteration that ends at round-off, of 0.01 m; the stiffness is written to 7 digits.
+      CHECK(run.trajectory.node_positions(i)[0] == Approx(y[0]).margin(1e-10));
+      CHECK(run.trajectory.node_velocities(i)[0] * h == Approx(y[1]).margin(1e-10));
+    }
+  }
+}
+
+}  // namespace coefficients_test

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes with variables mean the same as scenes that spell everything out.
+#include "core/scene/variables.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/scene/write.hpp"
+#include "core/scene/write_back.hpp"
+
+using namespace unfurl;
+
+namespace variables_test {
+
+namespace {
+
+// A hanging polygon of n rods, as scenes with variables say it.
+const std::string polygon = R"toml([variables]
+n = 5
+radius = "=1 + 1/4"          # m
+[structure]
+kind = "custom"
+[[structure.nodes]]
+repeat = {i = "0:n"}
+name = "P{i}"
+position = ["=radius*cos(2*pi*i/n)", 0, "=radius*sin(2*pi*i/n)"]
+[[structure.nodes]]
+name = "top"
+position = [0, 0, "=2*radius"]
+fixed = true
+[[structure.rods]]
+repeat = {i = "0:n"}
+nodes = ["P{i}", "P{(i+1) % n}"]
+mass = "=(i+1)/8"
+[[structure.rods]]
+nodes = ["top", "P1"]
+mass = 0.5
+[[constraints]]
+repeat = {k = [0, "=n-2"], axis = [0, 1]}
+kind = "plane"
+name = "plane {k} {axis}"
+nodes = ["P{k}"]
+normal = ["=axis", "=1-axis", 0]
+)toml";
+
+Scene read(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return read_scene_text(text, "polygon.toml", overrides);
+}
+
+std::string mistakes(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    read(text, overrides);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("repeated entries stand once for every value") {
+  const Scene scene = read(polygon);
+  REQUIRE(scene.custom.nodes.size() == 6);
+  REQUIRE(scene.custom.rods.size() == 6);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / 5;
+    CHECK(scene.custom.nodes[i].name == "P" + std::to_string(i));
+    CHECK(scene.custom.nodes[i].position.x() == Approx(1.25 * std::cos(angle)).margin(1e-15));
+    CHECK(scene.custom.nodes[i].position.z() == Approx(1.25 * std::sin(angle)).margin(1e-15));
+    CHECK(scene.custom.rods[i].nodes ==
+          std::vector<std::string>{"P" + std::to_string(i), "P" + std::to_string((i + 1) % 5)});
+    CHECK(scene.custom.rods[i].mass == static_cast<double>(i + 1) / 8);
+  }
+  CHECK(scene.custom.nodes[5].position.z() == 2.5);
+  CHECK_NOTHROW(build_model(scene));
+}
+
+TEST_CASE("two variables of a repeat: the last one runs fastest") {
+  const std::string text = scene_text(read(polygon));
+  std::size_t at = 0;
+  for (const char* name : {"plane 0 0", "plane 0 1", "plane 3 0", "plane 3 1"}) {
+    INFO(name);
+    at = text.find("\"" + std::string(name) + "\"", at);
+    REQUIRE(at != std::string::npos);
+  }
+}
+
+TEST_CASE("variables are set on the command line") {
+  const Scene scene =
+      read(polygon, {"variables.n=8", "variables.radius=\"=n/2\"", "structure.nodes.P7.mass=3"});
+  CHECK(scene.custom.nodes.size() == 9);
+  CHECK(scene.custom.nodes[0].position.x() == 4.0);
+  CHECK(scene.custom.nodes[7].mass == 3.0);
+  CHECK(mistakes(polygon, {"variables.radiuss=2"}) ==
+        "--set variables.radiuss: the scene has no such variable; did you mean 'radius'?");
+  CHECK(read(polygon, {"solver.step=\"=radius/125\""}).solver.step == 0.01);
+}
+
+TEST_CASE("the scene that a run writes is spelt out and means the same") {
+  const std::string spelt = scene_text(read(polygon));
+  CHECK(spelt.find("repeat") == std::string::npos);
+  CHECK(scene_text(read(spelt)) == spelt);
+}
+
+TEST_CASE("values are written back into scenes with variables") {
+  const WrittenBack variable = write_back(polygon, "polygon.toml", {"variables.n=7"}, "");
+  CHECK_FALSE(variable.anew);
+  CHECK(variable.text == with(polygon, "n = 5", "n = 7"));
+  // A single one of the repeated entries has no place in the file: all are spelt out.
+  const WrittenBack entry = write_back(polygon, "polygon.toml", {"structure.nodes[3].mass=2"}, "");
+  CHECK(entry.anew);
+  CHECK(read(entry.text).custom.nodes[3].mass == 2.0);
+}
+
+TEST_CASE("mistakes in variables and repeats have a place") {
+  CHECK(mistakes(with(polygon, "cos(2*pi*i/n)", "cos(2*pi*i/m)"))
+            .starts_with("polygon.toml:9:13: structure.nodes[0].position[0]: in the expression "
+                         "'radius*cos(2*pi*i/m)', character 19: no variable 'm'; known: i, n, radius, "));
+  CHECK(
+      mistakes(with(polygon, "\"P{i}\"\n", "\"P{i\"\n"))
+          .find("polygon.toml:8:8: structure.nodes[0].name: a brace stands alone in 'P{i'; write it twice") ==
+      0);
+  CHECK(mistakes(with(polygon, "{i = \"0:n\"}", "\"0:n\""))
+            .find("polygon.toml:7:10: structure.nodes[0].repeat: must be a table such as {i = \"0:n\"}") ==
+        0);
+  CHECK(mistakes(with(polygon, "{i = \"0:n\"}", "{i = 7}")).find("must be a range \"FROM:END\"") !=
+        std::string::npos);
+  CHECK(mistakes(with(polygon, "{i = \"0:n\"}", "{n = \"0:3\"}"))
+            .find("structure.nodes[0].repeat.n: is the name of another variable") != std::string::npos);
+  CHECK(mistakes(with(polygon, "{i = \"0:n\"}", "{i = \"0:9e9\"}")).find("more than 100000 entries") !=
+        std::string::npos);
+  const std::string loops = "{i = \"0:90000\", j = \"0:90000\", k = []}";  // none of them makes an entry
+  CHECK(mistakes(with(polygon, "{i = \"0:n\"}", loops)).find("more than 100000 entries") !=
+        std::string::npos);
+  CHECK(mistakes(with(polygon, "n = 5", "n = true")).find("variables.n: must be a finite number") !=
+        std::string::npos);
+  // One mistake in an entry that stands many times is told once.
+  const std::string twice = mistakes(with(polygon, "mass = \"=(i+1)/8\"", "mas = 1"));
+  CHECK(twice.find("unknown key") == twice.rfind("unknown key"));
+}
+
+TEST_CASE("scenes without variables keep their braces and titles") {
+  const Scene scene = read(
+      "title = \"= {A}\"\n[structure]\nkind = \"custom\"\n[[structure.nodes]]\nname = \"{A}\"\n"
+      "position = [0, 0, \"=sqrt(4)\"]\n[[structure.nodes]]\nname = \"B\"\nposition = [1, 0, 2]\n"
+      "[[structure.rods]]\nnodes = [\"{A}\", \"B\"]\nmass = 1\n");
+  CHECK(scene.title == "= {A}");
+  CHECK(scene.custom.nodes[0].name == "{A}");
+  CHECK(scene.custom.nodes[0].position.z() == 2.0);
+}
+
+}  // namespace variables_test
