@@ -20,6 +20,7 @@ State on_cubic(const State& a, const State& b, double t) {
   const double h = b.t - a.t, u = (t - a.t) / h, v = 1 - u;
   State s = a;
   s.t = t;
+  if (a.angles.size() == b.angles.size()) s.angles = v * a.angles + u * b.angles;
   s.z = v * v * (1 + 2 * u) * a.z + u * v * v * h * a.w + u * u * (3 - 2 * u) * b.z - u * u * v * h * b.w;
   s.w = 6 * u * v / h * (b.z - a.z) + v * (1 - 3 * u) * a.w + u * (1 - 3 * v) * b.w;
   return s;

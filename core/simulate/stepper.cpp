@@ -52,6 +52,9 @@ const char* reason(StepStatus status) {
   return "";
 }
 
+constexpr const char* too_near =
+    "so near the deployed pose, where the constraints lose rank, the motion cannot be told from rounding";
+
 std::string seconds(double t) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g s", t);
@@ -145,7 +148,7 @@ class Stepper::Loop {
   }
 
   bool accept(Probe& to, double t) {
-    if (!to.report.ok()) return fail(reason(to.report.status));
+    if (!to.report.ok()) return fail(may_cross(0) ? too_near : reason(to.report.status));
     to.state.t = t;
     have_begin_ = to.margins.size() > 0;
     if (have_begin_) begin_ = to;
@@ -475,18 +478,6 @@ bool Stepper::step() {
 }
 bool Stepper::advance_to(double t) {
   return loop_->advance_to(t);
-}
-const State& Stepper::state() const {
-  return run_.trajectory.state(run_.trajectory.size() - 1);
-}
-const Model& Stepper::model() const {
-  return run_.trajectory.last_model();
-}
-const Simulation& Stepper::run() const {
-  return run_;
-}
-Simulation Stepper::take() {
-  return std::move(run_);
 }
 void Stepper::stop() {
   loop_->end();

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "core/simulate/simulation.hpp"
 
@@ -27,11 +28,12 @@ class Stepper {
   bool advance_to(double t);
 
   double time() const { return state().t; }
-  const State& state() const;
-  const Model& model() const;     // that the state belongs to: it changes with what is held or pulls
-  const Simulation& run() const;  // all so far
-  Simulation take();              // the same, for good: the stepper is of no use after it
-  void stop();                    // ends the run as stopped by the user
+  const State& state() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
+  // That the state belongs to: it changes with what is held or pulls.
+  const Model& model() const { return run_.trajectory.last_model(); }
+  const Simulation& run() const { return run_; }  // all so far
+  Simulation take() { return std::move(run_); }   // the same, for good: the stepper is of no use after it
+  void stop();                                    // ends the run as stopped by the user
 
   // Called with every state that is appended to the run, in order, the report of its step beside it.
   void on_step(std::function<void(const State&, const StepReport&)> callback);

@@ -256,4 +256,20 @@ TEST_CASE("adaptive steps are the same there and back") {
   CHECK((state.z - start.z).lpNorm<Eigen::Infinity>() < 1e-11);
 }
 
+TEST_CASE("a ring that starts next to its deployed pose reaches it, or says why not") {
+  for (const double degrees : {1e-5, 1e-3, 0.1}) {
+    const Simulation run =
+        simulate(make_model(hoop_structure({{"fold_angle", degrees}})), dvm_options(4, 0.01, 1.0));
+    INFO(degrees << " deg: " << run.message);
+    REQUIRE(run.status == RunStatus::deployed);
+    // The angle to go is known to 1e-16 of a coordinate of metres: to 1e-9 of 1e-5 deg.
+    CHECK(run.events.back().t == Approx(exact_hoop({{"fold_angle", degrees}}).time(0)).epsilon(1e-6));
+  }
+  // 1e-9 deg is 2e-11 rad: rounding moves the hinges as far as a thousandth of it.
+  const Simulation nearest =
+      simulate(make_model(hoop_structure({{"fold_angle", 1e-9}})), dvm_options(4, 0.01, 1.0));
+  CHECK(
+      (nearest.status == RunStatus::deployed || nearest.message.find("deployed pose") != std::string::npos));
+}
+
 }  // namespace deployment_test

@@ -65,6 +65,26 @@ TEST_CASE(
   CHECK(events[0].t == Approx(exact_hoop().time(0)).margin(1e-5));
 }
 
+TEST_CASE("singular poses are found inside steps that turn far, and none in the rounding of a slow start") {
+  // 30 m/s: 30 rad/s, so that a step of 0.05 s of eight stages turns by 1.5 rad and steps of 0.03 s by 0.9.
+  const exact::FourBarLadder ladder{1, 30.0};
+  for (const auto& [stages, step] : {std::pair{8, 0.05}, std::pair{6, 0.03}}) {
+    Simulation run = simulate(make_model(ladder_structure(1, 30.0)), dvm_options(stages, step, 2.0));
+    REQUIRE(run.status == RunStatus::completed);
+    const std::vector<Event> events = singular_events(run);
+    INFO(stages << " stages, " << step << " s");
+    const double turns = (ladder.angle(2.0) - 0.5 * M_PI) / M_PI;
+    REQUIRE(events.size() == static_cast<std::size_t>(std::floor(turns)) + 1);
+    for (std::size_t k = 0; k < events.size(); ++k)
+      CHECK(std::abs(ladder.angle(events[k].t) - (0.5 + static_cast<double>(k)) * M_PI) <= 1e-3);
+  }
+  for (const double step : {0.003, 0.03}) {
+    Simulation ring =
+        simulate(make_model(hoop_structure({{"fold_angle", 89.999}})), dvm_options(4, step, 0.3));
+    CHECK(singular_events(ring).empty());
+  }
+}
+
 TEST_CASE("a swing without singular poses has no such event") {
   Simulation run = simulate(make_model(double_pendulum()), dvm_options(4, 0.01, 5.0));
   CHECK(singular_events(run).empty());
