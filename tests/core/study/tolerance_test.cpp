@@ -120,9 +120,9 @@ Case cable(std::mt19937& random) {
 TEST_CASE("what a tolerance claims of blows, stops that let go and cables that slacken is true") {
   std::mt19937 random(20261);
   int kept = 0;
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < 12; ++i) {
     const Case c = i % 3 == 0 ? blow(random) : i % 3 == 1 ? lifted(random) : cable(random);
-    for (const double tolerance : {1e-4, 1e-8}) {
+    for (const double tolerance : {1e-4, 1e-7}) {
       const Scene scene = read_scene_text(
           c.scene + "[solver]\ntolerance = " + text_of(tolerance) + "\nend_time = " + text_of(c.end) + "\n",
           "random.toml", {});
@@ -138,7 +138,7 @@ TEST_CASE("what a tolerance claims of blows, stops that let go and cables that s
       kept += said ? 0 : 1;
     }
   }
-  CHECK(kept > 40);
+  CHECK(kept > 20);
 }
 
 TEST_CASE("a tolerance ends in bounded time where it cannot be met") {
@@ -166,7 +166,7 @@ TEST_CASE("a pick that is cancelled has stopped, whichever of its runs it was") 
   counting.cancelled = [&] { return ++asked < 0; };
   simulate_as_asked(model, options, counting);
   const long all = asked;
-  REQUIRE(all > 300);  // three runs of 128 steps and more
+  REQUIRE(all > 300);  // three runs of 140 steps and more
   for (long when = 1; when <= all; when += 37) {
     asked = 0;
     SimulationHooks hooks;
