@@ -144,7 +144,7 @@ TEST_CASE("what a tolerance claims of blows, stops that let go and cables that s
 TEST_CASE("a tolerance ends in bounded time where it cannot be met") {
   // The ring of joints next to its dead centre: round-off decides when it begins to move.
   const auto model = make_model(hoop_structure({{"model", std::string("joints")},
-                                                {"units", 5L},
+                                                {"units", 4L},
                                                 {"chord_rod_length", 1.7},
                                                 {"fold_angle", 89.86},
                                                 {"hinge_force", 20.0}}));
@@ -154,7 +154,8 @@ TEST_CASE("a tolerance ends in bounded time where it cannot be met") {
   const Simulation run = simulate_as_asked(model, options);
   CHECK(run.status == RunStatus::deployed);
   CHECK(std::isfinite(run.position_estimate));
-  CHECK(thread_cpu_seconds() - begin < 40);  // some ten on a machine of 2020, before 54 and more
+  CHECK(thread_cpu_seconds() - begin <
+        40);  // one or two where nothing else runs; five units before: 54 and more
 }
 
 TEST_CASE("a pick that is cancelled has stopped, whichever of its runs it was") {
