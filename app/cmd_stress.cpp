@@ -43,7 +43,7 @@ int cmd_stress(const Arguments& arguments) {
   const Scene scene = source.read();
   const StressPlan plan = as_usage([&] { return plan_stress(source, arguments.study.extremes); });
   const InterruptGuard guard;
-  StudySession session(arguments, "stressing", scene_text(scene), "stress.csv");
+  StudySession session(arguments, "stressing", study_identity("An atlas", scene), "stress.csv");
   Stress stress;
   {
     Journal journal(session.journal(), stress_columns(), stress_key_columns, stress_number_columns());

@@ -80,12 +80,15 @@ int cmd_study(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   auto model = model_of(scene, arguments);
   const InterruptGuard guard;
-  StudySession session(arguments, "measuring", scene_text(scene), "study.csv");
+  const int repeats = arguments.study.repeats > 0 ? arguments.study.repeats : TimingOptions{}.repeats;
+  StudySession session(arguments, "measuring",
+                       study_identity("A study with " + std::to_string(repeats) + " repeats", scene),
+                       "study.csv");
   const StudyHooks hooks = session.hooks();
   StudyPlan plan =
       as_usage([&] { return plan_study(std::move(model), scene.solver, range.from, range.to, hooks); });
   as_usage([&] { keep_methods(plan, arguments.study.methods); });
-  if (arguments.study.repeats > 0) plan.timing.repeats = arguments.study.repeats;
+  plan.timing.repeats = repeats;
   Study study;
   {
     Journal journal(session.journal(), study_columns(), study_key_columns, study_number_columns());

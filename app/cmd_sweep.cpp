@@ -58,9 +58,9 @@ std::string journal_name(const Shard& shard) {
 
 // The scene, and what was asked of it as comments: what the points in a directory belong to.
 std::string identity(const Scene& scene, const SweepPlan& plan) {
-  std::string text = "# A sweep over";
+  std::string text = "A sweep over";
   for (const auto& axis : plan.axes) text += " " + axis.key;
-  return text + "\n" + scene_text(scene);
+  return study_identity(text, scene);
 }
 
 // What a whole sweep is of: a title that names what is varied would speak of one point.

@@ -8,7 +8,9 @@
 #include "app/interrupt.hpp"
 #include "app/run_figures.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/export/checksum.hpp"
 #include "core/scene/text_file.hpp"
+#include "core/scene/write.hpp"
 #include "render/plot/figure_data.hpp"
 
 namespace unfurl {
@@ -48,10 +50,24 @@ std::vector<fs::path> journals_like(const std::string& journal, const fs::path& 
   return found;
 }
 
+std::string study_identity(const std::string& what, const Scene& scene) {
+  Checksum build;
+  build.add(read_text_file("/proc/self/exe").text);
+  return "# " + what + ", by unfurl " + UNFURL_VERSION + " (build " + build.text() + ")\n" +
+         scene_text(scene);
+}
+
 void require_identity(const fs::path& directory, const std::string& identity, const std::string& cure) {
   const TextFile scene = read_text_file((directory / "scene.toml").string());
-  if (scene.error.empty() && scene.text != identity)
-    throw FileError(directory, "holds results of another scene or other settings; " + cure);
+  if (!scene.error.empty() || scene.text == identity) return;
+  const auto below_heading = [](const std::string& text) {
+    return text.substr(std::min(text.find('\n'), text.size()));
+  };
+  const bool same_scene = below_heading(scene.text) == below_heading(identity);
+  throw FileError(directory,
+                  std::string(same_scene ? "holds results of another version of unfurl or other --repeats; "
+                                         : "holds results of another scene or other settings; ") +
+                      cure);
 }
 
 StudySession::StudySession(const Arguments& arguments, std::string task, const std::string& identity,

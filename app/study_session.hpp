@@ -9,6 +9,7 @@
 #include "app/command.hpp"
 #include "app/output_directory.hpp"
 #include "app/progress.hpp"
+#include "core/scene/scene.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/report.hpp"
 #include "render/plot/figure.hpp"
@@ -20,6 +21,10 @@ namespace unfurl {
 // all shards. Throws FileError where the directory cannot be read.
 std::vector<std::filesystem::path> journals_like(const std::string& journal,
                                                  const std::filesystem::path& directory);
+// The scene under a line that says what was asked and by which build: points of another are not mixed with
+// these.
+std::string study_identity(const std::string& what, const Scene& scene);
+
 // Throws FileError, with what can be done, where DIR/scene.toml tells of other results than `identity`.
 void require_identity(const std::filesystem::path& directory, const std::string& identity,
                       const std::string& cure);

@@ -176,9 +176,10 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
   }
   if (!(best.uncertainty < least))
     throw ReferenceError(
-        "the reference does not converge: its best two solutions differ by " +
-        short_number(best.uncertainty) +
-        " m; give the motion an earlier solver.end_time, before it becomes chaotic or singular");
+        "the reference does not converge: " +
+        (best.solution ? "its best two solutions differ by " + short_number(best.uncertainty) + " m"
+                       : std::string("no two solutions run through")) +
+        "; give the motion an earlier solver.end_time, before it becomes chaotic or singular");
   if (apart > least && !std::isinf(apart))
     throw ReferenceError("there is no reference: two methods, each of which agrees with itself to " +
                          short_number(best.uncertainty) + " m, differ by " + short_number(apart) + " m");

@@ -16,7 +16,8 @@ namespace {
 
 // The estimate aims here, as shares of the tolerance: below `most`, and not much more work than for `least`.
 constexpr double most = 0.5, least = 0.02, aim = 0.2;
-constexpr long first_steps = 128, fewest_steps = 32, max_steps = 100'000'000;
+// Numbers of steps are multiples of 35, for what other grids share with them (solve).
+constexpr long multiple = 35, first_steps = 4 * multiple, fewest_steps = multiple, max_steps = 100'000'000;
 constexpr int tries = 8;  // per number of stages
 // Work of the whole search, in solves times unknowns: a minute or two of one core.
 constexpr double most_work = 2e8;
@@ -112,7 +113,7 @@ class Picker {
   std::optional<Simulation> run(int stages, double steps, double& work) {
     SolverOptions o = options_;
     o.stages = stages;
-    o.step = options_.end_time / steps;
+    o.step = options_.end_time / std::round(steps);
     Simulation out = simulate(model_, o, quiet_);
     work += work_of(out);
     if (out.status != RunStatus::stopped) return out;
@@ -120,11 +121,12 @@ class Picker {
     return std::nullopt;
   }
 
-  // With so many steps to the end, a multiple of four; nothing where the user stopped it. The second solution
-  // has a stage more and 3/2 as many steps (without stages 5/2: an error of order 2 is a sixth then), which
-  // meet the first ones at every second of those, so that what happens within a step falls elsewhere in its
-  // own. One that agrees may do so by chance where the motion is not smooth: a third, with 5/4 (9/4) as many,
-  // has to agree as well.
+  // With so many steps to the end; nothing where the user stopped it. The second solution has a stage more
+  // and 7/5 as many steps (without stages 12/5: an error of order 2 is a sixth then), which meet the first
+  // ones at every fifth of those, so that what happens within a step falls elsewhere in its own. One that
+  // agrees may do so by chance where the motion is not smooth (something that is seen only at the end of a
+  // step, at a time that both have): a third, with 9/7 (16/7) as many, has to agree as well; all three meet
+  // at every 35th step only.
   std::optional<Judged> solve(int stages, long steps) {
     double work = 0;
     auto first = run(stages, static_cast<double>(steps), work);
@@ -133,7 +135,7 @@ class Picker {
     out.work = work;
     const int more = by_stages() ? stages + 1 : stages;
     out.estimate = 0;
-    for (const double ratio : by_stages() ? std::array{1.5, 1.25} : std::array{2.5, 2.25}) {
+    for (const double ratio : by_stages() ? std::array{7.0 / 5, 9.0 / 7} : std::array{12.0 / 5, 16.0 / 7}) {
       if (out.run.status == RunStatus::failed) out.estimate = std::numeric_limits<double>::infinity();
       if (!(out.estimate <= most * options_.tolerance)) break;
       const auto other = run(more, ratio * static_cast<double>(steps), work);
@@ -171,7 +173,8 @@ class Picker {
       if (hopeless) ++round_off_;
       if (hopeless || (share <= most && share >= least) || (share < least && steps == fewest_steps)) return;
       const double factor = std::isfinite(share) ? std::pow(share / aim, 1 / order) : 4.0;
-      const long next = 4 * std::lround(0.25 * static_cast<double>(steps) * std::clamp(factor, 0.125, 8.0));
+      const double wanted = static_cast<double>(steps) * std::clamp(factor, 0.125, 8.0);
+      const long next = multiple * std::max(1L, std::lround(wanted / static_cast<double>(multiple)));
       const double growth = static_cast<double>(next) / static_cast<double>(steps);
       if (next == steps || next > max_steps || (enough > 0 && next >= enough)) return;
       if (best_ && best_->estimate <= most * options_.tolerance && work * growth > 1.3 * best_->work) return;

@@ -18,8 +18,8 @@ std::size_t lines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-const std::vector<std::string> quick_study = {
-    "study", "double_pendulum", "--set", "solver.end_time=0.4", "--steps", "0.05:0.01", "--repeats", "1"};
+const std::vector<std::string> quick_study = {"study",   "double_pendulum", "--set", "solver.end_time=0.4",
+                                              "--steps", "0.05:0.01"};
 
 std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -30,7 +30,8 @@ std::vector<std::string> operator+(std::vector<std::string> a, const std::vector
 
 TEST_CASE("study writes points, a report and figures, and goes on where it stopped") {
   const ScratchDirectory dir;
-  const auto command = quick_study + std::vector<std::string>{"-o", dir / "out"};
+  const auto asked = quick_study + std::vector<std::string>{"-o", dir / "out"};
+  const auto command = asked + std::vector<std::string>{"--repeats", "1"};
   const ProgramResult first = run_program(command);
   INFO(first.err);
   CHECK(first.code == 0);
@@ -42,6 +43,10 @@ TEST_CASE("study writes points, a report and figures, and goes on where it stopp
     CHECK(fs::exists(dir / (std::string("out/") + name)));
   CHECK(run_program(command).code == 0);
   CHECK(file_text(dir / "out/study.csv") == points);  // CPU times and all: nothing was measured again
+  const ProgramResult repeated = run_program(asked + std::vector<std::string>{"--repeats", "2"});
+  CHECK(repeated.code == 5);
+  CHECK(repeated.err.find("holds results of another version of unfurl or other --repeats") !=
+        std::string::npos);
   const ProgramResult other =
       run_program(command + std::vector<std::string>{"--set", "gravity.acceleration=[0,0,-1]"});
   CHECK(other.code == 5);
