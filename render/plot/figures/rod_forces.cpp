@@ -66,11 +66,17 @@ std::string rods_text(const RodGroup& g, const Part& part) {
 
 constexpr const char* open_text = ", not unique";
 
+// Unique forces are solid or dash-dotted, others dashed or dotted: neighbours differ without their colours.
+Dash dash_of(bool unique, int color) {
+  if (unique) return color % 2 == 0 ? Dash::solid : Dash::dash_dot;
+  return color % 2 == 0 ? Dash::dashed : Dash::dotted;
+}
+
 // One line where all rods of the part carry the same to within the line's width, else the band between the
-// extremes; dashed where the forces are not unique.
+// extremes, dashed or dotted where the forces are not unique.
 void add_part(const Diagnostics& d, const RodGroup& g, const Part& part, double same, Panel& p) {
   Band band = extremes(d, part.rods);
-  const Dash dash = part.unique ? Dash::solid : Dash::dashed;
+  const Dash dash = dash_of(part.unique, g.color);
   const std::string text = rods_text(g, part) + (part.unique ? "" : open_text);
   if (widest(band) <= same) {
     std::vector<double> middle(band.x.size());
@@ -91,11 +97,12 @@ void add_part(const Diagnostics& d, const RodGroup& g, const Part& part, double 
 
 void add_rods(const Simulation& run, const Diagnostics& d, Panel& p) {
   const std::vector<Rod>& rods = run.trajectory.structure().rods;
+  const bool all = std::count(d.rod_unique.begin(), d.rod_unique.end(), 0) == 0;
   for (std::size_t r = 0; r < rods.size(); ++r) {
     const auto i = static_cast<int>(r);
     const bool unique = d.rod_unique[r] != 0;
     p.curves.push_back(over_time(d, column(d.axial_force, i), rods[r].name + (unique ? "" : open_text), i));
-    p.curves.back().dash = unique ? Dash::solid : Dash::dashed;
+    p.curves.back().dash = all ? static_cast<Dash>(i % 4) : dash_of(unique, i);
   }
 }
 
@@ -103,8 +110,9 @@ std::string uniqueness_sentence(const Structure& structure, const Diagnostics& d
   const std::size_t rods = structure.rod_copies.size(), open = rods - unique_rods(structure, d);
   const char* symmetric = structure.sectors > 1 ? " under the symmetry of the sector" : "";
   if (open == 0) return std::string(" The model determines all of them") + symmetric + ".";
-  return " Dashed: not unique, the rigid model does not determine the force of " + std::to_string(open) +
-         " of the " + std::to_string(rods) + " rods" + symmetric + "; shown is the choice of least norm, scaled by mass.";
+  return " Dashed or dotted: not unique, the rigid model does not determine the force of " +
+         std::to_string(open) + " of the " + std::to_string(rods) + " rods" + symmetric +
+         "; shown is the choice of least norm, scaled by mass.";
 }
 
 std::string peak_sentence(const Structure& structure, const Diagnostics& d) {

@@ -72,13 +72,13 @@ TEST_CASE("rods that are parallel or there twice are not unique, and carry toget
       "[[structure.nodes]]\nname = 'O'\nposition = [0.2, 0, 0]\nfixed = true\n"
       "[[structure.nodes]]\nname = 'A'\nposition = [1.3, 0, -0.4]\nmass = 1.7\n"
       "[[structure.nodes]]\nname = 'B'\nposition = [1.9, 0, -1.3]\nmass = 0.6\n"
-      "[[structure.rods]]\nname = 'upper'\nnodes = ['O', 'A']\n"
-      "[[structure.rods]]\nname = 'lower'\nnodes = ['A', 'B']\n";
+      "[[structure.rods]]\nname = 'upper'\nnodes = ['O', 'A']\nmass = 0.8\n"
+      "[[structure.rods]]\nname = 'lower'\nnodes = ['A', 'B']\nmass = 0.5\n";
   const std::string rest =
       "[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nstages = 4\nstep = 0.01\nend_time = 0.5\n";
   const Diagnostics one = diagnose(run_scene(twice + rest)),
-                    two = diagnose(
-                        run_scene(twice + "[[structure.rods]]\nname = 'again'\nnodes = ['O', 'A']\n" + rest));
+                    two = diagnose(run_scene(
+                        twice + "[[structure.rods]]\nname = 'again'\nnodes = ['O', 'A']\nmass = 0\n" + rest));
   REQUIRE(one.t.size() == two.t.size());
   CHECK(one.rod_unique == std::vector<char>{1, 1});
   CHECK(two.rod_unique == std::vector<char>{0, 1, 0});
@@ -101,9 +101,9 @@ TEST_CASE("a parallelogram that starts flat opens its forces at the start alone"
       "[[structure.nodes]]\nname = 'A'\nposition = [1, 0, 0]\nvelocity = [0, 0, 1]\nmass = 1.3\n"
       "[[structure.nodes]]\nname = 'B'\nposition = [3, 0, 0]\nvelocity = [0, 0, 1]\nmass = 0.7\n"
       "[[structure.constraints]]\nkind = 'plane'\nnodes = ['A', 'B']\nnormal = [0, 1, 0]\n"
-      "[[structure.rods]]\nname = 'left'\nnodes = ['O', 'A']\n"
-      "[[structure.rods]]\nname = 'right'\nnodes = ['P', 'B']\n"
-      "[[structure.rods]]\nname = 'coupler'\nnodes = ['A', 'B']\n"
+      "[[structure.rods]]\nname = 'left'\nnodes = ['O', 'A']\nmass = 0.2\n"
+      "[[structure.rods]]\nname = 'right'\nnodes = ['P', 'B']\nmass = 0.3\n"
+      "[[structure.rods]]\nname = 'coupler'\nnodes = ['A', 'B']\nmass = 0.4\n"
       "[solver]\nstages = 4\nstep = 0.013\nend_time = 1.0\n");
   REQUIRE(run.status == RunStatus::completed);
   const Diagnostics d = diagnose(run);

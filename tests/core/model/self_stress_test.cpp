@@ -52,9 +52,9 @@ const char* parallel =
     "[[structure.nodes]]\nname = 'A'\nposition = [0.3, 0, 0]\nfixed = true\n"
     "[[structure.nodes]]\nname = 'B'\nposition = [1.7, 0, 0]\nmass = 2\n"
     "[[structure.nodes]]\nname = 'C'\nposition = [1.7, 0.9, 0]\nmass = 2\n"
-    "[[structure.rods]]\nname = 'one'\nnodes = ['A', 'B']\n"
-    "[[structure.rods]]\nname = 'two'\nnodes = ['A', 'B']\n"
-    "[[structure.rods]]\nname = 'out'\nnodes = ['B', 'C']\n";
+    "[[structure.rods]]\nname = 'one'\nnodes = ['A', 'B']\nmass = 1\n"
+    "[[structure.rods]]\nname = 'two'\nnodes = ['A', 'B']\nmass = 1\n"
+    "[[structure.rods]]\nname = 'out'\nnodes = ['B', 'C']\nmass = 1\n";
 
 }  // namespace
 

@@ -126,7 +126,8 @@ TEST_CASE("title, time and deployed fraction are written") {
     for (const TextLabel& label : builder.build(t).labels) all += label.text + "|";
     return all;
   };
-  CHECK_THAT(texts(0), Catch::StartsWith("Ring|t = 0.00 s    deployed 0 %|"));
+  CHECK_THAT(texts(0), Catch::StartsWith("Ring|rods drawn at ") &&
+                           Catch::Contains("their thickness|t = 0.00 s    deployed 0 %|"));
   CHECK_THAT(texts(1e9), Catch::Contains("deployed 100 %"));  // after the end: the end
   FrameStyle bare;
   bare.labels = bare.loads = false;
