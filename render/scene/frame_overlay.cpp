@@ -50,7 +50,7 @@ std::string scale_text(const Appearance& looks) {
   const double least = looks.least_scale, largest = looks.largest_scale;
   if (std::abs(least - 1) < visible && std::abs(largest - 1) < visible) return {};
   const bool one = factor(least) == factor(largest);
-  return "rods drawn at " + (one ? "" : factor(least) + " to ") + factor(largest) + " their thickness";
+  return "rods drawn " + (one ? "" : factor(least) + " to ") + factor(largest) + " as thick";
 }
 
 // The width of a text in pixels, roughly; enough to space out a legend.

@@ -126,8 +126,8 @@ TEST_CASE("title, time and deployed fraction are written") {
     for (const TextLabel& label : builder.build(t).labels) all += label.text + "|";
     return all;
   };
-  CHECK_THAT(texts(0), Catch::StartsWith("Ring|rods drawn at ") &&
-                           Catch::Contains("their thickness|t = 0.00 s    deployed 0 %|"));
+  CHECK_THAT(texts(0), Catch::StartsWith("Ring|rods drawn ") &&
+                           Catch::Contains("as thick|t = 0.00 s    deployed 0 %|"));
   CHECK_THAT(texts(1e9), Catch::Contains("deployed 100 %"));  // after the end: the end
   FrameStyle bare;
   bare.labels = bare.loads = false;
@@ -206,13 +206,13 @@ TEST_CASE("rods drawn thicker than they are say by how much, and rod_scale = 1 d
   double radius = 0;
   CHECK(drawn(1.0, radius).empty());
   CHECK(radius == Approx(own));
-  CHECK(drawn(3.0, radius) == "rods drawn at 3.0 \u00D7 their thickness");
+  CHECK(drawn(3.0, radius) == "rods drawn 3.0 \u00D7 as thick");
   CHECK(radius == Approx(3 * own));
   const std::string note = drawn(0.0, radius);
   REQUIRE(radius > 1.5 * own);  // a ring of 12 m, seen whole
   char factor[32];
   std::snprintf(factor, sizeof factor, "%.1f", radius / own);
-  CHECK(note == "rods drawn at " + std::string(factor) + " \u00D7 their thickness");
+  CHECK(note == "rods drawn " + std::string(factor) + " \u00D7 as thick");
 }
 
 TEST_CASE(
