@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one place that knows the command-line library.
 #include "app/cli.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl check SCENE: validate; print coordinates, constraints, rank, redundant ones by name, degrees of
 // freedom, and which forces the rigid model does not determine.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl figure SCENE NAME... -o FILE: one figure, PNG, SVG or PDF by extension; several, or `all`,
 // into a directory. Beside each its numbers and its caption.
 #include <iostream>

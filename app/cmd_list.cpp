@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl list structures|methods|figures|scenes|constraints|forces|looks|measures|columns|keys: what there is
 // to choose from.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl poster SCENE -o FILE.png: a strip of poses side by side.
 #include <algorithm>
 #include <cmath>

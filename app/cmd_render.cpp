@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl render SCENE -o DIR: simulate; write data, frames, animation and figures.
 #include <iostream>
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl reproduce -o DIR: the paper's tables and figures, beside ours; with --validation published
 // benchmarks.
 #include <iostream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl run SCENE -o DIR: simulate; write data.
 #include <iostream>
 

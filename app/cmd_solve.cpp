@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl solve SCENE --find KEY --target NAME=VALUE: the parameter for which a measure takes a value.
 #include <cmath>
 #include <iostream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl stress SCENE -o DIR: stability at the extremes.
 #include "app/command.hpp"
 #include "app/interrupt.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl study SCENE -o DIR: speed against accuracy.
 #include <iostream>
 

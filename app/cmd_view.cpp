@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // unfurl view [SCENE]: the interactive window.
 #include <algorithm>
 #include <cstdio>

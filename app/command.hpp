@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The verbs of the program. To add one: cmd_NAME.cpp and a row in command_table.cpp.
 #pragma once
 

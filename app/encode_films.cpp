@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The animations, made of finished frames.
 #include <algorithm>
 #include <exception>

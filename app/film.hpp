@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The pictures of a run: a PNG per frame, and films made of the finished frames.
 #pragma once
 

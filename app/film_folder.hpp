@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What DIR holds of a film: which one it is, and which of its frames are finished.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every option. To add one: a row in own_options.cpp, its name at the rows of the verbs that take it in
 // command_table.cpp, and where it goes in cli.cpp.
 #pragma once

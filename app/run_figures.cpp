@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "app/run_figures.hpp"
 
 #include "app/interrupt.hpp"

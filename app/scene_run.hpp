@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The work that verbs share: a scene from the command line, its simulation, its data on disk.
 #pragma once
 

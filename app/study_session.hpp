@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the measuring verbs share: their directory with what an earlier run left in it, hooks, files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The interactive panel: scene, view, figures and timeline in one picture. Knows no window: events come in,
 // pictures go out, so that a test can drive it without a display.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a person does, independent of who reports it: a window or a test.
 #pragma once
 

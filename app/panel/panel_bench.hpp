@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How fast the panel is: frames a second while the view turns and the motion plays, and where the time goes.
 #pragma once
 

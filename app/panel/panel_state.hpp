@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Everything that the panel knows; plain data that tests may look at and change.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the window remembers from one time to the next, in the user's configuration directory.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A build without SDL2 (cmake -DUNFURL_WINDOW=OFF).
 #include "app/window/window.hpp"
 #include "render/gl/graphics_error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // SDL2, found when a window is asked for: everything else of the program starts without it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The window: events in, finished pictures out, redrawn only when something changes.
 #include <dlfcn.h>
 #include <unistd.h>

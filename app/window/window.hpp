@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one place where the program meets a desktop. A backend is another .cpp, chosen by CMake.
 #pragma once
 

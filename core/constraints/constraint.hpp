@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Constraint kinds. A kind is evaluated in blocks: one virtual call for all constraints of the kind in a
 // structure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/constraints/measure_rows.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/constraints/rod_length.hpp"
 
 #include "core/math/interleaved.hpp"

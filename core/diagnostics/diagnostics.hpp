@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a run shows about itself, as series over its accepted steps. One function and one row per diagnostic.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Energy that goes in and out without a potential: what closes the energy balance of loads that vary,
 // dampers, drives and impacts.
 #pragma once

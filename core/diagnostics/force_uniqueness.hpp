@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which forces of a run the rigid model determines.
 //
 // Where constraints are redundant, any state of self-stress may be added to their forces: the multipliers

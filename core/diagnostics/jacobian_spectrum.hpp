@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How far the poses of a run are from singular ones, in which a structure gains ways to move.
 #pragma once
 

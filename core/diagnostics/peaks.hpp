@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The largest value of something over a motion, which is seldom at the end of a step.
 #pragma once
 

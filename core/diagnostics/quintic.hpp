@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The motion within a step, from the states at its ends.
 #pragma once
 

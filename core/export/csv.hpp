@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A run as tables of comma-separated values: shortest text that reads back as the same double, header names
 // with units.
 #pragma once

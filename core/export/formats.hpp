@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Formats that a run can be exported to, beside the files that every run writes: `--export NAME`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Binary glTF 2.0 (.glb): every rod an instance of one cylinder per group, every joint of one sphere, moved
 // by translation and rotation keys. glTF's y axis points up: one parent node turns the structure's z axis to
 // it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // NumPy's .npy format, version 1.0: magic, header (a Python dictionary padded to 64 bytes), raw array in C
 // order.
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A run in one small JSON document, for scripts; its keys are stable.
 #pragma once
 

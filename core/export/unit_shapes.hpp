@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes of unit size that exported rods and joints are instances of.
 #pragma once
 

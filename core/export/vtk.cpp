@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A VTK unstructured grid (VTU, XML, version 1.0) per state and a PVD file that gives each its time. Arrays
 // are inline base64 behind a 64-bit byte count: full precision, little endian as the machine is.
 #include <algorithm>

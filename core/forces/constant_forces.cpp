@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/forces/constant_forces.hpp"
 
 namespace unfurl {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Force kinds. Like constraints they are evaluated in blocks, one virtual call for all forces of a kind.
 #pragma once
 

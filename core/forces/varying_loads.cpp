@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/forces/varying_loads.hpp"
 
 #include <limits>

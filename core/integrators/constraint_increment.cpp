@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/constraint_increment.hpp"
 
 namespace unfurl {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/full_newton.hpp"
 
 #include <Eigen/LU>

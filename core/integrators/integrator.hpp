@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One step of a method. Integrators know nothing of structures or scenes: they see a System and a State.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/rk4_projected.hpp"
 
 #include "core/integrators/projection.hpp"

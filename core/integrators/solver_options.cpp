@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/solver_options.hpp"
 
 #include "core/integrators/integrator.hpp"

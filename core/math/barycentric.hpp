@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Barycentric Lagrange interpolation (Berrut & Trefethen 2004, SIAM Review 46): the paper's "center of
 // gravity" interpolation. Weights are computed from the nodes, whatever they are.
 #pragma once

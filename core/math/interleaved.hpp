@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several vectors of one kind at once, held entry by entry: entry i of vector c is x[i * columns + c]. The
 // stages of a step are kept like that: what is done to all of them costs one pass over indices.
 #pragma once

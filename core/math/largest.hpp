@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Maxima that keep a NaN, which std::max drops: what is not a number is never the best of a list.
 #pragma once
 

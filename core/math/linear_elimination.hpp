@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Exact elimination of sparse linear constraints A q = b: q = q_0 + B z.
 #pragma once
 

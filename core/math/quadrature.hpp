@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Gauss quadrature on [0, 1], computed to round-off rather than tabulated.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The saddle-point system of constrained mechanics,
 //
 //     [ M  G^T ] [x]   [f]

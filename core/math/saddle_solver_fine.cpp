@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The parts of SaddleSolver that work in twice the digits.
 #include <algorithm>
 #include <cmath>

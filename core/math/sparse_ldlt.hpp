@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sparse L D L^T of a symmetric quasi-definite matrix, in a fixed order without pivoting.
 //
 // A quasi-definite matrix [A G^T; G -C] with A, C positive definite has L D L^T in every order (Vanderbei

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers of twice the digits: an unevaluated sum of two doubles, hi + lo with |lo| <= ulp(hi) / 2, relative
 // precision 2^-104 (Dekker 1971, Numer. Math. 18; Knuth, The Art of Computer Programming 2, 4.2.2). Right
 // only where the compiler keeps to IEEE arithmetic (no -ffast-math, no contraction).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The numbers of an L D L^T in twice the digits, on the pattern of a SparseLdlt that has been analysed: some
 // twenty times slower, for the few matrices whose weak directions the square of a singular value takes below
 // the round-off of doubles.

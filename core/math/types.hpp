@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The linear-algebra names used everywhere in core.
 #pragma once
 

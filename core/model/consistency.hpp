@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scenes that no motion can fulfil, found before the first step.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/model/fit_lengths.hpp"
 
 #include <algorithm>

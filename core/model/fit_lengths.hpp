@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rods whose given length is not quite the distance of their nodes.
 #pragma once
 

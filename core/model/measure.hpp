@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A scalar of the configuration that springs pull on, drives prescribe and stops bound.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How freely a structure can move: the rank of its constraints and the rows that add nothing to it.
 #pragma once
 

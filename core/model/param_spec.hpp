@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Parameters are declared once (ParamSpec) and drive scene keys, help, error messages, sliders and docs.
 #pragma once
 

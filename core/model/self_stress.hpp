@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Forces that balance themselves: what a rigid model leaves open.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A structure as plain data: what is solved (nodes, rods, constraints, loads) and what is shown (copies of
 // those).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The equations of motion of a structure as an index-3 DAE (paper eq. 13-14), in the coordinates that are
 // solved for:
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How a System counts the turns of angles.
 #include "core/model/system_data.hpp"
 

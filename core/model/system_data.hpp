@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a System holds; for its own sources only.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The kernels of System that work on all stages of a step at once.
 #include "core/model/system_data.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Times at which what a structure prescribes over time is not smooth.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A number that a scene prescribes over time: the value of a drive, the size of a load.
 #pragma once
 

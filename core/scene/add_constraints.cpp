@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The kinds of [[constraints]]: relations between nodes, with their parameters and what each adds to a
 // structure.
 #include <Eigen/Geometry>

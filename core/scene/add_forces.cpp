@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // [[forces]] of a scene into a structure: the kinds are those of the force table (forces/force.hpp).
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From a checked Scene to the Model that the time loop runs.
 #pragma once
 

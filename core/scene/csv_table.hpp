@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Comma-separated text (RFC 4180) with one header line, for nodes and rods that come from a file of their
 // own.
 #pragma once

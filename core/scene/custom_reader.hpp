@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The [structure] table of a custom scene: nodes, rods and constraints, inline or from CSV files beside the
 // scene.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From the names in an entry of [[forces]] or [[constraints]] to the nodes and rods of a structure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The kinds of [[forces]] and [[constraints]] and how an entry is read.
 #include "core/scene/elements.hpp"
 

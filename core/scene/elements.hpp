@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The entries of [[forces]] and [[constraints]]: a kind, the members it acts on, its parameters.
 #pragma once
 

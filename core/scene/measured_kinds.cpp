@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The kinds of [[constraints]] that hold, drive or bound a measure: their parameters, and what each adds to a
 // structure.
 #include <Eigen/Geometry>

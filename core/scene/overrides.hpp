@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `--set key=value`: changes to a scene before it is checked.
 #pragma once
 

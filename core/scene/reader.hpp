@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From the text of a scene file to a checked Scene.
 #pragma once
 

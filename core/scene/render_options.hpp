@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The [render] table of a scene, checked: what the pictures show and how.
 #pragma once
 

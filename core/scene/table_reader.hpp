@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One table of a scene against its declared parameters.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Titles that stay true when parameters change.
 #pragma once
 

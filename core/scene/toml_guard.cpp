@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is checked before the TOML library sees a text. Release 3.3.0 of the library runs past its buffer on
 // bytes that are nearly a byte-order mark (EF BB 9F), and destroys deeply nested tables recursively, so that
 // one line of dotted keys can exhaust the stack.

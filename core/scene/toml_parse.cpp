@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one place that knows the TOML library. It is compiled in here rather than linked, so that its
 // assertions can be turned into errors: text such as "[$" reaches one of them.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A TOML document as plain data with source locations, so that nothing else needs to know the TOML library.
 #pragma once
 

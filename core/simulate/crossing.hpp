@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where in a step the first of several margins falls below zero.
 #pragma once
 

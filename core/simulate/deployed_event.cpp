@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/deployed_event.hpp"
 
 #include <algorithm>

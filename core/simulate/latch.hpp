@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Locking a structure in its deployed pose.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What acts on one side only: end stops, which push or are out of touch, and cables, which pull or are slack.
 #pragma once
 

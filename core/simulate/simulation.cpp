@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/simulation.hpp"
 
 #include <time.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one time loop: drives an integrator from a model's start to its end, with events, progress and cancel.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Poses of a run in which a structure gains ways to move.
 #pragma once
 

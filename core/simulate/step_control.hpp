@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Step sizes that follow the motion, chosen so that the choice is the same forwards and backwards in time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A run step by step: what `simulate` drives from the start to the end.
 #pragma once
 

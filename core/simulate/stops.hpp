@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // End stops: limits that a measure may touch but not pass.
 #pragma once
 

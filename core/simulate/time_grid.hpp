@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The times at which the steps of a run end.
 #pragma once
 

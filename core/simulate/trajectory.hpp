@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The only input of everything downstream: diagnostics, figures, frames, exports.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Everything that can be wrong with a list of nodes and rods.
 #include <cmath>
 #include <unordered_map>

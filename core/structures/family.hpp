@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The table of structure families. To add one: a .hpp/.cpp pair, a row in family.cpp, a scene file.
 #pragma once
 

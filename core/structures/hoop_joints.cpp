@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/structures/hoop_joints.hpp"
 
 #include "core/structures/assembly.hpp"

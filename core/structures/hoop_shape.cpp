@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/structures/hoop_shape.hpp"
 
 #include "core/model/structure_error.hpp"

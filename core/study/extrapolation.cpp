@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/study/extrapolation.hpp"
 
 #include "core/simulate/initial_state.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ways to drive a scene to an extreme.
 #pragma once
 

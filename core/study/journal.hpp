@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Finished results on disk, one line each, written as they come: what is in the file need not be computed
 // again.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One run of a study: its errors against a reference, what it cost.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One number of a run, by name: what sweeps tabulate and what a parameter is solved for.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What each modelling choice of a scene costs and changes.
 #pragma once
 

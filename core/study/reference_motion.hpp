@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A reference for a run as it stands: its steps need not meet any comparison times.
 #pragma once
 

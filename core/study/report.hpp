@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A report as data: headings, paragraphs, tables and pictures, written as Markdown or as one HTML file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The example of Kong, Ma, Xue and Ding, "Dynamic simulation of deployable structures based on discrete
 // variational method" (2023), section 4, run again, and what its tables leave out.
 #pragma once

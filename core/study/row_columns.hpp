@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A table's columns, each declared once: how its cell is written and read again.
 #pragma once
 

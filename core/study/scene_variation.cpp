@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/study/scene_variation.hpp"
 
 #include "core/scene/reader.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A scene with some of its keys changed, again and again.
 #pragma once
 

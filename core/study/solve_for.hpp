@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One parameter of a scene, so that a run gives what is wanted.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The stability atlas: method x step x extreme, every cell decided by a stated criterion.
 #pragma once
 

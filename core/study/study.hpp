@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Speed against accuracy: every method over a ladder of steps.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A scene over a grid of parameters: measures of every run.
 #pragma once
 

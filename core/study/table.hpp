@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Results as plain text cells: what CSV files, Markdown tables and journals are made of.
 #pragma once
 

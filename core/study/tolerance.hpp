@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Accuracy as the input: stages and step are picked for a tolerance.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Somewhere to draw: an OpenGL 3.3 core context. One door; a backend is another .cpp that implements the
 // interface.
 #pragma once

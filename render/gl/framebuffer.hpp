@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A picture to draw into, anti-aliased where the driver can.
 #pragma once
 

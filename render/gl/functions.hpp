@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // OpenGL 3.3 core through pointers that we load ourselves: one binary serves OSMesa and a window, and links
 // neither. The pointers belong to the context family that they were loaded from; GlContext::make_current
 // keeps them right.

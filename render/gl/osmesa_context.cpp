@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The offscreen backend: Mesa's software renderer, found at run time so that the program starts without it.
 #include <dlfcn.h>
 

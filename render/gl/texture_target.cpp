@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "render/gl/texture_target.hpp"
 
 #include "render/gl/functions.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "render/image/gif_animation.hpp"
 
 #include <gif_lib.h>

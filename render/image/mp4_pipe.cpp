@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "render/image/mp4_pipe.hpp"
 
 #include <fcntl.h>

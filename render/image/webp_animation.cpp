@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "render/image/webp_animation.hpp"
 
 #include <webp/encode.h>

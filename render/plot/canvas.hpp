@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a figure is painted on. Lengths are points (1/72 inch) from the top left corner, y downwards.
 #pragma once
 

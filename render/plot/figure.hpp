@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A plot as data: painted to pixels through OpenGL or to SVG.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What stands beside the picture of a figure: the numbers drawn and its caption.
 #pragma once
 

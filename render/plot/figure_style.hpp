@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // For which page a figure is made: its width, the size of its text, the resolution of its pixels.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The table of figures. To add one: a function in figures/ and a row in figures.cpp.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where everything of a figure goes on the page. Independent of the canvas, so that PNG and SVG agree.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From which to which value an axis runs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The parts of a panel's layout, in the order in which layout.cpp needs them.
 #pragma once
 

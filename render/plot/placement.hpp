@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where legends and labels hide the least of the data.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How figures look: sizes in points (1/72 inch) at print size, colours.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How wide text is, without a font file and without OpenGL: layout is the same for every canvas.
 #pragma once
 

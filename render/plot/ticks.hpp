@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where an axis has its ticks and what they are called.
 #pragma once
 

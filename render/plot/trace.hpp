@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Curves on their way to the page: values to points, breaks at NaN, thinned to what a page can show.
 #pragma once
 

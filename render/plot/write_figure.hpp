@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Figures to files: PNG through OpenGL, SVG and PDF without.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How the parts of a structure look: colours by group, sizes that can be seen.
 #pragma once
 

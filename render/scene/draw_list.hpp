@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A picture as data: what the frame builder makes and the renderer draws. Testable without GL.
 #pragma once
 

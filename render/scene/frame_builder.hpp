@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A moment of a run becomes a picture as data, by what the run and the structure say; no solver is asked.
 #pragma once
 

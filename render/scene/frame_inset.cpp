@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The part of the overlay that is a figure: one column of the run's series, drawn as far as the film has
 // come.
 #include <algorithm>

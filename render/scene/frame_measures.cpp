@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The part of the overlay that measures and names: scale bar, axes, dimensions, names of nodes and rods.
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is written and drawn over a picture: labels, legend, colour bar, scale bar, axes, dimensions, inset.
 #pragma once
 

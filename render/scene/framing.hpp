@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A still camera that keeps a whole motion in the picture.
 #pragma once
 

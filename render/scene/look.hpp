@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The looks that pictures can have. To add one: a row in look.cpp and its name in the key render.look.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A DrawList becomes an Image: lit solids with shadows on a floor, in OpenGL 3.3 core.
 #pragma once
 

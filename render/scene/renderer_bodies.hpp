@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The renderer's bodies of one kind, each as finely faceted as its size in the picture asks for.
 #pragma once
 

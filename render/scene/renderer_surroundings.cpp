@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is behind the bodies: background, grid, and shadows, on the floor and in the map that bodies read.
 #include <Eigen/Geometry>
 #include <Eigen/LU>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A quantity of every rod over time, as colours over a range that stays the same through a film.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The renderer's shaders (#version 330 core). Light is computed linearly and encoded for the screen at the
 // end: an sRGB framebuffer would do the same at a third of the speed in software.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The few shapes that a scene is made of, as bodies of revolution between two points.
 #pragma once
 

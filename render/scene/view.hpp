@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From metres to pixels: the matrices of a camera and of a light.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "render/ui/draw_damage.hpp"
 
 #include <algorithm>

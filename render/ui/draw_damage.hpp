@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What of a picture that Dear ImGui describes is not as it was: only that has to be painted again.
 #pragma once
 

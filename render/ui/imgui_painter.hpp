@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Draws what Dear ImGui describes. Debian's own OpenGL backend loads libGL itself and cannot draw under
 // OSMesa.
 #pragma once

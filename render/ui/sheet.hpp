@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A sheet to draw on with ImGui's draw list, without windows or input: labels and figures.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // No method allocates inside a step once its first two steps are done. A program of its own, because it
 // replaces operator new and Eigen's way to memory, malloc.
 #include <malloc.h>

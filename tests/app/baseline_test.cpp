@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A few whole pictures against ones that were looked at and kept (tests/baselines). Two numbers compare them,
 // of channels from 0 to 255:
 //

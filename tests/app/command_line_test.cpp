@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the program says and returns for every kind of command line. Error texts are part of the contract.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

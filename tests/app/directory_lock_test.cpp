@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Two programs and one directory.
 #include "app/directory_lock.hpp"
 

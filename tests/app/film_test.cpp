@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Slices, resuming and whose frames they are.
 #include <algorithm>
 #include <catch2/catch.hpp>

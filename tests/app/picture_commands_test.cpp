@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `unfurl render` and `unfurl figure`: which files they write and how they fail.
 #include <algorithm>
 #include <catch2/catch.hpp>

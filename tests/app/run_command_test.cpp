@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `unfurl run`: what it writes, what it refuses, what it keeps.
 #include <unistd.h>
 

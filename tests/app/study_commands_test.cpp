@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `unfurl study`, `sweep`, `solve`, `stress`, `reproduce`: what they write, what they refuse, what they keep.
 #include <catch2/catch.hpp>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The real window, end to end: on an X server of its own, driven as a person would.
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One competitor of a race for CPU time at a measured error.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who factorises the saddle-point matrices of real models fastest: ours (L D L^T in a fixed order,
 // constraints behind their coordinates), Eigen's SimplicialLDLT, SuiteSparse's KLU and CHOLMOD. The mix is
 // that of a step with 4 stages: one factorisation, four solutions for three right-hand sides; patterns are

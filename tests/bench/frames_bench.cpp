@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ./dev bench: frames a second, split into simulate, build, draw, read back and encode; then all of it with
 // files on disk. Printed and written as CSV (first argument, else bench_frames.csv).
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ladder of four-bar windows at 30 m/s for 10 s, some 97 passes through collinear poses. Uprights are 1 m
 // long: the distance of an upper node from where it should be, in metres, is the phase error in radians.
 #include "tests/bench/cases.hpp"

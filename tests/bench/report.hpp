@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A table of measurements: printed as it grows, written as CSV at the end.
 #pragma once
 

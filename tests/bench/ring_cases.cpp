@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The six-unit ring to t = 4.9 s, measured against the exact solution.
 #include "tests/bench/cases.hpp"
 #include "tests/bench/contender.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/bench/rk4_klu.hpp"
 
 #include <klu.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a user would write without Unfurl, as well as it can be done: classical Runge-Kutta on the index-1
 // equations, with independent constraint rows picked once and SuiteSparse's KLU for the linear systems.
 #pragma once

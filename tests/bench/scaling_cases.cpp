@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cost and memory against size: per step and rod both should stay flat.
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ./dev bench: the table of the solver's speed, printed and written as CSV (first argument, else bench.csv).
 #include <iostream>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Steps of one case and nothing else, to count instructions:
 //
 //     valgrind --tool=callgrind --toggle-collect='*Dvm::step*' build/release/tests/bench/step_profile sector

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Accuracy as the input: is the true error below the tolerance, and how does the CPU time of the picked run
 // compare with that of the best pair of stages and step found by exhaustive search? On motions with exact
 // solutions; the last column is the claim's ratio. Written as CSV (first argument, else tolerance.csv).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The deployment time of rings that start next to their dead centre against the exact one: start x model x
 // stages x step, errors in seconds and CPU time.
 //

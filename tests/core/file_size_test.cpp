@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // No source file grows past what can be read in one sitting, and none hides behind a name that means nothing.
 #include <algorithm>
 #include <catch2/catch.hpp>

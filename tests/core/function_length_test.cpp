@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // No function is longer than what can be read at a glance, every header can be compiled alone, and folders
 // point in one direction.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The house keeps its directions: app -> render -> core, and a library with one door has one.
 #include <algorithm>
 #include <catch2/catch.hpp>

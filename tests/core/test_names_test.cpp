@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A test whose name the list of tests cannot carry is one that never runs.
 #include <catch2/catch.hpp>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the fuzz targets share: each says what to try with a text; an exception that gets out is a finding.
 #pragma once
 

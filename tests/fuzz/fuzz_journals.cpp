@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A journal that something else wrote or cut: refused, or read; what is appended is found by the next.
 #include "tests/fuzz/fuzz.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // --set: the first byte picks a scene, each line is one.
 #include "tests/fuzz/fuzz.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The JSON that unfurl leaves for itself: film.json beside frames, window.json of the panel.
 #include "tests/fuzz/fuzz.hpp"
 

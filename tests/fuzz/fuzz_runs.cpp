@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From scene text to numbers: a dozen steps of whatever can be built, its diagnostics, its summary.
 #include "tests/fuzz/fuzz.hpp"
 

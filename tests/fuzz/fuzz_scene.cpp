@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scene text: read or refused with a place; what is written of it reads back as the same scene.
 #include "tests/fuzz/fuzz.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // CSV of nodes and rods, axes of sweeps, names of measures, and changes written back into a file: the first
 // byte picks which.
 #include <stdexcept>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Seeded errors: how many the tests of core find.
 
     tests/mutation/mutate.py [SEED [N]] [--resume]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Included before every source of core in a mutation build: which of the seeded errors is switched on. The
 // environment variable UNFURL_MUTANT names one by its number; without it the code is as written.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The motion of a mechanism by formulas and a method that share nothing with core: Newton's equations with
 // the constraints differentiated twice, dense, multipliers by an orthogonal decomposition, integrated by
 // extrapolation of the modified midpoint rule (Gragg 1965; Hairer, Norsett & Wanner, Solving ODEs I, II.9) to

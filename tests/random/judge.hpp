@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Is what the program says of a mechanism true?
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A mechanism drawn from a seed: plain data of its own, which is written as a scene for the program and read
 // as it is by the independent solver.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Masses, angles, energies, momenta and impulses of a mechanism, by formulas of their own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // random_mechanisms N [FIRST [FEATURES]]: draws mechanisms of the seeds FIRST, FIRST + 1, ... and judges
 // each. The first that fails is shrunk and written as a scene, random_SEED.toml.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Our variational method against an independent solver of an independent form of the equations.
 #include <catch2/catch.hpp>
 

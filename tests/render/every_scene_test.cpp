@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every scene that comes with the program, found by listing the folder: its pictures are well framed, small
 // and large, and its figures in order in every style.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The exact opening of a threefold-symmetric Bricard loop that is released at rest (geometry in bricard.hpp).
 #pragma once
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Reads exports with programs that we did not write: numpy, meshio, vtk, the Khronos glTF validator.
 
     python3 tests/support/check_exports.py build/release/unfurl [folder with node_modules/gltf-validator]

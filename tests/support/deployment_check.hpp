@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A run of one degree of freedom beside its exact solution.
 #pragma once
 

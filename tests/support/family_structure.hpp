@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Structures of a family by parameter, for tests.
 #pragma once
 

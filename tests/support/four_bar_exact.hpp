@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The exact motion of a ladder of four-bar windows that stay parallelograms.
 #pragma once
 

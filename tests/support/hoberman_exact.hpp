@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The exact opening of a Hoberman ring that is released at rest (geometry in hoberman.hpp).
 #pragma once
 

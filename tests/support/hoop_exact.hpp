@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The exact deployment of a hoop that is released at rest: one degree of freedom, by energy (see physics of
 // the ring in hoop.hpp for the geometry).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An independent solver of the same equations: SUNDIALS IDA (variable-step BDF) on the stabilised index-2
 // form of Gear, Leimkuhler & Gupta (1985),
 //

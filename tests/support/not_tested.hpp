@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a test needs and not every machine has: a program, a right, a typeface.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Released at rest, a mechanism of one degree of freedom whose loads depend on its pose alone moves as energy
 // tells.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The exact motion of a re-entrant sheet that is pulled from rest (geometry in reentrant_sheet.hpp).
 #pragma once
 

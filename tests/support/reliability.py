@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
 """The table of docs/reliability.md, from what the last runs left in build/: `./dev reliability`."""
 import glob
 import os

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The exact deployment of a scissor mast that is released at rest (geometry in scissor_mast.hpp).
 #pragma once
 

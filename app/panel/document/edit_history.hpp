@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Undo and redo of everything that was changed in a scene.
 #pragma once
 

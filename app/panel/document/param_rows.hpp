@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the panel can change of a scene: a row for every declared parameter, in sections as in the scene file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "app/panel/document/scene_document.hpp"
 
 #include <filesystem>

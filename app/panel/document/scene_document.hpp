@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The scene that the panel shows: a file's text, and what was changed since, as `--set` would change it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Entries of [[loads]], [[forces]] and [[constraints]] that the panel adds to a scene and takes away again.
 #pragma once
 

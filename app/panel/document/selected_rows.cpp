@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rows for the node or rod of a custom structure that is selected in the view.
 #include <cmath>
 

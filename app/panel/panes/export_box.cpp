@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The export box: the scene as a file, the film and the figures, the command line that makes them.
 #include <cstdio>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The figures of the run shown, as the command line draws them, in the size of a pane.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The right pane: the run's figures, with the present time as a line.
 #include <algorithm>
 #include <cmath>

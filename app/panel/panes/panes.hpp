@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The parts of the panel. Each draws into the current ImGui window and changes the state.
 #pragma once
 

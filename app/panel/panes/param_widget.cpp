@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One row of the left pane: a label and the widget that a parameter's kind asks for.
 #include <algorithm>
 #include <charconv>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The left pane: the scene and everything that can be changed of it.
 #include <algorithm>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The right pane's other page: a small study of the scene that is shown, run beside the window.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The bottom: play, pause, step, speed, loop, and the time as a line to drag along, with the run's events.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The bar along the top, and the list of keys.
 #include <cstdio>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the panes share while a frame is drawn.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The centre: the 3-D view, what the mouse does in it, and what lies over it.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measures position errors of finished runs beside the window, against a reference of their motion.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An export: the program itself, run beside the panel with the command line that a person would type.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is the same motion, however it is solved.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Simulates beside the window: the newest request only.
 #pragma once
 

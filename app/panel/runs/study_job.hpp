@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A study beside the panel: what `unfurl study` and `unfurl sweep` do, of the scene that is shown.
 #pragma once
 

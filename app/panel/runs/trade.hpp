@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Speed against accuracy, as the settings are changed: a point for every run of the session.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "app/panel/view/orbit_camera.hpp"
 
 #include <Eigen/Geometry>

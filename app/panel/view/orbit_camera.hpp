@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A camera that goes around a point, led by hand.
 #pragma once
 

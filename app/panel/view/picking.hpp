@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is under the pointer, and what there is to say about it.
 #pragma once
 

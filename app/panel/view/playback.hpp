@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where in a run the panel is, and how it moves on.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The 3-D view of a run: the film's own pictures, with a camera led by hand.
 #pragma once
 

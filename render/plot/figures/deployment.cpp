@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/math/types.hpp"
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/run_facts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The functions behind the table of figures; figures.cpp says what each shows.
 #pragma once
 

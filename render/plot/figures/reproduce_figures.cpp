@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "render/plot/figures/reproduce_figures.hpp"
 
 #include <algorithm>

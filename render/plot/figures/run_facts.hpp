@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the figures of a run say in common: its curves over time, its events, its method.
 #pragma once
 

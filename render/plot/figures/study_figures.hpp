@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Figures of studies: speed against accuracy.
 #pragma once
 

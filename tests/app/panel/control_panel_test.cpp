@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The panel driven without a display, by mouse and keyboard.
 #include "app/panel/control_panel.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Entries of [[loads]], [[forces]] and [[constraints]] in the left pane.
 #include <catch2/catch.hpp>
 

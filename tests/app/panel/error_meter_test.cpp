@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Position errors beside the window: true, of the right motion, and out of the way of the next run.
 #include "app/panel/runs/error_meter.hpp"
 

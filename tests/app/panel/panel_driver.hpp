@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Drives the panel without a display: events in, frames, pictures out.
 #pragma once
 

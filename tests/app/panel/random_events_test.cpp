@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ten thousand things that nobody would do on purpose.
 #include <catch2/catch.hpp>
 #include <random>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Studies from the panel: the command line's code, beside the window.
 #include <catch2/catch.hpp>
 #include <chrono>

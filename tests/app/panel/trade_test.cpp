@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Speed against accuracy beside the view: true errors, of the motion that is shown.
 #include "app/panel/runs/trade.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every row of the constraint table: Jacobian, curvature, bias and force against finite differences of the
 // values.
 #include <algorithm>

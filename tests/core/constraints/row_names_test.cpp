@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A row of constraints is told by its name and measured in metres: both are what people read.
 #include <catch2/catch.hpp>
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A run that went wrong says so, and what is known to be wrong is no result.
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is left of the diagnostics of a run where nobody wants to wait for them.
 #include "core/diagnostics/diagnostics.hpp"
 

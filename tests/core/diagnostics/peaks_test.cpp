@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Peaks are those of the motion, not of the ends of steps.
 #include "core/diagnostics/peaks.hpp"
 

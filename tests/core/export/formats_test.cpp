@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Exports, read back with nothing but their specifications (tests/support/check_exports.py uses other
 // people's readers).
 #include <unistd.h>

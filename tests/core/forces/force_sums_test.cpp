@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Forces where more than one acts, or where a term is only seen off its special value.
 #include <catch2/catch.hpp>
 

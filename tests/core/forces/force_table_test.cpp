@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every row of the force table: derivatives, potential and power against finite differences of the force.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>

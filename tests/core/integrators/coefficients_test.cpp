@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What whole runs cannot tell apart: coefficients whose errors cost iterations or damping, not the order.
 #include <Eigen/LU>
 #include <catch2/catch.hpp>

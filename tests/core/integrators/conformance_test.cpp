@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every claim of every method of the table, checked. Slow claims use the sector model or one rod, so that the
 // walk stays quick.
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Observed orders of convergence on a rod double pendulum in space.
 #include <catch2/catch.hpp>
 #include <cmath>

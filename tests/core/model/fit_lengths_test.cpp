@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Given rod lengths that do not fit the node positions: assembled where they nearly do, refused by name
 // where not.
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The kernels for all stages of a step against those for one pose.
 #include <catch2/catch.hpp>
 #include <random>

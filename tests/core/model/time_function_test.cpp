@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Functions over time: their derivatives, and what tables of motion are at and beyond their ends.
 #include <catch2/catch.hpp>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Custom structures from a scene and from CSV files beside it.
 #include <unistd.h>
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scenes with bytes changed, cut and spliced must give a scene or an error with a place, never anything else.
 #include <catch2/catch.hpp>
 #include <random>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Options do what they say in a run, not only when they are read.
 #include <catch2/catch.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a scene says must act, or be refused or warned of with its place: nothing is accepted in silence.
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A scene that is written and read back is the same scene.
 #include "core/scene/write.hpp"
 

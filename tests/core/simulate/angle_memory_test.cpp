@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Angles go on counting from state to state: springs that are wound up over many turns, stops beyond half a
 // turn.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The whole solver against the exact one-degree-of-freedom solution of the ring.
 #include <catch2/catch.hpp>
 

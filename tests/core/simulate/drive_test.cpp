@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Driven and held measures, relations by name: motions with closed forms, power in and out.
 #include <Eigen/Geometry>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every scene that comes with the program, found by listing the folder: it loads, moves, keeps its
 // constraints and accounts for its energy.
 #include <algorithm>

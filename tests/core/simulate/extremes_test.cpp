@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The table of extremes: each ends in a right answer or in a declared stop with its reason, never in silent
 // nonsense.
 #include <catch2/catch.hpp>

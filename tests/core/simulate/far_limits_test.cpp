@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Stops whose limits are neither zero nor lower ones, and what a run tells of its progress.
 #include <catch2/catch.hpp>
 #include <chrono>

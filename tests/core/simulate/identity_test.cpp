@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What tells drives, stops and constraints apart is their place in the structure, never their name.
 #include <catch2/catch.hpp>
 #include <set>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where a run starts and how it meets the ends of its time: custom structures with pins, odd steps.
 #include <catch2/catch.hpp>
 

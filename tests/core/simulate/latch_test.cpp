@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Locking at the end of travel: momentum, the energy lost, and the structure that goes on.
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cables and stops switch at located times and at full order, against closed forms.
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Springs, dampers and loads over time against closed forms, with every energy accounted for.
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs step by step, and what is shown between steps.
 #include "core/simulate/stepper.hpp"
 

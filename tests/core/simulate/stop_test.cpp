@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // End stops: impacts, rest and release against closed forms.
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Time has edges: no step of any method straddles a bend or a jump of what a scene prescribes over time.
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rings that start next to their dead centre, where the chords are upright but for an angle e_0: what holds
 // the corners apart are constraints whose gradients are of the order of e_0, and the motion is of that size,
 // too. tests/bench/weak_modes_bench.cpp prints the whole table of starts, models, stages and steps.

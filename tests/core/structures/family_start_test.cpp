@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What every family says of its own deployment, and what a broken list says of itself.
 #include <catch2/catch.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ladder of four-bar windows against its exact motion, through many poses with all rods collinear.
 #include "core/structures/four_bar_ladder.hpp"
 

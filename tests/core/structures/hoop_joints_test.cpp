@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The hoop without planes of symmetry: closed or an arc, driven evenly or not, floating free.
 #include "core/structures/hoop_joints.hpp"
 

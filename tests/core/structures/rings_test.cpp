@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rings that open from a bundle: pantograph and Hoberman.
 #include <catch2/catch.hpp>
 

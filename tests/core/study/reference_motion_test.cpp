@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // References at any time, against closed forms.
 #include "core/study/reference_motion.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // GIFs, read back by giflib itself.
 #include <gif_lib.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "render/image/image_scale.hpp"
 
 #include <catch2/catch.hpp>

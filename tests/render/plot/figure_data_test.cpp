@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "render/plot/figure_data.hpp"
 
 #include <unistd.h>

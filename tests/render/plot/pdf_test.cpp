@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // PDF figures, read by poppler where it is installed and by a small reader of our own in any case.
 #include <zlib.h>
 

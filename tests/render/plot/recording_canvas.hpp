@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A canvas that remembers what it was asked to paint, and a judge of the result.
 #pragma once
 

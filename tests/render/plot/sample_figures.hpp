@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Figures from made-up data, ordinary and hostile, for every test that looks at what is painted.
 #pragma once
 

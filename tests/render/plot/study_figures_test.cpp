@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The figures of studies, sweeps, stress runs and of the paper, judged as the figures of runs are.
 #include <catch2/catch.hpp>
 #include <cmath>

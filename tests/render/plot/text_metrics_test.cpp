@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "render/plot/text_metrics.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What tells the looks apart, probed at known places.
 #include "render/scene/look.hpp"
 

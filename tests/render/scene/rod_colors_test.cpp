@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every rod shows the colour of its group, from every side and in every light of a deployment.
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What has to be painted again, found from Dear ImGui's own lists.
 #include "render/ui/draw_damage.hpp"
 
