@@ -333,7 +333,7 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
             unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);
       }
     }
-    out.axial_force.row(static_cast<Index>(i)) = force.transpose();
+    if (rods > 0) out.axial_force.row(static_cast<Index>(i)) = force.transpose();
     if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
     const Instant instant{run,
                           i,

@@ -157,7 +157,7 @@ void Dvm::predict(const State& state, double h) {
     for (int j = 0; j + 1 < c_.s; ++j) eq_.dX.col(j) = (h * c_.basis.nodes()[j + 1]) * state.w;
   }
   eq_.lambda.setZero();
-  if (state.lambda.size() == eq_.lambda.rows())
+  if (state.lambda.size() > 0 && state.lambda.size() == eq_.lambda.rows())
     for (int k = 0; k < (eq_.at_ends ? 1 : c_.s - 1); ++k) eq_.lambda.col(k) = state.lambda;
 }
 
