@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Singular poses on the way, against the exact times of the ladder's collinear ones.
 #include "core/simulate/singular_poses.hpp"
 
