@@ -22,6 +22,8 @@ constexpr int points = 9;
 // change of the sine to this share: (r - 1)^2 / 4 r for rates of the ratio r, 1.1 here, which leaves 1e-9 s
 // at four stages.
 constexpr double short_enough = 2.3e-3;
+// Released at rest from the sine s_0, time goes like sqrt(1 - s / s_0): samples keep well away from that.
+constexpr double from_start = 0.25;
 constexpr int most_stations = 200;
 constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 // Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
@@ -44,7 +46,7 @@ class Locator {
   std::optional<State> locate() {
     const double start = sine(trajectory_.state(0));
     find_resolved();
-    const double far = reach(std::min(farthest, 0.8 * start)), near = far / span;
+    const double far = reach(std::min(farthest, from_start * start)), near = far / span;
     for (int i = 0; i < points; ++i) {
       const double u = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / points);
       solve_to(far + u * (near - far));
