@@ -20,8 +20,8 @@ namespace unfurl {
 
 namespace {
 
-// Memory that runs out where no exception may pass (in a destructor, in a library): one line, as anywhere else,
-// and no memory is asked for it.
+// Memory that runs out where no exception may pass (in a destructor, in a library): one line, as anywhere
+// else, and no memory is asked for it.
 [[noreturn]] void end_with_a_line() {
   std::string_view line = "unfurl: internal error\n";
   try {

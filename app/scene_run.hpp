@@ -37,8 +37,8 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
 // A few lines for a person on stderr; nothing where `quiet` was asked for.
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments);
 
-// The run's diagnostics, which decide its end (judge()); half a second after Ctrl-C what is not computed yet is
-// left open.
+// The run's diagnostics, which decide its end (judge()); half a second after Ctrl-C what is not computed yet
+// is left open.
 Diagnostics judge_run(Simulation& run);
 
 // 0, solver failed, or interrupted.

@@ -11,8 +11,8 @@ namespace unfurl {
 // out.
 std::string xml_text(std::string_view text);
 
-// For terminals and Markdown: what is no character but a command (escape sequences, bells, marks that turn the
-// direction of text) or no UTF-8 stands there as "\\x1b" or "\\u202e"; line breaks and tabs stay.
+// For terminals and Markdown: what is no character but a command (escape sequences, bells, marks that turn
+// the direction of text) or no UTF-8 stands there as "\\x1b" or "\\u202e"; line breaks and tabs stay.
 std::string printable_text(std::string_view text);
 
 }  // namespace unfurl

@@ -21,7 +21,7 @@ struct SolverOptions {
   double tolerance = 0;                  // of node positions; 0: stages and step are as given [m]
   double end_time = 1.0;                 // [s]
   std::string at_deployed = "stop";      // stop | pass | latch
-  bool sparse = true;  // false: dense factorisations, for comparison
+  bool sparse = true;                    // false: dense factorisations, for comparison
   bool eliminate_linear = true;          // solve in coordinates that fulfil the linear constraints exactly
 };
 

@@ -36,7 +36,8 @@ struct Simulation {
   std::vector<std::string> warnings = {};
   std::vector<Event> events = {};
   SolverOptions options = {};
-  // Estimated error of the node positions, from a second solution [m]; NaN: none was made (study/tolerance.hpp).
+  // Estimated error of the node positions, from a second solution [m]; NaN: none was made
+  // (study/tolerance.hpp).
   double position_estimate = std::numeric_limits<double>::quiet_NaN();
   long steps = 0;
   long newton_iterations = 0;

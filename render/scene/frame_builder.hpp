@@ -50,7 +50,7 @@ class FrameBuilder {
 
  private:
   Vec3 node(const VectorXd& whole, int i) const { return upright_ * whole.segment<3>(3 * i); }
-  double prepare_camera();  // returns the radius of the thickest joint [m]
+  double prepare_camera();                     // returns the radius of the thickest joint [m]
   double still_radius(double thickest) const;  // of a sphere around all that is drawn [m]
   void prepare_still(double thickest);
   void prepare_ghosts();

@@ -17,7 +17,7 @@ struct RodField {
   MatrixXd values;        // [states x solved rods]; NaN where it is not known
   double low = 0, high = 1;
   bool below = false, above = false;  // some values lie outside of the range and have the colour of its end
-  bool diverging = false;  // around zero
+  bool diverging = false;             // around zero
   bool log = false;
 
   double at(double time, int rod) const;  // linear between the states
