@@ -197,7 +197,7 @@ bool Dvm::needs_care() {
 bool Dvm::tight_iterations(const State& state, StepReport& report) {
   constexpr int most = 40;
   eq_.in_increments = true;
-  careful_ = true;
+  careful_ = !saddle_.fine();  // fine factors leave out by themselves what the rows cannot reach
   feed_ = true;
   double best = infinity;
   int without_gain = 0;

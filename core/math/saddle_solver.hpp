@@ -42,9 +42,10 @@ class SaddleSolver {
 
   // The same matrix again in twice the digits and with e = 1e-23, which apply and solve use from then on
   // until the next factorise: L D L^T squares singular values, so doubles see none below sqrt(e) or 1e-8.
-  // Directions down to 1e-11 are resolved, rows below that count as redundant and get multipliers of least
+  // Directions down to 1e-10 are resolved, rows below that count as redundant and get multipliers of least
   // norm. Slow. False where it broke down.
   [[nodiscard]] bool factorise_finely();
+  bool fine() const { return fine_ready_; }
 
   // The largest motion [m] that answers a row's error [m], but for the singular values of G^.
   double motion_of_error() const;

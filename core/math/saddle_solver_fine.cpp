@@ -9,9 +9,10 @@
 namespace unfurl {
 namespace {
 
-// e, and the pivot up to which a row counts as redundant. Rounding the entries of G leaves rows that depend
-// on each other with pivots of 1e-32 to 1e-30.
-constexpr double fine_regularisation = 1e-23, redundant_pivot = 1e-22;
+// e, and the pivot up to which a row counts as redundant: such rows have some e, tens of them where many
+// depend on each other, and the square of a singular value of 1e-11 where an error of 1e-14 in the
+// constraints over a weak direction of 1e-3 tells them apart.
+constexpr double fine_regularisation = 1e-23, redundant_pivot = 1e-20;
 // Pivots in doubles say something of a row where they are this many times e.
 constexpr double clear_of_regularisation = 1000;
 
@@ -93,8 +94,8 @@ void SaddleSolver::apply_finely(double* f, double* g, int columns) const {
   }
 }
 
-// What e leaves of a weak direction, e / sigma^2 <= 0.1, two refinements take below 1e-3, and below round-off
-// from sigma = 1e-9 on; then the multipliers, as above.
+// What e leaves of a weak direction, e / sigma^2 <= 1e-3, two refinements take below 1e-9; then the
+// multipliers, as above.
 void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) const {
   Fine& fine = *fine_;
   const auto place = [this](Index i) {
