@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/generalized_alpha.hpp"
 
+#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,6 +17,8 @@ constexpr int max_iterations = 40, frozen_iterations = 8;
 // converged.
 constexpr double wanted_level = 2.0, accepted_level = 100.0;
 constexpr double ulp = std::numeric_limits<double>::epsilon();
+// Where forces vary, corrections that leave more than this share of the residual take their derivatives in.
+constexpr double contracting = 0.1;
 
 class GeneralizedAlpha final : public Integrator {
  public:
@@ -61,6 +64,7 @@ class GeneralizedAlpha final : public Integrator {
   void set_pose(const State& state, double h);
   double evaluate(double t);
   void correct(double h, StepReport& report);
+  bool correct_with_forces(double t, double h, StepReport& report);
   void iterate(const State& state, double h, StepReport& report);
   double newton_scale(double h) const { return (1 - alpha_m_) / (h * h * beta_ * (1 - alpha_f_)); }
 
@@ -135,9 +139,57 @@ void GeneralizedAlpha::correct(double h, StepReport& report) {
   ++report.newton_iterations;
 }
 
+// The same with the derivatives of the forces, of which the others know nothing:
+//     (M - (dF/dz + gamma / (h beta) dF/dw) / b) dz + G^T (dlambda / b) = -r / b,  G dz - e dlambda / b =
+//     -Phi
+// rows and columns scaled as in SaddleSolver. For forces that are stiff at this step; allocates.
+bool GeneralizedAlpha::correct_with_forces(double t, double h, StepReport& report) {
+  const double b = newton_scale(h), by_rate = gamma_ / (h * beta_);
+  const Index n = z_.size(), m = phi_.size();
+  SparseRows by_z, by_w;
+  system_.force_derivatives(t, q_, v_, by_z, by_w);
+  system_.jacobian(q_, G_, scratch_);
+  VectorXd scale = VectorXd::Ones(n + m);
+  for (Index i = 0; i < n; ++i) scale[i] = 1.0 / std::sqrt(system_.mass().coeff(i, i));
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add = [&](Index row, Index column, double value) {
+    entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value * scale[row] * scale[column]);
+  };
+  const auto add_all = [&](const SparseRows& A, double factor) {
+    for (int r = 0; r < A.outerSize(); ++r)
+      for (SparseRows::InnerIterator it(A, r); it; ++it) add(r, it.col(), factor * it.value());
+  };
+  add_all(system_.mass(), 1.0);
+  add_all(by_z, -1.0 / b);
+  add_all(by_w, -by_rate / b);
+  for (int r = 0; r < G_.outerSize(); ++r) {
+    double square = 0;
+    for (SparseRows::InnerIterator it(G_, r); it; ++it) square += std::pow(it.value() * scale[it.col()], 2);
+    if (square > 0) scale[n + r] = 1.0 / std::sqrt(square);
+    for (SparseRows::InnerIterator it(G_, r); it; ++it)
+      add(n + r, it.col(), it.value()), add(it.col(), n + r, it.value());
+    entries.emplace_back(static_cast<int>(n + r), static_cast<int>(n + r),
+                         -SaddleSolver::standard_regularisation);
+  }
+  Eigen::SparseMatrix<double> A(n + m, n + m);
+  A.setFromTriplets(entries.begin(), entries.end());
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(A);
+  ++report.factorisations;
+  if (factors.info() != Eigen::Success) return false;
+  VectorXd right(n + m);
+  right << residual_ / -b, -phi_;
+  const VectorXd x = scale.cwiseProduct(VectorXd(factors.solve(scale.cwiseProduct(right))));
+  acceleration_ += b * x.head(n);
+  lambda_ += b * x.tail(m);
+  ++report.right_hand_sides;
+  ++report.newton_iterations;
+  return x.allFinite();
+}
+
 void GeneralizedAlpha::iterate(const State& state, double h, StepReport& report) {
-  double best = std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity(), before = best;
   int without_gain = 0;
+  bool stiff = false;
   for (int it = 0;; ++it) {
     const double level = evaluate(state.t + h);
     report.residual = level;
@@ -147,6 +199,16 @@ void GeneralizedAlpha::iterate(const State& state, double h, StepReport& report)
     best = std::min(best, level);
     if (without_gain >= 3 && level <= accepted_level) return;
     if (it == max_iterations || !std::isfinite(level)) break;
+    stiff = stiff || (it > 1 && !system_.constant_forces() && level > contracting * before);
+    before = level;
+    if (stiff) {
+      if (!correct_with_forces(state.t + h, h, report)) {
+        report.status = StepStatus::diverged;
+        return;
+      }
+      set_pose(state, h);
+      continue;
+    }
     if (it % frozen_iterations == 0) {
       system_.jacobian(q_, G_, scratch_);
       ++report.factorisations;

@@ -70,11 +70,12 @@ void check(Reproduction& r) {
   const double time = deployment_time(*r.motion);
   add_check(r, "the ring deploys in 4.92 s", short_number(time, 7) + " s",
             std::abs(time - printed_deployment_time) < 0.005);
-  const double ratio = at(r, runge_kutta, 1).constraint_max / at(r, runge_kutta, 2).constraint_max;
+  const double ratio =
+      at(r, runge_kutta, paper_step).constraint_max / at(r, runge_kutta, paper_step + 1).constraint_max;
   add_check(r, "half the step makes the constraint error of Runge-Kutta 2^4 times smaller (paper: 15.95)",
             short_number(ratio, 4), std::abs(ratio - 16) < 1);
   for (const std::size_t s : {printed, nodes3}) {
-    const double error = at(r, s, 1).constraint_relative_max;
+    const double error = at(r, s, paper_step).constraint_relative_max;
     add_check(r, "constraint error at round-off: " + r.schemes[s].name,
               short_number(error) + " of the length", error < 100 * std::numeric_limits<double>::epsilon());
   }
@@ -114,7 +115,7 @@ Reproduction reproduce_paper(const StudyHooks& hooks) {
   r.motion = std::make_shared<Simulation>(simulate(model, scene.solver));
   hooks.tell(0.02);
   const Reference reference =
-      solve_reference(model, r.end, static_cast<int>(std::lround(r.end / reproduced_steps[0])), hooks);
+      solve_reference(model, r.end, static_cast<int>(std::lround(r.end / comparison_step)), hooks);
   r.reference = reference.how;
   r.reference_uncertainty = reference.uncertainty;
   r.schemes = schemes(scene.solver);
@@ -139,7 +140,7 @@ Reproduction reproduce_paper(const StudyHooks& hooks) {
 
 Table reproduced_table(const Reproduction& r, std::size_t step) {
   const PrintedResults& paper = printed_results[step];
-  const std::size_t i = step + 1;  // of reproduced_steps
+  const std::size_t i = paper_step + step;
   Table table{{"method", "paper: CPU (s)", "paper: CPU / RK4", "paper: constraint error", "ours: CPU (s)",
                "ours: CPU / RK4", "ours: constraint error (m)", "ours: trajectory error (m)"},
               {}};

@@ -32,7 +32,7 @@ struct ReproducedRun {
   std::vector<double> comparison_t;
 };
 
-// A scheme at the steps 0.02, 0.01, 0.005 and 0.0025 s.
+// A scheme at each of the reproduced steps.
 struct ReproducedScheme {
   std::string name, what;
   SolverOptions options;
@@ -40,7 +40,9 @@ struct ReproducedScheme {
   ObservedOrder order;              // of the position error
   double deployment_time = 0;       // at h = 0.01 s; NaN: it did not deploy [s]
 };
-inline constexpr std::array reproduced_steps{0.02, 0.01, 0.005, 0.0025};
+inline constexpr std::array reproduced_steps{0.05, 0.02, 0.01, 0.005, 0.0025};
+inline constexpr std::size_t paper_step = 2;  // index of the paper's 0.01 s, which 0.005 s follows
+inline constexpr double comparison_step = 0.1;  // every step divides it [s]
 
 struct Check {
   std::string claim, found;

@@ -79,7 +79,8 @@ void compare(Report& report, const Reproduction& r, const ReproductionPictures& 
 }
 
 std::string same_cost(const Reproduction& r) {
-  const MeasuredRun &ends = r.schemes[0].runs[1].measured, &four = r.schemes[3].runs[1].measured;
+  const MeasuredRun &ends = r.schemes[0].runs[paper_step].measured,
+                    &four = r.schemes[3].runs[paper_step].measured;
   return "At h = 0.01 s the scheme as printed costs " + short_number(1e3 * ends.cpu_median) + " ms and is " +
          short_number(ends.position_error, 2) +
          " m off. With Lobatto nodes and constraints at every "

@@ -111,8 +111,8 @@ void FrameOverlay::add_heading(double t, DrawList& list) const {
   }
   const float line = std::round(0.85f * small_);
   if (const std::string note = scale_text(looks_); !note.empty() && style_.options.legend) {
-    list.labels.push_back({edge_, y, line, look_.ink, note});
-    y += 1.3f * line;
+    list.labels.push_back({edge_, y, small_, look_.ink, note});
+    y += 1.3f * small_;
   }
   if (style_.options.method && style_.run) {
     const SolverOptions& solver = style_.run->options;

@@ -193,7 +193,7 @@ TEST_CASE(
   CHECK(fs::exists(writing.name()));
 }
 
-TEST_CASE("figures go into any directory and replace only figures of ours; a film may follow") {
+TEST_CASE("figures go into any directory and replace only figures of ours, and a film may follow") {
   const ScratchDirectory dir;
   const std::string mine = dir.write("figs/energy.png", "mine");
   const Words figures{"figure", "pendulum", "all", "--set", "solver.end_time=0.1", "--quiet", "-o"};

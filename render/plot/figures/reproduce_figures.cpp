@@ -52,14 +52,14 @@ Figure reproduced_constraint_figure(const Reproduction& r) {
       "Largest error of all constraints. The variational method stays at the round-off of a length of 3 m; "
       "Runge-Kutta imposes the second derivative of the constraints only and drifts off. Exact zeros are "
       "drawn at the bottom edge.";
-  for (std::size_t step = 1; step <= 2; ++step) {
+  for (std::size_t step = paper_step; step <= paper_step + 1; ++step) {
     Panel p = error_panel("h = " + plot::format_number(reproduced_steps[step], 3) + " s", "time (s)",
                           "constraint error (m)");
     p.y.min = 1e-17;
     p.y.max = 1e-5;
     p.y.zeros_at_floor = true;
     for (const std::size_t s : {std::size_t{0}, std::size_t{1}}) {
-      Curve c = curve(r, s, step == 1);
+      Curve c = curve(r, s, step == paper_step);
       c.x = r.schemes[s].runs[step].t;
       c.y = r.schemes[s].runs[step].constraint_error;
       p.curves.push_back(std::move(c));
@@ -89,8 +89,8 @@ Figure reproduced_trajectory_figure(const Reproduction& r) {
   order.x.max = 1.25 * reproduced_steps.front();
   for (std::size_t s = 0; s < r.schemes.size(); ++s) {
     Curve c = curve(r, s, true);
-    c.x = r.schemes[s].runs[1].comparison_t;
-    c.y = r.schemes[s].runs[1].position_error;
+    c.x = r.schemes[s].runs[paper_step].comparison_t;
+    c.y = r.schemes[s].runs[paper_step].position_error;
     time.curves.push_back(std::move(c));
     Curve o = curve(r, s, false);
     o.marker = markers[s];

@@ -62,7 +62,7 @@ TEST_CASE("a row is determined if and only if removing it lowers the rank: 1000 
   CHECK(closed > 2000);
 }
 
-TEST_CASE("rows that repeat one, at any scale, are not determined; others stay so; zeros are not") {
+TEST_CASE("rows that repeat one, at any scale, are not determined, others stay so, zeros are not") {
   MatrixXd G(5, 4);
   G << 1, 2, 0, 0,  //
       0, 3, -1, 0,  //

@@ -73,7 +73,7 @@ TEST_CASE("what a drive or a spring measures at the start is known") {
   const Scene scene = read_scene_text(
       hoop +
           "fold_angle = 60\n[[constraints]]\nkind = 'angle'\nfold_angle = true\n[[forces]]\nkind = "
-          "'spring'\nnodes = ['B0', 'T0']\n[[forces]]\nkind = 'drag'\nnodes = ['B0']\ndamping = 1\n",
+          "'spring'\nstiffness = 3\nnodes = ['B0', 'T0']\n[[forces]]\nkind = 'drag'\nnodes = ['B0']\ndamping = 1\n",
       "x");
   const Structure s = build_structure(scene);
   CHECK(start_value(scene.constraints[0], s) ==
