@@ -91,6 +91,13 @@ Structure build_hoop_joints(const HoopShape& s) {
   }
   set_deployment(a.structure, s);
   show_as_solved(a.structure);
+  // Modes in which the plan is no regular polygon grow faster than the ring opens, from the round-off of the
+  // start: 1e-16 / cos(fold) of it, which decides the motion from here on.
+  if (s.cosine < 1.7e-3)
+    a.structure.notes.push_back(
+        "so near the dead centre (fold_angle above 89.9 deg) a ring of joints does not stay even: round-off "
+        "decides "
+        "when it deploys; model = \"full\" or \"sector\" keeps it even");
   return a.structure;
 }
 
