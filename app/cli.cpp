@@ -13,8 +13,8 @@
 #include "app/interrupt.hpp"
 #include "app/own_options.hpp"
 #include "app/printable_output.hpp"
-#include "core/model/nearest_name.hpp"
 #include "core/study/table.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

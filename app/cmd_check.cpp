@@ -10,9 +10,9 @@
 #include "app/command.hpp"
 #include "app/progress.hpp"
 #include "app/scene_run.hpp"
-#include "core/model/mobility.hpp"
-#include "core/model/self_stress.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/system/mobility.hpp"
+#include "core/system/self_stress.hpp"
 
 namespace unfurl {
 

@@ -8,7 +8,7 @@
 #include "app/output_directory.hpp"
 #include "app/run_figures.hpp"
 #include "app/scene_run.hpp"
-#include "core/model/nearest_name.hpp"
+#include "core/text/nearest_name.hpp"
 #include "render/plot/figure_data.hpp"
 
 namespace unfurl {

@@ -13,15 +13,15 @@
 #include "app/scene_run.hpp"
 #include "app/study_session.hpp"
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/measures.hpp"
 #include "core/export/atomic_file.hpp"
-#include "core/model/nearest_name.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/write.hpp"
-#include "core/study/measures.hpp"
 #include "core/study/scene_variation.hpp"
 #include "core/study/solve_for.hpp"
 #include "core/study/tolerance.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 
@@ -98,7 +98,7 @@ int cmd_solve(const Arguments& arguments) {
   if (study.target.empty()) throw UsageError("--target NAME=VALUE is missing");
   const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
   const Scene scene = source.read();
-  const Target target = as_usage([&] { return target_of(study.target, scene); });
+  const Target target = target_of(study.target, scene);
   const SolveOptions options = options_of(arguments, source, scene);
   source.read({study.find + "=" + exact_number(options.low < options.high ? options.low : options.start)});
 

@@ -86,9 +86,8 @@ int cmd_study(const Arguments& arguments) {
                        study_identity("A study with " + std::to_string(repeats) + " repeats", scene),
                        "study.csv");
   const StudyHooks hooks = session.hooks();
-  StudyPlan plan =
-      as_usage([&] { return plan_study(std::move(model), scene.solver, range.from, range.to, hooks); });
-  as_usage([&] { keep_methods(plan, arguments.study.methods); });
+  StudyPlan plan = plan_study(std::move(model), scene.solver, range.from, range.to, hooks);
+  keep_methods(plan, arguments.study.methods);
   plan.timing.repeats = repeats;
   Study study;
   {

@@ -99,7 +99,7 @@ Sweep compute(const SweepPlan& plan, const StudySession& session, const StudyHoo
 }  // namespace
 
 int cmd_sweep(const Arguments& arguments) {
-  const SweepPlan plan = as_usage([&] { return plan_of(arguments); });
+  const SweepPlan plan = plan_of(arguments);
   const Scene scene = scene_of(arguments);
   const InterruptGuard guard;
   const std::string name = identity(scene, plan);

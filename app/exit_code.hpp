@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <stdexcept>
+#include "core/text/error.hpp"
 
 namespace unfurl {
 
@@ -19,8 +19,8 @@ enum ExitCode {
 };
 
 // The command line cannot be followed.
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct UsageError : Error {
+  using Error::Error;
 };
 
 }  // namespace unfurl

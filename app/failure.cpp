@@ -13,6 +13,7 @@
 #include "core/scene/reader.hpp"
 #include "core/study/journal.hpp"
 #include "core/study/reference.hpp"
+#include "core/study/solve_for.hpp"
 #include "render/gl/graphics_error.hpp"
 #include "render/image/child_process.hpp"
 
@@ -35,6 +36,21 @@ namespace {
   ::_exit(exit_internal);
 }
 
+template <class... Kinds>
+bool is_any(const Error& error) {
+  return (... || (dynamic_cast<const Kinds*>(&error) != nullptr));
+}
+
+// For scripts: what kind of thing a person has to mend.
+int exit_code_of(const Error& error) {
+  if (is_any<SceneError>(error)) return exit_scene_invalid;
+  if (is_any<UsageError, StudyError>(error)) return exit_usage;
+  if (is_any<ReferenceError, NotFound>(error)) return exit_solver_failed;
+  if (is_any<FileError, UnreadableScene, JournalMismatch>(error)) return exit_file_error;
+  if (is_any<GraphicsError>(error)) return exit_no_graphics;
+  return exit_scene_invalid;  // an impossible structure
+}
+
 }  // namespace
 
 void end_in_words() {
@@ -51,27 +67,11 @@ int report_failure(std::ostream& out) {
   } catch (const Cancelled&) {
     out << interrupted_words;
     return exit_interrupted;
-  } catch (const SceneError& error) {
-    out << error.what() << "\n";
-    return exit_scene_invalid;
-  } catch (const UsageError& error) {
-    out << "unfurl: " << error.what() << "\n";
-    return exit_usage;
-  } catch (const ReferenceError& error) {
-    out << "unfurl: " << error.what() << "\n";
-    return exit_solver_failed;
-  } catch (const JournalMismatch& error) {
-    out << "unfurl: " << error.what() << "\n";
-    return exit_file_error;
-  } catch (const UnreadableScene& error) {
-    out << "unfurl: " << error.what() << "\n";
-    return exit_file_error;
-  } catch (const FileError& error) {
-    out << "unfurl: " << error.what() << "\n";
-    return exit_file_error;
-  } catch (const GraphicsError& error) {
-    out << "unfurl: " << error.what() << "\n";
-    return exit_no_graphics;
+  } catch (const Error& error) {
+    const int code = exit_code_of(error);
+    out << (code == exit_scene_invalid ? "" : "unfurl: ") << error.what()
+        << "\n";  // a scene's begin with its place
+    return code;
   } catch (const std::bad_alloc&) {
     out << "unfurl: out of memory\n";
   } catch (const std::exception& error) {

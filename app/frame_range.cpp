@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "app/exit_code.hpp"
-#include "core/model/nearest_name.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

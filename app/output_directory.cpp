@@ -8,8 +8,8 @@
 #include "app/exit_code.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
-#include "core/model/nearest_name.hpp"
 #include "core/scene/text_file.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

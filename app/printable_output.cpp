@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/export/xml_text.hpp"
+#include "core/text/xml_text.hpp"
 
 namespace unfurl {
 

@@ -6,7 +6,7 @@
 
 namespace unfurl {
 
-// While it lives, what is written to the stream is printable_text (core/export/xml_text.hpp): titles, names
+// While it lives, what is written to the stream is printable_text (core/text/xml_text.hpp): titles, names
 // and paths are anybody's, and a terminal obeys what it is sent. Text comes out at line breaks and flushes.
 class PrintableOutput {
  public:

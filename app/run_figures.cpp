@@ -4,7 +4,7 @@
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
 #include "core/export/atomic_file.hpp"
-#include "core/model/nearest_name.hpp"
+#include "core/text/nearest_name.hpp"
 #include "render/plot/figure_data.hpp"
 
 namespace unfurl {

@@ -15,13 +15,13 @@
 #include "core/export/csv.hpp"
 #include "core/export/summary.hpp"
 #include "core/math/largest.hpp"
-#include "core/model/nearest_name.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/study/tolerance.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

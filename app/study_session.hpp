@@ -59,16 +59,6 @@ class StudySession {
   FigureWriter writer_;
 };
 
-// What a person asked for cannot be: StudyError as UsageError.
-template <class Work>
-auto as_usage(const Work& work) {
-  try {
-    return work();
-  } catch (const StudyError& error) {
-    throw UsageError(error.what());
-  }
-}
-
 // The words of a report with its end: 0 or interrupted, with a line on stderr.
 int finish(bool complete, const Arguments& arguments, const std::string& sentence);
 

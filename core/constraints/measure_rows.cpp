@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/constraints/linear_rows.hpp"
-#include "core/model/measure.hpp"
+#include "core/structure/measure.hpp"
 
 namespace unfurl {
 namespace {

@@ -7,7 +7,7 @@
 
 namespace unfurl {
 
-// Holds or drives a measure s(q) (core/model/measure.hpp), one row each, in metres:
+// Holds or drives a measure s(q) (core/structure/measure.hpp), one row each, in metres:
 //
 //     Phi(q, t) = l (s(q) - f(t)),   G = l ds/dq,   curvature = l Hess s
 //

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/math/singular_values.hpp"
-#include "core/model/mobility.hpp"
+#include "core/system/mobility.hpp"
 
 namespace unfurl {
 namespace {

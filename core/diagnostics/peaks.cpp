@@ -8,7 +8,7 @@
 
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
-#include "core/model/time_edges.hpp"
+#include "core/structure/time_edges.hpp"
 
 namespace unfurl {
 namespace {

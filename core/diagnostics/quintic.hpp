@@ -2,7 +2,7 @@
 // The motion within a step, from the states at its ends.
 #pragma once
 
-#include "core/model/state.hpp"
+#include "core/system/state.hpp"
 
 namespace unfurl {
 

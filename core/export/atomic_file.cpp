@@ -66,7 +66,7 @@ void flush_directory_of(const std::filesystem::path& path) {
 }  // namespace
 
 FileError::FileError(const std::filesystem::path& path, const std::string& cause)
-    : std::runtime_error(path.string() + ": " + cause), path_(path) {}
+    : Error(path.string() + ": " + cause), path_(path) {}
 
 FileError::FileError(const std::filesystem::path& path, int error_number)
     : FileError(path, cause_text(error_number)) {}

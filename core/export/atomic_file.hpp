@@ -5,14 +5,15 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "core/text/error.hpp"
 
 namespace unfurl {
 
 // A file that could not be written or read. what(): "out/frames/x.png: no space left on device".
-class FileError : public std::runtime_error {
+class FileError : public Error {
  public:
   FileError(const std::filesystem::path& path, const std::string& cause);
   // The cause in the system's words for `error_number` (an errno value).

@@ -8,9 +8,9 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/ending.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/peaks.hpp"
 #include "core/math/largest.hpp"
-#include "core/study/measures.hpp"
 
 namespace unfurl {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/diagnostics/diagnostics.hpp"
-#include "core/model/mobility.hpp"
+#include "core/system/mobility.hpp"
 
 namespace unfurl {
 

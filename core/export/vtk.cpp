@@ -8,9 +8,9 @@
 #include <cstdio>
 
 #include "core/export/atomic_file.hpp"
-#include "core/export/base64.hpp"
 #include "core/export/formats.hpp"
-#include "core/export/xml_text.hpp"
+#include "core/text/base64.hpp"
+#include "core/text/xml_text.hpp"
 
 namespace unfurl {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 #include <string_view>
 
-#include "core/model/param_spec.hpp"
-#include "core/model/structure.hpp"
+#include "core/structure/structure.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/model/measure.hpp"
+#include "core/structure/measure.hpp"
 
 namespace unfurl {
 namespace {

@@ -7,7 +7,7 @@
 
 namespace unfurl {
 
-// A spring and damper on a measure s(q) (core/model/measure.hpp): with N = k (s - s_0) + c s',
+// A spring and damper on a measure s(q) (core/structure/measure.hpp): with N = k (s - s_0) + c s',
 //
 //     F = -N ds/dq,     V = k/2 (s - s_0)^2,     dissipated power = c s'^2
 //

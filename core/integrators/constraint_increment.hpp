@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/math/quadrature.hpp"
-#include "core/model/system.hpp"
+#include "core/system/system.hpp"
 
 namespace unfurl {
 

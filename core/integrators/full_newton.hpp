@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/integrators/stage_equations.hpp"
-#include "core/model/state.hpp"
+#include "core/system/state.hpp"
 
 namespace unfurl {
 

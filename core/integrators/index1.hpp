@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/math/saddle_solver.hpp"
-#include "core/model/system.hpp"
+#include "core/system/system.hpp"
 
 namespace unfurl {
 

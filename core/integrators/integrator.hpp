@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "core/integrators/solver_options.hpp"
-#include "core/model/state.hpp"
-#include "core/model/system.hpp"
+#include "core/system/state.hpp"
+#include "core/system/system.hpp"
 
 namespace unfurl {
 

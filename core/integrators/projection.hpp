@@ -5,7 +5,7 @@
 
 #include "core/integrators/constraint_increment.hpp"
 #include "core/math/saddle_solver.hpp"
-#include "core/model/system.hpp"
+#include "core/system/system.hpp"
 
 namespace unfurl {
 

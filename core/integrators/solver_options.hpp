@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/model/param_spec.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 

@@ -7,7 +7,7 @@
 
 #include "core/integrators/constraint_increment.hpp"
 #include "core/integrators/galerkin.hpp"
-#include "core/model/system.hpp"
+#include "core/system/system.hpp"
 
 namespace unfurl {
 

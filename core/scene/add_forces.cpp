@@ -2,9 +2,9 @@
 // [[forces]] of a scene into a structure: the kinds are those of the force table (forces/force.hpp).
 #include <cmath>
 
-#include "core/model/measure.hpp"
-#include "core/model/structure_error.hpp"
 #include "core/scene/element_members.hpp"
+#include "core/structure/measure.hpp"
+#include "core/structure/structure_error.hpp"
 
 namespace unfurl {
 

@@ -4,13 +4,13 @@
 #include <set>
 #include <utility>
 
-#include "core/model/consistency.hpp"
-#include "core/model/fit_lengths.hpp"
-#include "core/model/nearest_name.hpp"
-#include "core/model/structure_error.hpp"
 #include "core/scene/size_limits.hpp"
+#include "core/structure/structure_error.hpp"
 #include "core/structures/family.hpp"
 #include "core/structures/name_index.hpp"
+#include "core/system/consistency.hpp"
+#include "core/system/fit_lengths.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

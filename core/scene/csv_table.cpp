@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/model/nearest_name.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

@@ -3,10 +3,10 @@
 
 #include <set>
 
-#include "core/model/nearest_name.hpp"
 #include "core/scene/csv_table.hpp"
 #include "core/scene/element_members.hpp"
 #include "core/scene/text_file.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

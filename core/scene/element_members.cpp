@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/model/measure.hpp"
-#include "core/model/nearest_name.hpp"
+#include "core/structure/measure.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

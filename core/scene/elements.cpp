@@ -4,9 +4,9 @@
 
 #include <map>
 
-#include "core/model/nearest_name.hpp"
 #include "core/scene/csv_table.hpp"
 #include "core/scene/text_file.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

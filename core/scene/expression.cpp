@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/model/nearest_name.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

@@ -3,18 +3,18 @@
 #pragma once
 
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "core/text/error.hpp"
 
 namespace unfurl {
 
 using Variables = std::map<std::string, double, std::less<>>;
 
 // What is wrong with an expression, and at which of its characters (from 1).
-struct ExpressionError : std::runtime_error {
-  ExpressionError(const std::string& message, std::size_t character)
-      : std::runtime_error(message), place(character) {}
+struct ExpressionError : Error {
+  ExpressionError(const std::string& message, std::size_t character) : Error(message), place(character) {}
   std::size_t place;
 };
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/model/param_spec.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 

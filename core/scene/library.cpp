@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/model/nearest_name.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/title.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

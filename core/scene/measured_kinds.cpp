@@ -6,8 +6,8 @@
 #include <limits>
 #include <sstream>
 
-#include "core/model/measure.hpp"
 #include "core/scene/element_members.hpp"
+#include "core/structure/measure.hpp"
 
 namespace unfurl {
 

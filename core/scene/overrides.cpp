@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/model/nearest_name.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

@@ -8,7 +8,6 @@
 #include <set>
 #include <tuple>
 
-#include "core/model/nearest_name.hpp"
 #include "core/scene/custom_reader.hpp"
 #include "core/scene/key_tables.hpp"
 #include "core/scene/table_reader.hpp"
@@ -16,6 +15,7 @@
 #include "core/scene/title.hpp"
 #include "core/scene/variables.hpp"
 #include "core/structures/family.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

@@ -12,8 +12,8 @@
 namespace unfurl {
 
 // The scene file itself cannot be read.
-struct UnreadableScene : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct UnreadableScene : Error {
+  using Error::Error;
 };
 
 // Overrides are "key=value" (scene/overrides.hpp). Throws SceneError with everything that is wrong,

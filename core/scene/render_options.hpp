@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/model/param_spec.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 

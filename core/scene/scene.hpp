@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/integrators/solver_options.hpp"
-#include "core/model/structure.hpp"
 #include "core/scene/elements.hpp"
 #include "core/scene/render_options.hpp"
 #include "core/scene/scene_error.hpp"
+#include "core/structure/structure.hpp"
 #include "core/structures/custom.hpp"
 
 namespace unfurl {

@@ -15,12 +15,21 @@ std::string problem_text(const SceneProblem& problem) {
   return text.append(text.empty() ? "" : ": ").append(problem.message);
 }
 
-SceneError::SceneError(std::vector<SceneProblem> problems) : problems_(std::move(problems)) {
+namespace {
+
+std::string all_of(const std::vector<SceneProblem>& problems) {
   constexpr std::size_t most = 50;  // lines worth reading at once
-  for (std::size_t i = 0; i < problems_.size() && i < most; ++i)
-    text_.append(i ? "\n" : "").append(problem_text(problems_[i]));
-  if (problems_.size() > most)
-    text_.append("\n... and ").append(std::to_string(problems_.size() - most)).append(" more");
+  std::string text;
+  for (std::size_t i = 0; i < problems.size() && i < most; ++i)
+    text.append(i ? "\n" : "").append(problem_text(problems[i]));
+  if (problems.size() > most)
+    text.append("\n... and ").append(std::to_string(problems.size() - most)).append(" more");
+  return text;
 }
+
+}  // namespace
+
+SceneError::SceneError(std::vector<SceneProblem> problems)
+    : Error(all_of(problems)), problems_(std::move(problems)) {}
 
 }  // namespace unfurl

@@ -2,9 +2,10 @@
 // What is wrong with a scene, and where.
 #pragma once
 
-#include <exception>
 #include <string>
 #include <vector>
+
+#include "core/text/error.hpp"
 
 namespace unfurl {
 
@@ -28,15 +29,13 @@ struct SceneProblem {
 std::string problem_text(const SceneProblem& problem);
 
 // All mistakes found in one reading. what() joins them, one line each.
-class SceneError : public std::exception {
+class SceneError : public Error {
  public:
   explicit SceneError(std::vector<SceneProblem> problems);
-  const char* what() const noexcept override { return text_.c_str(); }
   const std::vector<SceneProblem>& problems() const { return problems_; }
 
  private:
   std::vector<SceneProblem> problems_;
-  std::string text_;
 };
 
 }  // namespace unfurl

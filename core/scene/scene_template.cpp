@@ -4,10 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/model/nearest_name.hpp"
 #include "core/scene/key_tables.hpp"
 #include "core/scene/write.hpp"
 #include "core/structures/family.hpp"
+#include "core/text/nearest_name.hpp"
 #include "core/text/wrapped.hpp"
 
 namespace unfurl {

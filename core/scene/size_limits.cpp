@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "core/model/structure_error.hpp"
+#include "core/structure/structure_error.hpp"
 #include "core/structures/family.hpp"
 
 namespace unfurl {

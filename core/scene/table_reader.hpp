@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/model/param_spec.hpp"
 #include "core/scene/toml_tree.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 

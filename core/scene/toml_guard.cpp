@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "core/model/utf8.hpp"
 #include "core/scene/toml_tree.hpp"
+#include "core/text/utf8.hpp"
 
 namespace unfurl {
 

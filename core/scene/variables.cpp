@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "core/model/nearest_name.hpp"
 #include "core/scene/expression.hpp"
 #include "core/scene/overrides.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

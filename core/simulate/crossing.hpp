@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/model/state.hpp"
+#include "core/system/state.hpp"
 
 namespace unfurl {
 

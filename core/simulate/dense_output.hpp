@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/integrators/integrator.hpp"
-#include "core/model/state.hpp"
+#include "core/system/state.hpp"
 
 namespace unfurl {
 

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "core/model/state.hpp"
-#include "core/model/structure.hpp"
-#include "core/model/system.hpp"
+#include "core/structure/structure.hpp"
+#include "core/system/state.hpp"
+#include "core/system/system.hpp"
 
 namespace unfurl {
 

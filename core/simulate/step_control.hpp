@@ -6,8 +6,8 @@
 
 #include "core/integrators/index1.hpp"
 #include "core/integrators/solver_options.hpp"
-#include "core/model/state.hpp"
-#include "core/model/system.hpp"
+#include "core/system/state.hpp"
+#include "core/system/system.hpp"
 
 namespace unfurl {
 

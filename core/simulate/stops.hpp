@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/model/measure.hpp"
 #include "core/simulate/trajectory.hpp"
+#include "core/structure/measure.hpp"
 
 namespace unfurl {
 

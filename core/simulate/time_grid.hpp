@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/integrators/solver_options.hpp"
-#include "core/model/time_edges.hpp"
+#include "core/structure/time_edges.hpp"
 
 namespace unfurl {
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/integrators/solver_options.hpp"
-#include "core/model/state.hpp"
-#include "core/model/structure.hpp"
-#include "core/model/system.hpp"
 #include "core/simulate/dense_output.hpp"
+#include "core/structure/structure.hpp"
+#include "core/system/state.hpp"
+#include "core/system/system.hpp"
 
 namespace unfurl {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/model/structure_error.hpp"
+#include "core/structure/structure_error.hpp"
 
 namespace unfurl {
 

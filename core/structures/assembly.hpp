@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/model/param_spec.hpp"
-#include "core/model/structure.hpp"
+#include "core/structure/structure.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 

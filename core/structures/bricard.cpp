@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/model/structure_error.hpp"
+#include "core/structure/structure_error.hpp"
 #include "core/structures/assembly.hpp"
 #include "core/structures/ring.hpp"
 

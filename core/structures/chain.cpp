@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/model/structure_error.hpp"
+#include "core/structure/structure_error.hpp"
 #include "core/structures/assembly.hpp"
 
 namespace unfurl {

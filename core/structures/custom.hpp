@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/model/structure.hpp"
+#include "core/structure/structure.hpp"
 
 namespace unfurl {
 

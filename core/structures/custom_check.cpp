@@ -4,9 +4,9 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/model/nearest_name.hpp"
 #include "core/structures/custom.hpp"
 #include "core/structures/name_index.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/model/param_spec.hpp"
-#include "core/model/structure.hpp"
-#include "core/model/structure_error.hpp"
+#include "core/structure/structure.hpp"
+#include "core/structure/structure_error.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 

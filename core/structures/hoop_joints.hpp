@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/model/structure.hpp"
+#include "core/structure/structure.hpp"
 #include "core/structures/hoop_shape.hpp"
 
 namespace unfurl {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/structures/hoop_shape.hpp"
 
-#include "core/model/structure_error.hpp"
+#include "core/structure/structure_error.hpp"
 
 namespace unfurl {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/math/types.hpp"
-#include "core/model/param_spec.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 

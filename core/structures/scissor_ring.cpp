@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/model/structure_error.hpp"
+#include "core/structure/structure_error.hpp"
 #include "core/structures/assembly.hpp"
 #include "core/structures/ring.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/model/param_spec.hpp"
-#include "core/model/structure.hpp"
+#include "core/structure/structure.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/integrators/index1.hpp"
-#include "core/model/state.hpp"
-#include "core/model/system.hpp"
+#include "core/system/state.hpp"
+#include "core/system/system.hpp"
 
 namespace unfurl {
 

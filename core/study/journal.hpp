@@ -12,8 +12,8 @@
 namespace unfurl {
 
 // The file holds other results than asked for: another scene or other settings.
-struct JournalMismatch : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct JournalMismatch : Error {
+  using Error::Error;
 };
 
 // A CSV file of rows whose first `keys` cells say which result it is. Lines are appended whole; one that a

@@ -8,8 +8,8 @@
 
 #include "core/integrators/integrator.hpp"
 #include "core/math/largest.hpp"
-#include "core/model/time_edges.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/structure/time_edges.hpp"
 #include "core/study/extrapolation.hpp"
 #include "core/study/table.hpp"
 

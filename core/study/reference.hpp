@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/simulate/trajectory.hpp"
+#include "core/text/error.hpp"
 
 namespace unfurl {
 
@@ -28,14 +29,9 @@ struct Cancelled : std::runtime_error {
   Cancelled() : std::runtime_error("cancelled") {}
 };
 
-// What a person asked of a study cannot be; what() says what can.
-struct StudyError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 // No two solutions agree well enough to judge anything by.
-struct ReferenceError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct ReferenceError : Error {
+  using Error::Error;
 };
 
 struct Reference {

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "core/export/atomic_file.hpp"
-#include "core/export/base64.hpp"
-#include "core/export/xml_text.hpp"
+#include "core/text/base64.hpp"
+#include "core/text/xml_text.hpp"
 
 namespace unfurl {
 namespace {

@@ -32,8 +32,8 @@ struct Solved {
 };
 
 // The parameter could not be found; what() says what was tried.
-struct NotFound : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct NotFound : Error {
+  using Error::Error;
 };
 
 // A root of f - target by bracketing: from `start` outwards, steps doubled, halved again where x becomes

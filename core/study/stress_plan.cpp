@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/model/nearest_name.hpp"
 #include "core/scene/build.hpp"
 #include "core/study/stress.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 

@@ -6,10 +6,10 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/books.hpp"
 #include "core/integrators/integrator.hpp"
-#include "core/model/nearest_name.hpp"
 #include "core/study/reference_motion.hpp"
 #include "core/study/study.hpp"
 #include "core/study/table.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 namespace {

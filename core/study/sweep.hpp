@@ -2,8 +2,8 @@
 // A scene over a grid of parameters: measures of every run.
 #pragma once
 
+#include "core/diagnostics/measures.hpp"
 #include "core/study/journal.hpp"
-#include "core/study/measures.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/scene_variation.hpp"
 

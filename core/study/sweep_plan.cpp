@@ -4,8 +4,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "core/model/nearest_name.hpp"
 #include "core/study/sweep.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 namespace {

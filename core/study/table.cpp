@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "core/export/csv.hpp"
-#include "core/export/xml_text.hpp"
+#include "core/text/xml_text.hpp"
 
 namespace unfurl {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <stdexcept>
+#include "core/text/error.hpp"
 
 namespace unfurl {
 
 // There is nowhere to draw, or what is there cannot draw what we need. what() names the cause and the cure.
-class GraphicsError : public std::runtime_error {
+class GraphicsError : public Error {
  public:
-  using std::runtime_error::runtime_error;
+  using Error::Error;
 };
 
 }  // namespace unfurl

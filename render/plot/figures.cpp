@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/diagnostics/jacobian_spectrum.hpp"
-#include "core/model/self_stress.hpp"
+#include "core/system/self_stress.hpp"
 #include "render/plot/figures/kinds.hpp"
 
 namespace unfurl {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/model/utf8.hpp"
+#include "core/text/utf8.hpp"
 #include "render/plot/text_metrics.hpp"
 
 namespace unfurl::plot {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "core/model/utf8.hpp"
+#include "core/text/utf8.hpp"
 #include "render/plot/text_metrics.hpp"
 
 namespace unfurl::plot {

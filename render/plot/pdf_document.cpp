@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <new>
 
-#include "core/model/utf8.hpp"
+#include "core/text/utf8.hpp"
 
 namespace unfurl::plot {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/export/xml_text.hpp"
+#include "core/text/xml_text.hpp"
 #include "render/plot/style.hpp"
 
 namespace unfurl::plot {

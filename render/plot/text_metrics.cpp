@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/model/utf8.hpp"
+#include "core/text/utf8.hpp"
 
 namespace unfurl::plot {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/model/structure.hpp"
+#include "core/structure/structure.hpp"
 #include "render/scene/draw_list.hpp"
 
 namespace unfurl {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/model/nearest_name.hpp"
+#include "core/text/nearest_name.hpp"
 #include "render/plot/limits.hpp"
 #include "render/plot/style.hpp"
 #include "render/scene/frame_overlay.hpp"

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "core/export/xml_text.hpp"
 #include "core/study/report.hpp"
+#include "core/text/xml_text.hpp"
 #include "tests/app/run_program.hpp"
 
 namespace unfurl::printable_output_test {

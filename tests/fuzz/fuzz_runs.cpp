@@ -4,11 +4,11 @@
 
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/export/summary.hpp"
-#include "core/model/mobility.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/scene_error.hpp"
 #include "core/simulate/simulation.hpp"
+#include "core/system/mobility.hpp"
 
 using namespace unfurl;
 

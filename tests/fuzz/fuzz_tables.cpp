@@ -5,11 +5,11 @@
 
 #include "tests/fuzz/fuzz.hpp"
 
+#include "core/diagnostics/measures.hpp"
 #include "core/scene/csv_table.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/scene_error.hpp"
 #include "core/scene/write_back.hpp"
-#include "core/study/measures.hpp"
 #include "core/study/sweep.hpp"
 
 using namespace unfurl;

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "core/model/state.hpp"
-#include "core/model/system.hpp"
+#include "core/system/state.hpp"
+#include "core/system/system.hpp"
 
 namespace unfurl::testing {
 

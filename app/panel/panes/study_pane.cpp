@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "app/panel/panes/panes.hpp"
+#include "core/diagnostics/measures.hpp"
 #include "core/integrators/integrator.hpp"
-#include "core/study/measures.hpp"
 #include "render/plot/ticks.hpp"
 
 namespace unfurl {

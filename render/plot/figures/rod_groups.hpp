@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/model/structure.hpp"
+#include "core/structure/structure.hpp"
 
 namespace unfurl {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/model/self_stress.hpp"
+#include "core/system/self_stress.hpp"
 
 #include <algorithm>
 #include <cmath>

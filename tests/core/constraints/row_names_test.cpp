@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "core/model/system.hpp"
+#include "core/system/system.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/model/mobility.hpp"
+#include "core/system/mobility.hpp"
 #include "tests/support/models.hpp"
 
 using namespace unfurl;

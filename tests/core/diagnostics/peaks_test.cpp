@@ -5,9 +5,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/diagnostics/measures.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
-#include "core/study/measures.hpp"
 
 using namespace unfurl;
 

@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/export/base64.hpp"
 #include "core/export/formats.hpp"
 #include "core/export/unit_shapes.hpp"
+#include "core/text/base64.hpp"
 #include "tests/support/models.hpp"
 
 using namespace unfurl;

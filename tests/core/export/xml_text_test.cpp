@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/export/xml_text.hpp"
+#include "core/text/xml_text.hpp"
 
 #include <catch2/catch.hpp>
 

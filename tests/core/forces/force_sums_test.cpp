@@ -2,7 +2,7 @@
 // Forces where more than one acts, or where a term is only seen off its special value.
 #include <catch2/catch.hpp>
 
-#include "core/model/system.hpp"
+#include "core/system/system.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/scene_run.hpp"
 

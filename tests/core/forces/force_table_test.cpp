@@ -5,7 +5,7 @@
 #include <random>
 
 #include "core/forces/force.hpp"
-#include "core/model/mass_matrix.hpp"
+#include "core/system/mass_matrix.hpp"
 #include "tests/support/table_structure.hpp"
 
 using namespace unfurl;

@@ -5,9 +5,9 @@
 #include <catch2/catch.hpp>
 #include <ctime>
 
-#include "core/model/structure_error.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
+#include "core/structure/structure_error.hpp"
 #include "core/structures/family.hpp"
 
 namespace unfurl::size_limits_test {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "core/model/mobility.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
+#include "core/system/mobility.hpp"
 #include "tests/support/deployment_check.hpp"
 #include "tests/support/family_structure.hpp"
 

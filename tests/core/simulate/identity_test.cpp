@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "core/model/consistency.hpp"
-#include "core/model/structure_error.hpp"
+#include "core/structure/structure_error.hpp"
+#include "core/system/consistency.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;

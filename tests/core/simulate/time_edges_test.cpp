@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/integrators/integrator.hpp"
-#include "core/model/time_edges.hpp"
+#include "core/structure/time_edges.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/model/structure_error.hpp"
+#include "core/structure/structure_error.hpp"
 #include "core/structures/name_index.hpp"
 
 using namespace unfurl;

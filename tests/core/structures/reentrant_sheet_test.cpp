@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/model/mobility.hpp"
+#include "core/system/mobility.hpp"
 #include "tests/support/deployment_check.hpp"
 #include "tests/support/family_structure.hpp"
 #include "tests/support/models.hpp"

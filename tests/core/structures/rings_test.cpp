@@ -2,7 +2,7 @@
 // Rings that open from a bundle: pantograph and Hoberman.
 #include <catch2/catch.hpp>
 
-#include "core/model/mobility.hpp"
+#include "core/system/mobility.hpp"
 #include "tests/support/deployment_check.hpp"
 #include "tests/support/family_structure.hpp"
 #include "tests/support/hoberman_exact.hpp"

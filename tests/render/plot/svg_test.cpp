@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/export/xml_text.hpp"
+#include "core/text/xml_text.hpp"
 #include "render/plot/style.hpp"
 #include "render/plot/svg_canvas.hpp"
 #include "render/plot/write_figure.hpp"

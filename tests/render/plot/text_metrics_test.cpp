@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/model/utf8.hpp"
+#include "core/text/utf8.hpp"
 #include "render/ui/fonts.hpp"
 #include "tests/support/not_tested.hpp"
 

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/measures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/peaks.hpp"
+#include "core/math/largest.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "core/text/error.hpp"
+#include "core/text/nearest_name.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+double last(const std::vector<double>& values) {
+  return values.empty() ? no_value : values.back();
+}
+
+// Infinite where the run ends before: later than anything that was asked for.
+double deploy_time(const Simulation& run, const Diagnostics&) {
+  for (const Event& event : run.events)
+    if (event.name == "deployed") return event.t;
+  return run.status == RunStatus::failed || run.trajectory.structure().deployment.empty()
+             ? no_value
+             : std::numeric_limits<double>::infinity();
+}
+
+double last_of(const Simulation&, const Diagnostics& d, std::string_view column) {
+  const Series* series = d.find(column);
+  return series ? last(series->values) : no_value;
+}
+
+double peak_force(const Simulation& run, const Diagnostics& d) {
+  return larger(largest_of_column(run, d, "axial_force_max_N"),
+                -smallest_of_column(run, d, "axial_force_min_N"));
+}
+
+template <Pull pull>
+double peak_unique(const Simulation&, const Diagnostics& d) {
+  return peak_rod_force(d, pull).unique ? 1.0 : 0.0;
+}
+
+double largest_magnitude_of(const Diagnostics& d, std::string_view column) {
+  const Series* series = d.find(column);
+  return series ? largest_magnitude(series->values) : no_value;
+}
+
+// Of every state.
+std::vector<double> speeds(const Simulation& run) {
+  std::vector<double> fastest;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+    const VectorXd v = run.trajectory.node_velocities(i);
+    fastest.push_back(0);
+    for (Index k = 0; k + 2 < v.size(); k += 3)
+      fastest.back() = larger(fastest.back(), v.segment<3>(k).norm());
+  }
+  return fastest;
+}
+
+double peak_speed(const Simulation& run, const Diagnostics&) {
+  return largest_in_motion(run, speeds(run), speeds);
+}
+
+const std::array measure_table{
+    NamedMeasure{"deploy_time", "deployment time", "s", "when the structure is fully deployed", deploy_time},
+    NamedMeasure{"peak_rod_force", "peak rod force", "N",
+                 "largest axial force of any rod, tension or compression; the mean over the rod's length",
+                 peak_force},
+    NamedMeasure{"peak_tension", "peak tension", "N", "largest tension of any rod",
+                 [](const Simulation& run, const Diagnostics& d) {
+                   return largest_of_column(run, d, "axial_force_max_N");
+                 }},
+    NamedMeasure{"peak_compression", "peak compression", "N", "largest compression of any rod",
+                 [](const Simulation& run, const Diagnostics& d) {
+                   return -smallest_of_column(run, d, "axial_force_min_N");
+                 }},
+    NamedMeasure{
+        "peak_rod_force_unique", "peak rod force is unique", "",
+        "1: the rigid model determines the peak rod force; 0: it is one choice of many (`unfurl check`)",
+        peak_unique<Pull::either>},
+    NamedMeasure{"peak_tension_unique", "peak tension is unique", "", "the same of the peak tension",
+                 peak_unique<Pull::tension>},
+    NamedMeasure{"peak_compression_unique", "peak compression is unique", "",
+                 "the same of the peak compression", peak_unique<Pull::compression>},
+    NamedMeasure{
+        "energy", "kinetic energy at the end", "J", "kinetic energy at the end of the run",
+        [](const Simulation& run, const Diagnostics& d) { return last_of(run, d, "kinetic_energy_J"); }},
+    NamedMeasure{"peak_energy", "peak kinetic energy", "J", "largest kinetic energy",
+                 [](const Simulation& run, const Diagnostics& d) {
+                   return largest_of_column(run, d, "kinetic_energy_J");
+                 }},
+    NamedMeasure{
+        "deployed_fraction", "deployed fraction", "", "share of the deployment at the end of the run",
+        [](const Simulation& run, const Diagnostics& d) { return last_of(run, d, "deployed_fraction"); }},
+    NamedMeasure{"peak_speed", "peak speed", "m/s", "largest speed of any node", peak_speed},
+    NamedMeasure{
+        "energy_error", "energy error", "J", "largest error of the energy balance",
+        [](const Simulation&, const Diagnostics& d) { return largest_magnitude_of(d, "energy_balance_J"); }},
+    NamedMeasure{
+        "constraint_error", "constraint error", "m", "largest constraint error",
+        [](const Simulation&, const Diagnostics& d) { return largest_magnitude_of(d, "constraint_max_m"); }},
+    NamedMeasure{"end_time", "end of the run", "s", "when the run ended, by whatever reason",
+                 [](const Simulation& run, const Diagnostics&) { return run.trajectory.end_time(); }},
+    NamedMeasure{"cpu", "CPU time", "s", "CPU time of the stepping loop",
+                 [](const Simulation& run, const Diagnostics&) { return run.cpu_s; }},
+    NamedMeasure{
+        "newton_iterations", "Newton iterations", "", "in sum",
+        [](const Simulation& run, const Diagnostics&) { return static_cast<double>(run.newton_iterations); }},
+};
+
+struct Statistic {
+  std::string_view name, label;
+  double (*of)(const Simulation&, const Diagnostics&, std::string_view column);
+};
+constexpr std::array statistics{Statistic{"max", "largest ", largest_of_column},
+                                Statistic{"min", "smallest ", smallest_of_column},
+                                Statistic{"final", "final ", last_of}};
+
+std::string with_unit(std::string_view label, std::string_view unit) {
+  return std::string(label) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
+}
+
+std::string suffix(std::string_view unit) {
+  std::string text;
+  for (const char c : unit) text += c == '/' ? '_' : c;
+  return text.empty() ? "" : "_" + text;
+}
+
+}  // namespace
+
+std::span<const NamedMeasure> named_measures() {
+  return measure_table;
+}
+
+std::string uniqueness_of(std::string_view measure) {
+  const std::string name = std::string(measure) + "_unique";
+  const bool known = std::any_of(measure_table.begin(), measure_table.end(),
+                                 [&](const NamedMeasure& m) { return m.name == name; });
+  return known ? name : "";
+}
+
+std::vector<std::string> columns_of(const std::shared_ptr<const Model>& model) {
+  Simulation start{.trajectory = Trajectory(model)};
+  start.trajectory.append(initial_state(model->structure, model->system).state, StepReport{});
+  std::vector<std::string> names;
+  for (const std::string_view name : diagnostic_names()) names.emplace_back(name);
+  for (const Series& column : diagnose(start).columns)
+    if (std::find(names.begin(), names.end(), column.name) == names.end()) names.push_back(column.name);
+  return names;
+}
+
+RunMeasure find_measure(const std::string& name, const std::vector<std::string>& columns) {
+  std::vector<std::string_view> known;
+  for (const NamedMeasure& row : measure_table) {
+    if (row.name == name) return {name, name + suffix(row.unit), with_unit(row.label, row.unit), row.value};
+    known.push_back(row.name);
+  }
+  const std::size_t colon = name.find(':');
+  for (const Statistic& s : statistics) {
+    if (colon == std::string::npos || name.substr(0, colon) != s.name) continue;
+    const std::string of = name.substr(colon + 1);
+    std::vector<std::string_view> there(columns.begin(), columns.end());
+    if (there.empty()) there = diagnostic_names();
+    if (std::find(there.begin(), there.end(), of) == there.end())
+      throw StudyError("no column " + in_quotes(of) + " to measure" + did_you_mean(of, there));
+    return {name, std::string(s.name) + "_" + of, std::string(s.label) + of,
+            [of, f = s.of](const Simulation& run, const Diagnostics& d) { return f(run, d, of); }};
+  }
+  throw StudyError("no measure " + in_quotes(name) + did_you_mean(name, known) +
+                   " (or max:, min:, final: and a column of series.csv)");
+}
+
+}  // namespace unfurl

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/structure/measure.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace unfurl {
+namespace {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+using Vec12 = Eigen::Matrix<double, 12, 1>;
+using Mat12 = Eigen::Matrix<double, 12, 12>;
+
+Mat3 cross_matrix(const Vec3& a) {
+  Mat3 m;
+  m << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return m;
+}
+
+// From derivatives by (d_1, d_2) to those by (x_0, x_1, x_2, x_3): d_1 = x_1 - x_0, d_2 = x_3 - x_2.
+Vec12 spread(const Vec6& g) {
+  Vec12 out;
+  out << -g.head<3>(), g.head<3>(), -g.tail<3>(), g.tail<3>();
+  return out;
+}
+
+Mat12 spread(const Mat6& h) {
+  Mat12 out;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) {
+      const double sign = (i % 2 ? 1.0 : -1.0) * (j % 2 ? 1.0 : -1.0);
+      out.block<3, 3>(3 * i, 3 * j) = sign * h.block<3, 3>(3 * (i / 2), 3 * (j / 2));
+    }
+  return out;
+}
+
+// Hessian of atan2(s, c): with r^2 = s^2 + c^2
+//   c/r^2 Hs - s/r^2 Hc + [ -2cs ds ds^T + (s^2 - c^2)(ds dc^T + dc ds^T) + 2cs dc dc^T ] / r^4
+template <class Vector, class Matrix>
+Matrix atan2_hessian(double s, double c, const Vector& ds, const Vector& dc, const Matrix& linear_part) {
+  const double r4 = (s * s + c * c) * (s * s + c * c);
+  const Matrix mixed = ds * dc.transpose();
+  return linear_part + (2 * s * c * (dc * dc.transpose() - ds * ds.transpose()) +
+                        (s * s - c * c) * (mixed + mixed.transpose())) /
+                           r4;
+}
+
+double on_branch(double angle, double near) {
+  return angle - 2 * pi * std::round((angle - near) / (2 * pi));
+}
+
+}  // namespace
+
+bool counts_turns(const Measure& measure) {
+  return measure.kind == MeasureKind::fold ||
+         (measure.kind == MeasureKind::angle && !measure.axis.isZero(0.0));
+}
+
+FollowedAngles followed_angles(const Structure& structure) {
+  FollowedAngles out;
+  const auto index = [&](const Measure& measure) {
+    if (!counts_turns(measure)) return -1;
+    out.measures.push_back(measure);
+    return static_cast<int>(out.measures.size()) - 1;
+  };
+  for (const Force& force : structure.forces) out.of_force.push_back(index(force.measure));
+  for (const Stop& stop : structure.stops) out.of_stop.push_back(index(stop.measure));
+  return out;
+}
+
+MeasureFunction::MeasureFunction(const Measure& measure, const Deployment& deployment)
+    : kind_(measure.kind), axis_(measure.axis), reference_(measure.reference) {
+  const auto coordinates_of = [&](const std::vector<int>& nodes) {
+    for (const int node : nodes)
+      for (int k = 0; k < 3; ++k) stencil_.push_back(3 * node + k);
+  };
+  if (kind_ != MeasureKind::fold) {
+    coordinates_of(measure.nodes);
+    if (kind_ != MeasureKind::coordinate) return;
+    sine_.resize(static_cast<Index>(stencil_.size()));
+    sine_.tail<3>() = axis_;
+    if (measure.nodes.size() == 2) sine_.head<3>() = -axis_;
+    return;
+  }
+  const LinearForm &s = deployment.fold_sine, &c = deployment.fold_cosine;
+  std::vector<int> nodes = s.nodes;
+  nodes.insert(nodes.end(), c.nodes.begin(), c.nodes.end());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  coordinates_of(nodes);
+  sine_offset_ = s.offset;
+  cosine_offset_ = c.offset;
+  const auto gather = [&](const LinearForm& form, VectorXd& out) {
+    out.setZero(static_cast<Index>(stencil_.size()));
+    for (std::size_t i = 0; i < form.nodes.size(); ++i) {
+      const auto at = std::lower_bound(nodes.begin(), nodes.end(), form.nodes[i]) - nodes.begin();
+      out.segment<3>(3 * at) += form.coefficients[i];
+    }
+  };
+  gather(s, sine_);
+  gather(c, cosine_);
+}
+
+double MeasureFunction::linear(const VectorXd& coefficients, double offset, const double* q) const {
+  double sum = offset;
+  for (std::size_t i = 0; i < stencil_.size(); ++i)
+    sum += coefficients[static_cast<Index>(i)] * q[stencil_[i]];
+  return sum;
+}
+
+// s and c of the angle and their first derivatives by (d_1, d_2).
+struct MeasureFunction::Angle {
+  Vec3 d1, d2;
+  double s, c;
+  Vec6 ds, dc;
+};
+
+MeasureFunction::Angle MeasureFunction::angle_terms(const double* q) const {
+  const auto point = [&](std::size_t i) -> Vec3 {
+    const int at = stencil_[3 * i];
+    return {q[at], q[at + 1], q[at + 2]};
+  };
+  Angle a;
+  a.d1 = point(1) - point(0);
+  a.d2 = point(3) - point(2);
+  const Vec3 normal = a.d1.cross(a.d2);
+  if (axis_.isZero(0.0)) {
+    a.s = normal.norm();
+    a.c = a.d1.dot(a.d2);
+    a.dc << a.d2, a.d1;
+    const Vec3 n = a.s > 1e-14 * std::abs(a.c) ? Vec3(normal / a.s) : Vec3::Zero();
+    a.ds << a.d2.cross(n), n.cross(a.d1);
+  } else {
+    const double h1 = axis_.dot(a.d1), h2 = axis_.dot(a.d2);
+    a.s = axis_.dot(normal);
+    a.c = a.d1.dot(a.d2) - h1 * h2;
+    a.ds << a.d2.cross(axis_), axis_.cross(a.d1);
+    a.dc << a.d2 - h2 * axis_, a.d1 - h1 * axis_;
+  }
+  return a;
+}
+
+double MeasureFunction::value_and_gradient(const double* q, double* gradient, double near) const {
+  const auto size = static_cast<Index>(stencil_.size());
+  Eigen::Map<VectorXd> g(gradient, size);
+  if (kind_ == MeasureKind::coordinate) {
+    g = sine_;
+    return linear(sine_, 0.0, q);
+  }
+  if (kind_ == MeasureKind::length) {
+    const Vec3 d(q[stencil_[3]] - q[stencil_[0]], q[stencil_[4]] - q[stencil_[1]],
+                 q[stencil_[5]] - q[stencil_[2]]);
+    const double length = d.norm();
+    const Vec3 unit = length > 0 ? Vec3(d / length) : Vec3::Zero();
+    g << -unit, unit;
+    return length;
+  }
+  if (kind_ == MeasureKind::fold) {
+    const double s = linear(sine_, sine_offset_, q), c = linear(cosine_, cosine_offset_, q);
+    g = (c * sine_ - s * cosine_) / (s * s + c * c);
+    return on_branch(std::atan2(s, c), near);
+  }
+  const Angle a = angle_terms(q);
+  const double square = a.s * a.s + a.c * a.c;
+  g = spread(Vec6((a.c * a.ds - a.s * a.dc) / square));
+  return axis_.isZero(0.0) ? std::atan2(a.s, a.c) : on_branch(std::atan2(a.s, a.c), near);
+}
+
+double MeasureFunction::value(const double* q, double near) const {
+  if (kind_ == MeasureKind::coordinate) return linear(sine_, 0.0, q);
+  if (kind_ == MeasureKind::fold)
+    return on_branch(std::atan2(linear(sine_, sine_offset_, q), linear(cosine_, cosine_offset_, q)), near);
+  std::array<double, 12> unused{};
+  return value_and_gradient(q, unused.data(), near);
+}
+
+void MeasureFunction::hessian(const double* q, double* hess) const {
+  switch (kind_) {
+    case MeasureKind::coordinate:
+      std::fill_n(hess, stencil_.size() * stencil_.size(), 0.0);
+      return;
+    case MeasureKind::length:
+      return length_hessian(q, hess);
+    case MeasureKind::angle:
+      return angle_hessian(q, hess);
+    case MeasureKind::fold:
+      return fold_hessian(q, hess);
+  }
+}
+
+double MeasureFunction::curvature_along(const double* q, const double* v) const {
+  if (kind_ == MeasureKind::coordinate) return 0.0;
+  if (kind_ == MeasureKind::fold) {  // atan2_hessian's form, with ds . v = s', dc . v = c'
+    const double s = linear(sine_, sine_offset_, q), c = linear(cosine_, cosine_offset_, q);
+    const double s1 = linear(sine_, 0.0, v), c1 = linear(cosine_, 0.0, v), r2 = s * s + c * c;
+    return 2 * (s * c * (c1 * c1 - s1 * s1) + (s * s - c * c) * s1 * c1) / (r2 * r2);
+  }
+  std::array<double, 144> hess{};
+  hessian(q, hess.data());
+  double sum = 0;
+  const std::size_t size = stencil_.size();
+  for (std::size_t j = 0; j < size; ++j)
+    for (std::size_t i = 0; i < size; ++i) sum += v[stencil_[i]] * hess[j * size + i] * v[stencil_[j]];
+  return sum;
+}
+
+// (I - n n^T) / length, n the unit direction.
+void MeasureFunction::length_hessian(const double* q, double* hess) const {
+  Vec6 g;
+  const double length = value_and_gradient(q, g.data());
+  const Vec3 n = g.tail<3>();
+  const Mat3 block = length > 0 ? Mat3((Mat3::Identity() - n * n.transpose()) / length) : Mat3(Mat3::Zero());
+  Eigen::Map<Mat6> out(hess);
+  out << block, -block, -block, block;
+}
+
+void MeasureFunction::fold_hessian(const double* q, double* hess) const {
+  const auto size = static_cast<Index>(stencil_.size());
+  const double s = linear(sine_, sine_offset_, q), c = linear(cosine_, cosine_offset_, q);
+  Eigen::Map<MatrixXd>(hess, size, size) =
+      atan2_hessian(s, c, sine_, cosine_, MatrixXd(MatrixXd::Zero(size, size)));
+}
+
+void MeasureFunction::angle_hessian(const double* q, double* hess) const {
+  const Angle a = angle_terms(q);
+  const double square = a.s * a.s + a.c * a.c;
+  Mat6 hs = Mat6::Zero(), hc = Mat6::Zero();
+  if (axis_.isZero(0.0)) {
+    // s = sqrt(w), w = |d_1|^2 |d_2|^2 - c^2: Hs = Hw / (2 s) - ds ds^T / s
+    const Mat3 unit = Mat3::Identity();
+    const double c = a.c;
+    hc << Mat3::Zero(), unit, unit, Mat3::Zero();
+    const Mat3 h12 = 2 * a.d1 * a.d2.transpose() - a.d2 * a.d1.transpose() - c * unit;
+    if (a.s > 1e-14 * std::abs(c)) {
+      hs << a.d2.squaredNorm() * unit - a.d2 * a.d2.transpose(), h12, h12.transpose(),
+          a.d1.squaredNorm() * unit - a.d1 * a.d1.transpose();
+      hs = ((hs - a.ds * a.ds.transpose()) / a.s).eval();
+    }
+  } else {
+    const Mat3 across = Mat3::Identity() - axis_ * axis_.transpose(), turn = -cross_matrix(axis_);
+    hs << Mat3::Zero(), turn, turn.transpose(), Mat3::Zero();
+    hc << Mat3::Zero(), across, across, Mat3::Zero();
+  }
+  const Mat6 linear_part = (a.c * hs - a.s * hc) / square;
+  Eigen::Map<Mat12> out(hess);
+  out = spread(Mat6(atan2_hessian(a.s, a.c, a.ds, a.dc, linear_part)));
+}
+
+}  // namespace unfurl

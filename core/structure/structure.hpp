@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A structure as plain data: what is solved (nodes, rods, constraints, loads) and what is shown (copies of
+// those).
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/math/types.hpp"
+#include "core/structure/time_function.hpp"
+
+namespace unfurl {
+
+struct Node {
+  std::string name;
+  Vec3 position = Vec3::Zero();  // at t = 0 [m]
+  Vec3 velocity = Vec3::Zero();  // at t = 0 [m/s]
+  double mass = 0.0;             // lumped mass, added to the rods' share [kg]
+};
+
+// A uniform rigid rod between two nodes; mass 0 makes it a pure distance constraint.
+struct Rod {
+  std::string name;
+  int a = 0, b = 0;     // node indices
+  double mass = 0.0;    // [kg]
+  double length = 0.0;  // [m]; the distance of its nodes at t = 0 (fit_lengths.hpp sees to that)
+  std::string group;    // "chord", "post", "rod", ...: what colours and groups of rod forces go by
+  double radius = 0.0;  // for drawing; 0: not known [m]
+  double multiplicity =
+      1.0;  // how many equal rods of the whole structure this one stands for (sector models)
+};
+
+enum class MeasureKind { coordinate, length, angle, fold };
+
+// A scalar of the configuration; core/structure/measure.hpp says what each kind measures.
+struct Measure {
+  MeasureKind kind = MeasureKind::length;
+  std::vector<int> nodes;  // coordinate: 1 or 2; length: 2; angle: 4; fold: none
+  Vec3 axis = Vec3::Zero();
+  double reference =
+      0.0;  // angles with a sign: at t = 0 they are counted on the branch within pi of it [rad]
+};
+
+// One constraint of a kind in the constraint table (constraints/constraint.hpp says how each kind reads the
+// fields).
+struct Constraint {
+  std::string kind;           // "plane", "fixed", "relation", ...
+  std::string name;           // for messages: "plane of B0"
+  std::vector<int> nodes;     // node indices
+  std::vector<Vec3> vectors;  // directions or coefficients
+  double value = 0.0;         // offset or length [m]
+  Measure measure = {};       // "measure": what is held or driven
+  TimeFunction target = {};   // "measure": its value over time, in the measure's unit
+};
+
+// An end stop: limits that a measure may touch but not pass (simulate/stops.hpp).
+struct Stop {
+  std::string name;  // for messages and events
+  Measure measure;
+  // In the measure's unit [m] or [rad]; infinite where there is no limit.
+  double min = -std::numeric_limits<double>::infinity(), max = std::numeric_limits<double>::infinity();
+  double restitution = 0.0;  // rebound speed over approach speed
+  double rest_speed = 0.0;   // rebounds slower than this rest on the stop [m/s] or [rad/s]
+};
+
+// One force of a kind in the force table (forces/force.hpp).
+struct Force {
+  std::string kind;               // "spring", "follower", ...
+  std::string name;               // for messages and columns
+  std::vector<int> nodes;         // node indices
+  Measure measure = {};           // spring, torsion_spring: what it acts on
+  double stiffness = 0.0;         // [N/m] or [N m/rad]
+  double damping = 0.0;           // [N s/m] or [N m s/rad]
+  double rest = 0.0;              // value of the measure without a force [m] or [rad]
+  bool one_sided = false;         // pulls only: a cable
+  Vec3 direction = Vec3::Zero();  // of a load over time
+  TimeFunction size = {};         // of a load [N]
+};
+
+// A constant force on a node.
+struct Load {
+  int node = 0;
+  Vec3 force = Vec3::Zero();  // [N]
+  bool shown = true;          // drawn as an arrow
+};
+
+// sum_i coefficient_i . x_{node_i} + offset: a linear measure of the configuration.
+struct LinearForm {
+  std::vector<int> nodes;
+  std::vector<Vec3> coefficients;
+  double offset = 0.0;
+
+  bool empty() const { return nodes.empty(); }
+  // q: all node coordinates [3 n].
+  double operator()(const ConstVec& q) const;
+  // The part without the offset; of velocities it is the rate.
+  double rate(const ConstVec& v) const;
+};
+
+// How far the structure has unfolded. The fold angle atan2(fold_sine, fold_cosine) falls from its initial to
+// its deployed value. A structure that has no such measure leaves both forms empty: no deployed event, no
+// fold angle.
+struct Deployment {
+  LinearForm fold_sine;              // [-]
+  LinearForm fold_cosine;            // [-]
+  double initial_fold_angle = 0.0;   // [rad]
+  double deployed_fold_angle = 0.0;  // [rad]
+
+  // Zero when deployed; what latches hold. Empty: fold_sine is held. Where several parts can move on their
+  // own in the deployed pose, each needs one.
+  std::vector<LinearForm> latches = {};
+
+  bool empty() const { return fold_sine.empty(); }
+  double fold_angle(const ConstVec& q) const;                    // [rad]
+  double fold_rate(const ConstVec& q, const ConstVec& v) const;  // [rad/s]
+  // (cos fold - cos initial) / (cos deployed - cos initial): 0 folded, 1 deployed.
+  double fraction(const ConstVec& q) const;
+  // sin(fold - deployed), of which the deployed event is the zero, and its rate [1/s]; both are linear.
+  double remaining_sine(const ConstVec& q) const;
+  double remaining_rate(const ConstVec& v) const;
+};
+
+// A length of the whole that is reported where a structure has it: `name` with its unit is a column of the
+// series.
+struct ReportedLength {
+  std::string name;   // "column_pitch_m"
+  std::string label;  // "column pitch"
+  LinearForm value;   // [m]
+};
+
+// A node of the whole structure: map * (position of the solved node `source`) + offset.
+struct NodeCopy {
+  std::string name;
+  int source = 0;
+  Mat3 map = Mat3::Identity();
+  Vec3 offset = Vec3::Zero();
+};
+
+// A rod of the whole structure between two NodeCopies; `source` is the solved rod that carries its force.
+struct RodCopy {
+  std::string name;
+  int a = 0, b = 0;
+  int source = 0;
+};
+
+// A load of the whole structure, for arrows.
+struct LoadCopy {
+  int node = 0;  // index of a NodeCopy
+  Vec3 force = Vec3::Zero();
+};
+
+struct Structure {
+  std::string kind;  // the family's name
+  // What is solved.
+  std::vector<Node> nodes;
+  std::vector<Rod> rods;
+  std::vector<Constraint> constraints;
+  std::vector<Stop> stops;
+  std::vector<Load> loads;
+  std::vector<Force> forces;
+  Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]
+  bool lumped_mass = false;     // true: half of a rod's mass at each node instead of the consistent matrix
+  Deployment deployment;
+  std::vector<ReportedLength> lengths;
+  // Indices of the lengths along and across a stretch; their strain increments give Poisson's ratio,
+  // -(across'/across) / (along'/along). -1: the structure has none.
+  int strain_along = -1, strain_across = -1;
+  // What is shown and exported: the whole structure (equal to the solved one unless a sector model replicates
+  // it).
+  std::vector<NodeCopy> node_copies;
+  std::vector<RodCopy> rod_copies;
+  std::vector<LoadCopy> load_copies;
+  std::vector<std::string> notes = {};  // what was changed of the given: warnings for whoever runs it
+  double sectors = 1.0;  // how many times what is solved makes the whole: energies are reported of the whole
+};
+
+// Fill the copies with the solved nodes, rods and loads themselves.
+void show_as_solved(Structure& structure);
+
+// Coordinates or velocities of the whole structure [3 N] from those of the solved nodes [3 n]; velocities
+// take no offset.
+VectorXd whole_positions(const Structure& structure, const ConstVec& q);
+VectorXd whole_velocities(const Structure& structure, const ConstVec& v);
+
+}  // namespace unfurl

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/structure/time_edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace unfurl {
+namespace {
+
+void add_bends_of_line(const TimeFunction& f, std::vector<TimeEdge>& edges) {
+  const std::vector<double>&x = f.times, &y = f.values;
+  const auto slope = [&](std::size_t i) { return (y[i + 1] - y[i]) / (x[i + 1] - x[i]); };
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double before = i > 0 ? slope(i - 1) : 0.0, after = i + 1 < x.size() ? slope(i) : 0.0;
+    // Points of one straight line, up to their rounding, do not bend it.
+    if (std::abs(after - before) > 1e-9 * std::max(std::abs(before), std::abs(after)))
+      edges.push_back({x[i], false});
+  }
+}
+
+void add_points_of_spline(const TimeFunction& f, double step, std::vector<TimeEdge>& edges) {
+  const std::vector<double>& x = f.times;
+  for (const double end : {x.front(), x.back()}) edges.push_back({end, true});
+  const double near = (1 - 1e-9) * step;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i)
+    if (x[i] - x[i - 1] >= near && x[i + 1] - x[i] >= near) edges.push_back({x[i], false});
+}
+
+void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges) {
+  switch (f.kind) {
+    case TimeFunction::Kind::constant:
+      return;
+    case TimeFunction::Kind::rate:
+      edges.push_back({f.start, f.ramp == 0 && f.rate != 0});
+      if (f.ramp > 0) edges.push_back({f.start + f.ramp, false});
+      return;
+    case TimeFunction::Kind::smooth:
+      edges.push_back({f.start, false});
+      edges.push_back({f.start + f.duration, false});
+      return;
+    case TimeFunction::Kind::spline:
+      return add_points_of_spline(f, step, edges);
+    case TimeFunction::Kind::linear:
+      return add_bends_of_line(f, edges);
+  }
+}
+
+}  // namespace
+
+std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
+  std::vector<TimeEdge> edges;
+  for (const Constraint& c : structure.constraints) add_edges(c.target, step, edges);
+  for (const Force& f : structure.forces) add_edges(f.size, step, edges);
+  std::sort(edges.begin(), edges.end(), [](const TimeEdge& a, const TimeEdge& b) { return a.t < b.t; });
+  // Times that differ by their rounding are one; it jumps if one of them does.
+  std::vector<TimeEdge> distinct;
+  for (const TimeEdge& edge : edges) {
+    if (distinct.empty() || edge.t - distinct.back().t > 4e-16 * std::abs(edge.t))
+      distinct.push_back(edge);
+    else
+      distinct.back().jump = distinct.back().jump || edge.jump;
+  }
+  return distinct;
+}
+
+}  // namespace unfurl

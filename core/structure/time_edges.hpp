@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Times at which what a structure prescribes over time is not smooth.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/structure/structure.hpp"
+
+namespace unfurl {
+
+struct TimeEdge {
+  double t = 0.0;  // [s]
+  // A prescribed velocity jumps, an impact of the drive, or its acceleration does: steps that end there must
+  // not see what is behind. Otherwise something bends.
+  bool jump = false;
+};
+
+// The time of a state before a jump at t: so little earlier that the sum of a step and its start does not
+// round to t. States nearer to each other than that are before and after an impulse.
+inline constexpr double jump_width = 4 * std::numeric_limits<double>::epsilon();
+inline double before_jump(double t) {
+  return t - jump_width * std::abs(t);
+}
+inline bool same_instant(double before, double after) {
+  return after - before <= 2 * jump_width * std::abs(after);
+}
+
+// The times that no step may straddle, ascending, each once: a step of any method takes what it integrates
+// for a polynomial, and over a bend of a force or of an acceleration it is of order 2, whatever it claims.
+//
+//   load, linear     every point where the line bends: the force is continuous, its slope is not
+//   drive, rate      start: the velocity jumps (no ramp); otherwise start and start + ramp, where f''' jumps
+//                    and with it the slope of the forces that inertia takes
+//   drive, smooth    start and start + duration, for the same reason
+//   drive, spline    the ends, where the acceleration jumps; of the points between, where f''' jumps, those
+//   with both neighbours at least a `step` away. Points that lie closer
+//                    sample a motion finer than steps do: f''' jumps by f'''' times their distance there,
+//                    which is the spline's own error in the motion that it was sampled from, and a table of
+//                    thousands of points would shatter the grid for it.
+std::vector<TimeEdge> time_edges(const Structure& structure, double step);
+
+}  // namespace unfurl

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/structure/time_function.hpp"
+
+#include <algorithm>
+
+#include "core/math/types.hpp"
+
+namespace unfurl {
+namespace {
+
+double rate_part(const TimeFunction& f, int order, double t) {
+  const double s = t - f.start;
+  if (s <= 0) return order == 1 && s == 0 && f.ramp == 0 ? f.rate : 0.0;
+  if (s >= f.ramp) return order == 0 ? f.rate * (s - 0.5 * f.ramp) : order == 1 ? f.rate : 0.0;
+  const double u = s / f.ramp;
+  if (order == 0) return f.rate * f.ramp * (u * u * u - 0.5 * u * u * u * u);
+  return order == 1 ? f.rate * (3 * u * u - 2 * u * u * u) : f.rate / f.ramp * (6 * u - 6 * u * u);
+}
+
+double smooth_part(const TimeFunction& f, int order, double t) {
+  const double u = std::clamp((t - f.start) / f.duration, 0.0, 1.0), v = 1 - u;
+  if (order == 0) return f.rise * u * u * u * (10 + u * (-15 + 6 * u));
+  if (order == 1) return f.rise / f.duration * 30 * u * u * v * v;
+  return f.rise / (f.duration * f.duration) * 60 * u * v * (v - u);
+}
+
+// The interval of t; before the first and behind the last point the nearest one.
+std::size_t interval(const std::vector<double>& x, double t) {
+  const auto i = std::upper_bound(x.begin() + 1, x.end() - 1, t) - x.begin();
+  return static_cast<std::size_t>(i) - 1;
+}
+
+double linear_part(const TimeFunction& f, int order, double t) {
+  const double inside = std::clamp(t, f.times.front(), f.times.back());
+  const std::size_t i = interval(f.times, inside);
+  const double slope = (f.values[i + 1] - f.values[i]) / (f.times[i + 1] - f.times[i]);
+  if (order == 0) return f.values[i] + slope * (inside - f.times[i]);
+  return order == 1 && inside == t ? slope : 0.0;
+}
+
+// Continuous from the right: at the last point the bend is already that of what is held.
+double spline_part(const TimeFunction& f, int order, double t) {
+  if (t < f.times.front()) return order == 0 ? f.values.front() : 0.0;
+  if (t >= f.times.back()) return order == 0 ? f.values.back() : 0.0;
+  const std::size_t i = interval(f.times, t);
+  const double h = f.times[i + 1] - f.times[i], b = (t - f.times[i]) / h, a = 1 - b;
+  const double p = f.bends[i], q = f.bends[i + 1];
+  if (order == 2) return a * p + b * q;
+  if (order == 1)
+    return (f.values[i + 1] - f.values[i]) / h + h / 6 * ((1 - 3 * a * a) * p + (3 * b * b - 1) * q);
+  return a * f.values[i] + b * f.values[i + 1] + h * h / 6 * (a * (a * a - 1) * p + b * (b * b - 1) * q);
+}
+
+}  // namespace
+
+double TimeFunction::derivative(int order, double t) const {
+  const double base = order == 0 ? offset : 0.0;
+  switch (kind) {
+    case Kind::constant:
+      return base;
+    case Kind::rate:
+      return base + rate_part(*this, order, t);
+    case Kind::smooth:
+      return base + smooth_part(*this, order, t);
+    case Kind::spline:
+      return base + spline_part(*this, order, t);
+    case Kind::linear:
+      return base + linear_part(*this, order, t);
+  }
+  return base;
+}
+
+// Clamped spline: the bends f'' from the tridiagonal system of continuous slopes, which are zero at both
+// ends,
+//
+//     h_{i-1} f''_{i-1} + 2 (h_{i-1} + h_i) f''_i + h_i f''_{i+1} = 6 (s_i - s_{i-1}),   s_i = (y_{i+1} -
+//     y_i) / h_i
+//
+// with h_{-1} = h_{n-1} = s_{-1} = s_{n-1} = 0.
+TimeFunction make_spline(std::vector<double> times, std::vector<double> values) {
+  const auto n = static_cast<Index>(times.size());
+  const Eigen::Map<const VectorXd> x(times.data(), n), y(values.data(), n);
+  VectorXd diagonal(n), right(n), upper = VectorXd::Zero(n);
+  for (Index i = 0; i < n; ++i) {
+    const double h0 = i > 0 ? x[i] - x[i - 1] : 0.0, s0 = i > 0 ? (y[i] - y[i - 1]) / h0 : 0.0;
+    const double h1 = i + 1 < n ? x[i + 1] - x[i] : 0.0, s1 = i + 1 < n ? (y[i + 1] - y[i]) / h1 : 0.0;
+    const double factor = i > 0 ? h0 / diagonal[i - 1] : 0.0;
+    upper[i] = h1;
+    diagonal[i] = 2 * (h0 + h1) - (i > 0 ? factor * upper[i - 1] : 0.0);
+    right[i] = 6 * (s1 - s0) - (i > 0 ? factor * right[i - 1] : 0.0);
+  }
+  TimeFunction f;
+  f.kind = TimeFunction::Kind::spline;
+  f.bends.assign(times.size(), 0.0);
+  const Eigen::Map<VectorXd> bend(f.bends.data(), n);
+  for (Index i = n - 1; i >= 0; --i)
+    f.bends[static_cast<std::size_t>(i)] =
+        (right[i] - (i + 1 < n ? upper[i] * bend[i + 1] : 0.0)) / diagonal[i];
+  f.times = std::move(times);
+  f.values = std::move(values);
+  return f;
+}
+
+}  // namespace unfurl

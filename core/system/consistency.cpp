@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/system/consistency.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "core/structure/structure_error.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr Index max_coordinates = 900;
+// Share of a row's length, or of the structure's if that is longer: positions typed with nine digits pass, a
+// missing digit does not.
+constexpr double violated = 1e-7;
+// Of unit rows: round-off of a dense factorisation, far below the distance of real poses from singular ones.
+constexpr double dependent = 1e-10;
+
+std::string listed(const std::vector<std::string>& names, std::size_t most = 6) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i) text += (i ? ", " : "") + names[i];
+  if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
+  return text;
+}
+
+class Checker {
+ public:
+  Checker(const Structure& structure, const System& system)
+      : system_(system),
+        names_(system.all_names()),
+        sources_(system.all_sources()),
+        q_(system.coordinates()) {
+    for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+      q_.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  }
+
+  void run() {
+    check_positions();
+    if (system_.coordinates() > max_coordinates) return;
+    const bool driven = !system_.drives().empty();
+    if (!driven && system_.all_constraints() < system_.coordinates()) return;
+    G_ = unit_rows(q_, norms_);
+    if (driven)
+      for (const Drive& drive : system_.drives()) check_drive(drive);
+    else
+      check_freedom();
+  }
+
+ private:
+  const std::string& name(Index row) const { return names_[static_cast<std::size_t>(row)]; }
+
+  double reach() const { return q_.size() ? q_.lpNorm<Eigen::Infinity>() : 0.0; }
+
+  // The longest side of the box that holds the nodes [m]: where the origin lies is no excuse for an error.
+  double extent_of_nodes() const {
+    if (q_.size() == 0) return 0.0;
+    const Eigen::Map<const Eigen::Matrix3Xd> x(q_.data(), 3, q_.size() / 3);
+    return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+  }
+
+  void check_positions() const {
+    VectorXd phi(system_.all_constraints());
+    system_.all_constraint_values(0.0, q_, phi);
+    const VectorXd lengths = system_.all_lengths();
+    const double extent = extent_of_nodes(), noise = 64 * std::numeric_limits<double>::epsilon() * reach();
+    std::vector<std::string> wrong;
+    double worst = 0;
+    for (Index r = 0; r < phi.size(); ++r) {
+      if (std::abs(phi[r]) <= violated * std::max(lengths[r], extent) + noise) continue;
+      wrong.push_back(name(r));
+      worst = std::max(worst, std::abs(phi[r]));
+    }
+    if (wrong.empty()) return;
+    std::ostringstream text;
+    text << "the structure cannot be assembled as given: " << listed(wrong)
+         << (wrong.size() == 1 ? " is" : " are") << " violated at t = 0, by up to " << worst << " m";
+    throw StructureError("", text.str());
+  }
+
+  // Rows of unit size of the Jacobian at q, and what they were divided by.
+  MatrixXd unit_rows(const VectorXd& q, VectorXd& norms) const {
+    MatrixXd G(system_.all_jacobian(q));
+    norms = G.rowwise().norm();
+    for (Index r = 0; r < G.rows(); ++r)
+      if (norms[r] > 0) G.row(r) /= norms[r];
+    return G;
+  }
+
+  // Row r as a sum of the others, share by share; empty where it is none.
+  static VectorXd combination(const MatrixXd& G, Index r) {
+    MatrixXd A = G.transpose();
+    A.col(r).setZero();
+    const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(A);
+    const VectorXd row = G.row(r).transpose(), y = solver.solve(row);
+    if ((A * y - row).norm() > dependent * std::max(1.0, y.norm())) return {};
+    return y;
+  }
+  static std::vector<Index> members_of(const VectorXd& shares) {
+    std::vector<Index> found;
+    for (Index k = 0; k < shares.size(); ++k)
+      if (std::abs(shares[k]) > 1e-6) found.push_back(k);
+    return found;
+  }
+  bool is_drive(Index row) const {
+    const int source = sources_[static_cast<std::size_t>(row)];
+    return std::any_of(system_.drives().begin(), system_.drives().end(),
+                       [&](const Drive& d) { return d.constraint == source; });
+  }
+
+  // A drive whose row follows from rows that stand still asks them to move.
+  void check_drive(const Drive& drive) const {
+    const auto row = std::find(sources_.begin(), sources_.end(), drive.constraint) - sources_.begin();
+    std::vector<std::string> held;
+    const VectorXd shares = combination(G_, row);
+    for (const Index k : members_of(shares)) {
+      if (is_drive(k)) return check_agreement(row, shares);
+      held.push_back(name(k));
+    }
+    if (held.empty()) return;
+    throw StructureError("", "the drive " + drive.name + " moves what other constraints hold: " +
+                                 listed(held) + "; remove the drive, or one of these");
+  }
+
+  // Rows that depend on each other in every pose must ask for the same: g'_r = sum share_k g'_k at all times.
+  void check_agreement(Index row, const VectorXd& shares) const {
+    VectorXd moved = q_, norms_moved;
+    const double shift = 1e-3 * extent_of_nodes();
+    for (Index i = 0; i < moved.size(); ++i) moved[i] += shift * std::sin(1.0 + 2.3 * static_cast<double>(i));
+    const VectorXd shares_moved = combination(unit_rows(moved, norms_moved), row);
+    if (shares_moved.size() == 0 || (shares_moved - shares).norm() > 1e-6 * shares.norm()) return;
+    const VectorXd still = VectorXd::Zero(q_.size());
+    VectorXd rate(G_.rows());  // -g'
+    std::vector<double> scratch;
+    for (const double t : times_of_drives()) {
+      system_.all_constraint_rates(t, q_, still, rate, scratch);
+      VectorXd wanted = rate;
+      for (Index r = 0; r < wanted.size(); ++r)
+        if (norms_[r] > 0) wanted[r] /= norms_[r];
+      if (std::abs(wanted[row] - shares.dot(wanted)) <= 1e-9 * wanted.lpNorm<Eigen::Infinity>()) continue;
+      std::vector<std::string> names{name(row)};
+      for (const Index k : members_of(shares)) names.push_back(name(k));
+      std::ostringstream text;
+      text << "drives contradict each other at t = " << t << " s: " << listed(names)
+           << " hold or drive the same motion; remove one, or let them agree";
+      throw StructureError("", text.str());
+    }
+  }
+
+  // Between all times at which something begins, ends or is tabled, and after the last.
+  std::vector<double> times_of_drives() const {
+    std::vector<double> knots{0.0};
+    for (const Drive& drive : system_.drives()) {
+      const TimeFunction& f = drive.target;
+      knots.insert(knots.end(), f.times.begin(), f.times.end());
+      for (const double t : {f.start, f.start + f.ramp, f.start + f.duration}) knots.push_back(t);
+    }
+    std::sort(knots.begin(), knots.end());
+    knots.push_back(knots.back() + 1);
+    std::vector<double> times;
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+      for (const double u : {0.0, 0.3, 0.7}) times.push_back(knots[i] + u * (knots[i + 1] - knots[i]));
+    return times;
+  }
+
+  void check_freedom() const {
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(G_);
+    qr.setThreshold(1e-9);
+    if (qr.rank() < G_.cols()) return;
+    std::vector<std::string> members;
+    for (auto n = names_.rbegin(); n != names_.rend(); ++n)  // what is held or driven by name comes first
+      if (n->rfind("rod ", 0) != 0) members.push_back(*n);
+    for (const auto& n : names_)
+      if (n.rfind("rod ", 0) == 0) members.push_back(n);
+    throw StructureError("", "nothing can move: " + std::to_string(names_.size()) + " constraints hold all " +
+                                 std::to_string(G_.cols()) + " coordinates; free one of " + listed(members));
+  }
+
+  const System& system_;
+  std::vector<std::string> names_;
+  std::vector<int> sources_;
+  VectorXd q_;
+  MatrixXd G_;  // unit rows
+  VectorXd norms_;
+};
+
+}  // namespace
+
+void check_consistency(const Structure& structure, const System& system) {
+  Checker(structure, system).run();
+}
+
+}  // namespace unfurl

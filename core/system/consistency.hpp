@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes that no motion can fulfil, found before the first step.
+#pragma once
+
+#include "core/structure/structure.hpp"
+#include "core/system/system.hpp"
+
+namespace unfurl {
+
+// At t = 0, in the structure's pose. Throws StructureError that names the members where
+//   - constraints are violated: node positions contradict them, or they contradict each other
+//   - a drive moves what other constraints hold
+//   - nothing can move and nothing is driven
+// The last two need the rank of the constraints and are left out for structures of more than 900 coordinates.
+void check_consistency(const Structure& structure, const System& system);
+
+}  // namespace unfurl

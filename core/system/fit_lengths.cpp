@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/system/fit_lengths.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/math/saddle_solver.hpp"
+#include "core/structure/structure_error.hpp"
+#include "core/system/system.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double fits = 1e-12;    // of the length: round-off of a distance
+constexpr double fitted = 1e-13;  // what rounding coordinates leaves, with a margin
+constexpr int fit_iterations = 30;
+
+double node_distance_of(const Structure& structure, const Rod& rod) {
+  return (structure.nodes[static_cast<std::size_t>(rod.b)].position -
+          structure.nodes[static_cast<std::size_t>(rod.a)].position)
+      .norm();
+}
+
+// The rod whose length is furthest from the distance of its nodes, relatively.
+std::size_t worst_rod(const Structure& structure) {
+  std::size_t worst = 0;
+  double most = -1;
+  for (std::size_t i = 0; i < structure.rods.size(); ++i) {
+    const Rod& rod = structure.rods[i];
+    const double off = std::abs(node_distance_of(structure, rod) / rod.length - 1);
+    if (off > most) most = off, worst = i;
+  }
+  return worst;
+}
+
+std::string said_of(const Structure& structure, const Rod& rod, const char* apart) {
+  std::ostringstream text;
+  text.precision(9);
+  text << "rod " << rod.name << " is given a length of " << rod.length << " m, but its nodes "
+       << structure.nodes[static_cast<std::size_t>(rod.a)].name << " and "
+       << structure.nodes[static_cast<std::size_t>(rod.b)].name << apart << node_distance_of(structure, rod)
+       << " m apart";
+  return text.str();
+}
+
+std::string length_key(std::size_t rod) {
+  return "rods[" + std::to_string(rod) + "].length";
+}
+
+VectorXd node_positions_of(const Structure& structure) {
+  VectorXd q(3 * static_cast<Index>(structure.nodes.size()));
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  return q;
+}
+
+// True where Phi = 0 is reached to round-off; q is what was reached.
+bool solve_for_pose(const System& system, VectorXd& q) {
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  SaddleSolver saddle(system.mass(), G);
+  VectorXd z = system.reduce(q), phi(system.constraints()), x(z.size()), y(phi.size());
+  const VectorXd no_force = VectorXd::Zero(z.size());
+  for (int it = 0; it <= fit_iterations; ++it) {
+    system.expand(z, q);
+    system.constraint(0.0, q, phi);
+    const double reach = q.lpNorm<Eigen::Infinity>();
+    if ((phi.array().abs() <= fitted * system.constraint_lengths().array().max(reach)).all()) return true;
+    system.jacobian(q, G, scratch);
+    if (!saddle.factorise(G)) return false;
+    saddle.solve(no_force, -phi, x, y);
+    if (!x.allFinite()) return false;
+    z += x;
+  }
+  return false;
+}
+
+}  // namespace
+
+void fit_lengths(Structure& structure, bool eliminate_linear) {
+  if (structure.rods.empty()) return;
+  const std::size_t worst = worst_rod(structure);
+  const Rod& rod = structure.rods[worst];
+  const double off = std::abs(node_distance_of(structure, rod) / rod.length - 1);
+  if (off <= fits) return;
+  if (!(off <= fitted_share))
+    throw StructureError(length_key(worst),
+                         said_of(structure, rod, " are ") +
+                             "; nodes are moved for differences up to 1 % only: give positions that fit, or "
+                             "leave the length out");
+  const System system(structure, eliminate_linear);
+  const VectorXd given = node_positions_of(structure);
+  VectorXd q = given;
+  const bool solved = solve_for_pose(system, q);
+  double most = 0;
+  std::size_t mover = 0;
+  Structure moved = structure;
+  for (std::size_t i = 0; i < moved.nodes.size(); ++i) {
+    const auto at = static_cast<Index>(3 * i);
+    moved.nodes[i].position = q.segment<3>(at);
+    if (const double far = (q - given).segment<3>(at).norm(); far > most) most = far, mover = i;
+  }
+  double longest = 0;
+  for (const Rod& r : structure.rods) longest = std::max(longest, r.length);
+  // Next to a singular pose lengths change with the square of a move: a hundredth asks for a seventh.
+  if (!solved || !(most <= 0.2 * longest))
+    throw StructureError(
+        length_key(worst),
+        said_of(structure, rod, " are ") +
+            ", and no pose close to the given one has all the given lengths; mend the length "
+            "or the positions, or free a constraint");
+  std::ostringstream note;
+  note << "nodes were moved to fit the given lengths of rods, at most " << most << " m ("
+       << structure.nodes[mover].name << "); the length furthest off was that of " << rod.name << ", by "
+       << off * rod.length << " m";
+  for (std::size_t i = 0; i < moved.nodes.size(); ++i) structure.nodes[i].position = moved.nodes[i].position;
+  structure.notes.push_back(note.str());
+}
+
+}  // namespace unfurl

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rods whose given length is not quite the distance of their nodes.
+#pragma once
+
+#include "core/structure/structure.hpp"
+
+namespace unfurl {
+
+// The most that a given length may differ from the distance of its nodes, as a share of it.
+inline constexpr double fitted_share = 0.01;
+
+// Moves the nodes, in the mass metric, to where rods have their given lengths and all other constraints hold:
+// Newton's method on Phi = 0. A note of how far is added to `structure`; nothing happens where all lengths
+// fit. Throws StructureError that names rod, given length, distance and cure where a length is further off
+// than fitted_share, or no pose near the given one has these lengths.
+void fit_lengths(Structure& structure, bool eliminate_linear);
+
+}  // namespace unfurl

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/system/mobility.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+#include "core/math/linear_elimination.hpp"
+#include "core/math/singular_values.hpp"
+
+namespace unfurl {
+
+namespace {
+
+// What is left of a unit row after taking out all earlier ones counts as zero below this. Entries carry
+// round-off of 1e-16 and the chains of operations behind them amplify it to 1e-13 at most; what a real
+// structure leaves is its distance from a singular pose, 3e-3 for the folded ring of six units and 1e-7 for
+// one of a thousand.
+constexpr double tolerance = 1e-11;
+
+// Beyond this the dense analysis takes seconds (its cost is cubic): the sparse one finds the same rows.
+constexpr Index max_dense_coordinates = 900;
+
+}  // namespace
+
+SparseRows unit_rows(const System& system, const ConstVec& q) {
+  SparseRows G = system.all_jacobian(q);
+  for (Index row = 0; row < G.rows(); ++row) {
+    const double norm = G.row(row).norm();
+    if (norm > 0.0) G.row(row) /= norm;
+  }
+  return G;
+}
+
+namespace {
+
+// Gram-Schmidt over the rows from the first to the last, each row projected twice so that the basis stays
+// orthogonal to round-off.
+std::vector<int> dependent_rows(const MatrixXd& G, double negligible) {
+  std::vector<int> dependent;
+  MatrixXd basis(G.cols(), std::min(G.rows(), G.cols()));  // orthonormal columns
+  Index size = 0;
+  for (Index row = 0; row < G.rows(); ++row) {
+    VectorXd rest = G.row(row).transpose();
+    for (int pass = 0; pass < 2; ++pass) {
+      const VectorXd shares = basis.leftCols(size).transpose() * rest;
+      rest.noalias() -= basis.leftCols(size) * shares;
+    }
+    const double norm = rest.norm();
+    if (norm <= negligible || size == basis.cols())
+      dependent.push_back(static_cast<int>(row));
+    else
+      basis.col(size++) = rest / norm;
+  }
+  return dependent;
+}
+
+// How many of the six rigid-body motions violate no constraint, of a structure that is not on one line: six
+// less the rank of G R, R = [translations, rotations].
+Index rigid_motions(const SparseRows& G, const ConstVec& q) {
+  const Index n = q.size() / 3;
+  MatrixXd R(q.size(), 6);
+  const double size = std::max(q.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
+  for (Index i = 0; i < n; ++i) {
+    const Vec3 x = q.segment<3>(3 * i) / size;
+    for (int k = 0; k < 3; ++k) {
+      R.block<3, 1>(3 * i, k) = Vec3::Unit(k);
+      R.block<3, 1>(3 * i, 3 + k) = Vec3::Unit(k).cross(x);
+    }
+  }
+  // Rows of G have the length 1 and entries of R are below 1: round-off is 1e-15, a motion that a row forbids
+  // 1e-3 and more.
+  const auto rank = [](const MatrixXd& A) { return (singular_values(A).array() > 1e-9).count(); };
+  return rank(R) - (G.rows() > 0 ? rank(G * R) : 0);
+}
+
+// Rows before a row may nearly depend on each other although all rows together do not; then round-off in what
+// is left of a dependent row exceeds the tolerance. The singular values do not suffer from this: they say how
+// many rows depend.
+std::vector<int> dependent_rows(const MatrixXd& G, const VectorXd& values) {
+  const Index wanted = G.rows() - (values.array() > tolerance).count();
+  std::vector<int> dependent;
+  for (double negligible = tolerance; negligible < 1e-4; negligible *= 10) {
+    dependent = dependent_rows(G, negligible);
+    if (static_cast<Index>(dependent.size()) >= wanted) break;
+  }
+  return dependent;
+}
+
+}  // namespace
+
+Mobility analyse_mobility(const System& system, const ConstVec& q) {
+  Mobility mobility;
+  const SparseRows G = unit_rows(system, q);
+  mobility.coordinates = G.cols();
+  mobility.constraints = G.rows();
+  mobility.smallest_singular_value = std::numeric_limits<double>::quiet_NaN();
+
+  const bool dense = G.cols() <= max_dense_coordinates;
+  const MatrixXd full = dense ? MatrixXd(G) : MatrixXd();
+  const VectorXd values = dense && full.size() > 0 ? singular_values(full) : VectorXd();
+  const std::vector<int> dependent =
+      dense ? dependent_rows(full, values) : eliminate(G, VectorXd::Zero(G.rows()), tolerance).redundant;
+
+  mobility.rank = G.rows() - static_cast<Index>(dependent.size());
+  mobility.degrees_of_freedom = mobility.coordinates - mobility.rank;
+  mobility.count = mobility.coordinates - mobility.constraints;
+  mobility.rigid_motions = rigid_motions(G, q);
+  const auto names = system.all_names();
+  mobility.redundant_rows = dependent;
+  for (const int row : dependent) mobility.redundant.push_back(names[static_cast<std::size_t>(row)]);
+  if (dense && mobility.rank > 0) mobility.smallest_singular_value = values[mobility.rank - 1];
+  return mobility;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How freely a structure can move: the rank of its constraints and the rows that add nothing to it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/system/system.hpp"
+
+namespace unfurl {
+
+struct Mobility {
+  Index coordinates = 0;               // 3 n
+  Index constraints = 0;               // rows of G, eliminated linear ones included
+  Index rank = 0;                      // of G
+  std::vector<std::string> redundant;  // rows that follow from the rows before them, in order
+  std::vector<int> redundant_rows;     // the same by number
+  Index degrees_of_freedom = 0;        // coordinates - rank
+  Index count = 0;                     // coordinates - constraints: Maxwell's count, blind to redundant rows
+  Index rigid_motions = 0;             // of the degrees of freedom: motions of the whole as one rigid body
+  // Of G with rows of unit length; how far the pose is from one in which more can move. NaN: too large a
+  // structure.
+  double smallest_singular_value = 0;
+};
+
+// The Jacobian of all constraints at the pose q [3 n], every row scaled to length 1; rows of zeros stay.
+SparseRows unit_rows(const System& system, const ConstVec& q);
+
+// At the pose q [3 n] of the solved nodes.
+Mobility analyse_mobility(const System& system, const ConstVec& q);
+
+}  // namespace unfurl

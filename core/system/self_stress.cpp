@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/system/self_stress.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/determined_rows.hpp"
+
+namespace unfurl {
+namespace {
+
+// Of the largest member: coefficients carry round-off of 1e-16 divided by the smallest singular value.
+constexpr double no_member = 1e-9;
+
+// y: forces on rows of unit length, of the rows `basis` and `last`. `norm`: of the rows themselves.
+SelfStress state_of(const VectorXd& y, const std::vector<int>& basis, int last, const VectorXd& norm) {
+  SelfStress state;
+  double largest = 0;
+  const auto add = [&](int row, double force) {
+    if (norm[row] > 0) force /= norm[row];
+    if (std::abs(force) > std::abs(largest)) largest = force;
+    state.members.push_back({row, force});
+  };
+  for (std::size_t k = 0; k < basis.size(); ++k) add(basis[k], y[static_cast<Index>(k)]);
+  add(last, -1.0);
+  std::erase_if(state.members,
+                [&](const auto& m) { return std::abs(m.force) <= no_member * std::abs(largest); });
+  for (auto& member : state.members) member.force /= largest;
+  std::sort(state.members.begin(), state.members.end(),
+            [](const auto& a, const auto& b) { return a.row < b.row; });
+  return state;
+}
+
+}  // namespace
+
+ForceBalance force_balance(const System& system, const ConstVec& q, const Mobility& mobility) {
+  ForceBalance out;
+  const SparseRows rows = system.all_jacobian(q);
+  out.determined = determined_rows(rows);
+  const std::vector<int>& dependent = mobility.redundant_rows;
+  out.listed = dependent.empty() || rows.cols() <= max_listed_coordinates;
+  if (dependent.empty() || !out.listed) return out;
+  VectorXd norm(rows.rows());
+  for (Index r = 0; r < rows.rows(); ++r) norm[r] = rows.row(r).norm();
+  const MatrixXd G(unit_rows(system, q));
+  std::vector<int> basis;
+  for (int r = 0; r < static_cast<int>(G.rows()); ++r)
+    if (std::find(dependent.begin(), dependent.end(), r) == dependent.end()) basis.push_back(r);
+  const Eigen::HouseholderQR<MatrixXd> independent(G(basis, Eigen::all).transpose());
+  for (const int row : dependent)
+    out.states.push_back(state_of(independent.solve(G.row(row).transpose()), basis, row, norm));
+  return out;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The equations of motion of a structure as an index-3 DAE (paper eq. 13-14), in the coordinates that are
+// solved for:
+//
+//     M z'' + G(z)^T lambda = F(t, z, z'),   Phi(z, t) = Phi(z) - g(t) = 0
+//
+// whose derivatives read G z' = g'(t) and G z'' + z'^T Hess Phi z' = g''(t); g = 0 in all rows but those that
+// prescribe a motion.
+//
+// Node coordinates are q = q_0 + B z. With elimination, B spans the null space of the linear constraints,
+// which then hold exactly and leave the equations; without it, B = I.
+//
+// Angles that count their turns are taken near those of the state that the System follows; at first, of t =
+// 0. A copy shares the equations and follows a state of its own. What is not told to follow another state is
+// immutable and may be shared by threads.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/constraints/constraint.hpp"
+#include "core/forces/force.hpp"
+#include "core/math/interleaved.hpp"
+#include "core/math/linear_elimination.hpp"
+#include "core/math/types.hpp"
+#include "core/structure/structure.hpp"
+#include "core/system/state.hpp"
+
+namespace unfurl {
+
+class System {
+ public:
+  System(const Structure& structure, bool eliminate_linear);
+  ~System();
+  System(const System&);
+  System(System&&) noexcept;
+
+  // Angles that count turns (followed_angles of the structure), and taking them near those of a state.
+  Index followed_angles() const;
+  void follow(const State& state);
+  System at(const State& state) const;  // a copy that follows it; of no cost where no angle is followed
+  // The angles of a later state, counted on from those of the state that is followed.
+  void count_on(State& later);
+
+  // Keep every entry of the mass matrix, zeros too: factorisations are dense then. For comparison.
+  void fill_mass();
+
+  Index coordinates() const;         // 3 n, of all solved nodes
+  Index solved_coordinates() const;  // size of z
+  Index constraints() const;         // m, rows of Phi: those that are kept
+  Index linear_constraints() const;  // how many rows were eliminated or could be
+  bool eliminated() const;
+
+  // Node coordinates and velocities from the solved ones, and back (exact where q fulfils the linear
+  // constraints).
+  void expand(const ConstVec& z, MutVec q) const;
+  void expand_rate(const ConstVec& w, MutVec v) const;
+  VectorXd reduce(const ConstVec& q) const;
+  VectorXd reduce_rate(const ConstVec& v) const;
+  void reduce_force(const ConstVec& f, MutVec r) const;  // r = B^T f
+
+  const SparseRows& mass() const;       // of z, symmetric positive definite, constant [kg]
+  const SparseRows& node_mass() const;  // of q [kg]
+
+  // In node coordinates (fast kernels; callers expand first).
+  void add_applied_force(double t, const ConstVec& q, const ConstVec& v, double scale,
+                         MutVec f) const;                          // f += scale F
+  bool constant_forces() const;                                    // true: F does not depend on t, q, v
+  void constraint(double t, const ConstVec& q, MutVec phi) const;  // Phi(q, t) [m]
+  bool rheonomic() const;                                          // some g depends on t
+  void target_rate(double t, MutVec rate) const;  // g'(t) [m/s]; zero where nothing is driven
+  void add_constraint_force(const ConstVec& q, const ConstVec& lambda, double scale,
+                            MutVec f) const;  // f += scale G^T lambda
+  // v^T Hess Phi v - g''(t) [m/s^2]: the acceleration level is G a = -bias.
+  void constraint_bias(double t, const ConstVec& q, const ConstVec& v, MutVec bias) const;
+
+  // The same for the stages of a step at once, each vector interleaved with those of the other stages (z, f,
+  // r, phi, lambda: `poses` columns; of Q, which has a column more, those from `first` on).
+  struct StageScratch {
+    VectorXd q, f, row;  // for kinds of constraints that are asked pose by pose
+  };
+  void expand_stages(const Interleaved& z, Index first, Interleaved& Q) const;
+  void reduce_force_stages(const Interleaved& f, Interleaved& r) const;
+  void constraint_stages(const double* t, const Interleaved& Q, Index first, Interleaved& phi,
+                         StageScratch& scratch) const;
+  void add_constraint_force_stages(const Interleaved& Q, Index first, const Interleaved& lambda,
+                                   const double* scale, Interleaved& f, StageScratch& scratch) const;
+
+  // Jacobian with respect to z [m x size of z]; `pattern` allocates it once, `jacobian` only writes values.
+  // `scratch` is grown once.
+  SparseRows jacobian_pattern() const;
+  void jacobian(const ConstVec& q, SparseRows& G, std::vector<double>& scratch) const;
+  // sum_k lambda_k Hess Phi_k with respect to z (for a full Newton matrix; allocates).
+  SparseRows curvature(const ConstVec& q, const ConstVec& lambda) const;
+
+  double kinetic_energy(const ConstVec& w) const;    // [J]
+  double potential_energy(const ConstVec& q) const;  // gravity and springs [J]
+  double load_work(const ConstVec& q) const;         // of the constant loads since q = 0 [J]
+
+  // Power of the forces that have no potential [W]: loads that vary, or dampers (negative).
+  bool has_power(bool dissipative) const;
+  double power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const;
+  // dF/dz and dF/dz' of the forces that vary, for Newton matrices (allocates).
+  void force_derivatives(double t, const ConstVec& q, const ConstVec& v, SparseRows& by_z,
+                         SparseRows& by_w) const;
+
+  const std::vector<Drive>& drives() const;  // kept rows that prescribe a motion
+
+  const VectorXd& constraint_lengths() const;                // [m] per kept row
+  const std::vector<std::string>& constraint_names() const;  // per kept row
+  // Kept row of each rod; -1 where it is none.
+  const std::vector<int>& rod_rows() const;
+  // First kept row of Structure::constraints[constraint]; -1 where it was eliminated.
+  int constraint_row(int constraint) const;
+
+  // Every constraint of the structure, eliminated ones included (for check and diagnostics).
+  Index all_constraints() const;
+  void all_constraint_values(double t, const ConstVec& q, MutVec phi) const;  // [m]
+  // G v - g'(t) [m/s]; `scratch` is grown once.
+  void all_constraint_rates(double t, const ConstVec& q, const ConstVec& v, MutVec rate,
+                            std::vector<double>& scratch) const;
+  SparseRows all_jacobian(const ConstVec& q) const;  // of the node coordinates
+  std::vector<std::string> all_names() const;
+  std::vector<int> all_sources() const;  // indices in Structure::constraints, -1: a rod
+  VectorXd all_lengths() const;
+
+ private:
+  struct Data;
+  Moment moment(double t) const;
+  void measure_angles(const State& state);
+
+  std::shared_ptr<Data> data_;
+  // Of the state that is followed, and where it was measured last; empty: none is followed.
+  VectorXd angles_, rates_, measured_, measured_rates_;
+  VectorXd q_, v_;  // where it was measured
+  std::vector<double> gradient_;
+  double since_ = 0.0;
+};
+
+}  // namespace unfurl

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a System holds; for its own sources only.
+#pragma once
+
+#include "core/forces/force.hpp"
+#include "core/structure/measure.hpp"
+#include "core/system/system.hpp"
+
+namespace unfurl {
+
+using ConstraintBlocks = std::vector<const ConstraintBlock*>;
+
+struct System::Data {
+  std::vector<std::unique_ptr<ConstraintBlock>> owned;
+  ConstraintBlocks all, kept, linear, leaving;      // leaving: linear ones, eliminated where that pays
+  std::vector<std::unique_ptr<ForceBlock>> forces;  // those that depend on t, q or v
+  VectorXd constant_force;                          // the sum of the others [N]
+  VectorXd loads, gravity_force;                    // its parts, for energies
+  SparseRows node_mass, mass, B, B_transposed;
+  VectorXd q0, start;
+  std::vector<int> free_coordinates;
+  bool eliminated = false, rheonomic = false;
+  Index coordinates = 0, rows = 0, linear_rows = 0;
+  VectorXd lengths;
+  std::vector<std::string> names;
+  std::vector<int> rod_rows, constraint_rows;
+  std::vector<Drive> drives;
+  std::vector<MeasureFunction> followed;  // angles that count turns
+  // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e,
+  // start_{e+1}).
+  SparseRows pattern;
+  std::vector<int> sum_start, sum_source;
+  std::vector<double> sum_coefficient;
+  std::vector<std::size_t> block_entries;  // entries of the node Jacobian of each kept block
+  std::size_t entries = 0;
+  // The node Jacobian of all blocks, entry by entry: columns, where rows end, entries of each block.
+  std::vector<int> all_columns;
+  std::vector<std::size_t> all_row_ends, all_block_entries;
+
+  void build_blocks(const Structure& structure, bool eliminate_linear);
+  void add_blocks(const Structure& structure, bool eliminate_linear);
+  void build_coordinates();
+  void build_forces(const Structure& structure);
+  void build_jacobian_map();
+  void build_stencils();
+  void find_constraint_rows(std::size_t constraints);
+  void check_kinds(const Structure& structure) const;
+  void check_mass(const Structure& structure) const;
+};
+
+}  // namespace unfurl

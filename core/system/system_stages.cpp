@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels of System that work on all stages of a step at once.
+#include "core/system/system_data.hpp"
+
+namespace unfurl {
+
+void System::expand_stages(const Interleaved& z, Index first, Interleaved& Q) const {
+  const SparseRows& B = data_->B;
+  const Index stride = Q.cols();
+  with_columns(static_cast<int>(z.cols()), [&](auto k) {
+    constexpr int K = k();
+    double* to = Q.data() + first;
+    for (Index i = 0; i < B.rows(); ++i, to += stride)
+      (Lanes<K>::all(data_->q0[i]) + row_times<K>(B, i, z.data())).store(to);
+  });
+}
+
+void System::reduce_force_stages(const Interleaved& f, Interleaved& r) const {
+  with_columns(static_cast<int>(f.cols()),
+               [&](auto k) { multiply<k()>(data_->B_transposed, f.data(), r.data()); });
+}
+
+void System::constraint_stages(const double* t, const Interleaved& Q, Index first, Interleaved& phi,
+                               StageScratch& scratch) const {
+  const auto poses = static_cast<int>(phi.cols());
+  Index row = 0;
+  for (const ConstraintBlock* block : data_->kept) {
+    const Index rows = block->rows();
+    if (!block->values(poses, Q.data() + first, Q.cols(), phi.data() + row * poses)) {
+      scratch.row.resize(rows);
+      for (int c = 0; c < poses; ++c) {
+        scratch.q = Q.col(first + c);
+        block->value(scratch.q.data(), scratch.row.data());
+        if (block->rheonomic()) block->add_target(0, t[c], -1.0, scratch.row.data());
+        phi.col(c).segment(row, rows) = scratch.row;
+      }
+    }
+    row += rows;
+  }
+}
+
+void System::add_constraint_force_stages(const Interleaved& Q, Index first, const Interleaved& lambda,
+                                         const double* scale, Interleaved& f, StageScratch& scratch) const {
+  const auto poses = static_cast<int>(lambda.cols());
+  Index row = 0;
+  for (const ConstraintBlock* block : data_->kept) {
+    const Index rows = block->rows();
+    if (!block->add_forces(poses, Q.data() + first, Q.cols(), lambda.data() + row * poses, scale, f.data()))
+      for (int c = 0; c < poses; ++c) {
+        scratch.q = Q.col(first + c);
+        scratch.row = lambda.col(c).segment(row, rows);
+        scratch.f = f.col(c);
+        block->add_force(scratch.q.data(), scratch.row.data(), scale[c], scratch.f.data());
+        f.col(c) = scratch.f;
+      }
+    row += rows;
+  }
+}
+
+}  // namespace unfurl

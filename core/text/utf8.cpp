@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/text/utf8.hpp"
+
+namespace unfurl {
+
+std::size_t utf8_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[at + k]); };
+  const unsigned char lead = byte(0);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead >= 0xC2 && lead <= 0xDF   ? 2
+                             : (lead & 0xF0U) == 0xE0       ? 3
+                             : lead >= 0xF0 && lead <= 0xF4 ? 4
+                                                            : 0;
+  for (std::size_t k = 1; k < length; ++k)
+    if (at + k >= text.size() || (byte(k) & 0xC0U) != 0x80U) return 0;
+  if ((lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) > 0x9F)) return 0;
+  if ((lead == 0xF0 && byte(1) < 0x90) || (lead == 0xF4 && byte(1) > 0x8F)) return 0;
+  return length;
+}
+
+char32_t next_code_point(std::string_view text, std::size_t& at) {
+  const std::size_t length = utf8_length(text, at);
+  const auto lead = static_cast<unsigned char>(text[at++]);
+  if (length == 0) return 0xFFFD;
+  char32_t c = length == 1 ? lead : lead & (0x7FU >> length);
+  for (std::size_t k = 1; k < length; ++k) c = c << 6 | (static_cast<unsigned char>(text[at++]) & 0x3FU);
+  return c;
+}
+
+}  // namespace unfurl

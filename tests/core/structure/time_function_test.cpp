@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Functions over time: their derivatives, and what tables of motion are at and beyond their ends.
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "core/structure/time_function.hpp"
+
+using namespace unfurl;
+
+namespace time_function_test {
+
+namespace {
+
+// Away from its knots, derivatives against central differences: truncation step^2 times the next but one
+// derivative, of order 100 here, round-off 1e-16 / step.
+void check_derivatives(const TimeFunction& f, const std::vector<double>& times) {
+  const double step = 1e-5;
+  for (const double t : times)
+    for (const int order : {1, 2})
+      CHECK((f.derivative(order - 1, t + step) - f.derivative(order - 1, t - step)) / (2 * step) ==
+            Approx(f.derivative(order, t)).margin(1e-6));
+}
+
+}  // namespace
+
+TEST_CASE("every kind of function over time has the derivatives that it says") {
+  TimeFunction rate;
+  rate.kind = TimeFunction::Kind::rate, rate.offset = 0.3, rate.rate = -1.7, rate.ramp = 0.6,
+  rate.start = 0.2;
+  check_derivatives(rate, {0.1, 0.35, 0.7, 0.9, 2.0});
+  CHECK(rate(0.1) == 0.3);
+  CHECK(rate.derivative(1, 2.0) == -1.7);
+  CHECK(rate(2.0) == Approx(0.3 - 1.7 * (1.8 - 0.3)));  // the ramp costs half of its time
+  TimeFunction smooth;
+  smooth.kind = TimeFunction::Kind::smooth, smooth.offset = 0.3, smooth.rise = 1.1, smooth.start = 0.2;
+  smooth.duration = 0.9;
+  check_derivatives(smooth, {0.1, 0.4, 0.65, 1.0, 1.4});
+  CHECK(smooth(5) == Approx(1.4));
+  TimeFunction linear;
+  linear.kind = TimeFunction::Kind::linear, linear.times = {0.1, 0.5, 1.3}, linear.values = {2, 1, 4};
+  check_derivatives(linear, {0.05, 0.3, 0.9, 1.5});
+  CHECK(linear(9) == 4);
+  check_derivatives(make_spline({0.1, 0.5, 1.3, 1.4}, {2, 1, 4, 3.7}), {0.05, 0.3, 0.9, 1.35, 1.5});
+}
+
+TEST_CASE("a table of motion begins and ends at rest, and holds its last value") {
+  const TimeFunction f = make_spline({0.2, 0.7, 1.1, 2.0}, {1.5, 1.7, 2.9, 2.4});
+  for (const auto& [t, value] : {std::pair{0.2, 1.5}, {0.7, 1.7}, {1.1, 2.9}, {2.0, 2.4}})
+    CHECK(f(t) == Approx(value).epsilon(1e-14));
+  for (const double end : {0.2, 2.0}) CHECK(f.derivative(1, end) == Approx(0).margin(1e-14));
+  for (const double before : {-3.0, 0.0, 0.19}) CHECK(f(before) == 1.5);
+  for (const double behind : {2.1, 50.0}) {
+    CHECK(f(behind) == 2.4);
+    CHECK(f.derivative(1, behind) == 0);
+    CHECK(f.derivative(2, behind) == 0);
+  }
+  for (const double knot : {0.7, 1.1})  // twice continuously differentiable
+    for (const int order : {0, 1, 2})
+      CHECK(f.derivative(order, knot - 1e-12) == Approx(f.derivative(order, knot + 1e-12)).margin(1e-9));
+}
+
+TEST_CASE("the spline through a cubic that rests at both ends is that cubic") {
+  const double from = 0.3, T = 1.7, rise = -2.2;
+  const auto cubic = [&](double t) {
+    const double u = (t - from) / T;
+    return 0.4 + rise * u * u * (3 - 2 * u);
+  };
+  std::vector<double> times, values;
+  for (const double share : {0.0, 0.13, 0.4, 0.81, 1.0}) {
+    times.push_back(from + share * T);
+    values.push_back(cubic(times.back()));
+  }
+  const TimeFunction f = make_spline(times, values);
+  for (double t = from; t < from + T; t += 0.0731) CHECK(f(t) == Approx(cubic(t)).epsilon(1e-13));
+  const TimeFunction two = make_spline({from, from + T}, {cubic(from), cubic(from + T)});
+  for (double t = from; t < from + T; t += 0.0731) CHECK(two(t) == Approx(cubic(t)).epsilon(1e-13));
+}
+
+}  // namespace time_function_test

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/text/utf8.hpp"
+
+#include <catch2/catch.hpp>
+#include <string>
+
+namespace unfurl::utf8_test {
+
+// The code points of RFC 3629, section 7, and the ends of each length's range (section 3).
+TEST_CASE("code points of every length are read whole", "[text]") {
+  const struct {
+    std::string text;
+    char32_t c;
+  } rows[] = {{"A", 0x41},
+              {"\x7F", 0x7F},
+              {"\xC2\x80", 0x80},
+              {"\xDF\xBF", 0x7FF},
+              {"\xE0\xA0\x80", 0x800},
+              {"\xE6\x97\xA5", 0x65E5},
+              {"\xED\x9F\xBF", 0xD7FF},
+              {"\xEE\x80\x80", 0xE000},
+              {"\xEF\xBF\xBF", 0xFFFF},
+              {"\xF0\x90\x80\x80", 0x10000},
+              {"\xF0\xA3\x8E\xB4", 0x233B4},
+              {"\xF4\x8F\xBF\xBF", 0x10FFFF}};
+  for (const auto& row : rows) {
+    std::size_t at = 1;
+    CAPTURE(row.text);
+    CHECK(utf8_length("x" + row.text + "y", 1) == row.text.size());
+    CHECK(next_code_point("x" + row.text + "y", at) == row.c);
+    CHECK(at == 1 + row.text.size());
+  }
+}
+
+TEST_CASE("bytes that are no UTF-8 are passed one by one", "[text]") {
+  // Overlong forms, surrogates, beyond U+10FFFF, a lone continuation, sequences cut short.
+  for (const std::string bad : {"\xC0\x80", "\xC1\xBF", "\xE0\x9F\xBF", "\xED\xA0\x80", "\xED\xBF\xBF",
+                                "\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\x80", "\xFF",
+                                "\xC3", "\xE2\x82", "\xF0\x9F\x98", "\xE2\x82z"}) {
+    std::size_t at = 0;
+    CAPTURE(bad);
+    CHECK(utf8_length(bad, 0) == 0);
+    CHECK(next_code_point(bad, at) == 0xFFFD);
+    CHECK(at == 1);
+  }
+}
+
+}  // namespace unfurl::utf8_test
