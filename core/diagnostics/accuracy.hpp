@@ -11,7 +11,8 @@ namespace unfurl {
 
 // A run is trusted as far as its energy balance is off by no more than this share of the energy that was
 // turned over until then, no constraint by more than this share of a rod's length, and every number is
-// finite.
+// finite. Of a method that damps what a step does not resolve, the balance may fall: its largest rise counts,
+// and what it fell by is only warned of.
 inline constexpr double trusted_share = 0.1;
 
 // The energy turned over in a motion: the largest kinetic energy or, where that is more, the span between the

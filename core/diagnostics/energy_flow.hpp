@@ -20,6 +20,8 @@ struct EnergyFlow {
 // coordinates, rates and accelerations of the states at both ends: an independent quadrature, whatever the
 // method, of order 6 where the forces are smooth within steps. A drive's power -l lambda f' takes its
 // multiplier from the index-1 equations at those points.
+// Where dampers are stiff (c / m beyond 2 / h), what they take comes from the difference of two motions that
+// are nearly one, which no interpolant tells. Their power is then that of the states and its rates there.
 EnergyFlow energy_flow(const Simulation& run);
 
 // The same step after step, for motions that are not kept.
@@ -34,6 +36,9 @@ class EnergyMeter {
 
  private:
   VectorXd acceleration(const State& state);
+  double damping_power(const State& state, const VectorXd& acceleration, double after);
+  double damping_bound(const State& state);
+  double taken_by_stiff(const State& a, const State& b, double fastest);
 
   System system_;  // follows the states
   bool loads_, dampers_, drives_;

@@ -62,19 +62,25 @@ class Dvm final : public Integrator {
     if (h != matrices_h_) set_matrices(h);
     predict(state, h);
     if (!frozen_) freeze(eq_.start_pose(), report);
-    tight_ = !eq_.at_ends && needs_care();
-    if (slow_ && !tight_) freeze_in_the_middle(report);
+    if (stiff_) stiff_ = is_stiff();
+    tight_ = !stiff_ && !eq_.at_ends && needs_care();
+    if (slow_ && !tight_ && !stiff_) freeze_in_the_middle(report);
     if (!(tight_ && tight_iterations(state, report))) iterate(state, h, report);
-    slow_ = !tight_ && report.newton_iterations > slow_iterations;
+    slow_ = !tight_ && !stiff_ && report.newton_iterations > slow_iterations;
     if (report.ok()) finish(state, h, report);
     if (!report.ok()) restart();
     return report;
   }
 
+  double longest_step(const State& state, double h) override;
+
   void restart() override {
     have_history_ = false;
     frozen_ = false;
-    slow_ = false;
+    slow_ = stiff_ = settled_ = false;
+    settling_ = 0;
+    newton_.forget();
+    eq_.forget_forces();
   }
 
  private:
@@ -85,6 +91,8 @@ class Dvm final : public Integrator {
   void freeze_in_the_middle(StepReport& report);
   void iterate(const State& state, double h, StepReport& report);
   bool frozen_iterations(StepReport& report);
+  bool is_stiff();
+  bool stiff_iterations(const State& state, StepReport& report);
   bool needs_care();
   bool tight_iterations(const State& state, StepReport& report);
   void arrive(State& state);
@@ -102,6 +110,7 @@ class Dvm final : public Integrator {
   std::vector<double> scratch_;
   SaddleSolver saddle_;
   SparseLdlt mass_factor_;  // ends variant only
+  FullNewton newton_;
   std::vector<double> rhs_f_, rhs_g_;
   VectorXd p1_, w1_, end_z_, end_q_, pull_, mu_, rate_, pose_, halfway_;
   Interleaved previous_, consistent_f_;
@@ -113,8 +122,12 @@ class Dvm final : public Integrator {
   bool careful_ = false;
   bool feed_ = true;
   bool small_ = true;
-  bool slow_ = false;    // the last step took many iterations
-  bool frozen_ = false;  // saddle_ holds a factorisation near the present pose
+  bool slow_ = false;     // the last step took many iterations
+  double settling_ = 0;   // the present step of those that strong dampers ask for [s]
+  int small_steps_ = 0;   // so many more are as short as the first
+  bool settled_ = false;  // no rates are left that dampers take within a step
+  bool stiff_ = false;    // forces are too stiff at this step for an iteration that knows nothing of them
+  bool frozen_ = false;   // saddle_ holds a factorisation near the present pose
 
   double needed_pivot_ = 0;   // of the weakest mode, for this step to do without care
   bool tight_ = false;        // this step is solved with care for weak modes
@@ -227,17 +240,57 @@ bool Dvm::tight_iterations(const State& state, StepReport& report) {
 }
 
 void Dvm::iterate(const State& state, double h, StepReport& report) {
-  if (frozen_iterations(report)) return;
-  if (!slow_) {
-    predict(state, h);  // once more
-    freeze_in_the_middle(report);
+  if (!stiff_) {
     if (frozen_iterations(report)) return;
+    if (!slow_) {
+      predict(state, h);  // once more
+      freeze_in_the_middle(report);
+      if (frozen_iterations(report)) return;
+    }
   }
-  if (!eq_.at_ends && small_) {
-    predict(state, h);
-    report.status = full_newton(eq_, wanted, accepted, report);
-    frozen_ = false;
+  if (eq_.at_ends) return;
+  if ((stiff_ || is_stiff()) && stiff_iterations(state, report)) return;
+  if (!small_) return;
+  predict(state, h);
+  report.status = newton_.solve(eq_, wanted, accepted, false, report);
+  frozen_ = false;
+}
+
+// The frozen iteration contracts by about the larger of (h omega)^2 and h c / m, over some s^2 and s.
+bool Dvm::is_stiff() {
+  if (system_.constant_forces() || eq_.at_ends) return false;
+  eq_.look_at_forces();
+  return eq_.h_rate() > 1 || eq_.h_omega() > 1;
+}
+
+// Rates that dampers of h c / m > 1.5 take at once are resolved: by steps of h c / m = s / 5 until nothing is
+// left of them, then by steps each half as long again, for weaker dampers, up to the step that was asked for.
+// A long step would keep such rates, of changing sign. What follows is slow.
+double Dvm::longest_step(const State& state, double h) {
+  constexpr double least_share = 2e-7;  // of a step; shorter ones are little more than noise
+  if (settled_ || system_.constant_forces() || eq_.at_ends) return h;
+  if (settling_ == 0) {
+    eq_.start(state.t, state.z, state.w, h);
+    const double z = eq_.h_rate();
+    settled_ = !(z > 1.5) || !std::isfinite(z);
+    settling_ = settled_ ? 0.0 : std::max(h * 0.2 * c_.s / z, least_share * h);
+    small_steps_ = 50 / c_.s;
+  } else if (--small_steps_ < 0) {
+    settling_ *= 1.5;
+    settled_ = settling_ > h;
   }
+  return settled_ || h < 1.5 * settling_ ? h : std::min(settling_, 0.5 * h);
+}
+
+// From a step without motion: prolonging oscillations that the step does not resolve leads anywhere, through
+// the middle of a spring to its other side, too.
+bool Dvm::stiff_iterations(const State& state, StepReport& report) {
+  stiff_ = true;
+  predict(state, eq_.h);
+  eq_.dX.setZero();
+  report.status = newton_.solve(eq_, wanted, accepted, true, report);
+  frozen_ = false;
+  return report.ok();
 }
 
 // Residuals are computed from the equations themselves every time; the frozen matrix only steers.

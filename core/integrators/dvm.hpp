@@ -8,8 +8,8 @@
 namespace unfurl {
 
 // Discrete variational (Galerkin) method: on a step, q_d(t) is the polynomial through s nodes Q_1..Q_s, the
-// action is integrated by Gauss-Legendre quadrature and made stationary (paper section 3; Marsden & West
-// 2001, section 2.2.6):
+// action is integrated by quadrature, of s - 1 Gauss points where forces vary (galerkin.hpp), and made
+// stationary (paper section 3; Marsden & West 2001, section 2.2.6):
 //
 //     D_k S = (1/h) M sum_i K_ki Q_i + h sum_j w_j l_k(tau_j) F(tau_j) - h b_k G(Q_k)^T lambda_k
 //     p_0 + D_1 S = 0,   D_k S = 0 (1 < k < s),   Phi(Q_k) = 0 (k = 2..s)
@@ -21,7 +21,8 @@ namespace unfurl {
 //
 // Stage equations are solved by a simplified Newton iteration: with G frozen at one pose, multiplying by C^-1
 // leaves s - 1 right-hand sides of one saddle-point system of the size of one pose. Where that does not
-// contract, G is frozen afresh, then a full Newton iteration is tried.
+// contract, G is frozen afresh, then a full Newton iteration is tried. Forces too stiff for it go to the full
+// Newton iteration at once.
 Claims dvm_claims(const SolverOptions& options);
 std::unique_ptr<Integrator> make_dvm(const System& system, const SolverOptions& options);
 

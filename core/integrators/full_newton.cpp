@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/full_newton.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/SparseLU>
 #include <limits>
 
 #include "core/math/saddle_solver.hpp"
@@ -42,12 +40,11 @@ Scales scales_of(const StageEquations& eq, const SparseRows& G) {
 }
 
 // h dr_k / dX_i of the forces that vary: h sum_j w_j l_k(tau_j) [h l_i(tau_j) dF/dz + l_i'(tau_j) dF/dz']
-void add_force_blocks(Entries& entries, const StageEquations& eq) {
+void add_force_blocks(Entries& entries, StageEquations& eq) {
   const Index n = eq.dX.rows();
   SparseRows by_z, by_w;
-  for (int j = 0; j < eq.c.s; ++j) {
-    const VectorXd q = eq.Q * eq.c.value.col(j), v = eq.Q * eq.c.slope.col(j) / eq.h;
-    eq.system.force_derivatives(eq.t + eq.c.tau[j] * eq.h, q, v, by_z, by_w);
+  for (Index j = 0; j < eq.c.tau.size(); ++j) {
+    eq.force_derivatives(j, by_z, by_w);
     for (Index k = 0; k + 1 < eq.c.s; ++k)
       for (Index i = 1; i < eq.c.s; ++i) {
         const double weight = eq.h * eq.c.weight[j] * eq.c.value(k, j);
@@ -57,7 +54,7 @@ void add_force_blocks(Entries& entries, const StageEquations& eq) {
   }
 }
 
-Columns newton_matrix(const StageEquations& eq, const VectorXd& scale) {
+Columns newton_matrix(StageEquations& eq, const VectorXd& scale) {
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
   Entries entries;
   SparseRows G = eq.system.jacobian_pattern();
@@ -103,53 +100,55 @@ void apply(StageEquations& eq, const VectorXd& x) {
   }
 }
 
-// Small systems are factorised as dense ones, which is several times faster than what a sparse code needs to
-// set itself up; the pattern of larger ones is analysed once a step.
-class Factors {
- public:
-  bool compute(const Columns& A) {
-    if (A.rows() <= largest_dense) {
-      dense_.compute(MatrixXd(A));
-      return true;
-    }
-    if (A.nonZeros() != analysed_) sparse_.analyzePattern(A);
-    analysed_ = A.nonZeros();
-    sparse_.factorize(A);
-    return sparse_.info() == Eigen::Success;
-  }
-  VectorXd solve(const VectorXd& b) const {
-    return b.size() <= largest_dense ? VectorXd(dense_.solve(b)) : VectorXd(sparse_.solve(b));
-  }
-
- private:
-  static constexpr Index largest_dense = 80;
-  Eigen::PartialPivLU<MatrixXd> dense_;
-  Eigen::SparseLU<Columns> sparse_;
-  Index analysed_ = -1;
-};
-
 }  // namespace
 
-StepStatus full_newton(StageEquations& eq, double wanted, double accepted, StepReport& report) {
-  constexpr int max_iterations = 20;
-  constexpr double quick = 0.1;  // residuals that fall below this share of the last one keep their matrix
+bool FullNewton::Factors::compute(const Columns& A) {
+  if (A.rows() <= largest_dense) {
+    dense_.compute(MatrixXd(A));
+    return true;
+  }
+  if (A.nonZeros() != analysed_) sparse_.analyzePattern(A);
+  analysed_ = A.nonZeros();
+  sparse_.factorize(A);
+  return sparse_.info() == Eigen::Success;
+}
+
+VectorXd FullNewton::Factors::solve(const VectorXd& b) const {
+  return b.size() <= largest_dense ? VectorXd(dense_.solve(b)) : VectorXd(sparse_.solve(b));
+}
+
+void FullNewton::set_scale(const StageEquations& eq) {
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
   SparseRows G = eq.system.jacobian_pattern();
   std::vector<double> scratch;
   eq.system.jacobian(eq.Q.col(0), G, scratch);
   const Scales s = scales_of(eq, G);
-  VectorXd scale(stages * (n + m));
+  scale_.resize(stages * (n + m));
   for (Index k = 0; k < stages; ++k) {
-    scale.segment(k * n, n) = s.coordinate;
-    scale.segment(stages * n + k * m, m) = s.multiplier;
+    scale_.segment(k * n, n) = s.coordinate;
+    scale_.segment(stages * n + k * m, m) = s.multiplier;
   }
-  double best = std::numeric_limits<double>::infinity(), before = 0;
+}
+
+StepStatus FullNewton::solve(StageEquations& eq, double wanted, double accepted, bool keep,
+                             StepReport& report) {
+  constexpr int max_iterations = 20;
+  constexpr double quick = 0.1;  // residuals that fall below this share of the last one keep their matrix
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const bool kept = keep && known_ && h_ == eq.h;
+  known_ = false;
+  if (!kept) {
+    set_scale(eq);
+    factors_.forget_pattern();
+  }
+  h_ = eq.h;
+  double best = infinity, before = kept ? infinity : 0;
   int without_gain = 0;
-  Factors factors;
   for (int it = 0; it <= max_iterations; ++it) {
     eq.evaluate();
     const double level = eq.level();
     report.residual = level;
+    known_ = keep && std::isfinite(level) && (it > 0 || kept);
     if (level <= wanted) return StepStatus::converged;
     if (!std::isfinite(level)) return StepStatus::not_finite;
     if (level < 0.5 * best) {
@@ -162,13 +161,14 @@ StepStatus full_newton(StageEquations& eq, double wanted, double accepted, StepR
     ++report.newton_iterations;
     if (!(level < quick * before)) {
       ++report.factorisations;
-      if (!factors.compute(newton_matrix(eq, scale))) return StepStatus::diverged;
+      if (!factors_.compute(newton_matrix(eq, scale_))) return known_ = false, StepStatus::diverged;
     }
     before = level;
-    const VectorXd x = factors.solve(scale.cwiseProduct(right_hand_side(eq)));
-    apply(eq, scale.cwiseProduct(x));
-    report.right_hand_sides += static_cast<int>(stages);
+    const VectorXd x = factors_.solve(scale_.cwiseProduct(right_hand_side(eq)));
+    apply(eq, scale_.cwiseProduct(x));
+    report.right_hand_sides += static_cast<int>(eq.c.s - 1);
   }
+  known_ = false;
   return StepStatus::stalled;
 }
 

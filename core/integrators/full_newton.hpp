@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/LU>
+#include <Eigen/SparseLU>
+
 #include "core/integrators/stage_equations.hpp"
 #include "core/system/state.hpp"
 
@@ -15,7 +18,35 @@ namespace unfurl {
 // with the derivatives of the forces that vary added to the first row, and a small e for redundant rows. One
 // matrix serves as long as every iteration gains a digit. It is slow (a sparse LU of all stages at once, with
 // allocation) and meant for the few steps near singular poses at which the simplified iteration does not
-// contract.
-StepStatus full_newton(StageEquations& equations, double wanted, double accepted, StepReport& report);
+// contract, and for forces that are stiff at the step, of which that iteration knows nothing.
+class FullNewton {
+ public:
+  // keep: begin with the matrix of the last step, where that is known.
+  StepStatus solve(StageEquations& equations, double wanted, double accepted, bool keep, StepReport& report);
+  void forget() { known_ = false; }
+
+ private:
+  // Small systems are factorised as dense ones, which is several times faster than what a sparse code needs
+  // to set itself up; the pattern of larger ones is analysed once a step.
+  class Factors {
+   public:
+    using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+    bool compute(const Columns& A);
+    VectorXd solve(const VectorXd& b) const;
+    void forget_pattern() { analysed_ = -1; }
+
+   private:
+    static constexpr Index largest_dense = 80;
+    Eigen::PartialPivLU<MatrixXd> dense_;
+    Eigen::SparseLU<Columns> sparse_;
+    Index analysed_ = -1;
+  };
+  void set_scale(const StageEquations& equations);
+
+  Factors factors_;
+  VectorXd scale_;
+  double h_ = 0;  // the step that the factors are for
+  bool known_ = false;
+};
 
 }  // namespace unfurl

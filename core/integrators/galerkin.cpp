@@ -3,27 +3,28 @@
 
 #include <Eigen/LU>
 
-#include "core/math/quadrature.hpp"
-
 namespace unfurl {
-
 GalerkinCoefficients::GalerkinCoefficients(std::string_view family, int stages)
     : s(stages), basis(interpolation_nodes(family, stages)) {
   // s points integrate l_k' l_i' (degree 2 s - 4) and l_k (degree s - 1) exactly.
-  const Quadrature gauss = gauss_legendre(s);
-  tau = gauss.nodes;
-  weight = gauss.weights;
-  value.resize(s, s);
-  slope.resize(s, s);
-  for (int j = 0; j < s; ++j) {
-    value.col(j) = basis.values(tau[j]);
-    slope.col(j) = basis.derivatives(tau[j]);
-  }
+  take(gauss_legendre(s));
   b = value * weight;
   K = slope * weight.asDiagonal() * slope.transpose();
+  take(gauss_legendre(s - 1));
   C = K.topRightCorner(s - 1, s - 1);
   C_inverse = C.inverse();
   extrapolate(1.0, extrapolation);
+}
+
+void GalerkinCoefficients::take(const Quadrature& rule) {
+  tau = rule.nodes;
+  weight = rule.weights;
+  value.resize(s, tau.size());
+  slope.resize(s, tau.size());
+  for (Index j = 0; j < tau.size(); ++j) {
+    value.col(j) = basis.values(tau[j]);
+    slope.col(j) = basis.derivatives(tau[j]);
+  }
 }
 
 void GalerkinCoefficients::extrapolate(double ratio, MatrixXd& out) const {

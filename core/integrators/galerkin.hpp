@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/math/barycentric.hpp"
+#include "core/math/quadrature.hpp"
 #include "core/math/types.hpp"
 
 namespace unfurl {
@@ -18,13 +19,19 @@ struct GalerkinCoefficients {
   VectorXd b;             // b_k = integral of l_k
   MatrixXd K;             // K_ki = integral of l_k' l_i'  [s x s]
   MatrixXd C, C_inverse;  // K_kj for k = 1..s-1, j = 2..s: the kinetic terms of the stage equations
-  VectorXd tau, weight;   // Gauss-Legendre quadrature of the action
-  MatrixXd value, slope;  // l_k(tau_j), l_k'(tau_j)  [s x s]
+  // Where forces that vary are taken: s - 1 Gauss points tau_j, w_j, and l_k(tau_j), l_k'(tau_j) there
+  // [s x s-1]. The scheme without constraints is then Gauss collocation: stable, with springs and dampers of
+  // any stiffness, and of order 2 s - 2 all the same. Elastic rows with multipliers of their own fit here.
+  VectorXd tau, weight;
+  MatrixXd value, slope;
   MatrixXd
       extrapolation;  // row i: increments of the polynomial of a step, prolonged to c_{i+2} of the next step
 
   // Row i: l_j(1 + c_{i+2} ratio) - l_j(1), j = 2..s (the increment of Q_1 is zero). [s-1 x s-1]
   void extrapolate(double ratio, MatrixXd& out) const;
+
+ private:
+  void take(const Quadrature& rule);
 };
 
 }  // namespace unfurl

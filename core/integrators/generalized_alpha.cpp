@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "core/integrators/index1.hpp"
+#include "core/integrators/row_noise.hpp"
+#include "core/integrators/stage_equations.hpp"
 #include "core/math/saddle_solver.hpp"
 
 namespace unfurl {
@@ -24,29 +26,28 @@ class GeneralizedAlpha final : public Integrator {
  public:
   GeneralizedAlpha(const System& system, double rho)
       : system_(system),
-        alpha_m_((2 * rho - 1) / (rho + 1)),
         alpha_f_(rho / (rho + 1)),
-        gamma_(0.5 + alpha_f_ - alpha_m_),
-        beta_(0.25 * (gamma_ + 0.5) * (gamma_ + 0.5)),
+        steady_(steady_weights(rho)),
         start_(system),
         G_(system.jacobian_pattern()),
-        saddle_(system.mass(), G_) {
-    for (VectorXd* v :
-         {&a0_, &a_, &acceleration0_, &acceleration_, &z_, &w_, &free_z_, &residual_, &dz_, &inertia_})
+        saddle_(system.mass(), G_),
+        least_mass_(system.mass().diagonal().minCoeff()),
+        rows_(system) {
+    for (VectorXd* v : {&a0_, &a_, &acceleration0_, &acceleration_, &z_, &w_, &residual_, &dz_, &inertia_})
       v->setZero(system.solved_coordinates());
     for (VectorXd* v : {&lambda_, &dlambda_, &phi_, &offset_}) v->setZero(system.constraints());
-    for (VectorXd* v : {&q_, &v_, &force_}) v->setZero(system.coordinates());
+    for (VectorXd* v : {&q_, &v_, &force_, &applied_}) v->setZero(system.coordinates());
   }
 
   StepReport step(State& state, double h) override {
     StepReport report;
     if (!begin(state, report)) return report;
-    predict(state, h);
     iterate(state, h, report);
     if (!report.ok()) {
       restart();
       return report;
     }
+    weights_ = steady_;
     a0_ = a_;
     acceleration0_ = acceleration_;
     state.t += h;
@@ -56,30 +57,52 @@ class GeneralizedAlpha final : public Integrator {
     return report;
   }
 
-  void restart() override { have_acceleration_ = false; }
+  void restart() override { have_acceleration_ = stiff_ = false; }
 
  private:
+  // How a_1 weighs on the step.
+  struct Weights {
+    double alpha_m, beta, gamma;
+  };
+  static Weights steady_weights(double rho) {
+    const double alpha_m = (2 * rho - 1) / (rho + 1), gamma = 0.5 + rho / (rho + 1) - alpha_m;
+    return {alpha_m, 0.25 * (gamma + 0.5) * (gamma + 0.5), gamma};
+  }
   bool begin(const State& state, StepReport& report);
+  void look_at_forces(const State& state);
   void predict(const State& state, double h);
+  void stay(const State& state, double h);
   void set_pose(const State& state, double h);
-  double evaluate(double t);
+  double evaluate(double t, double h);
+  double momentum_level(double h, double reach, bool far);
   void correct(double h, StepReport& report);
   bool correct_with_forces(double t, double h, StepReport& report);
   void iterate(const State& state, double h, StepReport& report);
-  double newton_scale(double h) const { return (1 - alpha_m_) / (h * h * beta_ * (1 - alpha_f_)); }
+  double newton_scale(double h) const {
+    return (1 - weights_.alpha_m) / (h * h * weights_.beta * (1 - alpha_f_));
+  }
 
   const System& system_;
-  double alpha_m_, alpha_f_, gamma_, beta_;
+  double alpha_f_;
+  // A first step has no algorithmic acceleration behind it: it takes a_0 = a_1. The true acceleration would
+  // do for motions that the step resolves; of stiff ones it is (h omega)^2 too large.
+  static constexpr Weights first_{0.0, 0.5, 1.0};
+  Weights steady_, weights_ = first_;
   Index1 start_;
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
   VectorXd a0_, a_, acceleration0_, acceleration_;  // algorithmic and true accelerations [m/s^2]
-  VectorXd z_, w_, free_z_, residual_, dz_, inertia_, lambda_, dlambda_, phi_, offset_, q_, v_, force_;
+  VectorXd z_, w_, residual_, dz_, inertia_, lambda_, dlambda_, phi_, offset_, q_, v_, force_, applied_;
+  double residual_size_ = 0;
   bool have_acceleration_ = false;
+  bool stiff_ = false;  // forces are too stiff for corrections that know nothing of them
+  double least_mass_;
+  SparseRows by_z_, by_w_;              // derivatives of the forces at the first of these steps
+  double stiffness_ = 0, damping_ = 0;  // their largest entries
+  RowNoise rows_;
 };
 
-// A first step has no algorithmic acceleration to go on from: it takes the true one.
 bool GeneralizedAlpha::begin(const State& state, StepReport& report) {
   if (have_acceleration_) return true;
   ++report.factorisations;
@@ -89,42 +112,89 @@ bool GeneralizedAlpha::begin(const State& state, StepReport& report) {
     return false;
   }
   a0_ = acceleration0_;
+  weights_ = first_;
+  look_at_forces(state);
   return have_acceleration_ = true;
+}
+
+void GeneralizedAlpha::look_at_forces(const State& state) {
+  if (system_.constant_forces()) return;
+  system_.expand(state.z, q_);
+  system_.expand_rate(state.w, v_);
+  system_.force_derivatives(state.t, q_, v_, by_z_, by_w_);
+  stiffness_ = by_z_.nonZeros() ? largest_magnitude(by_z_.valuePtr(), by_z_.nonZeros()) : 0.0;
+  damping_ = by_w_.nonZeros() ? largest_magnitude(by_w_.valuePtr(), by_w_.nonZeros()) : 0.0;
 }
 
 // Unchanged acceleration and multipliers.
 void GeneralizedAlpha::predict(const State& state, double h) {
   lambda_ = state.lambda;
   acceleration_ = acceleration0_;
-  free_z_ = state.z + h * state.w + h * h * (0.5 - beta_) * a0_;
+  set_pose(state, h);
+}
+
+// The acceleration that leaves the pose as it is. Accelerations of stiff forces lead anywhere, through the
+// middle of a spring to its other side, too.
+void GeneralizedAlpha::stay(const State& state, double h) {
+  const auto& [alpha_m, beta, gamma] = weights_;
+  lambda_ = state.lambda;
+  a_ = (-h * state.w - h * h * (0.5 - beta) * a0_) / (h * h * beta);
+  acceleration_ = ((1 - alpha_m) * a_ + alpha_m * a0_ - alpha_f_ * acceleration0_) / (1 - alpha_f_);
   set_pose(state, h);
 }
 
 // a_1, z_1, w_1 that belong to w'_1.
 void GeneralizedAlpha::set_pose(const State& state, double h) {
-  a_ = ((1 - alpha_f_) * acceleration_ + alpha_f_ * acceleration0_ - alpha_m_ * a0_) / (1 - alpha_m_);
-  z_ = free_z_ + h * h * beta_ * a_;
-  w_ = state.w + h * ((1 - gamma_) * a0_ + gamma_ * a_);
+  const auto& [alpha_m, beta, gamma] = weights_;
+  a_ = ((1 - alpha_f_) * acceleration_ + alpha_f_ * acceleration0_ - alpha_m * a0_) / (1 - alpha_m);
+  z_ = state.z + (h * state.w + h * h * ((0.5 - beta) * a0_ + beta * a_));
+  w_ = state.w + h * ((1 - gamma) * a0_ + gamma * a_);
 }
 
 // Residuals at the present pose; returns their size in units of what round-off leaves of them.
-double GeneralizedAlpha::evaluate(double t) {
+double GeneralizedAlpha::evaluate(double t, double h) {
   system_.expand(z_, q_);
   system_.expand_rate(w_, v_);
   system_.constraint(t, q_, phi_);
-  force_.setZero();
-  system_.add_applied_force(t, q_, v_, 1.0, force_);
+  applied_.setZero();
+  system_.add_applied_force(t, q_, v_, 1.0, applied_);
+  force_ = applied_;
   system_.add_constraint_force(q_, lambda_, -1.0, force_);
   system_.reduce_force(force_, residual_);
   inertia_.noalias() = system_.mass() * acceleration_;
-  const double size = std::max({residual_.lpNorm<Eigen::Infinity>(), inertia_.lpNorm<Eigen::Infinity>(),
-                                lambda_.size() ? lambda_.lpNorm<Eigen::Infinity>() : 0.0, 1e-300});
+  residual_size_ = residual_.lpNorm<Eigen::Infinity>();
   residual_ = inertia_ - residual_;
-  double level = residual_.lpNorm<Eigen::Infinity>() / (8 * ulp * size);
+  const VectorXd& lengths = system_.constraint_lengths();
   const double reach = q_.lpNorm<Eigen::Infinity>();
+  const bool far = lengths.size() > 0 && reach > far_reach * lengths.minCoeff();
+  double level = momentum_level(h, reach, far);
   for (Index r = 0; r < phi_.size(); ++r)
-    level = std::max(level, std::abs(phi_[r]) / (2 * ulp * std::max(system_.constraint_lengths()[r], reach)));
+    level = std::max(level, std::abs(phi_[r]) / constraint_noise(lengths[r], far ? rows_.reach(r) : reach));
   return residual_.allFinite() && phi_.allFinite() ? level : std::numeric_limits<double>::infinity();
+}
+
+// As in StageEquations: one size for all rows where that does no harm, else each row by its own terms. Poses
+// are as precise as the accelerations that they follow from.
+double GeneralizedAlpha::momentum_level(double h, double reach, bool far) {
+  const auto most = [](const VectorXd& x) { return x.size() ? x.lpNorm<Eigen::Infinity>() : 0.0; };
+  const double speed = most(w_) + h * most(a_), way = reach + h * h * (most(acceleration_) + most(a_));
+  const double size =
+      std::max({residual_size_, most(inertia_), most(lambda_), stiffness_ * way, damping_ * speed, 1e-300});
+  if (!far && h * h * size <= harmless_noise * least_mass_ * reach) return most(residual_) / (8 * ulp * size);
+  rows_.start(q_);
+  rows_.add_forces(applied_);
+  rows_.add_multipliers(lambda_, 1.0);
+  rows_.add_inertia(acceleration_, 1.0);
+  if (stiffness_ > 0) {
+    rows_.add_stiffness(by_z_, 1.0);
+    rows_.add_products(by_z_, h * h * (acceleration_.cwiseAbs() + a_.cwiseAbs()), 1.0);
+  }
+  if (damping_ > 0) rows_.add_products(by_w_, w_.cwiseAbs() + h * a_.cwiseAbs(), 1.0);
+  double level = 0;
+  for (Index i = 0; i < residual_.size(); ++i)
+    if (const double error = std::abs(residual_[i]); error > 0)
+      level = std::max(level, error / (8 * ulp * rows_.size()[i]));
+  return level;
 }
 
 // M dz + G^T (dlambda / b) = -r / b,  G dz = -Phi,  dw' = b dz.
@@ -144,10 +214,9 @@ void GeneralizedAlpha::correct(double h, StepReport& report) {
 //     -Phi
 // rows and columns scaled as in SaddleSolver. For forces that are stiff at this step; allocates.
 bool GeneralizedAlpha::correct_with_forces(double t, double h, StepReport& report) {
-  const double b = newton_scale(h), by_rate = gamma_ / (h * beta_);
+  const double b = newton_scale(h), by_rate = weights_.gamma / (h * weights_.beta);
   const Index n = z_.size(), m = phi_.size();
-  SparseRows by_z, by_w;
-  system_.force_derivatives(t, q_, v_, by_z, by_w);
+  system_.force_derivatives(t, q_, v_, by_z_, by_w_);
   system_.jacobian(q_, G_, scratch_);
   VectorXd scale = VectorXd::Ones(n + m);
   for (Index i = 0; i < n; ++i) scale[i] = 1.0 / std::sqrt(system_.mass().coeff(i, i));
@@ -160,8 +229,8 @@ bool GeneralizedAlpha::correct_with_forces(double t, double h, StepReport& repor
       for (SparseRows::InnerIterator it(A, r); it; ++it) add(r, it.col(), factor * it.value());
   };
   add_all(system_.mass(), 1.0);
-  add_all(by_z, -1.0 / b);
-  add_all(by_w, -by_rate / b);
+  add_all(by_z_, -1.0 / b);
+  add_all(by_w_, -by_rate / b);
   for (int r = 0; r < G_.outerSize(); ++r) {
     double square = 0;
     for (SparseRows::InnerIterator it(G_, r); it; ++it) square += std::pow(it.value() * scale[it.col()], 2);
@@ -189,19 +258,25 @@ bool GeneralizedAlpha::correct_with_forces(double t, double h, StepReport& repor
 void GeneralizedAlpha::iterate(const State& state, double h, StepReport& report) {
   double best = std::numeric_limits<double>::infinity(), before = best;
   int without_gain = 0;
-  bool stiff = false;
+  stiff_ ? stay(state, h) : predict(state, h);
   for (int it = 0;; ++it) {
-    const double level = evaluate(state.t + h);
+    const double level = evaluate(state.t + h, h);
     report.residual = level;
     report.constraint_norm = phi_.size() ? phi_.lpNorm<Eigen::Infinity>() : 0.0;
     if (level <= wanted_level) return;
     without_gain = level < 0.5 * best ? 0 : without_gain + 1;
     best = std::min(best, level);
     if (without_gain >= 3 && level <= accepted_level) return;
-    if (it == max_iterations || !std::isfinite(level)) break;
-    stiff = stiff || (it > 1 && !system_.constant_forces() && level > contracting * before);
+    if (it == max_iterations || (stiff_ && !std::isfinite(level))) break;
+    if (!stiff_ && !system_.constant_forces() && it > 1 && !(level <= contracting * before)) {
+      stiff_ = true;
+      best = std::numeric_limits<double>::infinity();
+      stay(state, h);
+      continue;
+    }
+    if (!std::isfinite(level)) break;
     before = level;
-    if (stiff) {
+    if (stiff_) {
       if (!correct_with_forces(state.t + h, h, report)) {
         report.status = StepStatus::diverged;
         return;
@@ -225,8 +300,8 @@ void GeneralizedAlpha::iterate(const State& state, double h, StepReport& report)
 
 }  // namespace
 
-Claims generalized_alpha_claims(const SolverOptions&) {
-  return {.order = 2, .implicit = true, .holds_positions = true};
+Claims generalized_alpha_claims(const SolverOptions& options) {
+  return {.order = 2, .implicit = true, .holds_positions = true, .damps = options.rho_inf < 1};
 }
 
 std::unique_ptr<Integrator> make_generalized_alpha(const System& system, const SolverOptions& options) {

@@ -19,6 +19,9 @@ class Integrator {
   [[nodiscard]] virtual StepReport step(State& state, double h) = 0;
   // Forget what was learnt from earlier steps (predictors): the next state does not follow the last one.
   virtual void restart() = 0;
+  // The longest step, up to h, with which to go on from a state: what follows on restart() may have to be
+  // resolved although nothing of it is left after a step. Asked once before a step.
+  virtual double longest_step(const State& /*state*/, double h) { return h; }
 };
 
 // What a method claims about itself; the conformance test checks every claim of every row.
@@ -30,6 +33,7 @@ struct Claims {
   bool holds_positions = false;          // |Phi| at round-off after every step
   bool holds_velocities = false;         // |G v| at round-off after every step
   bool conserves_momentum_maps = false;  // (angular) momenta of a symmetric motion, to round-off
+  bool damps = false;                    // takes the energy of what a step does not resolve, and means to
 };
 
 struct Method {

@@ -40,6 +40,10 @@ class Following final : public Integrator {
     if (report.ok()) system_.count_on(state);
     return report;
   }
+  double longest_step(const State& state, double h) override {
+    system_.follow(state);
+    return plain_->longest_step(state, h);
+  }
   void restart() override { plain_->restart(); }
 
  private:

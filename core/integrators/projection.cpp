@@ -17,7 +17,7 @@ constexpr double weak = 100 * SaddleSolver::standard_regularisation;
 }  // namespace
 
 Projection::Projection(const System& system)
-    : system_(system), G_(system.jacobian_pattern()), saddle_(system.mass(), G_) {
+    : system_(system), G_(system.jacobian_pattern()), saddle_(system.mass(), G_), rows_(system) {
   q_.setZero(system.coordinates());
   for (VectorXd* v : {&phi_, &offset_, &y_}) v->setZero(system.constraints());
   for (VectorXd* v : {&force_, &x_, &move_}) v->setZero(system.solved_coordinates());
@@ -25,10 +25,13 @@ Projection::Projection(const System& system)
 
 double Projection::level() {
   const double reach = q_.lpNorm<Eigen::Infinity>();
+  const VectorXd& lengths = system_.constraint_lengths();
+  const bool far = lengths.size() > 0 && reach > far_reach * lengths.minCoeff();
+  if (far) rows_.start(q_);
   double worst = 0;
   for (Index r = 0; r < phi_.size(); ++r) {
     const double noise =
-        2 * std::numeric_limits<double>::epsilon() * std::max(system_.constraint_lengths()[r], reach);
+        2 * std::numeric_limits<double>::epsilon() * std::max(lengths[r], far ? rows_.reach(r) : reach);
     const double ratio = std::abs(phi_[r]) / noise;
     if (!(ratio <= worst)) worst = ratio;  // NaN too
   }

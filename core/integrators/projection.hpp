@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/integrators/constraint_increment.hpp"
+#include "core/integrators/row_noise.hpp"
 #include "core/math/saddle_solver.hpp"
 #include "core/system/system.hpp"
 
@@ -31,6 +32,7 @@ class Projection {
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
+  RowNoise rows_;
   std::unique_ptr<ConstraintIncrement> increment_;  // made when first needed
   VectorXd q_, phi_, force_, offset_, x_, y_, move_;
   int iterations_ = 0;

@@ -4,7 +4,11 @@
 namespace unfurl {
 
 StageEquations::StageEquations(const System& sys, const GalerkinCoefficients& coefficients, bool ends)
-    : system(sys), c(coefficients), at_ends(ends), C_size_(coefficients.C.lpNorm<Eigen::Infinity>()) {
+    : system(sys),
+      c(coefficients),
+      at_ends(ends),
+      C_size_(coefficients.C.lpNorm<Eigen::Infinity>()),
+      rows_(sys) {
   const Index n = system.solved_coordinates(), m = system.constraints(), k = c.s - 1,
               nodes = system.coordinates();
   z0.setZero(n);
@@ -13,8 +17,13 @@ StageEquations::StageEquations(const System& sys, const GalerkinCoefficients& co
   for (Interleaved* x : {&lambda, &phi}) x->setZero(m, k);
   Q.setZero(nodes, c.s);
   for (Interleaved* x : {&f_, &applied_}) x->setZero(nodes, k);
-  force_.setZero(nodes, system.constant_forces() ? 1 : c.s);
+  force_.setZero(nodes, system.constant_forces() ? 1 : c.s - 1);
   impulse_.setZero(c.s, force_.cols());
+  w_tau_.setZero(n);
+  w_0_.setZero(n);
+  least_mass_ = system.mass().diagonal().minCoeff();
+  shortest_ = m > 0 ? system.constraint_lengths().minCoeff() : std::numeric_limits<double>::infinity();
+  steepest_ = c.slope.cwiseAbs().colwise().sum().maxCoeff();
   C_by_h_.setZero(k, k);
   for (VectorXd* x : {&time_, &scale_}) x->setZero(k);
   for (VectorXd* x : {&f_end_, &q_0_, &q_tau_, &v_tau_, &scratch_.q, &scratch_.f}) x->setZero(nodes);
@@ -45,19 +54,42 @@ void StageEquations::start(double time, const ConstVec& z, const ConstVec& w, do
     with_columns(c.s - 1, [this](auto k) { spread_forces<k()>(); });
   } else {
     impulse_ = h * (c.value * c.weight.asDiagonal());
+    w_0_ = w;
   }
-  if (stiffness_ < 0) find_stiffness();
+  if (stiffness_ < 0) look_at_forces();
+  if (reach_ == 0) reach_ = largest_magnitude(q_0_.data(), q_0_.size());
+  find_reach();
 }
 
-void StageEquations::find_stiffness() {
-  stiffness_ = 0;
+void StageEquations::look_at_forces() {
+  stiffness_ = damping_ = 0;
+  looked_ = t;
   if (system.constant_forces()) return;
-  SparseRows by_z, by_w;
-  v_tau_.setZero();
-  system.force_derivatives(t, q_0_, v_tau_, by_z, by_w);
-  for (int r = 0; r < by_z.outerSize(); ++r)
-    for (SparseRows::InnerIterator it(by_z, r); it; ++it)
-      stiffness_ = std::max(stiffness_, std::abs(it.value()));
+  system.expand_rate(w_0_, v_tau_);
+  system.force_derivatives(t, q_0_, v_tau_, by_z_, by_w_);
+  const auto largest_entry = [](const SparseRows& A) {
+    return A.nonZeros() > 0 ? largest_magnitude(A.valuePtr(), A.nonZeros()) : 0.0;
+  };
+  stiffness_ = largest_entry(by_z_);
+  damping_ = largest_entry(by_w_);
+}
+
+double StageEquations::h_omega() const {
+  return std::abs(h) * std::sqrt(rate_bound(by_z_, system.mass()));
+}
+
+double StageEquations::h_rate() const {
+  return std::abs(h) * rate_bound(by_w_, system.mass());
+}
+
+// Rows go by the reach of their own nodes where that of all is far beyond the shortest length.
+void StageEquations::find_reach() {
+  far_ = reach_ > far_reach * shortest_;
+  if (!far_) return;
+  const VectorXd& lengths = system.constraint_lengths();
+  rows_.start(q_0_);
+  row_reach_.resize(lengths.size());
+  for (Index r = 0; r < lengths.size(); ++r) row_reach_[r] = rows_.reach(r);
 }
 
 void StageEquations::place_nodes() {
@@ -92,13 +124,26 @@ void StageEquations::constraint_changes() {
   }
 }
 
+// Pose and velocity at point j of the quadrature, from the increments: what rounding leaves of the velocity
+// goes by the motion.
+void StageEquations::move_to(Index j) {
+  q_tau_.noalias() = Q * c.value.col(j);
+  w_tau_.noalias() = dX * c.slope.col(j).tail(c.s - 1);
+  w_tau_ /= h;
+  system.expand_rate(w_tau_, v_tau_);
+}
+
 void StageEquations::applied_forces() {
   force_.setZero();
-  for (int j = 0; j < c.s; ++j) {
-    q_tau_.noalias() = Q * c.value.col(j);
-    v_tau_.noalias() = Q * c.slope.col(j) / h;
+  for (Index j = 0; j < c.tau.size(); ++j) {
+    move_to(j);
     system.add_applied_force(t + c.tau[j] * h, q_tau_, v_tau_, 1.0, force_.col(j));
   }
+}
+
+void StageEquations::force_derivatives(Index j, SparseRows& by_z, SparseRows& by_w) {
+  move_to(j);
+  system.force_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, by_z, by_w);
 }
 
 // h sum_j w_j l_k(tau_j) F(tau_j)
@@ -151,9 +196,13 @@ template <int K>
 void StageEquations::measure_constraints() {
   Lanes<K> rest = Lanes<K>::all(0.0);
   double level = 0;
+  const double* const length = system.constraint_lengths().data();
+  const double* const reach = far_ ? row_reach_.data() : nullptr;
+  const double whole = reach_;
   for (Index r = 0, rows = phi.rows(); r < rows; ++r) {
     const Lanes<K> row(phi.data() + r * K);
-    level = std::max(level, larger(Lanes<K>::all(0.0), row).largest() / constraint_noise(r));
+    const double noise = unfurl::constraint_noise(length[r], reach ? reach[r] : whole);
+    level = std::max(level, larger(Lanes<K>::all(0.0), row).largest() / noise);
     rest = rest + 0.0 * row;
   }
   finite_ = finite_ && rest.sum() == 0.0;
@@ -161,16 +210,36 @@ void StageEquations::measure_constraints() {
 }
 
 // Momentum: compared with the sizes of the terms that cancel in it, and with what rounding the coordinates
-// leaves of spring forces. Constraints: with the larger of a row's
-// length and the coordinates, whose rounding moves a row by that much.
+// leaves of spring forces, the increments of damping forces. Constraints: with the larger of a row's length
+// and the coordinates, whose rounding moves a row by that much.
 void StageEquations::measure() {
   reach_ = largest_magnitude(Q.data(), Q.size());
   double size = force_scale_ + largest_magnitude(p0.data(), p0.size());
   size = std::max(size, std::abs(h) * stiffness_ * reach_);
   size = std::max(size, inertia_size_ * C_size_ / std::abs(h));
-  momentum_level_ = size > 0 ? momentum_size_ / (4 * ulp * size) : 0.0;
+  if (damping_ > 0) size = std::max(size, damping_ * steepest_ * largest_magnitude(dX.data(), dX.size()));
+  momentum_level_ = size > 0 ? momentum_size_ / (momentum_noise * size) : 0.0;
+  if (far_ || std::abs(h) * size > harmless_noise * least_mass_ * reach_) measure_rows();
   with_columns(c.s - 1, [this](auto k) { measure_constraints<k()>(); });
   if (!finite_) momentum_level_ = constraint_level_ = std::numeric_limits<double>::infinity();
+}
+
+void StageEquations::measure_rows() {
+  const auto largest = [](const Interleaved& x) { return VectorXd(x.cwiseAbs().rowwise().maxCoeff()); };
+  const VectorXd motion = largest(dX);
+  if (looked_ != t) look_at_forces();
+  rows_.start(q_0_);
+  rows_.add(p0);
+  rows_.add_forces(largest(applied_));
+  rows_.add_multipliers(largest(lambda), scale_.lpNorm<Eigen::Infinity>());
+  rows_.add_inertia(motion, C_size_ / h);
+  if (stiffness_ > 0) rows_.add_stiffness(by_z_, h);
+  if (damping_ > 0) rows_.add_products(by_w_, motion, steepest_);
+  momentum_level_ = 0;
+  for (Index i = 0; i < momentum.rows(); ++i) {
+    const double error = momentum.row(i).lpNorm<Eigen::Infinity>(), size = rows_.size()[i];
+    if (error > 0) momentum_level_ = std::max(momentum_level_, error / (momentum_noise * size));
+  }
 }
 
 void StageEquations::end_momentum(MutVec p1) {

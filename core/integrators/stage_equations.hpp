@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "core/integrators/constraint_increment.hpp"
 #include "core/integrators/galerkin.hpp"
+#include "core/integrators/row_noise.hpp"
 #include "core/system/system.hpp"
 
 namespace unfurl {
@@ -35,7 +37,15 @@ class StageEquations {
   // true: phi is what the step changes, Phi(Q_j) - Phi(Q_1), whose round-off is relative to that change and
   // not to the coordinates; the start's own residual is left alone. Slower; for nearly singular poses.
   bool in_increments = false;
-  void end_momentum(MutVec p1);  // p_1 without the share of lambda_s
+  // dF/dz, dF/dz' at point j of the quadrature (allocates).
+  void force_derivatives(Index j, SparseRows& by_z, SparseRows& by_w);
+  // Looks at the derivatives of the forces at the step's start: what they make of round-off, and how stiff
+  // they are for the step (allocates).
+  void look_at_forces();
+  void forget_forces() { stiffness_ = -1; }  // look at them again before the next step
+  double h_omega() const;                    // h sqrt(k / m) of the stiffest spring, from above
+  double h_rate() const;                     // h c / m of the strongest damper, from above
+  void end_momentum(MutVec p1);              // p_1 without the share of lambda_s
 
   // Residuals in units of what round-off leaves of them: 1 is as small as they get, give or take.
   double momentum_level() const { return momentum_level_; }
@@ -45,7 +55,7 @@ class StageEquations {
   // What rounding the coordinates leaves of row r of Phi [m]. A residual below it carries no information; in
   // redundant rows it would be answered with multipliers of size (residual / regularisation).
   double constraint_noise(Index r) const {
-    return unfurl::constraint_noise(system.constraint_lengths()[r], reach_);
+    return unfurl::constraint_noise(system.constraint_lengths()[r], far_ ? row_reach_[r] : reach_);
   }
 
   double multiplier_weight(int k) const;                 // b_k, or 1/2 for the ends variant; k = 0..s-1
@@ -61,27 +71,29 @@ class StageEquations {
   Interleaved Q;  // [3 nodes x s]
 
  private:
-  static constexpr double ulp = std::numeric_limits<double>::epsilon();
+  static constexpr double momentum_noise = 4 * std::numeric_limits<double>::epsilon();
   template <int K>
   void spread_forces();
   template <int K>
   void evaluate_momentum();
   template <int K>
   void measure_constraints();
+  void move_to(Index j);
   void applied_forces();
   void constraint_changes();
   void measure();
-  void find_stiffness();
+  void measure_rows();
+  void find_reach();
 
   Interleaved Z_, MdX_;      // coordinates and M dX_j of nodes 2..s
   Interleaved applied_, f_;  // impulses of the applied forces and of all forces on nodes 1..s-1
   VectorXd q_0_;
   MatrixXd force_;    // node forces at the quadrature times or (constant) one column
-  MatrixXd impulse_;  // [s x s], or (constant) [s x 1]: h w_j l_k(tau_j), row k
+  MatrixXd impulse_;  // [s x s-1], or (constant) [s x 1]: h w_j l_k(tau_j), row k
   MatrixXd C_by_h_;
   VectorXd time_, scale_;  // of nodes 2..s [s]; -h b_k of nodes 1..s-1
   double C_size_ = 0;      // largest entry of C
-  VectorXd f_end_, q_tau_, v_tau_;
+  VectorXd f_end_, q_tau_, v_tau_, w_tau_, w_0_;
   System::StageScratch scratch_;
   std::unique_ptr<ConstraintIncrement> increment_;  // made when first needed
   VectorXd dX_j_, phi_j_;
@@ -89,7 +101,16 @@ class StageEquations {
   // Largest magnitudes: forces, coordinates, M dX, momentum; whether all residuals are finite.
   double force_scale_ = 0, reach_ = 0, inertia_size_ = 0, momentum_size_ = 0;
   bool finite_ = true;
-  double stiffness_ = -1;  // largest entry of dF/dz at the first step [N/m]; negative: not known yet
+  SparseRows by_z_, by_w_;                // dF/dz [N/m], dF/dz' [N s/m] where they were looked at last
+  double stiffness_ = -1;                 // largest entry of by_z_; negative: not looked at yet
+  double damping_ = 0;                    // and of by_w_
+  double looked_ = 0;                     // when [s]
+  double least_mass_ = 0, steepest_ = 0;  // smallest M_ii; largest sum over k of |l_k'(tau_j)|
+  RowNoise rows_;                         // the same row by row, where that makes a difference
+  // Some nodes are so far from the origin that the noise of each row goes by its own reach.
+  bool far_ = false;
+  double shortest_ = 0;  // length of a constraint
+  VectorXd row_reach_;
 };
 
 }  // namespace unfurl

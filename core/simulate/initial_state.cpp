@@ -43,7 +43,7 @@ VectorXd fitted_rates(const System& system, double t, const ConstVec& q, const C
   system.jacobian(q, G, scratch);
   SaddleSolver saddle(system.mass(), G);
   if (!saddle.factorise(G))
-    throw std::runtime_error("the constraint matrix at the start cannot be factorised");
+    throw CannotFactorise("the constraint matrix cannot be factorised where velocities change");
   VectorXd p(system.solved_coordinates()), w(p.size()), y(system.constraints()), rate(y.size());
   system.target_rate(t, rate);
   system.reduce_force(system.node_mass() * v, p);

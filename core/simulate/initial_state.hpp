@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
 #include "core/structure/structure.hpp"
@@ -20,8 +21,12 @@ InitialState initial_state(const Structure& structure, const System& system);
 // What to tell the user where the projection took away more than round-off; empty otherwise.
 std::string velocity_warning(const InitialState& start, const Structure& structure);
 
+struct CannotFactorise : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 // The rates w for which B w is nearest to the node velocities v in the mass metric and G w = g'(t): what an
-// impulse of the constraints alone makes of v.
+// impulse of the constraints alone makes of v. Throws CannotFactorise.
 VectorXd fitted_rates(const System& system, double t, const ConstVec& q, const ConstVec& v);
 
 // Move z to the nearest point of Phi = 0 and w to G w = 0, both in the mass metric, leaving directions

@@ -114,17 +114,21 @@ class Stepper::Loop {
   }
 
   // False where the run ends.
-  bool go(const TimeGrid::Target& target) {
+  bool go(const TimeGrid::Target& target) try {
     target_ = target.t;
     double h = target.h;
     in_step_ = 0;
     while (now().t < target_) {
-      if (!part(h)) return ended_ = true, false;
+      const double short_of = integrator_->longest_step(now(), h);
+      part_end_ = short_of < h ? now().t + short_of : target_;
+      if (!part(short_of)) return ended_ = true, false;
       h = target_ - now().t;
     }
     if (target.edge) integrator_->restart();
     if (target.jumps) jump(target.jump);
     return true;
+  } catch (const CannotFactorise& error) {
+    return ended_ = true, fail(error.what());
   }
 
   // The rest of the step, of size h, or what comes before the first event on it. False where the run ends.
@@ -145,7 +149,7 @@ class Stepper::Loop {
       if (auto crossing = find_crossing(to); crossing && (!event || now().t + crossing->probe.at < event->t))
         return go_to(std::move(*crossing));
     if (event) return deployed(*event, to, h);
-    return accept(to, target_);
+    return accept(to, part_end_);
   }
 
   bool accept(Probe& to, double t) {
@@ -411,7 +415,7 @@ class Stepper::Loop {
     deployed_ = true;
     run_.events.push_back({"deployed", event.t});
     if (run_.options.at_deployed == "pass")
-      return !to.report.ok() || std::abs(fold(to.state)) < margin_ ? step_over(h) : accept(to, target_);
+      return !to.report.ok() || std::abs(fold(to.state)) < margin_ ? step_over(h) : accept(to, part_end_);
     project(system(), event);
     while (run_.trajectory.size() > 1 && run_.trajectory.end_time() >= event.t) run_.trajectory.pop_back();
     append(std::move(event), StepReport{.singular_event = true});
@@ -438,9 +442,9 @@ class Stepper::Loop {
       to.state = now();
       integrator_->restart();
       to.report = take_step(*integrator_, to.state, length * h);
-      if (to.report.ok()) return accept(to, target_ + (length - 1) * h);
+      if (to.report.ok()) return accept(to, part_end_ + (length - 1) * h);
     }
-    return accept(to, target_);
+    return accept(to, part_end_);
   }
 
   Simulation& run_;
@@ -448,7 +452,7 @@ class Stepper::Loop {
   const Deployment& deployment_;
   OneSided sides_;
   TimeGrid grid_;
-  double target_ = 0;  // of the present step
+  double target_ = 0, part_end_ = 0;  // of the present step, and of what is solved of it at once
   std::unique_ptr<Integrator> integrator_, probing_;
   std::optional<StepControl> control_;
   const System* controlled_ = nullptr;

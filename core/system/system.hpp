@@ -59,6 +59,7 @@ class System {
   VectorXd reduce(const ConstVec& q) const;
   VectorXd reduce_rate(const ConstVec& v) const;
   void reduce_force(const ConstVec& f, MutVec r) const;  // r = B^T f
+  void reduce_sizes(const ConstVec& f, MutVec r) const;  // r = |B|^T |f|: what may cancel in B^T f
 
   const SparseRows& mass() const;       // of z, symmetric positive definite, constant [kg]
   const SparseRows& node_mass() const;  // of q [kg]

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernels of System that work on all stages of a step at once.
+// What System offers to the steps of methods: kernels that work on all stages of a step at once, and sizes.
 #include "core/system/system_data.hpp"
 
 namespace unfurl {
+
+void System::reduce_sizes(const ConstVec& f, MutVec r) const {
+  r.setZero();
+  for (int i = 0; i < data_->B.outerSize(); ++i)
+    for (SparseRows::InnerIterator it(data_->B, i); it; ++it) r[it.col()] += std::abs(it.value() * f[i]);
+}
 
 void System::expand_stages(const Interleaved& z, Index first, Interleaved& Q) const {
   const SparseRows& B = data_->B;

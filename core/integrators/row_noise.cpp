@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/integrators/row_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace unfurl {
+
+RowNoise::RowNoise(const System& system) : system_(system), pattern_(system.jacobian_pattern()) {}
+
+void RowNoise::start(const ConstVec& q) {
+  size_.setZero(system_.solved_coordinates());
+  reach_.resize(size_.size());
+  system_.reduce_sizes(q, reach_);
+}
+
+void RowNoise::add_forces(const ConstVec& f) {
+  VectorXd reduced(size_.size());
+  system_.reduce_sizes(f, reduced);
+  size_ += reduced;
+}
+
+double RowNoise::reach(Index r) const {
+  double most = 0;
+  for (SparseRows::InnerIterator it(pattern_, r); it; ++it) most = std::max(most, reach_[it.col()]);
+  return most;
+}
+
+void RowNoise::add_multipliers(const ConstVec& lambda, double scale) {
+  for (Index r = 0; r < lambda.size(); ++r) {
+    const double force =
+        std::abs(scale * lambda[r]) * std::max(1.0, reach(r) / system_.constraint_lengths()[r]);
+    for (SparseRows::InnerIterator it(pattern_, r); it; ++it) size_[it.col()] += force;
+  }
+}
+
+void RowNoise::add_products(const SparseRows& A, const ConstVec& x, double scale) {
+  for (int i = 0; i < A.outerSize(); ++i)
+    for (SparseRows::InnerIterator it(A, i); it; ++it) size_[i] += std::abs(scale * it.value() * x[it.col()]);
+}
+
+double rate_bound(const SparseRows& A, const SparseRows& M) {
+  const VectorXd m = M.diagonal();
+  double most = 0;
+  for (int i = 0; i < A.outerSize(); ++i) {
+    double sum = 0;
+    for (SparseRows::InnerIterator it(A, i); it; ++it)
+      sum += std::abs(it.value()) / std::sqrt(m[i] * m[it.col()]);
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/system/system.hpp"
+
+namespace unfurl {
+
+// Coordinates beyond so many times the shortest length are far: rows then go by the reach of their own nodes.
+inline constexpr double far_reach = 1e4;
+// One size will do for all rows where what is round-off by it moves no mass within a step by more than so
+// many times what rounding the coordinates does, give or take.
+inline constexpr double harmless_noise = 5;
+
+// The sizes of the terms that cancel in each row of the momentum equations, for residuals in units of what
+// round-off leaves of them. One size for all rows lets what is heavy or stiff hide the motion of what is
+// light: of a pendulum of 1e-6 kg beside 1e9 kg on a rod nothing is left.
+// Sizes are of one unit: whatever the caller adds, forces or impulses. Allocates.
+class RowNoise {
+ public:
+  explicit RowNoise(const System& system);
+  void start(const ConstVec& q);  // at this pose (node coordinates): all sizes zero
+  void add(const ConstVec& own) { size_ += own.cwiseAbs(); }  // of the rows themselves
+  void add_forces(const ConstVec& f);                         // on the nodes
+  // Of constraint forces `scale` lambda: rows have unit gradients, whose direction is known to what rounding
+  // the coordinates leaves.
+  void add_multipliers(const ConstVec& lambda, double scale);
+  void add_inertia(const ConstVec& x, double scale) { add_products(system_.mass(), x, scale); }  // |M| |x|
+  void add_products(const SparseRows& A, const ConstVec& x, double scale);                       // |A| |x|
+  // What rounding the coordinates changes in forces of these derivatives, over round-off.
+  void add_stiffness(const SparseRows& by_z, double scale) { add_products(by_z, reach_, scale); }
+
+  const VectorXd& size() const { return size_; }
+  // The largest coordinate of the nodes that constraint row r depends on [m].
+  double reach(Index r) const;
+
+ private:
+  const System& system_;
+  SparseRows pattern_;     // of G
+  VectorXd size_, reach_;  // reach_: of the nodes that follow a solved coordinate
+};
+
+// The largest sum over a row of |A_ij| / sqrt(M_ii M_jj): A = dF/dz' gives a bound of c / m [1/s], dF/dz of
+// k / m [1/s^2].
+double rate_bound(const SparseRows& A, const SparseRows& M);
+
+}  // namespace unfurl
