@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The verbs of the program. To add one: cmd_NAME.cpp and a row in command_table.cpp.
+// The verbs of the program. To add one: verbs/cmd_NAME.cpp and a row in command_table.cpp.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/exit_code.hpp"
+#include "app/output/exit_code.hpp"
 
 namespace unfurl {
 
