@@ -15,6 +15,7 @@
 #include "app/own_options.hpp"
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
+#include "core/text/version.hpp"
 
 namespace unfurl {
 
@@ -149,6 +150,25 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   return parsed;
 }
 
+// For a shell to take again.
+std::string typed(const std::vector<std::string>& words) {
+  std::string text = "unfurl";
+  for (const std::string& word : words) {
+    const bool plain = !word.empty() && word.find_first_not_of(
+                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                            "0123456789_-+=./:,@%") == std::string::npos;
+    text += " ";
+    if (plain) {
+      text += word;
+      continue;
+    }
+    text += "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    text += "'";
+  }
+  return text;
+}
+
 void check_count(const Command& command, const Arguments& arguments) {
   const std::size_t count = arguments.names.size();
   std::string message;
@@ -171,17 +191,18 @@ int dispatch(const std::vector<std::string>& words) {
     return exit_ok;
   }
   if (first == "--version") {
-    std::cout << "unfurl " << UNFURL_VERSION << "\n";
+    std::cout << "unfurl " << version() << "\n";
     return exit_ok;
   }
   if (first.starts_with("-")) throw UsageError("a command comes first, then its options; see unfurl --help");
   const Command& command = find_command(first);
-  const Parsed parsed = parse(command, {words.begin() + 1, words.end()});
+  Parsed parsed = parse(command, {words.begin() + 1, words.end()});
   if (parsed.help) {
     std::cout << command_help(command);
     return exit_ok;
   }
   check_count(command, parsed.arguments);
+  parsed.arguments.command = typed(words);
   return command.run(parsed.arguments);
 }
 

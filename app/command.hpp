@@ -35,6 +35,7 @@ struct ViewArguments {
 
 // What the command line says, the same for every verb.
 struct Arguments {
+  std::string command;                 // all of it, as it was typed
   std::vector<std::string> names;      // the words behind the verb: SCENE NAME...
   std::vector<std::string> overrides;  // --set
   std::string output;                  // -o; empty: not given
@@ -48,6 +49,7 @@ struct Arguments {
   bool markdown = false;  // --markdown, of list keys
   double ui_scale = 0;    // --ui-scale of the window; 0: the monitor's
   int threads = 0;        // 0: as many as the machine has
+  bool gpu = false;       // --gpu: draw on the graphics processor
   std::string style;      // --style, of figures; empty: screen
   double dpi = 0;         // --dpi, of figures; 0: the style's
   StudyArguments study;
@@ -81,5 +83,6 @@ int cmd_view(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 int cmd_show(const Arguments& arguments);
 int cmd_new(const Arguments& arguments);
+int cmd_completion(const Arguments& arguments);
 
 }  // namespace unfurl

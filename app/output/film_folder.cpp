@@ -9,6 +9,7 @@
 #include "core/export/checksum.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
+#include "core/text/version.hpp"
 #include "render/image/png.hpp"
 
 namespace unfurl {
@@ -43,19 +44,20 @@ std::string text_in(const nlohmann::json& record, const char* key) {
 
 }  // namespace
 
-std::string film_fingerprint(const Scene& scene) {
+std::string film_fingerprint(const Scene& scene, bool gpu) {
   Scene bare = scene;
   bare.render = without_encoding(scene.render);
   Checksum hash;
   hash.add(scene_text(bare));
   hash.add(text_of("/proc/self/exe"));  // another build may draw otherwise
-  hash.add(UNFURL_VERSION);
+  hash.add(version());
+  if (gpu) hash.add("drawn on the graphics processor");
   return hash.text();
 }
 
-FilmFolder::FilmFolder(fs::path directory, const Scene& scene)
+FilmFolder::FilmFolder(fs::path directory, const Scene& scene, bool gpu)
     : directory_(std::move(directory)),
-      fingerprint_(film_fingerprint(scene)),
+      fingerprint_(film_fingerprint(scene, gpu)),
       size_(scene.render.width, scene.render.height) {
   Checksum hash;
   hash.add(fingerprint_);
@@ -120,7 +122,7 @@ void FilmFolder::set_encoded(const std::string& film) const {
 
 void FilmFolder::forget_films() const {
   const nlohmann::ordered_json record = {
-      {"unfurl", UNFURL_VERSION}, {"fingerprint", fingerprint_}, {"films", nlohmann::json::object()}};
+      {"unfurl", version()}, {"fingerprint", fingerprint_}, {"films", nlohmann::json::object()}};
   write_file_atomically(directory_ / "film.json", record.dump(2) + "\n");
 }
 

@@ -14,11 +14,11 @@
 namespace unfurl {
 
 // Changes with everything that changes a frame: the scene, the settings of its pictures, the program.
-std::string film_fingerprint(const Scene& scene);
+std::string film_fingerprint(const Scene& scene, bool gpu = false);
 
 class FilmFolder {
  public:
-  FilmFolder(std::filesystem::path directory, const Scene& scene);
+  FilmFolder(std::filesystem::path directory, const Scene& scene, bool gpu = false);
 
   // Are there frames of another film, or of one that is not known? Then nothing may be added to them.
   bool holds_another() const;

@@ -12,6 +12,7 @@
 
 #include "core/export/checksum.hpp"
 #include "core/scene/text_file.hpp"
+#include "core/text/version.hpp"
 
 namespace unfurl {
 
@@ -114,7 +115,7 @@ void WrittenFiles::read() {
 }
 
 void WrittenFiles::write_anew(bool was_empty) {
-  if (title_.empty()) title_ = (was_empty ? made : written_into) + std::string(UNFURL_VERSION);
+  if (title_.empty()) title_ = (was_empty ? made : written_into) + version();
   std::string text = title_ + "\n";
   for (const auto& [name, lines] : lines_)
     for (const Line& line : lines) text += line.checksum + " " + line.owner + " " + escaped(name) + "\n";

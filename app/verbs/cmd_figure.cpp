@@ -58,7 +58,7 @@ int cmd_figure(const Arguments& arguments) {
   OwnDirectory directory(file ? "" : arguments.output, true, "figure", DirectoryLock::Use::shareable);
   if (!file) directory.lock().share();
   std::unique_ptr<GlContext> context;
-  if (!file || output.extension() == ".png") context = make_offscreen_context();
+  if (!file || output.extension() == ".png") context = make_offscreen_context({0, arguments.gpu});
 
   const InterruptGuard guard;
   Simulation run = simulate_scene(scene, std::move(model), arguments);

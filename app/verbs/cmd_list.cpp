@@ -14,6 +14,7 @@
 #include "core/scene/elements.hpp"
 #include "core/scene/key_tables.hpp"
 #include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
 #include "core/structures/family.hpp"
 #include "core/text/nearest_name.hpp"
 #include "core/text/wrapped.hpp"
@@ -55,6 +56,7 @@ std::vector<Item> figure_items() {
 std::vector<Item> scene_items() {
   std::vector<Item> items;
   for (const auto& scene : library_scenes()) items.push_back({scene.name, scene.title, nullptr});
+  if (items.empty()) throw UnreadableScene(no_library());
   return items;
 }
 

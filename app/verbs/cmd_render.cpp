@@ -23,7 +23,7 @@ int cmd_render(const Arguments& arguments) {
   OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
   const std::filesystem::path& directory = output.path();
   DirectoryLock& lock = output.lock();
-  const FilmFolder folder(directory, scene);
+  const FilmFolder folder(directory, scene, arguments.gpu);
   if (folder.holds_another() && !arguments.force)
     throw FileError(directory,
                     "holds frames of another film (the scene, its settings or the program changed); "
@@ -33,8 +33,8 @@ int cmd_render(const Arguments& arguments) {
   if (!arguments.frames.empty()) frame_range(arguments.frames, 100000);
   if (folder.fresh()) folder.claim();  // others may join before the simulation ends
   if (folder.holds_this()) lock.share();
-  const auto context =
-      make_offscreen_context(arguments.threads);  // missing graphics are found before the work
+  const auto context = make_offscreen_context(
+      {arguments.threads, arguments.gpu});  // missing graphics are found before the work
 
   const InterruptGuard guard;
   std::optional<FinishedWork> keeping(std::in_place);  // of a motion that is interrupted too
@@ -44,7 +44,7 @@ int cmd_render(const Arguments& arguments) {
   folder.claim();
   lock.share();
   const std::string summary = write_data(directory, scene, run, diagnostics);
-  write_exports(formats, directory, scene, run, diagnostics);
+  write_exports(formats, directory, scene, run, diagnostics, arguments);
   keeping.reset();
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary << std::flush;

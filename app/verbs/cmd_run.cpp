@@ -43,7 +43,7 @@ int cmd_run(const Arguments& arguments) {
   const Diagnostics diagnostics = judge_run(run);
   if (!directory.empty() && !film) output.written().remove_all();
   const std::string summary = write_data(directory, scene, run, diagnostics);
-  write_exports(formats, directory, scene, run, diagnostics);
+  write_exports(formats, directory, scene, run, diagnostics, arguments);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary;
   return exit_code_of(run, diagnostics);

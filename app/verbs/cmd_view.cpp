@@ -19,7 +19,7 @@ namespace {
 // The panel without a window; what was left open the last time is not looked at.
 struct OffscreenPanel {
   OffscreenPanel(SceneDocument document, const Arguments& arguments, int width, int height)
-      : context(make_offscreen_context(arguments.threads)),
+      : context(make_offscreen_context({arguments.threads, arguments.gpu})),
         panel(*context, std::move(document), options_of(arguments, width, height)) {}
 
   static PanelOptions options_of(const Arguments& arguments, int width, int height) {

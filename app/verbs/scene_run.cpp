@@ -82,10 +82,13 @@ std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments) {
 }
 
 void write_exports(const std::vector<const ExportFormat*>& formats, const std::filesystem::path& directory,
-                   const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
+                   const Scene& scene, const Simulation& run, const Diagnostics& diagnostics,
+                   const Arguments& arguments) {
+  const std::string text = scene_text(scene);
   const double interval = scene.render.speed / scene.render.fps;
   for (const ExportFormat* format : formats)
-    format->write({run, diagnostics, directory, scene.name, interval, scene.render.speed});
+    format->write({run, diagnostics, directory, scene.name, interval, scene.render.speed, scene.title, text,
+                   arguments.command});
 }
 
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {

@@ -32,7 +32,8 @@ std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments);
 
 // The run in these formats, beside the data in the directory.
 void write_exports(const std::vector<const ExportFormat*>& formats, const std::filesystem::path& directory,
-                   const Scene& scene, const Simulation& run, const Diagnostics& diagnostics);
+                   const Scene& scene, const Simulation& run, const Diagnostics& diagnostics,
+                   const Arguments& arguments);
 
 // A few lines for a person on stderr; nothing where `quiet` was asked for.
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments);

@@ -12,6 +12,7 @@
 #include "core/export/checksum.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
+#include "core/text/version.hpp"
 #include "render/plot/figure_data.hpp"
 
 namespace unfurl {
@@ -54,8 +55,7 @@ std::vector<fs::path> journals_like(const std::string& journal, const fs::path& 
 std::string study_identity(const std::string& what, const Scene& scene) {
   Checksum build;
   build.add(read_text_file("/proc/self/exe").text);
-  return "# " + what + ", by unfurl " + UNFURL_VERSION + " (build " + build.text() + ")\n" +
-         scene_text(scene);
+  return "# " + what + ", by unfurl " + version() + " (build " + build.text() + ")\n" + scene_text(scene);
 }
 
 void require_identity(const fs::path& directory, const std::string& identity, const std::string& cure) {

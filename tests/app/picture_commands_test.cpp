@@ -98,9 +98,21 @@ TEST_CASE("Ctrl-C while drawing keeps the finished frames") {
   CHECK(fs::exists(dir / "out/summary.json"));
 }
 
-TEST_CASE("without OSMesa pictures end before the work, SVG and data do not need it") {
+TEST_CASE("EGL draws the same pixels as OSMesa, and steps in where that is missing") {
   const ScratchDirectory dir;
-  const ProgramOptions missing{.environment = {"UNFURL_OSMESA=libNoSuchThing.so"}};
+  const std::vector<std::string> poster = {"poster", "hoop6_sector", "--size", "480x270", "--quiet", "-o"};
+  const ProgramOptions osmesa{.environment = {"UNFURL_GL=osmesa"}}, egl{.environment = {"UNFURL_GL=egl"}},
+      none{.environment = {"UNFURL_OSMESA=libNoSuchThing.so"}};
+  REQUIRE(run_program(with(poster, {dir / "osmesa.png"}), osmesa).code == 0);
+  REQUIRE(run_program(with(poster, {dir / "egl.png"}), egl).code == 0);
+  REQUIRE(run_program(with(poster, {dir / "none.png"}), none).code == 0);
+  CHECK(file_text(dir / "osmesa.png") == file_text(dir / "egl.png"));
+  CHECK(file_text(dir / "osmesa.png") == file_text(dir / "none.png"));
+}
+
+TEST_CASE("without OSMesa and EGL pictures end before the work, SVG and data do not need it") {
+  const ScratchDirectory dir;
+  const ProgramOptions missing{.environment = {"UNFURL_OSMESA=libNoSuchThing.so", "UNFURL_EGL=libNoSuch.so"}};
   const ProgramResult r = run_program({"render", "hoop6", "-o", dir / "out"}, missing);
   CHECK(r.code == 6);
   CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);

@@ -110,6 +110,69 @@ TEST_CASE("NPY arrays hold the trajectory in C order") {
   for (std::size_t k = 0; k < 9; ++k) CHECK(values[7 * 9 + k] == x[static_cast<Index>(k)]);
 }
 
+namespace {
+
+// The JSON between the two tags of a page, and an array of it as numbers.
+nlohmann::json data_of(const std::string& page) {
+  const std::string begin = "<script id=\"data\" type=\"application/json\">";
+  const std::size_t from = page.find(begin) + begin.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+std::vector<float> unpacked(const nlohmann::json& text) {
+  static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned bits = 0;
+  int count = 0;
+  for (const char c : text.get<std::string>()) {
+    if (c == '=') break;
+    bits = bits << 6U | static_cast<unsigned>(digits.find(c));
+    count += 6;
+    if (count >= 8) bytes += static_cast<char>(bits >> static_cast<unsigned>(count -= 8) & 255U);
+  }
+  return as<float>(bytes);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a page holds the motion at its frames, the forces, the curves and the words, and nothing from "
+    "elsewhere") {
+  const Exported e("html");
+  const std::string page = e.text("viewer.html");
+  const auto data = data_of(page);
+  // 1 s of motion with a frame every 0.1 s; steps of 0.05 s, so that every frame is a state.
+  REQUIRE(data["frames"] == 11);
+  const auto positions = unpacked(data["positions"]), forces = unpacked(data["forces"]);
+  REQUIRE(positions.size() == 11 * 9);
+  REQUIRE(forces.size() == 11 * 2);
+  for (std::size_t k = 0; k < 11; ++k) {
+    const VectorXd x = e.run.trajectory.positions(2 * k);
+    // 2^-24 of single precision, of coordinates up to 2 m.
+    for (std::size_t i = 0; i < 9; ++i)
+      CHECK(std::abs(positions[9 * k + i] - x[static_cast<Index>(i)]) < 2.4e-7);
+    for (std::size_t r = 0; r < 2; ++r) {
+      const double force = e.diagnostics.axial_force(static_cast<Index>(2 * k), static_cast<Index>(r));
+      CHECK(std::abs(forces[2 * k + r] - force) < 2e-7 * std::abs(force) + 1e-30);
+    }
+  }
+  CHECK(data["rods"][1][4] == "AB");
+  CHECK(data["columns"].size() == e.diagnostics.columns.size());
+  CHECK(unpacked(data["columns"][0]["values"]).size() == unpacked(data["times"]).size());
+  CHECK(page.find("http") == std::string::npos);
+  CHECK(page.find("@DATA@") == std::string::npos);
+}
+
+TEST_CASE("words in a page cannot leave their place") {
+  const Exported e("html");
+  const std::string evil = "</script><script>alert(1)</script> & \xff";
+  find_export_format("html")->write({e.run, e.diagnostics, e.directory, "swing", 0.1, 2.0, evil, evil, evil});
+  const std::string page = e.text("viewer.html");
+  CHECK(page.find("alert(1)</script>") == std::string::npos);
+  CHECK(page.find("<title>&lt;/script&gt;") != std::string::npos);
+  CHECK(data_of(page)["scene"].get<std::string>().starts_with("</script><script>alert(1)</script> & "));
+}
+
 TEST_CASE("long tables have a row per state and member") {
   const Exported e("csv");
   const std::string nodes = e.text("csv/nodes.csv"), rods = e.text("csv/rods.csv");
