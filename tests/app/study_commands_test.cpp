@@ -237,7 +237,7 @@ TEST_CASE("reproduce holds what the paper claims, in a page that stands alone") 
   const std::string html = file_text(dir / "out/report.html");
   CHECK(html.find("src=\"data:image/png;base64,") != std::string::npos);
   CHECK(html.find("src=\"figures/") == std::string::npos);
-  CHECK(lines(file_text(dir / "out/runs.csv")) == 21);
+  CHECK(lines(file_text(dir / "out/runs.csv")) == 17);
 }
 
 }  // namespace study_commands_test
