@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/structures/custom.hpp"
-#include "core/structures/name_index.hpp"
+#include "core/text/name_index.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {

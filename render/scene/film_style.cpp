@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/scene/scene_error.hpp"
-#include "core/structures/name_index.hpp"
+#include "core/text/name_index.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/structures/name_index.hpp"
+#include "core/text/name_index.hpp"
 
 namespace unfurl {
 
