@@ -26,7 +26,7 @@ import time
 from collections import defaultdict
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-WORK = os.path.join(ROOT, "build", "mutation")
+WORK = os.path.join(ROOT, "build", "mutation")  # and the seed
 RELEASE = os.path.join(ROOT, "build", "release")  # where the tests were built
 
 # (kind, line, why): errors that no test can see, because nothing that is computed depends on them.
@@ -225,7 +225,7 @@ def core_files(root):
 
 
 def same_core():
-    """Whether the sources of the last draw are those of the tree."""
+    """Whether the sources of the draw are those of the tree."""
     source = os.path.join(WORK, "source")
     digest = lambda root: {f: hashlib.sha1(open(os.path.join(root, f), "rb").read()).digest() for f in core_files(root)}
     return os.path.exists(source) and digest(source) == digest(ROOT)
@@ -305,7 +305,7 @@ def build(mutants):
 
 def compiled(seed, n):
     """The errors drawn from a seed, compiled in and linked."""
-    known = os.path.join(WORK, f"{seed}.dropped")
+    known = os.path.join(WORK, "dropped")
     dropped = {tuple(error) for error in json.load(open(known))} if os.path.exists(known) else set()
     while True:
         mutants = draw(seed, n, dropped)
@@ -333,16 +333,28 @@ class Tests:
         listed = run([self.program, "--list-test-names-only", "-v", "high"]).stdout
         self.tests = [Test(name, place) for name, place in re.findall(r"^(.+)\t@.*?/tests/\w+/(\w+).*$", listed, re.M)]
         self.tests.append(Test(RANDOM, "integrators"))
+        known, stamp = os.path.join(WORK, "reach.json"), os.path.getmtime(self.program)
+        before = json.load(open(known)) if os.path.exists(known) else {}
+        if before.get("stamp") != stamp:
+            before = {"stamp": stamp}
         for test in self.tests:
-            begin = cpu_of_children()
-            if self.run([test], -1, 600)[0]:
-                print(f"left out, as it fails without any error: {test.name}", flush=True)
-                test.reached = None
-            else:
-                test.seconds = cpu_of_children() - begin
-                test.reached = {int(k) for k in open(os.path.join(WORK, "reached")).read().split()}
-        self.tests = [t for t in self.tests if t.reached is not None]
+            if test.name not in before:
+                before[test.name] = self.look(test)
+                json.dump(before, open(known, "w"))
+        for test in self.tests:
+            if before[test.name] is not None:
+                test.seconds, test.reached = before[test.name][0], set(before[test.name][1])
+        self.tests = [t for t in self.tests if before[t.name] is not None]
         print(f"{len(self.tests)} tests, {sum(t.seconds for t in self.tests):.0f} s", flush=True)
+
+    def look(self, test):
+        """Its time and what it passes by; None where it fails as it is."""
+        begin = cpu_of_children()
+        if self.run([test], -1, 600)[0]:
+            print(f"left out, as it fails without any error: {test.name}", flush=True)
+            return None
+        reached = [int(k) for k in open(os.path.join(WORK, "reached")).read().split()]
+        return [cpu_of_children() - begin, reached]
 
     def run(self, tests, k, seconds):
         """What fails of these tests with error k switched on, and how; '' if nothing."""
@@ -421,29 +433,40 @@ def main():
     words.add_argument("--resume", action="store_true")
     words.add_argument("--again", action="store_true")
     given = words.parse_args()
+    global WORK
+    table, WORK = os.path.join(WORK, f"{given.seed}.tsv"), os.path.join(WORK, str(given.seed))
     os.makedirs(WORK, exist_ok=True)
     os.nice(10)
     print(f"seed {given.seed}", flush=True)
-    table, results = os.path.join(WORK, f"{given.seed}.tsv"), {}
+    results = {}
     if given.resume or given.again:
         if not same_core():
             sys.exit("core is not what it was: begin anew, without --resume or --again")
         results = {k: v for k, v in read_table(table).items() if v or not given.again}
     else:
         snapshot()
-        for left in (table, os.path.join(WORK, f"{given.seed}.dropped")):
+        for left in (table, os.path.join(WORK, "dropped")):
             if os.path.exists(left):
                 os.remove(left)
-    mutants = compiled(given.seed, given.n)
-    if set(mutants) - set(results):
+    try_all(compiled(given.seed, given.n), results, table)
+
+
+def try_all(mutants, results, table):
+    """The folders in turn, so that a run that is interrupted has looked at all of them."""
+    open_ones = sorted(set(mutants) - set(results), key=lambda k: (mutants_before(mutants, k), k))
+    if open_ones:
         tests = Tests()
-    for k, (path, line, kind, change) in mutants.items():
-        if k in results:
-            continue
+    for k in open_ones:
+        path, line, kind, _ = mutants[k]
         results[k], passing = tests.verdict(k, path)
         print(f"{path}:{line + 1} {kind}: {results[k] or f'SURVIVES {passing} tests'}", flush=True)
         write_table(table, mutants, results)
-    report(mutants, results, given.seed)
+    report(mutants, results, os.path.basename(table)[:-4])
+
+
+def mutants_before(mutants, k):
+    """How many of the same folder were drawn earlier: 10000 numbers are a folder's."""
+    return sum(1 for other in mutants if other // 10000 == k // 10000 and other < k)
 
 
 def report(mutants, results, seed):
