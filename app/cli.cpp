@@ -150,25 +150,6 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   return parsed;
 }
 
-// For a shell to take again.
-std::string typed(const std::vector<std::string>& words) {
-  std::string text = "unfurl";
-  for (const std::string& word : words) {
-    const bool plain = !word.empty() && word.find_first_not_of(
-                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                            "0123456789_-+=./:,@%") == std::string::npos;
-    text += " ";
-    if (plain) {
-      text += word;
-      continue;
-    }
-    text += "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    text += "'";
-  }
-  return text;
-}
-
 void check_count(const Command& command, const Arguments& arguments) {
   const std::size_t count = arguments.names.size();
   std::string message;
@@ -202,7 +183,7 @@ int dispatch(const std::vector<std::string>& words) {
     return exit_ok;
   }
   check_count(command, parsed.arguments);
-  parsed.arguments.command = typed(words);
+  parsed.arguments.words = words;
   return command.run(parsed.arguments);
 }
 

@@ -23,6 +23,8 @@ struct StudyArguments {
   std::string measure;                // --measure NAME,NAME
   std::string shard;                  // --shard I/N
   std::vector<std::string> merge;     // --merge DIR
+  std::string script;                 // --script NAME
+  int jobs = 16;                      // --jobs N, of the script
   std::string find, target, between;  // --find KEY --target NAME=VALUE --between LOW:HIGH
 };
 
@@ -35,7 +37,7 @@ struct ViewArguments {
 
 // What the command line says, the same for every verb.
 struct Arguments {
-  std::string command;                 // all of it, as it was typed
+  std::vector<std::string> words;      // all of it, from the verb on
   std::vector<std::string> names;      // the words behind the verb: SCENE NAME...
   std::vector<std::string> overrides;  // --set
   std::string output;                  // -o; empty: not given
@@ -43,6 +45,7 @@ struct Arguments {
   int poses = 5;                       // --poses
   std::vector<std::string> exports;    // --export, split at commas
   bool force = false;
+  bool encode_only = false;  // --encode-only
   bool quiet = false;
   bool json = false;
   bool all = false;       // --all, of show

@@ -13,10 +13,12 @@ constexpr Command table[] = {
      "unfurl run my.toml -o data --tolerance 1e-8 --export vtk,npy\n"
      "unfurl run hoop6 -o data --export html"},
     {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
-     "-o --set --tolerance --export --frames --style --dpi --size --fps --look --supersample --transparent "
+     "-o --set --tolerance --export --frames --encode-only --style --dpi --size --fps --look --supersample "
+     "--transparent "
      "--force --threads --gpu --json --quiet",
      "unfurl render hoop6 -o film\n"
-     "unfurl render hoop6 -o film --size 640x360 --look space --frames 0:20"},
+     "unfurl render hoop6 -o film --size 640x360 --look space --frames 0:20\n"
+     "unfurl render hoop6 -o film --size 640x360 --look space --encode-only"},
     {"figure", "SCENE NAME... -o FILE",
      "one figure, PNG, SVG or PDF by extension; NAME all: every figure, into a directory", 2, 100, true,
      cmd_figure, "-o --set --tolerance --style --dpi --gpu --quiet",
@@ -31,7 +33,8 @@ constexpr Command table[] = {
      "unfurl stress hoop6 --extreme mass_ratio -o stress"},
     {"sweep", "SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR",
      "measures of the scene over a grid of parameters", 1, 1, true, cmd_sweep,
-     "-o --set --tolerance --vary --measure --shard --merge --style --dpi --force --threads --quiet",
+     "-o --set --tolerance --vary --measure --shard --merge --script --jobs --style --dpi --force --threads "
+     "--quiet",
      "unfurl sweep hoop6_sector --vary structure.fold_angle=30:85:12 --measure deploy_time -o sweep"},
     {"solve", "SCENE --find KEY --target NAME=VALUE [-o DIR]",
      "the parameter for which a measure takes a value", 1, 1, false, cmd_solve,

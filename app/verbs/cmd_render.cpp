@@ -50,6 +50,11 @@ int cmd_render(const Arguments& arguments) {
   if (arguments.json) std::cout << summary << std::flush;
   if (exit_code_of(run, diagnostics) == exit_interrupted) return exit_interrupted;
 
+  if (arguments.encode_only) {
+    require_all_frames(folder, scene, run, arguments);
+    return encode_films(directory, folder, scene, run, arguments) ? exit_code_of(run, diagnostics)
+                                                                  : exit_interrupted;
+  }
   FigureWriter writer(*context, style);
   if (!draw_frames(folder, scene, run, diagnostics, *context, arguments) ||
       !write_figures(directory / "figures", all_figures(), run, diagnostics, writer, arguments) ||

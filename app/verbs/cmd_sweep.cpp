@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl sweep SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR: measures over a grid of parameters.
 #include <algorithm>
+#include <cstdlib>
+#include <iostream>
 #include <utility>
 
 #include "app/command.hpp"
 #include "app/output/interrupt.hpp"
+#include "app/verbs/cluster.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/study_session.hpp"
 #include "core/export/atomic_file.hpp"
@@ -31,7 +34,7 @@ SweepPlan plan_of(const Arguments& arguments) {
     else if (!name.empty())
       plan.measures.push_back(find_measure(std::exchange(name, ""), columns));
   }
-  if (!arguments.study.shard.empty()) plan.shard = parse_shard(arguments.study.shard);
+  if (!arguments.study.shard.empty()) plan.shard = parse_shard(shard_of(arguments.study.shard));
   check_plan(plan);
   return plan;
 }
@@ -84,6 +87,33 @@ std::vector<fs::path> journals_in(const std::vector<std::string>& directories, c
   return found;
 }
 
+// Of how many shares these directories hold journals: the largest number in their names, 1 where none says.
+int shares_in(const std::vector<std::string>& directories) {
+  int count = 1;
+  for (const auto& directory : directories)
+    for (const auto& path : journals_like("sweep.csv", directory)) {
+      const std::string name = path.stem().string();
+      const std::size_t at = name.find("_of_");
+      if (at != std::string::npos) count = std::max(count, std::atoi(name.c_str() + at + 4));
+    }
+  return count;
+}
+
+// The commands that compute what a merged sweep lacks.
+std::string cure(const SweepPlan& plan, const Sweep& sweep, const Arguments& arguments) {
+  const int count = shares_in(arguments.study.merge);
+  SweepPlan part = plan;
+  std::vector<int> lacking;
+  for (int i = 1; i <= count; ++i) {
+    part.shard = {i, count};
+    const auto points = points_of_shard(part);
+    if (std::any_of(sweep.missing.begin(), sweep.missing.end(),
+                    [&](std::size_t m) { return std::binary_search(points.begin(), points.end(), m); }))
+      lacking.push_back(i);
+  }
+  return "; these compute the others:" + missing_shards(arguments, lacking, count);
+}
+
 Sweep compute(const SweepPlan& plan, const StudySession& session, const StudyHooks& hooks,
               const Arguments& arguments, const std::string& identity) {
   try {
@@ -100,18 +130,23 @@ Sweep compute(const SweepPlan& plan, const StudySession& session, const StudyHoo
 
 int cmd_sweep(const Arguments& arguments) {
   const SweepPlan plan = plan_of(arguments);
+  if (!arguments.study.script.empty()) {
+    std::cout << job_script(arguments);
+    return exit_ok;
+  }
   const Scene scene = scene_of(arguments);
   const InterruptGuard guard;
   const std::string name = identity(scene, plan);
   StudySession session(arguments, "sweeping", name, journal_name(plan.shard));
   const Sweep sweep = compute(plan, session, session.hooks(), arguments, name);
+  for (const std::string& conflict : sweep.conflicts) std::cerr << "unfurl: warning: " << conflict << "\n";
   session.write(journal_name(plan.shard), csv_text(sweep.table));
   const std::size_t bad = unanswered(plan, sweep);
   const std::string count = std::to_string(sweep.table.rows.size()) + " points in " +
                             (session.directory() / journal_name(plan.shard)).string() +
                             (bad > 0 ? ", " + std::to_string(bad) + " of them without an answer" : "") +
                             not_unique(plan, sweep);
-  if (plan.shard.count > 1) return finish(sweep.missing == 0, arguments, count);
+  if (plan.shard.count > 1) return finish(sweep.missing.empty(), arguments, count);
   std::vector<std::string> pictures;
   for (const Figure& figure : sweep_figures(plan, sweep, title_of(scene, plan)))
     pictures.push_back(session.write(figure));
@@ -120,11 +155,11 @@ int cmd_sweep(const Arguments& arguments) {
   for (const auto& picture : pictures) report.picture(picture, picture);
   if (sweep.table.rows.size() <= 1000) report.add(sweep.table);
   session.write("sweep.md", report_markdown(report));
-  if (sweep.missing > 0 && !arguments.study.merge.empty())
-    throw FileError(session.directory(), std::to_string(sweep.missing) + " of " +
-                                             std::to_string(plan.points()) +
-                                             " points are missing; what there is was merged");
-  return finish(sweep.missing == 0, arguments, count);
+  if (!sweep.missing.empty() && !arguments.study.merge.empty())
+    throw FileError(session.directory(),
+                    std::to_string(sweep.missing.size()) + " of " + std::to_string(plan.points()) +
+                        " points are missing; what there is was merged" + cure(plan, sweep, arguments));
+  return finish(sweep.missing.empty(), arguments, count);
 }
 
 }  // namespace unfurl

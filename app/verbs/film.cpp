@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/command_line.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/progress.hpp"
 #include "app/verbs/frame_range.hpp"
@@ -49,6 +50,25 @@ void check_film(const Scene& scene) {
 bool has_alpha(const RenderOptions& options) {
   const Look* look = find_look(options.look);
   return options.transparent || (look != nullptr && look->transparent);
+}
+
+void require_all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
+                        const Arguments& arguments) {
+  const std::size_t frames = film_shots(run.trajectory, scene.render).size();
+  std::vector<std::string> again = without_option(arguments.words, "--frames");
+  std::erase(again, "--encode-only");
+  std::string commands;
+  std::size_t missing = 0;
+  for (std::size_t k = 0; k < frames; ++k) {
+    if (folder.finished(k)) continue;
+    const std::size_t first = k;
+    while (k < frames && !folder.finished(k)) ++k;
+    missing += k - first;
+    commands += "\n  " + as_typed(again) + " --frames " + std::to_string(first) + ":" + std::to_string(k);
+  }
+  if (missing > 0)
+    throw FileError(folder.frame(0).parent_path(), std::to_string(missing) + " of " + std::to_string(frames) +
+                                                       " frames are missing; these draw them:" + commands);
 }
 
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,

@@ -25,6 +25,10 @@ bool has_alpha(const RenderOptions& options);
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
                  const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments);
 
+// Throws FileError with the commands that draw what is missing.
+void require_all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
+                        const Arguments& arguments);
+
 // Makes animation.webp, animation.gif and, where ffmpeg is, animation.mp4 in the directory, once all frames
 // of the film are there; a note on stderr where they are not. Stops at Ctrl-C; returns whether it did not.
 bool encode_films(const std::filesystem::path& directory, const FilmFolder& folder, const Scene& scene,

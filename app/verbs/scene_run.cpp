@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/verbs/scene_run.hpp"
 
+#include "app/command_line.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -84,11 +86,11 @@ std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments) {
 void write_exports(const std::vector<const ExportFormat*>& formats, const std::filesystem::path& directory,
                    const Scene& scene, const Simulation& run, const Diagnostics& diagnostics,
                    const Arguments& arguments) {
-  const std::string text = scene_text(scene);
+  const std::string text = scene_text(scene), command = as_typed(arguments.words);
   const double interval = scene.render.speed / scene.render.fps;
   for (const ExportFormat* format : formats)
-    format->write({run, diagnostics, directory, scene.name, interval, scene.render.speed, scene.title, text,
-                   arguments.command});
+    format->write(
+        {run, diagnostics, directory, scene.name, interval, scene.render.speed, scene.title, text, command});
 }
 
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {

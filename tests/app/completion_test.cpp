@@ -84,8 +84,7 @@ TEST_CASE("the manual page is sound troff") {
 TEST_CASE("another shell is refused by name") {
   const ProgramResult r = run_program({"completion", "bsh"});
   CHECK(r.code == 2);
-  CHECK(r.err ==
-        "unfurl: no completion for 'bsh'; did you mean 'bash'?\n");
+  CHECK(r.err == "unfurl: no completion for 'bsh'; did you mean 'bash'?\n");
 }
 
 }  // namespace completion_test

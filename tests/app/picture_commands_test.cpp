@@ -71,6 +71,24 @@ TEST_CASE("render writes data, frames, an animation and every figure twice") {
   CHECK(fs::exists(dir / "out/trajectory.csv"));
 }
 
+TEST_CASE(
+    "frames drawn in parts are joined by --encode-only, which names what is missing and draws nothing") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> film = with({"render"}, with(small, {"-o", dir / "out"}));
+  REQUIRE(run_program(with(film, {"--frames", "0:1"})).code == 0);
+  const ProgramResult lacking = run_program(with(film, {"--encode-only"}));
+  CHECK(lacking.code == 5);
+  CHECK(lacking.err.find("2 of 3 frames are missing; these draw them:\n  unfurl render ") !=
+        std::string::npos);
+  CHECK(lacking.err.find(" --frames 1:3\n") != std::string::npos);
+  CHECK(files_in(dir / "out/frames").size() == 1);
+  REQUIRE(run_program(with(film, {"--frames", "1:3"})).code == 0);
+  fs::remove(dir / "out/animation.webp");
+  const ProgramResult joined = run_program(with(film, {"--encode-only"}));
+  CHECK(joined.code == 0);
+  CHECK(fs::exists(dir / "out/animation.webp"));
+}
+
 TEST_CASE("frames of an earlier, longer film do not survive") {
   const ScratchDirectory dir;
   const auto command = with({"render"}, with(small, {"-o", dir / "out"}));
