@@ -134,9 +134,16 @@ void add_study_options(CLI::App& parser, StudyArguments& study) {
 
 void add_view_options(CLI::App& parser, ViewArguments& view) {
   parser.add_option("--picture", view.picture);
-  parser.add_option("--at", view.at)->check(within(0, 1e9, false));
   parser.add_flag("--dark", view.dark);
   parser.add_flag("--bench", view.bench);
+}
+
+// A time of the motion; `modes` takes words too, and reads them itself.
+void add_time_option(CLI::App& parser, const Command& command, Arguments& arguments) {
+  if (command.name == "modes")
+    parser.add_option("--at", arguments.at);
+  else
+    parser.add_option("--at", arguments.view.at)->check(within(0, 1e9, false));
 }
 
 Parsed parse(const Command& command, const std::vector<std::string>& words) {
@@ -149,6 +156,7 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.add_option("--set", a.overrides)->allow_extra_args(false);
   parser.add_option("-o,--output", a.output);
   parser.add_option("--frames", a.frames);
+  add_time_option(parser, command, a);
   parser.add_option("--poses", a.poses)->check(within(1, 20, true));
   std::vector<std::string> short_keys;
   add_short_cuts(parser, short_keys);

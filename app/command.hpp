@@ -48,6 +48,7 @@ struct Arguments {
   bool markdown = false;  // --markdown, of list keys
   double ui_scale = 0;    // --ui-scale of the window; 0: the monitor's
   int threads = 0;        // 0: as many as the machine has
+  std::string at;         // --at, of modes: SECONDS of the motion, start, end or deployed; empty: start
   std::string style;      // --style, of figures; empty: screen
   double dpi = 0;         // --dpi, of figures; 0: the style's
   StudyArguments study;
@@ -80,6 +81,7 @@ int cmd_reproduce(const Arguments& arguments);
 int cmd_view(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 int cmd_show(const Arguments& arguments);
+int cmd_modes(const Arguments& arguments);
 int cmd_new(const Arguments& arguments);
 
 }  // namespace unfurl

@@ -24,7 +24,7 @@ constexpr OwnOption rows[] = {
     {"--target", "NAME=VALUE", "the measure (unfurl list measures) and what it shall be"},
     {"--between", "LOW:HIGH", "look for the key between these (default: around its value in the scene)"},
     {"--picture", "FILE.png", "no window: the panel as it opens, as large as --size says"},
-    {"--at", "SECONDS", "of the motion: where it stands at first"},
+    {"--at", "SECONDS", "of the motion: the pose; modes takes start, end and deployed too (start)"},
     {"--dark", "", "light text on a dark ground"},
     {"--bench", "", "no person: frames per second, where their time goes, and the price of idling"},
     {"--frames", "A:B", "only the frames A to B - 1 of the film, so that several machines can share one"},
