@@ -12,6 +12,7 @@
 #include "core/diagnostics/peaks.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "core/math/largest.hpp"
+#include "core/text/version.hpp"
 
 namespace unfurl {
 
@@ -122,7 +123,7 @@ Json strength_json(const Structure& structure, const Diagnostics& diagnostics) {
 std::string summary_json(const std::string& scene_name, const Simulation& run, const Diagnostics& diagnostics,
                          const Mobility& mobility) {
   const Model& model = run.trajectory.model();
-  Json summary = {{"unfurl", UNFURL_VERSION}, {"scene", scene_name}, {"status", to_string(run.status)}};
+  Json summary = {{"unfurl", version()}, {"scene", scene_name}, {"status", to_string(run.status)}};
   summary["message"] = run.message;
   summary["warnings"] = run.warnings;
   for (const auto& warning : accuracy_warnings(run, diagnostics)) summary["warnings"].push_back(warning);

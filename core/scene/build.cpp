@@ -7,9 +7,9 @@
 #include "core/scene/size_limits.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/structures/family.hpp"
-#include "core/structures/name_index.hpp"
 #include "core/system/consistency.hpp"
 #include "core/system/fit_lengths.hpp"
+#include "core/text/name_index.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/structure/structure_error.hpp"
-#include "core/structures/name_index.hpp"
+#include "core/text/name_index.hpp"
 
 namespace unfurl {
 

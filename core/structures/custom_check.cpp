@@ -6,7 +6,7 @@
 
 #include "core/structure/structure_error.hpp"
 #include "core/structures/custom.hpp"
-#include "core/structures/name_index.hpp"
+#include "core/text/name_index.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {

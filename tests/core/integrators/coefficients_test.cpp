@@ -131,18 +131,10 @@ TEST_CASE("generalized-alpha is the published recursion, for every rho_inf") {
   const std::string scene = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [0.01, 0, 0]
-mass = 1.3
-[[structure.nodes]]
-name = "L"
-position = [-1, 0, 0]
-fixed = true
-[[structure.nodes]]
-name = "R"
-position = [1, 0, 0]
-fixed = true
+nodes = [
+  {name = "A", position = [0.01, 0, 0], mass = 1.3},
+  {name = "L", position = [-1, 0, 0], fixed = true},
+  {name = "R", position = [1, 0, 0], fixed = true}]
 [[forces]]
 kind = "spring"
 nodes = ["A", "L"]

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/structures/assembly.hpp"
+
+#include <catch2/catch.hpp>
+#include <functional>
+
+#include "core/system/system.hpp"
+#include "tests/support/family_structure.hpp"
+
+using namespace unfurl;
+
+namespace assembly_test {
+
+namespace {
+
+// Four nodes far from the origin and from every plane of coordinates, a massless pin m of the first rod and c
+// the point that divides it.
+Assembly started() {
+  Assembly a;
+  a.node("p", {1.3, -0.7, 2.1}, 1.0);
+  a.node("q", {2.9, 0.6, 1.2}, 1.0);
+  a.node("r", {1.1, 0.9, 1.9}, 1.0);
+  a.node("s", {3.1, -1.0, 1.4}, 1.0);  // r + s = p + q: the rods pq and rs cross at their middles
+  a.node("m", {2.1, -0.05, 1.65});
+  a.node("c", {1.3 + 0.3 * 1.6, -0.7 + 0.3 * 1.3, 2.1 - 0.3 * 0.9});
+  return a;
+}
+
+}  // namespace
+
+TEST_CASE("what an assembly constrains holds where its nodes are, and nowhere beside it") {
+  const Vec3 n = Vec3(2, -1, 2) / 3;
+  struct Case {
+    const char* what;
+    std::function<void(Assembly&)> add;
+    int node;  // to be moved
+    Vec3 out;  // of what is held
+  };
+  for (const Case& c :
+       {Case{"fix", [](Assembly& a) { a.fix(0); }, 0, Vec3(0.1, 0, 0)},
+        Case{"plane", [&](Assembly& a) { a.plane(1, n); }, 1, 0.1 * n},
+        Case{"line", [&](Assembly& a) { a.line(2, n); }, 2, 0.1 * n.unitOrthogonal()},
+        Case{"relation",
+             [&](Assembly& a) {
+               a.relation("sum", {0, 3}, {n, 0.7 * Vec3::UnitX()});
+             },
+             3, Vec3(0.1, 0, 0)},
+        Case{"point of a rod", [](Assembly& a) { a.point_of_rod(5, 0, 1, 0.3); }, 5, Vec3(0, 0.1, 0)},
+        Case{"middles", [](Assembly& a) { a.pin_middles(4, 0, 1, 2, 3); }, 3, Vec3(0, 0, 0.1)},
+        Case{"coplanar",
+             [](Assembly& a) {
+               a.coplanar({0, 1, 2, 3}, "face");
+             },
+             3, Vec3(0.3, 0.2, 0.5)}}) {
+    INFO(c.what);
+    Assembly a = started();
+    c.add(a);
+    for (const int i : {4, 5}) a.structure.nodes[static_cast<std::size_t>(i)].mass = 0.1;
+    const System system(a.structure, false);
+    VectorXd q = testing::start_positions(a.structure), phi(system.all_constraints());
+    REQUIRE(phi.size() >= 1);
+    system.all_constraint_values(0, q, phi);
+    CHECK(phi.lpNorm<Eigen::Infinity>() <= 1e-15);  // sums of a few numbers of some metres
+    q.segment<3>(3 * c.node) += c.out;
+    system.all_constraint_values(0, q, phi);
+    CHECK(phi.lpNorm<Eigen::Infinity>() >= 0.01);
+  }
+}
+
+}  // namespace assembly_test
