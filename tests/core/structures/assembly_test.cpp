@@ -71,4 +71,18 @@ TEST_CASE("what an assembly constrains holds where its nodes are, and nowhere be
   }
 }
 
+TEST_CASE("what is shown as solved is shown once, however often that is said") {
+  Assembly a = started();
+  a.rod(0, 1, (a.position(1) - a.position(0)).norm(), 1.0, "rod", 0.01);
+  a.load(2, {0.1, 0.2, 0.3});
+  for (int times = 0; times < 2; ++times) {
+    show_as_solved(a.structure);
+    REQUIRE(a.structure.node_copies.size() == 6);
+    CHECK(a.structure.rod_copies.size() == 1);
+    CHECK(a.structure.load_copies.size() == 1);
+    CHECK(whole_positions(a.structure, testing::start_positions(a.structure)) ==
+          testing::start_positions(a.structure));
+  }
+}
+
 }  // namespace assembly_test
