@@ -8,13 +8,14 @@
 #include <sstream>
 
 #include "app/command.hpp"
-#include "app/failure.hpp"
 #include "app/help.hpp"
-#include "app/interrupt.hpp"
+#include "app/output/failure.hpp"
+#include "app/output/interrupt.hpp"
+#include "app/output/printable_output.hpp"
 #include "app/own_options.hpp"
-#include "app/printable_output.hpp"
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
+#include "core/text/version.hpp"
 
 namespace unfurl {
 
@@ -41,36 +42,11 @@ void refuse_unknown_options(const CLI::App& parser) {
   }
 }
 
-// Options that are short for a key of the scene. `flag`: without a value, sets it to true.
-struct ShortCut {
-  const char *option, *key;
-  bool flag = false;
-};
-constexpr ShortCut short_cuts[] = {{"--size", "render.size"},
-                                   {"--fps", "render.fps"},
-                                   {"--look", "render.look"},
-                                   {"--supersample", "render.supersample"},
-                                   {"--transparent", "render.transparent", true},
-                                   {"--tolerance", "solver.tolerance"}};
-
 // WIDTHxHEIGHT as the list that the key wants; anything else stays, for the key's own message.
 std::string list_of_size(const std::string& text) {
   const std::size_t cross = text.find('x');
   if (cross == std::string::npos || text.find_first_not_of("0123456789x") != std::string::npos) return text;
   return "[" + text.substr(0, cross) + ", " + text.substr(cross + 1) + "]";
-}
-
-void add_short_cuts(CLI::App& parser, std::vector<std::string>& overrides) {
-  for (const ShortCut& s : short_cuts) {
-    const std::string key = s.key;
-    if (s.flag) {
-      parser.add_flag_callback(s.option, [key, &overrides] { overrides.push_back(key + "=true"); });
-      continue;
-    }
-    parser.add_option_function<std::string>(s.option, [key, &overrides](const std::string& value) {
-      overrides.push_back(key + "=" + (key == "render.size" ? list_of_size(value) : value));
-    });
-  }
 }
 
 // A number that an option takes, in words of our own.
@@ -101,12 +77,14 @@ struct Parsed {
 
 // Two ways to say the same key: one of them would be silently over the other.
 void refuse_doubled_keys(const CLI::App& parser, const std::vector<std::string>& overrides) {
-  for (const ShortCut& s : short_cuts)
-    if (parser.count(s.option) > 0)
-      for (const auto& text : overrides)
-        if (text.starts_with(std::string(s.key) + "="))
-          throw UsageError(std::string(s.option) + " and --set " + s.key +
-                           " say the same key: give one of them");
+  for (const OwnOption& own : own_options()) {
+    const auto* target = std::get_if<ShortKey>(&own.target);
+    if (!target || parser.count(std::string(own.name)) == 0) continue;
+    const std::string key(target->key);
+    for (const auto& text : overrides)
+      if (text.starts_with(key + "="))
+        throw UsageError(std::string(own.name) + " and --set " + key + " say the same key: give one of them");
+  }
 }
 
 // An option of another verb.
@@ -116,28 +94,38 @@ void refuse_foreign_options(const CLI::App& parser, const Command& command) {
       throw UsageError("unfurl " + std::string(command.name) + " has no option " + in_quotes(own.name));
 }
 
-void add_study_options(CLI::App& parser, StudyArguments& study) {
-  parser.add_option("--steps", study.ladder);
-  parser.add_option("--repeats", study.repeats)->check(within(1, 1000, true));
-  parser.add_option("--methods", study.methods)->allow_extra_args(false)->delimiter(',');
-  parser.add_flag("--models", study.models);
-  parser.add_flag("--validation", study.validation);
-  parser.add_option("--extreme", study.extremes)->allow_extra_args(false);
-  parser.add_option("--vary", study.vary)->allow_extra_args(false);
-  parser.add_option("--measure", study.measure);
-  parser.add_option("--shard", study.shard);
-  parser.add_option("--merge", study.merge)->allow_extra_args(false);
-  parser.add_option("--find", study.find);
-  parser.add_option("--target", study.target);
-  parser.add_option("--between", study.between);
-}
+// `short_keys`: where options that are short for a key of the scene put it.
+struct Adder {
+  CLI::App& parser;
+  const OwnOption& own;
+  Arguments& arguments;
+  std::vector<std::string>& short_keys;
 
-void add_view_options(CLI::App& parser, ViewArguments& view) {
-  parser.add_option("--picture", view.picture);
-  parser.add_option("--at", view.at)->check(within(0, 1e9, false));
-  parser.add_flag("--dark", view.dark);
-  parser.add_flag("--bench", view.bench);
-}
+  std::string name() const { return own.name == "-o" ? "-o,--output" : std::string(own.name); }
+
+  void operator()(const ShortKey& target) const {
+    const std::string key(target.key);
+    if (own.value.empty()) {
+      parser.add_flag_callback(name(), [key, &to = short_keys] { to.push_back(key + "=true"); });
+      return;
+    }
+    parser.add_option_function<std::string>(name(), [key, &to = short_keys](const std::string& value) {
+      to.push_back(key + "=" + (key == "render.size" ? list_of_size(value) : value));
+    });
+  }
+  void operator()(bool& (*to)(Arguments&)) const { parser.add_flag(name(), to(arguments)); }
+  void operator()(int& (*to)(Arguments&)) const {
+    parser.add_option(name(), to(arguments))->check(within(own.low, own.high, true));
+  }
+  void operator()(double& (*to)(Arguments&)) const {
+    parser.add_option(name(), to(arguments))->check(within(own.low, own.high, false));
+  }
+  void operator()(std::string& (*to)(Arguments&)) const { parser.add_option(name(), to(arguments)); }
+  void operator()(std::vector<std::string>& (*to)(Arguments&)) const {
+    CLI::Option* list = parser.add_option(name(), to(arguments))->allow_extra_args(false);
+    if (own.value.ends_with(",...")) list->delimiter(',');
+  }
+};
 
 Parsed parse(const Command& command, const std::vector<std::string>& words) {
   Parsed parsed;
@@ -146,25 +134,9 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   parser.set_help_flag();
   parser.allow_extras();
   parser.add_option("names", a.names);
-  parser.add_option("--set", a.overrides)->allow_extra_args(false);
-  parser.add_option("-o,--output", a.output);
-  parser.add_option("--frames", a.frames);
-  parser.add_option("--poses", a.poses)->check(within(1, 20, true));
   std::vector<std::string> short_keys;
-  add_short_cuts(parser, short_keys);
-  parser.add_option("--export", a.exports)->allow_extra_args(false)->delimiter(',');
-  parser.add_flag("--force", a.force);
-  parser.add_flag("--quiet", a.quiet);
-  parser.add_flag("--json", a.json);
-  parser.add_flag("--all", a.all);
-  parser.add_flag("--markdown", a.markdown);
-  parser.add_option("--threads", a.threads)->check(within(1, 1024, true));
-  parser.add_option("--style", a.style);
-  parser.add_option("--dpi", a.dpi)->check(within(20, 2400, false));
-  parser.add_option("--ui-scale", a.ui_scale)->check(within(0.5, 4, false));
+  for (const OwnOption& own : own_options()) std::visit(Adder{parser, own, a, short_keys}, own.target);
   parser.add_flag("-h,--help", parsed.help);
-  add_study_options(parser, a.study);
-  add_view_options(parser, a.view);
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
@@ -200,17 +172,18 @@ int dispatch(const std::vector<std::string>& words) {
     return exit_ok;
   }
   if (first == "--version") {
-    std::cout << "unfurl " << UNFURL_VERSION << "\n";
+    std::cout << "unfurl " << version() << "\n";
     return exit_ok;
   }
   if (first.starts_with("-")) throw UsageError("a command comes first, then its options; see unfurl --help");
   const Command& command = find_command(first);
-  const Parsed parsed = parse(command, {words.begin() + 1, words.end()});
+  Parsed parsed = parse(command, {words.begin() + 1, words.end()});
   if (parsed.help) {
     std::cout << command_help(command);
     return exit_ok;
   }
   check_count(command, parsed.arguments);
+  parsed.arguments.words = words;
   return command.run(parsed.arguments);
 }
 

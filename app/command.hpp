@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The verbs of the program. To add one: cmd_NAME.cpp and a row in command_table.cpp.
+// The verbs of the program. To add one: verbs/cmd_NAME.cpp and a row in command_table.cpp.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/exit_code.hpp"
+#include "app/output/exit_code.hpp"
 
 namespace unfurl {
 
@@ -23,18 +23,20 @@ struct StudyArguments {
   std::string measure;                // --measure NAME,NAME
   std::string shard;                  // --shard I/N
   std::vector<std::string> merge;     // --merge DIR
+  std::string script;                 // --script NAME
+  int jobs = 16;                      // --jobs N, of the script
   std::string find, target, between;  // --find KEY --target NAME=VALUE --between LOW:HIGH
 };
 
 // What only the window takes.
 struct ViewArguments {
   std::string picture;               // --picture FILE: draw the panel into it, without a window
-  double at = -1;                    // --at SECONDS of the motion; < 0: where it begins
   bool dark = false, bench = false;  // --dark, --bench
 };
 
 // What the command line says, the same for every verb.
 struct Arguments {
+  std::vector<std::string> words;      // all of it, from the verb on
   std::vector<std::string> names;      // the words behind the verb: SCENE NAME...
   std::vector<std::string> overrides;  // --set
   std::string output;                  // -o; empty: not given
@@ -42,12 +44,15 @@ struct Arguments {
   int poses = 5;                       // --poses
   std::vector<std::string> exports;    // --export, split at commas
   bool force = false;
+  bool encode_only = false;  // --encode-only
   bool quiet = false;
   bool json = false;
   bool all = false;       // --all, of show
   bool markdown = false;  // --markdown, of list keys
   double ui_scale = 0;    // --ui-scale of the window; 0: the monitor's
   int threads = 0;        // 0: as many as the machine has
+  bool gpu = false;       // --gpu: draw on the graphics processor
+  std::string at;         // --at SECONDS of the motion, of modes also a word; empty: where it begins
   std::string style;      // --style, of figures; empty: screen
   double dpi = 0;         // --dpi, of figures; 0: the style's
   StudyArguments study;
@@ -80,6 +85,8 @@ int cmd_reproduce(const Arguments& arguments);
 int cmd_view(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 int cmd_show(const Arguments& arguments);
+int cmd_modes(const Arguments& arguments);
 int cmd_new(const Arguments& arguments);
+int cmd_completion(const Arguments& arguments);
 
 }  // namespace unfurl

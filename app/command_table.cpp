@@ -10,15 +10,18 @@ constexpr Command table[] = {
      "-o --set --tolerance --export --size --fps --look --supersample --transparent --force --json --quiet",
      "unfurl run hoop6 -o data\n"
      "unfurl run hoop6 -o data --set structure.units=12 --set solver.step=0.005\n"
-     "unfurl run my.toml -o data --tolerance 1e-8 --export vtk,npy"},
+     "unfurl run my.toml -o data --tolerance 1e-8 --export vtk,npy\n"
+     "unfurl run hoop6 -o data --export html"},
     {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
-     "-o --set --tolerance --export --frames --style --dpi --size --fps --look --supersample --transparent "
-     "--force --threads --json --quiet",
+     "-o --set --tolerance --export --frames --encode-only --style --dpi --size --fps --look --supersample "
+     "--transparent "
+     "--force --threads --gpu --json --quiet",
      "unfurl render hoop6 -o film\n"
-     "unfurl render hoop6 -o film --size 640x360 --look space --frames 0:20"},
+     "unfurl render hoop6 -o film --size 640x360 --look space --frames 0:20\n"
+     "unfurl render hoop6 -o film --size 640x360 --look space --encode-only"},
     {"figure", "SCENE NAME... -o FILE",
      "one figure, PNG, SVG or PDF by extension; NAME all: every figure, into a directory", 2, 100, true,
-     cmd_figure, "-o --set --tolerance --style --dpi --quiet",
+     cmd_figure, "-o --set --tolerance --style --dpi --gpu --quiet",
      "unfurl figure hoop6 energy -o energy.pdf --style single-column\n"
      "unfurl figure hoop6 all -o figures"},
     {"study", "SCENE -o DIR", "speed against accuracy: every method over a ladder of steps", 1, 1, true,
@@ -30,7 +33,8 @@ constexpr Command table[] = {
      "unfurl stress hoop6 --extreme mass_ratio -o stress"},
     {"sweep", "SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR",
      "measures of the scene over a grid of parameters", 1, 1, true, cmd_sweep,
-     "-o --set --tolerance --vary --measure --shard --merge --style --dpi --force --threads --quiet",
+     "-o --set --tolerance --vary --measure --shard --merge --script --jobs --style --dpi --force --threads "
+     "--quiet",
      "unfurl sweep hoop6_sector --vary structure.fold_angle=30:85:12 --measure deploy_time -o sweep"},
     {"solve", "SCENE --find KEY --target NAME=VALUE [-o DIR]",
      "the parameter for which a measure takes a value", 1, 1, false, cmd_solve,
@@ -41,13 +45,20 @@ constexpr Command table[] = {
      "unfurl reproduce -o paper\n"
      "unfurl reproduce --validation -o validation"},
     {"poster", "SCENE -o FILE.png", "a strip of poses side by side, from start to end", 1, 1, true,
-     cmd_poster, "-o --set --tolerance --poses --size --look --supersample --transparent --threads --quiet",
+     cmd_poster,
+     "-o --set --tolerance --poses --size --look --supersample --transparent --threads --gpu --quiet",
      "unfurl poster hoop6 -o poster.png --size 960x540 --poses 4"},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
      1, 1, false, cmd_check, "--set --json", "unfurl check bricard"},
+    {"modes", "SCENE [-o DIR]",
+     "free motions and natural frequencies at a pose; elastic where rods have a youngs_modulus", 1, 1, false,
+     cmd_modes, "-o --set --at --style --dpi --force --json --quiet",
+     "unfurl modes hoop6 --set structure.youngs_modulus=7e10 --set structure.model=joints\n"
+     "unfurl modes hoop6 --at deployed --set solver.at_deployed=latch --set structure.youngs_modulus=7e10 "
+     "-o modes"},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
      "--set --tolerance --picture --at --dark --bench --ui-scale --size --fps --look --supersample "
-     "--transparent --threads",
+     "--transparent --threads --gpu",
      "unfurl view hoop6 --picture window.png --at 4.6"},
     {"list", "WHAT [TABLE]",
      "what there is to choose from: structures, methods, figures, scenes, constraints, forces, looks, "
@@ -61,6 +72,10 @@ constexpr Command table[] = {
      "--set --all --size --fps --look --supersample --transparent",
      "unfurl show hoop6\n"
      "unfurl show hoop6 --set structure.units=12 > twelve.toml"},
+    {"completion", "SHELL", "print a completion script for bash, zsh or fish, or the manual page: man", 1, 1,
+     false, cmd_completion, "",
+     "unfurl completion bash > ~/.local/share/bash-completion/completions/unfurl\n"
+     "unfurl completion man | man -l -"},
     {"new", "KIND", "print a commented scene of a kind (unfurl list structures), to begin your own from", 1,
      1, false, cmd_new, "",
      "unfurl new custom > mine.toml\n"

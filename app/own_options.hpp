@@ -1,19 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every option. To add one: a row in own_options.cpp, its name at the rows of the verbs that take it in
-// command_table.cpp, and where it goes in cli.cpp.
+// Every option. To add one: a row in own_options.cpp and its name at the rows of the verbs that take it in
+// command_table.cpp.
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 #include "app/command.hpp"
 
 namespace unfurl {
 
+// A key of the scene that the option is short for; without a value it sets it to true.
+struct ShortKey {
+  std::string_view key;
+};
+
+// Where the value goes.
+using OptionTarget =
+    std::variant<ShortKey, bool& (*)(Arguments&), int& (*)(Arguments&), double& (*)(Arguments&),
+                 std::string& (*)(Arguments&), std::vector<std::string>& (*)(Arguments&)>;
+
 struct OwnOption {
   std::string_view name;   // "--steps"
-  std::string_view value;  // "LARGEST:SMALLEST"; empty: a flag
+  std::string_view value;  // "LARGEST:SMALLEST", a list at commas where it ends in ",..."; empty: a flag
   std::string_view help;
+  OptionTarget target;
+  double low = 0, high = 0;  // range of a number
 };
 
 std::span<const OwnOption> own_options();

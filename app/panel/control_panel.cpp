@@ -12,9 +12,9 @@
 #include "app/panel/panes/panes.hpp"
 #include "app/panel/shortcuts.hpp"
 #include "render/gl/graphics_error.hpp"
-#include "render/plot/imgui_canvas.hpp"
 #include "render/plot/style.hpp"
 #include "render/ui/fonts.hpp"
+#include "render/ui/imgui_canvas.hpp"
 
 namespace unfurl {
 

@@ -13,8 +13,8 @@
 #include <thread>
 #include <tuple>
 
-#include "app/exit_code.hpp"
-#include "app/interrupt.hpp"
+#include "app/output/exit_code.hpp"
+#include "app/output/interrupt.hpp"
 #include "app/panel/control_panel.hpp"
 #include "app/panel/panel_bench.hpp"
 #include "app/window/desktop_scale.hpp"

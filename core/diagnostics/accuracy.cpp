@@ -9,12 +9,16 @@
 #include "core/integrators/integrator.hpp"
 #include "core/integrators/stage_equations.hpp"
 #include "core/math/largest.hpp"
+#include "core/structures/hoop_joints.hpp"
 
 namespace unfurl {
 namespace {
 
 // Shares of the energy turned over and of a rod's length beyond which a motion is wrong to the eye.
 constexpr double energy_share = 1e-3, length_share = 1e-3;
+
+// Of a chord rod's length: it enters the time of deployment squared, as some 1e-7 s.
+constexpr double uneven_share = 1e-3;
 
 // The energies of a run but for their balance; the first is the kinetic energy.
 std::vector<const Series*> energies(const Diagnostics& d) {
@@ -59,6 +63,12 @@ class BalanceError {
   double lowest_ = 0, off_ = 0;
 };
 
+double deployed_at(const Simulation& run) {
+  for (const Event& event : run.events)
+    if (event.name == "deployed") return event.t;
+  return std::numeric_limits<double>::infinity();
+}
+
 // The longest beginning that can be trusted, and why it is not longer.
 struct GoodPart {
   std::size_t states = 0;
@@ -80,6 +90,7 @@ GoodPart good_part(const Simulation& run, const Diagnostics& d) {
   std::ostringstream why;
   why.precision(3);
   BalanceError error(damps(run));
+  const double even_until = driven_evenly(run.trajectory.structure()) ? deployed_at(run) : -1;
   for (std::size_t i = 0; i < judged; ++i) {
     if (!finite(run, d, i)) {
       if (part.states == i) why << "the state is not finite any more";
@@ -88,6 +99,16 @@ GoodPart good_part(const Simulation& run, const Diagnostics& d) {
     if (!(stretch.values[i] <= trusted_share)) {
       if (part.states == i)
         why << "constraints are violated by " << 100 * stretch.values[i] << " % of a rod's length";
+      break;
+    }
+    if (d.t[i] <= even_until &&
+        unevenness(run.trajectory.structure(), run.trajectory.node_positions(i)) > uneven_share) {
+      if (part.states == i)
+        why << "the ring, whose units are driven alike, opens unevenly: round-off has grown to "
+            << 100 * uneven_share
+            << " % of a rod's length and decides when it deploys; structure.model = \"full\" or \"sector\" "
+               "keeps it "
+               "even, structure.perturbed_unit says what disturbs it";
       break;
     }
     error.add(balance.values[i]);

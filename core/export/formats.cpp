@@ -18,6 +18,11 @@ std::span<const ExportFormat> export_formats() {
                    export_csv},
       ExportFormat{"npy", "NumPy arrays: npy/positions_m.npy [steps, nodes, 3] and others", "npy",
                    export_npy},
+      ExportFormat{"mat", "MATLAB and Octave: run.mat (level 5), the same arrays and the series", "run.mat",
+                   export_mat},
+      ExportFormat{"html",
+                   "a page to share: viewer.html, the structure turns in any browser, without a network",
+                   "viewer.html", export_html},
   };
   return rows;
 }

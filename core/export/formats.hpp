@@ -18,6 +18,7 @@ struct ExportJob {
   std::string_view name;             // of the scene: what single files are called
   double frame_interval = 1.0 / 30;  // between key frames of animations, in seconds of motion
   double speed = 1.0;                // seconds of motion per second of animation
+  std::string_view title = {}, scene = {}, command = {};  // what made the run, for pages that say it
 };
 
 struct ExportFormat {
@@ -36,5 +37,7 @@ void export_vtk(const ExportJob& job);   // core/export/vtk.cpp
 void export_gltf(const ExportJob& job);  // core/export/gltf.cpp
 void export_csv(const ExportJob& job);   // core/export/csv.cpp
 void export_npy(const ExportJob& job);   // core/export/npy.cpp
+void export_mat(const ExportJob& job);   // core/export/mat.cpp
+void export_html(const ExportJob& job);  // core/export/html.cpp
 
 }  // namespace unfurl

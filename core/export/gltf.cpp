@@ -12,6 +12,7 @@
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
 #include "core/export/unit_shapes.hpp"
+#include "core/text/version.hpp"
 
 namespace unfurl {
 namespace {
@@ -25,7 +26,7 @@ class Glb {
   Json json;
 
   Glb() {
-    json["asset"] = {{"version", "2.0"}, {"generator", "Unfurl " UNFURL_VERSION}};
+    json["asset"] = {{"version", "2.0"}, {"generator", "Unfurl " + version()}};
     json["scene"] = 0;
     for (const char* key : {"scenes", "nodes", "materials", "meshes"}) json[key] = Json::array();
     for (const char* key : {"accessors", "bufferViews"}) json[key] = Json::array();

@@ -3,10 +3,10 @@
 
 #include <stdexcept>
 
+#include "core/integrators/carried_sum.hpp"
 #include "core/integrators/full_newton.hpp"
 #include "core/integrators/stage_equations.hpp"
 #include "core/math/saddle_solver.hpp"
-#include "core/math/twofold.hpp"
 
 namespace unfurl {
 namespace {
@@ -20,9 +20,10 @@ constexpr Index full_newton_unknowns = 2500;
 constexpr int max_frozen_iterations = 30;
 constexpr int slow_iterations = 8;
 // Weak modes: what the level accepts of a constraint's error, divided by the smallest singular value, may
-// move the structure by this share of the motion of the step; else the step is solved with care. Singular
-// values above `strong` are never looked at.
-constexpr double harmless = 1e-8, harmless_in_large = 1e-6, strong = 1e-3;
+// move the structure by this share of the motion of the step; else the step is solved with care: errors grow
+// where a motion is unstable, in a ring of joints a thousandfold while it opens. Singular values above
+// `strong` are never looked at.
+constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool is_small(const System& system, int stages) {
@@ -31,7 +32,7 @@ bool is_small(const System& system, int stages) {
 
 class Dvm final : public Integrator {
  public:
-  Dvm(const System& system, const SolverOptions& options)
+  Dvm(const System& system, const SolverOptions& options, bool careful = false)
       : system_(system),
         c_(options.nodes, options.stages),
         eq_(system, c_, options.constraints_at == "ends"),
@@ -45,7 +46,7 @@ class Dvm final : public Integrator {
     previous_.setZero(n, c_.s - 1);
     consistent_f_.setZero(n, c_.s - 1);
     y_to_lambda_.setZero(c_.s - 1, c_.s - 1);
-    for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_, &rest_, &solved_z_}) v->setZero(n);
+    for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_}) v->setZero(n);
     end_q_.setZero(system.coordinates());
     for (VectorXd* v : {&mu_, &rate_}) v->setZero(m);
     pose_.setZero(system.coordinates());
@@ -53,6 +54,7 @@ class Dvm final : public Integrator {
     if (eq_.at_ends) analyse_mass();
     small_ = is_small(system, c_.s);
     if (!small_) left_constraint_ = 1000.0;
+    harmless_ = careful ? 0 : small_ ? harmless : harmless_in_large;
     restart();
   }
 
@@ -129,9 +131,10 @@ class Dvm final : public Integrator {
   bool stiff_ = false;    // forces are too stiff at this step for an iteration that knows nothing of them
   bool frozen_ = false;   // saddle_ holds a factorisation near the present pose
 
-  double needed_pivot_ = 0;   // of the weakest mode, for this step to do without care
-  bool tight_ = false;        // this step is solved with care for weak modes
-  VectorXd rest_, solved_z_;  // what rounding took from the last step's end, z [m]
+  double harmless_ = harmless;
+  double needed_pivot_ = 0;  // of the weakest mode, for this step to do without care
+  bool tight_ = false;       // this step is solved with care for weak modes
+  CarriedSum carried_;
 };
 
 void Dvm::analyse_mass() {
@@ -195,8 +198,8 @@ bool Dvm::needs_care() {
   const double motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
   const double reach =
       std::max(eq_.start_pose().lpNorm<Eigen::Infinity>(), system_.constraint_lengths().maxCoeff());
-  const double needed = saddle_.motion_of_error() * constraint_noise(reach, reach) /
-                        ((small_ ? harmless : harmless_in_large) * std::max(motion, 1e-300));
+  const double needed =
+      saddle_.motion_of_error() * constraint_noise(reach, reach) / std::max(harmless_ * motion, 1e-300);
   needed_pivot_ = std::pow(std::min(needed, strong), 2);
   if (needed > 1) {  // so small a motion that every error shows
     saddle_.weakest_pivot(needed_pivot_);
@@ -447,18 +450,11 @@ void Dvm::finish(State& state, double h, StepReport& report) {
 // z_1 = z_0 + dX. In steps with care what rounding takes from the sum is added to the next one: near a dead
 // centre the motion so far may be a thousand ulp of the coordinates.
 void Dvm::arrive(State& state) {
-  const auto dz = eq_.dX.col(c_.s - 2);
-  if (!tight_) {
-    state.z += dz;
-    return;
-  }
-  if (!(solved_z_.array() == state.z.array()).all()) rest_.setZero();
-  for (Index i = 0; i < state.z.size(); ++i) {
-    const Twofold sum = Twofold::sum(state.z[i], dz[i] + rest_[i]);
-    state.z[i] = sum.hi;
-    rest_[i] = sum.lo;
-  }
-  solved_z_ = state.z;
+  end_z_ = eq_.dX.col(c_.s - 2);
+  if (tight_)
+    carried_.add(end_z_, state.z);
+  else
+    state.z += end_z_;
 }
 
 }  // namespace
@@ -484,6 +480,10 @@ Claims dvm_claims(const SolverOptions& options) {
 
 std::unique_ptr<Integrator> make_dvm(const System& system, const SolverOptions& options) {
   return std::make_unique<Dvm>(system, options);
+}
+
+std::unique_ptr<Integrator> make_careful_dvm(const System& system, const SolverOptions& options) {
+  return std::make_unique<Dvm>(system, options, true);
 }
 
 }  // namespace unfurl

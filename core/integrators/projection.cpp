@@ -52,29 +52,42 @@ bool Projection::needs_care(const VectorXd& z0, const VectorXd& z) {
   return saddle_.weakest_pivot(needed * needed) < needed * needed;
 }
 
-bool Projection::positions_of_weak_modes(double t0, const VectorXd& z0, double t, VectorXd& z) {
-  if (!increment_) increment_ = std::make_unique<ConstraintIncrement>(system_);
+bool Projection::increment(double t0, const VectorXd& z0, double t, VectorXd& move) {
+  force_ = z0 + move;
+  system_.expand(force_, q_);
+  system_.jacobian(q_, G_, scratch_);
+  if (!saddle_.factorise(G_)) return false;
+  saddle_.weakest_pivot(weak);
   system_.expand(z0, q_);
+  return reach(t0, t, move);
+}
+
+// The increment onto the constraints, by the present factors; q_ has the node coordinates of z_0.
+bool Projection::reach(double t0, double t, VectorXd& move) {
+  if (!increment_) increment_ = std::make_unique<ConstraintIncrement>(system_);
   increment_->start(t0, q_);
-  move_ = z - z0;
   double best = std::numeric_limits<double>::infinity();
   for (iterations_ = 0; iterations_ < max_projections; ++iterations_) {
-    increment_->evaluate(t, move_, phi_);
+    increment_->evaluate(t, move, phi_);
     force_.setZero();
     offset_ = -phi_;
     saddle_.solve(force_, offset_, x_, y_, 1);
     if (!x_.allFinite()) return false;
-    move_ += x_;
+    move += x_;
     const double size = x_.lpNorm<Eigen::Infinity>();
     if (size > 0.5 * best) break;
     best = size;
   }
-  z = z0 + move_;
   return true;
 }
 
 bool Projection::positions(double t0, const VectorXd& z0, double t, VectorXd& z) {
-  if (needs_care(z0, z)) return positions_of_weak_modes(t0, z0, t, z);
+  if (needs_care(z0, z)) {
+    move_ = z - z0;
+    const bool there = reach(t0, t, move_);
+    z = z0 + move_;
+    return there;
+  }
   double best = std::numeric_limits<double>::infinity();
   for (iterations_ = 0;; ++iterations_) {
     system_.expand(z, q_);

@@ -21,12 +21,14 @@ class Projection {
   // where that would move a weak mode by more than 1e-8 of the motion z - z0, what the motion from z0 at t0
   // changes of Phi at round-off of the motion instead.
   [[nodiscard]] bool positions(double t0, const VectorXd& z0, double t, VectorXd& z);
+  // The same for an increment of z_0 of which no digit is to be lost: always in what it changes of Phi.
+  [[nodiscard]] bool increment(double t0, const VectorXd& z0, double t, VectorXd& move);
   [[nodiscard]] bool velocities(double t, const VectorXd& z, VectorXd& w);
   int iterations() const { return iterations_; }  // of the last call of positions
 
  private:
   bool needs_care(const VectorXd& z0, const VectorXd& z);
-  bool positions_of_weak_modes(double t0, const VectorXd& z0, double t, VectorXd& z);
+  bool reach(double t0, double t, VectorXd& move);
   double level();  // of phi_: 1 is what rounding the coordinates leaves
   const System& system_;
   SparseRows G_;

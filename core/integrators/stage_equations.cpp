@@ -242,11 +242,14 @@ void StageEquations::measure_rows() {
   }
 }
 
+// p_1 = D_s S, taken as the sum over all nodes, of which the others' are zero (D_1 S = -p_0): because
+// sum_k l_k' = 0, nothing is left of the kinetic terms but p_0, and what rounding makes of the coefficients
+// does not feed the momentum step by step.
 void StageEquations::end_momentum(MutVec p1) {
-  const int last = c.s - 1;
-  f_end_.noalias() = force_ * impulse_.row(last).transpose();
+  f_end_.noalias() = force_ * impulse_.row(c.s - 1).transpose();
+  f_end_ += f_.rowwise().sum();
   system.reduce_force(f_end_, p1);
-  for (int j = 0; j < last; ++j) p1 += (c.K(last, j + 1) / h) * MdX_.col(j);
+  p1 += p0;
 }
 
 }  // namespace unfurl

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/scene/elements.hpp"
-#include "core/structures/name_index.hpp"
+#include "core/text/name_index.hpp"
 
 namespace unfurl {
 

@@ -33,10 +33,18 @@ std::string asset_folder(const std::string& kind) {
   if (const char* assets = std::getenv("UNFURL_ASSETS"); assets && *assets) roots.emplace_back(assets);
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) roots.push_back(program.parent_path().parent_path() / "share" / "unfurl");
-  roots.emplace_back(UNFURL_SOURCE_ASSETS);
+  roots.emplace_back(UNFURL_DATA);
+  // The source tree that a build lies in.
+  for (fs::path folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path())
+    if (fs::exists(folder / "core" / "scene" / "library.hpp", error)) roots.push_back(folder / "assets");
   for (const auto& root : roots)
     if (fs::is_directory(root / kind, error)) return (root / kind).string();
   return "";
+}
+
+std::string no_library() {
+  return "the scenes that come with Unfurl are not installed beside it; UNFURL_ASSETS may name the folder "
+         "that holds scenes/";
 }
 
 std::vector<LibraryScene> library_scenes() {
@@ -63,6 +71,7 @@ std::string find_scene(const std::string& scene) {
     throw UnreadableScene("cannot read scene " + scene + ": is a directory");
   const bool is_path = scene.find('/') != std::string::npos || scene.ends_with(".toml");
   if (is_path) throw UnreadableScene("cannot read scene " + scene + ": no such file");
+  if (names.empty()) throw UnreadableScene("no file " + in_quotes(scene) + ", and " + no_library());
   throw UnreadableScene("no scene " + in_quotes(scene) + ", neither a file nor a built-in one" +
                         did_you_mean(scene, names));
 }

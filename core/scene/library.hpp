@@ -7,8 +7,8 @@
 
 namespace unfurl {
 
-// The folder of a kind of asset ("scenes"): in $UNFURL_ASSETS, in ../share/unfurl beside the program, or in
-// the source tree the program was built from; the first that exists. Empty: none does.
+// The folder of a kind of asset ("scenes"): in $UNFURL_ASSETS, in ../share/unfurl beside the program, where
+// it was installed, or in the source tree that the program lies in; the first that exists. Empty: none does.
 std::string asset_folder(const std::string& kind);
 
 struct LibraryScene {
@@ -16,7 +16,8 @@ struct LibraryScene {
   std::string path;
   std::string title;  // "" where the file cannot be read
 };
-std::vector<LibraryScene> library_scenes();  // by name
+std::vector<LibraryScene> library_scenes();  // by name; none where they are not installed
+std::string no_library();                    // says so, and what to do
 
 // The file that SCENE of a command line means: the file of that name, or else the library's scene. Throws
 // UnreadableScene (reader.hpp) with the nearest name.

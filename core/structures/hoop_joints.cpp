@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/structures/hoop_joints.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "core/structures/assembly.hpp"
 #include "core/structures/ring.hpp"
 
@@ -75,7 +78,48 @@ void set_deployment(Structure& out, const HoopShape& s) {
   d.initial_fold_angle = std::atan2(s.sine, s.cosine);
 }
 
+// Do the loads of all units agree, along the axis?
+bool loaded_alike(const Structure& s) {
+  std::vector<double> force(s.nodes.size(), 0.0);
+  for (const Load& load : s.loads) {
+    if (load.force.x() != 0 || load.force.y() != 0) return false;
+    force[static_cast<std::size_t>(load.node)] += load.force.z();
+  }
+  for (std::size_t i = 4; i < force.size(); ++i)
+    if (force[i] != force[i - 4]) return false;
+  return true;
+}
+
+// Constraints that the ring has by itself, or that drive all its units as one.
+bool constrained_alike(const Structure& s) {
+  const auto alike = [](const Constraint& c) {
+    return c.kind == "coplanar" || (c.kind == "relation" && c.name.starts_with("post ")) ||
+           (c.kind == "measure" && c.measure.kind == MeasureKind::fold);
+  };
+  return !s.constraints.empty() && s.constraints.front().kind == "coplanar" &&
+         std::all_of(s.constraints.begin(), s.constraints.end(), alike);
+}
+
 }  // namespace
+
+bool driven_evenly(const Structure& s) {
+  const std::size_t n = s.nodes.size() / 4;
+  const bool ring = s.kind == "hoop" && s.nodes.size() == 4 * n && s.rods.size() == 5 * n;  // no arc
+  return ring && s.forces.empty() && s.stops.empty() && s.gravity.x() == 0 && s.gravity.y() == 0 &&
+         constrained_alike(s) && loaded_alike(s);
+}
+
+double unevenness(const Structure& s, const ConstVec& q) {
+  const std::size_t n = s.nodes.size() / 4;
+  const auto corner = [&](std::size_t k) { return q.segment<3>(static_cast<Index>(12 * (k % n))); };
+  Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()), most = -least;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Eigen::Vector2d height_and_side(corner(k).z(), (corner(k + 1) - corner(k)).norm());
+    least = least.cwiseMin(height_and_side);
+    most = most.cwiseMax(height_and_side);
+  }
+  return (most - least).maxCoeff() / s.rods.front().length;
+}
 
 Structure build_hoop_joints(const HoopShape& s) {
   Assembly a;
@@ -91,13 +135,6 @@ Structure build_hoop_joints(const HoopShape& s) {
   }
   set_deployment(a.structure, s);
   show_as_solved(a.structure);
-  // Modes in which the plan is no regular polygon grow faster than the ring opens, from the round-off of the
-  // start: 1e-16 / cos(fold) of it, which decides the motion from here on.
-  if (s.cosine < 1.7e-3)
-    a.structure.notes.push_back(
-        "so near the dead centre (fold_angle above 89.9 deg) a ring of joints does not stay even: round-off "
-        "decides "
-        "when it deploys; model = \"full\" or \"sector\" keeps it even");
   return a.structure;
 }
 

@@ -1,41 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/study/extrapolation.hpp"
 
-#include "core/simulate/initial_state.hpp"
-
 namespace unfurl {
 
 Extrapolation::Extrapolation(const System& system)
-    : system_(system), index1_(system_, true), n_(system.solved_coordinates()) {
-  for (VectorXd* v : {&y0_, &before_, &now_, &after_, &f_, &f0_}) v->setZero(2 * n_);
+    : system_(system), index1_(system_, true), n_(system.solved_coordinates()), projection_(system_) {
+  for (VectorXd* v : {&y0_, &y_, &before_, &now_, &after_, &f_, &f0_}) v->setZero(2 * n_);
   lambda_.setZero(system.constraints());
 }
 
-bool Extrapolation::rate(double t, const VectorXd& y, VectorXd& f) {
-  f.head(n_) = y.tail(n_);
-  return index1_.evaluate(t, y.head(n_), y.tail(n_), f.tail(n_), lambda_);
+bool Extrapolation::rate(double t, const VectorXd& dy, VectorXd& f) {
+  y_ = y0_ + dy;
+  f.head(n_) = y_.tail(n_);
+  return index1_.evaluate(t, y_.head(n_), y_.tail(n_), f.tail(n_), lambda_);
 }
 
-// y_1 = y_0 + h f_0,  y_{m+1} = y_{m-1} + 2 h f_m,  S = (y_n + y_{n-1} + h f_n) / 2
+// y_1 = y_0 + h f_0,  y_{m+1} = y_{m-1} + 2 h f_m,  S = (y_n + y_{n-1} + h f_n) / 2,  h = H / n. The products
+// are divided and not the step: the rounding of one h, the same in all of them, would be multiplied by the
+// extrapolation and added up by the steps.
 bool Extrapolation::midpoint(const State& state, double H, int n, VectorXd& out) {
-  const double h = H / n;
-  before_ = y0_;
-  now_ = y0_ + h * f0_;
+  before_.setZero();
+  now_ = H * f0_ / n;
   for (int m = 1; m < n; ++m) {
-    if (!rate(state.t + m * h, now_, f_)) return false;
-    after_ = before_ + 2 * h * f_;
+    if (!rate(state.t + m * H / n, now_, f_)) return false;
+    after_ = before_ + 2 * H * f_ / n;
     before_.swap(now_);
     now_.swap(after_);
   }
   if (!rate(state.t + H, now_, f_)) return false;
-  out = 0.5 * (now_ + before_ + h * f_);
+  out = 0.5 * (now_ + before_ + H * f_ / n);
   return out.allFinite();
 }
 
 bool Extrapolation::step(State& state, double H) {
   system_.follow(state);
   y0_ << state.z, state.w;
-  if (!rate(state.t, y0_, f0_)) return false;
+  before_.setZero();
+  if (!rate(state.t, before_, f0_)) return false;
   for (int j = 0; j < columns; ++j) {
     VectorXd next;
     if (!midpoint(state, H, 2 * (j + 1), next)) return false;
@@ -48,10 +49,12 @@ bool Extrapolation::step(State& state, double H) {
     }
     tableau_[j] = std::move(next);
   }
+  VectorXd dz = tableau_[columns - 1].head(n_);
+  if (!projection_.increment(state.t, state.z, state.t + H, dz)) return false;
   state.t += H;
-  state.z = tableau_[columns - 1].head(n_);
-  state.w = tableau_[columns - 1].tail(n_);
-  project(system_, state);
+  carried_.add(dz, state.z);
+  state.w += tableau_[columns - 1].tail(n_);
+  if (!projection_.velocities(state.t, state.z, state.w)) return false;
   system_.count_on(state);
   return state.z.allFinite() && state.w.allFinite();
 }

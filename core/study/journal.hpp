@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/study/table.hpp"
+#include "core/text/error.hpp"
 
 namespace unfurl {
 

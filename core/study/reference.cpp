@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/integrators/dvm.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/initial_state.hpp"
@@ -106,7 +107,7 @@ Ladder variational(const Model& model, double end, int intervals, const StudyHoo
   return {[&, end, intervals](int level) {
             SolverOptions options;
             options.stages = level % 2 ? 7 : 8;
-            const auto method = find_method("dvm")->make(model.system, options);
+            const auto method = make_careful_dvm(model.system, options);
             return solve(
                 model, [&](State& s, double h) { return method->step(s, h).ok(); }, end, intervals,
                 2 << level, hooks);

@@ -40,8 +40,8 @@ struct ReproducedScheme {
   ObservedOrder order;              // of the position error
   double deployment_time = 0;       // at h = 0.01 s; NaN: it did not deploy [s]
 };
-inline constexpr std::array reproduced_steps{0.02, 0.0125, 0.01, 0.005, 0.0025};
-inline constexpr std::size_t paper_step = 2;    // index of the paper's 0.01 s, which 0.005 s follows
+inline constexpr std::array reproduced_steps{0.02, 0.01, 0.005, 0.0025};
+inline constexpr std::size_t paper_step = 1;    // index of the paper's 0.01 s, which 0.005 s follows
 inline constexpr double comparison_step = 0.1;  // every step divides it [s]
 
 struct Check {

@@ -44,9 +44,26 @@ Sweep collect(const SweepPlan& plan, const std::vector<std::size_t>& points,
     if (const auto* found = row(i))
       sweep.table.rows.push_back(*found);
     else
-      ++sweep.missing;
+      sweep.missing.push_back(i);
   }
   return sweep;
+}
+
+// What was measured of one point twice; times differ every time.
+bool same_answer(const SweepPlan& plan, const std::vector<std::string>& a,
+                 const std::vector<std::string>& b) {
+  const std::size_t begin = plan.axes.size() + 1;
+  if (a[begin - 1] != b[begin - 1]) return false;
+  for (std::size_t m = 0; m < plan.measures.size(); ++m)
+    if (plan.measures[m].name != "cpu" && a[begin + m] != b[begin + m]) return false;
+  return true;
+}
+
+std::string point_text(const SweepPlan& plan, std::size_t point) {
+  std::string text;
+  const auto key = plan.key(point);
+  for (std::size_t a = 0; a < key.size(); ++a) text += (a ? ", " : "") + plan.axes[a].key + "=" + key[a];
+  return text;
 }
 
 // A number that tells nothing of the point's place in the grid (splitmix64: Steele, Lea, Flood 2014).
@@ -104,11 +121,25 @@ Sweep merge_sweep(const SweepPlan& plan, const std::vector<std::filesystem::path
     open.push_back(std::make_unique<Journal>(path, plan.columns(), plan.axes.size(), plan.number_columns()));
   SweepPlan whole = plan;
   whole.shard = {};
-  return collect(plan, points_of_shard(whole), [&](std::size_t i) -> const std::vector<std::string>* {
-    for (const auto& journal : open)
-      if (const auto* row = journal->find(plan.key(i))) return row;
-    return nullptr;
+  std::vector<std::string> conflicts;
+  Sweep sweep = collect(plan, points_of_shard(whole), [&](std::size_t i) {
+    const std::vector<std::string>* first = nullptr;
+    std::size_t from = 0;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      const auto* row = open[k]->find(plan.key(i));
+      if (!row) continue;
+      if (!first) {
+        first = row;
+        from = k;
+      } else if (!same_answer(plan, *first, *row)) {
+        conflicts.push_back(point_text(plan, i) + ": " + journals[from].string() + " and " +
+                            journals[k].string() + " disagree; the first was taken");
+      }
+    }
+    return first;
   });
+  sweep.conflicts = std::move(conflicts);
+  return sweep;
 }
 
 }  // namespace unfurl

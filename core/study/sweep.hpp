@@ -49,7 +49,8 @@ void check_plan(SweepPlan& plan);
 // where the parameters, each fine, make no structure.
 struct Sweep {
   Table table;
-  std::size_t missing = 0;
+  std::vector<std::size_t> missing = {};    // of the grid, ascending
+  std::vector<std::string> conflicts = {};  // points that merged journals do not agree on, in words
 };
 // Points whose run failed or whose parameters made no structure.
 std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep);

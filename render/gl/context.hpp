@@ -20,9 +20,14 @@ class GlContext {
       const = 0;  // "OSMesa, OpenGL 4.5, llvmpipe": for --version and error reports
 };
 
-// A context without a display; current on return. Draw into a Framebuffer of any size.
-// threads: how many may draw, 0 for as many as the machine has; the first context of a process decides.
-// Throws GraphicsError, naming the package to install, where there is none.
-std::unique_ptr<GlContext> make_offscreen_context(int threads = 0);
+struct Offscreen {
+  int threads = 0;   // how many may draw, 0: as many as the machine has; a process's first context decides
+  bool gpu = false;  // the graphics processor: faster, and pictures differ a little from machine to machine
+};
+
+// A context without a display; current on return. Draw into a Framebuffer of any size. OSMesa where it opens,
+// else EGL with Mesa's software renderer: the same pixels. UNFURL_GL = osmesa, egl or gpu in the environment
+// decides instead. Throws GraphicsError, naming the packages to install, where there is none.
+std::unique_ptr<GlContext> make_offscreen_context(const Offscreen& wanted = {});
 
 }  // namespace unfurl

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The offscreen backend: Mesa's software renderer, found at run time so that the program starts without it.
+// The first offscreen backend: Mesa's software renderer, found at run time so that the program starts without
+// it.
 #include <dlfcn.h>
 
 #include <array>
 #include <cstdlib>
 #include <vector>
 
-#include "render/gl/context.hpp"
+#include "render/gl/backends.hpp"
 #include "render/gl/functions.hpp"
 #include "render/gl/graphics_error.hpp"
 
@@ -29,13 +30,6 @@ const char* library_name() {
   return chosen != nullptr && *chosen != '\0' ? chosen : "libOSMesa.so.8";
 }
 
-[[noreturn]] void fail(const std::string& cause) {
-  throw GraphicsError(
-      "cannot draw: " + cause +
-      ". Install the Debian package libosmesa6 (apt-get install libosmesa6), or set UNFURL_OSMESA "
-      "to the path of an OSMesa library");
-}
-
 struct Library {
   void* handle = nullptr;
   CreateContext create = nullptr;
@@ -49,13 +43,14 @@ Library open_library() {
   const char* name = library_name();
   Library lib;
   lib.handle = dlopen(name, RTLD_NOW | RTLD_LOCAL);
-  if (lib.handle == nullptr) fail(std::string("the OSMesa library does not load: ") + dlerror());
+  if (lib.handle == nullptr)
+    throw GraphicsError(std::string("the OSMesa library does not load: ") + dlerror());
   lib.create = reinterpret_cast<CreateContext>(dlsym(lib.handle, "OSMesaCreateContextAttribs"));
   lib.make_current = reinterpret_cast<MakeCurrent>(dlsym(lib.handle, "OSMesaMakeCurrent"));
   lib.destroy = reinterpret_cast<DestroyContext>(dlsym(lib.handle, "OSMesaDestroyContext"));
   lib.find = reinterpret_cast<GetProcAddress>(dlsym(lib.handle, "OSMesaGetProcAddress"));
   if (!lib.create || !lib.make_current || !lib.destroy || !lib.find) {
-    fail(std::string(name) + " is not an OSMesa library with OpenGL 3.3");
+    throw GraphicsError(std::string(name) + " is not an OSMesa library with OpenGL 3.3");
   }
   return lib;
 }
@@ -75,7 +70,8 @@ class OsmesaContext final : public GlContext {
                                          3,
                                          0};
     context_ = lib_.create(attributes.data(), nullptr);
-    if (context_ == nullptr) fail(std::string(library_name()) + " offers no OpenGL 3.3 core context");
+    if (context_ == nullptr)
+      throw GraphicsError(std::string(library_name()) + " offers no OpenGL 3.3 core context");
     try {
       make_current();
     } catch (...) {
@@ -93,10 +89,11 @@ class OsmesaContext final : public GlContext {
 
   void make_current() override {
     if (!lib_.make_current(context_, surface_.data(), GL_UNSIGNED_BYTE, side, side)) {
-      fail(std::string(library_name()) + " refuses to make its context current");
+      throw GraphicsError(std::string(library_name()) + " refuses to make its context current");
     }
     if (const int missing = gl::load(lib_.find); missing > 0) {
-      fail(std::string(library_name()) + " lacks " + std::to_string(missing) + " functions of OpenGL 3.3");
+      throw GraphicsError(std::string(library_name()) + " lacks " + std::to_string(missing) +
+                          " functions of OpenGL 3.3");
     }
   }
 
@@ -116,9 +113,7 @@ class OsmesaContext final : public GlContext {
 
 }  // namespace
 
-std::unique_ptr<GlContext> make_offscreen_context(int threads) {
-  // Mesa's own setting, read once; 0 draws on the calling thread. What the user set stays.
-  if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads == 1 ? 0 : threads).c_str(), 0);
+std::unique_ptr<GlContext> make_osmesa_context() {
   return std::make_unique<OsmesaContext>();
 }
 

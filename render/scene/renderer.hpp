@@ -14,7 +14,7 @@
 #include "render/image/image.hpp"
 #include "render/scene/draw_list.hpp"
 #include "render/scene/renderer_bodies.hpp"
-#include "render/ui/text_overlay.hpp"
+#include "render/scene/text_overlay.hpp"
 
 namespace unfurl {
 

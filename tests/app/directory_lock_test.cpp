@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two programs and one directory.
-#include "app/directory_lock.hpp"
+#include "app/output/directory_lock.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>

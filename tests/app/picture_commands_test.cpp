@@ -71,6 +71,24 @@ TEST_CASE("render writes data, frames, an animation and every figure twice") {
   CHECK(fs::exists(dir / "out/trajectory.csv"));
 }
 
+TEST_CASE(
+    "frames drawn in parts are joined by --encode-only, which names what is missing and draws nothing") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> film = with({"render"}, with(small, {"-o", dir / "out"}));
+  REQUIRE(run_program(with(film, {"--frames", "0:1"})).code == 0);
+  const ProgramResult lacking = run_program(with(film, {"--encode-only"}));
+  CHECK(lacking.code == 5);
+  CHECK(lacking.err.find("2 of 3 frames are missing; these draw them:\n  unfurl render ") !=
+        std::string::npos);
+  CHECK(lacking.err.find(" --frames 1:3\n") != std::string::npos);
+  CHECK(files_in(dir / "out/frames").size() == 1);
+  REQUIRE(run_program(with(film, {"--frames", "1:3"})).code == 0);
+  fs::remove(dir / "out/animation.webp");
+  const ProgramResult joined = run_program(with(film, {"--encode-only"}));
+  CHECK(joined.code == 0);
+  CHECK(fs::exists(dir / "out/animation.webp"));
+}
+
 TEST_CASE("frames of an earlier, longer film do not survive") {
   const ScratchDirectory dir;
   const auto command = with({"render"}, with(small, {"-o", dir / "out"}));
@@ -98,9 +116,21 @@ TEST_CASE("Ctrl-C while drawing keeps the finished frames") {
   CHECK(fs::exists(dir / "out/summary.json"));
 }
 
-TEST_CASE("without OSMesa pictures end before the work, SVG and data do not need it") {
+TEST_CASE("EGL draws the same pixels as OSMesa, and steps in where that is missing") {
   const ScratchDirectory dir;
-  const ProgramOptions missing{.environment = {"UNFURL_OSMESA=libNoSuchThing.so"}};
+  const std::vector<std::string> poster = {"poster", "hoop6_sector", "--size", "480x270", "--quiet", "-o"};
+  const ProgramOptions osmesa{.environment = {"UNFURL_GL=osmesa"}}, egl{.environment = {"UNFURL_GL=egl"}},
+      none{.environment = {"UNFURL_OSMESA=libNoSuchThing.so"}};
+  REQUIRE(run_program(with(poster, {dir / "osmesa.png"}), osmesa).code == 0);
+  REQUIRE(run_program(with(poster, {dir / "egl.png"}), egl).code == 0);
+  REQUIRE(run_program(with(poster, {dir / "none.png"}), none).code == 0);
+  CHECK(file_text(dir / "osmesa.png") == file_text(dir / "egl.png"));
+  CHECK(file_text(dir / "osmesa.png") == file_text(dir / "none.png"));
+}
+
+TEST_CASE("without OSMesa and EGL pictures end before the work, SVG and data do not need it") {
+  const ScratchDirectory dir;
+  const ProgramOptions missing{.environment = {"UNFURL_OSMESA=libNoSuchThing.so", "UNFURL_EGL=libNoSuch.so"}};
   const ProgramResult r = run_program({"render", "hoop6", "-o", dir / "out"}, missing);
   CHECK(r.code == 6);
   CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Titles, names and paths of strangers never command a terminal or a page.
-#include "app/printable_output.hpp"
+#include "app/output/printable_output.hpp"
 
 #include <sys/stat.h>
 

@@ -97,6 +97,76 @@ TEST_CASE("shards of a sweep merge into the whole") {
   const ProgramResult missing = run_program(sweep + std::vector<std::string>{"--merge", dir / "out"});
   CHECK(missing.code == 5);
   CHECK(missing.err.find("2 of 5 points are missing") != std::string::npos);
+  // The command that computes them, to be copied: it does.
+  const std::size_t at = missing.err.find("\n  unfurl sweep ");
+  REQUIRE(at != std::string::npos);
+  CHECK(missing.err.find("--shard 2/2", at) != std::string::npos);
+  CHECK(missing.err.find("--merge", at) == std::string::npos);
+}
+
+TEST_CASE("shards that do not agree on a point are named when they are merged") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> sweep = {"sweep",     "pendulum",    "--vary", "structure.angle=20,40",
+                                          "--measure", "peak_energy", "--set",  "solver.end_time=0.3",
+                                          "-o",        dir / "out"};
+  for (const char* shard : {"1/2", "2/2"})
+    REQUIRE(run_program(sweep + std::vector<std::string>{"--shard", shard}).code == 0);
+  const std::string one = file_text(dir / "out/sweep_1_of_2.csv");
+  const std::size_t comma = one.rfind(',');
+  std::ofstream(dir / "out/sweep_1_of_7.csv") << one.substr(0, comma) + ",123.25\n";
+  const ProgramResult r = run_program(sweep + std::vector<std::string>{"--merge", dir / "out"});
+  CHECK(r.code == 0);
+  CHECK(r.err.find("sweep_1_of_7.csv disagree; the first was taken") != std::string::npos);
+  CHECK(file_text(dir / "out/sweep.csv").find("123.25") == std::string::npos);
+}
+
+TEST_CASE("a task of a job array knows its shard") {
+  const ScratchDirectory dir;
+  const auto shard = [&](const char* given, std::vector<std::string> environment) {
+    const std::string out = dir / "out";
+    fs::remove_all(out);
+    const ProgramResult r =
+        run_program({"sweep", "pendulum", "--vary", "structure.angle=10:50:5", "--measure", "end_time",
+                     "--set", "solver.end_time=0.05", "-o", out, "--shard", given, "--quiet"},
+                    {.environment = std::move(environment)});
+    if (r.code != 0) return r.err;
+    for (const auto& entry : fs::directory_iterator(out))
+      if (entry.path().extension() == ".csv") return entry.path().stem().string();
+    return std::string("nothing");
+  };
+  CHECK(shard("auto", {"SLURM_ARRAY_TASK_ID=12", "SLURM_ARRAY_TASK_MIN=8", "SLURM_ARRAY_TASK_STEP=2",
+                       "SLURM_ARRAY_TASK_COUNT=5"}) == "sweep_3_of_5");
+  CHECK(shard("auto", {"SGE_TASK_ID=7", "SGE_TASK_FIRST=1", "SGE_TASK_LAST=9", "SGE_TASK_STEPSIZE=2"}) ==
+        "sweep_4_of_5");
+  CHECK(shard("auto", {"OMPI_COMM_WORLD_RANK=1", "OMPI_COMM_WORLD_SIZE=3"}) == "sweep_2_of_3");
+  CHECK(shard("auto", {"PMI_RANK=0", "PMI_SIZE=3"}) == "sweep_1_of_3");
+  CHECK(shard("auto", {"SLURM_PROCID=2", "SLURM_NTASKS=4"}) == "sweep_3_of_4");
+  CHECK(shard("auto/6", {"PBS_ARRAY_INDEX=6"}) == "sweep_6_of_6");
+  CHECK(shard("auto", {"PBS_ARRAY_INDEX=6"}).find("--shard auto/N") != std::string::npos);
+  CHECK(shard("auto", {"SGE_TASK_ID=undefined"}).find("no job array is around") != std::string::npos);
+  CHECK(shard("automatic", {}).find("a shard is I/N, auto, or auto/N; got 'automatic'") != std::string::npos);
+  // A task beyond the number that was told has no share, and says so.
+  CHECK(shard("auto/6", {"PBS_ARRAY_INDEX=7"}).find("1 <= I <= N; got '7/6'") != std::string::npos);
+}
+
+TEST_CASE("job scripts repeat the sweep with a share for every task and end in a merge") {
+  const std::vector<std::string> sweep = {"sweep",     "pendulum",       "--vary",    "structure.angle=10,20",
+                                          "--measure", "end_time",       "--threads", "3",
+                                          "--set",     "title=\"it's\"", "-o",        "D"};
+  const auto script = [&](const char* name) {
+    return run_program(sweep + std::vector<std::string>{"--script", name, "--jobs", "5"}).out;
+  };
+  const std::string same =
+      "unfurl sweep pendulum --vary structure.angle=10,20 --measure end_time --set 'title=\"it'\\''s\"' -o D";
+  CHECK(script("slurm").find("#SBATCH --array=1-5\n") != std::string::npos);
+  CHECK(script("slurm").find("\nexec " + same + " --shard auto/5 --threads 1 --quiet\n") !=
+        std::string::npos);
+  CHECK(script("parallel")
+            .find("seq 5 | parallel -q --halt soon,fail=1 " + same + " --threads 1 --quiet --shard {}/5\n" +
+                  same + " --merge D\n") != std::string::npos);
+  CHECK(script("snakemake").find("expand(\"D.shard_{i}_done\", i=range(1, 6))") != std::string::npos);
+  CHECK(run_program(sweep + std::vector<std::string>{"--script", "slrm"}).err ==
+        "unfurl: no script for 'slrm'; did you mean 'slurm'?\n");
 }
 
 TEST_CASE("a sweep says how many of its points have no answer") {
@@ -237,7 +307,7 @@ TEST_CASE("reproduce holds what the paper claims, in a page that stands alone") 
   const std::string html = file_text(dir / "out/report.html");
   CHECK(html.find("src=\"data:image/png;base64,") != std::string::npos);
   CHECK(html.find("src=\"figures/") == std::string::npos);
-  CHECK(lines(file_text(dir / "out/runs.csv")) == 21);
+  CHECK(lines(file_text(dir / "out/runs.csv")) == 17);
 }
 
 }  // namespace study_commands_test

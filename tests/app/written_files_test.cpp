@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is removed and replaced: nothing but what unfurl wrote, and never outside -o.
-#include "app/written_files.hpp"
+#include "app/output/written_files.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>

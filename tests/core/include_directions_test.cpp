@@ -124,7 +124,7 @@ TEST_CASE("libraries with one door have one") {
   CHECK(doors({"stb/", "stb_"}) <= 1);
   CHECK(elsewhere({"GL/", "EGL/"}, {"render/gl/", "render/scene/renderer", "render/ui/", "app/window"}) ==
         "");
-  CHECK(elsewhere({"imgui"}, {"render/ui/", "render/plot/", "app/panel"}) == "");
+  CHECK(elsewhere({"imgui"}, {"render/ui/", "app/panel"}) == "");
 }
 
 }  // namespace include_directions_test

@@ -2,7 +2,7 @@
 // The JSON that unfurl leaves for itself: film.json beside frames, window.json of the panel.
 #include "tests/fuzz/fuzz.hpp"
 
-#include "app/film_folder.hpp"
+#include "app/output/film_folder.hpp"
 #include "app/panel/settings.hpp"
 
 using namespace unfurl;

@@ -2,17 +2,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Seeded errors: how many the tests of core find.
 
-    tests/mutation/mutate.py [SEED [N]] [--resume]
+    tests/mutation/mutate.py [SEED [N]] [--resume | --again]
 
-Draws N errors from a seed over all folders of core, no file more than a third of its folder, compiles them in
-at once, each behind a switch (tests/mutation/switch.hpp), and runs the core tests with one switched on at a
-time, the quick ones first, and 60 random mechanisms, until one fails. Errors that do not compile are dropped and others drawn. Prints
-what survived, by folder and place, and writes build/mutation/SEED.tsv, from which --resume goes on.
+Draws N errors from a seed, as many from each folder of core, no file more than a third of its folder, and compiles
+them in at once, each behind a switch (switch.hpp). Every core test, and 60 random mechanisms, is run once to see which
+errors it passes by; then an error is switched on and the tests that pass by it are run until one fails, those of
+its own folder and the quick ones first. A test that takes six times its time has failed. Errors that do not compile
+are replaced; those that cannot change a result are left out by the rules of EQUIVALENT alone. Prints what survived, by
+folder and place, and writes build/mutation/SEED.tsv: --resume goes on from there, --again tries the survivors again
+with the tests as they are now (core must be what it was).
 """
 import argparse
+import hashlib
+import json
 import os
 import random
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -20,8 +26,15 @@ import time
 from collections import defaultdict
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-WORK = os.path.join(ROOT, "build", "mutation")
+WORK = os.path.join(ROOT, "build", "mutation")  # and the seed
 RELEASE = os.path.join(ROOT, "build", "release")  # where the tests were built
+
+# (kind, changed line, why): errors that no test can see, because nothing that is computed depends on them.
+EQUIVALENT = [
+    ("dropped statement", r"\.(reserve|shrink_to_fit)\(", "only where memory comes from"),
+    ("swap", r"(min|max|hypot|larger|dot)(<[\w:]+>)?\(unfurl_mutation::on\(@\) \?", "the order says nothing"),
+    ("factor 2", r"twice\(@\) \* !?[\w:.]+(\([^()]*\))? \?", "twice what is true is true"),
+]
 
 
 # --- where errors can be put -------------------------------------------------------------------------------
@@ -153,39 +166,52 @@ def candidates():
                 for kind, change in sites(line):
                     if kind == "dropped statement" and not (before == "" or before[-1] in ";{})" or before.endswith("else")):
                         continue
-                    here.append((i, kind, change))
+                    if not any(kind == k and re.search(rule, change("@")) for k, rule, _ in EQUIVALENT):
+                        here.append((i, kind, change))
             found[os.path.relpath(path, os.path.join(WORK, "source"))] = here
     return found
 
 
+def in_turn(seed, folder, files, at_most):
+    """The errors of a folder in the order of the seed: number, (path, line, kind, change); those that are taken,
+    which is sent back, are one to a line and at most so many a file."""
+    dice = random.Random(f"{seed} {folder}")
+    used, lines, number = defaultdict(int), set(), 0
+    while files:
+        number += 1
+        # A file in proportion to what can be changed in it, a kind whatever there is most of.
+        path, here = dice.choices(files, [len(h) for _, h in files])[0]
+        kind = dice.choice(sorted({h[1] for h in here}))
+        line, kind, change = here.pop(dice.choice([i for i, h in enumerate(here) if h[1] == kind]))
+        files = [f for f in files if f[1]]
+        if (path, line) in lines or used[path] == at_most:
+            continue
+        if (yield number, (path, line, kind, change)):
+            lines.add((path, line))
+            used[path] += 1
+
+
 def draw(seed, n, dropped):
-    """n errors, folder by folder in turn; one to a line; none of those in `dropped`, which did not compile."""
-    dice = random.Random(seed)
-    folders, chosen = defaultdict(list), []
+    """n errors {number: (path, line, kind, change)}, as many from each folder (the first of a drawn order one more
+    where n does not divide), none of those in `dropped`, which did not compile. A number stays what it is."""
+    folders, chosen = defaultdict(list), {}
     for path, here in sorted(candidates().items()):
-        folders[path.split("/")[1]].append((path, here))
-    share = {folder: 1 + -(-n // len(folders)) // 3 for folder in folders}
-    used, lines = defaultdict(int), set()
+        if here:
+            folders[path.split("/")[1]].append((path, here))
     order = sorted(folders)
-    while len(chosen) < n:
-        before = len(chosen)
-        dice.shuffle(order)
-        for folder in order:
-            files = [f for f in folders[folder] if f[1] and used[f[0]] < share[folder]]
-            while files and len(chosen) < n:
-                # A file in proportion to what can be changed in it.
-                path, here = dice.choices(files, [len(h) for _, h in files])[0]
-                kind = dice.choice(sorted({h[1] for h in here}))  # all kinds alike, whatever there is most of
-                line, kind, change = here.pop(dice.choice([i for i, h in enumerate(here) if h[1] == kind]))
-                files = [f for f in files if f[1]]
-                if (path, line) in lines or (path, line, kind) in dropped:
-                    continue
-                lines.add((path, line))
-                used[path] += 1
-                chosen.append((path, line, kind, change))
+    random.Random(seed).shuffle(order)
+    for place, folder in enumerate(order):
+        quota = n // len(order) + (place < n % len(order))
+        errors, taken = in_turn(seed, folder, folders[folder], -(-quota // 3)), None
+        while quota > 0:
+            try:
+                number, mutant = errors.send(taken)
+            except StopIteration:
                 break
-        if len(chosen) == before:
-            break
+            taken = mutant[:3] not in dropped
+            if taken:
+                chosen[10000 * place + number] = mutant
+                quota -= 1
     return chosen
 
 
@@ -194,19 +220,30 @@ def run(words, **more):
     return subprocess.run(words, capture_output=True, text=True, errors="replace", **more)
 
 
+def core_files(root):
+    for folder, _, files in os.walk(os.path.join(root, "core")):
+        for name in files:
+            yield os.path.relpath(os.path.join(folder, name), root)
+
+
+def same_core():
+    """Whether the sources of the draw are those of the tree."""
+    source = os.path.join(WORK, "source")
+    digest = lambda root: {f: hashlib.sha1(open(os.path.join(root, f), "rb").read()).digest() for f in core_files(root)}
+    return os.path.exists(source) and digest(source) == digest(ROOT)
+
+
 def snapshot():
-    """The sources, and the compiled tests of the release build, as they are now."""
+    """The sources as they are now."""
     shutil.rmtree(os.path.join(WORK, "source"), ignore_errors=True)
-    shutil.rmtree(os.path.join(WORK, "objects"), ignore_errors=True)
     for top in ("CMakeLists.txt", "app", "core", "render"):
         source, target = os.path.join(ROOT, top), os.path.join(WORK, "source", top)
         os.makedirs(os.path.dirname(target), exist_ok=True)
         (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, target)
     os.symlink(os.path.join(ROOT, "assets"), os.path.join(WORK, "source", "assets"))
-    return [linked("tests/core_tests", "core_tests"), linked("tests/random/random_mechanisms", "random_mechanisms")]
 
 
-def linked(target, name):
+def linked(target):
     """The command that links a test program of the release build with the mutants' library instead."""
     commands = run(["ninja", "-C", RELEASE, "-t", "commands", target]).stdout.strip().split("\n")
     link = next(c for c in commands if f" -o {target} " in c).split(" && ")[1].split()
@@ -218,14 +255,14 @@ def linked(target, name):
         elif word == "core/libunfurl_core.a":
             link[i] = os.path.join(WORK, "build", word)
         elif word == target:
-            link[i] = os.path.join(WORK, name)
+            link[i] = os.path.join(WORK, os.path.basename(target))
     return link
 
 
 def write_tree(mutants):
     """The sources with all errors in them, touching only files that differ."""
     tree, by_file = os.path.join(WORK, "tree"), defaultdict(list)
-    for k, (path, line, _, change) in enumerate(mutants):
+    for k, (path, line, _, change) in mutants.items():
         by_file[path].append((line, k, change))
     for folder, _, files in os.walk(os.path.join(WORK, "source")):
         for name in files:
@@ -243,7 +280,7 @@ def write_tree(mutants):
     return tree
 
 
-def build(mutants, links):
+def build(mutants):
     """Compiles core and links the test programs with it; the mutants that do not compile, by the lines named."""
     tree, folder = write_tree(mutants), os.path.join(WORK, "build")
     launcher = re.findall(r"^UNFURL_CCACHE:\w+=(.*)$", open(os.path.join(RELEASE, "CMakeCache.txt")).read(), re.M)
@@ -254,79 +291,141 @@ def build(mutants, links):
         sys.exit(done.stdout + done.stderr)
     done = run(["cmake", "--build", folder, "--target", "unfurl_core", "--", "-k", "0"])
     if done.returncode == 0:
-        for link in links:
-            done = run(link, cwd=RELEASE)
+        shutil.rmtree(os.path.join(WORK, "objects"), ignore_errors=True)
+        for target in ("tests/core_tests", "tests/random/random_mechanisms"):
+            done = run(linked(target), cwd=RELEASE)
             if done.returncode:
                 sys.exit(done.stderr)
         return set()
     bad = set()
     for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", done.stdout):
-        bad |= {i for i, m in enumerate(mutants) if m[0] == path and m[1] == int(line) - 1}
+        bad |= {k for k, m in mutants.items() if m[0] == path and m[1] == int(line) - 1}
     if not bad:
         sys.exit(done.stdout[-4000:])
     return bad
 
 
 def compiled(seed, n):
-    dropped, links = set(), snapshot()
+    """The errors drawn from a seed, compiled in and linked."""
+    known = os.path.join(WORK, "dropped")
+    dropped = {tuple(error) for error in json.load(open(known))} if os.path.exists(known) else set()
     while True:
         mutants = draw(seed, n, dropped)
-        bad = build(mutants, links)
+        bad = build(mutants)
         print(f"{len(mutants)} errors drawn, {len(bad)} do not compile", flush=True)
         if not bad:
             return mutants
-        dropped |= {mutants[i][:3] for i in bad}
+        dropped |= {mutants[k][:3] for k in bad}
+        json.dump(sorted(dropped), open(known, "w"))
+
+
+class Test:
+    """A core test (or the random mechanisms), how long it takes and which errors it passes by."""
+
+    def __init__(self, name, folder):
+        self.name, self.folder, self.seconds, self.reached = name, folder, 0.0, set()
+
+
+RANDOM = "60 random mechanisms"
 
 
 class Tests:
-    """The core tests in portions, quick ones first: most errors are found by the first."""
-
     def __init__(self):
         self.program = os.path.join(WORK, "core_tests")
-        begin = time.time()
-        done = run([self.program, "-d", "yes"], env=self.environment(-1), cwd=ROOT)
-        if done.returncode:
-            sys.exit("the tests fail without any error switched on:\n" + done.stdout[-3000:])
-        self.whole = time.time() - begin
-        times = [(float(t), name) for t, name in re.findall(r"^(\d+\.\d+) s: (.+)$", done.stdout, re.M)]
-        times.sort()
-        self.portions, spent, portion = [], 0.0, []
-        limits = [0.02, 0.08, 0.2, 0.4, 2.0]
-        total = sum(t for t, _ in times)
-        for t, name in times:
-            spent += t
-            portion.append(name)
-            if spent > limits[len(self.portions)] * total:
-                self.portions.append(portion)
-                portion = []
-        if portion:
-            self.portions.append(portion)
-        for i, names in enumerate(self.portions):
-            with open(os.path.join(WORK, f"portion_{i}"), "w", encoding="utf-8") as file:
-                for name in names:
-                    file.write('"' + re.sub(r'([\\,\[\]"*])', r"\\\1", name) + '"\n')
-        self.commands = [[self.program, "--abort", "-f", os.path.join(WORK, f"portion_{i}")] for i in range(len(self.portions))]
-        self.commands.insert(2, [os.path.join(WORK, "random_mechanisms"), "60", "1", "43"])
-        print(f"{len(times)} tests, {self.whole:.0f} s, and 60 random mechanisms", flush=True)
+        listed = run([self.program, "--list-test-names-only", "-v", "high"]).stdout
+        self.tests = [Test(name, place) for name, place in re.findall(r"^(.+)\t@.*?/tests/\w+/(\w+).*$", listed, re.M)]
+        self.tests.append(Test(RANDOM, "integrators"))
+        known, stamp = os.path.join(WORK, "reach.json"), os.path.getmtime(self.program)
+        before = json.load(open(known)) if os.path.exists(known) else {}
+        if before.get("stamp") != stamp:
+            before = {"stamp": stamp}
+        for test in self.tests:
+            if test.name not in before:
+                before[test.name] = self.look(test)
+                json.dump(before, open(known, "w"))
+        for test in self.tests:
+            if before[test.name] is not None:
+                test.seconds, test.reached = before[test.name][0], set(before[test.name][1])
+        self.tests = [t for t in self.tests if before[t.name] is not None]
+        print(f"{len(self.tests)} tests, {sum(t.seconds for t in self.tests):.0f} s", flush=True)
 
-    @staticmethod
-    def environment(k):
-        return {**os.environ, "UNFURL_MUTANT": str(k), "LP_NUM_THREADS": "0"}
+    def look(self, test):
+        """Its time and what it passes by; None where it fails as it is."""
+        begin = cpu_of_children()
+        if self.run([test], -1, 600)[0]:
+            print(f"left out, as it fails without any error: {test.name}", flush=True)
+            return None
+        reached = [int(k) for k in open(os.path.join(WORK, "reached")).read().split()]
+        return [cpu_of_children() - begin, reached]
 
-    def verdict(self, k):
-        """What finds error k; empty: nothing."""
-        for words in self.commands:
-            try:
-                done = run(words, env=self.environment(k), cwd=WORK, timeout=60 + 5 * self.whole)
-            except subprocess.TimeoutExpired:
-                return "no end"
-            if done.returncode == 0:
-                continue
-            if done.returncode < 0:
-                return f"signal {-done.returncode}"
-            names = re.findall(r"^-{70,}\n(.+)\n", done.stdout, re.M) + re.findall(r"^seed \d+: [^:]*", done.stdout, re.M)
-            return names[0].strip() if names else "failed"
-        return ""
+    def run(self, tests, k, seconds):
+        """What fails of these tests with error k switched on, and how; '' if nothing."""
+        words = [os.path.join(WORK, "random_mechanisms"), "60", "1", "43"]
+        if tests[0].name != RANDOM:
+            with open(os.path.join(WORK, "chosen"), "w", encoding="utf-8") as file:
+                for test in tests:
+                    file.write('"' + re.sub(r'([\\,\[\]"*])', r"\\\1", test.name) + '"\n')
+            words = [self.program, "--abort", "-f", os.path.join(WORK, "chosen")]
+        scratch = os.path.join(WORK, "scratch")
+        shutil.rmtree(scratch, ignore_errors=True)
+        os.makedirs(scratch)
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds) + 1))
+            resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
+
+        environment = {**os.environ, "UNFURL_MUTANT": str(k), "LP_NUM_THREADS": "0", "UNFURL_REACHED": os.path.join(WORK, "reached")}
+        try:
+            done = run(words, env=environment, cwd=scratch, preexec_fn=limit, timeout=20 * seconds)
+        except subprocess.TimeoutExpired:
+            return "no end", ""
+        if done.returncode == 0:
+            return "", ""
+        if done.returncode in (-24, -9):  # SIGXCPU
+            return "no end", ""
+        names = re.findall(r"^-{70,}\n(.+)\n", done.stdout, re.M) + re.findall(r"^seed \d+: [^:]*", done.stdout, re.M)
+        how = f" (signal {-done.returncode})" if done.returncode < 0 else ""
+        return (names[0].strip() if names else "failed") + how, done.stdout
+
+    def verdict(self, k, path):
+        """What finds error k, '' if nothing does, and how many tests pass by it."""
+        mine = path.split("/")[1]
+        passing = sorted((t for t in self.tests if k in t.reached), key=lambda t: t.seconds * (0.1 if t.folder == mine else 1))
+        limits, portion, rank = [0.3, 1, 3, 10, 30, 1e9], [], 0
+        for i, test in enumerate(passing):
+            portion.append(test)
+            last = i + 1 == len(passing) or RANDOM in (test.name, passing[i + 1].name)
+            if last or sum(t.seconds for t in portion) > limits[rank]:
+                found, _ = self.run(portion, k, 10 + 6 * sum(t.seconds for t in portion))
+                if found:
+                    return found, len(passing)
+                portion, rank = [], min(rank + 1, len(limits) - 1)
+        return "", len(passing)
+
+
+def cpu_of_children():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+# --- what came of it ---------------------------------------------------------------------------------------
+def read_table(path):
+    """{number: verdict} of an earlier run."""
+    rows = [row.rstrip("\n").split("\t") for row in open(path, encoding="utf-8")] if os.path.exists(path) else []
+    return {int(row[0]): row[4] for row in rows}
+
+
+def write_table(path, mutants, results):
+    with open(path + ".new", "w", encoding="utf-8") as file:
+        for k, verdict in results.items():
+            where, line, kind, change = mutants[k]
+            file.write(f"{k}\t{where}\t{line + 1}\t{kind}\t{verdict}\t{readable(change)}\n")
+    os.replace(path + ".new", path)
+
+
+def readable(change):
+    """The changed line, with `sign`, `keep`, `twice`, `one`, `on` where the error is."""
+    return change("@").strip().replace("unfurl_mutation::", "").replace("(@)", "")
 
 
 def main():
@@ -334,23 +433,42 @@ def main():
     words.add_argument("seed", nargs="?", type=int, default=random.SystemRandom().randrange(10**6))
     words.add_argument("n", nargs="?", type=int, default=100)
     words.add_argument("--resume", action="store_true")
+    words.add_argument("--again", action="store_true")
     given = words.parse_args()
+    global WORK
+    table, WORK = os.path.join(WORK, f"{given.seed}.tsv"), os.path.join(WORK, str(given.seed))
     os.makedirs(WORK, exist_ok=True)
+    os.nice(10)
     print(f"seed {given.seed}", flush=True)
-    mutants = compiled(given.seed, given.n)
-    tests, table = Tests(), os.path.join(WORK, f"{given.seed}.tsv")
     results = {}
-    if given.resume and os.path.exists(table):
-        results = {int(row.split("\t")[0]): row.rstrip("\n").split("\t")[4] for row in open(table, encoding="utf-8")}
-    with open(table, "w" if not results else "a", encoding="utf-8") as file:
-        for k, (path, line, kind, _) in enumerate(mutants):
-            if k in results:
-                continue
-            results[k] = tests.verdict(k)
-            print(f"{k:3d} {path}:{line + 1} {kind}: {results[k] or 'SURVIVES'}", flush=True)
-            file.write(f"{k}\t{path}\t{line + 1}\t{kind}\t{results[k]}\n")
-            file.flush()
-    report(mutants, results, given.seed)
+    if given.resume or given.again:
+        if not same_core():
+            sys.exit("core is not what it was: begin anew, without --resume or --again")
+        results = {k: v for k, v in read_table(table).items() if v or not given.again}
+    else:
+        snapshot()
+        for left in (table, os.path.join(WORK, "dropped")):
+            if os.path.exists(left):
+                os.remove(left)
+    try_all(compiled(given.seed, given.n), results, table)
+
+
+def try_all(mutants, results, table):
+    """The folders in turn, so that a run that is interrupted has looked at all of them."""
+    open_ones = sorted(set(mutants) - set(results), key=lambda k: (mutants_before(mutants, k), k))
+    if open_ones:
+        tests = Tests()
+    for k in open_ones:
+        path, line, kind, _ = mutants[k]
+        results[k], passing = tests.verdict(k, path)
+        print(f"{path}:{line + 1} {kind}: {results[k] or f'SURVIVES {passing} tests'}", flush=True)
+        write_table(table, mutants, results)
+    report(mutants, results, os.path.basename(table)[:-4])
+
+
+def mutants_before(mutants, k):
+    """How many of the same folder were drawn earlier: 10000 numbers are a folder's."""
+    return sum(1 for other in mutants if other // 10000 == k // 10000 and other < k)
 
 
 def report(mutants, results, seed):
@@ -365,7 +483,7 @@ def report(mutants, results, seed):
     for k, verdict in results.items():
         if verdict == "":
             path, line, kind, change = mutants[k]
-            print(f"survives: {path}:{line + 1}, {kind}\n    {change(k).strip()}")
+            print(f"survives: {path}:{line + 1}, {kind}\n    {readable(change)}")
 
 
 if __name__ == "__main__":

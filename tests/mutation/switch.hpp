@@ -3,6 +3,8 @@
 // environment variable UNFURL_MUTANT names one by its number; without it the code is as written.
 #pragma once
 
+#include <atomic>
+#include <cstdio>
 #include <cstdlib>
 
 namespace unfurl_mutation {
@@ -11,7 +13,21 @@ inline const int chosen = [] {
   const char* number = std::getenv("UNFURL_MUTANT");
   return number ? std::atoi(number) : -1;
 }();
+// Which switches were passed by: written at the end into the file that UNFURL_REACHED names.
+struct Reached {
+  std::atomic<bool> at[200000];
+  ~Reached() {
+    const char* path = std::getenv("UNFURL_REACHED");
+    std::FILE* file = path ? std::fopen(path, "w") : nullptr;
+    if (!file) return;
+    for (int k = 0; k < 200000; ++k)
+      if (at[k].load(std::memory_order_relaxed)) std::fprintf(file, "%d\n", k);
+    std::fclose(file);
+  }
+};
+inline Reached reached;
 inline bool on(int mutant) {
+  reached.at[mutant].store(true, std::memory_order_relaxed);
   return mutant == chosen;
 }
 // What a term is multiplied with: -1, 2 or 0 where the error is on.

@@ -9,6 +9,7 @@ Needs python3-numpy, python3-meshio, python3-vtk9; `npm install gltf-validator` 
 import csv
 import glob
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -20,7 +21,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 folder = tempfile.TemporaryDirectory(prefix="unfurl_exports_")
 out = folder.name
-subprocess.run([sys.argv[1], "run", "hoop6", "-o", out, "--quiet", "--export", "vtk,gltf,csv,npy"], check=True)
+subprocess.run([sys.argv[1], "run", "hoop6", "-o", out, "--quiet", "--export", "vtk,gltf,csv,npy,mat,html"], check=True)
 table = list(csv.reader(open(f"{out}/trajectory.csv")))
 names = [h[:-4] for h in table[0] if h.endswith(".x_m")]
 numbers = np.array(table[1:], dtype=float)
@@ -73,6 +74,40 @@ long = list(csv.DictReader(open(f"{out}/csv/nodes.csv")))
 assert len(long) == len(t) * len(names)
 assert float(long[len(names)]["t_s"]) == t[1] and long[-1]["node"] == names[-1]
 print("csv: complete")
+
+# Octave: the same bits.
+script = f"""
+r = load('{out}/run.mat'); t = dlmread('{out}/trajectory.csv', ',', 1, 0); f = dlmread('{out}/rod_forces.csv', ',', 1, 0);
+n = numel(r.node_names); m = numel(r.rod_names);
+assert(isequal(size(r.positions_m), [rows(t) n 3])); assert(isequal(r.t_s, t(:, 1)));
+for k = 1:n
+  assert(isequal(squeeze(r.positions_m(:, k, :)), t(:, 6*k-4:6*k-2))); assert(isequal(squeeze(r.velocities_m_s(:, k, :)), t(:, 6*k-1:6*k+1)));
+end
+assert(isequal(r.axial_forces_N, f(:, 2:m+1))); assert(islogical(r.axial_forces_unique));
+assert(isequal(double(r.axial_forces_unique), f(:, m+2:2*m+1)));
+a = squeeze(r.positions_m(1, r.rod_nodes(1, 1), :)); b = squeeze(r.positions_m(1, r.rod_nodes(1, 2), :));
+s = dlmread('{out}/series.csv', ',', 1, 1); assert(isequaln(r.series, s)); assert(columns(s) == numel(r.series_names));
+printf('%s %s %.12g', r.node_names{{1}}, r.rod_names{{1}}, norm(a - b));
+"""
+done = subprocess.run(["octave-cli", "--quiet", "--no-init-file", "--eval", script], capture_output=True, text=True)
+assert done.returncode == 0, done.stderr
+node, rod, length = done.stdout.split()
+assert node == names[0] and abs(float(length) - 3) < 1e-11, done.stdout  # a chord of the paper's ring is 3 m
+print("mat: equal to the tables in Octave, bit for bit")
+
+# A browser: node positions that the page's own interpolation shows between two frames.
+page = subprocess.run(
+    ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+     "--window-size=1000,700", "--virtual-time-budget=4000", "--dump-dom",
+     f"file://{out}/viewer.html#t=4.5&positions"], capture_output=True, text=True, timeout=120).stdout
+i = int(np.searchsorted(t, 4.5))
+assert abs(t[i] - 4.5) < 1e-12
+shown = {name: numbers for name, *numbers in re.findall(r"(?:^|>)([^<>\s]+) (\S+) (\S+) (\S+)   at pixel \d", page, re.M)}
+assert set(shown) == set(names)
+# A cubic through frames 1/30 s apart of a motion that takes 5 s: h^4 / 100 of its fourth derivative, below a pixel of 1 cm by far.
+worst = max(np.abs(np.array(shown[name], dtype=float) - states[i, k, :3]).max() for k, name in enumerate(names))
+assert worst < 1e-4, worst
+print(f"html: in Chromium, nodes within {worst:.1e} m")
 
 if len(sys.argv) > 2:
     script = (

@@ -37,15 +37,15 @@ inline exact::Hoop exact_hoop(std::initializer_list<std::pair<const char*, Param
 }
 
 // Two uniform rods hanging from a fixed point, swinging in space under gravity: no symmetry, no plane of
-// motion.
-inline Structure double_pendulum() {
+// motion. At any size [m] it moves alike, gravity being as large.
+inline Structure double_pendulum(double size = 1.0) {
   CustomSpec spec;
   spec.nodes = {{"O", {0, 0, 0}, {0, 0, 0}, 0.0, true},
-                {"A", {1.0, 0, 0}, {0, 1.0, 0.5}, 0.0, false},
-                {"B", {1.0, 0.8, 0}, {-0.8, 1.0, 0.3}, 0.5, false}};
+                {"A", size * Vec3(1.0, 0, 0), size * Vec3(0, 1.0, 0.5), 0.0, false},
+                {"B", size * Vec3(1.0, 0.8, 0), size * Vec3(-0.8, 1.0, 0.3), 0.5, false}};
   spec.rods = {{"OA", {"O", "A"}, 2.0}, {"AB", {"A", "B"}, 1.0}};
   Structure structure = build_custom(spec);
-  structure.gravity = {0, 0, -9.81};
+  structure.gravity = {0, 0, -9.81 * size};
   return structure;
 }
 

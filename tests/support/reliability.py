@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The table of docs/reliability.md, from what the last runs left in build/: `./dev reliability`."""
+"""The tables of docs/reliability.md, from what the last runs left in build/: `./dev reliability`."""
 import glob
 import os
 import re
@@ -36,21 +36,32 @@ def fuzz():
             yield f"fuzzed inputs, {name} (`./dev fuzz`)", count, count if clean else count - 1, "no memory error, no undefined behaviour, no exception that gets out"
 
 
-def mutants():
+def drawn():
+    """The seed of the last drawn errors and their rows: number, path, line, kind, what found it, changed line."""
     tables = sorted(glob.glob("build/mutation/*.tsv"), key=os.path.getmtime)
     if not tables:
-        return
+        return "", []
     rows = [line.rstrip("\n").split("\t") for line in open(tables[-1], encoding="utf-8")]
-    seed = os.path.basename(tables[-1])[:-4]
+    return os.path.basename(tables[-1])[:-4], rows
+
+
+def mutants():
+    seed, rows = drawn()
     folders = defaultdict(lambda: [0, 0])
     for row in rows:
         folders[row[1].split("/")[1]][0] += 1
         folders[row[1].split("/")[1]][1] += row[4] != ""
     places = ", ".join(f"{name} {found} of {count}" for name, (count, found) in sorted(folders.items()))
-    yield f"errors seeded in core (`./dev mutate {seed} {len(rows)}`)", len(rows), sum(f for _, f in folders.values()), f"found by its tests: {places}"
+    if rows:
+        yield f"errors seeded in core (`./dev mutate {seed} {len(rows)}`)", len(rows), sum(f for _, f in folders.values()), f"found by its tests: {places}"
 
 
 print("| what | tried | passed | how it is judged |\n|---|---:|---:|---|")
 for source in (tests, random_mechanisms, fuzz, mutants):
     for what, tried, passed, how in source():
         print(f"| {what} | {tried} | {passed} | {how} |")
+survivors = [row for row in drawn()[1] if row[4] == ""]
+if survivors:
+    print("\nErrors that the tests did not find (`sign`, `keep`, `twice`, `one`, `on`: where they are):\n")
+for row in survivors:
+    print(f"- `{row[1]}:{row[2]}`, {row[3]}: `{row[5]}`")

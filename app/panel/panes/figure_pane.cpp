@@ -5,8 +5,8 @@
 
 #include "app/panel/panes/panes.hpp"
 #include "app/panel/panes/themed_canvas.hpp"
-#include "render/plot/imgui_canvas.hpp"
 #include "render/plot/painter.hpp"
+#include "render/ui/imgui_canvas.hpp"
 
 namespace unfurl {
 

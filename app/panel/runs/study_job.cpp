@@ -73,7 +73,7 @@ void study_sweep(const StudyHooks& hooks, StudyOutcome& out) {
                      ? "No run has this measure."
                      : plan.measures[0].label + ": from " + plot::format_number(low, 4) + " (at " + at_low +
                            ") to " + plot::format_number(high, 4) + " (at " + at_high + ").";
-  if (sweep.missing > 0) out.sentence += " (Cancelled: of the points so far.)";
+  if (!sweep.missing.empty()) out.sentence += " (Cancelled: of the points so far.)";
 }
 
 }  // namespace

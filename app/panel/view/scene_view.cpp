@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/film.hpp"
+#include "render/scene/film_style.hpp"
 
 namespace unfurl {
 

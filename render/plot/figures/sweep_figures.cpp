@@ -25,7 +25,7 @@ std::string count_sentence(const SweepPlan& plan, const Sweep& sweep) {
   const std::size_t bad = unanswered(plan, sweep);
   std::string text = std::to_string(sweep.table.rows.size()) + " runs";
   if (bad > 0) text += ", " + std::to_string(bad) + " of them without an answer (left out)";
-  if (sweep.missing > 0) text += ", " + std::to_string(sweep.missing) + " more not done yet";
+  if (!sweep.missing.empty()) text += ", " + std::to_string(sweep.missing.size()) + " more not done yet";
   return text + ".";
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 // Values of all rows by name at node positions that are off by `change` at one coordinate.
 std::map<std::string, double> rows_off(const std::string& scene, Index coordinate, double change) {
-  const auto model = build_model(read_scene_text(scene, "test.toml"));
+  const auto model = testing::model_of(scene);
   const Structure& structure = model->structure;
   VectorXd q(3 * static_cast<Index>(structure.nodes.size()));
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
@@ -31,25 +31,12 @@ std::map<std::string, double> rows_off(const std::string& scene, Index coordinat
 const std::string three_points = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [0.2, 0, 0]
-mass = 1
-[[structure.nodes]]
-name = "B"
-position = [1.9, 0, 0]
-mass = 1
-[[structure.nodes]]
-name = "C"
-position = [1.2, 0, 0]
-mass = 1
-[[structure.nodes]]
-name = "D"
-position = [0.2, 2.7, 0]
-mass = 1
-[[structure.rods]]
-nodes = ["A", "D"]
-mass = 1
+nodes = [
+  {name = "A", position = [0.2, 0, 0], mass = 1},
+  {name = "B", position = [1.9, 0, 0], mass = 1},
+  {name = "C", position = [1.2, 0, 0], mass = 1},
+  {name = "D", position = [0.2, 2.7, 0], mass = 1}]
+rods = [{nodes = ["A", "D"], mass = 1}]
 )";
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/system/mobility.hpp"
+#include "tests/support/family_structure.hpp"
 #include "tests/support/models.hpp"
 
 using namespace unfurl;
@@ -36,4 +37,24 @@ TEST_CASE("a structure without singular poses keeps its spectrum away from zero"
   const JacobianSpectrum s = jacobian_spectrum(run, 10);
   CHECK(static_cast<Index>(s.smallest.size()) == s.rank);
   for (const double sigma : s.smallest[0]) CHECK(sigma > 0.1);
+}
+
+TEST_CASE("a spectrum takes as many states as its work allows, evenly from the first to the last") {
+  // 2e8 of rows x columns x the smaller of the two: 400 states of a chain of 40, fewer of a
+  // chain of 60.
+  for (const long links : {40L, 60L}) {
+    const Structure chain = family_structure("chain", {{"links", links}, {"held", std::string("both")}});
+    const Simulation run = simulate(make_model(chain), dvm_options(2, 0.002, 0.8));
+    const JacobianSpectrum s = jacobian_spectrum(run);
+    const double rows = static_cast<double>(s.constraints), columns = static_cast<double>(s.coordinates),
+                 work = rows * columns * std::min(rows, columns);
+    const std::size_t states = std::min<std::size_t>(400, static_cast<std::size_t>(2e8 / work));
+    INFO(links << ": " << rows << " x " << columns << ", " << states);
+    REQUIRE(run.trajectory.size() == 401);
+    CHECK(s.t.size() == states);
+    CHECK(s.t.front() == 0);
+    CHECK(s.t.back() == run.trajectory.end_time());
+    for (std::size_t k = 1; k < s.t.size(); ++k)
+      CHECK(s.t[k] - s.t[k - 1] == Approx(0.8 / static_cast<double>(states - 1)).margin(0.0021));
+  }
 }

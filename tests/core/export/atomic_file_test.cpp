@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/export/checksum.hpp"
 #include "tests/support/not_tested.hpp"
 
 using namespace unfurl;
@@ -147,6 +148,22 @@ TEST_CASE("a full disk is reported by its cause and the old file stays") {
   CHECK(error == file.string() + ": no space left on device");
   CHECK(kept == "old");
   CHECK(count == 1);
+}
+
+TEST_CASE("whatever is written, read back or refused leaves no file open") {
+  const ScratchFolder scratch;
+  const auto open_files = [] { return entries("/proc/self/fd"); };
+  const std::size_t before = open_files();
+  for (int i = 0; i < 3; ++i) {
+    write_file_atomically(scratch.path / "a.txt", "text");
+    CHECK(!checksum_of_file(scratch.path / "a.txt").empty());
+    CHECK(checksum_of_file(scratch.path / "none.txt").empty());
+    CHECK(checksum_of_file(scratch.path).empty());
+    failure(scratch.path / "nowhere" / "a.txt", "x");
+    failure(scratch.path, "x");
+    const PendingFile abandoned(scratch.path / "b.txt");
+  }
+  CHECK(open_files() == before);
 }
 
 }  // namespace atomic_file_test

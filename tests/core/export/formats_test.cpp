@@ -5,15 +5,16 @@
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/export/formats.hpp"
 #include "core/export/unit_shapes.hpp"
 #include "core/text/base64.hpp"
+#include "tests/support/glb.hpp"
 #include "tests/support/models.hpp"
 
 using namespace unfurl;
@@ -40,13 +41,6 @@ struct Exported {
     return out.str();
   }
 };
-
-template <class T>
-std::vector<T> as(std::string_view bytes) {
-  std::vector<T> out(bytes.size() / sizeof(T));
-  std::memcpy(out.data(), bytes.data(), out.size() * sizeof(T));
-  return out;
-}
 
 std::string plain(const std::string& text) {
   return base64(std::as_bytes(std::span(text.data(), text.size())));
@@ -100,14 +94,77 @@ TEST_CASE("NPY arrays hold the trajectory in C order") {
   const std::string file = e.text("npy/positions_m.npy");
   REQUIRE(file.size() > 10);
   CHECK(file.substr(0, 8) == std::string("\x93NUMPY\x01\x00", 8));
-  const auto header = as<std::uint16_t>(file.substr(8, 2))[0];
+  const auto header = values_of<std::uint16_t>(file.substr(8, 2))[0];
   CHECK((10 + header) % 64 == 0);
   CHECK(file.substr(10, header)
             .starts_with("{'descr': '<f8', 'fortran_order': False, 'shape': (21, 3, 3, ), }"));
-  const auto values = as<double>(std::string_view(file).substr(10U + header));
+  const auto values = values_of<double>(std::string_view(file).substr(10U + header));
   REQUIRE(values.size() == 21 * 9);
   const VectorXd x = e.run.trajectory.positions(7);
   for (std::size_t k = 0; k < 9; ++k) CHECK(values[7 * 9 + k] == x[static_cast<Index>(k)]);
+}
+
+namespace {
+
+// The JSON between the two tags of a page, and an array of it as numbers.
+nlohmann::json data_of(const std::string& page) {
+  const std::string begin = "<script id=\"data\" type=\"application/json\">";
+  const std::size_t from = page.find(begin) + begin.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+std::vector<float> unpacked(const nlohmann::json& text) {
+  static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned bits = 0;
+  int count = 0;
+  for (const char c : text.get<std::string>()) {
+    if (c == '=') break;
+    bits = bits << 6U | static_cast<unsigned>(digits.find(c));
+    count += 6;
+    if (count >= 8) bytes += static_cast<char>(bits >> static_cast<unsigned>(count -= 8) & 255U);
+  }
+  return as<float>(bytes);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a page holds the motion at its frames, the forces, the curves and the words, and nothing from "
+    "elsewhere") {
+  const Exported e("html");
+  const std::string page = e.text("viewer.html");
+  const auto data = data_of(page);
+  // 1 s of motion with a frame every 0.1 s; steps of 0.05 s, so that every frame is a state.
+  REQUIRE(data["frames"] == 11);
+  const auto positions = unpacked(data["positions"]), forces = unpacked(data["forces"]);
+  REQUIRE(positions.size() == 11 * 9);
+  REQUIRE(forces.size() == 11 * 2);
+  for (std::size_t k = 0; k < 11; ++k) {
+    const VectorXd x = e.run.trajectory.positions(2 * k);
+    // 2^-24 of single precision, of coordinates up to 2 m.
+    for (std::size_t i = 0; i < 9; ++i)
+      CHECK(std::abs(positions[9 * k + i] - x[static_cast<Index>(i)]) < 2.4e-7);
+    for (std::size_t r = 0; r < 2; ++r) {
+      const double force = e.diagnostics.axial_force(static_cast<Index>(2 * k), static_cast<Index>(r));
+      CHECK(std::abs(forces[2 * k + r] - force) < 2e-7 * std::abs(force) + 1e-30);
+    }
+  }
+  CHECK(data["rods"][1][4] == "AB");
+  CHECK(data["columns"].size() == e.diagnostics.columns.size());
+  CHECK(unpacked(data["columns"][0]["values"]).size() == unpacked(data["times"]).size());
+  CHECK(page.find("http") == std::string::npos);
+  CHECK(page.find("@DATA@") == std::string::npos);
+}
+
+TEST_CASE("words in a page cannot leave their place") {
+  const Exported e("html");
+  const std::string evil = "</script><script>alert(1)</script> & \xff";
+  find_export_format("html")->write({e.run, e.diagnostics, e.directory, "swing", 0.1, 2.0, evil, evil, evil});
+  const std::string page = e.text("viewer.html");
+  CHECK(page.find("alert(1)</script>") == std::string::npos);
+  CHECK(page.find("<title>&lt;/script&gt;") != std::string::npos);
+  CHECK(data_of(page)["scene"].get<std::string>().starts_with("</script><script>alert(1)</script> & "));
 }
 
 TEST_CASE("long tables have a row per state and member") {
@@ -123,33 +180,19 @@ TEST_CASE("long tables have a row per state and member") {
 TEST_CASE("glTF: keys put the ends of every rod on its nodes") {
   const Exported e("gltf");
   const std::string file = e.text("animation.glb");
-  const auto head = as<std::uint32_t>(file.substr(0, 20));
+  const auto head = values_of<std::uint32_t>(file.substr(0, 20));
   REQUIRE(file.starts_with("glTF"));
   CHECK(head[1] == 2);
   CHECK(head[2] == file.size());
-  const auto json = nlohmann::json::parse(file.substr(20, head[3]));
-  const std::string buffer = file.substr(20 + head[3] + 8);
-  CHECK(json["buffers"][0]["byteLength"] == buffer.size());
-  const auto keys = [&](const nlohmann::json& index) {
-    const auto& view =
-        json["bufferViews"][json["accessors"][index.get<std::size_t>()]["bufferView"].get<std::size_t>()];
-    return as<float>(std::string_view(buffer).substr(view["byteOffset"], view["byteLength"]));
-  };
-  const auto& animation = json["animations"][0];
-  const auto output = [&](std::size_t node, const std::string& path) {
-    for (const auto& channel : animation["channels"])
-      if (channel["target"]["node"] == node && channel["target"]["path"] == path)
-        return keys(animation["samplers"][channel["sampler"].get<std::size_t>()]["output"]);
-    return std::vector<float>{};
-  };
-  const auto times = keys(animation["samplers"][0]["input"]);
+  const Glb glb(file);
+  const auto times = glb.times(1, "rotation");
   REQUIRE(times.size() == 11);                     // 1 s of motion every 0.1 s
   CHECK(times.back() == Approx(0.5));              // at double speed
   for (std::size_t node = 1; node <= 2; ++node) {  // the rods follow the root
     const auto& rod = e.run.trajectory.structure().rod_copies[node - 1];
-    CHECK(json["nodes"][node]["name"] == rod.name);
-    const float length = json["nodes"][node]["scale"][1];
-    const auto p = output(node, "translation"), r = output(node, "rotation");
+    CHECK(glb.json["nodes"][node]["name"] == rod.name);
+    const float length = glb.json["nodes"][node]["scale"][1];
+    const auto p = glb.keys(node, "translation"), r = glb.keys(node, "rotation");
     REQUIRE(r.size() == 44);
     for (std::size_t i = 0; i < times.size(); ++i) {
       const VectorXd x = e.run.trajectory.positions_at(0.1 * static_cast<double>(i));
@@ -164,26 +207,21 @@ TEST_CASE("glTF: keys put the ends of every rod on its nodes") {
 
 TEST_CASE("every rotation in a glTF file has length 1") {
   const Exported out("gltf");
-  const std::string glb = out.text("animation.glb");
-  const auto word = [&](std::size_t at) { return as<std::uint32_t>(std::string_view(glb).substr(at, 4))[0]; };
-  const auto json = nlohmann::json::parse(glb.substr(20, word(12)));
-  const std::string_view data = std::string_view(glb).substr(20 + word(12) + 8);
+  const Glb glb(out.text("animation.glb"));
   int nodes = 0, keys = 0;
   const auto is_unit = [](const auto& x) {
     return std::abs(
                std::hypot(std::hypot(double(x[0]), double(x[1])), std::hypot(double(x[2]), double(x[3]))) -
                1) < 1e-6;  // single precision
   };
-  for (const auto& node : json["nodes"]) {
+  for (const auto& node : glb.json["nodes"]) {
     if (!node.contains("rotation")) continue;
     CHECK(is_unit(node["rotation"].get<std::vector<double>>()));
     ++nodes;
   }
-  for (const auto& accessor : json["accessors"]) {
-    if (accessor["type"] != "VEC4") continue;
-    const auto& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
-    const auto floats = as<float>(data.substr(view.value("byteOffset", 0U) + accessor.value("byteOffset", 0U),
-                                              16 * accessor["count"].get<std::size_t>()));
+  for (std::size_t a = 0; a < glb.json["accessors"].size(); ++a) {
+    if (glb.json["accessors"][a]["type"] != "VEC4") continue;
+    const auto floats = glb.floats(a);
     for (std::size_t i = 0; i < floats.size(); i += 4) CHECK(is_unit(&floats[i]));
     ++keys;
   }
@@ -210,8 +248,7 @@ TEST_CASE("glTF: nodes at which no rod ends are there too") {
     std::ostringstream file;
     file << std::ifstream(directory / "animation.glb", std::ios::binary).rdbuf();
     fs::remove_all(directory);
-    const auto json = nlohmann::json::parse(
-        file.str().substr(20, as<std::uint32_t>(std::string_view(file.str()).substr(12, 4))[0]));
+    const nlohmann::json json = Glb(file.str()).json;
     std::size_t found = 0;
     for (const auto& node : json["nodes"]) {
       if (node["name"] != "stone") continue;
@@ -222,6 +259,44 @@ TEST_CASE("glTF: nodes at which no rod ends are there too") {
     CHECK(found == 1);
     CHECK(json["nodes"][0]["children"].size() == given.rods.size() + given.nodes.size());
   }
+}
+
+TEST_CASE("glTF: what accessors say of the buffer is so") {
+  const Exported out("gltf");
+  const std::string file = out.text("animation.glb");
+  const Glb glb(file);
+  // Whole words throughout, as GLB wants them.
+  const std::size_t text = values_of<std::uint32_t>(file.substr(12, 4))[0];
+  CHECK(values_of<std::uint32_t>(file.substr(8, 4))[0] == file.size());
+  CHECK(text % 4 == 0);
+  CHECK(values_of<std::uint32_t>(file.substr(20 + text, 4))[0] == glb.data.size());
+  CHECK(glb.data.size() % 4 == 0);
+  CHECK(glb.json["buffers"][0]["byteLength"] == glb.data.size());
+  const std::map<std::string, std::size_t> widths = {{"SCALAR", 1}, {"VEC3", 3}, {"VEC4", 4}};
+  constexpr int floats = 5126;
+  int bounded = 0;
+  for (std::size_t a = 0; a < glb.json["accessors"].size(); ++a) {
+    const auto& accessor = glb.json["accessors"][a];
+    const auto& view = glb.json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+    const std::size_t begin = view["byteOffset"], bytes = view["byteLength"],
+                      width = widths.at(accessor["type"]), count = accessor["count"];
+    CHECK(begin % 4 == 0);
+    CHECK(begin + bytes <= glb.data.size());
+    CHECK((accessor.contains("min") && accessor.contains("max")) == accessor.contains("min"));
+    if (accessor["componentType"] != floats) continue;
+    REQUIRE(bytes == 4 * width * count);
+    if (!accessor.contains("min")) continue;
+    ++bounded;
+    const auto values = glb.floats(a);
+    for (std::size_t k = 0; k < width; ++k) {
+      float low = values[k], high = values[k];
+      for (std::size_t i = k; i < values.size(); i += width)
+        low = std::min(low, values[i]), high = std::max(high, values[i]);
+      CHECK(accessor["min"][k].get<float>() == low);
+      CHECK(accessor["max"][k].get<float>() == high);
+    }
+  }
+  CHECK(bounded >= 2);  // positions of shapes, times of keys
 }
 
 }  // namespace formats_test

@@ -69,8 +69,8 @@ TEST_CASE("the largest error is the largest magnitude, whatever its sign") {
   const auto off = [&](double last) {
     for (Series& column : d.columns)
       if (column.name == "energy_balance_J") column.values.back() = last;
-    const auto text =
-        summary_json("x", run, d, analyse_mobility(run.trajectory.model().system, Vec3::Zero()));
+    const auto text = summary_json(
+        "x", run, d, analyse_mobility(run.trajectory.model().system, run.trajectory.node_positions(0)));
     return nlohmann::json::parse(text)["errors"]["energy_balance_max_J"];
   };
   CHECK(off(-29.5) == 29.5);
@@ -122,7 +122,8 @@ TEST_CASE("odd node names survive") {
       "x");
   const Simulation run = simulate(build_model(s), s.solver);
   const auto json = nlohmann::json::parse(
-      summary_json("x", run, diagnose(run), analyse_mobility(run.trajectory.model().system, Vec3::Zero())));
+      summary_json("x", run, diagnose(run),
+                   analyse_mobility(run.trajectory.model().system, run.trajectory.node_positions(0))));
   CHECK(json["final"]["positions_m"].contains("q\"\n\xC3\xB6"));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Forces where more than one acts, or where a term is only seen off its special value.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "core/system/system.hpp"
@@ -7,7 +8,7 @@
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
-using testing::run_scene;
+using testing::end_positions, testing::run_scene;
 
 namespace force_sums_test {
 
@@ -16,15 +17,9 @@ namespace {
 const std::string point = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [1, 2, 3]
-velocity = [0.5, -0.25, 0.125]
-mass = 1.6
-[[structure.nodes]]
-name = "O"
-position = [0, 0, 0]
-fixed = true
+nodes = [
+  {name = "A", position = [1, 2, 3], velocity = [0.5, -0.25, 0.125], mass = 1.6},
+  {name = "O", position = [0, 0, 0], fixed = true}]
 [solver]
 step = 0.05
 end_time = 0.7
@@ -55,7 +50,7 @@ values = [0.3, 0.3]
   const Vec3 force(3 - 0.8 + 0.4 + 0.3, -1 + 2.2 + 0.6 + 1.5, 0.5 + 1.7 - 2 + 2.1);
   const Vec3 expected = Vec3(1, 2, 3) + 0.7 * Vec3(0.5, -0.25, 0.125) + 0.5 * 0.49 / 1.6 * force;
   // A parabola, which the method follows to round-off.
-  CHECK((run.trajectory.node_positions(run.trajectory.size() - 1).head<3>() - expected).norm() <= 1e-12);
+  CHECK((end_positions(run).head<3>() - expected).norm() <= 1e-12);
 }
 
 TEST_CASE("a stretched cable whose damper would push does nothing") {
@@ -75,6 +70,67 @@ tension_only = true
   REQUIRE(run.status == RunStatus::completed);
   for (std::size_t i = 0; i < run.trajectory.size(); ++i)
     CHECK(run.trajectory.node_positions(i)[2] == Approx(2 - 1.5 * run.trajectory.time(i)).margin(1e-12));
+}
+
+TEST_CASE("a taut cable pulls with k (s - s_0) + c s', a slack one with nothing") {
+  // From the origin to A at (1, 2, 3) m, s = sqrt 14 m, s' = (0.5 - 2 * 0.25 + 3 * 0.125) / s.
+  for (const double rest : {1.9, 5.0}) {
+    const auto model = testing::model_of(point + R"(
+[[forces]]
+kind = "spring"
+nodes = ["O", "A"]
+stiffness = 50
+damping = 20
+tension_only = true
+)",
+                                         {"forces[0].free_length=" + std::to_string(rest)});
+    VectorXd q = VectorXd::Zero(6), v = VectorXd::Zero(6), f = VectorXd::Zero(6);
+    q.head<3>() << 1, 2, 3;
+    v.head<3>() << 0.5, -0.25, 0.125;
+    model->system.add_applied_force(0.1, q, v, 1.0, f);
+    const double s = std::sqrt(14.0), stretch = rest < s ? s - rest : 0.0;
+    const double pull = rest < s ? 50 * stretch + 20 * 0.375 / s : 0.0;
+    CHECK((f.head<3>() + pull * q.head<3>() / s).norm() <= 1e-12);
+    CHECK((f.tail<3>() - pull * q.head<3>() / s).norm() <= 1e-12);
+    CHECK(model->system.potential_energy(q) == Approx(25 * stretch * stretch).margin(1e-12));
+  }
+}
+
+TEST_CASE("a damped joint slows every pair of its rods and holds none") {
+  // Three rods at J in a plane, turning at 1, 2 and 4 rad/s: torques c times the differences of their rates.
+  CustomSpec spec;
+  spec.nodes = {{"J", {0, 0, 0}, {0, 0, 0}, 0.0, true}};
+  const double angles[] = {0.3, 1.7, 3.9}, rates[] = {1, 2, 4}, lengths[] = {1.2, 0.8, 1.5};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 out(std::cos(angles[i]), std::sin(angles[i]), 0);
+    const std::string name(1, static_cast<char>('A' + i));
+    spec.nodes.push_back({name, lengths[i] * out, Vec3::Zero(), 0.0, false});
+    spec.rods.push_back({"J" + name, {"J", name}, 1.0});
+  }
+  Structure structure = build_custom(spec);
+  Force damper;
+  damper.kind = "joint_damping";
+  damper.name = "oil";
+  damper.nodes = {0};
+  damper.damping = 0.35;
+  damper.stiffness = 7;  // of another kind of force: says nothing here
+  structure.forces.push_back(damper);
+  const System system(structure, true);
+  VectorXd q = VectorXd::Zero(12), v = q, f = q;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 x = structure.nodes[static_cast<std::size_t>(i) + 1].position;
+    q.segment<3>(3 * i + 3) = x;
+    v.segment<3>(3 * i + 3) = rates[i] * Vec3(-x.y(), x.x(), 0);
+  }
+  system.add_applied_force(0.2, q, v, 1.0, f);
+  for (int i = 0; i < 3; ++i) {
+    double torque = 0;
+    for (const double other : rates) torque -= 0.35 * (rates[i] - other);
+    const Vec3 x = q.segment<3>(3 * i + 3), force = f.segment<3>(3 * i + 3);
+    CHECK(x.cross(force).z() == Approx(torque).epsilon(1e-12));
+    CHECK(std::abs(x.dot(force)) <= 1e-12);
+  }
+  CHECK(std::abs(system.potential_energy(q)) <= 1e-14);
 }
 
 TEST_CASE("a step is solved where a damper is far stiffer than it") {

@@ -69,4 +69,26 @@ TEST_CASE(
   CHECK(kept.colPivHouseholderQr().rank() == B.cols() - 1);
 }
 
+TEST_CASE("rows are solved alike at any scale, few entries or many") {
+  MatrixXd A = MatrixXd::Zero(3, 12);
+  A.row(0).head(9).setConstant(1);  // each a third of the row's length
+  A.row(0)[4] = -1.1;
+  A.row(1).segment(5, 3) << 3, 1, -2;
+  A.row(2).tail(4) << 2, 5, 1, 7;
+  VectorXd b(3);
+  b << 0.3, -1.7, 2.9;
+  const LinearElimination one = eliminate(sparse_rows(A), b);
+  REQUIRE(one.B.cols() == 9);
+  for (const double scale : {1e-7, 0.013, 170.0, 3e8}) {
+    INFO(scale);
+    const LinearElimination e = eliminate(sparse_rows(scale * A), scale * b);
+    CHECK(e.kept.empty());
+    CHECK(e.free_coordinates == one.free_coordinates);
+    CHECK((A * e.q0 - b).cwiseAbs().maxCoeff() <= 1e-14);  // a few roundings
+    CHECK((A * MatrixXd(e.B)).cwiseAbs().maxCoeff() <= 1e-14);
+  }
+  // Threshold pivoting: no coordinate is solved for by less than half of its row's largest entry.
+  CHECK(MatrixXd(one.B).cwiseAbs().maxCoeff() <= 3.5 + 1e-14);
+}
+
 }  // namespace linear_elimination_test

@@ -7,6 +7,7 @@
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -14,14 +15,7 @@ namespace build_test {
 
 namespace {
 
-std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    build_structure(read_scene_text(text, "s.toml", overrides));
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "";
-}
+using testing::error_of;
 
 const std::string hoop = "[structure]\nkind = 'hoop'\n";
 
@@ -73,7 +67,8 @@ TEST_CASE("what a drive or a spring measures at the start is known") {
   const Scene scene = read_scene_text(
       hoop +
           "fold_angle = 60\n[[constraints]]\nkind = 'angle'\nfold_angle = true\n[[forces]]\nkind = "
-          "'spring'\nstiffness = 3\nnodes = ['B0', 'T0']\n[[forces]]\nkind = 'drag'\nnodes = ['B0']\ndamping = 1\n",
+          "'spring'\nstiffness = 3\nnodes = ['B0', 'T0']\n[[forces]]\nkind = 'drag'\nnodes = ['B0']\ndamping "
+          "= 1\n",
       "x");
   const Structure s = build_structure(scene);
   CHECK(start_value(scene.constraints[0], s) ==

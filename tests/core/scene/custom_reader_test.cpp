@@ -8,6 +8,7 @@
 
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -27,14 +28,7 @@ struct Folder {
   }
 };
 
-std::string error_of(std::string_view text) {
-  try {
-    build_structure(read_scene_text(text, "s.toml"));
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "";
-}
+using testing::error_of;
 
 std::string file_error_of(const std::string& path) {
   try {

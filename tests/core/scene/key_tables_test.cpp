@@ -10,6 +10,7 @@
 #include "core/scene/reader.hpp"
 #include "core/scene/scene_template.hpp"
 #include "core/structures/family.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -17,14 +18,7 @@ namespace key_tables_test {
 
 namespace {
 
-std::string mistakes(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    read_scene_text(text, "s.toml", overrides);
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "";
-}
+using testing::error_of;
 
 // A value that no key takes: each says of itself what it wants, and an unknown key that it is unknown.
 std::string with_every_key(const KeyTable& table) {
@@ -41,7 +35,7 @@ std::string with_every_key(const KeyTable& table) {
 TEST_CASE("every listed key is read") {
   for (const KeyTable& table : key_tables()) {
     if (table.header.empty()) continue;
-    const std::string told = mistakes(with_every_key(table));
+    const std::string told = error_of(with_every_key(table));
     INFO(table.name << "\n" << told);
     CHECK(told.find("unknown key") == std::string::npos);
     for (const ParamSpec& spec : table.keys)
@@ -81,7 +75,7 @@ TEST_CASE("a new scene of every kind has every key and is a scene that can be bu
   for (const std::string& kind : kinds) {
     INFO(kind);
     const std::string text = scene_template(kind);
-    CHECK(mistakes(text) == "");
+    CHECK(error_of(text) == "");
     CHECK_NOTHROW(build_model(read_scene_text(text, "s.toml")));
     for (const char* name : {"gravity", "loads", "solver", "render"})
       for (const ParamSpec& spec : find_key_tables(name).front()->keys)
@@ -122,7 +116,7 @@ TEST_CASE("what a new scene shows as a comment can be switched on") {
       std::string changed = text;
       changed.erase(at + 1, 2);
       INFO(line);
-      CHECK(mistakes(changed) == "");
+      CHECK(error_of(changed) == "");
     }
     at = end;
   }

@@ -7,7 +7,7 @@
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
-using testing::run_scene;
+using testing::error_of, testing::run_scene;
 
 namespace options_act_test {
 
@@ -17,29 +17,14 @@ namespace {
 const std::string swing = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "O"
-position = [0, 0, 0]
-fixed = true
-[[structure.nodes]]
-name = "A"
-position = [1.1, 0, 0.3]
-[[structure.nodes]]
-name = "B"
-position = [1.9, 0, -0.4]
-mass = 0.4
-[[structure.rods]]
-name = "upper"
-nodes = ["O", "A"]
-mass = 1.3
-[[structure.rods]]
-name = "lower"
-nodes = ["A", "B"]
-mass = 0.7
-[[structure.constraints]]
-kind = "plane"
-nodes = ["A", "B"]
-normal = [0, 1, 0]
+nodes = [
+  {name = "O", position = [0, 0, 0], fixed = true},
+  {name = "A", position = [1.1, 0, 0.3]},
+  {name = "B", position = [1.9, 0, -0.4], mass = 0.4}]
+rods = [
+  {name = "upper", nodes = ["O", "A"], mass = 1.3},
+  {name = "lower", nodes = ["A", "B"], mass = 0.7}]
+constraints = [{kind = "plane", nodes = ["A", "B"], normal = [0, 1, 0]}]
 [gravity]
 acceleration = [0, 0, -9.81]
 [solver]
@@ -85,15 +70,6 @@ std::string members_of(Members members) {
   return "";
 }
 
-std::string refusal(const std::string& scene) {
-  try {
-    read_scene_text(scene, "test.toml");
-    return "";
-  } catch (const SceneError& e) {
-    return e.what();
-  }
-}
-
 }  // namespace
 
 TEST_CASE("eliminate_linear = false solves all coordinates, to the same motion") {
@@ -121,9 +97,9 @@ TEST_CASE("every kind of element refuses to be without what it requires, and nam
             entry += std::string(spec.name) + " = " + some_value(spec) + "\n";
         const std::string key(left_out.name);
         INFO(kind.kind << " without " << key);
-        CHECK(refusal(swing + entry).find(key + ": is missing") != std::string::npos);
+        CHECK(error_of(swing + entry).find(key + ": is missing") != std::string::npos);
         // With it there is no such complaint.
-        const std::string with = refusal(swing + entry + key + " = " + some_value(left_out) + "\n");
+        const std::string with = error_of(swing + entry + key + " = " + some_value(left_out) + "\n");
         CHECK(with.find(key + ": is missing") == std::string::npos);
         ++tried;
       }

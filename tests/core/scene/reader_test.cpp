@@ -3,20 +3,15 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/scene_run.hpp"
+
 using namespace unfurl;
 
 namespace reader_test {
 
 namespace {
 
-std::string error_of(std::string_view text, const std::vector<std::string>& overrides = {}) {
-  try {
-    read_scene_text(text, "s.toml", overrides);
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "";
-}
+using testing::error_of;
 
 const std::string hoop = "[structure]\nkind = 'hoop'\n";
 

@@ -13,16 +13,8 @@ namespace refusals_test {
 
 namespace {
 
-using testing::run_scene;
+using testing::end_positions, testing::error_of, testing::run_scene;
 
-std::string error_of(const std::string& text, const std::vector<std::string>& changes = {}) {
-  try {
-    build_model(read_scene_text(text, "s.toml", changes));
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
 bool refused(const std::string& text, const std::string& why, const std::vector<std::string>& changes = {}) {
   const std::string error = error_of(text, changes);
   if (error.find(why) != std::string::npos) return true;
@@ -39,28 +31,14 @@ std::string warnings_of(const std::string& text, const std::vector<std::string>&
 const std::string arms = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "O"
-position = [0, 0, 0]
-fixed = true
-[[structure.nodes]]
-name = "P"
-position = [0, -1, 0.5]
-fixed = true
-[[structure.nodes]]
-name = "A"
-position = [0.5, 1.2, 0]
-mass = 0.7
-[[structure.nodes]]
-name = "B"
-position = [0.5, 1.2, 0.9]
-mass = 1.1
-[[structure.rods]]
-nodes = ["O", "A"]
-mass = 2
-[[structure.rods]]
-nodes = ["A", "B"]
-mass = 0.5
+nodes = [
+  {name = "O", position = [0, 0, 0], fixed = true},
+  {name = "P", position = [0, -1, 0.5], fixed = true},
+  {name = "A", position = [0.5, 1.2, 0], mass = 0.7},
+  {name = "B", position = [0.5, 1.2, 0.9], mass = 1.1}]
+rods = [
+  {nodes = ["O", "A"], mass = 2},
+  {nodes = ["A", "B"], mass = 0.5}]
 [solver]
 step = 0.01
 end_time = 0.2
@@ -112,8 +90,7 @@ TEST_CASE("relations of any size hold the structure where it is") {
     // velocity (0, 0.4) is -0.4 / sqrt 5, in x thus 6.4 and -0.16.
     const Simulation run = run_scene(point(0, right.str()));
     const double t = 0.5;
-    CHECK(run.trajectory.positions(run.trajectory.size() - 1)[0] ==
-          Approx(0.3 - 0.16 * t + 3.2 * t * t).epsilon(1e-12));
+    CHECK(end_positions(run)[0] == Approx(0.3 - 0.16 * t + 3.2 * t * t).epsilon(1e-12));
   }
   // A second one that says otherwise is not dropped as if it followed from the first.
   CHECK(refused(
@@ -136,6 +113,13 @@ TEST_CASE("contradictory drives are named when the scene is read, for every meth
                   {"solver.method=" + std::string(method.name)}));
   CHECK(
       refused(point(0, drive("one", 1) + drive("two", 1) + "start = 0.1\n"), "drives contradict each other"));
+  // Two that never end, and begin alike.
+  CHECK(refused(point(0,
+                      "[[constraints]]\nkind = 'coordinate'\nname = 'slow'\nnodes = ['A']\n"
+                      "direction = [1, 0, 0]\nmotion = 'rate'\nrate = 0.2\n"
+                      "[[constraints]]\nkind = 'coordinate'\nname = 'fast'\nnodes = ['A']\n"
+                      "direction = [1, 0, 0]\nmotion = 'rate'\nrate = 0.7\n"),
+                "drives contradict each other"));
   CHECK(run_scene(point(0, drive("one", 1) + drive("two", 1))).status == RunStatus::completed);  // they agree
 }
 
@@ -163,7 +147,7 @@ TEST_CASE("a table of motion holds its last value, and starts clean") {
       {"solver.end_time=3", "structure.nodes.A.velocity=[0,0,0]"});
   REQUIRE(run.status == RunStatus::completed);
   CHECK(run.warnings.empty());
-  CHECK(run.trajectory.positions(run.trajectory.size() - 1)[0] == Approx(1.3).epsilon(1e-13));
+  CHECK(end_positions(run)[0] == Approx(1.3).epsilon(1e-13));
   CHECK(run.trajectory.velocities(0)[0] == Approx(0).margin(1e-14));
 }
 
@@ -192,7 +176,7 @@ TEST_CASE("keys that do nothing as the others are given are warned of with their
     const std::string key(idle, std::string_view(idle).find(' '));
     const std::string warnings = warnings_of(constraint(hold + idle));
     INFO(warnings);
-    CHECK(warnings.find("test.toml:33:") != std::string::npos);
+    CHECK(warnings.find("s.toml:19:") != std::string::npos);
     CHECK(warnings.find("constraints[0]." + key + ": does nothing with motion = 'hold'") !=
           std::string::npos);
   }
@@ -210,6 +194,35 @@ TEST_CASE("entries are addressed by name in brackets, too") {
   CHECK(scene.constraints[1].values.vector("normal") == std::vector<double>{0, 1, 0});
   CHECK(refused(text, "constraints has no entry named 'pus'; did you mean 'push'?",
                 {"constraints[pus].duration=1"}));
+}
+
+TEST_CASE("the angle of two rods opens at the node that they share, whichever way they are listed") {
+  // Q-P points along x, Q-R is 68 deg away from it, S-T of no common node 31 deg from x.
+  const double a = 68 * radians_per_degree, b = 31 * radians_per_degree;
+  const auto said = [&](const char* first, const char* second, const std::string& rods) {
+    std::ostringstream text;
+    text.precision(17);
+    text << "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [1.7, 0.2, 0], mass = 1},\n"
+            "{name = 'Q', position = [0.4, 0.2, 0], mass = 1}, {name = 'R', position = ["
+         << 0.4 + 2 * std::cos(a) << ", " << 0.2 + 2 * std::sin(a) << ", 0], mass = 1},\n"
+         << "{name = 'S', position = [3, 3, 0], mass = 1}, {name = 'T', position = [" << 3 + std::cos(b)
+         << ", " << 3 + std::sin(b) << ", 0], mass = 1}]\n"
+         << "rods = [{name = 'one', nodes = " << first << ", mass = 1}, {name = 'two', nodes = " << second
+         << ", mass = 1},\n{name = 'far', nodes = ['S', 'T'], mass = 1}]\n"
+         << "[[constraints]]\nkind = 'angle'\nrods = " << rods
+         << "\nmotion = 'table'\ntimes = [0, 1]\nvalues = [1, 2]\n";
+    const std::string error = error_of(text.str());
+    const std::size_t at = error.find("the structure at ");
+    return at == std::string::npos ? error : error.substr(at + 17, 3);
+  };
+  for (const char* first : {"['Q', 'P']", "['P', 'Q']"})
+    for (const char* second : {"['Q', 'R']", "['R', 'Q']"})
+      for (const char* rods : {"['one', 'two']", "['two', 'one']"}) {
+        INFO(first << " " << second << " " << rods);
+        CHECK(said(first, second, rods).substr(0, 2) == "68");
+      }
+  CHECK(said("['Q', 'P']", "['Q', 'R']", "['one', 'far']").substr(0, 2) == "31");
+  CHECK(said("['P', 'Q']", "['Q', 'R']", "['one', 'far']").substr(0, 3) == "149");
 }
 
 }  // namespace refusals_test

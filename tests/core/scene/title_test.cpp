@@ -48,6 +48,12 @@ TEST_CASE("a title that names no parameter is dropped where the structure is ano
         "mine: units = 11, density = 2000");
   CHECK(written("Nine bays", {"structure.units=11", "title=Eleven bays"}).title == "Eleven bays");
   CHECK(written("Nine bays", {"structure.model=full"}).title == "Nine bays");  // its default
+  CHECK(written("Nine bays", {"structure.model=sector"}).title == "mine: model = sector");
+  const std::string custom =
+      "title = 'A stone'\n[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = "
+      "[0, 0, 1], mass = 2}]\n";
+  CHECK(read_scene_text(custom, "stone.toml", {"structure.nodes.A.mass=3"}).title == "stone: nodes changed");
+  CHECK(read_scene_text(custom, "stone.toml", {"structure.nodes.A.mass=2.0"}).title == "A stone");
 }
 
 TEST_CASE("a place in a title takes a key of the structure, its default too, and must be one") {
@@ -61,6 +67,7 @@ TEST_CASE("a place in a title takes a key of the structure, its default too, and
     CHECK(error.problems()[0].message == "{of} names no number or text of [structure]");
   }
   CHECK(written("A set {1, 2} or {a b}").title == "A set {1, 2} or {a b}");
+  CHECK(written("No set {}, none { or }").title == "No set {}, none { or }");
 }
 
 TEST_CASE("the scene as run keeps the title's places") {

@@ -14,48 +14,20 @@ namespace drive_test {
 
 namespace {
 
-using testing::largest, testing::run_scene;
-
-std::string error_of(const std::string& text, const std::vector<std::string>& changes = {}) {
-  try {
-    build_model(read_scene_text(text, "test.toml", changes));
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
+using testing::end_positions, testing::error_of, testing::largest, testing::run_scene;
 
 // A crank of 3 kg and 2 m in the plane z = 0 under gravity, turned by a motor.
 const std::string crank = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "O"
-position = [0, 0, 0]
-fixed = true
-[[structure.nodes]]
-name = "P"
-position = [1, 0, 0]
-fixed = true
-[[structure.nodes]]
-name = "A"
-position = [0, 2, 0]
-[[structure.rods]]
-name = "crank"
-nodes = ["O", "A"]
-mass = 3
-[[structure.constraints]]
-kind = "plane"
-nodes = ["A"]
-normal = [0, 0, 1]
-[[structure.constraints]]
-kind = "angle"
-name = "motor"
-nodes = ["P", "O", "A"]
-axis = [0, 0, 1]
-motion = "smooth"
-to = 270
-duration = 2
+nodes = [
+  {name = "O", position = [0, 0, 0], fixed = true},
+  {name = "P", position = [1, 0, 0], fixed = true},
+  {name = "A", position = [0, 2, 0]}]
+rods = [{name = "crank", nodes = ["O", "A"], mass = 3}]
+constraints = [
+  {kind = "plane", nodes = ["A"], normal = [0, 0, 1]},
+  {kind = "angle", name = "motor", nodes = ["P", "O", "A"], axis = [0, 0, 1], motion = "smooth", to = 270, duration = 2}]
 [gravity]
 acceleration = [0, -10, 0]
 [solver]
@@ -99,7 +71,7 @@ TEST_CASE("a crank at a constant rate goes round and round") {
       run_scene(crank, {"structure.constraints.motor.motion=rate", "structure.constraints.motor.rate=720",
                         "structure.constraints.motor.ramp=0.5"});
   REQUIRE(run.status == RunStatus::completed);
-  const VectorXd x = run.trajectory.positions(run.trajectory.size() - 1);
+  const VectorXd x = end_positions(run);
   const double theta = pi / 2 + 4 * pi * (2.5 - 0.25);
   // The place is imposed, whatever the step: round-off of an angle of 30 rad, times 2 m, a hundredfold.
   CHECK(x[6] == Approx(2 * std::cos(theta)).margin(1e-11));
@@ -125,14 +97,9 @@ TEST_CASE("an actuator changes a length as told") {
   const Simulation run = run_scene(R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [0, 0, 0]
-mass = 1
-[[structure.nodes]]
-name = "B"
-position = [1, 0, 0]
-mass = 3
+nodes = [
+  {name = "A", position = [0, 0, 0], mass = 1},
+  {name = "B", position = [1, 0, 0], mass = 3}]
 [[constraints]]
 kind = "length"
 name = "actuator"
@@ -146,7 +113,7 @@ step = 0.01
 stages = 4
 )");
   REQUIRE(run.status == RunStatus::completed);
-  const VectorXd x = run.trajectory.positions(run.trajectory.size() - 1);
+  const VectorXd x = end_positions(run);
   CHECK(x[0] == Approx(-1.5).epsilon(1e-10));  // the centre of mass stays
   CHECK(x[3] == Approx(1.5).epsilon(1e-10));
   const Diagnostics d = diagnose(run);
@@ -160,25 +127,11 @@ TEST_CASE("mirror, equal, relation, collinear, coplanar hold by name") {
   const std::string free = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [1, 0, 0]
-velocity = [1, 2, 3]
-mass = 1
-[[structure.nodes]]
-name = "B"
-position = [-1, 0, 0]
-mass = 2
-[[structure.nodes]]
-name = "C"
-position = [0, 0, 0]
-velocity = [0, 1, -1]
-mass = 1
-[[structure.nodes]]
-name = "D"
-position = [0, 1, 0]
-velocity = [1, 0, 2]
-mass = 1
+nodes = [
+  {name = "A", position = [1, 0, 0], velocity = [1, 2, 3], mass = 1},
+  {name = "B", position = [-1, 0, 0], mass = 2},
+  {name = "C", position = [0, 0, 0], velocity = [0, 1, -1], mass = 1},
+  {name = "D", position = [0, 1, 0], velocity = [1, 0, 2], mass = 1}]
 [solver]
 stages = 4
 step = 0.02
@@ -188,7 +141,7 @@ end_time = 0.5
     const Simulation run = run_scene(free + "[[constraints]]\n" + constraint);
     REQUIRE(run.status == RunStatus::completed);
     CHECK(largest(diagnose(run), "energy_balance_J") <= 1e-9);  // ideal constraints do no work
-    const VectorXd x = run.trajectory.positions(run.trajectory.size() - 1);
+    const VectorXd x = end_positions(run);
     return std::array<Vec3, 4>{x.segment<3>(0), x.segment<3>(3), x.segment<3>(6), x.segment<3>(9)};
   };
   auto p = positions("kind = 'mirror'\nnodes = ['A', 'B']\nnormal = [1, 0, 0]");

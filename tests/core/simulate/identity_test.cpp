@@ -13,7 +13,7 @@ namespace identity_test {
 
 namespace {
 
-using testing::run_scene;
+using testing::end_positions, testing::error_of, testing::run_scene;
 
 Simulation run_with(const std::string& text, void (*change)(Structure&)) {
   const Scene scene = read_scene_text(text, "test.toml", {});
@@ -24,27 +24,13 @@ Simulation run_with(const std::string& text, void (*change)(Structure&)) {
                   scene.solver);
 }
 
-std::string error_of(const std::string& text, const std::vector<std::string>& changes = {}) {
-  try {
-    build_model(read_scene_text(text, "test.toml", changes));
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
-
 // Two balls that fall on floors of their own; the second, of 2 kg, is drawn up later with up to 60 N.
 const std::string two_balls = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [0, 0, 0.3]
-mass = 3
-[[structure.nodes]]
-name = "B"
-position = [1, 0, 0.2]
-mass = 2
+nodes = [
+  {name = "A", position = [0, 0, 0.3], mass = 3},
+  {name = "B", position = [1, 0, 0.2], mass = 2}]
 [[constraints]]
 kind = "coordinate_stop"
 name = "floor A"
@@ -74,10 +60,7 @@ end_time = 1.3
 const std::string two_drives = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "B"
-position = [0, 0, 0]
-mass = 2
+nodes = [{name = "B", position = [0, 0, 0], mass = 2}]
 [[constraints]]
 kind = "coordinate"
 nodes = ["B"]
@@ -130,11 +113,10 @@ TEST_CASE("two stops of one name each let go when they would have to pull") {
   // 60 N (t - 0.5) = 20 N at 0.8333 s, then z'' = 30 (t - 0.8333) m/s^2: z = 5 (t - 0.8333)^3. Releases are
   // seen at the end of a step: 0.01 s of 0.4667 s, of the third power.
   const double left = 1.3 - (0.5 + 1.0 / 3);
-  const VectorXd q = run.trajectory.positions(run.trajectory.size() - 1);
+  const VectorXd q = end_positions(run);
   CHECK(q[5] == Approx(5 * left * left * left).epsilon(0.08));
   CHECK(std::abs(q[2]) <= 1e-9);  // the other stays down
-  CHECK(run.trajectory.positions(run.trajectory.size() - 1) ==
-        named.trajectory.positions(named.trajectory.size() - 1));
+  CHECK(end_positions(run) == end_positions(named));
 }
 
 TEST_CASE("two drives without a name have columns and forces of their own") {

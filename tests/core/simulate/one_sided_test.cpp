@@ -12,21 +12,15 @@ namespace one_sided_test {
 
 namespace {
 
-using testing::run_scene;
+using testing::end_positions, testing::run_scene;
 
 // 1 kg at 1 m/s on a cable of 100 N/m with 0.3 m of slack: it pulls from 0.3 s for half a period of 10 rad/s.
 const std::string cable = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "O"
-position = [0, 0, 0]
-fixed = true
-[[structure.nodes]]
-name = "A"
-position = [0.7, 0, 0]
-velocity = [1, 0, 0]
-mass = 1
+nodes = [
+  {name = "O", position = [0, 0, 0], fixed = true},
+  {name = "A", position = [0.7, 0, 0], velocity = [1, 0, 0], mass = 1}]
 [[forces]]
 kind = "spring"
 name = "cable"
@@ -40,10 +34,6 @@ step = 0.01
 end_time = 1
 )";
 
-double last(const Simulation& run, Index coordinate) {
-  return run.trajectory.node_positions(run.trajectory.size() - 1)[coordinate];
-}
-
 std::vector<std::string> solver(std::string_view method, int stages, double step, bool adaptive = false) {
   return {"solver.method=" + std::string(method), "solver.stages=" + std::to_string(stages),
           "solver.step=" + std::to_string(step),
@@ -53,10 +43,7 @@ std::vector<std::string> solver(std::string_view method, int stages, double step
 const std::string ball = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [0, 0, 0]
-mass = 2
+nodes = [{name = "A", position = [0, 0, 0], mass = 2}]
 [[constraints]]
 kind = "coordinate_stop"
 name = "stop"
@@ -84,7 +71,7 @@ TEST_CASE("a cable goes taut and slack at full order") {
   // x(1) = 0.7 + 0.3 + pi/10 - ... = 1 - (1 - 0.3 - pi/10): out, half a swing, and back at 1 m/s.
   const double exact = 0.3 + pi / 10;
   const Simulation fine = run_scene(cable);
-  CHECK(last(fine, 3) == Approx(exact).margin(1e-10));
+  CHECK(end_positions(fine)[3] == Approx(exact).margin(1e-10));
   CHECK(fine.steps < 150);
   REQUIRE(fine.events.size() == 2);
   CHECK(fine.events[0].name == "cable pulls");
@@ -94,8 +81,8 @@ TEST_CASE("a cable goes taut and slack at full order") {
   // Orders 2s - 2 from steps of 0.08 and 0.04 s, that divide neither time; the last part of the swing is
   // shorter than a step, by another share for each, which blurs the order by some tenths.
   for (const int stages : {2, 3, 4}) {
-    const double coarse = std::abs(last(run_scene(cable, solver("dvm", stages, 0.032)), 3) - exact);
-    const double half = std::abs(last(run_scene(cable, solver("dvm", stages, 0.008)), 3) - exact);
+    const double coarse = std::abs(end_positions(run_scene(cable, solver("dvm", stages, 0.032)))[3] - exact);
+    const double half = std::abs(end_positions(run_scene(cable, solver("dvm", stages, 0.008)))[3] - exact);
     INFO(stages << " stages: " << coarse << ", " << half);
     CHECK(0.5 * std::log2(coarse / half) >= 2 * stages - 2 - 0.5);
   }
@@ -107,7 +94,7 @@ TEST_CASE("a cable goes taut and slack at full order") {
       const double tolerance = method.name == "dvm"                 ? 1e-10
                                : method.name == "generalized_alpha" ? 2e-3
                                                                     : 1e-6;
-      CHECK(last(run, 3) == Approx(exact).margin(tolerance));
+      CHECK(end_positions(run)[3] == Approx(exact).margin(tolerance));
       CHECK(testing::largest(diagnose(run), "energy_balance_J") <= 10 * tolerance);
     }
 }
@@ -122,7 +109,7 @@ TEST_CASE("a cable with damping pulls from the moment it is stretched and never 
   const double e = std::exp(-gamma * let_go), s = std::sin(omega * let_go), c = std::cos(omega * let_go);
   const double x = e * s / omega, v = e * (c - gamma * s / omega);
   REQUIRE(std::abs(100 * x + 4 * v) <= 1e-12);
-  CHECK(last(run, 3) == Approx(1 + x + v * (1 - 0.3 - let_go)).margin(1e-9));
+  CHECK(end_positions(run)[3] == Approx(1 + x + v * (1 - 0.3 - let_go)).margin(1e-9));
   REQUIRE(run.events.size() == 2);
   CHECK(run.events[1].t == Approx(0.3 + let_go).epsilon(1e-9));
   // Of 0.5 J; what is dissipated is a quadrature of order 6 on steps of omega h = 0.2.
@@ -134,7 +121,7 @@ TEST_CASE("a weight that is let go on a cable of its own length hangs on it at o
   const Simulation run =
       run_scene(cable, {"structure.nodes.A.position=[1,0,0]", "structure.nodes.A.velocity=[0,0,0]",
                         "gravity.acceleration=[9,0,0]"});
-  CHECK(last(run, 3) == Approx(1 + 0.09 * (1 - std::cos(10.0))).margin(1e-9));
+  CHECK(end_positions(run)[3] == Approx(1 + 0.09 * (1 - std::cos(10.0))).margin(1e-9));
 }
 
 TEST_CASE("many cables that switch together or one shortly after the other stay robust") {
@@ -157,7 +144,7 @@ TEST_CASE("many cables that switch together or one shortly after the other stay 
   CHECK(run.events.size() == 2 * count);
   for (int k = 0; k < count; ++k) {
     const double slack = k < count / 2 ? 0.3 : 0.3 + 1e-4 * k;
-    CHECK(last(run, 6 * k + 3) == Approx(0.7 + slack - (1 - slack - pi / 10)).margin(1e-9));
+    CHECK(end_positions(run)[6 * k + 3] == Approx(0.7 + slack - (1 - slack - pi / 10)).margin(1e-9));
   }
 }
 
@@ -223,7 +210,7 @@ TEST_CASE("impacts that accumulate end in rest") {
     const double rest = 0.2 * (1 + 2 * restitution / (1 - restitution));
     // The last flights are cut at 1e-4 of a step of 0.02 s: what is left of them is e / (1 - e) as long.
     CHECK(run.events.back().t == Approx(rest).margin(2e-6 / (1 - restitution) + 1e-9));
-    CHECK(last(run, 2) == Approx(-3.25).margin(1e-9));
+    CHECK(end_positions(run)[2] == Approx(-3.25).margin(1e-9));
     CHECK(testing::largest(diagnose(run), "energy_balance_J") <= 1e-8);
   }
 }
@@ -236,7 +223,7 @@ TEST_CASE("impacts without end are cut by a limit that is said") {
   CHECK(run.status == RunStatus::completed);
   REQUIRE(run.warnings.size() == 1);
   CHECK(run.warnings[0].find("impacts without end") != std::string::npos);
-  CHECK(std::abs(last(run, 2)) <= 1.1e-8);
+  CHECK(std::abs(end_positions(run)[2]) <= 1.1e-8);
   CHECK(testing::largest(diagnose(run), "energy_balance_J") <= 1e-8);
 }
 

@@ -11,7 +11,7 @@ namespace spring_motion_test {
 
 namespace {
 
-using testing::run_scene;
+using testing::end_positions, testing::run_scene;
 
 double largest(const Simulation& run, const char* column) {
   return testing::largest(diagnose(run), column);
@@ -21,14 +21,9 @@ double largest(const Simulation& run, const char* column) {
 const std::string oscillator = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "O"
-position = [0, 0, 0]
-fixed = true
-[[structure.nodes]]
-name = "A"
-position = [1.5, 0, 0]
-mass = 2
+nodes = [
+  {name = "O", position = [0, 0, 0], fixed = true},
+  {name = "A", position = [1.5, 0, 0], mass = 2}]
 [[forces]]
 kind = "spring"
 nodes = ["O", "A"]
@@ -51,8 +46,13 @@ double x_at(const Simulation& run, std::size_t i) {
 
 // A rod of 3 kg and 2 m hinged to the ground beside a fixed arm, in the plane z = 0.
 const std::string hinged_rod = R"(
+[solver]
+stages = 4
+step = 0.01
+end_time = 1
 [structure]
 kind = "custom"
+constraints = [{kind = "plane", nodes = ["A"], normal = [0, 0, 1]}]
 [[structure.nodes]]
 name = "O"
 position = [0, 0, 0]
@@ -68,14 +68,6 @@ position = [0, 2, 0]
 name = "arm"
 nodes = ["O", "A"]
 mass = 3
-[[structure.constraints]]
-kind = "plane"
-nodes = ["A"]
-normal = [0, 0, 1]
-[solver]
-stages = 4
-step = 0.01
-end_time = 1
 )";
 
 }  // namespace
@@ -174,7 +166,7 @@ force = 6
   REQUIRE(run.status == RunStatus::completed);
   // Inertia m l^2 / 3 = 4 and 1e-3 * 5, torque 6 N * 2 m clockwise: turned by alpha t^2 / 2.
   const double turned = 0.5 * 12.0 / 4.005;
-  const VectorXd x = run.trajectory.positions(run.trajectory.size() - 1);
+  const VectorXd x = end_positions(run);
   CHECK(std::atan2(x[6], x[7]) == Approx(turned).epsilon(1e-9));
   CHECK(largest(run, "energy_balance_J") <= 1e-8);
   CHECK(diagnose(run).at("work_J").values.back() == Approx(12.0 * turned).epsilon(1e-8));
@@ -192,7 +184,7 @@ damping = 0
 )";
   // I theta'' = -k (theta - theta_0): a cosine from 90 degrees about 170 degrees, omega = sqrt(8 / 4).
   const Simulation run = run_scene(hinged_rod + spring);
-  const VectorXd x = run.trajectory.positions(run.trajectory.size() - 1);
+  const VectorXd x = end_positions(run);
   const double theta = (170 - 80 * std::cos(std::sqrt(2.0))) * radians_per_degree;
   CHECK(std::atan2(x[7], x[6]) == Approx(theta).epsilon(1e-9));
   CHECK(largest(run, "energy_balance_J") <= 1e-9);

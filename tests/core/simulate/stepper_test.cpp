@@ -101,10 +101,7 @@ TEST_CASE("what is shown goes through impacts without ringing") {
   const Simulation run = run_scene(R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [0, 0, 0.2]
-mass = 2
+nodes = [{name = "A", position = [0, 0, 0.2], mass = 2}]
 [[constraints]]
 kind = "coordinate_stop"
 name = "floor"

@@ -11,16 +11,13 @@ namespace stop_test {
 
 namespace {
 
-using testing::run_scene;
+using testing::end_positions, testing::run_scene;
 
 // A ball of 2 kg that falls 5 m at 10 m/s^2: one second to the floor.
 const std::string ball = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [0, 0, 5]
-mass = 2
+nodes = [{name = "A", position = [0, 0, 5], mass = 2}]
 [[constraints]]
 kind = "coordinate_stop"
 name = "floor"
@@ -67,8 +64,7 @@ TEST_CASE("a stop that is touched and left within one step is not missed") {
   CHECK(run.events[0].t == Approx(touch).epsilon(1e-12));
   // Off again at half of the approach speed, sqrt(24) m/s.
   const double left = 0.6 - touch;
-  CHECK(run.trajectory.positions(run.trajectory.size() - 1)[2] ==
-        Approx(0.5 * std::sqrt(24.0) * left + 10 * left * left).epsilon(1e-10));
+  CHECK(end_positions(run)[2] == Approx(0.5 * std::sqrt(24.0) * left + 10 * left * left).epsilon(1e-10));
   // A parabola that stays 1 mm above the floor touches nothing.
   const Simulation above =
       run_scene(ball, {"structure.nodes.A.position=[0,0,0.901]", "structure.nodes.A.velocity=[0,0,-6]",
@@ -83,7 +79,7 @@ TEST_CASE("bounces come to rest after their geometric series, and the stop then 
   // 1 + 2 (0.5 + 0.25 + ...) = 3 s, up to the rest speed of 1 mm/s: 0.2 ms.
   CHECK(run.events.back().name == "rests on stop floor");
   CHECK(run.events.back().t == Approx(3).margin(5e-4));
-  CHECK(std::abs(run.trajectory.positions(run.trajectory.size() - 1)[2]) <= 1e-10);
+  CHECK(std::abs(end_positions(run)[2]) <= 1e-10);
   CHECK(std::abs(run.trajectory.velocities(run.trajectory.size() - 1)[2]) <= 1e-12);
   double lost = 0;
   for (const Event& event : run.events) lost += event.energy_lost;

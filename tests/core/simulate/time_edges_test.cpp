@@ -13,17 +13,13 @@ namespace time_edges_test {
 
 namespace {
 
-using testing::run_scene;
+using testing::end_positions, testing::run_scene;
 
 // A free mass of 1.5 kg at 0.3 m/s along x; what pushes it is added.
 const std::string mass = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [0.2, 0, 0]
-velocity = [0.3, 0, 0]
-mass = 1.5
+nodes = [{name = "A", position = [0.2, 0, 0], velocity = [0.3, 0, 0], mass = 1.5}]
 [solver]
 stages = 4
 step = 0.01
@@ -33,10 +29,6 @@ end_time = 2
 std::vector<std::string> with_method(std::string_view method, bool adaptive) {
   return {"solver.method=" + std::string(method),
           std::string("solver.adaptive=") + (adaptive ? "true" : "false")};
-}
-
-double last_x(const Simulation& run) {
-  return run.trajectory.node_positions(run.trajectory.size() - 1)[0];
 }
 
 }  // namespace
@@ -59,7 +51,7 @@ values = [0, 1, 1, 0]
       // The trapezium is symmetric about its middle: as if all of it came there. generalized_alpha averages
       // the force over a step; its ramps of 0.1 ms cost it h^2 of them.
       const double impulse = 2000 * 0.0011, x = 0.2 + 0.3 * 2 + impulse / 1.5 * (2 - 0.5037);
-      CHECK(last_x(run) == Approx(x).epsilon(method.name == "generalized_alpha" ? 2e-4 : 1e-11));
+      CHECK(end_positions(run)[0] == Approx(x).epsilon(method.name == "generalized_alpha" ? 2e-4 : 1e-11));
     }
 }
 
@@ -80,7 +72,7 @@ values = [0, 0.4634]
       auto changes = with_method(method, adaptive);
       changes.push_back("solver.step=0.2");
       // Cubics between the bends: exact for all of these.
-      CHECK(last_x(run_scene(ramp, changes)) == Approx(x).epsilon(1e-13));
+      CHECK(end_positions(run_scene(ramp, changes))[0] == Approx(x).epsilon(1e-13));
     }
 }
 
@@ -90,14 +82,9 @@ TEST_CASE("a drive that starts at once takes its load along, and the energy is t
   const std::string drive = R"(
 [structure]
 kind = "custom"
-[[structure.nodes]]
-name = "A"
-position = [0, 0, 0]
-mass = 1.5
-[[structure.nodes]]
-name = "B"
-position = [0.8, 0, 0]
-mass = 0.7
+nodes = [
+  {name = "A", position = [0, 0, 0], mass = 1.5},
+  {name = "B", position = [0.8, 0, 0], mass = 0.7}]
 [[constraints]]
 kind = "coordinate"
 name = "motor"
@@ -121,7 +108,7 @@ end_time = 1
       const Simulation run = run_scene(drive, with_method(method.name, adaptive));
       INFO(method.name << (adaptive ? " adaptive" : "") << ": " << run.message);
       REQUIRE(run.status == RunStatus::completed);
-      const VectorXd q = run.trajectory.node_positions(run.trajectory.size() - 1);
+      const VectorXd q = end_positions(run);
       // Errors at omega h = 0.076: order 2 leaves (omega h)^2 / 12 of a swing of 0.33 m, order 4 its square.
       const double tolerance = method.name == "dvm"                 ? 1e-11
                                : method.name == "generalized_alpha" ? 5e-3
@@ -147,7 +134,7 @@ values = [0.2, 0.3, 1.4]
 )";
   const Simulation run = run_scene(table, {"structure.nodes.A.velocity=[0,0,0]"});
   REQUIRE(run.status == RunStatus::completed);
-  CHECK(last_x(run) == Approx(1.4).epsilon(1e-13));
+  CHECK(end_positions(run)[0] == Approx(1.4).epsilon(1e-13));
   CHECK(std::abs(run.trajectory.node_velocities(run.trajectory.size() - 1)[0]) <= 1e-13);
   CHECK(testing::largest(diagnose(run), "energy_balance_J") <= 1e-9);
 }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/structures/custom.hpp"
+#include "core/system/system.hpp"
 #include "tests/support/family_structure.hpp"
 
 using namespace unfurl;

@@ -8,6 +8,7 @@
 #include "core/scene/reader.hpp"
 #include "core/simulate/simulation.hpp"
 #include "core/structure/structure_error.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -33,18 +34,7 @@ std::string four_bar(const std::string& left, const std::string& top, const std:
          "[solver]\nend_time = 0.5\n[gravity]\nacceleration = [1, -9.81, 0]\n";
 }
 
-std::shared_ptr<const Model> model_of(const std::string& text) {
-  return build_model(read_scene_text(text, "here.toml"));
-}
-
-std::string error_of(const std::string& text) {
-  try {
-    model_of(text);
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "";
-}
+using testing::error_of, testing::model_of;
 
 }  // namespace
 
@@ -72,7 +62,7 @@ TEST_CASE("lengths that fit move nothing and say nothing") {
 
 TEST_CASE("a length that is far off is refused with rod, length, distance and cure") {
   const std::string text = error_of(four_bar("1.2", "", ""));
-  for (const char* part : {"here.toml:", "rods[0].length", "rod O-A is given a length of 1.2 m",
+  for (const char* part : {"s.toml:", "rods[0].length", "rod O-A is given a length of 1.2 m",
                            "O and A are 1 m apart", "leave the length out"})
     CHECK_THAT(text, Catch::Contains(part));
 }

@@ -16,9 +16,15 @@ namespace context_test {
 
 namespace {
 
-struct OsmesaVariable {  // put back at the end
-  explicit OsmesaVariable(const char* value) { setenv("UNFURL_OSMESA", value, 1); }
-  ~OsmesaVariable() { unsetenv("UNFURL_OSMESA"); }
+struct OtherLibraries {  // put back at the end
+  explicit OtherLibraries(const char* osmesa, const char* egl = "libnoegl.so") {
+    setenv("UNFURL_OSMESA", osmesa, 1);
+    setenv("UNFURL_EGL", egl, 1);
+  }
+  ~OtherLibraries() {
+    unsetenv("UNFURL_OSMESA");
+    unsetenv("UNFURL_EGL");
+  }
 };
 
 std::string refusal() {
@@ -49,13 +55,19 @@ void draw_flag(int width, int stripe) {
 
 }  // namespace
 
-TEST_CASE("a missing OSMesa is an error that names the package to install") {
-  const OsmesaVariable none("libnone.so");
-  CHECK_THAT(refusal(), Catch::Contains("libnone.so") && Catch::Contains("apt-get install libosmesa6"));
+TEST_CASE("neither OSMesa nor EGL is an error that names both and the packages to install") {
+  const OtherLibraries none("libnone.so");
+  CHECK_THAT(refusal(), Catch::Contains("libnone.so") && Catch::Contains("libnoegl.so") &&
+                            Catch::Contains("package libosmesa6, or libegl1 and libegl-mesa0"));
+}
+
+TEST_CASE("a library that is not EGL is refused") {
+  const OtherLibraries other("libnone.so", "libz.so.1");
+  CHECK_THAT(refusal(), Catch::Contains("libz.so.1 lacks eglGetProcAddress"));
 }
 
 TEST_CASE("a library that is not OSMesa is refused") {
-  const OsmesaVariable other("libz.so.1");
+  const OtherLibraries other("libz.so.1");
   CHECK_THAT(refusal(),
              Catch::Contains("libz.so.1 is not an OSMesa library") && Catch::Contains("libosmesa6"));
 }

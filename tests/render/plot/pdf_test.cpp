@@ -11,8 +11,8 @@
 #include "render/plot/style.hpp"
 #include "render/plot/text_metrics.hpp"
 #include "render/plot/true_type.hpp"
-#include "render/plot/write_figure.hpp"
 #include "render/ui/font_file.hpp"
+#include "render/ui/write_figure.hpp"
 #include "tests/render/plot/sample_figures.hpp"
 #include "tests/support/not_tested.hpp"
 

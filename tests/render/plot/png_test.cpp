@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "render/plot/style.hpp"
-#include "render/plot/write_figure.hpp"
+#include "render/ui/write_figure.hpp"
 #include "tests/render/plot/sample_figures.hpp"
 
 namespace unfurl {

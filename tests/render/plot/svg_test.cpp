@@ -8,7 +8,7 @@
 #include "core/text/xml_text.hpp"
 #include "render/plot/style.hpp"
 #include "render/plot/svg_canvas.hpp"
-#include "render/plot/write_figure.hpp"
+#include "render/ui/write_figure.hpp"
 #include "tests/render/plot/sample_figures.hpp"
 
 namespace unfurl {

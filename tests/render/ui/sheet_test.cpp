@@ -6,7 +6,7 @@
 #include "render/gl/context.hpp"
 #include "render/gl/framebuffer.hpp"
 #include "render/gl/functions.hpp"
-#include "render/ui/text_overlay.hpp"
+#include "render/scene/text_overlay.hpp"
 
 using namespace unfurl;
 

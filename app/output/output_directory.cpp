@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/output/output_directory.hpp"
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "app/output/exit_code.hpp"
+#include "core/export/atomic_file.hpp"
+#include "core/export/formats.hpp"
+#include "core/scene/text_file.hpp"
+#include "core/text/nearest_name.hpp"
+
+namespace unfurl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool holds_our_results(const fs::path& directory) {
+  if (WrittenFiles::begun_here(directory)) return true;
+  const TextFile summary = read_text_file((directory / "summary.json").string());
+  const auto json = nlohmann::json::parse(summary.text, nullptr, false);
+  return json.is_object() && json.contains("unfurl");
+}
+
+// The system's words of an error about another file.
+std::string cause_of(const FileError& error) {
+  const std::string text = error.what();
+  return text.substr(text.rfind(": ") + 2);
+}
+
+// Nothing is in it but what another unfurl that just begins has not finished.
+bool holds_nothing(const fs::path& directory) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (!is_unfinished_name(entry.path().filename().string())) return false;
+  if (error) throw FileError(directory, error.value());
+  return true;
+}
+
+// Remove what programs that were killed left half written. Only for who is alone there.
+void remove_unfinished(const fs::path& directory) {
+  std::vector<std::string> folders{"", "frames", "figures"};
+  for (const ExportFormat& format : export_formats()) folders.emplace_back(format.result);
+  std::error_code error;
+  for (const std::string& folder : folders) {
+    if (fs::is_symlink(directory / folder, error) && !folder.empty()) continue;
+    for (const auto& entry : fs::directory_iterator(directory / folder, error))
+      if (is_unfinished_name(entry.path().filename().string())) remove_abandoned(entry.path());
+  }
+}
+
+}  // namespace
+
+OwnDirectory::OwnDirectory(const std::string& path, bool force, const std::string& owner,
+                           DirectoryLock::Use use)
+    : path_(path) {
+  if (path.empty()) return;
+  std::error_code error;
+  if (fs::exists(path_, error) && !fs::is_directory(path_, error))
+    throw FileError(path_, "is a file; -o names a directory");
+  fs::create_directories(path_, error);
+  if (error) throw FileError(path_, error.value());
+  const bool empty = holds_nothing(path_);
+  if (!empty && !force && !holds_our_results(path_))
+    throw FileError(path_, "is not empty and holds no earlier results; use --force to write into it");
+  lock_.emplace(path_, use);
+  try {
+    require_writable(path_ / WrittenFiles::list_name);
+    written_.emplace(path_, owner, empty);
+  } catch (const FileError& problem) {
+    if (fs::is_symlink(path_ / WrittenFiles::list_name, error)) throw;
+    throw FileError(path_, cause_of(problem));
+  }
+  if (lock_->alone()) remove_unfinished(path_);
+}
+
+OwnDirectory::~OwnDirectory() {
+  if (!written_) return;
+  const auto kept = written_->kept();
+  if (kept.empty()) return;
+  const std::string_view first = kept.front();
+  std::cerr << "unfurl: warning: " << first.substr(0, first.rfind(".kept-"))
+            << " was not, or not any more, what unfurl wrote; it is kept as " << first;
+  if (kept.size() > 1) std::cerr << ", and " << kept.size() - 1 << " more likewise";
+  std::cerr << "\n";
+}
+
+void require_writable(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) throw FileError(file, "is a directory");
+  try {
+    const PendingFile pending(file);
+    write_file_atomically(pending.name(), std::string_view("can this directory be written to?\n"),
+                          Flush::later);
+  } catch (const FileError& error) {
+    throw FileError(file, cause_of(error));
+  }
+}
+
+void require_writable_png(const fs::path& file, const std::string& what) {
+  if (file.extension() != ".png")
+    throw UsageError(what + " is written as .png, not " + in_quotes(file.extension().string()));
+  require_writable(file);
+}
+
+}  // namespace unfurl

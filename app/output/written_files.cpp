@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/output/written_files.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <sstream>
+#include <utility>
+
+#include "core/export/checksum.hpp"
+#include "core/scene/text_file.hpp"
+#include "core/text/version.hpp"
+
+namespace unfurl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* any_content = "----------------";
+constexpr const char* made = "Made by unfurl ";
+constexpr const char* written_into = "Written into by unfurl ";
+
+class Descriptor {
+ public:
+  explicit Descriptor(int file) : file_(file) {}
+  Descriptor(Descriptor&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(file_, other.file_);
+    return *this;
+  }
+  ~Descriptor() {
+    if (file_ >= 0) ::close(file_);
+  }
+  int get() const { return file_; }
+  explicit operator bool() const { return file_ >= 0; }
+
+ private:
+  int file_;
+};
+
+// Names may hold anything but NUL; a line holds one name.
+std::string escaped(const std::string& name) {
+  std::string text;
+  for (const char c : name) text += c == '\\' ? "\\\\" : c == '\n' ? "\\n" : std::string(1, c);
+  return text;
+}
+
+std::string unescaped(std::string_view text) {
+  std::string name;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\\' || i + 1 == text.size()) {
+      name += text[i];
+      continue;
+    }
+    name += text[++i] == 'n' ? '\n' : text[i];
+  }
+  return name;
+}
+
+// The checksum of a regular file, no link, in an open directory; empty where there is none.
+std::string checksum_in(int directory, const std::string& name) {
+  const Descriptor file(::openat(directory, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  return file ? checksum_of(file.get()) : "";
+}
+
+// The directory that holds DIR/name, reached through directories only; none where a link is on the way or the
+// name leads out of DIR.
+Descriptor parent_in(const fs::path& directory, const fs::path& name) {
+  Descriptor at(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  for (const fs::path& part : name.parent_path()) {
+    if (part.empty() || part == "." || part == ".." || part.is_absolute()) return Descriptor(-1);
+    at = Descriptor(::openat(at.get(), part.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+    if (!at) break;
+  }
+  return at;
+}
+
+}  // namespace
+
+bool WrittenFiles::begun_here(const fs::path& directory) {
+  return read_text_file((directory / list_name).string()).text.starts_with(made);
+}
+
+WrittenFiles::WrittenFiles(fs::path directory, std::string owner, bool was_empty)
+    : directory_(std::move(directory)), owner_(std::move(owner)) {
+  std::error_code error;
+  if (fs::is_symlink(directory_ / list_name, error))
+    throw FileError(directory_ / list_name, "is a link, not the list of what unfurl wrote");
+  if (fs::exists(directory_ / list_name, error))
+    read();
+  else
+    write_anew(was_empty);
+  before_ = watch_files(this);
+}
+
+WrittenFiles::~WrittenFiles() {
+  watch_files(before_);
+}
+
+void WrittenFiles::read() {
+  const TextFile file = read_text_file((directory_ / list_name).string());
+  if (!file.error.empty()) throw FileError(directory_ / list_name, file.error);
+  std::istringstream text(file.text);
+  std::getline(text, title_);
+  for (std::string line; std::getline(text, line);) {
+    const std::size_t one = line.find(' '), two = line.find(' ', one + 1);
+    if (one == std::string::npos || two == std::string::npos) continue;
+    lines_[unescaped(std::string_view(line).substr(two + 1))].insert(
+        {line.substr(0, one), line.substr(one + 1, two - one - 1)});
+  }
+}
+
+void WrittenFiles::write_anew(bool was_empty) {
+  if (title_.empty()) title_ = (was_empty ? made : written_into) + version();
+  std::string text = title_ + "\n";
+  for (const auto& [name, lines] : lines_)
+    for (const Line& line : lines) text += line.checksum + " " + line.owner + " " + escaped(name) + "\n";
+  FileWatcher* watcher = watch_files(nullptr);  // the list is not in the list
+  try {
+    write_file_atomically(directory_ / list_name, text);
+  } catch (...) {
+    watch_files(watcher);
+    throw;
+  }
+  watch_files(watcher);
+}
+
+// One write at the file's end: whole beside those of other programs.
+void WrittenFiles::append(const Line& line, const std::string& name) {
+  if (!lines_[name].insert(line).second) return;
+  const Descriptor file(
+      ::open((directory_ / list_name).c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC));
+  const std::string text = line.checksum + " " + line.owner + " " + escaped(name) + "\n";
+  if (!file || ::write(file.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()))
+    throw FileError(directory_ / list_name, errno);
+}
+
+bool WrittenFiles::known(const std::string& name, const std::string& checksum) const {
+  const auto found = lines_.find(name);
+  if (found == lines_.end()) return false;
+  for (const Line& line : found->second)
+    if (line.checksum == any_content || line.checksum == checksum) return true;
+  return false;
+}
+
+// Empty for what lies elsewhere.
+std::string WrittenFiles::name_of(const fs::path& target) const {
+  const fs::path name = target.lexically_relative(directory_);
+  return name.empty() || *name.begin() == ".." ? "" : name.string();
+}
+
+void WrittenFiles::before_file(const fs::path& target, const std::string& checksum) {
+  const std::string name = name_of(target);
+  if (name.empty()) return;
+  const std::lock_guard lock(mutex_);
+  struct stat status {};
+  if (::lstat(target.c_str(), &status) == 0 && !S_ISDIR(status.st_mode)) {
+    const std::string old = checksum_in(AT_FDCWD, target.string());
+    const bool same = !old.empty() && old == checksum;
+    if (!same && (old.empty() || !known(name, old))) {
+      read();  // another program may have written it since
+      if (old.empty() || !known(name, old)) put_aside(target);
+    }
+  }
+  append({checksum, owner_}, name);
+}
+
+void WrittenFiles::keep_aside(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  put_aside(directory_ / name);
+}
+
+void WrittenFiles::put_aside(const fs::path& target) {
+  for (int n = 1;; ++n) {
+    const fs::path aside = target.string() + ".kept-" + std::to_string(n);
+    struct stat status {};
+    if (::lstat(aside.c_str(), &status) == 0) continue;
+    // Both names at once where the file system can, so that there is no moment without the file.
+    if (::linkat(AT_FDCWD, target.c_str(), AT_FDCWD, aside.c_str(), 0) != 0) {
+      if (errno == EEXIST) continue;
+      if (std::rename(target.c_str(), aside.c_str()) != 0) throw FileError(aside, errno);
+    }
+    kept_.push_back(aside.string());
+    return;
+  }
+}
+
+void WrittenFiles::grows(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  append({any_content, owner_}, name);
+}
+
+bool WrittenFiles::ours(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = lines_.find(name);
+  if (found == lines_.end()) return false;
+  const Descriptor folder = parent_in(directory_, name);
+  const std::string sum = folder ? checksum_in(folder.get(), fs::path(name).filename().string()) : "";
+  if (sum.empty()) return false;
+  return found->second.contains({any_content, owner_}) || found->second.contains({sum, owner_});
+}
+
+void WrittenFiles::remove(const std::string& name) {
+  if (!ours(name)) return;
+  fs::path path = name;
+  Descriptor folder = parent_in(directory_, path);
+  ::unlinkat(folder.get(), path.filename().c_str(), 0);
+  for (path = path.parent_path(); !path.empty(); path = path.parent_path()) {
+    folder = parent_in(directory_, path);
+    if (!folder || ::unlinkat(folder.get(), path.filename().c_str(), AT_REMOVEDIR) != 0) break;
+  }
+}
+
+void WrittenFiles::remove_all() {
+  std::vector<std::string> names;
+  for (const auto& [name, lines] : lines_) names.push_back(name);
+  for (const std::string& name : names) remove(name);
+  const std::lock_guard lock(mutex_);
+  std::error_code error;
+  std::erase_if(lines_, [&](const auto& entry) { return !fs::exists(directory_ / entry.first, error); });
+  write_anew(false);
+}
+
+std::vector<std::string> WrittenFiles::kept() const {
+  const std::lock_guard lock(mutex_);
+  return kept_;
+}
+
+}  // namespace unfurl

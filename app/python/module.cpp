@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Unfurl's solver, studies and figures as a Python module: unfurl._unfurl, which
+// app/python/unfurl/__init__.py makes pleasant. Long work runs without the interpreter's lock and hears
+// Ctrl-C.
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/measures.hpp"
+#include "core/export/atomic_file.hpp"
+#include "core/export/formats.hpp"
+#include "core/export/summary.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "core/scene/write.hpp"
+#include "core/simulate/stepper.hpp"
+#include "core/structure/structure_error.hpp"
+#include "core/study/scene_variation.hpp"
+#include "core/study/solve_for.hpp"
+#include "core/study/sweep.hpp"
+#include "core/study/tolerance.hpp"
+#include "core/text/nearest_name.hpp"
+#include "core/text/version.hpp"
+#include "render/gl/graphics_error.hpp"
+#include "render/image/png.hpp"
+#include "render/plot/figures.hpp"
+#include "render/scene/film_style.hpp"
+#include "render/scene/renderer.hpp"
+#include "render/ui/write_figure.hpp"
+
+namespace py = pybind11;
+using namespace unfurl;
+
+namespace {
+
+// True once Ctrl-C was pressed; asks the interpreter ten times a second at most. For a thread without the
+// lock.
+class Asker {
+ public:
+  bool operator()() {
+    const auto now = std::chrono::steady_clock::now();
+    if (raised_ || now - last_ < std::chrono::milliseconds(100)) return raised_;
+    last_ = now;
+    const py::gil_scoped_acquire lock;
+    raised_ = PyErr_CheckSignals() != 0;
+    if (raised_) kept_ = std::make_unique<py::error_already_set>();
+    return raised_;
+  }
+  // With the lock.
+  void raise() {
+    if (raised_) throw *kept_;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::unique_ptr<py::error_already_set> kept_;
+  bool raised_ = false;
+};
+
+using Doubles = std::vector<double>;
+
+// A view that keeps its owner alive, and that nobody writes into.
+template <class T>
+py::array view(const std::vector<T>& values, std::vector<py::ssize_t> shape, const py::object& owner) {
+  py::array_t<T> array(std::move(shape), values.data(), owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+// A run with what a person looks at, as plain arrays.
+class Run {
+ public:
+  Run(Scene scene, Simulation run)
+      : scene_(std::move(scene)), run_(std::move(run)), diagnostics_(judge(run_)) {
+    const Trajectory& trajectory = run_.trajectory;
+    const Structure& structure = trajectory.structure();
+    for (std::size_t i = 0; i < trajectory.size(); ++i) {
+      t_.push_back(trajectory.time(i));
+      const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
+      x_.insert(x_.end(), x.begin(), x.end());
+      v_.insert(v_.end(), v.begin(), v.end());
+      for (const RodCopy& rod : structure.rod_copies) {
+        force_.push_back(diagnostics_.axial_force(static_cast<Index>(i), rod.source));
+        unique_.push_back(diagnostics_.force_unique(static_cast<Index>(i), rod.source));
+      }
+    }
+  }
+
+  const Scene& scene() const { return scene_; }
+  const Simulation& simulation() const { return run_; }
+  const Diagnostics& diagnostics() const { return diagnostics_; }
+  const Structure& structure() const { return run_.trajectory.structure(); }
+  py::ssize_t steps() const { return static_cast<py::ssize_t>(t_.size()); }
+  py::ssize_t nodes() const { return static_cast<py::ssize_t>(structure().node_copies.size()); }
+  py::ssize_t rods() const { return static_cast<py::ssize_t>(structure().rod_copies.size()); }
+
+  static py::array t(const py::object& self) { return view(of(self).t_, {of(self).steps()}, self); }
+  static py::array x(const py::object& self) {
+    return view(of(self).x_, {of(self).steps(), of(self).nodes(), 3}, self);
+  }
+  static py::array v(const py::object& self) {
+    return view(of(self).v_, {of(self).steps(), of(self).nodes(), 3}, self);
+  }
+  static py::array force(const py::object& self) {
+    return view(of(self).force_, {of(self).steps(), of(self).rods()}, self);
+  }
+  static py::array unique(const py::object& self) {
+    const py::array bytes = view(of(self).unique_, {of(self).steps(), of(self).rods()}, self);
+    return bytes.attr("view")("bool");
+  }
+  static py::dict series(const py::object& self) {
+    py::dict columns;
+    for (const Series& column : of(self).diagnostics_.columns)
+      columns[py::str(column.name)] = view(column.values, {of(self).steps()}, self);
+    return columns;
+  }
+
+  py::array at(double time) const {
+    if (!(time >= run_.trajectory.start_time() && time <= run_.trajectory.end_time()))
+      throw py::index_error("t = " + exact_number(time) + " s is not within the run, which goes from " +
+                            exact_number(run_.trajectory.start_time()) + " to " +
+                            exact_number(run_.trajectory.end_time()) + " s");
+    const VectorXd x = run_.trajectory.positions_at(time);
+    return py::array_t<double>({nodes(), py::ssize_t{3}}, x.data());
+  }
+
+ private:
+  static const Run& of(const py::object& self) { return self.cast<const Run&>(); }
+
+  Scene scene_;
+  Simulation run_;
+  Diagnostics diagnostics_;
+  Doubles t_, x_, v_, force_;
+  std::vector<std::uint8_t> unique_;
+};
+
+std::string summary_of(const Run& run) {
+  const auto& trajectory = run.simulation().trajectory;
+  const Mobility mobility = analyse_mobility(trajectory.model().system, trajectory.node_positions(0));
+  return summary_json(run.scene().name, run.simulation(), run.diagnostics(), mobility);
+}
+
+void export_run(const Run& run, const std::string& format, const std::string& directory) {
+  std::vector<std::string_view> known;
+  for (const ExportFormat& row : export_formats()) known.push_back(row.name);
+  const ExportFormat* found = find_export_format(format);
+  if (!found) throw StudyError("no export format " + in_quotes(format) + did_you_mean(format, known));
+  std::filesystem::create_directories(directory);
+  const Scene& scene = run.scene();
+  const std::string text = scene_text(scene);
+  found->write({run.simulation(), run.diagnostics(), directory, scene.name,
+                scene.render.speed / scene.render.fps, scene.render.speed, scene.title, text});
+}
+
+void write_figure_of(const Run& run, const std::string& name, const std::string& file,
+                     const std::string& style) {
+  std::vector<std::string_view> known;
+  for (const FigureKind& kind : figure_kinds())
+    if (kind.applies(run.simulation(), run.diagnostics())) known.push_back(kind.name);
+  const FigureKind* kind = find_figure(name);
+  if (!kind || std::find(known.begin(), known.end(), name) == known.end())
+    throw StudyError("no figure " + in_quotes(name) + " of this run" + did_you_mean(name, known));
+  FigureOptions options;
+  for (const FigureStyle& row : figure_styles())
+    if (row.name == style) options.style = &row;
+  if (options.style->name != style) throw StudyError("no style " + in_quotes(style));
+  write_figure(kind->make(run.simulation(), run.diagnostics()), file, options);
+}
+
+void write_frame(const Run& run, double t, const std::string& file) {
+  const FrameStyle style = film_style(run.scene(), run.simulation(), run.diagnostics());
+  const auto context = make_offscreen_context();
+  const FrameBuilder builder(run.simulation().trajectory, style);
+  Renderer renderer(*context, style.width, style.height);
+  write_png(file, renderer.draw(builder.build(t)));
+}
+
+// Where a scene comes from: a name, a file, or a text.
+SceneSource source_of(const std::string& scene, const std::vector<std::string>& overrides, bool is_text) {
+  if (!is_text) return {find_scene(scene), overrides};
+  return {"scene", overrides, std::make_shared<const std::string>(scene)};
+}
+
+std::shared_ptr<Run> run_scene(const SceneSource& source, const std::vector<std::string>& changes) {
+  Scene scene = source.read(changes);
+  Asker asker;
+  SimulationHooks hooks;
+  hooks.cancelled = [&asker] { return asker(); };
+  std::shared_ptr<Run> made;
+  {
+    const py::gil_scoped_release release;
+    Simulation run = simulate_as_asked(build_model(scene), scene.solver, hooks);
+    if (run.status != RunStatus::stopped) made = std::make_shared<Run>(std::move(scene), std::move(run));
+  }
+  asker.raise();
+  return made;
+}
+
+// Columns by name: strings for the outcome, numbers else; NaN where a point has no answer.
+py::dict sweep_scene(const SceneSource& source, const std::vector<std::pair<std::string, Doubles>>& vary,
+                     const std::vector<std::string>& measures, int threads) {
+  SweepPlan plan{source, {}, {}, {}};
+  for (const auto& [key, values] : vary) {
+    SweepAxis axis;
+    axis.key = key;
+    for (const double x : values) {
+      axis.values.push_back(exact_number(x));
+      axis.numbers.push_back(x);
+    }
+    plan.axes.push_back(std::move(axis));
+  }
+  const auto columns = columns_of(build_model(source.read()));
+  for (const std::string& name : measures) plan.measures.push_back(find_measure(name, columns));
+  check_plan(plan);
+  Asker asker;
+  std::mutex mutex;
+  StudyHooks hooks;
+  hooks.threads = threads;
+  hooks.cancelled = [&] {
+    const std::lock_guard lock(mutex);
+    return asker();
+  };
+  Sweep sweep;
+  {
+    const py::gil_scoped_release release;
+    Journal nowhere("", plan.columns(), plan.axes.size(), plan.number_columns());
+    sweep = run_sweep(plan, nowhere, hooks);
+  }
+  asker.raise();
+  py::dict table;
+  for (std::size_t c = 0; c < sweep.table.columns.size(); ++c) {
+    py::list words;
+    Doubles numbers;
+    for (const auto& row : sweep.table.rows) {
+      words.append(row[c]);
+      numbers.push_back(number_of(row[c]));
+    }
+    const bool text = c == plan.axes.size();
+    const py::str name(sweep.table.columns[c]);
+    if (text)
+      table[name] = words;
+    else
+      table[name] = py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+  }
+  return table;
+}
+
+double solve_scene(const SceneSource& source, const std::string& key, const std::string& measure_name,
+                   double target, double low, double high) {
+  const Scene scene = source.read();
+  const RunMeasure measure = find_measure(measure_name, columns_of(build_model(scene)));
+  if (is_whole_number(scene, key))
+    throw StudyError(in_quotes(key) + " takes whole numbers, which cannot be searched");
+  SolveOptions options;
+  options.low = low;
+  options.high = high;
+  if (!(low < high)) {
+    const auto start = scene_number(scene, key);
+    if (!start) throw StudyError(in_quotes(key) + " has no number to begin from: say between=(low, high)");
+    options.start = *start;
+  }
+  Asker asker;
+  SimulationHooks hooks;
+  hooks.cancelled = [&asker] { return asker(); };
+  StudyHooks asking;
+  asking.cancelled = hooks.cancelled;
+  const Objective objective = [&](double x) {
+    try {
+      const Scene changed = source.read({key + "=" + exact_number(x)});
+      Simulation run = simulate_as_asked(build_model(changed), changed.solver, hooks);
+      const Diagnostics diagnostics = judge(run);
+      return run.status == RunStatus::failed ? NAN : measure.value(run, diagnostics);
+    } catch (const SceneError&) {
+      return static_cast<double>(NAN);
+    }
+  };
+  double found = 0;
+  try {
+    const py::gil_scoped_release release;
+    found = solve_for(objective, target, options, asking).x;
+  } catch (const Cancelled&) {
+    asker.raise();
+    throw;
+  }
+  return found;
+}
+
+class SteppedScene {
+ public:
+  explicit SteppedScene(Scene scene)
+      : scene_(std::move(scene)), stepper_(build_model(scene_), scene_.solver) {}
+  bool step() {
+    const py::gil_scoped_release release;
+    return stepper_.step();
+  }
+  bool advance_to(double t) {
+    const py::gil_scoped_release release;
+    return stepper_.advance_to(t);
+  }
+  double time() const { return stepper_.time(); }
+  py::array positions() const { return array(trajectory().positions(trajectory().size() - 1)); }
+  py::array velocities() const { return array(trajectory().velocities(trajectory().size() - 1)); }
+  std::string status() const { return std::string(to_string(stepper_.run().status)); }
+  std::vector<std::pair<std::string, double>> events() const {
+    std::vector<std::pair<std::string, double>> found;
+    for (const Event& event : stepper_.run().events) found.emplace_back(event.name, event.t);
+    return found;
+  }
+  std::shared_ptr<Run> finish() { return std::make_shared<Run>(scene_, Simulation(stepper_.run())); }
+
+ private:
+  const Trajectory& trajectory() const { return stepper_.run().trajectory; }
+  static py::array array(const VectorXd& x) {
+    return py::array_t<double>({static_cast<py::ssize_t>(x.size() / 3), py::ssize_t{3}}, x.data());
+  }
+  Scene scene_;
+  Stepper stepper_;
+};
+
+template <class Kind>
+void add_error(py::module_& module, const char* name, const py::object& base) {
+  py::register_exception<Kind>(module, name, base);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_unfurl, module) {
+  module.doc() = "Unfurl: how deployable structures unfold.";
+  module.attr("__version__") = version();
+  const py::object error = py::register_exception<Error>(module, "Error", PyExc_ValueError);
+  add_error<StructureError>(module, "StructureError", error);
+  add_error<SceneError>(module, "SceneError", error);
+  add_error<UnreadableScene>(module, "UnreadableScene", error);
+  add_error<FileError>(module, "FileError", error);
+  add_error<StudyError>(module, "StudyError", error);
+  add_error<NotFound>(module, "NotFound", error);
+  add_error<GraphicsError>(module, "GraphicsError", error);
+
+  py::class_<Run, std::shared_ptr<Run>>(module, "Run")
+      .def_property_readonly("t", &Run::t)
+      .def_property_readonly("x", &Run::x)
+      .def_property_readonly("v", &Run::v)
+      .def_property_readonly("force", &Run::force)
+      .def_property_readonly("unique", &Run::unique)
+      .def_property_readonly("series", &Run::series)
+      .def_property_readonly("nodes",
+                             [](const Run& run) {
+                               std::vector<std::string> names;
+                               for (const NodeCopy& node : run.structure().node_copies)
+                                 names.push_back(node.name);
+                               return names;
+                             })
+      .def_property_readonly("rods",
+                             [](const Run& run) {
+                               std::vector<std::string> names;
+                               for (const RodCopy& rod : run.structure().rod_copies)
+                                 names.push_back(rod.name);
+                               return names;
+                             })
+      .def_property_readonly("rod_nodes",
+                             [](const Run& run) {
+                               std::vector<std::pair<int, int>> ends;
+                               for (const RodCopy& rod : run.structure().rod_copies)
+                                 ends.emplace_back(rod.a, rod.b);
+                               return ends;
+                             })
+      .def_property_readonly("events",
+                             [](const Run& run) {
+                               std::vector<std::pair<std::string, double>> events;
+                               for (const Event& event : run.simulation().events)
+                                 events.emplace_back(event.name, event.t);
+                               return events;
+                             })
+      .def_property_readonly("status",
+                             [](const Run& run) { return std::string(to_string(run.simulation().status)); })
+      .def_property_readonly("message", [](const Run& run) { return run.simulation().message; })
+      .def_property_readonly(
+          "warnings",
+          [](const Run& run) {
+            std::vector<std::string> all = run.simulation().warnings;
+            for (const auto& warning : accuracy_warnings(run.simulation(), run.diagnostics()))
+              all.push_back(warning);
+            return all;
+          })
+      .def_property_readonly("title", [](const Run& run) { return run.scene().title; })
+      .def("at", &Run::at, py::arg("t"))
+      .def("measure",
+           [](const Run& run, const std::string& name) {
+             std::vector<std::string> columns;
+             for (const Series& column : run.diagnostics().columns) columns.push_back(column.name);
+             return find_measure(name, columns).value(run.simulation(), run.diagnostics());
+           })
+      .def("summary_json", &summary_of)
+      .def("export", &export_run, py::arg("format"), py::arg("directory"))
+      .def("plot", &write_figure_of, py::arg("name"), py::arg("file"), py::arg("style") = "screen")
+      .def("frame", &write_frame, py::arg("t"), py::arg("file"));
+
+  py::class_<SteppedScene>(module, "Stepper")
+      .def("step", &SteppedScene::step)
+      .def("advance_to", &SteppedScene::advance_to, py::arg("t"))
+      .def("finish", &SteppedScene::finish)
+      .def_property_readonly("t", &SteppedScene::time)
+      .def_property_readonly("x", &SteppedScene::positions)
+      .def_property_readonly("v", &SteppedScene::velocities)
+      .def_property_readonly("status", &SteppedScene::status)
+      .def_property_readonly("events", &SteppedScene::events);
+
+  py::class_<SceneSource>(module, "SceneSource")
+      .def(py::init(&source_of), py::arg("scene"), py::arg("overrides"), py::arg("is_text"))
+      .def("run", &run_scene, py::arg("changes"))
+      .def("stepper", [](const SceneSource& source) { return std::make_unique<SteppedScene>(source.read()); })
+      .def("sweep", &sweep_scene, py::arg("vary"), py::arg("measures"), py::arg("threads"))
+      .def("solve", &solve_scene)
+      .def_property_readonly("text", [](const SceneSource& source) { return scene_text(source.read()); })
+      .def_property_readonly("title", [](const SceneSource& source) { return source.read().title; });
+
+  module.def("scenes", [] {
+    std::vector<std::string> names;
+    for (const LibraryScene& scene : library_scenes()) names.push_back(scene.name);
+    return names;
+  });
+  module.def("measures", [] {
+    std::vector<std::string> names;
+    for (const NamedMeasure& measure : named_measures()) names.emplace_back(measure.name);
+    return names;
+  });
+}

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl check SCENE: validate; print coordinates, constraints, rank, redundant ones by name, degrees of
+// freedom, and which forces the rigid model does not determine.
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/command.hpp"
+#include "app/output/progress.hpp"
+#include "app/verbs/scene_run.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "core/system/mobility.hpp"
+#include "core/system/self_stress.hpp"
+
+namespace unfurl {
+
+namespace {
+
+VectorXd start_positions(const Structure& structure) {
+  VectorXd q(static_cast<Index>(3 * structure.nodes.size()));
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    q.segment<3>(static_cast<Index>(3 * i)) = structure.nodes[i].position;
+  return q;
+}
+
+// What is judged, and by what names.
+struct Judged {
+  const Model& model;
+  Mobility mobility;
+  ForceBalance balance;
+  std::vector<std::string> names;  // of all constraints
+
+  std::string name(int row) const { return names[static_cast<std::size_t>(row)]; }
+  // Rods are the last constraints.
+  int first_rod() const { return static_cast<int>(names.size() - model.structure.rods.size()); }
+  // Shown rods whose force is unique.
+  Index unique_rods() const {
+    const auto& rods = model.structure.rod_copies;
+    const auto first = static_cast<std::size_t>(first_rod());
+    return std::count_if(rods.begin(), rods.end(), [&](const RodCopy& rod) {
+      return balance.determined[first + static_cast<std::size_t>(rod.source)] != 0;
+    });
+  }
+};
+
+nlohmann::ordered_json self_stress_json(const Judged& judged) {
+  auto states = nlohmann::ordered_json::array();
+  for (const SelfStress& state : judged.balance.states) {
+    auto members = nlohmann::ordered_json::array();
+    for (const auto& member : state.members)
+      members.push_back({{"member", judged.name(member.row)}, {"force", member.force}});
+    states.push_back(std::move(members));
+  }
+  return states;
+}
+
+void print_json(const Scene& scene, const Judged& judged) {
+  const Model& model = judged.model;
+  const Mobility& mobility = judged.mobility;
+  nlohmann::ordered_json json = {{"scene", scene.name},
+                                 {"title", scene.title},
+                                 {"structure", scene.kind},
+                                 {"nodes", model.structure.node_copies.size()},
+                                 {"rods", model.structure.rod_copies.size()},
+                                 {"coordinates", mobility.coordinates},
+                                 {"solved_coordinates", model.system.solved_coordinates()},
+                                 {"constraints", mobility.constraints},
+                                 {"rank", mobility.rank},
+                                 {"redundant", mobility.redundant},
+                                 {"degrees_of_freedom", mobility.degrees_of_freedom},
+                                 {"rigid_motions", mobility.rigid_motions},
+                                 {"maxwell_count", mobility.count}};
+  json["smallest_singular_value"] = mobility.smallest_singular_value;
+  json["unique_rods"] = judged.unique_rods();
+  json["not_unique"] = nlohmann::ordered_json::array();
+  for (std::size_t r = 0; r < judged.names.size(); ++r)
+    if (!judged.balance.determined[r]) json["not_unique"].push_back(judged.names[r]);
+  json["self_stress"] = self_stress_json(judged);
+  json["self_stress_listed"] = judged.balance.listed;
+  std::cout << json.dump(2) << "\n";
+}
+
+void print_row(const char* name, Index value) {
+  std::cout << std::left << std::setw(24) << name << std::right << std::setw(8) << value << "\n";
+}
+
+// A redundant member with those that it can be pre-stressed against.
+void print_state(const Judged& judged, const SelfStress& state, int redundant) {
+  constexpr std::size_t most = 4;
+  std::string rods;
+  std::size_t named = 0, more_rods = 0, others = 0;
+  for (const auto& member : state.members) {
+    if (member.row == redundant) continue;
+    if (member.row < judged.first_rod())
+      ++others;
+    else if (named == most)
+      ++more_rods;
+    else
+      rods += (named++ ? ", " : "") + judged.name(member.row);
+  }
+  std::string against = rods;
+  if (more_rods > 0) against += " and " + std::to_string(more_rods) + " more";
+  if (others > 0)
+    against += (against.empty() ? "" : ", ") + std::to_string(others) + (rods.empty() ? " other" : "") +
+               (others == 1 ? " constraint" : " constraints");
+  std::cout << "  " << judged.name(redundant) << (against.empty() ? " alone" : " against " + against) << "\n";
+}
+
+// Last, since it may be long.
+void print_forces(const Judged& judged) {
+  const auto rods = static_cast<Index>(judged.model.structure.rod_copies.size());
+  if (rods > 0) print_row("rods of unique force", judged.unique_rods());
+  if (judged.model.structure.sectors > 1) std::cout << "  (among forces with the symmetry of the sector)\n";
+  print_row("states of self-stress", static_cast<Index>(judged.mobility.redundant.size()));
+  if (!judged.balance.listed) std::cout << "  (too large a structure to list their members)\n";
+  for (std::size_t k = 0; k < judged.balance.states.size(); ++k)
+    print_state(judged, judged.balance.states[k], judged.mobility.redundant_rows[k]);
+}
+
+void print_table(const Scene& scene, const Judged& judged) {
+  const Model& model = judged.model;
+  const Mobility& mobility = judged.mobility;
+  std::cout << scene.name << ": " << scene.title << "\n";
+  print_row("nodes", static_cast<Index>(model.structure.node_copies.size()));
+  print_row("rods", static_cast<Index>(model.structure.rod_copies.size()));
+  print_row("coordinates", mobility.coordinates);
+  print_row("solved coordinates", model.system.solved_coordinates());
+  print_row("constraints", mobility.constraints);
+  print_row("rank", mobility.rank);
+  print_row("redundant", static_cast<Index>(mobility.redundant.size()));
+  for (const auto& name : mobility.redundant) std::cout << "  " << name << "\n";
+  print_row("degrees of freedom", mobility.degrees_of_freedom);
+  if (mobility.rigid_motions > 0) print_row("  as one rigid body", mobility.rigid_motions);
+  print_row("by Maxwell's count", mobility.count);
+  if (!std::isnan(mobility.smallest_singular_value))
+    std::cout << std::left << std::setw(24) << "smallest singular value" << std::right << std::setw(8)
+              << std::setprecision(3) << mobility.smallest_singular_value << "\n";
+  print_forces(judged);
+}
+
+Mobility mobility_of(const Model& model, const Arguments& arguments) {
+  const Waiting waiting("ranking " + std::to_string(model.system.constraints()) + " constraints of " +
+                            std::to_string(model.system.solved_coordinates()) + " coordinates",
+                        arguments.quiet);
+  return analyse_mobility(model.system, start_positions(model.structure));
+}
+
+}  // namespace
+
+int cmd_check(const Arguments& arguments) {
+  const Scene scene = scene_of(arguments);
+  const auto model = model_of(scene, arguments);
+  const VectorXd start = start_positions(model->structure);
+  Judged judged{*model, mobility_of(*model, arguments), {}, model->system.all_names()};
+  judged.balance = force_balance(model->system, start, judged.mobility, model->structure.rods);
+  for (const auto& note : model->structure.notes) std::cerr << "unfurl: warning: " << note << "\n";
+  const std::string warning =
+      velocity_warning(initial_state(model->structure, model->system), model->structure);
+  if (!warning.empty()) std::cerr << "unfurl: warning: " << warning << "\n";
+  if (arguments.json)
+    print_json(scene, judged);
+  else
+    print_table(scene, judged);
+  return exit_ok;
+}
+
+}  // namespace unfurl

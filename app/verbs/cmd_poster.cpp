@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl poster SCENE -o FILE.png: a strip of poses side by side.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "app/command.hpp"
+#include "app/output/interrupt.hpp"
+#include "app/output/output_directory.hpp"
+#include "app/verbs/film.hpp"
+#include "app/verbs/scene_run.hpp"
+#include "render/image/image_scale.hpp"
+#include "render/image/png.hpp"
+#include "render/scene/film_style.hpp"
+#include "render/scene/frame_builder.hpp"
+#include "render/scene/pose_times.hpp"
+#include "render/scene/renderer.hpp"
+
+namespace unfurl {
+
+namespace {
+
+// Each pose is a third as wide and half as high as a frame of the film, and all are drawn to one scale.
+FrameStyle panel_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
+  FrameStyle style = film_style(scene, run, diagnostics);
+  style.title.clear();
+  style.width = std::max(16, scene.render.width / 3) * scene.render.supersample;
+  style.height = std::max(16, scene.render.height / 2) * scene.render.supersample;
+  style.options.legend = false;
+  style.options.inset.clear();
+  style.options.orbit = style.options.turntable = 0;
+  style.options.follow = false;
+  return style;
+}
+
+Image draw_poses(const FrameStyle& style, const Trajectory& run, std::size_t poses, int supersample,
+                 GlContext& context) {
+  const FrameBuilder builder(run, style);
+  Renderer renderer(context, style.width, style.height);
+  std::vector<Image> images;
+  for (const double t : pose_times(run, poses)) {
+    throw_if_interrupted();
+    DrawList list = builder.build(t);
+    list.ground.grid = false;  // its lines would break where two poses meet
+    list.stars = 0;
+    images.push_back(scaled_down(renderer.draw(list), style.width / supersample, style.height / supersample));
+  }
+  return side_by_side(images);
+}
+
+}  // namespace
+
+int cmd_poster(const Arguments& arguments) {
+  const std::filesystem::path output(arguments.output);
+  require_writable_png(output, "a poster");
+  const Scene scene = scene_of(arguments);
+  auto model = model_of(scene, arguments);
+  const auto context = make_offscreen_context({arguments.threads, arguments.gpu});
+
+  const InterruptGuard guard;
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  throw_if_interrupted();
+  const Diagnostics diagnostics = judge_run(run);
+  const FrameStyle style = panel_style(scene, run, diagnostics);
+  const Image poster = draw_poses(style, run.trajectory, static_cast<std::size_t>(arguments.poses),
+                                  scene.render.supersample, *context);
+  write_png(output, poster, has_alpha(scene.render));
+  report_run(run, diagnostics, arguments);
+  return exit_code_of(run, diagnostics);
+}
+
+}  // namespace unfurl

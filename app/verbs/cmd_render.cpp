@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl render SCENE -o DIR: simulate; write data, frames, animation and figures.
+#include <iostream>
+#include <optional>
+
+#include "app/command.hpp"
+#include "app/output/interrupt.hpp"
+#include "app/output/output_directory.hpp"
+#include "app/verbs/film.hpp"
+#include "app/verbs/frame_range.hpp"
+#include "app/verbs/run_figures.hpp"
+#include "app/verbs/scene_run.hpp"
+#include "core/export/atomic_file.hpp"
+
+namespace unfurl {
+
+int cmd_render(const Arguments& arguments) {
+  const FigureOptions style = figure_options(arguments);
+  const auto formats = export_formats_of(arguments);
+  const Scene scene = scene_of(arguments);
+  check_film(scene);
+  auto model = model_of(scene, arguments);
+  OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
+  const std::filesystem::path& directory = output.path();
+  DirectoryLock& lock = output.lock();
+  const FilmFolder folder(directory, scene, arguments.gpu);
+  if (folder.holds_another() && !arguments.force)
+    throw FileError(directory,
+                    "holds frames of another film (the scene, its settings or the program changed); "
+                    "use --force to start over, or another -o");
+  if (lock.shared() && !folder.holds_this())
+    throw FileError(directory, "another unfurl is writing another film into it; use another -o");
+  if (!arguments.frames.empty()) frame_range(arguments.frames, 100000);
+  if (folder.fresh()) folder.claim();  // others may join before the simulation ends
+  if (folder.holds_this()) lock.share();
+  const auto context = make_offscreen_context(
+      {arguments.threads, arguments.gpu});  // missing graphics are found before the work
+
+  const InterruptGuard guard;
+  std::optional<FinishedWork> keeping(std::in_place);  // of a motion that is interrupted too
+  Simulation run = simulate_scene(scene, std::move(model), arguments);
+  const Diagnostics diagnostics = judge_run(run);
+  if (!folder.holds_this()) FilmFolder::clear(output.written());
+  folder.claim();
+  lock.share();
+  const std::string summary = write_data(directory, scene, run, diagnostics);
+  write_exports(formats, directory, scene, run, diagnostics, arguments);
+  keeping.reset();
+  report_run(run, diagnostics, arguments);
+  if (arguments.json) std::cout << summary << std::flush;
+  if (exit_code_of(run, diagnostics) == exit_interrupted) return exit_interrupted;
+
+  if (arguments.encode_only) {
+    require_all_frames(folder, scene, run, arguments);
+    return encode_films(directory, folder, scene, run, arguments) ? exit_code_of(run, diagnostics)
+                                                                  : exit_interrupted;
+  }
+  FigureWriter writer(*context, style);
+  if (!draw_frames(folder, scene, run, diagnostics, *context, arguments) ||
+      !write_figures(directory / "figures", all_figures(), run, diagnostics, writer, arguments) ||
+      !encode_films(directory, folder, scene, run, arguments)) {
+    std::cerr << "unfurl: interrupted; what is finished is kept\n";
+    return exit_interrupted;
+  }
+  return exit_code_of(run, diagnostics);
+}
+
+}  // namespace unfurl

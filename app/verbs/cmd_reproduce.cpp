@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl reproduce -o DIR: the paper's tables and figures, beside ours; with --validation published
+// benchmarks.
+#include <iostream>
+
+#include "app/command.hpp"
+#include "app/output/interrupt.hpp"
+#include "app/verbs/study_session.hpp"
+#include "core/study/reproduce_report.hpp"
+#include "core/study/validation.hpp"
+#include "render/plot/figures/reproduce_figures.hpp"
+
+namespace unfurl {
+
+namespace {
+
+int reproduce_validation(const Arguments& arguments) {
+  StudySession session(arguments, "validating", "", "validation.csv");
+  std::vector<ValidationRow> rows;
+  try {
+    rows = validate(session.hooks());
+  } catch (const Cancelled&) {
+    std::cerr << "unfurl: interrupted before there was anything to write\n";
+    return exit_interrupted;
+  }
+  const Table table = validation_table(rows);
+  const std::string text =
+      markdown_text(table) + "\nWhat a scene cannot say yet:\n\n" + markdown_text(not_expressible_table());
+  session.write("validation.csv", csv_text(table));
+  session.write("validation.md", text);
+  std::cout << text;
+  bool all = true;
+  for (const ValidationRow& row : rows) {
+    all = all && row.holds();
+    if (!row.holds()) std::cerr << "unfurl: does not hold: " << row.problem << ", " << row.quantity << "\n";
+  }
+  const int code = finish(true, arguments, "written: " + (session.directory() / "validation.md").string());
+  return all ? code : exit_verification_failed;
+}
+
+}  // namespace
+
+int cmd_reproduce(const Arguments& arguments) {
+  const InterruptGuard guard;
+  if (arguments.study.validation) return reproduce_validation(arguments);
+  StudySession session(arguments, "reproducing", "", "runs.csv");
+  Reproduction r;
+  try {
+    r = reproduce_paper(session.hooks());
+  } catch (const Cancelled&) {
+    std::cerr << "unfurl: interrupted before there was anything to write\n";
+    return exit_interrupted;
+  }
+  const ReproductionPictures pictures{session.write(reproduced_poses_figure(r)),
+                                      session.write(reproduced_constraint_figure(r)),
+                                      session.write(reproduced_trajectory_figure(r))};
+  const Report report = reproduction_report(r, pictures);
+  session.write("runs.csv", csv_text(runs_table(r)));
+  session.write("report.md", report_markdown(report));
+  session.write("report.html", report_html(report, session.directory()));
+  for (const Check& check : r.checks)
+    if (!check.holds)
+      std::cerr << "unfurl: does not hold: " << check.claim << "; found " << check.found << "\n";
+  const int code = finish(true, arguments, "written: " + (session.directory() / "report.html").string());
+  return r.verified() ? code : exit_verification_failed;
+}
+
+}  // namespace unfurl

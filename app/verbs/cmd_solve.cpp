@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl solve SCENE --find KEY --target NAME=VALUE: the parameter for which a measure takes a value.
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "app/command.hpp"
+#include "app/output/interrupt.hpp"
+#include "app/output/output_directory.hpp"
+#include "app/verbs/scene_run.hpp"
+#include "app/verbs/study_session.hpp"
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/measures.hpp"
+#include "core/export/atomic_file.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/write.hpp"
+#include "core/study/scene_variation.hpp"
+#include "core/study/solve_for.hpp"
+#include "core/study/tolerance.hpp"
+#include "core/text/nearest_name.hpp"
+
+namespace unfurl {
+
+namespace {
+
+struct Target {
+  RunMeasure measure;
+  double value = 0;
+};
+
+Target target_of(const std::string& text, const Scene& scene) {
+  const std::size_t equals = text.rfind('=');
+  const double value =
+      equals == std::string::npos ? NAN : number_of(std::string_view(text).substr(equals + 1));
+  if (!std::isfinite(value)) throw UsageError("--target is NAME=VALUE with a number; got " + in_quotes(text));
+  return {find_measure(text.substr(0, equals), columns_of(build_model(scene))), value};
+}
+
+SolveOptions options_of(const Arguments& arguments, const SceneSource& source, const Scene& scene) {
+  const StudyArguments& study = arguments.study;
+  if (is_whole_number(scene, study.find))
+    throw UsageError(in_quotes(study.find) +
+                     " takes whole numbers, which cannot be searched; unfurl sweep --vary " + study.find +
+                     "=A,B,C shows the measure over some of them");
+  SolveOptions options;
+  if (!study.between.empty()) {
+    const std::size_t colon = study.between.find(':');
+    if (colon != std::string::npos) {
+      options.low = number_of(std::string_view(study.between).substr(0, colon));
+      options.high = number_of(std::string_view(study.between).substr(colon + 1));
+    }
+    if (!(options.low < options.high))
+      throw UsageError("--between is LOW:HIGH with LOW < HIGH; got " + in_quotes(study.between));
+    return options;
+  }
+  const auto start = scene_number(scene, study.find);
+  if (!start) source.read({study.find + "=1"});  // an unknown key has a better message
+  if (!start)
+    throw UsageError(in_quotes(study.find) +
+                     " is no number of this scene; --between LOW:HIGH says where to look");
+  options.start = *start;
+  return options;
+}
+
+// solved_force: of a force, whether it is unique at the solution.
+std::string result_json(const StudyArguments& study, const Target& target, const Solved& solved,
+                        const std::optional<bool>& solved_force) {
+  nlohmann::ordered_json json = {{"key", study.find},
+                                 {"value", solved.x},
+                                 {"measure", target.measure.name},
+                                 {"target", target.value},
+                                 {"reached", solved.value},
+                                 {"bracket", {solved.low, solved.high}},
+                                 {"runs", solved.evaluations.size()}};
+  if (solved_force) json["unique"] = *solved_force;
+  return json.dump(2) + "\n";
+}
+
+void write_results(const std::filesystem::path& directory, const std::string& key, const SceneSource& source,
+                   const Target& target, const Solved& solved) {
+  Table table{{key, target.measure.column}, {}};
+  for (const Evaluation& e : solved.evaluations)
+    table.rows.push_back({exact_number(e.x), exact_number(e.value)});
+  write_file_atomically(directory / "scene.toml",
+                        scene_text(source.read({key + "=" + exact_number(solved.x)})));
+  write_file_atomically(directory / "solve.csv", csv_text(table));
+}
+
+}  // namespace
+
+int cmd_solve(const Arguments& arguments) {
+  const StudyArguments& study = arguments.study;
+  if (study.find.empty()) throw UsageError("--find KEY is missing");
+  if (study.target.empty()) throw UsageError("--target NAME=VALUE is missing");
+  const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
+  const Scene scene = source.read();
+  const Target target = target_of(study.target, scene);
+  const SolveOptions options = options_of(arguments, source, scene);
+  source.read({study.find + "=" + exact_number(options.low < options.high ? options.low : options.start)});
+
+  const OwnDirectory output(arguments.output, arguments.force, "solve");
+
+  const InterruptGuard guard;
+  SimulationHooks hooks;
+  hooks.cancelled = interrupted;
+  const std::string flag = uniqueness_of(target.measure.name);
+  std::map<double, bool> unique;  // by the parameter
+  const Objective objective = [&](double x) {
+    try {
+      const Scene changed = source.read({study.find + "=" + exact_number(x)});
+      Simulation run = simulate_as_asked(build_model(changed), changed.solver, hooks);
+      const Diagnostics diagnostics = judge(run);
+      if (run.status == RunStatus::failed) return std::numeric_limits<double>::quiet_NaN();
+      if (!flag.empty()) unique[x] = find_measure(flag).value(run, diagnostics) != 0.0;
+      return target.measure.value(run, diagnostics);
+    } catch (const SceneError&) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  StudyHooks asking;
+  asking.cancelled = interrupted;
+  try {
+    const Solved solved = solve_for(objective, target.value, options, asking);
+    if (!output.path().empty()) write_results(output.path(), study.find, source, target, solved);
+    std::optional<bool> solved_force;
+    if (const auto at = unique.find(solved.x); at != unique.end()) solved_force = at->second;
+    if (arguments.json)
+      std::cout << result_json(study, target, solved, solved_force);
+    else
+      std::cout << study.find << " = " << exact_number(solved.x) << "\n";
+    return finish(
+        true, arguments,
+        target.measure.name + " is " + short_number(solved.value, 12) + " there, after " +
+            std::to_string(solved.evaluations.size()) + " runs" +
+            (solved_force == false ? "; it is not unique: the rigid model does not determine it" : ""));
+  } catch (const Cancelled&) {
+    std::cerr << "unfurl: interrupted before the parameter was found\n";
+    return exit_interrupted;
+  } catch (const NotFound& error) {
+    std::cerr << "unfurl: " << error.what() << "\n";
+    return exit_solver_failed;
+  }
+}
+
+}  // namespace unfurl

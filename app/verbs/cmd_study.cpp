@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl study SCENE -o DIR: speed against accuracy.
+#include <iostream>
+
+#include "app/command.hpp"
+#include "app/output/interrupt.hpp"
+#include "app/verbs/scene_run.hpp"
+#include "app/verbs/study_session.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/write.hpp"
+#include "core/study/models.hpp"
+#include "core/study/study.hpp"
+#include "render/plot/figures/study_figures.hpp"
+
+namespace unfurl {
+
+namespace {
+
+struct Range {
+  double from = 0, to = 0;
+};
+
+Range step_range(const std::string& text) {
+  if (text.empty()) return {};
+  const std::size_t colon = text.find(':');
+  Range range;
+  if (colon != std::string::npos)
+    range = {number_of(std::string_view(text).substr(0, colon)),
+             number_of(std::string_view(text).substr(colon + 1))};
+  if (!(range.from > 0) || !(range.to > 0))
+    throw UsageError("--steps is LARGEST:SMALLEST, two numbers of seconds; got '" + text + "'");
+  return range;
+}
+
+Report study_report(const Study& study, const Scene& scene, const std::vector<std::string>& pictures) {
+  Report report{"Speed against accuracy: " + scene.title};
+  report.paragraph("**" + cheapest_sentence(study) + "**");
+  report.paragraph("Errors are the largest distance of a node from the reference at " +
+                   std::string("equally spaced times up to ") + short_number(study.end, 6) + " s" +
+                   (study.before.empty() ? "" : ", shortly before " + study.before) +
+                   ". The reference: " + study.reference + "; " + reference_words(study) +
+                   ". CPU times are medians of runs that had the machine's "
+                   "core to themselves; smallest and largest are in `study.csv`.");
+  report.heading("Observed orders");
+  report.add(orders_table(study));
+  report.heading("Figures");
+  for (const auto& picture : pictures) report.picture(picture, picture);
+  return report;
+}
+
+int study_models(const Arguments& arguments) {
+  const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
+  const Scene scene = source.read();
+  const InterruptGuard guard;
+  StudySession session(arguments, "measuring", scene_text(scene), "models.csv");
+  std::vector<MeasuredModel> models;
+  try {
+    models =
+        compare_models(source, arguments.study.repeats > 0 ? arguments.study.repeats : 5, session.hooks());
+  } catch (const Cancelled&) {
+    std::cerr << "unfurl: interrupted before there was anything to write\n";
+    return exit_interrupted;
+  }
+  session.write("models.csv", csv_text(models_table(models)));
+  Report report{"What each modelling choice costs and changes: " + scene.title};
+  report.paragraph(
+      "The scene as it stands, and with one choice made otherwise at a time. CPU times are medians; the "
+      "memory is that of the model and the solver; the difference is the largest distance of a node from "
+      "where it is in the first row, over the whole motion.");
+  report.add(models_summary(models));
+  const std::string text = report_markdown(report);
+  session.write("models.md", text);
+  return finish(true, arguments, markdown_text(models_summary(models)));
+}
+
+}  // namespace
+
+int cmd_study(const Arguments& arguments) {
+  if (arguments.study.models) return study_models(arguments);
+  const Range range = step_range(arguments.study.ladder);
+  const Scene scene = scene_of(arguments);
+  auto model = model_of(scene, arguments);
+  const InterruptGuard guard;
+  const int repeats = arguments.study.repeats > 0 ? arguments.study.repeats : TimingOptions{}.repeats;
+  StudySession session(arguments, "measuring",
+                       study_identity("A study with " + std::to_string(repeats) + " repeats", scene),
+                       "study.csv");
+  const StudyHooks hooks = session.hooks();
+  StudyPlan plan = plan_study(std::move(model), scene.solver, range.from, range.to, hooks);
+  keep_methods(plan, arguments.study.methods);
+  plan.timing.repeats = repeats;
+  Study study;
+  {
+    Journal journal(session.journal(), study_columns(), study_key_columns, study_number_columns());
+    study = run_study(plan, journal, hooks);
+  }
+  if (study.complete) session.write("study.csv", csv_text(points_table(study)));
+  std::vector<std::string> pictures;
+  for (const Figure& figure :
+       {work_precision_figure(study, scene.title), convergence_figure(study, scene.title)})
+    pictures.push_back(session.write(figure));
+  session.write("study.md", report_markdown(study_report(study, scene, pictures)));
+  return finish(study.complete, arguments, cheapest_sentence(study));
+}
+
+}  // namespace unfurl

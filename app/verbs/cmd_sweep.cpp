@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl sweep SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR: measures over a grid of parameters.
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <utility>
+
+#include "app/command.hpp"
+#include "app/output/interrupt.hpp"
+#include "app/verbs/cluster.hpp"
+#include "app/verbs/scene_run.hpp"
+#include "app/verbs/study_session.hpp"
+#include "core/export/atomic_file.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/write.hpp"
+#include "core/study/sweep.hpp"
+#include "render/plot/figures/sweep_figures.hpp"
+
+namespace unfurl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+SweepPlan plan_of(const Arguments& arguments) {
+  SweepPlan plan{{find_scene(arguments.names.front()), arguments.overrides}, {}, {}, {}};
+  for (const auto& text : arguments.study.vary) plan.axes.push_back(parse_axis(text));
+  const auto columns = columns_of(build_model(plan.source.read()));
+  std::string name;
+  for (const char c : arguments.study.measure + ",") {
+    if (c != ',')
+      name += c;
+    else if (!name.empty())
+      plan.measures.push_back(find_measure(std::exchange(name, ""), columns));
+  }
+  if (!arguments.study.shard.empty()) plan.shard = parse_shard(shard_of(arguments.study.shard));
+  check_plan(plan);
+  return plan;
+}
+
+// Which forces of the table the rigid model does not determine, for whoever reads only the last line.
+std::string not_unique(const SweepPlan& plan, const Sweep& sweep) {
+  std::string text;
+  for (std::size_t m = 0; m < plan.measures.size(); ++m) {
+    const std::string flag = uniqueness_of(plan.measures[m].name);
+    for (std::size_t f = 0; f < plan.measures.size(); ++f) {
+      if (flag.empty() || plan.measures[f].name != flag) continue;
+      const auto open = std::count_if(sweep.table.rows.begin(), sweep.table.rows.end(),
+                                      [&](const auto& row) { return row[plan.axes.size() + 1 + f] == "0"; });
+      if (open > 0)
+        text += "; " + plan.measures[m].name + " is not unique in " + std::to_string(open) + " of them";
+    }
+  }
+  return text;
+}
+
+std::string journal_name(const Shard& shard) {
+  if (shard.count == 1) return "sweep.csv";
+  return "sweep_" + std::to_string(shard.index) + "_of_" + std::to_string(shard.count) + ".csv";
+}
+
+// The scene, and what was asked of it as comments: what the points in a directory belong to.
+std::string identity(const Scene& scene, const SweepPlan& plan) {
+  std::string text = "A sweep over";
+  for (const auto& axis : plan.axes) text += " " + axis.key;
+  return study_identity(text, scene);
+}
+
+// What a whole sweep is of: a title that names what is varied would speak of one point.
+std::string title_of(const Scene& scene, const SweepPlan& plan) {
+  const bool structure = std::any_of(plan.axes.begin(), plan.axes.end(), [](const SweepAxis& axis) {
+    return axis.key.starts_with("structure.");
+  });
+  return structure ? scene.name : scene.title;
+}
+
+// The points of these directories, which must be of the same sweep.
+std::vector<fs::path> journals_in(const std::vector<std::string>& directories, const std::string& identity) {
+  std::vector<fs::path> found;
+  for (const auto& directory : directories) {
+    require_identity(directory, identity, "merge what one command computed, with its --set and --vary");
+    const auto here = journals_like("sweep.csv", directory);
+    if (here.empty()) throw FileError(directory, "holds no points of a sweep (sweep*.csv)");
+    found.insert(found.end(), here.begin(), here.end());
+  }
+  return found;
+}
+
+// Of how many shares these directories hold journals: the largest number in their names, 1 where none says.
+int shares_in(const std::vector<std::string>& directories) {
+  int count = 1;
+  for (const auto& directory : directories)
+    for (const auto& path : journals_like("sweep.csv", directory)) {
+      const std::string name = path.stem().string();
+      const std::size_t at = name.find("_of_");
+      if (at != std::string::npos) count = std::max(count, std::atoi(name.c_str() + at + 4));
+    }
+  return count;
+}
+
+// The commands that compute what a merged sweep lacks.
+std::string cure(const SweepPlan& plan, const Sweep& sweep, const Arguments& arguments) {
+  const int count = shares_in(arguments.study.merge);
+  SweepPlan part = plan;
+  std::vector<int> lacking;
+  for (int i = 1; i <= count; ++i) {
+    part.shard = {i, count};
+    const auto points = points_of_shard(part);
+    if (std::any_of(sweep.missing.begin(), sweep.missing.end(),
+                    [&](std::size_t m) { return std::binary_search(points.begin(), points.end(), m); }))
+      lacking.push_back(i);
+  }
+  return "; these compute the others:" + missing_shards(arguments, lacking, count);
+}
+
+Sweep compute(const SweepPlan& plan, const StudySession& session, const StudyHooks& hooks,
+              const Arguments& arguments, const std::string& identity) {
+  try {
+    if (!arguments.study.merge.empty())
+      return merge_sweep(plan, journals_in(arguments.study.merge, identity));
+    Journal journal(session.journal(), plan.columns(), plan.axes.size(), plan.number_columns());
+    return run_sweep(plan, journal, hooks);
+  } catch (const JournalMismatch& error) {
+    throw FileError(session.directory(), std::string(error.what()) + "; other --vary or --measure than now?");
+  }
+}
+
+}  // namespace
+
+int cmd_sweep(const Arguments& arguments) {
+  const SweepPlan plan = plan_of(arguments);
+  if (!arguments.study.script.empty()) {
+    std::cout << job_script(arguments);
+    return exit_ok;
+  }
+  const Scene scene = scene_of(arguments);
+  const InterruptGuard guard;
+  const std::string name = identity(scene, plan);
+  StudySession session(arguments, "sweeping", name, journal_name(plan.shard));
+  const Sweep sweep = compute(plan, session, session.hooks(), arguments, name);
+  for (const std::string& conflict : sweep.conflicts) std::cerr << "unfurl: warning: " << conflict << "\n";
+  session.write(journal_name(plan.shard), csv_text(sweep.table));
+  const std::size_t bad = unanswered(plan, sweep);
+  const std::string count = std::to_string(sweep.table.rows.size()) + " points in " +
+                            (session.directory() / journal_name(plan.shard)).string() +
+                            (bad > 0 ? ", " + std::to_string(bad) + " of them without an answer" : "") +
+                            not_unique(plan, sweep);
+  if (plan.shard.count > 1) return finish(sweep.missing.empty(), arguments, count);
+  std::vector<std::string> pictures;
+  for (const Figure& figure : sweep_figures(plan, sweep, title_of(scene, plan)))
+    pictures.push_back(session.write(figure));
+  Report report{"Sweep: " + title_of(scene, plan)};
+  report.paragraph(count + ".");
+  for (const auto& picture : pictures) report.picture(picture, picture);
+  if (sweep.table.rows.size() <= 1000) report.add(sweep.table);
+  session.write("sweep.md", report_markdown(report));
+  if (!sweep.missing.empty() && !arguments.study.merge.empty())
+    throw FileError(session.directory(),
+                    std::to_string(sweep.missing.size()) + " of " + std::to_string(plan.points()) +
+                        " points are missing; what there is was merged" + cure(plan, sweep, arguments));
+  return finish(sweep.missing.empty(), arguments, count);
+}
+
+}  // namespace unfurl

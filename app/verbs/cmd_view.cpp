@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl view [SCENE]: the interactive window.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "app/command.hpp"
+#include "app/output/output_directory.hpp"
+#include "app/panel/control_panel.hpp"
+#include "app/panel/panel_bench.hpp"
+#include "app/window/window.hpp"
+#include "core/study/table.hpp"
+#include "core/text/nearest_name.hpp"
+#include "render/gl/context.hpp"
+#include "render/image/png.hpp"
+
+namespace unfurl {
+
+namespace {
+
+// Where the motion stands at first [s].
+double start_of(const Arguments& arguments) {
+  if (arguments.at.empty()) return 0.0;
+  const double t = number_of(arguments.at);
+  if (!(t >= 0 && t <= 1e9))
+    throw UsageError("--at: must be a number from 0 to 1e+09; got " + in_quotes(arguments.at));
+  return t;
+}
+
+// The panel without a window; what was left open the last time is not looked at.
+struct OffscreenPanel {
+  OffscreenPanel(SceneDocument document, const Arguments& arguments, int width, int height)
+      : context(make_offscreen_context({arguments.threads, arguments.gpu})),
+        panel(*context, std::move(document), options_of(arguments, width, height)) {}
+
+  static PanelOptions options_of(const Arguments& arguments, int width, int height) {
+    PanelOptions options;
+    options.width = width;
+    options.height = height;
+    options.scale = arguments.ui_scale > 0 ? static_cast<float>(arguments.ui_scale) : 1.0f;
+    options.settings.dark = arguments.view.dark;
+    options.at = start_of(arguments);
+    options.measured = arguments.view.bench;
+    return options;
+  }
+
+  std::unique_ptr<GlContext> context;
+  ControlPanel panel;
+};
+
+int draw_picture(SceneDocument document, const Scene& scene, const Arguments& arguments) {
+  require_writable_png(arguments.view.picture, "a picture of the window");
+  OffscreenPanel offscreen(std::move(document), arguments, scene.render.width, scene.render.height);
+  offscreen.panel.settle();
+  write_png(arguments.view.picture, offscreen.panel.picture().read());
+  return exit_ok;
+}
+
+int bench_offscreen(SceneDocument document, const Arguments& arguments) {
+  OffscreenPanel offscreen(std::move(document), arguments, 1280, 720);
+  std::printf("no display: %s, 1280 x 720 pixels\n", offscreen.context->description().c_str());
+  measure_panel(offscreen.panel, [] {});
+  return exit_ok;
+}
+
+}  // namespace
+
+int cmd_view(const Arguments& arguments) {
+  const std::string name = arguments.names.empty() ? "hoop6" : arguments.names.front();
+  SceneDocument document = open_document(name, arguments.overrides);
+  // What is wrong with the scene is said here, before a window opens.
+  const Scene scene = read_document(document);
+  if (!arguments.view.picture.empty()) return draw_picture(std::move(document), scene, arguments);
+  if (arguments.view.bench && !display_named()) return bench_offscreen(std::move(document), arguments);
+  WindowOptions options;
+  options.ui_scale = static_cast<float>(arguments.ui_scale);
+  options.dark = arguments.view.dark;
+  options.at = start_of(arguments);
+  options.bench = arguments.view.bench;
+  return show_window(std::move(document), options);
+}
+
+}  // namespace unfurl

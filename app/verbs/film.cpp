@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/verbs/film.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include "app/command_line.hpp"
+#include "app/output/interrupt.hpp"
+#include "app/output/progress.hpp"
+#include "app/verbs/frame_range.hpp"
+#include "core/export/atomic_file.hpp"
+#include "render/image/image_scale.hpp"
+#include "render/image/png.hpp"
+#include "render/image/task_queue.hpp"
+#include "render/scene/film_style.hpp"
+#include "render/scene/frame_builder.hpp"
+#include "render/scene/renderer.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr double max_frames = 99999;  // five digits in the name, and more than a day of drawing
+
+// PNG files are compressed beside the drawing of the next pictures.
+int writer_threads(const Arguments& arguments) {
+  const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int threads = arguments.threads > 0 ? arguments.threads : cores;
+  return threads == 1 ? 0 : std::min(threads, 16);
+}
+
+SourceLocation place_of(const Scene& scene, const std::string& key) {
+  const auto it = scene.locations.find(key);
+  return it == scene.locations.end() ? SourceLocation{scene.name, 0, 0} : it->second;
+}
+
+}  // namespace
+
+void check_film(const Scene& scene) {
+  const RenderOptions& render = scene.render;
+  if (most_shots(scene.solver.end_time, render) <= max_frames) return;
+  throw SceneError({{place_of(scene, "render.fps"), "render.fps",
+                     "the film would have more than 99999 frames; take fewer per second, a larger "
+                     "render.speed or an earlier solver.end_time"}});
+}
+
+bool has_alpha(const RenderOptions& options) {
+  const Look* look = find_look(options.look);
+  return options.transparent || (look != nullptr && look->transparent);
+}
+
+void require_all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
+                        const Arguments& arguments) {
+  const std::size_t frames = film_shots(run.trajectory, scene.render).size();
+  std::vector<std::string> again = without_option(arguments.words, "--frames");
+  std::erase(again, "--encode-only");
+  std::string commands;
+  std::size_t missing = 0;
+  for (std::size_t k = 0; k < frames; ++k) {
+    if (folder.finished(k)) continue;
+    const std::size_t first = k;
+    while (k < frames && !folder.finished(k)) ++k;
+    missing += k - first;
+    commands += "\n  " + as_typed(again) + " --frames " + std::to_string(first) + ":" + std::to_string(k);
+  }
+  if (missing > 0)
+    throw FileError(folder.frame(0).parent_path(), std::to_string(missing) + " of " + std::to_string(frames) +
+                                                       " frames are missing; these draw them:" + commands);
+}
+
+bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
+                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments) {
+  const RenderOptions& options = scene.render;
+  const std::vector<Shot> shots = film_shots(run.trajectory, options);
+  const FrameRange range = frame_range(arguments.frames, shots.size());
+  std::vector<std::size_t> missing;
+  for (std::size_t k = range.first; k < range.end; ++k)
+    if (!folder.finished(k)) missing.push_back(k);
+  if (missing.empty()) return true;
+  folder.forget_films();
+  const bool alpha = has_alpha(options);
+  const FrameStyle style = film_style(scene, run, diagnostics);
+  const FrameBuilder builder(run.trajectory, style);
+  Renderer renderer(context, style.width, style.height);
+  TaskQueue writers(writer_threads(arguments));
+  Progress progress("drawing", arguments.quiet);
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    if (interrupted()) {
+      writers.finish();
+      return false;
+    }
+    progress.show(static_cast<double>(i) / static_cast<double>(missing.size()));
+    auto image = std::make_shared<const Image>(renderer.draw(builder.build(shots[missing[i]])));
+    writers.add([image = std::move(image), path = folder.frame(missing[i]), &options, alpha] {
+      if (options.supersample == 1) return write_png(path, *image, alpha, Flush::later);
+      write_png(path, scaled_down(*image, options.width, options.height), alpha, Flush::later);
+    });
+  }
+  writers.finish();
+  flush_files(folder.frame(0).parent_path());
+  return true;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pictures of a run: a PNG per frame, and films made of the finished frames.
+#pragma once
+
+#include <filesystem>
+
+#include "app/command.hpp"
+#include "app/output/film_folder.hpp"
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/scene/scene.hpp"
+#include "core/simulate/simulation.hpp"
+#include "render/gl/context.hpp"
+
+namespace unfurl {
+
+// How many frames a run to the scene's end time would have at most; throws SceneError where that is beyond
+// reason.
+void check_film(const Scene& scene);
+
+// Do the frames have transparent pixels: because the scene says so, or its look?
+bool has_alpha(const RenderOptions& options);
+
+// Draws the frames that the folder lacks, or those of them that --frames asks for. Stops at Ctrl-C. Returns
+// whether all that were asked for are there. Throws FileError, GraphicsError, UsageError.
+bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
+                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments);
+
+// Throws FileError with the commands that draw what is missing.
+void require_all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
+                        const Arguments& arguments);
+
+// Makes animation.webp, animation.gif and, where ffmpeg is, animation.mp4 in the directory, once all frames
+// of the film are there; a note on stderr where they are not. Stops at Ctrl-C; returns whether it did not.
+bool encode_films(const std::filesystem::path& directory, const FilmFolder& folder, const Scene& scene,
+                  const Simulation& run, const Arguments& arguments);
+
+}  // namespace unfurl

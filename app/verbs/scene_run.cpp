@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/verbs/scene_run.hpp"
+
+#include "app/command_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "app/output/interrupt.hpp"
+#include "app/output/progress.hpp"
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/ending.hpp"
+#include "core/export/atomic_file.hpp"
+#include "core/export/csv.hpp"
+#include "core/export/summary.hpp"
+#include "core/math/largest.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "core/scene/write.hpp"
+#include "core/simulate/singular_poses.hpp"
+#include "core/study/tolerance.hpp"
+#include "core/text/nearest_name.hpp"
+
+namespace unfurl {
+
+namespace {
+
+bool waited_enough() {
+  return interrupted_for(0.5);
+}
+
+}  // namespace
+
+Scene scene_of(const Arguments& arguments) {
+  return read_scene_file(find_scene(arguments.names.front()), arguments.overrides);
+}
+
+std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& arguments) {
+  const Waiting waiting("building the structure", arguments.quiet);
+  return build_model(scene);
+}
+
+Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model,
+                          const Arguments& arguments) {
+  Progress progress("simulating", arguments.quiet);
+  SimulationHooks hooks;
+  hooks.progress = [&](double fraction) { progress.show(fraction); };
+  hooks.cancelled = interrupted;
+  Simulation run = simulate_as_asked(model, scene.solver, hooks);
+  record_singular_poses(run, waited_enough);
+  return run;
+}
+
+std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
+                       const Diagnostics& diagnostics) {
+  const Model& model = run.trajectory.model();
+  const Mobility mobility = analyse_mobility(model.system, run.trajectory.node_positions(0));
+  const std::string summary = summary_json(scene.name, run, diagnostics, mobility);
+  if (directory.empty()) return summary;
+  write_file_atomically(directory / "scene.toml", scene_text(scene));
+  write_series_csv(directory / "series.csv", diagnostics);
+  write_trajectory_csv(directory / "trajectory.csv", run.trajectory);
+  write_rod_forces_csv(directory / "rod_forces.csv", run.trajectory, diagnostics);
+  write_file_atomically(directory / "summary.json", summary);
+  return summary;
+}
+
+std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments) {
+  std::vector<const ExportFormat*> formats;
+  std::vector<std::string_view> known;
+  for (const auto& row : export_formats()) known.push_back(row.name);
+  for (const auto& name : arguments.exports) {
+    const ExportFormat* format = find_export_format(name);
+    if (!format) throw UsageError("no export format " + in_quotes(name) + did_you_mean(name, known));
+    if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
+  }
+  if (!formats.empty() && arguments.output.empty())
+    throw UsageError("--export needs -o DIR: where the files go");
+  return formats;
+}
+
+void write_exports(const std::vector<const ExportFormat*>& formats, const std::filesystem::path& directory,
+                   const Scene& scene, const Simulation& run, const Diagnostics& diagnostics,
+                   const Arguments& arguments) {
+  const std::string text = scene_text(scene), command = as_typed(arguments.words);
+  const double interval = scene.render.speed / scene.render.fps;
+  for (const ExportFormat* format : formats)
+    format->write(
+        {run, diagnostics, directory, scene.name, interval, scene.render.speed, scene.title, text, command});
+}
+
+void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {
+  for (const auto& warnings : {run.warnings, accuracy_warnings(run, diagnostics)})
+    for (const auto& warning : warnings) std::cerr << "unfurl: warning: " << warning << "\n";
+  if (run.status == RunStatus::failed)
+    std::cerr << "unfurl: the solver failed: " << run.message
+              << "; a smaller solver.step, or solver.adaptive = true, may get through\n";
+  if (run.status == RunStatus::stopped) std::cerr << "unfurl: interrupted; what is finished is kept\n";
+  if (arguments.quiet) return;
+  std::ostringstream text;
+  text << std::setprecision(9) << to_string(run.status) << " at " << run.trajectory.end_time()
+       << " s: " << run.steps << (run.steps == 1 ? " step, " : " steps, ") << std::setprecision(3)
+       << run.cpu_s << " s of CPU time, constraint error "
+       << largest_magnitude(diagnostics.at("constraint_max_m").values) << " m, energy balance "
+       << largest_magnitude(diagnostics.at("energy_balance_J").values) << " J\n";
+  if (const std::string note = ending_note(run, diagnostics); !note.empty()) text << note << "\n";
+  std::cerr << text.str();
+}
+
+Diagnostics judge_run(Simulation& run) {
+  return judge(run, waited_enough);
+}
+
+int exit_code_of(const Simulation& run, const Diagnostics& diagnostics) {
+  if (run.status == RunStatus::failed) return exit_solver_failed;
+  return run.status == RunStatus::stopped || diagnostics.left_open > 0 ? exit_interrupted : exit_ok;
+}
+
+}  // namespace unfurl

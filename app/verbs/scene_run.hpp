@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The work that verbs share: a scene from the command line, its simulation, its data on disk.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/command.hpp"
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/export/formats.hpp"
+#include "core/scene/scene.hpp"
+
+namespace unfurl {
+
+// The scene that the first word names, with the overrides.
+Scene scene_of(const Arguments& arguments);
+
+// Its structure and equations; a large one says that it takes long.
+std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& arguments);
+
+// Simulate with a progress bar; Ctrl-C stops it. Warnings and the reason of a failure go to stderr.
+Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model, const Arguments& arguments);
+
+// scene.toml, series.csv, trajectory.csv, rod_forces.csv and summary.json; returns the text of the latter. An
+// empty directory name writes nothing.
+std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
+                       const Diagnostics& diagnostics);
+
+// The formats that --export names, in that order; throws UsageError with the nearest name of an unknown one.
+std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments);
+
+// The run in these formats, beside the data in the directory.
+void write_exports(const std::vector<const ExportFormat*>& formats, const std::filesystem::path& directory,
+                   const Scene& scene, const Simulation& run, const Diagnostics& diagnostics,
+                   const Arguments& arguments);
+
+// A few lines for a person on stderr; nothing where `quiet` was asked for.
+void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments);
+
+// The run's diagnostics, which decide its end (judge()); half a second after Ctrl-C what is not computed yet
+// is left open.
+Diagnostics judge_run(Simulation& run);
+
+// 0, solver failed, or interrupted.
+int exit_code_of(const Simulation& run, const Diagnostics& diagnostics);
+
+}  // namespace unfurl

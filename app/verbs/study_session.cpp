@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/verbs/study_session.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <string_view>
+#include <thread>
+
+#include "app/output/interrupt.hpp"
+#include "app/verbs/run_figures.hpp"
+#include "core/export/atomic_file.hpp"
+#include "core/export/checksum.hpp"
+#include "core/scene/text_file.hpp"
+#include "core/scene/write.hpp"
+#include "core/text/version.hpp"
+#include "render/plot/figure_data.hpp"
+
+namespace unfurl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// "_3_of_16.csv", or ".csv" alone.
+bool ends_as_journal(std::string_view end) {
+  const auto digits = [&end] {
+    const std::size_t count = std::min(end.find_first_not_of("0123456789"), end.size());
+    end.remove_prefix(count);
+    return count > 0;
+  };
+  const auto word = [&end](std::string_view text) {
+    if (!end.starts_with(text)) return false;
+    end.remove_prefix(text.size());
+    return true;
+  };
+  return end == ".csv" || (word("_") && digits() && word("_of_") && digits() && end == ".csv");
+}
+
+}  // namespace
+
+std::vector<fs::path> journals_like(const std::string& journal, const fs::path& directory) {
+  const std::string begin = journal.substr(0, journal.find_first_of("_."));
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(begin) && ends_as_journal(std::string_view(name).substr(begin.size())))
+      found.push_back(entry.path());
+  }
+  if (error) throw FileError(directory, error.value());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::string study_identity(const std::string& what, const Scene& scene) {
+  Checksum build;
+  build.add(read_text_file("/proc/self/exe").text);
+  return "# " + what + ", by unfurl " + version() + " (build " + build.text() + ")\n" + scene_text(scene);
+}
+
+void require_identity(const fs::path& directory, const std::string& identity, const std::string& cure) {
+  const TextFile scene = read_text_file((directory / "scene.toml").string());
+  if (!scene.error.empty() || scene.text == identity) return;
+  const auto below_heading = [](const std::string& text) {
+    return text.substr(std::min(text.find('\n'), text.size()));
+  };
+  const bool same_scene = below_heading(scene.text) == below_heading(identity);
+  throw FileError(directory,
+                  std::string(same_scene ? "holds results of another version of unfurl or other --repeats; "
+                                         : "holds results of another scene or other settings; ") +
+                      cure);
+}
+
+StudySession::StudySession(const Arguments& arguments, std::string task, const std::string& identity,
+                           std::string journal)
+    : arguments_(arguments),
+      output_(
+          arguments.output, arguments.force, journal.substr(0, journal.find_first_of("_.")),
+          journal.find('_') != std::string::npos ? DirectoryLock::Use::shareable : DirectoryLock::Use::alone),
+      journal_(std::move(journal)),
+      progress_(std::move(task), arguments.quiet),
+      writer_(figure_options(arguments)) {
+  begin(identity);
+}
+
+void StudySession::begin(const std::string& identity) {
+  if (arguments_.force && output_.lock().unknown())
+    throw FileError(directory(),
+                    "is on a file system without locks, so --force could remove what another "
+                    "unfurl is writing; use another directory");
+  if (arguments_.force && output_.lock().alone()) begin_anew(identity);
+  if (!journals_like(journal_, directory()).empty())
+    require_identity(directory(), identity, "use another directory, or --force to begin anew");
+  if (!identity.empty()) write_file_atomically(directory() / "scene.toml", identity);
+  output_.written().grows(journal_);
+  std::error_code error;
+  fs::create_directories(directory() / "figures", error);
+  if (error) throw FileError(directory() / "figures", error.value());
+  if (shard()) output_.lock().share();
+}
+
+// Another study's results go, those of this one too; but a shard leaves alone what other shards of the same
+// sweep have finished. What is called as a journal and is not ours is put aside.
+void StudySession::begin_anew(const std::string& identity) {
+  const TextFile scene = read_text_file((directory() / "scene.toml").string());
+  if (shard() && scene.error.empty() && scene.text == identity) {
+    output_.written().remove(journal_);
+    std::error_code error;
+    if (fs::exists(journal(), error)) output_.written().keep_aside(journal_);
+    return;
+  }
+  output_.written().remove_all();
+  for (const auto& path : journals_like(journal_, directory()))
+    output_.written().keep_aside(path.filename().string());
+}
+
+StudyHooks StudySession::hooks() {
+  StudyHooks hooks;
+  hooks.progress = [this](double fraction) { progress_.show(fraction); };
+  hooks.cancelled = interrupted;
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  hooks.threads = arguments_.threads > 0 ? arguments_.threads : std::max(1, cores);
+  return hooks;
+}
+
+void StudySession::write(const std::string& name, const std::string& text) const {
+  write_file_atomically(directory() / name, text);
+}
+
+std::string StudySession::write(const Figure& figure) {
+  const std::string stem = "figures/" + figure.name;
+  for (const char* extension : {".svg", ".pdf", ".png"}) {
+    throw_if_interrupted();  // the points are kept, and figures are made of them again
+    writer_.write(figure, directory() / (stem + extension));
+  }
+  write_figure_data(figure, directory() / (stem + ".png"));
+  return stem + ".png";
+}
+
+int finish(bool complete, const Arguments& arguments, const std::string& sentence) {
+  if (!arguments.quiet && !sentence.empty()) std::cerr << sentence << "\n";
+  if (complete) return exit_ok;
+  std::cerr << "unfurl: interrupted; finished points are kept, the same command does the rest\n";
+  return exit_interrupted;
+}
+
+}  // namespace unfurl

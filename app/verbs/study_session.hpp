@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the measuring verbs share: their directory with what an earlier run left in it, hooks, files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/command.hpp"
+#include "app/output/output_directory.hpp"
+#include "app/output/progress.hpp"
+#include "core/scene/scene.hpp"
+#include "core/study/reference.hpp"
+#include "core/study/report.hpp"
+#include "render/plot/figure.hpp"
+#include "render/ui/write_figure.hpp"
+
+namespace unfurl {
+
+// The journals in the directory: `journal` ("sweep.csv", or that of a shard, "sweep_1_of_4.csv") and those of
+// all shards. Throws FileError where the directory cannot be read.
+std::vector<std::filesystem::path> journals_like(const std::string& journal,
+                                                 const std::filesystem::path& directory);
+// The scene under a line that says what was asked and by which build: points of another are not mixed with
+// these.
+std::string study_identity(const std::string& what, const Scene& scene);
+
+// Throws FileError, with what can be done, where DIR/scene.toml tells of other results than `identity`.
+void require_identity(const std::filesystem::path& directory, const std::string& identity,
+                      const std::string& cure);
+
+class StudySession {
+ public:
+  // `identity` is written to DIR/scene.toml: what the results belong to. Results of another identity are
+  // refused; with --force they are removed first. `journal` is the file that holds finished results; a
+  // journal of one shard has others beside it, which may be at work in other processes.
+  StudySession(const Arguments& arguments, std::string task, const std::string& identity,
+               std::string journal);
+
+  StudyHooks hooks();
+  const std::filesystem::path& directory() const { return output_.path(); }
+  std::filesystem::path journal() const { return directory() / journal_; }
+
+  void write(const std::string& name, const std::string& text) const;  // DIR/name
+  // DIR/figures/NAME.svg, .pdf and .png, its numbers and caption, as --style and --dpi say; returns
+  // "figures/NAME.png".
+  std::string write(const Figure& figure);
+
+ private:
+  const Arguments& arguments_;
+  void begin(const std::string& identity);
+  void begin_anew(const std::string& identity);
+  bool shard() const { return journal_.find('_') != std::string::npos; }
+
+  OwnDirectory output_;
+  std::string journal_;
+  Progress progress_;
+  FigureWriter writer_;
+};
+
+// The words of a report with its end: 0 or interrupted, with a line on stderr.
+int finish(bool complete, const Arguments& arguments, const std::string& sentence);
+
+}  // namespace unfurl

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/scene/scene.hpp"
+#include "core/simulate/simulation.hpp"
+#include "render/scene/frame_builder.hpp"
+
+namespace unfurl {
+
+// What the scene says about its pictures, for a FrameBuilder. Points to run and diagnostics. Throws
+// SceneError where a name in it is none of this run's.
+FrameStyle film_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics);
+
+}  // namespace unfurl

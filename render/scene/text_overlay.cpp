@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/scene/text_overlay.hpp"
+
+#include <cmath>
+
+#include "render/plot/painter.hpp"
+#include "render/plot/style.hpp"
+#include "render/ui/imgui_canvas.hpp"
+#include "render/ui/sheet.hpp"
+
+namespace unfurl {
+
+namespace {
+
+ImU32 packed(const Color& c) {
+  return ImGui::ColorConvertFloat4ToU32(ImVec4(c.r, c.g, c.b, c.a));
+}
+
+void write(const TextLabel& label, const ImFont& font, ImDrawList& paper) {
+  const char* first = label.text.c_str();
+  const float length = font.CalcTextSizeA(label.height, FLT_MAX, 0.0f, first).x;
+  const ImVec2 at(std::round(label.x - label.align * length), std::round(label.y));
+  if (label.backing.a > 0) {
+    const float room = 0.25f * label.height;
+    paper.AddRectFilled({at.x - room, at.y}, {at.x + length + room, at.y + label.height},
+                        packed(label.backing), room);
+  }
+  paper.AddText(&font, label.height, at, packed(label.color), first);
+}
+
+void draw_inset(const Inset& inset, Sheet& sheet, ImDrawList& paper) {
+  paper.AddRectFilled({inset.x, inset.y}, {inset.x + inset.width, inset.y + inset.height},
+                      packed({1, 1, 1, 0.85f}), 0.03f * inset.height);
+  const plot::FigureLayout layout = plot::lay_out(*inset.figure, {.title = false, .caption = false});
+  plot::ImguiCanvas canvas(paper, [&](float pixels) { return sheet.font(pixels); }, inset.pixels_per_point,
+                           {static_cast<double>(inset.x), static_cast<double>(inset.y)});
+  plot::paint(*inset.figure, layout, canvas);
+}
+
+}  // namespace
+
+struct TextOverlay::Fonts {
+  Sheet sheet;
+};
+
+TextOverlay::TextOverlay() : fonts_(std::make_unique<Fonts>()) {}
+TextOverlay::~TextOverlay() = default;
+
+void TextOverlay::draw(const DrawList& list, int width, int height) {
+  const Inset& inset = list.inset;
+  if (list.labels.empty() && list.lines.empty() && list.areas.empty() && !inset.figure) return;
+  Sheet& sheet = fonts_->sheet;
+  for (const TextLabel& label : list.labels) sheet.font(label.height, label.bold);
+  if (inset.figure)
+    for (const double size : plot::text_sizes)
+      sheet.font(plot::ImguiCanvas::font_pixels(size, inset.pixels_per_point));
+  ImDrawList& paper = sheet.begin(width, height);
+  for (const OverlayArea& area : list.areas)
+    paper.AddRectFilled({area.x0, area.y0}, {area.x1, area.y1}, packed(area.color));
+  for (const OverlayLine& line : list.lines)
+    paper.AddLine({line.x0, line.y0}, {line.x1, line.y1}, packed(line.color), line.width);
+  for (const TextLabel& label : list.labels) write(label, *sheet.font(label.height, label.bold), paper);
+  if (inset.figure) draw_inset(inset, sheet, paper);
+  sheet.end();
+}
+
+}  // namespace unfurl

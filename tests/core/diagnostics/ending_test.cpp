@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/ending.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using testing::run_scene;
+
+namespace ending_test {
+
+TEST_CASE("a run that ends before the deployed pose says how far it got, rounded down") {
+  const std::string ring = "[structure]\nkind = 'hoop'\nmodel = 'sector'\n[solver]\nstep = 0.01\n";
+  for (const char* end : {"2.3", "4.1", "4.9"}) {
+    const Simulation run = run_scene(ring, {std::string("solver.end_time=") + end});
+    const Diagnostics d = diagnose(run);
+    const double percent = 100 * d.at("deployed_fraction").values.back();
+    REQUIRE((percent > 1 && percent < 100));
+    const std::string note = ending_note(run, d);
+    INFO(note << " of " << percent);
+    const double said = std::strtod(note.c_str(), nullptr);
+    CHECK(said <= percent);
+    CHECK(said > percent - 0.1 - 1e-9);
+    CHECK(note.find(std::string(" % deployed when end_time = ") + end + " s was reached") !=
+          std::string::npos);
+  }
+  // Nothing where it deployed, where there is nothing to deploy, or where it broke off.
+  Simulation deployed = run_scene(ring, {"solver.end_time=6"});
+  CHECK(ending_note(deployed, diagnose(deployed)).empty());
+  Simulation stopped = run_scene(ring, {"solver.end_time=2.3"});
+  stopped.status = RunStatus::stopped;
+  CHECK(ending_note(stopped, diagnose(stopped)).empty());
+  const Simulation pendulum = run_scene("[structure]\nkind = 'pendulum'\n", {"solver.end_time=0.1"});
+  CHECK(ending_note(pendulum, diagnose(pendulum)).empty());
+}
+
+}  // namespace ending_test
