@@ -31,7 +31,6 @@ struct StudyArguments {
 // What only the window takes.
 struct ViewArguments {
   std::string picture;               // --picture FILE: draw the panel into it, without a window
-  double at = -1;                    // --at SECONDS of the motion; < 0: where it begins
   bool dark = false, bench = false;  // --dark, --bench
 };
 
@@ -53,6 +52,7 @@ struct Arguments {
   double ui_scale = 0;    // --ui-scale of the window; 0: the monitor's
   int threads = 0;        // 0: as many as the machine has
   bool gpu = false;       // --gpu: draw on the graphics processor
+  std::string at;         // --at SECONDS of the motion, of modes also a word; empty: where it begins
   std::string style;      // --style, of figures; empty: screen
   double dpi = 0;         // --dpi, of figures; 0: the style's
   StudyArguments study;
@@ -85,6 +85,7 @@ int cmd_reproduce(const Arguments& arguments);
 int cmd_view(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 int cmd_show(const Arguments& arguments);
+int cmd_modes(const Arguments& arguments);
 int cmd_new(const Arguments& arguments);
 int cmd_verify(const Arguments& arguments);
 int cmd_completion(const Arguments& arguments);

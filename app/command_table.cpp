@@ -50,6 +50,12 @@ constexpr Command table[] = {
      "unfurl poster hoop6 -o poster.png --size 960x540 --poses 4"},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",
      1, 1, false, cmd_check, "--set --json", "unfurl check bricard"},
+    {"modes", "SCENE [-o DIR]",
+     "free motions and natural frequencies at a pose; elastic where rods have a youngs_modulus", 1, 1, false,
+     cmd_modes, "-o --set --at --style --dpi --force --json --quiet",
+     "unfurl modes hoop6 --set structure.youngs_modulus=7e10 --set structure.model=joints\n"
+     "unfurl modes hoop6 --at deployed --set solver.at_deployed=latch --set structure.youngs_modulus=7e10 "
+     "-o modes"},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
      "--set --tolerance --picture --at --dark --bench --ui-scale --size --fps --look --supersample "
      "--transparent --threads --gpu",

@@ -154,7 +154,7 @@ int cmd_check(const Arguments& arguments) {
   const auto model = model_of(scene, arguments);
   const VectorXd start = start_positions(model->structure);
   Judged judged{*model, mobility_of(*model, arguments), {}, model->system.all_names()};
-  judged.balance = force_balance(model->system, start, judged.mobility);
+  judged.balance = force_balance(model->system, start, judged.mobility, model->structure.rods);
   for (const auto& note : model->structure.notes) std::cerr << "unfurl: warning: " << note << "\n";
   const std::string warning =
       velocity_warning(initial_state(model->structure, model->system), model->structure);

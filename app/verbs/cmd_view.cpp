@@ -9,12 +9,23 @@
 #include "app/panel/control_panel.hpp"
 #include "app/panel/panel_bench.hpp"
 #include "app/window/window.hpp"
+#include "core/study/table.hpp"
+#include "core/text/nearest_name.hpp"
 #include "render/gl/context.hpp"
 #include "render/image/png.hpp"
 
 namespace unfurl {
 
 namespace {
+
+// Where the motion stands at first [s].
+double start_of(const Arguments& arguments) {
+  if (arguments.at.empty()) return 0.0;
+  const double t = number_of(arguments.at);
+  if (!(t >= 0 && t <= 1e9))
+    throw UsageError("--at: must be a number from 0 to 1e+09; got " + in_quotes(arguments.at));
+  return t;
+}
 
 // The panel without a window; what was left open the last time is not looked at.
 struct OffscreenPanel {
@@ -28,7 +39,7 @@ struct OffscreenPanel {
     options.height = height;
     options.scale = arguments.ui_scale > 0 ? static_cast<float>(arguments.ui_scale) : 1.0f;
     options.settings.dark = arguments.view.dark;
-    options.at = std::max(0.0, arguments.view.at);
+    options.at = start_of(arguments);
     options.measured = arguments.view.bench;
     return options;
   }
@@ -64,7 +75,7 @@ int cmd_view(const Arguments& arguments) {
   WindowOptions options;
   options.ui_scale = static_cast<float>(arguments.ui_scale);
   options.dark = arguments.view.dark;
-  options.at = std::max(0.0, arguments.view.at);
+  options.at = start_of(arguments);
   options.bench = arguments.view.bench;
   return show_window(std::move(document), options);
 }

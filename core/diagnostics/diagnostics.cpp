@@ -12,8 +12,11 @@
 
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/columns.hpp"
+#include "core/diagnostics/elastic_sharing.hpp"
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/rod_strength.hpp"
+#include "core/forces/latch_spring.hpp"
 #include "core/integrators/index1.hpp"
 
 namespace unfurl {
@@ -39,6 +42,25 @@ struct Instant {
   const Deployment& deployment() const { return run.trajectory.structure().deployment; }
   double work() const { return system().load_work(q) + flow.load_work[i]; }
   double kinetic() const { return system().kinetic_energy(state.w); }
+  // The largest of sign * quantity; NaN where nothing is known of any rod, or of one that has a modulus.
+  double most_of_rods(double sign, double (*quantity)(const Rod&, double)) const {
+    double most = std::numeric_limits<double>::quiet_NaN();
+    for (Index r = 0; r < axial_force.size(); ++r) {
+      const Rod& rod = run.trajectory.structure().rods[static_cast<std::size_t>(r)];
+      if (!rod.elastic()) continue;
+      const double value = sign * quantity(rod, axial_force[r]);
+      if (std::isnan(value)) return value;
+      if (!(most >= value)) most = value;
+    }
+    return most;
+  }
+  // Magnitude, of latches that give.
+  double latch_load() const {
+    double most = 0;
+    for (const Force& force : run.trajectory.model(i).structure.forces)
+      if (force.kind == "latch") most = std::max(most, std::abs(unfurl::latch_load(force, q, v)));
+    return most;
+  }
   double relative_constraint() const {
     return phi.size() ? phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() : 0.0;
   }
@@ -59,7 +81,7 @@ double extreme_unique(const Instant& s, double sign) {
 }
 
 // What a scene must have for a column to mean something.
-enum class Needs { nothing, fold, dampers, drives, impacts };
+enum class Needs { nothing, fold, dampers, drives, impacts, moduli, strengths, latch_forces, latch_torques };
 
 struct Row {
   const char *name, *label, *unit;
@@ -111,6 +133,18 @@ const std::array rows{
         [](const Instant& s) { return extreme_unique(s, 1.0); }},
     Row{"axial_force_min_unique", "smallest axial force is unique", "", Needs::nothing,
         [](const Instant& s) { return extreme_unique(s, -1.0); }},
+    Row{"axial_stress_max_Pa", "largest axial stress", "Pa", Needs::moduli,
+        [](const Instant& s) { return s.most_of_rods(1.0, axial_stress); }},
+    Row{"axial_stress_min_Pa", "smallest axial stress", "Pa", Needs::moduli,
+        [](const Instant& s) { return -s.most_of_rods(-1.0, axial_stress); }},
+    Row{"latch_force_max_N", "largest force of a latch", "N", Needs::latch_forces,
+        [](const Instant& s) { return s.latch_load(); }},
+    Row{"latch_torque_max_N_m", "largest torque of a latch", "N m", Needs::latch_torques,
+        [](const Instant& s) { return s.latch_load(); }},
+    Row{"stress_ratio_max", "largest share of a rod's strength", "", Needs::strengths,
+        [](const Instant& s) { return s.most_of_rods(1.0, stress_ratio); }},
+    Row{"buckling_ratio_max", "largest share of a rod's Euler load", "", Needs::moduli,
+        [](const Instant& s) { return s.most_of_rods(1.0, buckling_ratio); }},
 };
 
 // -(across'/across) / (along'/along): the ratio of the strain increments of the motion that goes on, which at
@@ -138,18 +172,31 @@ void add_own_values(const Structure& structure, const Instant& s, Series* column
 
 bool present(Needs needs, const Simulation& run) {
   const Model& model = run.trajectory.model();
+  const auto latches = [&](double damping) {
+    return run.options.at_deployed == "latch" &&
+           std::any_of(model.structure.forces.begin(), model.structure.forces.end(),
+                       [&](const Force& force) { return force.kind == "latch" && force.damping >= damping; });
+  };
   switch (needs) {
     case Needs::nothing:
       return true;
     case Needs::fold:
       return !model.structure.deployment.empty();
     case Needs::dampers:
-      return model.system.has_power(true);
+      return model.system.has_power(true) || latches(std::numeric_limits<double>::min());
     case Needs::drives:
       return !model.system.drives().empty();
     case Needs::impacts:
       return std::any_of(run.events.begin(), run.events.end(),
                          [](const Event& e) { return e.energy_lost != 0; });
+    case Needs::moduli:
+      return any_elastic(model.structure);
+    case Needs::strengths:
+      return any_strength(model.structure);
+    case Needs::latch_forces:
+      return latches(0.0) && !model.structure.deployment.latches.empty();
+    case Needs::latch_torques:
+      return latches(0.0) && model.structure.deployment.latches.empty();
   }
   return true;
 }
@@ -304,6 +351,7 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
   const Model* model = nullptr;
   std::unique_ptr<System> followed;
   std::unique_ptr<Index1> index1;
+  std::optional<ElasticSharing> sharing;
   FoldAngle fold(trajectory.structure().deployment);
   double first_energy = 0;
   for (std::size_t i = 0; i < trajectory.size() && !(cancelled && cancelled()); ++i) {
@@ -312,6 +360,7 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
       model = &trajectory.model(i);
       followed = std::make_unique<System>(model->system);
       if (!books) index1 = std::make_unique<Index1>(*followed, true);
+      if (!books) sharing.emplace(*model, uniqueness->all_by_rigid_rods(i));
       lengths = model->system.all_lengths();
       phi.resize(lengths.size());
       velocity_phi.resize(lengths.size());
@@ -323,7 +372,9 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
     system.all_constraint_rates(state.t, q, v, velocity_phi, scratch);
     VectorXd lambda;
     if (!books) {
-      lambda = multipliers(*index1, *model, state, trajectory.report(i).singular_event, acceleration);
+      const bool limit = trajectory.report(i).singular_event;
+      lambda = multipliers(*index1, *model, state, limit, acceleration);
+      sharing->share(state.t, q, limit, lambda);
       axial_forces(*model, lambda, force);
       const std::vector<char>& rows_unique = uniqueness->at(i);
       for (std::size_t r = 0; r < unique.size(); ++r) {

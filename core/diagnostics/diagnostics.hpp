@@ -35,13 +35,13 @@ struct Diagnostics {
 };
 
 // Column names: kinetic_energy_J potential_energy_J work_J energy_balance_J constraint_max_m
-// constraint_relative_max constraint_round_off_max constraint_velocity_max_m_s fold_angle_rad fold_rate_rad_s
-// dissipated_J, drive_work_J and impact_loss_J only where a scene has dampers, drives, impacts; each drive
-// adds NAME.angle_rad NAME.torque_N_m NAME.power_W NAME.torque_unique (or NAME.value_m NAME.force_N ...).
-// deployed_fraction axial_force_max_N axial_force_min_N step_s newton_iterations axial_force_max_unique
-// axial_force_min_unique (1: the rod with that force has no other, 0: one choice of many); fold columns only
-// where the structure has a fold angle. Then the structure's own lengths and, where it names strains,
-// poisson_ratio. `cancelled` is asked before every state: once it says so, the rest stays NaN.
+// constraint_relative_max constraint_round_off_max constraint_velocity_max_m_s axial_force_max_N
+// axial_force_min_N step_s newton_iterations axial_force_max_unique axial_force_min_unique (1: the rod has no
+// other force); where a scene has such, fold_angle_rad fold_rate_rad_s deployed_fraction, dissipated_J
+// drive_work_J impact_loss_J, axial_stress_max_Pa axial_stress_min_Pa stress_ratio_max buckling_ratio_max (a
+// modulus), latch_force_max_N latch_torque_max_N_m; of drives NAME.angle_rad NAME.torque_N_m NAME.power_W
+// NAME.torque_unique (or NAME.value_m NAME.force_N ...); the structure's own lengths and poisson_ratio.
+// `cancelled` is asked before every state: once it says so, the rest stays NaN.
 Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled = {});
 
 // Names of all columns that a scene may have.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/diagnostics/elastic_sharing.hpp"
 #include "core/math/determined_rows.hpp"
 
 namespace unfurl {
@@ -26,12 +27,12 @@ std::set<std::size_t> looked_at(const Simulation& run, std::size_t first, std::s
   return states;
 }
 
-std::vector<char> determined_at(const Trajectory& trajectory, std::size_t i) {
+SparseRows jacobian_at(const Trajectory& trajectory, std::size_t i) {
   const System& system = trajectory.model(i).system;
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   system.jacobian(trajectory.node_positions(i), G, scratch);
-  return determined_rows(G);
+  return G;
 }
 
 }  // namespace
@@ -47,13 +48,26 @@ ForceUniqueness::ForceUniqueness(const Simulation& run) {
 
 void ForceUniqueness::examine(const Simulation& run, std::size_t first, std::size_t last) {
   std::map<std::size_t, std::vector<char>> seen;
-  for (const std::size_t i : looked_at(run, first, last)) seen[i] = determined_at(run.trajectory, i);
+  for (const std::size_t i : looked_at(run, first, last))
+    seen[i] = determined_rows(jacobian_at(run.trajectory, i));
   std::vector<char>& usual = usual_[first];
   usual.assign(seen.begin()->second.size(), 0);
   for (const auto& [i, determined] : seen)
     for (std::size_t r = 0; r < usual.size(); ++r) usual[r] = static_cast<char>(usual[r] | determined[r]);
   for (auto& [i, determined] : seen)
     if (determined != usual && !run.trajectory.report(i).singular_event) singular_[i] = std::move(determined);
+  rigidly_[first] = std::find(usual.begin(), usual.end(), 0) == usual.end();
+  const VectorXd compliance = row_compliance(run.trajectory.model(first));
+  if (rigidly_[first] || compliance.size() == 0) return;
+  usual.assign(usual.size(), 0);
+  for (const auto& [i, unused] : seen) {
+    const std::vector<char> determined = determined_rows(jacobian_at(run.trajectory, i), compliance);
+    for (std::size_t r = 0; r < usual.size(); ++r) usual[r] = static_cast<char>(usual[r] | determined[r]);
+  }
+}
+
+bool ForceUniqueness::all_by_rigid_rods(std::size_t state) const {
+  return std::prev(rigidly_.upper_bound(state))->second;
 }
 
 const std::vector<char>& ForceUniqueness::at(std::size_t state) const {

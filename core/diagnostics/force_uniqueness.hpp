@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which forces of a run the rigid model determines.
+// Which forces of a run its model determines.
 //
 // Where constraints are redundant, any state of self-stress may be added to their forces: the multipliers
 // that are reported are those of least norm, one choice among many. A multiplier that no such state contains
 // is unique (math/determined_rows.hpp). That is a matter of the structure's shape, not of its pose: it
 // changes only where the constraints change (contact, latch) and, for a moment, at singular poses.
+//
+// Rods that have a modulus share the load (elastic_sharing.hpp): then their forces are unique, and those of
+// guides and rigid rods where these determine them among themselves. At a singular pose, where the rank falls
+// for a moment, what the rigid model leaves open stays open.
 #pragma once
 
 #include <map>
@@ -26,11 +30,14 @@ class ForceUniqueness {
   const std::vector<char>& at(std::size_t state) const;
   // False: a singular pose, where more than usual is open.
   bool regular(std::size_t state) const { return singular_.count(state) == 0; }
+  // True: rigid rods determine every force of the state's model, whatever moduli they have.
+  bool all_by_rigid_rods(std::size_t state) const;
 
  private:
   void examine(const Simulation& run, std::size_t first, std::size_t last);
 
   std::map<std::size_t, std::vector<char>> usual_;  // by the first state of a model
+  std::map<std::size_t, bool> rigidly_;             // the same
   std::map<std::size_t, std::vector<char>> singular_;
 };
 

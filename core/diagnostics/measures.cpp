@@ -8,6 +8,8 @@
 
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/rod_strength.hpp"
+#include "core/diagnostics/vibration.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/text/error.hpp"
@@ -46,6 +48,24 @@ double peak_unique(const Simulation&, const Diagnostics& d) {
   return peak_rod_force(d, pull).unique ? 1.0 : 0.0;
 }
 
+double peak_stress(const Simulation& run, const Diagnostics& d) {
+  return larger(largest_of_column(run, d, "axial_stress_max_Pa"),
+                -smallest_of_column(run, d, "axial_stress_min_Pa"));
+}
+
+template <double (*quantity)(const Rod&, double)>
+double worst_unique(const Simulation& run, const Diagnostics& d) {
+  return worst_rod(run.trajectory.structure(), d, quantity).unique ? 1.0 : 0.0;
+}
+
+double last_frequency(const Simulation& run, const Diagnostics&) {
+  const std::size_t last = run.trajectory.size() - 1;
+  const Model& model = run.trajectory.model(last);
+  const bool small = model.system.solved_coordinates() <= max_vibration_coordinates;
+  return small && any_elastic(model.structure) ? vibration(model, run.trajectory.state(last)).lowest_elastic()
+                                               : no_value;
+}
+
 double largest_magnitude_of(const Diagnostics& d, std::string_view column) {
   const Series* series = d.find(column);
   return series ? largest_magnitude(series->values) : no_value;
@@ -80,14 +100,34 @@ const std::array measure_table{
                  [](const Simulation& run, const Diagnostics& d) {
                    return -smallest_of_column(run, d, "axial_force_min_N");
                  }},
-    NamedMeasure{
-        "peak_rod_force_unique", "peak rod force is unique", "",
-        "1: the rigid model determines the peak rod force; 0: it is one choice of many (`unfurl check`)",
-        peak_unique<Pull::either>},
+    NamedMeasure{"peak_rod_force_unique", "peak rod force is unique", "",
+                 "1: the model determines the peak rod force; 0: it is one choice of many (`unfurl check`)",
+                 peak_unique<Pull::either>},
     NamedMeasure{"peak_tension_unique", "peak tension is unique", "", "the same of the peak tension",
                  peak_unique<Pull::tension>},
     NamedMeasure{"peak_compression_unique", "peak compression is unique", "",
                  "the same of the peak compression", peak_unique<Pull::compression>},
+    NamedMeasure{"peak_stress", "peak axial stress", "Pa",
+                 "largest axial stress of any rod with a modulus, tension or compression", peak_stress},
+    NamedMeasure{"stress_margin", "margin of stress", "",
+                 "strength over the largest axial stress, less 1; of the rod where that is least",
+                 [](const Simulation& run, const Diagnostics& d) {
+                   return margin_of(largest_of_column(run, d, "stress_ratio_max"));
+                 }},
+    NamedMeasure{"buckling_margin", "margin of buckling", "",
+                 "Euler's load over the largest compression, less 1; of the rod where that is least",
+                 [](const Simulation& run, const Diagnostics& d) {
+                   return margin_of(largest_of_column(run, d, "buckling_ratio_max"));
+                 }},
+    NamedMeasure{"peak_stress_unique", "peak axial stress is unique", "", "as of the peak rod force",
+                 worst_unique<axial_stress>},
+    NamedMeasure{"stress_margin_unique", "margin of stress is unique", "", "the same of the margin of stress",
+                 worst_unique<stress_ratio>},
+    NamedMeasure{"buckling_margin_unique", "margin of buckling is unique", "",
+                 "the same of the margin of buckling", worst_unique<buckling_ratio>},
+    NamedMeasure{"frequency", "lowest natural frequency", "Hz",
+                 "of the elastic rods in the last pose of the run, held at rest (`unfurl modes`)",
+                 last_frequency},
     NamedMeasure{
         "energy", "kinetic energy at the end", "J", "kinetic energy at the end of the run",
         [](const Simulation& run, const Diagnostics& d) { return last_of(run, d, "kinetic_energy_J"); }},

@@ -10,6 +10,7 @@
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/rod_strength.hpp"
 #include "core/math/largest.hpp"
 #include "core/text/version.hpp"
 
@@ -94,6 +95,29 @@ Json forces_json(const Structure& structure, const Diagnostics& diagnostics) {
   return forces;
 }
 
+// What the rods that have a modulus bear; a margin is null where nothing is borne.
+Json strength_json(const Structure& structure, const Diagnostics& diagnostics) {
+  Json strength;
+  const auto add = [&](const char* name, double (*quantity)(const Rod&, double), auto&& values) {
+    const WorstRod worst = worst_rod(structure, diagnostics, quantity);
+    Json& entry = strength[name];
+    values(entry, std::abs(worst.value));
+    const auto shown = std::find_if(structure.rod_copies.begin(), structure.rod_copies.end(),
+                                    [&](const RodCopy& copy) { return copy.source == worst.rod; });
+    entry["rod"] = shown == structure.rod_copies.end() ? Json() : Json(shown->name);
+    entry["t_s"] = worst.t;
+    entry["unique"] = worst.unique;
+  };
+  add("axial_stress", axial_stress, [](Json& entry, double value) { entry["peak_Pa"] = value; });
+  const auto with_margin = [](Json& entry, double ratio) {
+    entry["peak_ratio"] = ratio;
+    entry["margin"] = margin_of(ratio);
+  };
+  if (any_strength(structure)) add("stress", stress_ratio, with_margin);
+  add("buckling", buckling_ratio, with_margin);
+  return strength;
+}
+
 }  // namespace
 
 std::string summary_json(const std::string& scene_name, const Simulation& run, const Diagnostics& diagnostics,
@@ -112,6 +136,10 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   summary["errors"]["energy_balance_max_J"] = max_abs(diagnostics, "energy_balance_J");
   if (!std::isnan(run.position_estimate)) summary["errors"]["position_estimate_m"] = run.position_estimate;
   summary["forces"] = forces_json(model.structure, diagnostics);
+  for (const auto& [column, key] : {std::pair("latch_force_max_N", "peak_latch_force_N"),
+                                    std::pair("latch_torque_max_N_m", "peak_latch_torque_N_m")})
+    if (diagnostics.find(column)) summary["forces"][key] = largest_of_column(run, diagnostics, column);
+  if (any_elastic(model.structure)) summary["strength"] = strength_json(model.structure, diagnostics);
   summary["events"] = Json::array();
   for (const auto& event : run.events) {
     summary["events"].push_back({{"name", event.name}, {"t_s", event.t}});

@@ -5,6 +5,7 @@
 
 #include "core/forces/constant_forces.hpp"
 #include "core/forces/damping.hpp"
+#include "core/forces/latch_spring.hpp"
 #include "core/forces/spring.hpp"
 #include "core/forces/varying_loads.hpp"
 
@@ -25,6 +26,11 @@ std::span<const ForceKind> force_kinds() {
       ForceKind{"joint_damping", "viscous torque between the rods that meet at a node", joint_damping_block,
                 Members::each_node, joint_damping_params, fill_damping},
       ForceKind{"drag", "viscous force on nodes", drag_block, Members::each_node, drag_params, fill_damping},
+      ForceKind{
+          "latch",
+          "what locks the structure at solver.at_deployed = \"latch\" gives way: a spring and damper on "
+          "each latch, from then on",
+          latch_spring_block, Members::none, latch_spring_params, fill_latch_spring},
   };
   return kinds;
 }

@@ -19,4 +19,13 @@ namespace unfurl {
 /// count as lost, entries below 1e-11 as round-off. A row of zeros is not determined.
 std::vector<char> determined_rows(const SparseRows& G);
 
+/// The same where y has in addition the least energy 1/2 sum compliance_i y_i^2 (least_energy.hpp). Two such
+/// y differ by a vector of null(G^T) without energy, which vanishes where compliance_i > 0: those entries are
+/// determined, and of the others those that the rows without compliance determine among themselves.
+std::vector<char> determined_rows(const SparseRows& G, const VectorXd& compliance);
+
+/// G^T without the entries of round-off, below 1e-11 of their rows of G: solvers scale coordinates to one
+/// size and would take them for slopes. G is not changed but for those.
+SparseRows without_round_off_transposed(const SparseRows& G);
+
 }  // namespace unfurl

@@ -30,6 +30,7 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
   };
   switch (members) {
     case Members::none:
+      forces.push_back(one);
       break;
     case Members::each_node:
       for (const int node : find.nodes(e, true)) {

@@ -70,6 +70,18 @@ void refuse_elements(const Scene& scene) {
                            "cannot be used with a sector model; set structure.model to \"full\""}});
 }
 
+// Latches that give need something to latch.
+void check_latches(const Scene& scene, Structure& structure) {
+  for (const SceneElement& force : scene.forces) {
+    if (force.kind != "latch" || !force.enabled) continue;
+    if (structure.deployment.empty())
+      throw SceneError({{force.where, force.key, "the structure has no deployed pose to latch in"}});
+    if (scene.solver.at_deployed != "latch")
+      structure.notes.push_back(
+          problem_text({force.where, force.key, "does nothing without solver.at_deployed = \"latch\""}));
+  }
+}
+
 // A load on a solved node is a load on each of its copies.
 void add_load(Structure& structure, int node, const Vec3& force) {
   structure.loads.push_back({node, force, true});
@@ -129,6 +141,7 @@ Structure build_structure(const Scene& scene) {
   add_loads(scene, structure);
   if (is_sector(structure)) refuse_elements(scene);
   add_elements(scene.forces, scene_forces(), scene.solver.end_time, structure);
+  check_latches(scene, structure);
   add_elements(scene.constraints, scene_constraints(), scene.solver.end_time, structure);
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   return structure;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/custom_reader.hpp"
 
+#include <limits>
 #include <set>
 
 #include "core/scene/csv_table.hpp"
@@ -12,6 +13,8 @@ namespace unfurl {
 
 namespace {
 
+constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+constexpr double endless = std::numeric_limits<double>::infinity();
 constexpr const char* mass_twice = "give mass, or density and area, not both";
 
 std::string entry_key(std::string_view table, std::size_t index) {
@@ -53,6 +56,9 @@ void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
     if (!entry.has("mass")) rod.mass = -1.0;
     if (entry.has("mass") && entry.has("density")) entry.problem("density", mass_twice);
     if (entry.has("length")) rod.length = values.real("length");
+    if (entry.has("youngs_modulus")) rod.youngs_modulus = values.real("youngs_modulus");
+    if (entry.has("strength")) rod.strength = values.real("strength");
+    if (entry.has("second_moment")) rod.second_moment = values.real("second_moment");
     spec.rods.push_back(std::move(rod));
   }
 }
@@ -116,9 +122,17 @@ void read_nodes_file(TableReader& table, const std::string& name, const std::str
 
 void read_rods_file(TableReader& table, const std::string& name, const std::string& folder, CustomSpec& spec,
                     SceneNotes& notes) {
-  static const std::vector<CsvColumn> columns = {
-      {"a", "", false, true},     {"b", "", false, true}, {"name", ""},  {"mass", "kg", true},
-      {"density", "kg_m3", true}, {"area", "m2", true},   {"group", ""}, {"length", "m", true}};
+  static const std::vector<CsvColumn> columns = {{"a", "", false, true},
+                                                 {"b", "", false, true},
+                                                 {"name", ""},
+                                                 {"mass", "kg", true},
+                                                 {"density", "kg_m3", true},
+                                                 {"area", "m2", true},
+                                                 {"group", ""},
+                                                 {"length", "m", true},
+                                                 {"youngs_modulus", "Pa", true},
+                                                 {"strength", "Pa", true},
+                                                 {"second_moment", "m4", true}};
   for (const auto& row : file_rows(table, "rods_file", name, folder, columns, notes)) {
     const std::string key = entry_key("rods", spec.rods.size());
     notes.locations[key] = row.where;
@@ -130,7 +144,10 @@ void read_rods_file(TableReader& table, const std::string& name, const std::stri
                          cell(row, "density", 0.0),
                          cell(row, "area", 0.0),
                          text_cell(row, "group", "rod"),
-                         length_cell(row, key, notes)});
+                         length_cell(row, key, notes),
+                         cell(row, "youngs_modulus", not_given),
+                         cell(row, "strength", not_given),
+                         cell(row, "second_moment", 0.0)});
   }
 }
 
@@ -168,9 +185,13 @@ const std::vector<ParamSpec>& custom_params() {
     ParamSpec nodes =
         text_param("nodes_file", "", "CSV file beside the scene: name,x,y,z[,vx,vy,vz,mass,fixed]");
     ParamSpec rods =
-        text_param("rods_file", "", "CSV file beside the scene: a,b[,name,mass,density,area,group,length]");
-    return std::vector<ParamSpec>{
+        text_param("rods_file", "",
+                   "CSV file beside the scene: "
+                   "a,b[,name,mass,density,area,group,length, youngs_modulus,strength,second_moment]");
+    std::vector<ParamSpec> all{
         choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"), nodes, rods};
+    all.insert(all.end(), rod_material_params().begin(), rod_material_params().end());
+    return all;
   }();
   return params;
 }
@@ -192,7 +213,6 @@ const std::vector<ParamSpec>& custom_node_params() {
 
 const std::vector<ParamSpec>& custom_rod_params() {
   static const std::vector<ParamSpec> params = [] {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     ParamSpec name = text_param("name", "", "\"A-B\" from its nodes by default");
     ParamSpec group = text_param("group", "rod", "what colours and groups of rod forces go by");
     ParamSpec length = positive_param(
@@ -200,11 +220,16 @@ const std::vector<ParamSpec>& custom_rod_params() {
         "the distance of its nodes by default; where it differs by up to 1 %, nodes are moved");
     return std::vector<ParamSpec>{
         name,
-        real_param("mass", "kg", 0.0, 0.0, infinity, "0: a pure distance constraint"),
-        real_param("density", "kg/m^3", 0.0, 0.0, infinity, "in place of mass, with area"),
-        real_param("area", "m^2", 0.0, 0.0, infinity, "cross section"),
+        real_param("mass", "kg", 0.0, 0.0, endless, "0: a pure distance constraint"),
+        real_param("density", "kg/m^3", 0.0, 0.0, endless, "in place of mass, with area"),
+        real_param("area", "m^2", 0.0, 0.0, endless, "cross section"),
         group,
-        length};
+        length,
+        positive_param("youngs_modulus", "Pa", endless,
+                       "of this rod, with area; by default that of all rods"),
+        positive_param("strength", "Pa", endless, "of this rod; by default that of all rods"),
+        real_param("second_moment", "m^4", 0.0, 0.0, endless,
+                   "of the cross section, the smallest; 0: that of the section")};
   }();
   return params;
 }
@@ -215,6 +240,7 @@ CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes
   CustomSpec spec;
   const ParamSet values = table.read(custom_params());
   spec.lumped_mass = values.text("mass") == "lumped";
+  spec.material = rod_material(values);
   read_nodes(table, spec, notes);
   read_nodes_file(table, values.text("nodes_file"), folder, spec, notes);
   read_rods(table, spec, notes);

@@ -60,6 +60,9 @@ std::string rod_text(const CustomRod& rod) {
   if (rod.density != 0.0) text += line("density", real_text(rod.density));
   if (rod.area != 0.0) text += line("area", real_text(rod.area));
   if (rod.length != 0.0) text += line("length", real_text(rod.length));
+  if (!std::isnan(rod.youngs_modulus)) text += line("youngs_modulus", real_text(rod.youngs_modulus));
+  if (!std::isnan(rod.strength)) text += line("strength", real_text(rod.strength));
+  if (rod.second_moment != 0.0) text += line("second_moment", real_text(rod.second_moment));
   if (rod.group != "rod") text += line("group", toml_string(rod.group));
   return text;
 }
@@ -93,6 +96,7 @@ std::string structure_text(const Scene& scene) {
   if (const Family* family = find_family(scene.kind))
     return text + params_text(family->params(), scene.structure);
   text += line("mass", toml_string(scene.custom.lumped_mass ? "lumped" : "consistent"));
+  text += params_text(rod_material_params(), rod_material_values(scene.custom.material));
   for (const auto& node : scene.custom.nodes) text += node_text(node);
   for (const auto& rod : scene.custom.rods) text += rod_text(rod);
   return text;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/latch.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/integrators/index1.hpp"
 #include "core/simulate/initial_state.hpp"
@@ -25,19 +27,36 @@ LinearForm remaining(const Deployment& deployment) {
   return form;
 }
 
+bool waits(const Force& force) {
+  return force.kind == "latch" && force.form.empty();
+}
+
 }  // namespace
+
+bool latch_gives(const Structure& structure) {
+  return std::any_of(structure.forces.begin(), structure.forces.end(), waits);
+}
 
 std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear) {
   Structure structure = model.structure;
   const Deployment& deployment = structure.deployment;
   std::vector<LinearForm> latches = deployment.latches;
   if (latches.empty()) latches.push_back(remaining(deployment));
+  std::vector<Force> springs;  // what gives in their place
+  std::copy_if(structure.forces.begin(), structure.forces.end(), std::back_inserter(springs), waits);
   for (const LinearForm& form : latches) {
     const std::string name =
         deployment.latches.empty()
             ? "latch of the fold angle"
             : "latch of " + structure.nodes[static_cast<std::size_t>(form.nodes[0])].name;
-    structure.constraints.push_back({"relation", name, form.nodes, form.coefficients, -form.offset, {}, {}});
+    for (Force spring : springs) {
+      spring.form = form;
+      spring.name = name;
+      structure.forces.push_back(std::move(spring));
+    }
+    if (springs.empty())
+      structure.constraints.push_back(
+          {"relation", name, form.nodes, form.coefficients, -form.offset, {}, {}});
   }
   System system(structure, eliminate_linear);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});

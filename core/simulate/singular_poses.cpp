@@ -130,6 +130,21 @@ Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std
   return G.rows() - rank;
 }
 
+bool singular_at_end(const Trajectory& trajectory) {
+  constexpr double flat = 1e-6;  // deployed poses are located to 1e-9 or so
+  const System& system = trajectory.last_model().system;
+  if (std::max(system.constraints(), system.solved_coordinates()) > max_singular_size) return true;
+  std::size_t last = trajectory.size() - 1, first = last;
+  while (first > 0 && &trajectory.model(first - 1) == &trajectory.model(last)) --first;
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  system.jacobian(trajectory.node_positions(last), G, scratch);
+  scale_rows(G);
+  const VectorXd values = singular_values(MatrixXd(G));
+  const Index rank = values.size() ? (values.array() > flat * values[0]).count() : 0;
+  return G.rows() - rank > structural_redundancy(trajectory, first, last);
+}
+
 namespace {
 
 // States [first, last] of one model, at times that increase.

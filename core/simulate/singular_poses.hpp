@@ -42,6 +42,10 @@ class SmallestSingularValue {
 // singular for a moment does not count.
 Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last);
 
+// The last state's pose has less rank than usual in the run. Assumed where the Jacobian has more than
+// max_singular_size rows or columns.
+bool singular_at_end(const Trajectory& trajectory);
+
 // Adds an event "singular pose" to `run` for every time between two states at which sigma dips below a
 // hundredth of its largest value in the run and to a half of its heights before and after. The start and the
 // end of a run are no dips: a ring that ends deployed ends at a singular pose, and its event is "deployed".

@@ -13,6 +13,7 @@
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/one_sided.hpp"
+#include "core/simulate/singular_poses.hpp"
 #include "core/simulate/step_control.hpp"
 #include "core/simulate/time_grid.hpp"
 
@@ -425,8 +426,12 @@ class Stepper::Loop {
   // on a stop is locked there.
   bool latch() {
     if (sides_.any_held()) base_ = sides_.lock_held(*base_);
+    const bool gives = latch_gives(base_->structure);
+    if (gives && singular_at_end(run_.trajectory))
+      return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
     base_ = latched_model(*base_, run_.options.eliminate_linear);
-    const double taken = set_model(sides_.any_active() ? sides_.model(*base_) : base_, true);
+    const double impulse = set_model(sides_.any_active() ? sides_.model(*base_) : base_, true);
+    const double taken = gives ? 0.0 : impulse;
     run_.events.push_back({"latched", now().t, taken});
     return true;
   }

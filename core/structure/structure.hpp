@@ -3,6 +3,7 @@
 // those).
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -19,7 +20,8 @@ struct Node {
   double mass = 0.0;             // lumped mass, added to the rods' share [kg]
 };
 
-// A uniform rigid rod between two nodes; mass 0 makes it a pure distance constraint.
+// A uniform rod between two nodes; mass 0 makes it a pure distance constraint. Its motion is that of a rigid
+// rod; a modulus says how rods share forces that rigid ones leave open, and what they may carry.
 struct Rod {
   std::string name;
   int a = 0, b = 0;     // node indices
@@ -28,7 +30,28 @@ struct Rod {
   std::string group;    // "chord", "post", "rod", ...: what colours and groups of rod forces go by
   double radius = 0.0;  // for drawing; 0: not known [m]
   double multiplicity =
-      1.0;  // how many equal rods of the whole structure this one stands for (sector models)
+      1.0;            // how many equal rods of the whole structure this one stands for (sector models)
+  double area = 0.0;  // of the cross section; 0: not known [m^2]
+  double youngs_modulus = std::numeric_limits<double>::infinity();  // infinite: rigid [Pa]
+  double second_moment = 0.0;  // of the cross section, the smallest; 0: not known [m^4]
+  double strength = std::numeric_limits<double>::infinity();  // axial stress that it may bear [Pa]
+
+  bool elastic() const { return area > 0 && std::isfinite(youngs_modulus); }
+  // Stretch per axial force, of all that it stands for together; 0: rigid [m/N].
+  double compliance() const { return elastic() ? length / (youngs_modulus * area * multiplicity) : 0.0; }
+};
+
+// sum_i coefficient_i . x_{node_i} + offset: a linear measure of the configuration.
+struct LinearForm {
+  std::vector<int> nodes;
+  std::vector<Vec3> coefficients;
+  double offset = 0.0;
+
+  bool empty() const { return nodes.empty(); }
+  // q: all node coordinates [3 n].
+  double operator()(const ConstVec& q) const;
+  // The part without the offset; of velocities it is the rate.
+  double rate(const ConstVec& v) const;
 };
 
 enum class MeasureKind { coordinate, length, angle, fold };
@@ -76,6 +99,7 @@ struct Force {
   bool one_sided = false;         // pulls only: a cable
   Vec3 direction = Vec3::Zero();  // of a load over time
   TimeFunction size = {};         // of a load [N]
+  LinearForm form = {};           // of a latch: what it pulls to zero
 };
 
 // A constant force on a node.
@@ -83,19 +107,6 @@ struct Load {
   int node = 0;
   Vec3 force = Vec3::Zero();  // [N]
   bool shown = true;          // drawn as an arrow
-};
-
-// sum_i coefficient_i . x_{node_i} + offset: a linear measure of the configuration.
-struct LinearForm {
-  std::vector<int> nodes;
-  std::vector<Vec3> coefficients;
-  double offset = 0.0;
-
-  bool empty() const { return nodes.empty(); }
-  // q: all node coordinates [3 n].
-  double operator()(const ConstVec& q) const;
-  // The part without the offset; of velocities it is the rate.
-  double rate(const ConstVec& v) const;
 };
 
 // How far the structure has unfolded. The fold angle atan2(fold_sine, fold_cosine) falls from its initial to

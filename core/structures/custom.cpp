@@ -14,9 +14,15 @@ double rod_mass(const CustomRod& rod, double length) {
   return rod.mass >= 0.0 ? rod.mass : rod.density * rod.area * length;
 }
 
-// The round rod of the given section; 0 without one, and whoever draws chooses the same for all of them.
-double rod_radius(const CustomRod& rod) {
-  return rod.area > 0.0 ? std::sqrt(rod.area / pi) : 0.0;
+// Of a rod with an area: what it says itself, else what the list says of all rods.
+void give_section(const RodMaterial& all, const CustomRod& entry, Rod& rod) {
+  const SectionShape shape = section_shape(all, entry.area);
+  const auto own = [](double x, double of_all) { return std::isnan(x) ? of_all : x; };
+  rod.area = entry.area;
+  rod.radius = shape.radius;
+  rod.youngs_modulus = own(entry.youngs_modulus, all.youngs_modulus);
+  rod.strength = own(entry.strength, all.strength);
+  rod.second_moment = entry.second_moment > 0.0 ? entry.second_moment : shape.second_moment;
 }
 
 void add_nodes(const CustomSpec& spec, Structure& structure) {
@@ -55,8 +61,8 @@ Structure build_custom(const CustomSpec& spec) {
         (spec.nodes[static_cast<std::size_t>(b)].position - spec.nodes[static_cast<std::size_t>(a)].position)
             .norm();
     const double length = entry.length > 0.0 ? entry.length : apart;
-    structure.rods.push_back(
-        {rod_name(entry), a, b, rod_mass(entry, length), length, entry.group, rod_radius(entry), 1.0});
+    structure.rods.push_back({rod_name(entry), a, b, rod_mass(entry, length), length, entry.group, 0.0, 1.0});
+    if (entry.area > 0.0) give_section(spec.material, entry, structure.rods.back());
   }
   show_as_solved(structure);
   return structure;

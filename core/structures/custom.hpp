@@ -2,12 +2,14 @@
 // A mechanism that a person lists node by node.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/structure/structure.hpp"
+#include "core/structures/rod_material.hpp"
 
 namespace unfurl {
 
@@ -27,12 +29,17 @@ struct CustomRod {
   double area = 0.0;               // [m^2]
   std::string group = "rod";
   double length = 0.0;  // [m]; 0: the distance of its nodes
+  // In place of those of all rods (RodMaterial); NaN: not given.
+  double youngs_modulus = std::numeric_limits<double>::quiet_NaN();  // [Pa]
+  double strength = std::numeric_limits<double>::quiet_NaN();        // [Pa]
+  double second_moment = 0.0;                                        // [m^4]; 0: that of the section
 };
 
 struct CustomSpec {
   std::vector<CustomNode> nodes;
   std::vector<CustomRod> rods;
   bool lumped_mass = false;
+  RodMaterial material = {};  // of all rods that have an area
 };
 
 struct CustomProblem {

@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/structure/structure_error.hpp"
 #include "core/structures/custom.hpp"
 #include "core/text/name_index.hpp"
 #include "core/text/nearest_name.hpp"
@@ -63,6 +64,7 @@ class Checker {
       const auto& rod = spec_.rods[i];
       check_rod_mass(rod, i);
       check_rod_length(rod, i);
+      check_rod_material(rod, i);
       if (!check_rod_nodes(rod, i)) continue;
       const std::string name = rod_name(rod);
       if (const auto [first, is_new] = seen.try_emplace(name, i); !is_new)
@@ -103,6 +105,24 @@ class Checker {
   void check_rod_length(const CustomRod& rod, std::size_t i) {
     if (!(rod.length >= 0.0) || std::isinf(rod.length))
       add("rods", i, "length", "must be > 0 m; leave it out for the distance of its nodes");
+  }
+
+  // A modulus acts on an area; what has neither mass nor area is a distance that nothing stretches.
+  void check_rod_material(const CustomRod& rod, std::size_t i) {
+    if (rod.youngs_modulus <= 0.0) add("rods", i, "youngs_modulus", "must be > 0 Pa");
+    if (rod.strength <= 0.0) add("rods", i, "strength", "must be > 0 Pa");
+    if (!(rod.second_moment >= 0.0) || std::isinf(rod.second_moment))
+      add("rods", i, "second_moment", "must be >= 0 m^4; 0: that of the section");
+    const bool meant = std::isfinite(rod.youngs_modulus) ||
+                       (std::isnan(rod.youngs_modulus) && spec_.material.elastic() && rod.mass > 0.0);
+    if (meant && !(rod.area > 0.0))
+      add("rods", i, "area", "a rod with a youngs_modulus needs its area, in m^2");
+    if (!(rod.area > 0.0) || std::isinf(rod.area)) return;
+    try {
+      section_shape(spec_.material, rod.area);
+    } catch (const StructureError& error) {
+      add("rods", i, "area", error.message);
+    }
   }
 
   void check_rod_mass(const CustomRod& rod, std::size_t i) {

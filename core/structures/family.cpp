@@ -11,27 +11,51 @@
 #include "core/structures/hoop.hpp"
 #include "core/structures/pendulum.hpp"
 #include "core/structures/reentrant_sheet.hpp"
+#include "core/structures/rod_material.hpp"
 #include "core/structures/scissor_mast.hpp"
 #include "core/structures/scissor_ring.hpp"
 
 namespace unfurl {
 
+namespace {
+
+// Of a family whose rods have one section_area: its parameters and those of the rods' material.
+template <const std::vector<ParamSpec>& (*own)()>
+const std::vector<ParamSpec>& with_material() {
+  static const std::vector<ParamSpec> params = [] {
+    std::vector<ParamSpec> all = own();
+    all.insert(all.end(), rod_material_params().begin(), rod_material_params().end());
+    return all;
+  }();
+  return params;
+}
+
+template <Structure (*own)(const ParamSet&)>
+Structure of_material(const ParamSet& params) {
+  Structure structure = own(params);
+  give_material(structure, params.real("section_area"), rod_material(params));
+  return structure;
+}
+
+}  // namespace
+
 std::span<const Family> families() {
   static const std::array rows{
-      Family{"hoop", "ring antenna of n re-entrant units that share their posts", hoop_params, build_hoop,
-             true},
+      Family{"hoop", "ring antenna of n re-entrant units that share their posts", with_material<hoop_params>,
+             of_material<build_hoop>, true},
       Family{"scissor_mast", "mast of crossed rods pinned at their middles, planar or with 3 and more sides",
-             scissor_mast_params, build_scissor_mast, true},
+             with_material<scissor_mast_params>, of_material<build_scissor_mast>, true},
       Family{"scissor_ring", "closed ring of crossed rods pinned at their middles, which opens from a bundle",
-             scissor_ring_params, build_scissor_ring, true},
-      Family{"hoberman", "Hoberman's ring of angulated elements, which grows in its plane", hoberman_params,
-             build_hoberman, true},
+             with_material<scissor_ring_params>, of_material<build_scissor_ring>, true},
+      Family{"hoberman", "Hoberman's ring of angulated elements, which grows in its plane",
+             with_material<hoberman_params>, of_material<build_hoberman>, true},
       Family{"reentrant_sheet", "sheet of re-entrant units: a negative Poisson's ratio",
-             reentrant_sheet_params, build_reentrant_sheet, true},
+             with_material<reentrant_sheet_params>, of_material<build_reentrant_sheet>, true},
       Family{"bricard",
              "overconstrained loop of six bars and six hinges, which opens from a bundle to a triangle",
-             bricard_params, build_bricard, true},
-      Family{"chain", "rigid links in a row, hanging, falling or free", chain_params, build_chain, false},
+             with_material<bricard_params>, of_material<build_bricard>, true},
+      Family{"chain", "rigid links in a row, hanging, falling or free", with_material<chain_params>,
+             of_material<build_chain>, false},
       Family{"pendulum", "a rod with a bob, swinging from a fixed point", pendulum_params, build_pendulum,
              false},
       Family{"four_bar_ladder", "row of four-bar windows that passes poses with all rods collinear",

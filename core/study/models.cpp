@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/force_uniqueness.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/toml_tree.hpp"
@@ -40,6 +41,18 @@ void damping_keys(const TomlTree& tree, const std::string& path, std::vector<std
   }
 }
 
+// Rods with a modulus share forces that rigid ones leave open. How they share depends on ratios alone.
+void add_modulus(const TomlTree& root, std::vector<ModelChoice>& out) {
+  const TomlTree* structure = root.find("structure");
+  const TomlTree* modulus = structure ? structure->find("youngs_modulus") : nullptr;
+  if (!modulus) return;
+  const bool rigid = modulus->kind == TomlTree::Kind::real && std::isinf(modulus->real);
+  if (rigid)
+    out.push_back({"forces shared by stiffness: E = 70 GPa", {"structure.youngs_modulus=7e10"}});
+  else
+    out.push_back({"rigid rods: forces of least norm", {"structure.youngs_modulus=inf"}});
+}
+
 // Bytes that are in use on the heap now, mapped blocks included.
 double heap_in_use() {
   const auto info = ::mallinfo2();
@@ -64,6 +77,7 @@ MeasuredModel display_mesh(const Trajectory& run) {
   MeasuredModel m;
   m.choice.name = "single precision of the display's mesh";
   m.cpu_median = m.cpu_min = m.cpu_max = m.memory = m.deployment_time = nan;
+  m.peak_force = m.cpu_forces = nan;
   for (std::size_t i = 0; i < run.size(); ++i) {
     const VectorXd x = run.positions(i), drawn = x.cast<float>().cast<double>();
     m.difference = std::max(m.difference, node_distance(x, drawn));
@@ -97,6 +111,11 @@ Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hoo
   judge(*first);
   out.outcome = to_string(first->status);
   out.deployment_time = deployment_time(*first);
+  const double begin = thread_cpu_seconds();
+  const PeakForce peak = peak_rod_force(diagnose(*first, hooks.cancelled));
+  out.cpu_forces = thread_cpu_seconds() - begin;
+  out.peak_force = peak.rod < 0 ? nan : std::abs(peak.force_N);
+  out.peak_unique = peak.unique;
   return std::move(*first);
 }
 
@@ -118,6 +137,7 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
   add("solver", "sparse", "false", "dense matrices");
   add("structure", "mass", "consistent", "consistent mass: rigid uniform rods");
   add("structure", "mass", "lumped", "lumped mass: half of a rod at each node");
+  add_modulus(root, out);
   std::vector<std::string> keys;
   damping_keys(root, "", keys);
   if (!keys.empty()) {
@@ -135,7 +155,7 @@ std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats
     hooks.tell(static_cast<double>(out.size()) / static_cast<double>(choices.size()));
     MeasuredModel m;
     m.choice = choice;
-    m.difference = m.deployment_time = nan;
+    m.difference = m.deployment_time = m.peak_force = m.cpu_forces = nan;
     try {
       Simulation run = measure(source, repeats, hooks, m);
       if (!base)
@@ -155,13 +175,17 @@ std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats
 
 Table models_table(const std::vector<MeasuredModel>& models) {
   Table table{{"model", "outcome", "solved_coordinates", "constraints", "cpu_median_s", "cpu_min_s",
-               "cpu_max_s", "memory_bytes", "difference_m", "deployment_time_s"},
+               "cpu_max_s", "memory_bytes", "difference_m", "deployment_time_s", "peak_rod_force_N",
+               "peak_unique", "cpu_forces_s"},
               {}};
   for (const MeasuredModel& m : models) {
     std::vector<std::string> row{m.choice.name, m.outcome, std::to_string(m.solved_coordinates),
                                  std::to_string(m.constraints)};
     for (const double x : {m.cpu_median, m.cpu_min, m.cpu_max, m.memory, m.difference, m.deployment_time})
       row.push_back(exact_number(x));
+    row.push_back(exact_number(m.peak_force));
+    row.push_back(m.peak_unique ? "1" : "0");
+    row.push_back(exact_number(m.cpu_forces));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -169,19 +193,22 @@ Table models_table(const std::vector<MeasuredModel>& models) {
 
 Table models_summary(const std::vector<MeasuredModel>& models) {
   Table table{{"model", "coordinates", "constraints", "CPU (ms)", "CPU (times)", "memory (kB)",
-               "difference in the answer (m)", "deployed at (s)"},
+               "difference in the answer (m)", "deployed at (s)", "peak rod force (N)", "forces (ms)"},
               {}};
   for (const MeasuredModel& m : models) {
     if (m.solved_coordinates == 0) {
       table.rows.push_back({m.choice.name + (m.outcome.empty() ? "" : " (" + m.outcome + ")"), "", "", "", "",
-                            "", std::isnan(m.difference) ? "" : short_number(m.difference), ""});
+                            "", std::isnan(m.difference) ? "" : short_number(m.difference), "", "", ""});
       continue;
     }
-    table.rows.push_back({m.choice.name, std::to_string(m.solved_coordinates), std::to_string(m.constraints),
-                          short_number(1e3 * m.cpu_median),
-                          short_number(m.cpu_median / models.front().cpu_median),
-                          short_number(m.memory / 1e3), short_number(m.difference),
-                          std::isnan(m.deployment_time) ? "" : short_number(m.deployment_time, 8)});
+    table.rows.push_back(
+        {m.choice.name, std::to_string(m.solved_coordinates), std::to_string(m.constraints),
+         short_number(1e3 * m.cpu_median), short_number(m.cpu_median / models.front().cpu_median),
+         short_number(m.memory / 1e3), short_number(m.difference),
+         std::isnan(m.deployment_time) ? "" : short_number(m.deployment_time, 8),
+         std::isnan(m.peak_force) ? ""
+                                  : short_number(m.peak_force, 6) + (m.peak_unique ? "" : " (not unique)"),
+         short_number(1e3 * m.cpu_forces)});
   }
   return table;
 }

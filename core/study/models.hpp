@@ -14,7 +14,8 @@ struct ModelChoice {
 };
 
 // The scene as it stands, then every choice that it allows and does not make: full or sector, linear
-// constraints eliminated or kept, sparse or dense matrices, consistent or lumped mass, without damping.
+// constraints eliminated or kept, sparse or dense matrices, consistent or lumped mass, rigid rods or forces
+// shared by their stiffness, without damping.
 std::vector<ModelChoice> model_choices(const SceneSource& source);
 
 struct MeasuredModel {
@@ -25,6 +26,9 @@ struct MeasuredModel {
   double memory = 0;      // of the model and the solver, without the trajectory [bytes]
   double difference = 0;  // largest distance of a node from the scene as it stands, at the times of both [m]
   double deployment_time = 0;  // NaN: none [s]
+  double peak_force = 0;       // largest axial force of any rod; NaN: there is none [N]
+  bool peak_unique = true;
+  double cpu_forces = 0;  // of all columns and forces of the run [s]
 };
 
 // One after another, timed alone; last, what the single precision of the display changes. Throws Cancelled;

@@ -34,10 +34,14 @@ SelfStress state_of(const VectorXd& y, const std::vector<int>& basis, int last, 
 
 }  // namespace
 
-ForceBalance force_balance(const System& system, const ConstVec& q, const Mobility& mobility) {
+ForceBalance force_balance(const System& system, const ConstVec& q, const Mobility& mobility,
+                           const std::vector<Rod>& rods) {
   ForceBalance out;
   const SparseRows rows = system.all_jacobian(q);
-  out.determined = determined_rows(rows);
+  VectorXd compliance = VectorXd::Zero(rows.rows());
+  for (std::size_t r = 0; r < rods.size(); ++r)
+    compliance[rows.rows() - static_cast<Index>(rods.size() - r)] = rods[r].compliance();
+  out.determined = determined_rows(rows, compliance);
   const std::vector<int>& dependent = mobility.redundant_rows;
   out.listed = dependent.empty() || rows.cols() <= max_listed_coordinates;
   if (dependent.empty() || !out.listed) return out;

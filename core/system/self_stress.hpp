@@ -29,7 +29,10 @@ struct ForceBalance {
 ///
 /// A redundant row is a combination of independent rows before it: the coefficients are least squares with
 /// the independent rows, which have full rank. Dense, so listed for up to `max_listed_coordinates`.
-ForceBalance force_balance(const System& system, const ConstVec& q, const Mobility& mobility);
+/// rods: of the structure, the last of all constraints; those that have a modulus share the load, so that
+/// their forces are determined (empty: none has).
+ForceBalance force_balance(const System& system, const ConstVec& q, const Mobility& mobility,
+                           const std::vector<Rod>& rods = {});
 inline constexpr Index max_listed_coordinates = 900;
 
 }  // namespace unfurl

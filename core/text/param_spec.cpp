@@ -53,7 +53,14 @@ std::string with_unit(std::string text, std::string_view unit) {
   return unit.empty() ? text : text.append(" ").append(unit);
 }
 
+// Infinite is what has no end by default, nothing else.
+bool endless(const ParamSpec& spec, double x) {
+  const auto* fallback = std::get_if<double>(&spec.fallback);
+  return fallback && std::isinf(x) && x == *fallback;
+}
+
 bool in_range(const ParamSpec& spec, double x) {
+  if (endless(spec, x)) return true;
   return std::isfinite(x) && (spec.min_open ? x > spec.min : x >= spec.min) &&
          (spec.max_open ? x < spec.max : x <= spec.max);
 }

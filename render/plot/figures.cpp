@@ -5,6 +5,7 @@
 #include <array>
 
 #include "core/diagnostics/jacobian_spectrum.hpp"
+#include "core/diagnostics/rod_strength.hpp"
 #include "core/system/self_stress.hpp"
 #include "render/plot/figures/kinds.hpp"
 
@@ -16,6 +17,9 @@ bool always(const Simulation&, const Diagnostics&) {
 }
 bool has_rods(const Simulation& run, const Diagnostics&) {
   return !run.trajectory.structure().rods.empty();
+}
+bool has_moduli(const Simulation& run, const Diagnostics&) {
+  return any_elastic(run.trajectory.structure());
 }
 bool has_fold_angle(const Simulation&, const Diagnostics& d) {
   return d.find("fold_angle_rad") != nullptr;
@@ -41,6 +45,8 @@ constexpr std::array kinds{
                always, energy_figure},
     FigureKind{"rod_forces", "axial forces of the rods by group, tension positive; dashed where not unique",
                has_rods, rod_forces_figure},
+    FigureKind{"rod_strength", "axial stress and share of Euler's buckling load, where rods have a modulus",
+               has_moduli, rod_strength_figure},
     FigureKind{"poisson", "lengths along and across a stretch, Poisson's ratio", has_poisson_ratio,
                poisson_figure},
     FigureKind{"phase", "fold rate over fold angle", has_fold_angle, phase_figure},

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/rod_strength.hpp"
 #include "render/scene/color_map.hpp"
 
 namespace unfurl {
@@ -96,6 +97,14 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
     if (open > 0) field.label += "; " + std::to_string(open) + " of " + std::to_string(rods) + " not unique";
     field.values = diagnostics.axial_force;
     field.diverging = true;
+  } else if (by == "stress" || by == "buckling") {
+    const Structure& structure = run.trajectory.structure();
+    const bool stress = by == "stress";
+    field.label = stress ? "axial stress (MPa), tension > 0" : "compression / Euler load";
+    if (!any_elastic(structure)) field.label += ": not known, no rod has a youngs_modulus";
+    field.values =
+        (stress ? 1e-6 : 1.0) * over_rods(structure, diagnostics, stress ? axial_stress : buckling_ratio);
+    field.diverging = stress;
   } else if (by == "speed") {
     field.label = "speed (m/s)";
     field.values = over_run(run.trajectory, middle_speed);

@@ -25,8 +25,9 @@ struct RodField {
   double position(double value) const;    // along the colour bar, 0..1
 };
 
-// by: "axial_force", "speed" (of the rod's middle) or "constraint_error" (|distance of the ends - length|).
-// range: low and high, or equal ends for the run's own range. Throws std::invalid_argument for another name.
+// by: "axial_force", "stress", "buckling" (grey where a rod has no modulus), "speed" (of the rod's middle) or
+// "constraint_error" (|distance of the ends - length|). range: low and high, or equal ends for the run's own
+// range. Throws std::invalid_argument for another name.
 RodField rod_field(const std::string& by, std::array<double, 2> range, const Simulation& run,
                    const Diagnostics& diagnostics);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the program says and returns for every kind of command line. Error texts are part of the contract.
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/app/run_program.hpp"
@@ -102,6 +103,29 @@ TEST_CASE("check counts the six-unit ring and names its redundant constraints") 
   const std::string text = run_program({"check", "hoop6"}).out;
   CHECK(contains(text, "rank                          71\n"));
   for (const auto& name : json["redundant"]) CHECK(contains(text, "  " + name.get<std::string>() + "\n"));
+}
+
+TEST_CASE("modes: the mechanism's own first, then those of elastic rods, a modulus makes forces unique") {
+  const ScratchDirectory dir;
+  const ProgramResult r = run_program({"modes", "hoop6", "--set", "structure.youngs_modulus=7e10", "--set",
+                                       "structure.fold_angle=40", "--json", "-o", dir / "modes"});
+  REQUIRE(r.code == 0);
+  const auto json = nlohmann::json::parse(r.out);
+  CHECK(json["mechanism_motions"] == 1);
+  CHECK(json["pose_t_s"] == 0.0);
+  CHECK(json["frequencies_Hz"].size() == 23);
+  for (const char* file : {"modes.csv", "mode_shapes.csv", "figures/modes.png"})
+    CHECK(std::filesystem::exists(dir / "modes" + "/" + file));
+  CHECK(contains(run_program({"modes", "pendulum"}).out, "rods are rigid"));
+  const ProgramResult never = run_program({"modes", "pendulum", "--at", "deployed"}),
+                      soon = run_program({"modes", "pendulum", "--at", "soon"});
+  CHECK(never.code == 2);
+  CHECK(contains(never.err, "does not reach the deployed pose"));
+  CHECK(soon.code == 2);
+  CHECK(contains(soon.err, "--at takes start, end, deployed or a time from 0 to "));
+  const auto check = nlohmann::json::parse(
+      run_program({"check", "hoop6", "--json", "--set", "structure.youngs_modulus=7e10"}).out);
+  CHECK(check["unique_rods"] == 30);
 }
 
 TEST_CASE("lists") {

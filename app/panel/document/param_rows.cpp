@@ -35,7 +35,7 @@ std::vector<ParamRow> rows_of(const std::string& prefix, const std::vector<Param
 std::vector<ParamRow> structure_rows(const Scene& base) {
   if (const Family* family = find_family(base.kind))
     return rows_of("structure.", family->params(), base.structure);
-  ParamSet values;
+  ParamSet values = rod_material_values(base.custom.material);
   values.set("mass", std::string(base.custom.lumped_mass ? "lumped" : "consistent"));
   return rows_of("structure.", custom_params(), values);
 }
@@ -211,7 +211,7 @@ SliderRange slider_range(const ParamRow& row) {
 
 bool not_given(const ParamValue& value) {
   const auto* x = std::get_if<double>(&value);
-  return x != nullptr && std::isnan(*x);
+  return x != nullptr && !std::isfinite(*x);
 }
 
 std::string unit_caption(std::string_view unit) {

@@ -12,6 +12,7 @@ Figure deployment_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure constraint_error_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure energy_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure rod_forces_figure(const Simulation& run, const Diagnostics& diagnostics);
+Figure rod_strength_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure poisson_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure phase_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure steps_figure(const Simulation& run, const Diagnostics& diagnostics);

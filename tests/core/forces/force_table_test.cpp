@@ -42,6 +42,8 @@ Force force_of(const ForceKind& kind) {
   if (kind.members == Members::two_nodes) force.measure = {MeasureKind::length, {0, 3}, Vec3::Zero(), 0};
   if (kind.members == Members::angle) force.measure = {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0};
   kind.fill(values_of(kind), force);
+  if (kind.kind == "latch")
+    force.form = {{0, 2, 0}, {Vec3(0.4, -0.3, 0.9), Vec3(-1.1, 0.2, 0.5), Vec3(0.3, 0.6, -0.2)}, 0.35};
   return force;
 }
 

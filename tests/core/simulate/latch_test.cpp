@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/diagnostics/diagnostics.hpp"
+#include "core/diagnostics/peaks.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
@@ -112,4 +113,98 @@ TEST_CASE(
     CHECK(d.at("kinetic_energy_J").values.back() <= 1e-12 * work);
   }
   CHECK(latched >= 8);
+}
+
+namespace {
+
+constexpr double arm = 0.8, rod_mass = 0.9, tip = 0.35, rate = 0.9;
+constexpr double inertia = (rod_mass / 3 + tip) * arm * arm;
+
+// A rod on a pivot that turns into line with the x axis, free of loads, and is latched there by a spring.
+Simulation turned_in(double k, double c, double end_time) {
+  CustomSpec spec;
+  const double fold = 0.4;
+  const Vec3 at = arm * Vec3(std::cos(fold), 0, std::sin(fold)),
+             v = -rate * arm * Vec3(-std::sin(fold), 0, std::cos(fold));
+  spec.nodes = {{"O", {0, 0, 0}, {0, 0, 0}, 0, true}, {"A", at, v, tip, false}};
+  spec.rods = {{"arm", {"O", "A"}, rod_mass}};
+  Structure structure = build_custom(spec);
+  structure.constraints.push_back({"plane", "plane", {1}, {Vec3::UnitY()}, 0.0, {}, {}});
+  structure.deployment.fold_sine = {{1}, {Vec3(0, 0, 1 / arm)}, 0.0};
+  structure.deployment.fold_cosine = {{1}, {Vec3(1 / arm, 0, 0)}, 0.0};
+  structure.deployment.initial_fold_angle = fold;
+  Force latch;
+  latch.kind = "latch";
+  latch.stiffness = k;
+  latch.damping = c;
+  structure.forces.push_back(latch);
+  SolverOptions options = dvm_options(4, 0.01, end_time);
+  options.at_deployed = "latch";
+  return simulate(make_model(structure), options);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a latch that gives meets an inertia with w sqrt(I k), and takes its energy as the rigid one does") {
+  for (const double k : {3.0, 40.0, 900.0}) {
+    const Simulation run = turned_in(k, 0.0, 2.0);
+    INFO(k << ": " << run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    REQUIRE(run.events.size() == 2);
+    CHECK(run.events[0].t == Approx(0.4 / rate).epsilon(1e-9));
+    CHECK(run.events[1].energy_lost == 0.0);
+    const Diagnostics d = diagnose(run);
+    // The spring acts on the sine of the angle, of which k/2 sine^2 is its energy: exact at any amplitude.
+    // The peak between steps is that of a quintic, whose error falls with (omega h)^6.
+    CHECK(largest_of_column(run, d, "latch_torque_max_N_m") ==
+          Approx(rate * std::sqrt(inertia * k)).epsilon(k > 100 ? 1e-5 : 1e-8));
+    const double energy = 0.5 * inertia * rate * rate;
+    for (const double x : d.at("energy_balance_J").values) CHECK(std::abs(x) < 1e-7 * energy);
+  }
+  // Damping ratio 0.35 of 900 N m/rad: e^-48 is left after 3 s, but for the error of steps of omega h = 0.46.
+  const double c = 2 * 0.35 * std::sqrt(900 * inertia);
+  const Simulation run = turned_in(900.0, c, 4.0);
+  const Diagnostics d = diagnose(run);
+  CHECK(d.at("dissipated_J").values.back() == Approx(0.5 * inertia * rate * rate).epsilon(1e-6));
+  CHECK(d.at("latch_torque_max_N_m").values.back() < 1e-6);
+}
+
+TEST_CASE("a mast on springs swings about its deployed pose and keeps its energy") {
+  const Scene scene = read_scene_file(
+      find_scene("scissor_mast"), {"forces[0]={kind=\"latch\", stiffness=4000}", "solver.at_deployed=latch",
+                                   "structure.tip_force=30", "solver.end_time=4", "solver.stages=4"});
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  REQUIRE(run.events.size() >= 2);
+  const Diagnostics d = diagnose(run);
+  double turned_over = 0;
+  for (const double x : d.at("work_J").values) turned_over = std::max(turned_over, std::abs(x));
+  for (const double x : d.at("energy_balance_J").values) CHECK(std::abs(x) < 1e-5 * turned_over);
+  const auto& fraction = d.at("deployed_fraction").values;
+  CHECK(*std::max_element(fraction.begin(), fraction.end()) > 1.0);  // past it, and back
+  CHECK(fraction.back() > 0.9);
+  CHECK(d.find("impact_loss_J") == nullptr);
+}
+
+TEST_CASE("a latch without a deployed pose is refused, and one that is never used is told") {
+  const auto with = [](const char* scene, std::vector<std::string> changes) {
+    changes.emplace_back("forces[0]={kind=\"latch\", stiffness=4000}");
+    return build_model(read_scene_file(find_scene(scene), changes));
+  };
+  CHECK_THROWS_WITH(with("pendulum", {}), Catch::Contains("no deployed pose to latch in"));
+  const auto unused = with("scissor_mast", {"solver.at_deployed=stop"});
+  REQUIRE(unused->structure.notes.size() == 1);
+  CHECK_THAT(unused->structure.notes.front(), Catch::Contains("does nothing without solver.at_deployed"));
+}
+
+TEST_CASE("a latch that gives is refused where the deployed pose is singular") {
+  const Scene scene = read_scene_file(
+      find_scene("hoop6"), {"forces[0]={kind=\"latch\", stiffness=40000}", "solver.at_deployed=latch",
+                            "solver.step=0.05", "solver.end_time=6"});
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  CHECK(run.status == RunStatus::failed);
+  CHECK_THAT(run.message, Catch::Contains("cannot hold this deployed pose"));
+  CHECK(run.trajectory.end_time() == Approx(4.92).epsilon(1e-4));  // the good part is kept
 }

@@ -375,6 +375,9 @@ TEST_CASE("the tables of modelling choices say what was measured") {
   other.cpu_median = 0.003;
   other.difference = 2.5e-11;
   other.deployment_time = 4.9235;
+  base.peak_force = other.peak_force = 1250.5;
+  other.peak_unique = false;
+  other.cpu_forces = 0.0045;
   const std::vector<MeasuredModel> models = {base, other};
   auto exact = cells(models_table(models), 1);
   CHECK(exact["model"] == "sector");
@@ -387,6 +390,9 @@ TEST_CASE("the tables of modelling choices say what was measured") {
   CHECK(exact["memory_bytes"] == "52000");
   CHECK(exact["difference_m"] == "2.5e-11");
   CHECK(exact["deployment_time_s"] == "4.9235");
+  CHECK(exact["peak_rod_force_N"] == "1250.5");
+  CHECK(exact["peak_unique"] == "0");
+  CHECK(exact["cpu_forces_s"] == "0.0045");
   auto words = cells(models_summary(models), 1);
   CHECK(words["coordinates"] == "4");
   CHECK(words["constraints"] == "31");
@@ -395,6 +401,8 @@ TEST_CASE("the tables of modelling choices say what was measured") {
   CHECK(words["memory (kB)"] == "52");
   CHECK(words["difference in the answer (m)"] == "2.5e-11");
   CHECK(words["deployed at (s)"] == "4.9235");
+  CHECK(words["peak rod force (N)"] == "1250.5 (not unique)");
+  CHECK(words["forces (ms)"] == "4.5");
   CHECK(cells(models_summary(models), 0)["deployed at (s)"].empty());
 }
 

@@ -27,6 +27,13 @@ TEST_CASE("modelling choices that promise the same answer give it") {
     CHECK(m.difference <= 1e-10);
   }
   CHECK(named("lumped mass").difference > 1e-3);
+  const MeasuredModel shared = named("forces shared by stiffness");
+  CHECK(shared.difference == 0.0);  // the motion is that of rigid rods, to the last bit
+  CHECK(shared.peak_unique);
+  CHECK(shared.cpu_forces > 0.0);
+  CHECK(named("sector").peak_unique);
+  // The ring is symmetric: what its rods share by stiffness is what the sector's carry.
+  CHECK(shared.peak_force == Approx(named("sector").peak_force).epsilon(1e-6));
   // Coordinates up to 6 m in single precision: half a unit in the last place of [4, 8) is 2.4e-7.
   const double rounding = named("single precision").difference;
   CHECK(rounding <= 3 * 2.4e-7);

@@ -260,6 +260,25 @@ TEST_CASE("states of self-stress are drawn one by one, and are not offered where
   CHECK(f.caption.find("5 states") != std::string::npos);
 }
 
+TEST_CASE("what rods bear is drawn where they have a modulus, then forces are unique", "[figures]") {
+  const FigureKind* kind = find_figure("rod_strength");
+  REQUIRE(kind);
+  CHECK_FALSE(kind->applies(hoop().simulation, hoop().diagnostics));
+  const Run elastic =
+      run(testing::family_structure(
+              "hoop", {{"units", 4L}, {"fold_angle", 60.0}, {"youngs_modulus", 7e10}, {"strength", 1e8}}),
+          0.02, 9.0);
+  REQUIRE(kind->applies(elastic.simulation, elastic.diagnostics));
+  const Figure f = elastic.figure("rod_strength");
+  REQUIRE(f.panels.size() == 2);
+  for (const Panel& p : f.panels) CHECK_FALSE(p.curves.empty());
+  for (const char* words : {"Largest stress", "Largest share of the strength", "Euler's load"})
+    CHECK(f.caption.find(words) != std::string::npos);
+  const Figure forces = elastic.figure("rod_forces");
+  CHECK(forces.caption.find("share by their stiffness") != std::string::npos);
+  CHECK(forces.caption.find("not unique") == std::string::npos);
+}
+
 TEST_CASE("energies that are zero throughout are left out", "[figures]") {
   const auto labels = [](const Figure& f) {
     std::vector<std::string> out;

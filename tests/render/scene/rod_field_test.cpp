@@ -146,4 +146,20 @@ TEST_CASE("ghosts are earlier poses, trails end at their node") {
   CHECK((list.ghosts.front().a - Vec3f(2, 0, 0)).norm() < 1e-6f);
 }
 
+TEST_CASE("stress and buckling colour rods that have a modulus, others are grey and the legend says so") {
+  std::string text = spinning;
+  text.replace(text.find("mass = 3.0"), 10, "mass = 3.0\narea = 2e-4\nyoungs_modulus = 7e10");
+  const Scene scene = read_scene_text(text, "spin.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics d = diagnose(run);
+  const RodField stress = rod_field("stress", {0, 0}, run, d);
+  CHECK(stress.at(0.25, 0) == Approx(1e-6 * 50 / 2e-4).epsilon(1e-5));
+  CHECK(stress.diverging);
+  CHECK(rod_field("buckling", {0, 0}, run, d).at(0.25, 0) == 0.0);  // pulled
+  const Run rigid;
+  const RodField unknown = rod_field("buckling", {0, 0}, rigid.run, rigid.diagnostics);
+  CHECK(std::isnan(unknown.at(0.25, 0)));
+  CHECK(unknown.label.find("no rod has a youngs_modulus") != std::string::npos);
+}
+
 }  // namespace rod_field_test

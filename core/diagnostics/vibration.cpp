@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/vibration.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/diagnostics/elastic_sharing.hpp"
+#include "core/integrators/index1.hpp"
+#include "core/math/determined_rows.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double no_rank = 1e-9;   // of a unit row, less what others hold of it: a direction that it does not
+constexpr double nothing = 1e-11;  // of what gravity, loads and tensions make of w^2
+constexpr double far_below = 1e-3;  // of the lowest elastic eigenvalue: solved for by itself
+
+// Orthonormal columns that span the x with A x = 0; rows of A of unit length or zero.
+MatrixXd null_space(const MatrixXd& A) {
+  if (A.rows() == 0) return MatrixXd::Identity(A.cols(), A.cols());
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
+  const auto pivots = qr.matrixR().diagonal().cwiseAbs();
+  const Index rank = (pivots.array() > no_rank).count();
+  MatrixXd last = MatrixXd::Zero(A.cols(), A.cols() - rank);
+  last.bottomRows(A.cols() - rank).setIdentity();
+  return qr.householderQ() * last;
+}
+
+// X with X^T M X = 1 for the columns' span.
+MatrixXd orthonormal(const MatrixXd& X, const MatrixXd& M) {
+  const Eigen::LLT<MatrixXd> L(X.transpose() * M * X);
+  return L.matrixL().solve(X.transpose()).transpose();
+}
+
+MatrixXd symmetric(const MatrixXd& A) {
+  return 0.5 * (A + A.transpose());
+}
+
+// The model at the pose, in solved coordinates.
+class AtPose {
+ public:
+  AtPose(const Model& model, const State& pose) : system_(model.system.at(pose)) {
+    State rest = pose;
+    rest.w.setZero();
+    VectorXd q(system_.coordinates()), acceleration(rest.z.size());
+    system_.expand(rest.z, q);
+    SparseRows G = system_.jacobian_pattern();
+    std::vector<double> scratch;
+    system_.jacobian(q, G, scratch);
+    VectorXd compliance = row_compliance(model);
+    if (compliance.size() == 0) compliance = VectorXd::Zero(G.rows());
+    const std::vector<char> rigidly = determined_rows(G);
+    const bool all = std::find(rigidly.begin(), rigidly.end(), 0) == rigidly.end();
+    Index1 index1(system_, true);
+    VectorXd lambda = rest.lambda;
+    lambda.setZero(G.rows());
+    if (!index1.evaluate(rest.t, rest.z, rest.w, acceleration, lambda)) lambda.setZero();
+    ElasticSharing(model, all).share(rest.t, q, false, lambda);
+    const std::vector<char> determined = all ? rigidly : determined_rows(G, compliance);
+    for (const int row : model.system.rod_rows())
+      unique = unique && determined[static_cast<std::size_t>(row)] != 0;
+    mass = MatrixXd(system_.mass());
+    take_stiffness(model, q, G, compliance, lambda, rest);
+  }
+
+  MatrixXd mass, elastic, geometric;  // K = elastic + geometric
+  MatrixXd rigid_rows, rows;          // of unit length
+  double pull = 0.0;                  // what the applied forces alone may give, of w^2 [1/s^2]
+  bool unique = true;
+
+ private:
+  void take_stiffness(const Model& model, const VectorXd& q, const SparseRows& G, const VectorXd& compliance,
+                      const VectorXd& lambda, const State& rest) {
+    SparseRows by_z, by_w;
+    system_.force_derivatives(rest.t, q, VectorXd::Zero(q.size()), by_z, by_w);
+    geometric = MatrixXd(system_.curvature(q, lambda)) - MatrixXd(by_z);
+    elastic.setZero(mass.rows(), mass.rows());
+    rows = MatrixXd(G);
+    std::vector<Index> rigid;
+    const std::vector<int>& of_rod = model.system.rod_rows();
+    for (std::size_t r = 0; r < of_rod.size(); ++r) {
+      const Index row = of_rod[r];
+      if (!(compliance[row] > 0)) continue;
+      const VectorXd g = rows.row(row).transpose();
+      elastic += (1 / compliance[row]) * g * g.transpose();
+      geometric -= (lambda[row] / model.structure.rods[r].length) * g * g.transpose();
+    }
+    geometric = symmetric(geometric);
+    VectorXd force = VectorXd::Zero(q.size()), reduced(mass.rows());
+    system_.add_applied_force(rest.t, q, VectorXd::Zero(q.size()), 1.0, force);
+    system_.reduce_force(force, reduced);
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const Rod& rod : model.structure.rods) shortest = std::min(shortest, rod.length);
+    if (mass.rows() > 0) pull = mass.llt().solve(reduced).lpNorm<Eigen::Infinity>() / shortest;
+    for (Index row = 0; row < rows.rows(); ++row) {
+      if (const double norm = rows.row(row).norm(); norm > 0) rows.row(row) /= norm;
+      if (!(compliance[row] > 0)) rigid.push_back(row);
+    }
+    rigid_rows = rows(rigid, Eigen::all);
+  }
+
+  System system_;
+};
+
+double largest_magnitude_of(const VectorXd& values) {
+  return values.size() ? values.lpNorm<Eigen::Infinity>() : 0.0;
+}
+
+// Eigenvalues w^2 and vectors in solved coordinates, mechanism motions first.
+struct Solved {
+  std::vector<double> squares;
+  MatrixXd vectors;
+  Index mechanism = 0;
+};
+
+Solved solve(const AtPose& at) {
+  const MatrixXd N0 = orthonormal(null_space(at.rows), at.mass),
+                 Z = orthonormal(null_space(at.rigid_rows), at.mass);
+  const MatrixXd K = at.elastic + at.geometric;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> all(symmetric(Z.transpose() * K * Z));
+  const MatrixXd X = Z * all.eigenvectors();
+  Solved out;
+  out.mechanism = N0.cols();
+  std::vector<Index> order(static_cast<std::size_t>(X.cols()));
+  std::iota(order.begin(), order.end(), Index{0});
+  // What lies in the span of N_0 to first order is the mechanism's.
+  const VectorXd share = (N0.transpose() * at.mass * X).colwise().squaredNorm().transpose();
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return share[a] > share[b]; });
+  const auto own = order.begin() + out.mechanism;
+  std::sort(order.begin(), own);
+  std::sort(own, order.end());
+  for (const Index k : order) out.squares.push_back(all.eigenvalues()[k]);
+  out.vectors = X(Eigen::all, order);
+  if (out.mechanism == 0) return out;
+
+  // The mechanism by itself, with what it draws along.
+  const MatrixXd N1 = out.vectors.rightCols(X.cols() - out.mechanism);
+  MatrixXd drawn = N0;
+  if (N1.cols() > 0) {
+    const MatrixXd B = N1 - N0 * (N0.transpose() * at.mass * N1);
+    const Eigen::LDLT<MatrixXd> K11(symmetric(B.transpose() * K * B));
+    drawn -= B * K11.solve(B.transpose() * at.geometric * N0);
+  }
+  // drawn^T K drawn without the round-off of N_0^T elastic, which is zero.
+  const MatrixXd stretched = drawn - N0, small = drawn.transpose() * at.geometric * drawn +
+                                                 stretched.transpose() * at.elastic * stretched;
+  const MatrixXd to_unit = (drawn.transpose() * at.mass * drawn)
+                               .llt()
+                               .matrixL()
+                               .solve(MatrixXd::Identity(out.mechanism, out.mechanism));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> own_motions(
+      symmetric(to_unit * symmetric(small) * to_unit.transpose()));
+  const double lowest = N1.cols() > 0 ? out.squares[static_cast<std::size_t>(out.mechanism)]
+                                      : std::numeric_limits<double>::infinity();
+  if (!(largest_magnitude_of(own_motions.eigenvalues()) < far_below * lowest)) return out;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> pulls(symmetric(Z.transpose() * at.geometric * Z),
+                                                      Eigen::EigenvaluesOnly);
+  const double zero = nothing * std::max(at.pull, largest_magnitude_of(pulls.eigenvalues()));
+  for (Index k = 0; k < out.mechanism; ++k) {
+    const double square = own_motions.eigenvalues()[k];
+    out.squares[static_cast<std::size_t>(k)] = std::abs(square) <= zero ? 0.0 : square;
+  }
+  out.vectors.leftCols(out.mechanism) = drawn * to_unit.transpose() * own_motions.eigenvectors();
+  return out;
+}
+
+}  // namespace
+
+double Vibration::lowest_elastic() const {
+  return static_cast<std::size_t>(mechanism_motions) < modes.size()
+             ? modes[static_cast<std::size_t>(mechanism_motions)].frequency
+             : std::numeric_limits<double>::quiet_NaN();
+}
+
+Vibration vibration(const Model& model, const State& pose) {
+  const AtPose at(model, pose);
+  const Solved solved = solve(at);
+  Vibration out;
+  out.mechanism_motions = solved.mechanism;
+  out.t = pose.t;
+  out.unique = at.unique;
+  VectorXd v(model.system.coordinates());
+  for (std::size_t k = 0; k < solved.squares.size(); ++k) {
+    VibrationMode mode;
+    const double square = solved.squares[k];
+    (square < 0 ? mode.growth : mode.frequency) = std::sqrt(std::abs(square)) / (square < 0 ? 1.0 : 2 * pi);
+    mode.mechanism = static_cast<Index>(k) < solved.mechanism;
+    model.system.expand_rate(solved.vectors.col(static_cast<Index>(k)), v);
+    mode.shape = whole_velocities(model.structure, v);
+    double largest = 0;
+    for (Index i = 0; i < mode.shape.size(); i += 3)
+      largest = std::max(largest, mode.shape.segment<3>(i).norm());
+    if (largest > 0) mode.shape /= largest;
+    out.modes.push_back(std::move(mode));
+  }
+  return out;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What rods are made of and the shape of their cross section.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/structure/structure.hpp"
+#include "core/text/param_spec.hpp"
+
+namespace unfurl {
+
+struct RodMaterial {
+  double youngs_modulus = std::numeric_limits<double>::infinity();  // infinite: rigid [Pa]
+  double strength = std::numeric_limits<double>::infinity();        // axial stress that it may bear [Pa]
+  std::string section = "round";                                    // round | tube | square
+  double wall_thickness = std::numeric_limits<double>::infinity();  // of a tube [m]
+
+  bool elastic() const;
+};
+
+// Keys of every structure whose rods have an area.
+const std::vector<ParamSpec>& rod_material_params();
+RodMaterial rod_material(const ParamSet& values);           // values: of these and other keys
+ParamSet rod_material_values(const RodMaterial& material);  // and back
+
+// Of a cross section of area A [m^2]:
+//     round   A = pi r^2, I = A^2 / (4 pi)
+//     square  A = a^2,    I = A^2 / 12
+//     tube    A = pi t (D - t), I = pi/64 (D^4 - (D - 2 t)^4), which needs t <= sqrt(A / pi)
+struct SectionShape {
+  double second_moment = 0.0;  // [m^4]
+  double radius = 0.0;         // as drawn: of the round rod of the same area, or of the tube outside [m]
+};
+// Throws StructureError with "wall_thickness" where there is no such tube.
+SectionShape section_shape(const RodMaterial& material, double area);
+
+// Gives every rod that has a mass this area [m^2] and material.
+void give_material(Structure& structure, double area, const RodMaterial& material);
+
+}  // namespace unfurl

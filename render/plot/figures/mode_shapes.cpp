@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/plot/figures/mode_shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/plot/figures/pose_view.hpp"
+#include "render/plot/ticks.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr std::size_t most_shapes = 6;
+constexpr double swing = 0.09;  // largest displacement, of the structure's size
+constexpr int pose_color = 7, shape_color = 0;
+
+std::vector<std::size_t> drawn_modes(const Vibration& vibration) {
+  const auto own = static_cast<std::size_t>(vibration.mechanism_motions);
+  const std::size_t elastic = std::min(vibration.modes.size() - own, most_shapes);
+  std::vector<std::size_t> drawn;
+  for (std::size_t k = 0; k < std::min(own, most_shapes - elastic); ++k) drawn.push_back(k);
+  for (std::size_t k = 0; k < elastic; ++k) drawn.push_back(own + k);
+  return drawn;
+}
+
+std::string mode_title(const VibrationMode& mode, std::size_t number) {
+  const std::string head = std::to_string(number + 1) + ": ";
+  if (mode.growth > 0) return head + "unstable, " + plot::format_number(mode.growth, 3) + " 1/s";
+  if (mode.frequency > 0) return head + plot::format_number(mode.frequency, 4) + " Hz";
+  return head + "free";
+}
+
+void add_rods_at(const Structure& structure, const PoseView& view, const VectorXd& x, int color, float width,
+                 double nearer, Panel& p) {
+  for (const RodCopy& rod : structure.rod_copies) {
+    const Vec3 a = view.project(pose_node(x, rod.a)), b = view.project(pose_node(x, rod.b));
+    p.segments.push_back({a.x(), a.y(), b.x(), b.y(), (a.z() + b.z()) / 2 + nearer, color, width});
+  }
+}
+
+}  // namespace
+
+Figure mode_shapes_figure(const Structure& structure, const VectorXd& positions, const Vibration& vibration,
+                          const std::string& title) {
+  const std::vector<std::size_t> drawn = drawn_modes(vibration);
+  PoseBox rest;
+  for (int i = 0; i < positions.size() / 3; ++i) rest.add(pose_node(positions, i));
+  const double amplitude = swing * rest.size().norm();
+  PoseBox space = rest;
+  std::vector<VectorXd> moved;
+  for (const std::size_t k : drawn) {
+    moved.push_back(positions + amplitude * vibration.modes[k].shape);
+    for (int i = 0; i < positions.size() / 3; ++i) space.add(pose_node(moved.back(), i));
+  }
+  const PoseView view = pose_view(space.size());
+  PoseBox page;
+  moved.push_back(positions);
+  for (const VectorXd& x : moved)
+    for (int i = 0; i < x.size() / 3; ++i) page.add(view.project(pose_node(x, i)));
+  const Vec3 size = page.size().cwiseMax(1e-3 * std::max(page.size().maxCoeff(), 1e-9));
+
+  Figure f;
+  f.name = "modes";
+  f.title = "Modes: " + title;
+  f.columns = static_cast<int>(std::min<std::size_t>(drawn.size(), 3));
+  f.rows = static_cast<int>((drawn.size() + 2) / 3);
+  const double many = std::sqrt(60.0 / static_cast<double>(structure.rod_copies.size()));
+  const auto width = static_cast<float>(std::clamp(1.3 * many, 0.4, 1.5));
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    Panel p;
+    p.title = mode_title(vibration.modes[drawn[k]], drawn[k]);
+    p.bare = p.equal_scale = true;
+    add_rods_at(structure, view, positions, pose_color, 0.6f * width, -1e3 * size.norm(), p);
+    add_rods_at(structure, view, moved[k], shape_color, width, 0.0, p);
+    p.x.min = page.lo.x() - 0.02 * size.x(), p.x.max = page.hi.x() + 0.02 * size.x();
+    p.y.min = page.lo.y() - 0.02 * size.y(), p.y.max = page.hi.y() + 0.02 * size.y();
+    f.panels.push_back(std::move(p));
+  }
+  while (f.panels.size() < static_cast<std::size_t>(f.rows * f.columns)) {
+    f.panels.emplace_back();
+    f.panels.back().bare = true;
+  }
+  f.height_mm = std::clamp(f.rows * (150.0 / f.columns * size.y() / size.x() + 7.0) + 25.0, 60.0, 160.0);
+  f.caption = std::string(view.flat ? "View of the plane of motion" : "Axonometric view") + " at " +
+              plot::format_number(vibration.t, 4) +
+              " s, the pose in grey, each mode with its largest displacement enlarged to " +
+              plot::format_number(100 * swing, 2) + " % of the size. " +
+              std::to_string(vibration.mechanism_motions) + " of all " +
+              std::to_string(vibration.modes.size()) +
+              " are motions of the mechanism: rods keep their lengths.";
+  return f;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A quantity of every rod over time.
+#pragma once
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "render/plot/figure.hpp"
+
+namespace unfurl {
+
+inline constexpr const char* open_force = ", not unique";
+
+// values [states x solved rods], NaN where nothing is known: a curve for every rod where there are few, else
+// for every group one curve or the range between the extremes; dashed or dotted where forces are not unique.
+void add_rod_curves(const Structure& structure, const Diagnostics& diagnostics, const MatrixXd& values,
+                    Panel& panel);
+bool each_rod_alone(const Structure& structure);
+double largest_finite(const MatrixXd& values);  // magnitude; 0 where there is none
+
+}  // namespace unfurl

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Frequencies at a pose against closed forms of the same rods.
+#include "core/diagnostics/vibration.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/measures.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace vibration_test {
+
+namespace {
+
+Vibration at_start(const Scene& scene) {
+  const auto model = build_model(scene);
+  return vibration(*model, initial_state(model->structure, model->system).state);
+}
+
+Vibration of_text(const std::string& text) {
+  return at_start(read_scene_text(text, "test.toml"));
+}
+
+std::vector<double> frequencies(const Vibration& v, bool mechanism) {
+  std::vector<double> out;
+  for (const VibrationMode& mode : v.modes)
+    if (mode.mechanism == mechanism) out.push_back(mode.frequency);
+  return out;
+}
+
+void check_close(const std::vector<double>& found, std::vector<double> squares, double tolerance) {
+  std::sort(squares.begin(), squares.end());
+  REQUIRE(found.size() == squares.size());
+  for (std::size_t k = 0; k < found.size(); ++k)
+    CHECK(found[k] == Approx(std::sqrt(squares[k]) / (2 * pi)).epsilon(tolerance));
+}
+
+constexpr double E = 2.1e11, A = 1.3e-4, density = 7800;
+
+// n rods in a row along x, one end fixed, all nodes in the plane z = 0; those of `on_axis` stay on the x
+// axis.
+std::string row_of_rods(int n, double l, const std::string& on_axis, double pull,
+                        const std::string& modulus) {
+  std::string text = "[structure]\nkind = 'custom'\n" + modulus;
+  for (int i = 0; i <= n; ++i)
+    text += "[[structure.nodes]]\nname = '" + std::to_string(i) + "'\nposition = [" + std::to_string(i * l) +
+            ", 0, 0]\n" + (i == 0 ? "fixed = true\n" : "");
+  for (int i = 0; i < n; ++i)
+    text += "[[structure.rods]]\nnodes = ['" + std::to_string(i) + "', '" + std::to_string(i + 1) +
+            "']\ndensity = " + std::to_string(density) + "\narea = 1.3e-4\n";
+  for (int i = 1; i <= n; ++i)
+    text += "[[structure.constraints]]\nkind = 'plane'\nnodes = ['" + std::to_string(i) +
+            "']\nnormal = [0, 0, 1]\n";
+  return text + "[[structure.constraints]]\nkind = 'plane'\nnodes = " + on_axis +
+         "\nnormal = [0, 1, 0]\n[[loads]]\nnodes = ['" + std::to_string(n) + "']\nforce = [" +
+         std::to_string(pull) + ", 0, 0]\n";
+}
+
+// Of rods of mass m with m/6 (2 1; 1 2) and k (1 -1; -1 1): w^2 = 6 k/m (1 - cos a) / (2 + cos a).
+double square_of_wave(double k, double m, double a) {
+  return 6 * k / m * (1 - std::cos(a)) / (2 + std::cos(a));
+}
+
+}  // namespace
+
+TEST_CASE("a bar of elastic rods, fixed at one end, has the frequencies of its finite elements") {
+  const int n = 5;
+  const double l = 0.25, k = E * A / l, m = density * A * l;
+  const Vibration v =
+      of_text(row_of_rods(n, l, "['1', '2', '3', '4', '5']", 0.0, "youngs_modulus = 2.1e11\n"));
+  std::vector<double> squares;
+  for (int i = 1; i <= n; ++i) squares.push_back(square_of_wave(k, m, (2 * i - 1) * pi / (2 * n)));
+  CHECK(v.mechanism_motions == 0);
+  check_close(frequencies(v, false), squares, 1e-10);
+  CHECK(v.lowest_elastic() == frequencies(v, false).front());
+  CHECK(v.unique);
+}
+
+TEST_CASE("a string of rods swings by its tension, and stretches by its stiffness") {
+  const int n = 6;
+  const double l = 0.25, T = 730.0, k = E * A / l, m = density * A * l;
+  std::vector<double> across, along;
+  for (int i = 1; i < n; ++i) across.push_back(square_of_wave(T / l, m, i * pi / n));
+  for (int i = 1; i <= n; ++i) along.push_back(square_of_wave(k, m, (2 * i - 1) * pi / (2 * n)));
+  for (const char* modulus : {"youngs_modulus = 2.1e11\n", ""}) {
+    INFO(modulus);
+    const Vibration v = of_text(row_of_rods(n, l, "['6']", T, modulus));
+    const bool elastic = *modulus != '\0';
+    CHECK(v.mechanism_motions == n - 1);
+    // Of rods without a modulus the same: to first order they are not stretched.
+    check_close(frequencies(v, true), across, 1e-10);
+    check_close(frequencies(v, false), elastic ? along : std::vector<double>{}, 1e-10);
+  }
+  // Pushed instead of pulled it buckles: all of these grow.
+  const Vibration pushed = of_text(row_of_rods(n, l, "['6']", -T, "youngs_modulus = 2.1e11\n"));
+  for (int i = 0; i < n - 1; ++i) {
+    const VibrationMode& mode = pushed.modes[static_cast<std::size_t>(i)];
+    CHECK(mode.mechanism);
+    CHECK(mode.frequency == 0.0);
+    CHECK(mode.growth == Approx(std::sqrt(across[static_cast<std::size_t>(n - 2 - i)])).epsilon(1e-10));
+  }
+}
+
+namespace {
+
+// Corners of mass 1.9 kg of a square of 0.8 m, floating in its plane; rods without mass.
+std::string square(bool diagonals) {
+  std::string text = "[structure]\nkind = 'custom'\nyoungs_modulus = 2.1e11\n";
+  const char* at[] = {"[0, 0, 0]", "[0.8, 0, 0]", "[0.8, 0.8, 0]", "[0, 0.8, 0]"};
+  for (int i = 0; i < 4; ++i)
+    text += "[[structure.nodes]]\nname = '" + std::to_string(i) + "'\nposition = " + at[i] + "\nmass = 1.9\n";
+  std::vector<std::string> rods{"01", "12", "23", "30"};
+  if (diagonals) rods.insert(rods.end(), {"02", "13"});
+  for (const std::string& rod : rods)
+    text += "[[structure.rods]]\nnodes = ['" + rod.substr(0, 1) + "', '" + rod.substr(1) +
+            "']\nmass = 0\narea = 1.3e-4\n";
+  return text +
+         "[[structure.constraints]]\nkind = 'plane'\nnodes = ['0', '1', '2', '3']\nnormal = [0, 0, 1]\n";
+}
+
+}  // namespace
+
+TEST_CASE("a square frame: by its symmetry, with and without diagonals") {
+  const double k = E * A / 0.8, d = E * A / (0.8 * std::sqrt(2.0)), m = 1.9;
+  const Vibration open = of_text(square(false));
+  CHECK(open.mechanism_motions == 4);  // three of the whole, and the rhombus
+  for (const double f : frequencies(open, true)) CHECK(f == 0.0);
+  // Two corners at the ends of each side.
+  check_close(frequencies(open, false), std::vector<double>(4, 2 * k / m), 1e-10);
+  const Vibration braced = of_text(square(true));
+  CHECK(braced.mechanism_motions == 3);
+  for (const double f : frequencies(braced, true)) CHECK(f == 0.0);
+  // The rhombus, three of the sides alone, and breathing.
+  check_close(frequencies(braced, false), {2 * d / m, 2 * k / m, 2 * k / m, 2 * k / m, 2 * (k + d) / m},
+              1e-10);
+}
+
+TEST_CASE("a hanging pendulum swings as a physical pendulum, however stiff, upright it falls") {
+  const auto pendulum = [](double z, const std::string& modulus) {
+    return of_text("[structure]\nkind = 'custom'\n" + modulus +
+                   "[[structure.nodes]]\nname = 'O'\nposition = [0, 0, 0]\nfixed = true\n"
+                   "[[structure.nodes]]\nname = 'A'\nposition = [0, 0, " +
+                   std::to_string(z) + "]\nmass = 0.4\n" +
+                   "[[structure.rods]]\nnodes = ['O', 'A']\nmass = 1.1\narea = 2e-4\n" +
+                   "[gravity]\nacceleration = [0, 0, -9.81]\n");
+  };
+  const double l = 0.7, M = 1.1, b = 0.4, square = 9.81 * (M / 2 + b) * l / ((M / 3 + b) * l * l);
+  for (const char* modulus : {"", "youngs_modulus = 7e10\n", "youngs_modulus = 7e15\n"}) {
+    INFO(modulus);
+    const Vibration hanging = pendulum(-l, modulus);
+    REQUIRE(hanging.mechanism_motions == 2);
+    check_close(frequencies(hanging, true), {square, square}, 1e-10);
+    const Vibration upright = pendulum(l, modulus);
+    for (int i = 0; i < 2; ++i)
+      CHECK(upright.modes[static_cast<std::size_t>(i)].growth == Approx(std::sqrt(square)).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("the symmetric modes of a ring are those of its sector, and the stiffness scales them") {
+  const auto ring = [](const char* scene, const char* modulus) {
+    return at_start(
+        read_scene_file(find_scene(scene), {"structure.youngs_modulus=" + std::string(modulus),
+                                            "structure.hinge_force=0", "structure.fold_angle=37"}));
+  };
+  const Vibration full = ring("hoop6", "7e10"), sector = ring("hoop6_sector", "7e10"),
+                  stiff = ring("hoop6", "2.8e11");
+  CHECK(full.mechanism_motions == 1);
+  CHECK(sector.mechanism_motions == 1);
+  CHECK(full.modes.front().frequency == 0.0);
+  const std::vector<double> all = frequencies(full, false), some = frequencies(sector, false);
+  REQUIRE(some.size() >= 2);
+  for (const double f : some) {
+    double nearest = 1e300;
+    for (const double g : all) nearest = std::min(nearest, std::abs(g - f));
+    CHECK(nearest < 1e-9 * f);
+  }
+  const std::vector<double> twice = frequencies(stiff, false);
+  for (std::size_t k = 0; k < all.size(); ++k) CHECK(twice[k] == Approx(2 * all[k]).epsilon(1e-9));
+}
+
+TEST_CASE("a latched ring has no free motion, its lowest frequency is a measure of runs") {
+  const Simulation run = [] {
+    const Scene scene =
+        read_scene_file(find_scene("hoop6"), {"structure.youngs_modulus=7e10", "solver.at_deployed=latch",
+                                              "solver.step=0.05", "solver.end_time=5.2"});
+    return simulate(build_model(scene), scene.solver);
+  }();
+  REQUIRE(run.status == RunStatus::completed);
+  const std::size_t last = run.trajectory.size() - 1;
+  const Vibration v = vibration(run.trajectory.model(last), run.trajectory.state(last));
+  CHECK(v.mechanism_motions == 0);
+  CHECK(v.lowest_elastic() > 0.0);
+  CHECK(find_measure("frequency").value(run, diagnose(run)) == v.lowest_elastic());
+  for (const VibrationMode& mode : v.modes) {
+    CHECK(mode.growth == 0.0);
+    CHECK(mode.shape.lpNorm<Eigen::Infinity>() <= 1.0 + 1e-12);
+  }
+}
+
+}  // namespace vibration_test
