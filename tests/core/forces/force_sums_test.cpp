@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Forces where more than one acts, or where a term is only seen off its special value.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "core/system/system.hpp"
@@ -93,6 +94,43 @@ tension_only = true
     CHECK((f.tail<3>() - pull * q.head<3>() / s).norm() <= 1e-12);
     CHECK(model->system.potential_energy(q) == Approx(25 * stretch * stretch).margin(1e-12));
   }
+}
+
+TEST_CASE("a damped joint slows every pair of its rods and holds none") {
+  // Three rods at J in a plane, turning at 1, 2 and 4 rad/s: torques c times the differences of their rates.
+  CustomSpec spec;
+  spec.nodes = {{"J", {0, 0, 0}, {0, 0, 0}, 0.0, true}};
+  const double angles[] = {0.3, 1.7, 3.9}, rates[] = {1, 2, 4}, lengths[] = {1.2, 0.8, 1.5};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 out(std::cos(angles[i]), std::sin(angles[i]), 0);
+    const std::string name(1, static_cast<char>('A' + i));
+    spec.nodes.push_back({name, lengths[i] * out, Vec3::Zero(), 0.0, false});
+    spec.rods.push_back({"J" + name, {"J", name}, 1.0});
+  }
+  Structure structure = build_custom(spec);
+  Force damper;
+  damper.kind = "joint_damping";
+  damper.name = "oil";
+  damper.nodes = {0};
+  damper.damping = 0.35;
+  damper.stiffness = 7;  // of another kind of force: says nothing here
+  structure.forces.push_back(damper);
+  const System system(structure, true);
+  VectorXd q = VectorXd::Zero(12), v = q, f = q;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 x = structure.nodes[static_cast<std::size_t>(i) + 1].position;
+    q.segment<3>(3 * i + 3) = x;
+    v.segment<3>(3 * i + 3) = rates[i] * Vec3(-x.y(), x.x(), 0);
+  }
+  system.add_applied_force(0.2, q, v, 1.0, f);
+  for (int i = 0; i < 3; ++i) {
+    double torque = 0;
+    for (const double other : rates) torque -= 0.35 * (rates[i] - other);
+    const Vec3 x = q.segment<3>(3 * i + 3), force = f.segment<3>(3 * i + 3);
+    CHECK(x.cross(force).z() == Approx(torque).epsilon(1e-12));
+    CHECK(std::abs(x.dot(force)) <= 1e-12);
+  }
+  CHECK(std::abs(system.potential_energy(q)) <= 1e-14);
 }
 
 TEST_CASE("a step is solved where a damper is far stiffer than it") {

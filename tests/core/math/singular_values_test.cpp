@@ -40,3 +40,29 @@ TEST_CASE("singular values of a matrix that is not finite are not numbers") {
   A(1, 2) = std::numeric_limits<double>::infinity();
   CHECK(singular_values(A).array().isNaN().all());
 }
+
+TEST_CASE("singular values do not depend on signs, and keep the sums of their powers") {
+  VectorXd entries(9);
+  entries << 0.7, -1.9, -0.4, 1.3, -2.1, -0.6, 0.9, -1.1, 0.2;
+  for (const bool by_bisection : {false, true}) {
+    const VectorXd values = singular_values_of_bidiagonal(entries, by_bisection);
+    const VectorXd same = singular_values_of_bidiagonal(entries.cwiseAbs(), by_bisection);
+    CHECK((values - same).cwiseAbs().maxCoeff() <= 1e-14);
+    CHECK((values - singular_values_of_bidiagonal(-entries.cwiseAbs(), by_bisection)).cwiseAbs().maxCoeff() <=
+          1e-14);
+    CHECK(values.squaredNorm() == Approx(entries.squaredNorm()).epsilon(1e-14));
+  }
+  for (const auto& [rows, columns] : {std::pair{5, 8}, {8, 5}, {6, 6}}) {
+    MatrixXd A(rows, columns);
+    for (Index i = 0; i < A.rows(); ++i)
+      for (Index k = 0; k < A.cols(); ++k) A(i, k) = std::sin(3.7 * double(i) - 1.3 * double(k * k) + 0.4);
+    const VectorXd values = singular_values(A);
+    REQUIRE(values.size() == std::min(rows, columns));
+    // Traces of A^T A and its powers.
+    const MatrixXd S = A.transpose() * A;
+    CHECK(values.array().pow(2).sum() == Approx(S.trace()).epsilon(1e-13));
+    CHECK(values.array().pow(4).sum() == Approx((S * S).trace()).epsilon(1e-13));
+    CHECK(values.array().pow(6).sum() == Approx((S * S * S).trace()).epsilon(1e-13));
+    for (Index k = 1; k < values.size(); ++k) CHECK(values[k] <= values[k - 1]);
+  }
+}

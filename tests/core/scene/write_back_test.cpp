@@ -57,6 +57,23 @@ TEST_CASE("written back, a changed value changes nothing else of a scene file") 
   CHECK(back({"title=\"Other\""}) == with("\"Ring\"", "\"Other\""));
 }
 
+TEST_CASE("written back, entries are found by their place, the first and the tenth") {
+  std::string text = "[structure]\nkind = 'custom'\n";
+  for (int i = 0; i < 12; ++i)
+    text += "[[structure.nodes]]\nname = 'N" + std::to_string(i) + "'\nposition = [" + std::to_string(i) +
+            ", 0, 0]\nmass = 2\n";
+  for (const int i : {0, 3, 10, 11}) {
+    const std::string n = std::to_string(i);
+    const WrittenBack result = write_back(text, "n.toml", {"structure.nodes[" + n + "].mass=7"}, "");
+    const std::string before = "position = [" + n + ", 0, 0]\nmass = ";
+    std::string expected = text;
+    expected[expected.find(before) + before.size()] = '7';
+    CHECK(result.text == expected);
+    const WrittenBack moved = write_back(text, "n.toml", {"structure.nodes[" + n + "].position[1]=0.5"}, "");
+    CHECK(read_scene_text(moved.text, "n.toml").custom.nodes[static_cast<std::size_t>(i)].position[1] == 0.5);
+  }
+}
+
 TEST_CASE("written back, a new key stands behind the others of its table, a new table at the end") {
   CHECK(back({"solver.end_time=2.5"}) == with("method = 'dvm'\n", "method = 'dvm'\nend_time = 2.5\n"));
   std::string with_gravity = hoop;

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 
 #include "core/structure/structure_error.hpp"
 #include "core/text/name_index.hpp"
@@ -71,6 +72,28 @@ TEST_CASE("globs match as in a shell") {
   CHECK_FALSE(glob_match("", "B"));
   // A naive matcher needs 2^30 steps here.
   CHECK_FALSE(glob_match("*a*a*a*a*a*a*a*a*a*a*a*a*a*a*ab", std::string(60, 'a')));
+}
+
+TEST_CASE("globs match as their definition says: all short patterns against all short names") {
+  // A star stands for any text: nothing, or one character and a star.
+  const std::function<bool(std::string_view, std::string_view)> defined = [&](std::string_view p,
+                                                                              std::string_view n) {
+    if (p.empty()) return n.empty();
+    if (p[0] == '*') return defined(p.substr(1), n) || (!n.empty() && defined(p, n.substr(1)));
+    return !n.empty() && (p[0] == '?' || p[0] == n[0]) && defined(p.substr(1), n.substr(1));
+  };
+  const auto texts = [](std::string_view letters, std::size_t longest) {
+    std::vector<std::string> all = {""};
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (all[i].size() < longest)
+        for (const char c : letters) all.push_back(all[i] + c);
+    return all;
+  };
+  std::string wrong;
+  for (const std::string& pattern : texts("ab*?", 4))
+    for (const std::string& name : texts("ab", 5))
+      if (glob_match(pattern, name) != defined(pattern, name)) wrong += pattern + " " + name + "\n";
+  CHECK(wrong == "");
 }
 
 TEST_CASE("a sound list has no problems") {

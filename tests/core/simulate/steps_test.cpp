@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where steps end, how long they are, and the polynomials through their ends.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/quintic.hpp"
+#include "core/simulate/dense_output.hpp"
+#include "core/simulate/step_control.hpp"
+#include "core/simulate/time_grid.hpp"
+#include "tests/support/models.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace steps_test {
+
+namespace {
+
+TimeGrid grid(std::vector<TimeEdge> edges = {}) {
+  return TimeGrid(0.3, dvm_options(3, 0.1, 1.07), std::move(edges));
+}
+
+// A state of the motion z = p(t), w = p'(t) with the coefficients of p.
+State on_polynomial(const std::vector<double>& c, double t) {
+  State s;
+  s.t = t;
+  s.z = s.w = VectorXd::Zero(1);
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    const auto n = static_cast<double>(k);
+    s.z[0] += c[k] * std::pow(t, n);
+    if (k > 0) s.w[0] += n * c[k] * std::pow(t, n - 1);
+  }
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("steps end on the grid, and the last one at the end") {
+  const TimeGrid regular = grid();
+  double now = 0.3;
+  for (int k = 1; k <= 7; ++k) {
+    const auto step = regular.next(now);
+    CHECK(step.t == Approx(0.3 + 0.1 * k).epsilon(1e-15));
+    CHECK(step.h == 0.1);  // exactly, so that matrices can be kept
+    CHECK_FALSE(step.edge);
+    CHECK_FALSE(step.jumps);
+    now = step.t;
+  }
+  CHECK(regular.next(now).t == 1.07);
+  CHECK(regular.next(now).h == Approx(0.07).epsilon(1e-13));
+  // From between two of its times to the next.
+  CHECK(regular.next(0.4321).t == Approx(0.5).epsilon(1e-15));
+  CHECK(regular.next(0.4321).h == Approx(0.0679).epsilon(1e-12));
+  // A run shorter than a step has one.
+  CHECK(TimeGrid(0.3, dvm_options(3, 5, 1.07), {}).next(0.3).t == 1.07);
+  // Steps of any size, the last a thousandth longer rather than followed by next to nothing.
+  CHECK(regular.next(0.4, 0.173).t == Approx(0.573).epsilon(1e-15));
+  CHECK(regular.next(0.4, 0.173).h == 0.173);
+  CHECK(regular.next(0.8, 0.2698).t == 1.07);
+  CHECK(regular.next(0.8, 0.2695).t == Approx(1.0695).epsilon(1e-15));
+  CHECK(regular.next(0.8, 7).t == 1.07);
+}
+
+TEST_CASE("steps end at the edges of time, and right before its jumps") {
+  const TimeGrid cut = grid({{0.5234, false}, {0.6 + 1e-12, false}, {0.7777, true}, {1.07, false}});
+  auto step = cut.next(0.5);
+  CHECK(step.t == 0.5234);
+  CHECK(step.h == Approx(0.0234).epsilon(1e-12));
+  CHECK(step.edge);
+  CHECK_FALSE(step.jumps);
+  // On to the grid; an edge within rounding of it is the grid's own time.
+  step = cut.next(0.5234);
+  CHECK(step.t == Approx(0.6).epsilon(1e-15));
+  CHECK(step.edge);
+  CHECK_FALSE(cut.next(0.4).jumps);
+  step = cut.next(0.7);
+  CHECK(step.jumps);
+  CHECK(step.jump == 0.7777);
+  CHECK(step.t < 0.7777);
+  CHECK(step.t == Approx(0.7777).epsilon(1e-14));
+  // From there the jump itself takes no time.
+  step = cut.next(step.t);
+  CHECK(step.jumps);
+  CHECK(step.h == 0);
+  step = cut.next(0.7777);
+  CHECK_FALSE(step.jumps);
+  CHECK(step.t == Approx(0.8).epsilon(1e-15));
+  CHECK_FALSE(cut.next(1.0).edge);  // the end is no edge
+  step = cut.next(0.45, 0.2);
+  CHECK(step.t == 0.5234);
+  CHECK(step.edge);
+}
+
+TEST_CASE("adaptive steps are those of the turn and change that a step may bring") {
+  // A rod of 1.3 m about its end at 2.6 rad/s without forces: omega = 2.6 / s, |w'| / |w| the same, r = 2.6 /
+  // (1 + 2.6 h_0 / alpha).
+  CustomSpec spec;
+  spec.nodes = {{"O", {0, 0, 0}, {0, 0, 0}, 0.0, true}, {"A", {1.3, 0, 0}, {0, 2.6 * 1.3, 0}, 0.0, false}};
+  spec.rods = {{"OA", {"O", "A"}, 2.0}};
+  const auto model = make_model(build_custom(spec));
+  SolverOptions options = dvm_options(3, 0.17, 1);
+  options.turn = 0.23;
+  State state;
+  state.z = model->system.reduce((VectorXd(6) << 0, 0, 0, 1.3, 0, 0).finished());
+  state.w = VectorXd::Zero(3);
+  state.w[1] = 2.6 * 1.3;
+  REQUIRE(state.z.size() == 3);
+  const double h0 = 0.17, alpha = 0.23, omega = 2.6, r = omega / (1 + omega * h0 / alpha);
+  const double wanted = h0 / std::sqrt(1 + std::pow(h0 * (omega + r) / alpha, 2));
+  StepControl control(model->structure, model->system, options);
+  CHECK(control.next(state) == Approx(wanted).epsilon(1e-12));
+  CHECK(control.next(state) == Approx(wanted).epsilon(1e-12));
+  // Symmetric: h_{n-1/2} h_{n+1/2} is what is wanted, squared, and at most half as long again as the longest.
+  control.continue_from(0.7 * wanted);
+  CHECK(control.next(state) == Approx(wanted / 0.7).epsilon(1e-12));
+  control.continue_from(1e-3 * wanted);
+  CHECK(control.next(state) == Approx(1.5 * h0).epsilon(1e-12));
+  control.continue_from(1e9 * wanted);
+  CHECK(control.next(state) == Approx(1e-5 * h0).epsilon(1e-12));
+}
+
+TEST_CASE("the cubic and the quintic through two states reproduce polynomials") {
+  const std::vector<double> three = {0.3, -1.7, 0.9, 2.1}, five = {0.3, -1.7, 0.9, 2.1, -3.3, 1.9};
+  const double begin = 0.37, end = 1.11;
+  State a = on_polynomial(three, begin), b = on_polynomial(three, end);
+  a.angles = VectorXd::Constant(1, 5.0);
+  b.angles = VectorXd::Constant(1, 9.0);
+  for (const double u : {0.13, 0.5, 0.81}) {
+    const double t = begin + u * (end - begin);
+    const State s = on_cubic(a, b, t), exact = on_polynomial(three, t);
+    CHECK(s.t == t);
+    CHECK(s.z[0] == Approx(exact.z[0]).epsilon(1e-13));
+    CHECK(s.w[0] == Approx(exact.w[0]).epsilon(1e-12));
+    CHECK(s.angles[0] == Approx(5 + 4 * u).epsilon(1e-13));
+  }
+  const auto bend = [&](double t) {
+    double x = 0;
+    for (std::size_t k = 2; k < five.size(); ++k) {
+      const auto n = static_cast<double>(k);
+      x += n * (n - 1) * five[k] * std::pow(t, n - 2);
+    }
+    return VectorXd(VectorXd::Constant(1, x));
+  };
+  const State c = on_polynomial(five, begin), d = on_polynomial(five, end);
+  const VectorXd bend_c = bend(begin), bend_d = bend(end);
+  const Quintic motion{c, d, bend_c, bend_d, end - begin};
+  for (const double u : {0.0, 0.13, 0.5, 0.81, 1.0}) {
+    const State exact = on_polynomial(five, begin + u * (end - begin));
+    CHECK(motion.value(u)[0] == Approx(exact.z[0]).epsilon(1e-12));
+    CHECK(motion.rate(u)[0] == Approx(exact.w[0]).epsilon(1e-12));
+  }
+}
+
+}  // namespace steps_test
