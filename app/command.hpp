@@ -87,6 +87,7 @@ int cmd_list(const Arguments& arguments);
 int cmd_show(const Arguments& arguments);
 int cmd_modes(const Arguments& arguments);
 int cmd_new(const Arguments& arguments);
+int cmd_verify(const Arguments& arguments);
 int cmd_completion(const Arguments& arguments);
 
 }  // namespace unfurl

@@ -72,6 +72,10 @@ constexpr Command table[] = {
      "--set --all --size --fps --look --supersample --transparent",
      "unfurl show hoop6\n"
      "unfurl show hoop6 --set structure.units=12 > twelve.toml"},
+    {"verify", "PATH", "are results, a directory or a file in one, still as they were written? exit 7: no", 1,
+     1, false, cmd_verify, "",
+     "unfurl verify film\n"
+     "unfurl verify film/figures/energy.pdf"},
     {"completion", "SHELL", "print a completion script for bash, zsh or fish, or the manual page: man", 1, 1,
      false, cmd_completion, "",
      "unfurl completion bash > ~/.local/share/bash-completion/completions/unfurl\n"

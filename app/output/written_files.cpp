@@ -101,17 +101,44 @@ WrittenFiles::~WrittenFiles() {
   watch_files(before_);
 }
 
-void WrittenFiles::read() {
-  const TextFile file = read_text_file((directory_ / list_name).string());
-  if (!file.error.empty()) throw FileError(directory_ / list_name, file.error);
-  std::istringstream text(file.text);
-  std::getline(text, title_);
+WrittenFiles::Lines WrittenFiles::lines_of(const std::string& list, std::string& title) {
+  Lines lines;
+  std::istringstream text(list);
+  std::getline(text, title);
   for (std::string line; std::getline(text, line);) {
     const std::size_t one = line.find(' '), two = line.find(' ', one + 1);
     if (one == std::string::npos || two == std::string::npos) continue;
-    lines_[unescaped(std::string_view(line).substr(two + 1))].insert(
+    lines[unescaped(std::string_view(line).substr(two + 1))].insert(
         {line.substr(0, one), line.substr(one + 1, two - one - 1)});
   }
+  return lines;
+}
+
+void WrittenFiles::read() {
+  const TextFile file = read_text_file((directory_ / list_name).string());
+  if (!file.error.empty()) throw FileError(directory_ / list_name, file.error);
+  lines_ = lines_of(file.text, title_);
+}
+
+std::vector<WrittenFiles::Verdict> WrittenFiles::verify(const fs::path& directory) {
+  const TextFile file = read_text_file((directory / list_name).string());
+  std::string title;
+  const Lines lines = lines_of(file.text, title);
+  if (!file.error.empty() || (!title.starts_with(made) && !title.starts_with(written_into)))
+    throw FileError(directory, "has no list of what unfurl wrote into it (.unfurl)");
+  std::vector<Verdict> verdicts;
+  for (const auto& [name, known] : lines) {
+    const Descriptor parent = parent_in(directory, name);
+    const std::string now = parent ? checksum_in(parent.get(), fs::path(name).filename().string()) : "";
+    Verdict verdict{name, now.empty() ? Verdict::missing : Verdict::changed};
+    for (const Line& line : known) {
+      if (now.empty()) break;
+      if (line.checksum == now) verdict.kind = Verdict::same;
+      if (line.checksum == any_content && verdict.kind == Verdict::changed) verdict.kind = Verdict::grows;
+    }
+    verdicts.push_back(std::move(verdict));
+  }
+  return verdicts;
 }
 
 void WrittenFiles::write_anew(bool was_empty) {

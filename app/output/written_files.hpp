@@ -51,6 +51,14 @@ class WrittenFiles final : public FileWatcher {
   // What was kept aside, for a word to the person.
   std::vector<std::string> kept() const;
 
+  // What became of the files that DIR's list names. Throws FileError where there is no list.
+  struct Verdict {
+    enum Kind { same, changed, missing, grows };
+    std::string name;
+    Kind kind;
+  };
+  static std::vector<Verdict> verify(const std::filesystem::path& directory);
+
   // Is there a list that was begun in an empty directory? False also where it cannot be read.
   static bool begun_here(const std::filesystem::path& directory);
   static constexpr const char* list_name = ".unfurl";
@@ -61,6 +69,8 @@ class WrittenFiles final : public FileWatcher {
     auto operator<=>(const Line&) const = default;
   };
 
+  using Lines = std::map<std::string, std::set<Line>>;  // by name
+  static Lines lines_of(const std::string& list, std::string& title);
   void read();
   void append(const Line& line, const std::string& name);
   void write_anew(bool was_empty);
@@ -71,7 +81,7 @@ class WrittenFiles final : public FileWatcher {
   std::filesystem::path directory_;
   std::string owner_, title_;
   mutable std::mutex mutex_;
-  std::map<std::string, std::set<Line>> lines_;  // by name
+  Lines lines_;
   std::vector<std::string> kept_;
   FileWatcher* before_ = nullptr;
 };

@@ -328,20 +328,7 @@ void add_error(py::module_& module, const char* name, const py::object& base) {
   py::register_exception<Kind>(module, name, base);
 }
 
-}  // namespace
-
-PYBIND11_MODULE(_unfurl, module) {
-  module.doc() = "Unfurl: how deployable structures unfold.";
-  module.attr("__version__") = version();
-  const py::object error = py::register_exception<Error>(module, "Error", PyExc_ValueError);
-  add_error<StructureError>(module, "StructureError", error);
-  add_error<SceneError>(module, "SceneError", error);
-  add_error<UnreadableScene>(module, "UnreadableScene", error);
-  add_error<FileError>(module, "FileError", error);
-  add_error<StudyError>(module, "StudyError", error);
-  add_error<NotFound>(module, "NotFound", error);
-  add_error<GraphicsError>(module, "GraphicsError", error);
-
+void add_run(py::module_& module) {
   py::class_<Run, std::shared_ptr<Run>>(module, "Run")
       .def_property_readonly("t", &Run::t)
       .def_property_readonly("x", &Run::x)
@@ -400,7 +387,9 @@ PYBIND11_MODULE(_unfurl, module) {
       .def("export", &export_run, py::arg("format"), py::arg("directory"))
       .def("plot", &write_figure_of, py::arg("name"), py::arg("file"), py::arg("style") = "screen")
       .def("frame", &write_frame, py::arg("t"), py::arg("file"));
+}
 
+void add_scene(py::module_& module) {
   py::class_<SteppedScene>(module, "Stepper")
       .def("step", &SteppedScene::step)
       .def("advance_to", &SteppedScene::advance_to, py::arg("t"))
@@ -419,7 +408,24 @@ PYBIND11_MODULE(_unfurl, module) {
       .def("solve", &solve_scene)
       .def_property_readonly("text", [](const SceneSource& source) { return scene_text(source.read()); })
       .def_property_readonly("title", [](const SceneSource& source) { return source.read().title; });
+}
 
+}  // namespace
+
+PYBIND11_MODULE(_unfurl, module) {
+  module.doc() = "Unfurl: how deployable structures unfold.";
+  module.attr("__version__") = version();
+  const py::object error = py::register_exception<Error>(module, "Error", PyExc_ValueError);
+  add_error<StructureError>(module, "StructureError", error);
+  add_error<SceneError>(module, "SceneError", error);
+  add_error<UnreadableScene>(module, "UnreadableScene", error);
+  add_error<FileError>(module, "FileError", error);
+  add_error<StudyError>(module, "StudyError", error);
+  add_error<NotFound>(module, "NotFound", error);
+  add_error<GraphicsError>(module, "GraphicsError", error);
+
+  add_run(module);
+  add_scene(module);
   module.def("scenes", [] {
     std::vector<std::string> names;
     for (const LibraryScene& scene : library_scenes()) names.push_back(scene.name);

@@ -70,7 +70,7 @@ TEST_CASE("study compares models: a sector moves as the whole, for less") {
   const ScratchDirectory dir;
   const ProgramResult r = run_program({"study", "hoop6", "--models", "--repeats", "1", "-o", dir / "out"});
   CHECK(r.code == 0);
-  CHECK(lines(file_text(dir / "out/models.csv")) == 7);
+  CHECK(lines(file_text(dir / "out/models.csv")) == 8);
   CHECK(r.err.find("| sector: one sector solved, all shown | 4 | 3 |") != std::string::npos);
 }
 

@@ -209,4 +209,28 @@ TEST_CASE("figures go into any directory and replace only figures of ours, and a
   CHECK_FALSE(fs::exists(dir / "new/figures"));
 }
 
+TEST_CASE("verify tells what was changed, what is missing, and what is not ours") {
+  const ScratchDirectory dir;
+  REQUIRE(run_program({"run", "pendulum", "--set", "solver.end_time=0.1", "-o", dir / "out", "--export",
+                       "npy", "--quiet"})
+              .code == 0);
+  const ProgramResult whole = run_program({"verify", dir / "out"});
+  CHECK(whole.code == 0);
+  CHECK(whole.out == "11 files as written\n");
+  CHECK(run_program({"verify", dir / "out/npy/"}).out == "6 files as written\n");
+  std::string bytes = file_text(dir / "out/npy/t_s.npy");
+  bytes.back() = static_cast<char>(bytes.back() ^ 1);  // one bit
+  std::ofstream(dir / "out/npy/t_s.npy", std::ios::binary) << bytes;
+  fs::remove(dir / "out/series.csv");
+  std::ofstream(dir / "out/mine.txt") << "mine";
+  const ProgramResult r = run_program({"verify", dir / "out"});
+  CHECK(r.code == 7);
+  CHECK(r.out == "changed: npy/t_s.npy\nmissing: series.csv\n");
+  CHECK(r.err == "unfurl: 2 of 11 files are not as they were written\n");
+  CHECK(run_program({"verify", dir / "out/npy/t_s.npy"}).code == 7);
+  CHECK(run_program({"verify", dir / "out/summary.json"}).code == 0);
+  CHECK(run_program({"verify", dir / "out/mine.txt"}).code == 5);
+  CHECK(run_program({"verify", dir / "nothing"}).code == 5);
+}
+
 }  // namespace unfurl::written_files_test

@@ -183,7 +183,8 @@ std::vector<ParamSection> param_sections(const Scene& base, const Selection& sel
 SliderRange slider_range(const ParamSpec& spec, const ParamValue& base) {
   const bool bounded = std::isfinite(spec.min) && std::isfinite(spec.max);
   const double value = size_of(base), fallback = size_of(spec.fallback);
-  const double typical = std::abs(value) > 0 ? std::abs(value) : std::abs(fallback);
+  const double known = std::isfinite(fallback) ? std::abs(fallback) : 0.0;
+  const double typical = std::abs(value) > 0 ? std::abs(value) : known;
   const double room = typical > 0 ? typical : 1.0;
   if (bounded && spec.max - spec.min <= 1000 * std::max(room, 1.0)) {
     double low = spec.min, high = spec.max;
@@ -197,8 +198,8 @@ SliderRange slider_range(const ParamSpec& spec, const ParamValue& base) {
             std::min(spec.max, std::max(12.0, rounded_up(4 * room))), false};
   if (spec.min >= 0) {  // sizes and masses: factors rather than differences
     const double high = std::min(spec.max, rounded_up(10 * room));
-    return {value < high / 1000 ? spec.min : std::max(spec.min_open ? 0.0 : spec.min, high / 1000), high,
-            true};
+    const double low = std::max(spec.min, high / 1000);
+    return {value < high / 1000 && !spec.min_open ? spec.min : low, high, true};
   }
   const double reach = spec.unit == "deg" ? std::max(180.0, rounded_up(2 * room)) : rounded_up(4 * room);
   return {std::max(spec.min, -reach), std::min(spec.max, reach), false};
@@ -206,7 +207,8 @@ SliderRange slider_range(const ParamSpec& spec, const ParamValue& base) {
 
 SliderRange slider_range(const ParamRow& row) {
   if (!not_given(row.value)) return slider_range(row.spec, row.value);
-  return slider_range(row.spec, std::isfinite(row.typical) ? row.typical : 0.0);
+  const double usual = row.spec.unit == "Pa" ? 1e10 : 0.0;  // moduli and strengths
+  return slider_range(row.spec, std::isfinite(row.typical) ? row.typical : usual);
 }
 
 bool not_given(const ParamValue& value) {

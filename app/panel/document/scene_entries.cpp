@@ -178,6 +178,8 @@ std::string new_entry(const SceneDocument& document, std::string_view table, std
     add_member(text, "force", std::vector<double>{0.0, 0.0, -1.0});
   } else {
     const ElementKind& kind = *find_kind(table == "forces" ? scene_forces() : scene_constraints(), kind_name);
+    if (kind_name == "latch" && structure.deployment.empty())
+      throw SceneError({{{"", 0, 0}, key, "the structure has no deployed pose to latch in"}});
     add_member(text, "kind", std::string(kind_name));
     add_members(text, kind, members);
     add_values(text, kind);

@@ -124,7 +124,7 @@ std::vector<float> unpacked(const nlohmann::json& text) {
     count += 6;
     if (count >= 8) bytes += static_cast<char>(bits >> static_cast<unsigned>(count -= 8) & 255U);
   }
-  return as<float>(bytes);
+  return values_of<float>(bytes);
 }
 
 }  // namespace

@@ -211,7 +211,7 @@ TEST_CASE("all methods give one motion under every kind of force") {
   const auto cases = force_cases();
   for (const ElementKind& kind : scene_forces()) {
     INFO("force kind " << kind.kind << " needs a mechanism here");
-    if (kind.kind != "latch") CHECK(has_case(cases, kind.kind));  // latches act after an event: latch_test
+    if (kind.kind != "latch") CHECK(has_case(cases, kind.kind));  // waits for an event: latch_test
   }
   for (const Case& c : cases) check_agreement(c);
 }

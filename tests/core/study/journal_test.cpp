@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -13,7 +15,7 @@ namespace journal_test {
 namespace {
 
 struct File {
-  fs::path path = fs::temp_directory_path() / "unfurl_journal_test.csv";
+  fs::path path = fs::temp_directory_path() / ("unfurl_journal_test_" + std::to_string(::getpid()) + ".csv");
   File() { fs::remove(path); }
   ~File() { fs::remove(path); }
 };

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -9,7 +11,7 @@ using namespace unfurl;
 namespace fs = std::filesystem;
 
 TEST_CASE("a report is Markdown and a page that stands alone") {
-  const fs::path folder = fs::temp_directory_path() / "unfurl_report_test";
+  const fs::path folder = fs::temp_directory_path() / ("unfurl_report_test_" + std::to_string(::getpid()));
   fs::create_directories(folder);
   write_file_atomically(folder / "a.png", std::string_view("Man"));  // "TWFu" in base64 (RFC 4648)
   Report report{"T < U"};

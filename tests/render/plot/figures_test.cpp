@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/plot/figures.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -41,6 +44,14 @@ const Run& sheet() {
       run(testing::family_structure("reentrant_sheet", {{"rows", 2L}, {"columns", 2L}}), 0.02, 9.0);
   return r;
 }
+const Run& steel() {
+  static const Run r =
+      run(build_structure(read_scene_file(find_scene("hoop6"),
+                                          {"structure.units=4", "structure.fold_angle=60",
+                                           "structure.youngs_modulus=2.1e11", "structure.strength=3e8"})),
+          0.02, 9.0);
+  return r;
+}
 const Run& pendulum() {
   static const Run r = run(testing::double_pendulum(), 0.02, 1.0);
   return r;
@@ -62,7 +73,7 @@ TEST_CASE("every figure of the table is found by its name and names its file", "
 
 TEST_CASE("figures of real runs are in order", "[figures]") {
   std::set<std::string_view> drawn;
-  for (const Run* r : {&hoop(), &sector(), &pendulum(), &sheet()}) {
+  for (const Run* r : {&hoop(), &sector(), &pendulum(), &sheet(), &steel()}) {
     for (const FigureKind& kind : figure_kinds()) {
       if (!kind.applies(r->simulation, r->diagnostics)) continue;
       drawn.insert(kind.name);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cctype>
 #include <filesystem>
@@ -75,7 +77,8 @@ TEST_CASE("the check of XML finds faults", "[svg]") {
 }
 
 TEST_CASE("an SVG is written whole, and only known extensions are taken", "[svg]") {
-  const std::filesystem::path dir = std::filesystem::temp_directory_path() / "unfurl_svg_test";
+  const std::filesystem::path dir =
+      std::filesystem::temp_directory_path() / ("unfurl_svg_test_" + std::to_string(::getpid()));
   std::filesystem::create_directories(dir);
   const Figure figure = sample_figures().front();
   write_figure(figure, dir / "a.svg");

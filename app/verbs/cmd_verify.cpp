@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl verify PATH: are results still what was written?
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+#include "app/command.hpp"
+#include "app/output/written_files.hpp"
+
+namespace unfurl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The directory of results that a path lies in: itself or one above it.
+fs::path results_around(const fs::path& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error).lexically_normal();
+  if (!fs::exists(fs::symlink_status(absolute, error))) throw FileError(path, "there is no such file");
+  for (fs::path folder = absolute; folder.has_relative_path(); folder = folder.parent_path())
+    if (fs::exists(folder / WrittenFiles::list_name, error)) return folder;
+  throw FileError(path,
+                  "lies in no directory of results: none above it has a list of what unfurl wrote (.unfurl)");
+}
+
+}  // namespace
+
+int cmd_verify(const Arguments& arguments) {
+  using Verdict = WrittenFiles::Verdict;
+  const fs::path path = arguments.names.front(), directory = results_around(path);
+  auto verdicts = WrittenFiles::verify(directory);
+  std::error_code error;
+  std::string inside = fs::absolute(path, error).lexically_normal().lexically_relative(directory).string();
+  while (inside.ends_with('/')) inside.pop_back();
+  if (inside != ".") {
+    std::erase_if(verdicts,
+                  [&](const Verdict& v) { return v.name != inside && !v.name.starts_with(inside + "/"); });
+    if (verdicts.empty()) throw FileError(path, "is not in the list of what unfurl wrote there");
+  }
+  std::size_t bad = 0, open = 0;
+  for (const Verdict& verdict : verdicts) {
+    if (verdict.kind == Verdict::changed || verdict.kind == Verdict::missing) {
+      std::cout << (verdict.kind == Verdict::changed ? "changed: " : "missing: ") << verdict.name << "\n";
+      ++bad;
+    }
+    open += verdict.kind == Verdict::grows;
+  }
+  const std::string count = std::to_string(verdicts.size()) + (verdicts.size() == 1 ? " file" : " files");
+  if (bad > 0) {
+    std::cerr << "unfurl: " << bad << " of " << count << " are not as they were written\n";
+    return exit_verification_failed;
+  }
+  std::cout << count << " as written"
+            << (open > 0 ? ", " + std::to_string(open) + " of them of growing content" : "") << "\n";
+  return exit_ok;
+}
+
+}  // namespace unfurl
