@@ -482,8 +482,13 @@ std::unique_ptr<Integrator> make_dvm(const System& system, const SolverOptions& 
   return std::make_unique<Dvm>(system, options);
 }
 
-std::unique_ptr<Integrator> make_careful_dvm(const System& system, const SolverOptions& options) {
-  return std::make_unique<Dvm>(system, options, true);
+const Method& careful_dvm() {
+  static const Method method{
+      "dvm", "", dvm_claims,
+      [](const System& system, const SolverOptions& options) -> std::unique_ptr<Integrator> {
+        return std::make_unique<Dvm>(system, options, true);
+      }};
+  return method;
 }
 
 }  // namespace unfurl

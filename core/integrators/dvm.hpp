@@ -26,7 +26,7 @@ namespace unfurl {
 Claims dvm_claims(const SolverOptions& options);
 std::unique_ptr<Integrator> make_dvm(const System& system, const SolverOptions& options);
 // The same with every step solved as next to a dead centre, where no digit of the constraints may be lost:
-// for references. At half the speed.
-std::unique_ptr<Integrator> make_careful_dvm(const System& system, const SolverOptions& options);
+// for references and for the last way to a singular pose. At half the speed.
+const Method& careful_dvm();
 
 }  // namespace unfurl

@@ -24,17 +24,22 @@ Index1::Index1(const System& system, bool clean_multipliers)
       bias_(system.constraints()),
       phi_(system.constraints()) {}
 
-bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda) {
+bool Index1::assemble(double t, const ConstVec& z, const ConstVec& w) {
   system_.expand(z, q_);
   system_.expand_rate(w, v_);
   system_.jacobian(q_, G_, scratch_);
   if (!saddle_.factorise(G_)) return false;
-  saddle_.weakest_pivot(weak_);
   f_.setZero();
   system_.add_applied_force(t, q_, v_, 1.0, f_);
   system_.reduce_force(f_, force_);
   system_.constraint_bias(t, q_, v_, bias_);
   bias_ = -bias_;
+  return true;
+}
+
+bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda) {
+  if (!assemble(t, z, w)) return false;
+  saddle_.weakest_pivot(weak_);
   if (alpha_ > 0) {
     system_.target_rate(t, phi_);
     phi_.noalias() -= G_ * w;
@@ -44,6 +49,19 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   }
   saddle_.solve(force_, bias_, acceleration, lambda, refinements_);
   return acceleration.allFinite() && lambda.allFinite();
+}
+
+bool Index1::correct(double t, const ConstVec& z, const ConstVec& w, MutVec lambda) {
+  if (!assemble(t, z, w)) return false;
+  force_.noalias() -= G_.transpose() * lambda;
+  VectorXd acceleration(w.size()), change(lambda.size());
+  saddle_.solve(force_, bias_, acceleration, change, refinements_);
+  // What no acceleration can reach is round-off of the velocities, and would come back over e.
+  bias_.noalias() = G_ * acceleration;
+  saddle_.solve(force_, bias_, acceleration, change, refinements_);
+  if (!change.allFinite()) return false;
+  lambda += change;
+  return true;
 }
 
 }  // namespace unfurl

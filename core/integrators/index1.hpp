@@ -23,8 +23,12 @@ class Index1 {
   void stabilise(double alpha) { alpha_ = alpha; }
   // False where the factorisation broke down or the result is not finite.
   bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda);
+  // Where G has lost rank: the multipliers that the equations determine, next to those given, of which the
+  // rest is kept. Directions of singular values below some 1e-7 count as lost.
+  bool correct(double t, const ConstVec& z, const ConstVec& w, MutVec lambda);
 
  private:
+  bool assemble(double t, const ConstVec& z, const ConstVec& w);
   const System& system_;
   SparseRows G_;
   std::vector<double> scratch_;

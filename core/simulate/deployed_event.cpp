@@ -191,6 +191,10 @@ class Locator {
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
     followed_.follow(samples_.front().state);
     followed_.count_on(out);
+    // An error d of a rod's length turns it by d / (l sine), and what the hinges' velocities and
+    // accelerations take from that is d / sine^4 in the forces of the nearest samples. The pose itself is as
+    // good as any: its equations say all of the multipliers but what its loss of rank leaves open.
+    index1_.correct(out.t, out.z, out.w, out.lambda);
     return out;
   }
 

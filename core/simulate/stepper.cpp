@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/integrators/dvm.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/initial_state.hpp"
@@ -393,7 +394,8 @@ class Stepper::Loop {
   }
 
   std::optional<State> locate(double h, double latest) {
-    const auto fresh = fresh_integrator();
+    const bool dvm = run_.options.method == "dvm";
+    const auto fresh = (dvm ? careful_dvm() : *find_method(run_.options.method)).make(system(), run_.options);
     std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
     if (event && event->t > latest) event.reset();
     return event;

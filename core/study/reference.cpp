@@ -107,7 +107,7 @@ Ladder variational(const Model& model, double end, int intervals, const StudyHoo
   return {[&, end, intervals](int level) {
             SolverOptions options;
             options.stages = level % 2 ? 7 : 8;
-            const auto method = make_careful_dvm(model.system, options);
+            const auto method = careful_dvm().make(model.system, options);
             return solve(
                 model, [&](State& s, double h) { return method->step(s, h).ok(); }, end, intervals,
                 2 << level, hooks);
