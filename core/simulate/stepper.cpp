@@ -14,6 +14,7 @@
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/one_sided.hpp"
+#include "core/simulate/run_words.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/simulate/step_control.hpp"
 #include "core/simulate/time_grid.hpp"
@@ -41,28 +42,8 @@ constexpr double near_deployed = 5;
 // Parts of a step for the hints where margins dip between solved states.
 constexpr int parts = 8;
 
-const char* reason(StepStatus status) {
-  switch (status) {
-    case StepStatus::converged:
-      return "converged";
-    case StepStatus::stalled:
-      return "the Newton iteration did not converge to round-off";
-    case StepStatus::diverged:
-      return "the Newton matrix could not be factorised";
-    case StepStatus::not_finite:
-      return "the state is not finite any more";
-  }
-  return "";
-}
-
 constexpr const char* too_near =
     "so near the deployed pose, where the constraints lose rank, the motion cannot be told from rounding";
-
-std::string seconds(double t) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g s", t);
-  return text;
-}
 
 }  // namespace
 

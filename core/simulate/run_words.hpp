@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a run says of itself.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "core/integrators/integrator.hpp"
+
+namespace unfurl {
+
+// Why a step has no answer.
+inline const char* reason(StepStatus status) {
+  switch (status) {
+    case StepStatus::converged:
+      return "converged";
+    case StepStatus::stalled:
+      return "the Newton iteration did not converge to round-off";
+    case StepStatus::diverged:
+      return "the Newton matrix could not be factorised";
+    case StepStatus::not_finite:
+      return "the state is not finite any more";
+  }
+  return "";
+}
+
+// "0.125 s"
+inline std::string seconds(double t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g s", t);
+  return text;
+}
+
+}  // namespace unfurl
