@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/command_line.hpp"
 
-#include <string_view>
-
 namespace unfurl {
+
+std::string in_shell_quotes(std::string_view text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
 
 std::string as_typed(const std::vector<std::string>& words) {
   constexpr std::string_view plain =
@@ -15,9 +19,7 @@ std::string as_typed(const std::vector<std::string>& words) {
       text += word;
       continue;
     }
-    text += "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    text += "'";
+    text += in_shell_quotes(word);
   }
   return text;
 }

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace unfurl {
+
+// A word of any characters in single quotes of a shell: 'it'\''s'.
+std::string in_shell_quotes(std::string_view text);
 
 // For a shell to take again: words with anything unusual stand in quotes.
 std::string as_typed(const std::vector<std::string>& words);

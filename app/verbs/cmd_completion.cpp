@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "app/command.hpp"
+#include "app/command_line.hpp"
 #include "app/own_options.hpp"
 #include "core/text/nearest_name.hpp"
 #include "core/text/version.hpp"
@@ -82,13 +83,6 @@ std::string bash_completion() {
   return text;
 }
 
-// In single quotes of a shell.
-std::string single_quoted(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 std::string zsh_completion() {
   std::string text =
       "#compdef unfurl\n# zsh completion for unfurl, printed by `unfurl completion zsh`\n"
@@ -99,7 +93,7 @@ std::string zsh_completion() {
     return out;
   };
   for (const Command& command : commands())
-    text += "    " + single_quoted(std::string(command.name) + ":" + colon_free(command.help)) + "\n";
+    text += "    " + in_shell_quotes(std::string(command.name) + ":" + colon_free(command.help)) + "\n";
   text +=
       "  )\n  if (( CURRENT == 2 )); then\n    _describe command verbs\n    return\n  fi\n"
       "  case $words[2] in\n";
@@ -107,7 +101,7 @@ std::string zsh_completion() {
     text += "    " + std::string(command.name) + ") options=(";
     for (const OwnOption& own : own_options())
       if (shows(command, own.name))
-        text += "\n      " + single_quoted(std::string(own.name) + ":" + colon_free(own.help));
+        text += "\n      " + in_shell_quotes(std::string(own.name) + ":" + colon_free(own.help));
     text += ") ;;\n";
   }
   text +=
@@ -126,12 +120,12 @@ std::string fish_completion() {
   for (const Command& command : commands()) {
     const std::string name(command.name), inside = "__fish_seen_subcommand_from " + name;
     text += "complete -c unfurl -f -n __fish_use_subcommand -a " + name + " -d " +
-            single_quoted(command.help) + "\n";
+            in_shell_quotes(command.help) + "\n";
     for (const OwnOption& own : own_options()) {
       if (!shows(command, own.name)) continue;
       text += "complete -c unfurl -n '" + inside + "' " +
               (own.name == "-o" ? "-s o" : "-l " + std::string(own.name.substr(2))) +
-              (own.value.empty() ? "" : " -r") + " -d " + single_quoted(own.help) + "\n";
+              (own.value.empty() ? "" : " -r") + " -d " + in_shell_quotes(own.help) + "\n";
     }
     if (takes_scene(command))
       text += "complete -c unfurl -n '" + inside + "' -a \"(" + listed("scenes") + ")\"\n";

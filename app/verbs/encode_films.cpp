@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/command_line.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/progress.hpp"
 #include "app/verbs/film.hpp"
@@ -26,13 +27,6 @@ namespace unfurl {
 namespace {
 
 constexpr std::size_t palette_samples = 24;  // frames that the GIF's colours are chosen from
-
-// 'it'\''s' for a shell.
-std::string in_shell_quotes(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 // What a person types who has the frames and wants this film of them.
 std::string command_by_hand(const std::filesystem::path& directory, const std::string& film, double fps) {
