@@ -4,10 +4,12 @@
 #include <optional>
 
 #include "app/command.hpp"
+#include "app/command_line.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/output_directory.hpp"
 #include "app/verbs/film.hpp"
 #include "app/verbs/frame_range.hpp"
+#include "app/verbs/plan.hpp"
 #include "app/verbs/run_figures.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "core/export/atomic_file.hpp"
@@ -19,6 +21,7 @@ int cmd_render(const Arguments& arguments) {
   const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
   check_film(scene);
+  if (arguments.plan) return show_plan(scene, arguments, true);
   auto model = model_of(scene, arguments);
   OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
   const std::filesystem::path& directory = output.path();
@@ -43,22 +46,24 @@ int cmd_render(const Arguments& arguments) {
   if (!folder.holds_this()) FilmFolder::clear(output.written());
   folder.claim();
   lock.share();
-  const std::string summary = write_data(directory, scene, run, diagnostics);
+  const std::string summary = write_data(directory, scene, run, diagnostics, as_typed(arguments.words));
   write_exports(formats, directory, scene, run, diagnostics, arguments);
   keeping.reset();
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary << std::flush;
   if (exit_code_of(run, diagnostics) == exit_interrupted) return exit_interrupted;
 
+  const Scene shown = fitted(scene, run);
   if (arguments.encode_only) {
-    require_all_frames(folder, scene, run, arguments);
-    return encode_films(directory, folder, scene, run, arguments) ? exit_code_of(run, diagnostics)
+    require_all_frames(folder, shown, run, arguments);
+    return encode_films(directory, folder, shown, run, arguments) ? exit_code_of(run, diagnostics)
                                                                   : exit_interrupted;
   }
   FigureWriter writer(*context, style);
-  if (!draw_frames(folder, scene, run, diagnostics, *context, arguments) ||
+  FrameMemory memory;
+  if (!draw_frames(folder, shown, run, diagnostics, *context, arguments, memory) ||
       !write_figures(directory / "figures", all_figures(), run, diagnostics, writer, arguments) ||
-      !encode_films(directory, folder, scene, run, arguments)) {
+      !encode_films(directory, folder, shown, run, arguments, memory)) {
     std::cerr << "unfurl: interrupted; what is finished is kept\n";
     return exit_interrupted;
   }

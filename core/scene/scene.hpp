@@ -11,6 +11,7 @@
 #include "core/scene/elements.hpp"
 #include "core/scene/render_options.hpp"
 #include "core/scene/scene_error.hpp"
+#include "core/scene/surfaces.hpp"
 #include "core/structure/structure.hpp"
 #include "core/structures/custom.hpp"
 
@@ -33,6 +34,7 @@ struct Scene {
   Vec3 gravity = Vec3::Zero();  // [m/s^2]
   std::vector<SceneLoad> loads;
   std::vector<SceneElement> forces, constraints;
+  std::vector<SceneSurface> surfaces;  // shown only
   SolverOptions solver;
   RenderOptions render;
   std::vector<SceneProblem> warnings;               // what is given and does nothing
