@@ -26,6 +26,8 @@ constexpr double short_enough = 2.3e-3;
 // Released at rest from the sine s_0, time goes like sqrt(1 - s / s_0): samples keep well away from that.
 constexpr double from_start = 0.25;
 constexpr int most_stations = 200;
+// A share of the multipliers that poses next to the deployed one must agree to.
+constexpr double most_open = 1e-5;
 constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 // Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
 constexpr int most_lengths = 40;
@@ -206,6 +208,26 @@ class Locator {
     return sum;
   }
 
+  // The pose itself is as good as any for all of the multipliers but what its loss of rank leaves open. Of
+  // that a fit of low degree is truer than interpolation where round-off, d / sine^4, is more than what the
+  // degree leaves: the degree at which it changes least. Where even that is not known, what is left open is
+  // chosen as for any multipliers that are not unique: least norm.
+  VectorXd lambda_at_zero(const State& at) {
+    std::vector<VectorXd> fits{VectorXd::Zero(at.lambda.size())};
+    for (int degree = 0; degree < static_cast<int>(samples_.size()); ++degree)
+      fits.push_back(at_zero(shares_at_zero(degree), &State::lambda));
+    index1_.correct(at.t, at.z, at.w, fits);
+    double least = most_open * fits[0].norm();
+    std::size_t best = 0;
+    for (std::size_t i = 2; i < fits.size(); ++i) {
+      const double change = (fits[i] - fits[i - 1]).norm();
+      if (!(change < least)) continue;
+      least = change;
+      best = i;
+    }
+    return fits[best];
+  }
+
   // Everything as a function of the sine, at zero.
   std::optional<State> extrapolate() {
     const int most = static_cast<int>(samples_.size()) - 1;
@@ -219,21 +241,7 @@ class Locator {
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
     followed_.follow(samples_.front().state);
     followed_.count_on(out);
-    // The pose itself is as good as any for all of the multipliers but what its loss of rank leaves open, and
-    // of that a fit of low degree is truer than interpolation where round-off, d / sine^4, is more than what
-    // the degree leaves: the degree at which it changes least.
-    std::vector<VectorXd> fits;
-    for (int degree = 0; degree <= most; ++degree)
-      fits.push_back(at_zero(shares_at_zero(degree), &State::lambda));
-    index1_.correct(out.t, out.z, out.w, fits);
-    std::size_t best = fits.size() - 1;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 1; i < fits.size(); ++i) {
-      const double change = (fits[i] - fits[i - 1]).norm();
-      if (change < least) best = i;
-      least = std::min(least, change);
-    }
-    out.lambda = fits[best];
+    out.lambda = lambda_at_zero(out);
     return out;
   }
 

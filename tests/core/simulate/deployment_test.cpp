@@ -196,6 +196,19 @@ TEST_CASE("every chord of a ring carries its tension in the deployed pose") {
   }
 }
 
+TEST_CASE("a start next to the deployed pose arrives there with the forces of its loads") {
+  // It arrives nearly at rest: what tension the arrival adds is N of the test above, with theta'^2 of this
+  // start below 2e-5 of that. Then each post bears its hinges' loads, 100 N a half (hoop6), and no rod more.
+  for (double fold : {1e-5, 1e-6, 1e-7}) {
+    INFO(fold << " degrees");
+    const Simulation run =
+        simulate(make_model(hoop_structure({{"fold_angle", fold}})), dvm_options(3, 0.01, 1));
+    REQUIRE(run.status == RunStatus::deployed);
+    const Diagnostics d = diagnose(run);
+    CHECK(d.axial_force.row(d.axial_force.rows() - 1).cwiseAbs().maxCoeff() == Approx(100).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("at_deployed = pass goes through the singular pose and comes out on the other side") {
   SolverOptions options = dvm_options(4, 0.013, 5.2);
   options.at_deployed = "pass";
