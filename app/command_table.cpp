@@ -43,10 +43,12 @@ constexpr Command table[] = {
      "the parameter for which a measure takes a value", 1, 1, false, cmd_solve,
      "-o --set --tolerance --find --target --between --force --threads --json --quiet",
      "unfurl solve hoop6 --find structure.hinge_force --target deploy_time=4"},
-    {"reproduce", "-o DIR", "the paper's tables and figures, beside ours", 0, 0, true, cmd_reproduce,
-     "-o --validation --style --dpi --force --threads --quiet",
+    {"reproduce", "-o DIR, or FILE [-o DIR]",
+     "the paper's tables and figures, beside ours; or a file again from the receipt in it", 0, 1, false,
+     cmd_reproduce, "-o --validation --style --dpi --force --threads --quiet",
      "unfurl reproduce -o paper\n"
-     "unfurl reproduce --validation -o validation"},
+     "unfurl reproduce --validation -o validation\n"
+     "unfurl reproduce energy.pdf"},
     {"poster", "SCENE -o FILE.png", "a strip of poses side by side, from start to end", 1, 1, true,
      cmd_poster,
      "-o --set --tolerance --poses --size --look --supersample --transparent --threads --gpu --quiet",
@@ -75,8 +77,8 @@ constexpr Command table[] = {
      "--set --all --size --fps --look --supersample --transparent",
      "unfurl show hoop6\n"
      "unfurl show hoop6 --set structure.units=12 > twelve.toml"},
-    {"verify", "PATH", "are results, a directory or a file in one, still as they were written? exit 7: no", 1,
-     1, false, cmd_verify, "",
+    {"verify", "PATH", "are results, a directory or a file, still as they were written? exit 7: no", 1, 1,
+     false, cmd_verify, "",
      "unfurl verify film\n"
      "unfurl verify film/figures/energy.pdf"},
     {"completion", "SHELL", "print a completion script for bash, zsh or fish, or the manual page: man", 1, 1,

@@ -42,7 +42,7 @@ void add_long_runs(const Stress& stress, Report& report) {
 
 int cmd_stress(const Arguments& arguments) {
   const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
-  const Scene scene = source.read();
+  const Scene scene = scene_of(arguments);
   const StressPlan plan = plan_stress(source, arguments.study.extremes);
   const InterruptGuard guard;
   StudySession session(arguments, "stressing", study_identity("An atlas", scene), "stress.csv");

@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "app/output/interrupt.hpp"
+#include "app/output/receipt.hpp"
 #include "app/verbs/run_figures.hpp"
 #include "core/export/atomic_file.hpp"
-#include "core/export/checksum.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
 #include "core/text/version.hpp"
@@ -53,9 +53,8 @@ std::vector<fs::path> journals_like(const std::string& journal, const fs::path& 
 }
 
 std::string study_identity(const std::string& what, const Scene& scene) {
-  Checksum build;
-  build.add(read_text_file("/proc/self/exe").text);
-  return "# " + what + ", by unfurl " + version() + " (build " + build.text() + ")\n" + scene_text(scene);
+  return "# " + what + ", by unfurl " + version() + " (build " + checksum_of_this_program() + ")\n" +
+         scene_text(scene);
 }
 
 void require_identity(const fs::path& directory, const std::string& identity, const std::string& cure) {
