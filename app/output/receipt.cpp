@@ -6,7 +6,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/json_text.hpp"
 #include "app/output/receipt_formats.hpp"
 #include "core/export/checksum.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "app/command.hpp"
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/receipt.hpp"
 #include "app/output/written_files.hpp"
 

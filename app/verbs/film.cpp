@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/progress.hpp"
 #include "app/verbs/frame_range.hpp"

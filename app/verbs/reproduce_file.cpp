@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl reproduce FILE: a picture, figure, film or page made again from the receipt in it.
+#include "app/verbs/reproduce_file.hpp"
+
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/output_directory.hpp"
 #include "app/output/receipt.hpp"
-#include "app/verbs/reproduce_file.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/text/version.hpp"
 #include "render/image/child_process.hpp"

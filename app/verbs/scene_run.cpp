@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/verbs/scene_run.hpp"
 
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 
 #include <algorithm>
 #include <cmath>
