@@ -184,7 +184,7 @@ constexpr std::string_view summary = "Simulate, render and measure deployable st
 std::string desktop_entry() {
   return "[Desktop Entry]\nType=Application\nName=Unfurl\nGenericName=Deployable structures\nComment=" +
          std::string(summary) +
-         "\nExec=unfurl view %f\nIcon=unfurl\nTerminal=false\nCategories=Science;Engineering;Education;\n"
+         "\nExec=unfurl view %f\nIcon=unfurl\nTerminal=false\nCategories=Science;Engineering;\n"
          "Keywords=linkage;antenna;scissor;mechanism;simulation;\n";
 }
 
