@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/forces/spring.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -17,9 +19,8 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
     : stops_(structure), step_(options.step), eliminate_linear_(options.eliminate_linear) {
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
     const Force& f = structure.forces[i];
-    if (f.one_sided && (f.stiffness > 0 || f.damping > 0))
-      cables_.push_back(
-          {i, f.name, MeasureFunction(f.measure, structure.deployment), f.rest, f.stiffness, f.damping});
+    if (f.one_sided && f.smoothing == 0 && (f.stiffness > 0 || f.damping > 0 || f.axial_stiffness > 0))
+      cables_.push_back({i, f.name, MeasureFunction(f.measure, structure.deployment), f});
   }
   active_.assign(stops_.size() + cables_.size(), false);
   shift_.setZero(static_cast<Index>(stops_.size()));
@@ -48,6 +49,7 @@ std::set<std::size_t> OneSided::held() const {
 }
 
 std::string OneSided::text(std::size_t i) const {
+  if (is_stop(i) && stops_[i].reeled) return stops_[i].name + (active_[i] ? " pulls" : " is slack");
   if (is_stop(i)) return (active_[i] ? "rests on stop " : "leaves stop ") + stops_[i].name;
   return cables_[i - stops_.size()].name + (active_[i] ? " pulls" : " is slack");
 }
@@ -63,17 +65,20 @@ void OneSided::find_modes(const System& system, const State& state) {
   system.expand_rate(state.w, v);
   double rate = 0;
   for (std::size_t k = 0; k < cables_.size(); ++k)
-    active_[stops_.size() + k] = stretch(cables_[k], q, v, rate) > stops_.touching();
+    active_[stops_.size() + k] = stretch(cables_[k], state.t, q, v, rate) > stops_.touching();
 }
 
 // min(s - rest, n / (k + c / h)) [m]
-double OneSided::stretch(const Cable& cable, const VectorXd& q, const VectorXd& v, double& rate) {
+double OneSided::stretch(const Cable& cable, double t, const VectorXd& q, const VectorXd& v, double& rate) {
+  const SpringLaw law = spring_law(cable.law, t);
+  const double damping = cable.law.damping;
   gradient_.resize(static_cast<Index>(cable.length.stencil().size()));
-  const double s = cable.length.value_and_gradient(q.data(), gradient_.data()) - cable.rest;
+  const double s = cable.length.value_and_gradient(q.data(), gradient_.data()) - law.rest;
   const double ds = cable.length.rate(gradient_.data(), v.data());
-  rate = cable.damping > 0 ? unknown : ds;
-  const double n = cable.stiffness * s + cable.damping * ds;
-  return cable.damping > 0 ? std::min(s, n / (cable.stiffness + cable.damping / step_)) : s;
+  const double stretching = ds - law.rest_rate;
+  rate = damping > 0 ? unknown : stretching;
+  const double n = law.stiffness * s + damping * ds;
+  return damping > 0 ? std::min(s, n / (law.stiffness + damping / step_)) : s;
 }
 
 void OneSided::measure_pushes(const Model& model, const State& state, Probe& probe) {
@@ -109,7 +114,7 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
       margin = stops_.gap(k, state, q, v, rate) - shift_[i];
     } else {
       const double sign = active_[k] ? 1.0 : -1.0;
-      margin = sign * stretch(cables_[k - stops_.size()], q, v, rate);
+      margin = sign * stretch(cables_[k - stops_.size()], state.t, q, v, rate);
       rate *= sign;
     }
     probe.margins[i] = margin / stops_.touching();
@@ -117,9 +122,12 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
   }
 }
 
-std::shared_ptr<const Model> OneSided::lock_held(const Model& base) {
+std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {
   Structure structure = base.structure;
-  stops_.hold(held(), structure);
+  std::set<std::size_t> locked = held();
+  std::erase_if(locked, [&](std::size_t i) { return stops_[i].reeled; });  // the winch stops
+  stops_.hold(locked, structure);
+  stops_.stop_reels(t);
   std::fill_n(active_.begin(), stops_.size(), false);
   System system(structure, eliminate_linear_);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});

@@ -54,19 +54,20 @@ class OneSided {
 
   // `base` in the present modes.
   std::shared_ptr<const Model> model(const Model& base) const;
-  // `base` with the held stops as constraints for good, which leaves them free here.
-  std::shared_ptr<const Model> lock_held(const Model& base);
+  // `base` with the held stops as constraints for good, which leaves them free here. Reels stop at their
+  // length at t instead.
+  std::shared_ptr<const Model> lock_held(const Model& base, double t);
 
  private:
   struct Cable {
     std::size_t force;  // of the structure
     std::string name;
     MeasureFunction length;
-    double rest, stiffness, damping;
+    Force law;
   };
   std::set<std::size_t> held() const;
   void measure_pushes(const Model& model, const State& state, Probe& probe);
-  double stretch(const Cable& cable, const VectorXd& q, const VectorXd& v, double& rate);
+  double stretch(const Cable& cable, double t, const VectorXd& q, const VectorXd& v, double& rate);
 
   Stops stops_;
   std::vector<Cable> cables_;

@@ -13,6 +13,7 @@
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
+#include "core/simulate/measured_event.hpp"
 #include "core/simulate/one_sided.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/singular_poses.hpp"
@@ -57,6 +58,7 @@ class Stepper::Loop {
         grid_(now().t, run.options, time_edges(run.trajectory.structure(), run.options.step)),
         last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {
     model_changed();
+    if (deployment_.measured) margin_ = deployed_already;
     if (!deployment_.empty() && fold(now()) > deployed_already)
       margin_ = std::min(margin_, 0.1 * fold(now()));
     if (sides_.empty()) return;
@@ -357,7 +359,7 @@ class Stepper::Loop {
   double fold(const State& state) {
     q_.resize(system().coordinates());
     system().expand(state.z, q_);
-    return deployment_.remaining_sine(q_);
+    return deployment_.remaining(q_);
   }
 
   bool crosses(const State& next) {
@@ -370,11 +372,25 @@ class Stepper::Loop {
   bool may_cross(double within) {
     if (deployment_.empty() || deployed_) return false;
     const double sine = fold(now());
-    system().expand_rate(now().w, q_);
-    return sine > 0 && (sine <= singular_margin || sine + 2 * within * deployment_.remaining_rate(q_) <= 0);
+    VectorXd v(q_.size());
+    system().expand_rate(now().w, v);
+    const double way = 2 * within * deployment_.remaining_rate(q_, v);
+    return sine > 0 && (sine <= singular_margin || sine + way <= 0);
+  }
+
+  std::optional<State> pass_measured(double h) {
+    if (!deployment_.measured) return std::nullopt;
+    const auto fresh = fresh_integrator();
+    const auto left = [this](const State& state) { return fold(state) - margin_; };
+    const auto event = step_to_zero(now(), h, left, [&](double length, State& state) {
+      fresh->restart();
+      return take_step(*fresh, state, length).ok();
+    });
+    return regular_ = event.has_value(), event;
   }
 
   std::optional<State> locate(double h, double latest) {
+    if (auto event = pass_measured(h)) return event;
     const bool dvm = run_.options.method == "dvm";
     const auto fresh = (dvm ? careful_dvm() : *find_method(run_.options.method)).make(system(), run_.options);
     std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
@@ -401,7 +417,7 @@ class Stepper::Loop {
       return !to.report.ok() || std::abs(fold(to.state)) < margin_ ? step_over(h) : accept(to, part_end_);
     project(system(), event);
     while (run_.trajectory.size() > 1 && run_.trajectory.end_time() >= event.t) run_.trajectory.pop_back();
-    append(std::move(event), StepReport{.singular_event = true});
+    append(std::move(event), StepReport{.singular_event = !regular_});
     ++run_.steps;
     if (run_.options.at_deployed == "latch") return latch();
     run_.status = RunStatus::deployed;
@@ -411,7 +427,7 @@ class Stepper::Loop {
   // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
   // on a stop is locked there.
   bool latch() {
-    if (sides_.any_held()) base_ = sides_.lock_held(*base_);
+    if (sides_.any_held()) base_ = sides_.lock_held(*base_, now().t);
     const bool gives = latch_gives(base_->structure);
     if (gives && singular_at_end(run_.trajectory))
       return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
@@ -448,8 +464,9 @@ class Stepper::Loop {
   std::vector<double> last_touch_;  // of each stop
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
-  bool unwatched_said_ = false, deployed_ = false, ended_ = false;
-  double margin_ = singular_margin;  // a tenth of where the run began, if that is less
+  bool unwatched_said_ = false, ended_ = false;
+  bool deployed_ = false, regular_ = false;  // the deployed pose was reached, and by steps
+  double margin_ = singular_margin;          // a tenth of where the run began, if that is less
   VectorXd q_;
 };
 
