@@ -39,6 +39,10 @@ class ForceBlock {
   }
   virtual bool dissipates() const { return has_power() && dissipative(); }
   virtual bool supplies() const { return has_power() && !dissipative(); }
+  // Where that power is the rate of a function of the pose, which a difference tells better than a
+  // quadrature: what has been taken [J], dtaken/dt = -power.
+  virtual bool takes_by_pose() const { return false; }
+  virtual double taken(const Moment&, const double*) const { return 0.0; }
   // dF/dq and dF/dv, for Newton matrices; what is left out costs iterations, not accuracy.
   virtual void derivatives(const Moment&, const double*, const double*, ForceDerivative&,
                            ForceDerivative&) const {}
@@ -53,7 +57,8 @@ enum class Members {
   rod,        // rod: one name; its direction follows the rod
   path,       // nodes = [A, B, ...]: in order; some may come again
   terms,      // terms = ["2.5 length A B", ...]
-  angle       // rods = [R, S], nodes = [A, HINGE, B], or fold_angle = true
+  angle,      // rods = [R, S], nodes = [A, HINGE, B], or fold_angle = true
+  measure     // an angle as above; nodes = [A, B]: their distance; with a direction: a coordinate
 };
 
 struct ForceKind {

@@ -62,6 +62,9 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
     case Members::angle:
       measured(angle_of(e, find));
       break;
+    case Members::measure:
+      measured(measure_of(e, find));
+      break;
   }
   return forces;
 }
@@ -75,6 +78,9 @@ void add_ghosts(ElementAdder& to, double inertia, double initial) {
 
 void add_force(const SceneElement& e, ElementAdder& to) {
   const ForceKind& kind = force_kind(e.kind);
+  if (e.kind == "offload" && to.structure.gravity.isZero(0.0))
+    to.structure.notes.push_back(
+        problem_text({e.where, e.key, "does nothing without a weight: gravity.acceleration is 0"}));
   for (Force& force : forces_on(e, kind.members, to.find)) {
     try {
       kind.fill(e.values, force);
@@ -183,6 +189,7 @@ const std::vector<ElementKind>& scene_forces() {
                          : row.members == Members::path    ? path_of
                          : row.members == Members::terms   ? terms_of
                          : row.members == Members::angle   ? angle_of
+                         : row.members == Members::measure ? measure_of
                                                            : nullptr});
     found.push_back({"winch", "a motor with a drum that draws in a cable over nodes in order", Members::path,
                      winch_params, add_winch, path_of});

@@ -34,4 +34,25 @@ std::optional<State> step_to_zero(const State& from, double h,
   return to;
 }
 
+std::optional<State> step_to_deployed(const Model& model, Integrator& integrator, const State& from, double h,
+                                      double margin) {
+  if (!model.structure.deployment.measured) return std::nullopt;
+  VectorXd q(model.system.coordinates());
+  const auto left = [&](const State& state) {
+    model.system.expand(state.z, q);
+    return model.structure.deployment.remaining(q) - margin;
+  };
+  return step_to_zero(from, h, left, [&](double length, State& state) {
+    integrator.restart();
+    return integrator.step(state, length).ok();
+  });
+}
+
+double remaining_rate(const Model& model, const State& state) {
+  VectorXd q(model.system.coordinates()), v(q.size());
+  model.system.expand(state.z, q);
+  model.system.expand_rate(state.w, v);
+  return model.structure.deployment.remaining_rate(q, v);
+}
+
 }  // namespace unfurl

@@ -4,7 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "core/system/state.hpp"
+#include "core/integrators/integrator.hpp"
+#include "core/simulate/trajectory.hpp"
 
 namespace unfurl {
 
@@ -14,5 +15,13 @@ namespace unfurl {
 std::optional<State> step_to_zero(const State& from, double h,
                                   const std::function<double(const State&)>& left,
                                   const std::function<bool(double length, State& state)>& solve);
+
+// The same for what is left to the deployed value of a model's measure, less a margin; by a fresh integrator.
+// Nothing where the structure has a fold angle instead.
+std::optional<State> step_to_deployed(const Model& model, Integrator& integrator, const State& from, double h,
+                                      double margin);
+
+// The rate of Deployment::remaining at a state [1/s].
+double remaining_rate(const Model& model, const State& state);
 
 }  // namespace unfurl

@@ -13,6 +13,11 @@
 
 namespace unfurl {
 
+// How the limit of a stop moves.
+struct LimitMotion {
+  double rate = 0.0, acceleration = 0.0;
+};
+
 // One side of a stop; its gap is +(s - limit) or -(s - limit), at least 0. An impact with the approach speed
 // u = -gap' > 0 gives the impulse J along the gap's gradient n, constraints answering,
 //

@@ -411,10 +411,17 @@ bool System::has_power(bool dissipative) const {
 double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const {
   double sum = 0;
   for (const auto& block : data_->forces)
-    if (dissipative ? block->dissipates() : block->supplies()) {
+    if ((dissipative ? block->dissipates() : block->supplies()) && !block->takes_by_pose()) {
       const double taken = block->dissipation(moment(t), q.data(), v.data());
       sum += dissipative ? taken : block->power(moment(t), q.data(), v.data()) - taken;
     }
+  return sum;
+}
+
+double System::taken(const ConstVec& q) const {
+  double sum = 0;
+  for (const auto& block : data_->forces)
+    if (block->takes_by_pose()) sum += block->taken(moment(since_), q.data());
   return sum;
 }
 

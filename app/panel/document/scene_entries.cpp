@@ -104,6 +104,7 @@ void add_members(std::string& text, const ElementKind& kind, const FirstMembers&
       return add_member(text, "terms", std::vector<std::string>{"1 length " + pair[0] + " " + pair[1]});
     }
     case Members::angle:
+    case Members::measure:
       if (members.by_fold_angle()) return add_member(text, "fold_angle", true);
       return add_member(text, "nodes", members.hinge());
     case Members::two_nodes:

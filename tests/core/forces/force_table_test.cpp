@@ -20,7 +20,9 @@ ParamSet values_of(const ForceKind& kind) {
   ParamSet values(kind.params());
   double number = 0.7;
   for (const ParamSpec& spec : kind.params()) {
-    if (spec.name == "times")
+    if (spec.name == "static")
+      values.set("static", 99.0);  // no less than kinetic
+    else if (spec.name == "times")
       values.set("times", std::vector<double>{0, 1, 2});
     else if (spec.name == "values")
       values.set("values", std::vector<double>{1, 3, 2});
@@ -50,7 +52,9 @@ Force force_of(const ForceKind& kind) {
   }
   if (kind.members == Members::terms)
     force.measure.terms.push_back({-0.6, {MeasureKind::dihedral, {3, 0, 1, 2}, Vec3::Zero(), -0.4}});
+  if (kind.members == Members::measure) force.measure = {MeasureKind::length, {1, 3}, Vec3::Zero(), 0};
   kind.fill(values_of(kind), force);
+  force.slip = -1;  // of friction: what sticks has no force
   if (kind.members == Members::path) {
     force.smoothing = 0.0;
     force.rest = force.unstressed.offset = 0.4;
@@ -137,6 +141,17 @@ TEST_CASE("every force kind: derivatives, potential and power agree with the for
       CHECK(block->power(t, q.data(), v.data()) ==
             Approx(force(q, v).dot(v) + rate_of_potential).margin(1e-7));
     if (block->dissipates()) CHECK(block->dissipation(t, q.data(), v.data()) <= 0.0);
+    if (block->takes_by_pose()) {
+      if (block->power(t, q.data(), v.data()) > 0) v = -v;  // the way that it slips
+      double rate_of_taken = 0;
+      for (Index i = 0; i < n; ++i) {
+        const VectorXd unit = VectorXd::Unit(n, i) * step;
+        rate_of_taken +=
+            (block->taken(t, VectorXd(q + unit).data()) - block->taken(t, VectorXd(q - unit).data())) /
+            (2 * step) * v[i];
+      }
+      CHECK(block->power(t, q.data(), v.data()) == Approx(-rate_of_taken).epsilon(1e-7));
+    }
     if (block->constant()) CHECK((force(q, v) - force(v, q)).isZero(0.0));
   }
 }

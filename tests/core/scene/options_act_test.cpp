@@ -68,6 +68,7 @@ std::string members_of(Members members) {
     case Members::terms:
       return "terms = [\"1 length A B\"]\n";
     case Members::angle:
+    case Members::measure:
       return "nodes = [\"O\", \"A\", \"B\"]\n";
   }
   return "";
