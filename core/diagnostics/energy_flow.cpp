@@ -16,13 +16,14 @@ EnergyMeter::EnergyMeter(const System& system)
     : system_(system),
       loads_(system.has_power(false)),
       dampers_(system.has_power(true)),
-      drives_(!system.drives().empty()) {
+      drives_(system.rheonomic()) {
   if (idle()) return;
   index1_ = std::make_unique<Index1>(system_);
   q_.resize(system.coordinates());
   v_.resize(system.coordinates());
   unused_.resize(system.solved_coordinates());
   lambda_.resize(system.constraints());
+  target_rate_.resize(system.constraints());
 }
 
 VectorXd EnergyMeter::acceleration(const State& state) {
@@ -81,8 +82,8 @@ void EnergyMeter::add(const State& a, const State& b) {
     if (loads_) load_work += weight * system_.power(false, t, q_, v_);
     if (dampers_ && !stiff) dissipated -= weight * system_.power(true, t, q_, v_);
     if (!drives_ || !index1_->evaluate(t, z, w, unused_, lambda_)) continue;
-    for (const Drive& d : system_.drives())
-      drive_work -= weight * d.scale * lambda_[d.row] * d.target.derivative(1, t);
+    system_.target_rate(t, target_rate_);
+    drive_work -= weight * lambda_.dot(target_rate_);
   }
 }
 

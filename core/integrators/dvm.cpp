@@ -25,6 +25,9 @@ constexpr int slow_iterations = 8;
 // `strong` are never looked at.
 constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// h omega, from above, for each stage but one, up to which the ends of a step tell the forces of rods that
+// give; beyond it the polynomial of its points does.
+constexpr double resolved = 1.5;
 
 bool is_small(const System& system, int stages) {
   return (system.solved_coordinates() + system.constraints()) * (stages - 1) <= full_newton_unknowns;
@@ -104,6 +107,7 @@ class Dvm final : public Integrator {
   void correct_at_ends(StepReport& report);
   void settle_end();
   void finish(State& state, double h, StepReport& report);
+  void tell_tension(State& state);
 
   const System& system_;
   GalerkinCoefficients c_;
@@ -444,7 +448,16 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   state.t += h;
   arrive(state);
   state.w = w1_;
+  tell_tension(state);
   state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
+}
+
+void Dvm::tell_tension(State& state) {
+  if (system_.giving_rods().empty()) return;
+  if (eq_.h_omega() > resolved * (c_.s - 1))
+    eq_.end_tension(state.tension);
+  else
+    state.tension.resize(0);
 }
 
 // z_1 = z_0 + dX. In steps with care what rounding takes from the sum is added to the next one: near a dead

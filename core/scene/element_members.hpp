@@ -23,6 +23,7 @@ class MemberFinder {
   // Each collects what is wrong instead of throwing; an empty result says that something was.
   std::vector<int> nodes(const SceneElement& element, bool globs);  // in the entry's order, none twice
   const Rod* rod(const SceneElement& element, std::size_t index);
+  std::vector<int> rods(const SceneElement& element);  // by their names, or the names of their groups
   // The angle that an entry names, with a sign where `axis` is not zero. False: a problem was noted.
   bool angle(const SceneElement& element, const Vec3& axis, Measure& measure);
 

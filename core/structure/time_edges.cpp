@@ -51,6 +51,8 @@ std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
   std::vector<TimeEdge> edges;
   for (const Constraint& c : structure.constraints) add_edges(c.target, step, edges);
   for (const Force& f : structure.forces) add_edges(f.size, step, edges);
+  for (const Rod& rod : structure.rods)
+    if (rod.expansion != 0) add_edges(rod.warming, step, edges);
   std::sort(edges.begin(), edges.end(), [](const TimeEdge& a, const TimeEdge& b) { return a.t < b.t; });
   // Times that differ by their rounding are one; it jumps if one of them does.
   std::vector<TimeEdge> distinct;

@@ -33,6 +33,7 @@ void System::measure_angles(const State& state) {
 
 void System::follow(const State& state) {
   const Index n = followed_angles();
+  since_ = state.t;
   if (n == 0) return;
   if (measured_rates_.size() != n) measured_rates_.resize(n);
   if (state.angles.size() == n) {
@@ -44,7 +45,6 @@ void System::follow(const State& state) {
   measure_angles(state);
   angles_ = measured_;
   rates_ = measured_rates_;
-  since_ = state.t;
 }
 
 System System::at(const State& state) const {
