@@ -408,13 +408,6 @@ double System::load_work(const ConstVec& q) const {
   return data_->loads.dot(q - data_->start);
 }
 
-const std::vector<int>& System::giving_rods() const {
-  return data_->giving;
-}
-void System::giving_rod_forces(double t, const ConstVec& q, const ConstVec& v, MutVec force) const {
-  if (data_->elastic_rods) data_->elastic_rods->forces(t, q.data(), v.data(), force.data());
-}
-
 const std::vector<Drive>& System::drives() const {
   return data_->drives;
 }
@@ -428,8 +421,15 @@ bool System::has_power(bool dissipative) const {
 double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const {
   double sum = 0;
   for (const auto& block : data_->forces)
-    if (block->has_power() && block->dissipative() == dissipative)
+    if (block->has_power() && block->dissipative() == dissipative && !block->takes_by_pose())
       sum += block->power(moment(t), q.data(), v.data());
+  return sum;
+}
+
+double System::taken(const ConstVec& q) const {
+  double sum = 0;
+  for (const auto& block : data_->forces)
+    if (block->takes_by_pose()) sum += block->taken(moment(since_), q.data());
   return sum;
 }
 
