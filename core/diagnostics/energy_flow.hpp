@@ -3,6 +3,7 @@
 // dampers, drives and impacts.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace unfurl {
 // Since the start, at every state [J]; zeros where a scene has no such thing.
 struct EnergyFlow {
   std::vector<double> load_work, dissipated, drive_work, impact_loss;
+  std::vector<std::vector<double>> of_drives = {};  // what each of drive_channels() has put in
 };
 
 // What dry friction takes is exact: a force times the way. Powers are integrated over each step with three Gauss points (order 6) on the quintic that has the
@@ -33,6 +35,9 @@ class EnergyMeter {
   void add(const State& a, const State& b);  // the step from a to b, which follows on the last one
   void jump() { after_.resize(0); }          // velocities have changed within no time
   double load_work = 0, dissipated = 0, drive_work = 0;  // so far [J]
+  // Told every point of the quadrature: its weight [s], the time, node coordinates, velocities, multipliers.
+  std::function<void(double, double, const VectorXd&, const VectorXd&, const VectorXd&)> at_point = {};
+  const System& system() const { return system_; }
 
  private:
   VectorXd acceleration(const State& state);

@@ -68,7 +68,11 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
       return;
     case Members::each_node:
     case Members::node_list:
+    case Members::path:
       element.nodes = entry.names("nodes");
+      return;
+    case Members::terms:
+      element.terms = entry.names("terms");
       return;
     case Members::two_nodes:
       element.nodes = entry.names("nodes");
@@ -102,7 +106,7 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
 
 std::string made_name(const SceneElement& element) {
   std::string text = element.fold_angle ? "fold angle" : "";
-  for (const auto* list : {&element.nodes, &element.rods})
+  for (const auto* list : {&element.nodes, &element.rods, &element.terms})
     for (const auto& name : *list) text += (text.empty() ? "" : "-") + name;
   return element.kind + " of " + text;
 }
@@ -128,6 +132,10 @@ std::string_view members_text(Members members) {
       return "nodes = names or globs, one for each";
     case Members::node_list:
       return "nodes = [A, B, ...]";
+    case Members::path:
+      return "nodes = [A, B, ...], in order";
+    case Members::terms:
+      return "terms = [\"2.5 length A B\", ...]";
     case Members::two_nodes:
       return "nodes = [A, B]";
     case Members::three_nodes:

@@ -161,6 +161,21 @@ Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hoo
   return std::move(*first);
 }
 
+// Gears and nets, switched off one by one.
+void add_switches(const Scene& scene, const TomlTree& root, std::vector<ModelChoice>& out) {
+  for (const auto& [key, name] :
+       {std::pair{"gears", "without synchronising gears"}, std::pair{"nets", "without nets"}})
+    if (text_at(root, "structure", key) == "true")
+      out.push_back({name, {std::string("structure.") + key + "=false"}});
+  for (const auto* list : {&scene.constraints, &scene.forces})
+    for (const SceneElement& element : *list) {
+      const bool coupling = element.kind == "gear" || element.kind == "rack" || element.kind == "telescope";
+      const bool net = element.kind == "cable" && element.values.real("smoothing") > 0;
+      if (element.enabled && (coupling || net))
+        out.push_back({"without " + element.name, {element.key + ".enabled=false"}});
+    }
+}
+
 }  // namespace
 
 std::vector<ModelChoice> model_choices(const SceneSource& source) {
@@ -181,6 +196,7 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
   add("structure", "mass", "lumped", "lumped mass: half of a rod at each node");
   add_modulus(root, out);
   add_rod_models(root, out);
+  add_switches(scene, root, out);
   std::vector<std::string> keys;
   damping_keys(root, "", keys);
   if (!keys.empty()) {

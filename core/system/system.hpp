@@ -40,6 +40,7 @@ class System {
   Index followed_angles() const;
   void follow(const State& state);
   System at(const State& state) const;  // a copy that follows it; of no cost where no angle is followed
+  Moment moment(double t) const;        // a time, near those angles
   // The angles of a later state, counted on from those of the state that is followed.
   void count_on(State& later);
 
@@ -135,7 +136,6 @@ class System {
 
  private:
   struct Data;
-  Moment moment(double t) const;
   void measure_angles(const State& state);
 
   std::shared_ptr<Data> data_;

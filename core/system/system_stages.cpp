@@ -44,7 +44,7 @@ void System::constraint_stages(const double* t, const Interleaved& Q, Index firs
       scratch.row.resize(rows);
       for (int c = 0; c < poses; ++c) {
         scratch.q = Q.col(first + c);
-        block->value(scratch.q.data(), scratch.row.data());
+        block->value_at(moment(t[c]), scratch.q.data(), scratch.row.data());
         if (block->rheonomic()) block->add_target(0, t[c], -1.0, scratch.row.data());
         phi.col(c).segment(row, rows) = scratch.row;
       }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "core/scene/build.hpp"
@@ -49,6 +50,30 @@ TEST_CASE("modelling choices that promise the same answer give it") {
   const double rounding = named("single precision").difference;
   CHECK(rounding <= 3 * 2.4e-7);
   CHECK(rounding >= 1e-8);
+}
+
+TEST_CASE("gears and nets are switched off one by one") {
+  const std::string text =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [1, 0, 0], mass = 1}, {name = 'H', "
+      "position = "
+      "[0, 0, 0], fixed = true}, {name = 'B', position = [0, 1, 0], mass = 2}, {name = 'C', position = [0, "
+      "0, 1], mass "
+      "= 1}]\n[[constraints]]\nkind = 'gear'\nname = 'wheels'\nnodes = ['A', 'H', 'B', 'B', 'H', 'C']\nradii "
+      "= [1, "
+      "2]\n[[forces]]\nkind = 'cable'\nname = 'net'\nnodes = ['A', 'C']\naxial_stiffness = 10\nsmoothing = "
+      "0.01\n";
+  const SceneSource wheels{"s.toml", {}, std::make_shared<const std::string>(text)};
+  std::vector<std::string> names, changes;
+  for (const ModelChoice& choice : model_choices(wheels))
+    for (const std::string& change : choice.changes) names.push_back(choice.name), changes.push_back(change);
+  CHECK(std::find(names.begin(), names.end(), "without wheels") != names.end());
+  CHECK(std::find(changes.begin(), changes.end(), "constraints[0].enabled=false") != changes.end());
+  CHECK(std::find(changes.begin(), changes.end(), "forces[0].enabled=false") != changes.end());
+  names.clear();
+  for (const ModelChoice& choice : model_choices({find_scene("mesh_reflector"), {}}))
+    names.push_back(choice.name);
+  CHECK(std::find(names.begin(), names.end(), "without nets") != names.end());
+  CHECK(std::find(names.begin(), names.end(), "without synchronising gears") != names.end());
 }
 
 TEST_CASE("dense matrices are refused where they would not fit") {
