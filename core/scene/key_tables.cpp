@@ -55,6 +55,10 @@ Keys member_keys(Members members) {
                     "about X Y Z), \"C dihedral A B C D\"; C: a number")};
     case Members::two_nodes:
       return {names_key("nodes", 2, "A, B")};
+    case Members::three_nodes:
+      return {names_key("nodes", 3, "A, B, C: a bend at the middle one")};
+    case Members::rods:
+      return {names_key("rods", 0, "names or globs of rods or of their groups")};
     case Members::rod:
       return {text_param("rod", "", "its name; the direction follows it")};
     case Members::measure:

@@ -64,6 +64,9 @@ std::string rod_text(const CustomRod& rod) {
   if (!std::isnan(rod.youngs_modulus)) text += line("youngs_modulus", real_text(rod.youngs_modulus));
   if (!std::isnan(rod.strength)) text += line("strength", real_text(rod.strength));
   if (rod.second_moment != 0.0) text += line("second_moment", real_text(rod.second_moment));
+  if (rod.elastic) text += line("elastic", *rod.elastic ? "true" : "false");
+  if (rod.segments > 0) text += line("segments", std::to_string(rod.segments));
+  if (rod.free_length != 0.0) text += line("free_length", real_text(rod.free_length));
   if (rod.group != "rod") text += line("group", toml_string(rod.group));
   return text;
 }

@@ -109,6 +109,10 @@ void add_members(std::string& text, const ElementKind& kind, const FirstMembers&
       return add_member(text, "nodes", members.hinge());
     case Members::two_nodes:
       return add_member(text, "nodes", members.nodes(2));
+    case Members::three_nodes:
+      return add_member(text, "nodes", members.hinge());
+    case Members::rods:
+      return add_member(text, "rods", members.rod());
     case Members::each_node:
     case Members::node_list:
     case Members::path:
