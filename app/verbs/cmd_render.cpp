@@ -4,14 +4,16 @@
 #include <optional>
 
 #include "app/command.hpp"
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/output_directory.hpp"
 #include "app/verbs/film.hpp"
 #include "app/verbs/frame_range.hpp"
 #include "app/verbs/plan.hpp"
 #include "app/verbs/run_figures.hpp"
+#include "app/verbs/run_report.hpp"
 #include "app/verbs/scene_run.hpp"
+#include "app/verbs/team_work.hpp"
 #include "core/export/atomic_file.hpp"
 
 namespace unfurl {
@@ -23,7 +25,11 @@ int cmd_render(const Arguments& arguments) {
   check_film(scene);
   if (arguments.plan) return show_plan(scene, arguments, true);
   auto model = model_of(scene, arguments);
-  OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
+  if (arguments.join && (arguments.force || !arguments.frames.empty()))
+    throw UsageError(
+        "--join shares the frames by itself and replaces nothing; leave out --frames and --force");
+  OwnDirectory output(arguments.output, arguments.force, "run",
+                      arguments.join ? DirectoryLock::Use::joined : DirectoryLock::Use::shareable);
   const std::filesystem::path& directory = output.path();
   DirectoryLock& lock = output.lock();
   const FilmFolder folder(directory, scene, arguments.gpu);
@@ -31,10 +37,10 @@ int cmd_render(const Arguments& arguments) {
     throw FileError(directory,
                     "holds frames of another film (the scene, its settings or the program changed); "
                     "use --force to start over, or another -o");
-  if (lock.shared() && !folder.holds_this())
+  if (lock.shared() && !arguments.join && !folder.holds_this())
     throw FileError(directory, "another unfurl is writing another film into it; use another -o");
   if (!arguments.frames.empty()) frame_range(arguments.frames, 100000);
-  if (folder.fresh()) folder.claim();  // others may join before the simulation ends
+  if (folder.fresh() || arguments.join) folder.claim();  // others may join before the simulation ends
   if (folder.holds_this()) lock.share();
   const auto context = make_offscreen_context(
       {arguments.threads, arguments.gpu});  // missing graphics are found before the work
@@ -46,6 +52,16 @@ int cmd_render(const Arguments& arguments) {
   if (!folder.holds_this()) FilmFolder::clear(output.written());
   folder.claim();
   lock.share();
+  const Scene shown = fitted(scene, run);
+  FrameMemory memory;
+  const auto team = join_team(arguments, directory);
+  if (team) {
+    const bool writes = work_together(*team, arguments, [&] {
+      return draw_frames(folder, shown, run, diagnostics, *context, arguments, memory, team.get()) &&
+             all_frames(folder, shown, run);
+    });
+    if (!writes) return interrupted() ? exit_interrupted : exit_code_of(run, diagnostics);
+  }
   const std::string summary = write_data(directory, scene, run, diagnostics, as_typed(arguments.words));
   write_exports(formats, directory, scene, run, diagnostics, arguments);
   keeping.reset();
@@ -53,20 +69,19 @@ int cmd_render(const Arguments& arguments) {
   if (arguments.json) std::cout << summary << std::flush;
   if (exit_code_of(run, diagnostics) == exit_interrupted) return exit_interrupted;
 
-  const Scene shown = fitted(scene, run);
   if (arguments.encode_only) {
     require_all_frames(folder, shown, run, arguments);
     return encode_films(directory, folder, shown, run, arguments) ? exit_code_of(run, diagnostics)
                                                                   : exit_interrupted;
   }
   FigureWriter writer(*context, style);
-  FrameMemory memory;
   if (!draw_frames(folder, shown, run, diagnostics, *context, arguments, memory) ||
       !write_figures(directory / "figures", all_figures(), run, diagnostics, writer, arguments) ||
       !encode_films(directory, folder, shown, run, arguments, memory)) {
     std::cerr << "unfurl: interrupted; what is finished is kept\n";
     return exit_interrupted;
   }
+  write_run_report(directory, scene, run, diagnostics, arguments);
   return exit_code_of(run, diagnostics);
 }
 

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "app/command.hpp"
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/film_folder.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/output_directory.hpp"

@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/progress.hpp"
 #include "app/verbs/frame_range.hpp"
@@ -27,6 +27,8 @@ namespace unfurl {
 namespace {
 
 constexpr double max_frames = 99999;  // five digits in the name, and more than a day of drawing
+
+constexpr std::size_t frames_of_a_piece = 4;  // that a worker of a team takes at once
 
 // PNG files are compressed beside the drawing of the next pictures.
 int writer_threads(const Arguments& arguments) {
@@ -104,9 +106,16 @@ std::shared_ptr<const Image> FrameMemory::find(std::size_t frame) const {
   return found == frames_.end() ? nullptr : found->second;
 }
 
+bool all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run) {
+  const std::size_t frames = film_shots(run.trajectory, scene.render).size();
+  for (std::size_t k = 0; k < frames; ++k)
+    if (!folder.finished(k)) return false;
+  return true;
+}
+
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
                  const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments,
-                 FrameMemory& memory) {
+                 FrameMemory& memory, Team* team) {
   const RenderOptions& options = scene.render;
   const std::vector<Shot> shots = film_shots(run.trajectory, options);
   const FrameRange range = frame_range(arguments.frames, shots.size());
@@ -128,6 +137,8 @@ bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation&
       writers.finish();
       return false;
     }
+    const std::string piece = "frames-" + std::to_string(missing[i] / frames_of_a_piece);
+    if (team && (!team->takes(piece) || folder.finished(missing[i]))) continue;
     progress.show(i, missing.size(), "frames");
     const Shot& shot = shots[missing[i]];
     if (!image || !(shot == drawn))  // a picture that is held is drawn once

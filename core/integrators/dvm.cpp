@@ -25,6 +25,7 @@ constexpr int slow_iterations = 8;
 // `strong` are never looked at.
 constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double resolved = 1.5;  // h omega, from above, per stage but one: the ends tell forces of waves
 
 bool is_small(const System& system, int stages) {
   return (system.solved_coordinates() + system.constraints()) * (stages - 1) <= full_newton_unknowns;
@@ -251,9 +252,8 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
       if (frozen_iterations(report)) return;
     }
   }
-  if (eq_.at_ends) return;
   if ((stiff_ || is_stiff()) && stiff_iterations(state, report)) return;
-  if (!small_) return;
+  if (!small_ || eq_.at_ends) return;
   predict(state, h);
   report.status = newton_.solve(eq_, wanted, accepted, false, report);
   frozen_ = false;
@@ -261,7 +261,7 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
 
 // The frozen iteration contracts by about the larger of (h omega)^2 and h c / m, over some s^2 and s.
 bool Dvm::is_stiff() {
-  if (system_.constant_forces() || eq_.at_ends) return false;
+  if (system_.constant_forces()) return false;
   eq_.look_at_forces();
   return eq_.h_rate() > 1 || eq_.h_omega() > 1;
 }
@@ -271,7 +271,7 @@ bool Dvm::is_stiff() {
 // A long step would keep such rates, of changing sign. What follows is slow.
 double Dvm::longest_step(const State& state, double h) {
   constexpr double least_share = 2e-7;  // of a step; shorter ones are little more than noise
-  if (settled_ || system_.constant_forces() || eq_.at_ends) return h;
+  if (settled_ || system_.constant_forces()) return h;
   if (settling_ == 0) {
     eq_.start(state.t, state.z, state.w, h);
     const double z = eq_.h_rate();
@@ -444,6 +444,8 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   state.t += h;
   arrive(state);
   state.w = w1_;
+  state.tension.resize(0);
+  if (!system_.giving_rods().empty() && eq_.h_omega() > resolved * (c_.s - 1)) eq_.end_tension(state.tension);
   state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
 }
 

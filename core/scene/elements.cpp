@@ -68,29 +68,45 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
       return;
     case Members::each_node:
     case Members::node_list:
+    case Members::path:
       element.nodes = entry.names("nodes");
+      return;
+    case Members::terms:
+      element.terms = entry.names("terms");
       return;
     case Members::two_nodes:
       element.nodes = entry.names("nodes");
       return wants("nodes", element.nodes, 2);
+    case Members::three_nodes:
+      element.nodes = entry.names("nodes");
+      return wants("nodes", element.nodes, 3);
+    case Members::rods:
+      element.rods = entry.names("rods");
+      return;
     case Members::rod:
       element.rods = entry.names("rod");
       return wants("rod", element.rods, 1);
     case Members::angle:
+    case Members::measure:
       break;
   }
   element.fold_angle = entry.read({boolean_param("fold_angle", false, "")}).boolean("fold_angle");
   if (entry.has("rods")) element.rods = entry.names("rods");
   if (entry.has("nodes")) element.nodes = entry.names("nodes");
   wants("rods", element.rods, 2);
-  wants("nodes", element.nodes, 3);
+  if (members == Members::angle) wants("nodes", element.nodes, 3);
+  if (members == Members::measure && element.nodes.size() > 3)
+    entry.problem("nodes", "must be 1, 2 or 3 names; got " + std::to_string(element.nodes.size()));
   if (entry.has("rods") + entry.has("nodes") + static_cast<int>(element.fold_angle) != 1)
-    entry.problem("", "must name one angle: rods = [R, S], or nodes = [A, HINGE, B], or fold_angle = true");
+    entry.problem("",
+                  members == Members::angle
+                      ? "must name one angle: rods = [R, S], or nodes = [A, HINGE, B], or fold_angle = true"
+                      : "must name one measure: " + std::string(members_text(members)));
 }
 
 std::string made_name(const SceneElement& element) {
   std::string text = element.fold_angle ? "fold angle" : "";
-  for (const auto* list : {&element.nodes, &element.rods})
+  for (const auto* list : {&element.nodes, &element.rods, &element.terms})
     for (const auto& name : *list) text += (text.empty() ? "" : "-") + name;
   return element.kind + " of " + text;
 }
@@ -116,12 +132,22 @@ std::string_view members_text(Members members) {
       return "nodes = names or globs, one for each";
     case Members::node_list:
       return "nodes = [A, B, ...]";
+    case Members::path:
+      return "nodes = [A, B, ...], in order";
+    case Members::terms:
+      return "terms = [\"2.5 length A B\", ...]";
     case Members::two_nodes:
       return "nodes = [A, B]";
+    case Members::three_nodes:
+      return "nodes = [A, B, C]";
+    case Members::rods:
+      return "rods = names or globs of rods or groups";
     case Members::rod:
       return "rod = its name";
     case Members::angle:
       return "rods = [R, S], nodes = [A, HINGE, B] or fold_angle = true";
+    case Members::measure:
+      return "rods = [R, S], nodes = [A, HINGE, B] or [A, B] or [A] with a direction, or fold_angle = true";
   }
   return "";
 }

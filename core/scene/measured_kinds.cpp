@@ -8,6 +8,7 @@
 
 #include "core/scene/element_members.hpp"
 #include "core/structure/measure.hpp"
+#include "core/structure/motion_params.hpp"
 
 namespace unfurl {
 
@@ -15,34 +16,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double as_built = std::numeric_limits<double>::quiet_NaN();
-
-// How a held or driven value moves; the unit is that of the measure.
-std::vector<ParamSpec> motion_params(std::string_view unit) {
-  return {
-      choice_param("motion", "hold", {"hold", "rate", "smooth", "table"},
-                   "hold the value at t = 0, or drive it: at a constant rate, smoothly to a value, along a "
-                   "table"),
-      only_with(
-          "motion", {"rate"},
-          real_param("rate", unit == "m" ? "m/s" : "deg/s", 0.0, -infinity, infinity, "rate: per second")),
-      only_with("motion", {"rate"},
-                real_param("ramp", "s", 0.0, 0.0, infinity, "rate: how long it takes to reach the rate")),
-      only_with("motion", {"smooth"},
-                real_param("to", unit, as_built, -infinity, infinity, "smooth: the value in the end")),
-      only_with("motion", {"rate", "smooth"},
-                real_param("start", "s", 0.0, 0.0, infinity, "rate, smooth: when the motion begins")),
-      only_with("motion", {"smooth"},
-                positive_param("duration", "s", 1.0, "smooth: how long the motion takes")),
-      only_with("motion", {"table"}, vector_param("times", "s", {}, "table: ascending, with values")),
-      only_with("motion", {"table"},
-                vector_param("values", unit, {},
-                             "table: at the times; a clamped cubic spline goes through them, at rest at both "
-                             "ends, held before "
-                             "and behind them")),
-      only_with("motion", {"table"},
-                text_param("table", "",
-                           "table: CSV file beside the scene, in place of times and values: t,value"))};
-}
 
 std::vector<ParamSpec> operator+(std::vector<ParamSpec> a, const std::vector<ParamSpec>& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -59,7 +32,7 @@ const std::vector<ParamSpec>& length_params() {
   return measured_once([] { return motion_params("m"); });
 }
 const std::vector<ParamSpec>& coordinate_params() {
-  return once(
+  return measured_once(
       [] { return std::vector{direction_param("direction", "of the coordinate")} + motion_params("m"); });
 }
 const std::vector<ParamSpec>& angle_params() {
@@ -83,7 +56,7 @@ const std::vector<ParamSpec>& length_stop_params() {
   return measured_once([] { return stop_params("m"); });
 }
 const std::vector<ParamSpec>& coordinate_stop_params() {
-  return once(
+  return measured_once(
       [] { return std::vector{direction_param("direction", "of the coordinate")} + stop_params("m"); });
 }
 const std::vector<ParamSpec>& angle_stop_params() {
@@ -93,9 +66,21 @@ const std::vector<ParamSpec>& angle_stop_params() {
   });
 }
 
+const std::vector<ParamSpec>& clearance_params() {
+  return measured_once([] {
+    ParamSpec clearance =
+        positive_param("clearance", "m", 1e-4, "of the pin in its hole: the distance of the nodes at most");
+    clearance.required = true;
+    return std::vector{
+        clearance,
+        real_param("restitution", "", 0.0, 0.0, 1.0, "rebound speed over approach speed; 0: no rebound"),
+        real_param("rest_speed", "m/s", 1e-3, 0.0, infinity, "rebounds slower than this rest on the rim")};
+  });
+}
+
 // Of the scene's numbers in those of the measure.
 double unit_of(const Measure& measure) {
-  return measure.kind == MeasureKind::angle || measure.kind == MeasureKind::fold ? radians_per_degree : 1.0;
+  return is_angle(measure) ? radians_per_degree : 1.0;
 }
 
 // Angles without an axis stay above 0 and below 180 degrees, where they have no direction to go on in;
@@ -106,7 +91,7 @@ bool is_unsigned(const Measure& measure) {
 
 // A drive that leaves the values that its measure can take is refused, with the time when it does.
 void check_reach(const SceneElement& e, ElementAdder& to, const Measure& measure, const TimeFunction& f) {
-  const bool length = measure.kind == MeasureKind::length;
+  const bool length = measure.kind == MeasureKind::length || e.kind == "cable" || e.kind == "telescope";
   if ((!length && !is_unsigned(measure)) || !f.moves()) return;
   // A run may end before a constant rate comes that far: where it is deployed.
   if (f.kind == TimeFunction::Kind::rate && !to.structure.deployment.empty()) return;
@@ -140,27 +125,7 @@ void check_begin(const SceneElement& e, ElementAdder& to, const Measure& measure
 }
 
 void push_drive(const SceneElement& e, ElementAdder& to, const Measure& measure) {
-  const double initial = to.find.initial(measure), unit = unit_of(measure);
-  const ParamSet& v = e.values;
-  const std::string& motion = v.text("motion");
-  TimeFunction f;
-  f.offset = initial;
-  f.start = v.real("start");
-  if (motion == "rate") {
-    f.kind = TimeFunction::Kind::rate;
-    f.rate = unit * v.real("rate");
-    f.ramp = v.real("ramp");
-  } else if (motion == "smooth") {
-    f.kind = TimeFunction::Kind::smooth;
-    f.rise = unit * v.real("to") - initial;
-    f.duration = v.real("duration");
-  } else if (motion == "table") {
-    std::vector<double> values = v.vector("values");
-    for (double& x : values) x *= unit;
-    f = make_spline(v.vector("times"), std::move(values));
-    check_begin(e, to, measure, f(0.0), initial);
-  }
-  check_reach(e, to, measure, f);
+  TimeFunction f = motion_of(e, to, measure, to.find.initial(measure));
   to.structure.constraints.push_back({"measure", e.name, measure.nodes, {}, 0.0, measure, std::move(f)});
 }
 
@@ -197,43 +162,41 @@ void push_stop(const SceneElement& e, ElementAdder& to, Measure measure) {
   to.structure.stops.push_back(std::move(stop));
 }
 
-std::optional<Measure> coordinate_of(const SceneElement& e, MemberFinder& find) {
+// |x_a - x_b| <= c. The nodes may begin at one place: what acts is the rim, which they are not at.
+void add_clearance(const SceneElement& e, ElementAdder& to) {
   Measure measure;
-  measure.kind = MeasureKind::coordinate;
-  measure.nodes = find.nodes(e, false);
-  measure.axis = vec3(e.values, "direction");
-  if (measure.nodes.empty()) return {};
-  if (measure.nodes.size() > 2) {
-    find.problem(e, "nodes", "must be one or two");
-    return {};
+  measure.nodes = to.find.nodes(e, false);
+  if (measure.nodes.size() != 2) return;
+  const double clearance = e.values.real("clearance"), initial = to.find.initial(measure);
+  if (initial > clearance * (1 + 1e-9)) {
+    std::ostringstream text;
+    text << "is passed already at t = 0, where the nodes are " << initial << " m apart";
+    return to.find.problem(e, "clearance", text.str());
   }
-  if (!(measure.axis.stableNorm() > 0)) {
-    find.problem(e, "direction", "must not be zero");
-    return {};
-  }
-  measure.axis.stableNormalize();
-  return measure;
+  Stop stop{.name = e.name, .measure = measure};
+  stop.max = clearance;
+  stop.restitution = e.values.real("restitution");
+  stop.rest_speed = e.values.real("rest_speed");
+  to.structure.stops.push_back(std::move(stop));
 }
 
-std::optional<Measure> driven_angle(const SceneElement& e, MemberFinder& find) {
-  const auto measure = angle_of(e, find);
-  if (!measure || !is_unsigned(*measure) || std::abs(std::sin(measure->reference)) >= 1e-6) return measure;
-  find.problem(e, "axis",
-               "is missing: the rods are in line at t = 0, where an angle without an axis has no direction "
-               "to grow in");
-  return {};
-}
-
-template <std::optional<Measure> (*measure_of)(const SceneElement&, MemberFinder&)>
+template <std::optional<Measure> (*measured)(const SceneElement&, MemberFinder&)>
 void add_drive(const SceneElement& e, ElementAdder& to) {
-  if (const auto measure = measure_of(e, to.find)) push_drive(e, to, *measure);
+  if (const auto measure = measured(e, to.find)) push_drive(e, to, *measure);
 }
-template <std::optional<Measure> (*measure_of)(const SceneElement&, MemberFinder&)>
+template <std::optional<Measure> (*measured)(const SceneElement&, MemberFinder&)>
 void add_stop(const SceneElement& e, ElementAdder& to) {
-  if (const auto measure = measure_of(e, to.find)) push_stop(e, to, *measure);
+  if (const auto measure = measured(e, to.find)) push_stop(e, to, *measure);
 }
 
 }  // namespace
+
+TimeFunction motion_of(const SceneElement& e, ElementAdder& to, const Measure& measure, double initial) {
+  TimeFunction f = motion_function(e.values, initial, unit_of(measure));
+  if (e.values.text("motion") == "table") check_begin(e, to, measure, f(0.0), initial);
+  check_reach(e, to, measure, f);
+  return f;
+}
 
 const std::vector<ElementKind>& measured_kinds() {
   static const std::vector<ElementKind> kinds = {
@@ -249,6 +212,8 @@ const std::vector<ElementKind>& measured_kinds() {
        Members::node_list, coordinate_stop_params, add_stop<coordinate_of>, coordinate_of},
       {"angle_stop", "end stop: the angle between two rods, or the fold angle, stays within limits",
        Members::angle, angle_stop_params, add_stop<driven_angle>, angle_of},
+      {"clearance", "a pin with play: two nodes stay within a distance of each other", Members::two_nodes,
+       clearance_params, add_clearance},
   };
   return kinds;
 }

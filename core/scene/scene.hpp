@@ -35,6 +35,7 @@ struct Scene {
   std::vector<SceneLoad> loads;
   std::vector<SceneElement> forces, constraints;
   std::vector<SceneSurface> surfaces;  // shown only
+  SceneElement deployment;  // [deployment]: its terms are what it measures; without any, the scene has none
   SolverOptions solver;
   RenderOptions render;
   std::vector<SceneProblem> warnings;               // what is given and does nothing

@@ -214,6 +214,7 @@ DrawList FrameBuilder::build(const Shot& shot) const {
   std::vector<Vec3> at;
   for (Index k = 0; k < whole.size() / 3; ++k) at.push_back(node(whole, static_cast<int>(k)));
   add_bodies(inside, at, list);
+  add_lines(whole, list);
   if (style_.loads && style_.options.loads) add_loads(whole, list);
   add_ghosts(inside, list);
   add_trails(inside, whole, list);
@@ -237,6 +238,18 @@ void FrameBuilder::add_card(DrawList& list) const {
 Color FrameBuilder::rod_color(double t, const RodCopy& rod) const {
   if (field_) return field_->color(field_->at(t, rod.source));
   return look_->group(static_cast<std::size_t>(looks_.rod_group[static_cast<std::size_t>(rod.source)]));
+}
+
+// Cables and nets: thinner than any rod, so that what they hang on shows.
+void FrameBuilder::add_lines(const VectorXd& whole, DrawList& list) const {
+  double thinnest = 0.004 * bounds_.radius;
+  for (const double radius : looks_.rod_radius) thinnest = std::min(thinnest, radius);
+  for (const ShownLine& line : trajectory_.structure().lines) {
+    const bool net = line.group == "net";
+    list.tubes.push_back({node(whole, line.a).cast<float>(), node(whole, line.b).cast<float>(),
+                          static_cast<float>((net ? 0.16 : 0.4) * thinnest), net ? look_->joint : look_->load,
+                          Finish::paint});
+  }
 }
 
 void FrameBuilder::add_bodies(double t, const std::vector<Vec3>& at, DrawList& list) const {

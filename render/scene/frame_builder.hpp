@@ -64,6 +64,7 @@ class FrameBuilder {
   Color rod_color(double t, const RodCopy& rod) const;
   void prepare_hardware(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times);
   void add_bodies(double t, const std::vector<Vec3>& at, DrawList& list) const;
+  void add_lines(const VectorXd& whole, DrawList& list) const;
   void add_loads(const VectorXd& whole, DrawList& list) const;
   void add_ghosts(double t, DrawList& list) const;
   void add_trails(double t, const VectorXd& whole, DrawList& list) const;

@@ -257,7 +257,7 @@ void Hardware::add_payload(std::size_t n, const Vec3& at, DrawList& list) const 
   list.sleeves.push_back({f(at + up), f(at + 1.2 * up), static_cast<float>(0.7 * r), look_.fitting});
 }
 
-// Cables are thin and straight; springs are wound.
+// What pulls only is thin and straight; springs are wound.
 void Hardware::add_forces(const std::vector<Vec3>& at, DrawList& list) const {
   if (structure_.node_copies.size() != structure_.nodes.size()) return;  // sectors have none
   double thick = 0;

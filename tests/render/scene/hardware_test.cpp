@@ -25,10 +25,9 @@ struct Run {
 };
 
 Run run(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  Run out;
-  out.scene = read_scene_file(find_scene(name), overrides);
-  out.simulation = simulate(build_model(out.scene), out.scene.solver);
-  return out;
+  Scene scene = read_scene_file(find_scene(name), overrides);
+  Simulation simulation = simulate(build_model(scene), scene.solver);
+  return {std::move(scene), std::move(simulation)};
 }
 
 FrameBuilder builder(const Run& r) {
