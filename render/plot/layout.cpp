@@ -23,6 +23,8 @@ bool takes_letter(const Panel& panel) {
 
 // Where there are several to tell apart, panels have letters: a, b, ...
 bool lettered(const Figure& figure, std::size_t panel) {
+  const auto titled = [](const Panel& p) { return !p.title.empty(); };
+  if (figure.columns > 1 || std::any_of(figure.panels.begin(), figure.panels.end(), titled)) return false;
   return std::count_if(figure.panels.begin(), figure.panels.end(), takes_letter) > 1 &&
          takes_letter(figure.panels[panel]);
 }

@@ -56,7 +56,7 @@ void FrameOverlay::add_scale_bar(DrawList& list) const {
     list.lines.push_back({end, y - tick, end, y + tick, thick, look_.ink});
   char text[32];
   std::snprintf(text, sizeof text, "%g m", metres);
-  list.labels.push_back({x + 0.5f * length, y - 1.35f * small_, small_, look_.ink, text, 0.5f});
+  list.labels.push_back(quiet(list, {x + 0.5f * length, y - 1.35f * small_, small_, look_.ink, text, 0.5f}));
 }
 
 void FrameOverlay::add_axes(DrawList& list) const {
@@ -69,7 +69,8 @@ void FrameOverlay::add_axes(DrawList& list) const {
     const Vec3f axis = upright_.col(k).cast<float>();
     const float dx = length * axis.dot(screen.right), dy = -length * axis.dot(screen.up);
     list.lines.push_back({x, y, x + dx, y + dy, 2.5f * unit_, colors[k]});
-    list.labels.push_back({x + 1.28f * dx, y + 1.28f * dy - 0.5f * line, line, look_.ink, names[k], 0.5f});
+    list.labels.push_back(
+        quiet(list, {x + 1.28f * dx, y + 1.28f * dy - 0.5f * line, line, look_.ink, names[k], 0.5f}));
   }
 }
 

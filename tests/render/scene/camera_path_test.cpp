@@ -37,11 +37,12 @@ FrameBuilder builder(const Simulation& run, const RenderOptions& options) {
 // The smallest distance [pixels] of any joint from an edge in this picture.
 double margin(const DrawList& list) {
   double least = 1e9;
-  for (const Ball& ball : list.balls) {
-    const Vec3f p = project(list.camera, width, height, ball.center);
-    if (p.z() <= list.camera.near_plane || p.z() >= list.camera.far_plane) return -1;
-    least = std::min<double>({least, p.x(), width - p.x(), p.y(), height - p.y()});
-  }
+  for (const Tube& tube : list.tubes)
+    for (const Vec3f& end : {tube.a, tube.b}) {
+      const Vec3f p = project(list.camera, width, height, end);
+      if (p.z() <= list.camera.near_plane || p.z() >= list.camera.far_plane) return -1;
+      least = std::min<double>({least, p.x(), width - p.x(), p.y(), height - p.y()});
+    }
   return least;
 }
 
@@ -137,6 +138,7 @@ TEST_CASE("turntable and hold come after the motion") {
   const Simulation run = ring();
   RenderOptions options;
   options.fps = 10;
+  options.hold = 0;
   const auto motion = film_shots(run.trajectory, options);
   options.turntable = 2;
   options.hold = 0.5;
