@@ -11,8 +11,8 @@
 namespace unfurl {
 namespace {
 
-// Deployment::remaining_sine as a form of its own: cos(d) sine - sin(d) cosine with d the deployed fold
-// angle.
+// Deployment::remaining of a fold angle as a form of its own: cos(d) sine - sin(d) cosine with d the deployed
+// fold angle.
 LinearForm remaining(const Deployment& deployment) {
   LinearForm form;
   const auto add = [&form](double factor, const LinearForm& part) {
@@ -40,6 +40,14 @@ bool latch_gives(const Structure& structure) {
 std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear) {
   Structure structure = model.structure;
   const Deployment& deployment = structure.deployment;
+  if (deployment.measured && deployment.latches.empty()) {
+    TimeFunction held;
+    held.offset = deployment.deployed;
+    structure.constraints.push_back(
+        {"measure", "latch of the deployment", {}, {}, 0.0, deployment.measure, held});
+    System locked(structure, eliminate_linear);
+    return std::make_shared<const Model>(Model{std::move(structure), std::move(locked)});
+  }
   std::vector<LinearForm> latches = deployment.latches;
   if (latches.empty()) latches.push_back(remaining(deployment));
   std::vector<Force> springs;  // what gives in their place
