@@ -82,4 +82,32 @@ TEST_CASE("dense matrices are refused where they would not fit") {
                     Catch::Contains("solver.sparse") && Catch::Contains("3000 at most"));
 }
 
+TEST_CASE("what friction and a test rig add is measured beside the scene") {
+  const auto named = [](const std::vector<MeasuredModel>& models, std::string_view name) {
+    for (const MeasuredModel& m : models)
+      if (m.choice.name == name) return m;
+    FAIL("no choice " << name);
+    throw std::logic_error("unreachable");
+  };
+  const SceneSource rig{find_scene("hoop6"),
+                        {"gravity.acceleration=[0,0,-9.81]", "solver.end_time=6",
+                         "forces[0]={kind=\"offload\", nodes=[\"*\"], trolley=\"following\"}",
+                         "forces[1]={kind=\"friction\", fold_angle=true, kinetic=20, static=25}"}};
+  const auto models = compare_models(rig, 1, {});
+  // Ropes that follow carry the weight and nothing else; hinges with friction deploy later.
+  const MeasuredModel flight = named(models, "0 g flight: neither weight nor offload"),
+                      smooth = named(models, "without friction"), test = models.front();
+  CHECK(flight.outcome == "deployed");
+  CHECK(flight.deployment_time == Approx(test.deployment_time).epsilon(1e-9));
+  CHECK(flight.peak_force == Approx(test.peak_force).epsilon(1e-6));
+  CHECK(smooth.deployment_time < test.deployment_time - 1e-3);
+  // From trolleys that stay the ring is pulled back.
+  const SceneSource fixed{find_scene("hoop6"),
+                          {"gravity.acceleration=[0,0,-9.81]", "solver.end_time=9",
+                           "forces[0]={kind=\"offload\", nodes=[\"*\"], length=40}"}};
+  const auto pulled = compare_models(fixed, 1, {});
+  CHECK(pulled.front().deployment_time >
+        named(pulled, "0 g flight: neither weight nor offload").deployment_time + 1e-3);
+}
+
 }  // namespace models_test
