@@ -11,9 +11,14 @@
 namespace unfurl {
 namespace {
 
-// Deployment::remaining_sine as a form of its own: cos(d) sine - sin(d) cosine with d the deployed fold
-// angle.
-LinearForm remaining(const Deployment& deployment) {
+bool waits(const Force& force) {
+  return force.kind == "latch" && force.form.empty();
+}
+
+}  // namespace
+
+// A form of its own: cos(d) sine - sin(d) cosine with d the deployed fold angle.
+LinearForm remaining_form(const Deployment& deployment) {
   LinearForm form;
   const auto add = [&form](double factor, const LinearForm& part) {
     for (std::size_t i = 0; i < part.nodes.size(); ++i) {
@@ -27,12 +32,6 @@ LinearForm remaining(const Deployment& deployment) {
   return form;
 }
 
-bool waits(const Force& force) {
-  return force.kind == "latch" && force.form.empty();
-}
-
-}  // namespace
-
 bool latch_gives(const Structure& structure) {
   return std::any_of(structure.forces.begin(), structure.forces.end(), waits);
 }
@@ -41,7 +40,7 @@ std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_li
   Structure structure = model.structure;
   const Deployment& deployment = structure.deployment;
   std::vector<LinearForm> latches = deployment.latches;
-  if (latches.empty()) latches.push_back(remaining(deployment));
+  if (latches.empty()) latches.push_back(remaining_form(deployment));
   std::vector<Force> springs;  // what gives in their place
   std::copy_if(structure.forces.begin(), structure.forces.end(), std::back_inserter(springs), waits);
   for (const LinearForm& form : latches) {

@@ -14,7 +14,7 @@ struct ModelChoice {
 };
 
 // The scene as it stands, then every choice that it allows and does not make: full or sector, linear
-// constraints eliminated or kept, sparse or dense matrices, consistent or lumped mass, rigid rods or forces
+// constraints eliminated or kept, the path where the structure can move in one way only, sparse or dense matrices, consistent or lumped mass, rigid rods or forces
 // shared by their stiffness, without damping.
 std::vector<ModelChoice> model_choices(const SceneSource& source);
 

@@ -10,23 +10,37 @@
 #include "core/scene/build.hpp"
 #include "core/study/measured_run.hpp"
 #include "core/study/parallel_for.hpp"
+#include "core/study/path_sweep.hpp"
 #include "core/study/tolerance.hpp"
 
 namespace unfurl {
 namespace {
 
+// What the measures are taken from; a run along the path whose events alone are asked for is at round-off,
+// and there is nothing to judge it by.
+Diagnostics asked_of(const SweepPlan& plan, Simulation& run) {
+  const bool states = std::any_of(plan.measures.begin(), plan.measures.end(),
+                                  [](const RunMeasure& m) { return m.needs != MeasureNeeds::events; });
+  return states || run.solved_as.name != "path" ? judge(run) : Diagnostics{};
+}
+
 // One point; nothing where it was cancelled.
-std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const std::vector<std::string>& key,
-                                                  const StudyHooks& hooks) {
-  std::vector<std::string> changes, row = key;
-  for (std::size_t a = 0; a < key.size(); ++a) changes.push_back(plan.axes[a].key + "=" + key[a]);
+std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const PathSweep& along_path,
+                                                  std::size_t point, const StudyHooks& hooks) {
+  const std::vector<std::string> key = plan.key(point);
+  std::vector<std::string> changes, row = key, varied;
+  if (along_path.measure(point, row)) return row;
+  for (std::size_t a = 0; a < key.size(); ++a) {
+    changes.push_back(plan.axes[a].key + "=" + key[a]);
+    varied.push_back(plan.axes[a].key);
+  }
   try {
     const Scene scene = plan.source.read(changes);
     SimulationHooks own;
     own.cancelled = hooks.cancelled;
-    Simulation run = simulate_as_asked(build_model(scene), scene.solver, own);
+    Simulation run = simulate_as_asked(build_model(scene), study_solver(scene, varied, plan.measures), own);
     if (run.status == RunStatus::stopped) return std::nullopt;
-    const Diagnostics diagnostics = judge(run);
+    const Diagnostics diagnostics = asked_of(plan, run);
     row.emplace_back(to_string(run.status));
     for (const RunMeasure& measure : plan.measures)
       row.push_back(exact_number(run.status == RunStatus::failed ? nan : measure.value(run, diagnostics)));
@@ -95,11 +109,12 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   std::vector<std::size_t> open;
   for (const std::size_t i : own)
     if (!journal.find(plan.key(i))) open.push_back(i);
+  const PathSweep along_path(plan);
   std::size_t done = 0;
   std::mutex mutex;
   parallel_for(open.size(), hooks.threads, [&](std::size_t i) {
     if (hooks.stopped()) return;
-    auto row = run_point(plan, plan.key(open[i]), hooks);
+    auto row = run_point(plan, along_path, open[i], hooks);
     if (!row) return;
     const std::lock_guard lock(mutex);
     journal.append(std::move(*row));
