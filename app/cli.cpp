@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
+#include <optional>
 #include <sstream>
 
 #include "app/command.hpp"
@@ -12,6 +13,7 @@
 #include "app/output/failure.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/printable_output.hpp"
+#include "app/output/receipt.hpp"
 #include "app/own_options.hpp"
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
@@ -184,7 +186,10 @@ int dispatch(const std::vector<std::string>& words) {
   }
   check_count(command, parsed.arguments);
   parsed.arguments.words = words;
-  return command.run(parsed.arguments);
+  const Arguments& a = parsed.arguments;
+  std::optional<ReceiptWriter> receipts;
+  if (shows(command, "-o")) receipts.emplace(words, a.names.empty() ? "" : a.names.front(), a.output);
+  return command.run(a);
 }
 
 }  // namespace

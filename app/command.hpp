@@ -42,6 +42,8 @@ struct Arguments {
   std::vector<std::string> names;      // the words behind the verb: SCENE NAME...
   std::vector<std::string> overrides;  // --set
   std::string output;                  // -o; empty: not given
+  bool join = false;                   // --join: one worker of many
+  double lease = 60;                   // --lease SECONDS
   std::string frames;                  // --frames FIRST:END; empty: all
   int poses = 5;                       // --poses
   std::vector<std::string> exports;    // --export, split at commas

@@ -13,7 +13,8 @@ constexpr Command table[] = {
      "unfurl run my.toml -o data --tolerance 1e-8 --export vtk,npy\n"
      "unfurl run hoop6 -o data --export html"},
     {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
-     "-o --set --tolerance --export --frames --encode-only --style --dpi --size --fps --look --supersample "
+     "-o --set --tolerance --export --frames --join --lease --encode-only --style --dpi --size --fps --look "
+     "--supersample "
      "--transparent "
      "--force --threads --gpu --json --quiet",
      "unfurl render hoop6 -o film\n"
@@ -25,25 +26,29 @@ constexpr Command table[] = {
      "unfurl figure hoop6 energy -o energy.pdf --style single-column\n"
      "unfurl figure hoop6 all -o figures"},
     {"study", "SCENE -o DIR", "speed against accuracy: every method over a ladder of steps", 1, 1, true,
-     cmd_study, "-o --set --steps --repeats --methods --models --style --dpi --force --threads --quiet",
+     cmd_study,
+     "-o --set --steps --repeats --methods --models --join --lease --style --dpi --force --threads --quiet",
      "unfurl study hoop6 -o study\n"
      "unfurl study hoop6 -o two --methods dvm,rk4 --steps 0.04:0.005 --repeats 1"},
     {"stress", "SCENE -o DIR", "stability at the extremes: every method and step", 1, 1, true, cmd_stress,
-     "-o --set --extreme --style --dpi --force --threads --quiet",
+     "-o --set --extreme --join --lease --style --dpi --force --threads --quiet",
      "unfurl stress hoop6 --extreme mass_ratio -o stress"},
     {"sweep", "SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR",
      "measures of the scene over a grid of parameters", 1, 1, true, cmd_sweep,
-     "-o --set --tolerance --vary --measure --shard --merge --script --jobs --style --dpi --force --threads "
+     "-o --set --tolerance --vary --measure --shard --join --lease --merge --script --jobs --style --dpi "
+     "--force --threads "
      "--quiet",
      "unfurl sweep hoop6_sector --vary structure.fold_angle=30:85:12 --measure deploy_time -o sweep"},
     {"solve", "SCENE --find KEY --target NAME=VALUE [-o DIR]",
      "the parameter for which a measure takes a value", 1, 1, false, cmd_solve,
      "-o --set --tolerance --find --target --between --force --threads --json --quiet",
      "unfurl solve hoop6 --find structure.hinge_force --target deploy_time=4"},
-    {"reproduce", "-o DIR", "the paper's tables and figures, beside ours", 0, 0, true, cmd_reproduce,
-     "-o --validation --style --dpi --force --threads --quiet",
+    {"reproduce", "-o DIR, or FILE [-o DIR]",
+     "the paper's tables and figures, beside ours; or a file again from the receipt in it", 0, 1, false,
+     cmd_reproduce, "-o --validation --style --dpi --force --threads --quiet",
      "unfurl reproduce -o paper\n"
-     "unfurl reproduce --validation -o validation"},
+     "unfurl reproduce --validation -o validation\n"
+     "unfurl reproduce energy.pdf"},
     {"poster", "SCENE -o FILE.png", "a strip of poses side by side, from start to end", 1, 1, true,
      cmd_poster,
      "-o --set --tolerance --poses --size --look --supersample --transparent --threads --gpu --quiet",
@@ -76,8 +81,8 @@ constexpr Command table[] = {
      "--set --all --size --fps --look --supersample --transparent",
      "unfurl show hoop6\n"
      "unfurl show hoop6 --set structure.units=12 > twelve.toml"},
-    {"verify", "PATH", "are results, a directory or a file in one, still as they were written? exit 7: no", 1,
-     1, false, cmd_verify, "",
+    {"verify", "PATH", "are results, a directory or a file, still as they were written? exit 7: no", 1, 1,
+     false, cmd_verify, "",
      "unfurl verify film\n"
      "unfurl verify film/figures/energy.pdf"},
     {"completion", "SHELL", "print a completion script for bash, zsh or fish, or the manual page: man", 1, 1,

@@ -37,6 +37,10 @@ constexpr OwnOption rows[] = {
      "the I-th of N equal shares of the points; auto: of this task of a job array (Slurm, Grid Engine, MPI), "
      "auto/N where the engine does not say how many",
      at<&Arguments::study, &StudyArguments::shard>},
+    {"--join", "", "work with all others that are given the same command and directory, on any machine",
+     at<&Arguments::join>},
+    {"--lease", "SECONDS", "with --join: who is silent for so long is taken for dead (60)",
+     at<&Arguments::lease>, 0.1, 86400},
     {"--script", "NAME",
      "print a job for slurm, parallel or snakemake whose tasks share the sweep, instead of computing",
      at<&Arguments::study, &StudyArguments::script>},

@@ -16,6 +16,10 @@ namespace unfurl {
 DirectoryLock::DirectoryLock(const std::filesystem::path& directory, Use use)
     : file_(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   using namespace std::chrono_literals;
+  if (use == Use::joined) {
+    held_ = Held::shared;
+    return;
+  }
   // Who begins to share holds it alone until its first files are on the disk: a moment, but not on a busy
   // machine.
   const int attempts = use == Use::shareable ? 80 : 20;
@@ -45,7 +49,7 @@ bool DirectoryLock::take(int mode, Held held) {
 }
 
 void DirectoryLock::share() {
-  take(LOCK_SH, Held::shared);
+  if (held_ == Held::alone) take(LOCK_SH, Held::shared);
 }
 
 }  // namespace unfurl

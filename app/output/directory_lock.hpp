@@ -10,10 +10,11 @@ namespace unfurl {
 // else is at work.
 class DirectoryLock {
  public:
-  enum class Use { alone, shareable };
+  enum class Use { alone, shareable, joined };
 
   // Alone where nobody else is at work in the directory; else, where the use is shareable, beside those who
-  // share it. Throws FileError where that cannot be had within seconds.
+  // share it. Throws FileError where that cannot be had within seconds. Those who join need no lock: whatever
+  // they write says by itself whose it is.
   DirectoryLock(const std::filesystem::path& directory, Use use);
   ~DirectoryLock();
   DirectoryLock(const DirectoryLock&) = delete;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/output/json_text.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/checksum.hpp"
 #include "core/scene/text_file.hpp"
@@ -34,12 +35,6 @@ bool holds_frames(const fs::path& directory) {
 nlohmann::json record_of(const fs::path& directory) {
   auto json = nlohmann::json::parse(text_of(directory / "film.json"), nullptr, false);
   return json.is_object() ? json : nlohmann::json::object();
-}
-
-// Empty where there is no such text: the file may be anybody's.
-std::string text_in(const nlohmann::json& record, const char* key) {
-  const auto found = record.is_object() ? record.find(key) : record.end();
-  return found != record.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
 }  // namespace

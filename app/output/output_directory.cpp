@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/output/output_directory.hpp"
 
+#include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <thread>
 
 #include "app/output/exit_code.hpp"
 #include "core/export/atomic_file.hpp"
@@ -63,6 +65,10 @@ OwnDirectory::OwnDirectory(const std::string& path, bool force, const std::strin
   fs::create_directories(path_, error);
   if (error) throw FileError(path_, error.value());
   const bool empty = holds_nothing(path_);
+  // Another worker may have begun a moment ago.
+  for (int wait = 0; use == DirectoryLock::Use::joined && !empty && !holds_our_results(path_) && wait < 100;
+       ++wait)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   if (!empty && !force && !holds_our_results(path_))
     throw FileError(path_, "is not empty and holds no earlier results; use --force to write into it");
   lock_.emplace(path_, use);

@@ -90,10 +90,7 @@ WrittenFiles::WrittenFiles(fs::path directory, std::string owner, bool was_empty
   std::error_code error;
   if (fs::is_symlink(directory_ / list_name, error))
     throw FileError(directory_ / list_name, "is a link, not the list of what unfurl wrote");
-  if (fs::exists(directory_ / list_name, error))
-    read();
-  else
-    write_anew(was_empty);
+  if (!begin(was_empty)) read();
   before_ = watch_files(this);
 }
 
@@ -141,8 +138,21 @@ std::vector<WrittenFiles::Verdict> WrittenFiles::verify(const fs::path& director
   return verdicts;
 }
 
-void WrittenFiles::write_anew(bool was_empty) {
-  if (title_.empty()) title_ = (was_empty ? made : written_into) + version();
+// False where there is a list already; others may begin one at the same moment.
+bool WrittenFiles::begin(bool was_empty) {
+  const fs::path list = directory_ / list_name;
+  const Descriptor file(::open(list.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+  if (!file && errno == EEXIST) return false;
+  if (!file) throw FileError(list, errno);
+  title_ = (was_empty ? made : written_into) + version();
+  const std::string line = title_ + "\n";
+  if (::write(file.get(), line.data(), line.size()) == static_cast<ssize_t>(line.size())) return true;
+  const int trouble = errno;
+  ::unlink(list.c_str());
+  throw FileError(list, trouble);
+}
+
+void WrittenFiles::write_anew() {
   std::string text = title_ + "\n";
   for (const auto& [name, lines] : lines_)
     for (const Line& line : lines) text += line.checksum + " " + line.owner + " " + escaped(name) + "\n";
@@ -249,7 +259,7 @@ void WrittenFiles::remove_all() {
   const std::lock_guard lock(mutex_);
   std::error_code error;
   std::erase_if(lines_, [&](const auto& entry) { return !fs::exists(directory_ / entry.first, error); });
-  write_anew(false);
+  write_anew();
 }
 
 std::vector<std::string> WrittenFiles::kept() const {

@@ -73,7 +73,8 @@ class WrittenFiles final : public FileWatcher {
   static Lines lines_of(const std::string& list, std::string& title);
   void read();
   void append(const Line& line, const std::string& name);
-  void write_anew(bool was_empty);
+  bool begin(bool was_empty);
+  void write_anew();
   bool known(const std::string& name, const std::string& checksum) const;
   std::string name_of(const std::filesystem::path& target) const;
   void put_aside(const std::filesystem::path& target);

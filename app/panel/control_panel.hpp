@@ -6,20 +6,14 @@
 #include <deque>
 #include <functional>
 #include <memory>
-#include <utility>
 
-#include "app/panel/input_event.hpp"
-#include "app/panel/panel_state.hpp"
+#include "app/panel/imgui_host.hpp"
+#include "app/panel/live_session.hpp"
 #include "app/panel/panes/figure_cards.hpp"
-#include "app/panel/panes/ui.hpp"
-#include "app/panel/runs/error_meter.hpp"
-#include "app/panel/runs/export_process.hpp"
-#include "app/panel/runs/study_job.hpp"
 #include "app/panel/settings.hpp"
 #include "app/panel/view/scene_view.hpp"
 #include "render/gl/framebuffer.hpp"
 #include "render/ui/draw_damage.hpp"
-#include "render/ui/imgui_painter.hpp"
 
 namespace unfurl {
 
@@ -36,8 +30,7 @@ struct PanelOptions {
   bool measure_errors = true;      // of positions, against references
   bool measured = false;           // wait for the graphics after every part, so that frame_times() is true
   std::function<void()> wake;      // called by the simulating thread when there is news
-  std::function<void(const char*)> set_clipboard;
-  std::function<std::string()> get_clipboard;
+  Clipboard clipboard;
 };
 
 class ControlPanel {
@@ -61,63 +54,43 @@ class ControlPanel {
   const Framebuffer& picture() const { return *picture_; }
   const FrameTimes& frame_times() const { return times_; }  // of the last frame
 
-  PanelState& state() { return state_; }
+  PanelState& state() { return session_.state(); }
   PanelSettings settings();  // as they are now, to be remembered
   // Where a widget was drawn in the last frame, by its key; throws std::out_of_range.
-  const plot::Rect& place(const std::string& key) const { return ui_.places.at(key); }
-  bool has_place(const std::string& key) const { return ui_.places.contains(key); }
-  bool simulating() const { return simulator_.busy(); }
-  const ErrorMeter& errors() const { return errors_; }
-  long simulations() const { return simulator_.started(); }
+  const plot::Rect& place(const std::string& key) const { return host_->ui().places.at(key); }
+  bool has_place(const std::string& key) const { return host_->ui().places.contains(key); }
+  const LiveSession& session() const { return session_; }
   long view_paints() const { return view_.paints(); }
   OrbitCamera framed() const { return view_.framed(); }  // the film's own camera
 
  private:
-  void make_context();
-  void make_fonts();
   void take_events();
-  void apply(const InputEvent& event);
-  void take_results();
-  void take_errors();
-  void follow_document();
-  void update_picture();
+  void advance(double seconds);
   void draw_panes();
+  void draw_right_pane(const plot::Rect& place);
   void draw_splitter(const char* name, float x, float top, float bottom, float& width, float way);
   bool coarse_view(double seconds);
   void paint(bool coarse);
-  template <class Part>
-  void survive(const Part& part);
+  void survive(const std::function<void()>& part);
   // Runs a part of a frame and adds its time to `sum`.
   template <class Part>
   void timed(double& sum, const Part& part);
+  void keep_drawing(bool news) { settling_ = std::max(settling_, news ? 2 : 0); }
 
   GlContext& context_;
   PanelOptions options_;
-  PanelState state_;
-  struct ImguiEnd {
-    void operator()(ImGuiContext* imgui) const { ImGui::DestroyContext(imgui); }
-  };
-  std::unique_ptr<ImGuiContext, ImguiEnd> imgui_;
+  LiveSession session_;
+  std::unique_ptr<ImguiHost> host_;
   DrawDamage damage_;
   int slow_frames_ = 0;  // in a row, while something moves
-  std::unique_ptr<ImguiPainter> painter_;
   std::unique_ptr<Framebuffer> picture_;
-  Ui ui_;
-  std::map<int, ImFont*> figure_fonts_;  // by size in 1/64 pixels
   SceneView view_;
   FigureCards cards_;
   std::deque<InputEvent> events_;
   plot::Rect view_place_;  // [pixels]
-  bool dark_drawn_ = false;
+  std::optional<bool> dark_drawn_;
   int settling_ = 3;  // frames until new widgets have their sizes
-  std::optional<SceneDocument> submitted_;
-  std::string clipboard_;
   FrameTimes times_;
-  std::pair<bool, bool> jobs_;  // a study, an export ran in the last frame
-  ExportProcess export_;
-  StudyJob study_;
-  ErrorMeter errors_;
-  Simulator simulator_;  // last: ends before what it wakes
 };
 
 }  // namespace unfurl

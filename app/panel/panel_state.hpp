@@ -2,6 +2,7 @@
 // Everything that the panel knows; plain data that tests may look at and change.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,12 +19,25 @@
 
 namespace unfurl {
 
+class LiveSession;
+// What a person asked for while a frame was drawn, done when it is.
+using Intent = std::function<void(LiveSession&)>;
+
 struct ViewOptions {
   bool labels = false;  // the film's own title and time
   bool loads = true;    // arrows
   bool ghost = true;    // the pinned run behind the present one
 
   bool operator==(const ViewOptions&) const = default;
+};
+
+// Work beside the window, as it stands.
+struct JobState {
+  bool running = false;
+  double progress = 0;  // 0..1
+  std::string doing = {};
+
+  bool operator==(const JobState&) const = default;
 };
 
 struct PanelState {
@@ -33,11 +47,11 @@ struct PanelState {
   Scene base;                          // the scene without edits
   Selection described;                 // what sections were made for
   std::vector<ParamSection> sections;  // of the scene without edits
+  std::vector<Intent> intents;         // of the frame that is drawn
 
   std::shared_ptr<const LiveRun> shown;        // the latest run that finished; null at first
   std::shared_ptr<const LiveRun> pinned;       // A of the comparison; null: none
-  bool pending = false;                        // a newer run is being made
-  double progress = 0;                         // of that, 0..1
+  JobState simulation, studying, exporting;    // a newer run, a study, an export that is being made
   std::vector<SceneProblem> problems;          // of the scene as edited; empty: it is sound
   RenderOptions picture;                       // how the view looks, as edited
   std::vector<SceneProblem> picture_problems;  // of that: names that this run does not know
@@ -59,8 +73,7 @@ struct PanelState {
   bool studies_open = false;                    // on the right, instead of figures
   StudyRequest study;                           // to be started
   std::shared_ptr<const StudyOutcome> studied;  // the last that finished
-  // What others are asked to do, once.
-  bool wants_screenshot = false, wants_quit = false, wants_stop = false;
+  bool closed = false;                          // the window is to go
 };
 
 }  // namespace unfurl

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "app/command.hpp"
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "app/own_options.hpp"
 #include "core/text/nearest_name.hpp"
 #include "core/text/version.hpp"

@@ -10,6 +10,7 @@
 #include "app/verbs/frame_range.hpp"
 #include "app/verbs/run_figures.hpp"
 #include "app/verbs/scene_run.hpp"
+#include "app/verbs/team_work.hpp"
 #include "core/export/atomic_file.hpp"
 
 namespace unfurl {
@@ -20,7 +21,11 @@ int cmd_render(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   check_film(scene);
   auto model = model_of(scene, arguments);
-  OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
+  if (arguments.join && (arguments.force || !arguments.frames.empty()))
+    throw UsageError(
+        "--join shares the frames by itself and replaces nothing; leave out --frames and --force");
+  OwnDirectory output(arguments.output, arguments.force, "run",
+                      arguments.join ? DirectoryLock::Use::joined : DirectoryLock::Use::shareable);
   const std::filesystem::path& directory = output.path();
   DirectoryLock& lock = output.lock();
   const FilmFolder folder(directory, scene, arguments.gpu);
@@ -28,10 +33,10 @@ int cmd_render(const Arguments& arguments) {
     throw FileError(directory,
                     "holds frames of another film (the scene, its settings or the program changed); "
                     "use --force to start over, or another -o");
-  if (lock.shared() && !folder.holds_this())
+  if (lock.shared() && !arguments.join && !folder.holds_this())
     throw FileError(directory, "another unfurl is writing another film into it; use another -o");
   if (!arguments.frames.empty()) frame_range(arguments.frames, 100000);
-  if (folder.fresh()) folder.claim();  // others may join before the simulation ends
+  if (folder.fresh() || arguments.join) folder.claim();  // others may join before the simulation ends
   if (folder.holds_this()) lock.share();
   const auto context = make_offscreen_context(
       {arguments.threads, arguments.gpu});  // missing graphics are found before the work
@@ -43,6 +48,14 @@ int cmd_render(const Arguments& arguments) {
   if (!folder.holds_this()) FilmFolder::clear(output.written());
   folder.claim();
   lock.share();
+  const auto team = join_team(arguments, directory);
+  if (team) {
+    const bool writes = work_together(*team, arguments, [&] {
+      return draw_frames(folder, scene, run, diagnostics, *context, arguments, team.get()) &&
+             all_frames(folder, scene, run);
+    });
+    if (!writes) return interrupted() ? exit_interrupted : exit_code_of(run, diagnostics);
+  }
   const std::string summary = write_data(directory, scene, run, diagnostics);
   write_exports(formats, directory, scene, run, diagnostics, arguments);
   keeping.reset();

@@ -5,6 +5,7 @@
 
 #include "app/command.hpp"
 #include "app/output/interrupt.hpp"
+#include "app/verbs/reproduce_file.hpp"
 #include "app/verbs/study_session.hpp"
 #include "core/study/reproduce_report.hpp"
 #include "core/study/validation.hpp"
@@ -41,6 +42,8 @@ int reproduce_validation(const Arguments& arguments) {
 }  // namespace
 
 int cmd_reproduce(const Arguments& arguments) {
+  if (!arguments.names.empty()) return reproduce_file(arguments);
+  if (arguments.output.empty()) throw UsageError("-o is missing; usage: unfurl reproduce -o DIR, or FILE");
   const InterruptGuard guard;
   if (arguments.study.validation) return reproduce_validation(arguments);
   StudySession session(arguments, "reproducing", "", "runs.csv");

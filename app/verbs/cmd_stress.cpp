@@ -4,6 +4,7 @@
 #include "app/output/interrupt.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/study_session.hpp"
+#include "app/verbs/team_work.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/write.hpp"
 #include "core/study/stress.hpp"
@@ -41,14 +42,22 @@ void add_long_runs(const Stress& stress, Report& report) {
 
 int cmd_stress(const Arguments& arguments) {
   const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
-  const Scene scene = source.read();
+  const Scene scene = scene_of(arguments);
   const StressPlan plan = plan_stress(source, arguments.study.extremes);
   const InterruptGuard guard;
   StudySession session(arguments, "stressing", study_identity("An atlas", scene), "stress.csv");
   Stress stress;
+  const auto team = join_team(arguments, session.directory());
   {
-    Journal journal(session.journal(), stress_columns(), stress_key_columns, stress_number_columns());
-    stress = run_stress(plan, journal, session.hooks());
+    const StudyHooks hooks = session.hooks();
+    Journal journal(team ? team->journal() : session.journal(), stress_columns(), stress_key_columns,
+                    stress_number_columns());
+    const auto whole = [&](Journal& all, const StudyHooks& own) {
+      return run_stress(plan, all, own).complete;
+    };
+    if (team && !study_together(*team, arguments, journal, hooks, whole))
+      return interrupted() ? finish(false, arguments, "") : exit_ok;
+    stress = run_stress(plan, journal, hooks);
   }
   if (stress.complete && arguments.study.extremes.empty())
     session.write("stress.csv", csv_text(cells_table(stress)));

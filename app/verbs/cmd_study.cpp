@@ -6,6 +6,7 @@
 #include "app/output/interrupt.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/study_session.hpp"
+#include "app/verbs/team_work.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/write.hpp"
 #include "core/study/models.hpp"
@@ -90,8 +91,15 @@ int cmd_study(const Arguments& arguments) {
   keep_methods(plan, arguments.study.methods);
   plan.timing.repeats = repeats;
   Study study;
+  const auto team = join_team(arguments, session.directory());
   {
-    Journal journal(session.journal(), study_columns(), study_key_columns, study_number_columns());
+    Journal journal(team ? team->journal() : session.journal(), study_columns(), study_key_columns,
+                    study_number_columns());
+    const auto whole = [&](Journal& all, const StudyHooks& own) {
+      return run_study(plan, all, own).complete;
+    };
+    if (team && !study_together(*team, arguments, journal, hooks, whole))
+      return interrupted() ? finish(false, arguments, "") : exit_ok;
     study = run_study(plan, journal, hooks);
   }
   if (study.complete) session.write("study.csv", csv_text(points_table(study)));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <utility>
 
 #include "app/command.hpp"
@@ -10,6 +11,7 @@
 #include "app/verbs/cluster.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/study_session.hpp"
+#include "app/verbs/team_work.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
@@ -114,9 +116,20 @@ std::string cure(const SweepPlan& plan, const Sweep& sweep, const Arguments& arg
   return "; these compute the others:" + missing_shards(arguments, lacking, count);
 }
 
-Sweep compute(const SweepPlan& plan, const StudySession& session, const StudyHooks& hooks,
-              const Arguments& arguments, const std::string& identity) {
+// None: another worker writes the results.
+std::optional<Sweep> compute(const SweepPlan& plan, const StudySession& session, const StudyHooks& hooks,
+                             const Arguments& arguments, const std::string& identity, Team* team) {
   try {
+    if (team) {
+      Journal journal(team->journal(), plan.columns(), plan.axes.size(), plan.number_columns());
+      std::optional<Sweep> sweep;
+      const bool writes =
+          study_together(*team, arguments, journal, hooks, [&](Journal& all, const StudyHooks& own) {
+            sweep = run_sweep(plan, all, own);
+            return sweep->missing.empty();
+          });
+      return writes || interrupted() ? sweep : std::nullopt;
+    }
     if (!arguments.study.merge.empty())
       return merge_sweep(plan, journals_in(arguments.study.merge, identity));
     Journal journal(session.journal(), plan.columns(), plan.axes.size(), plan.number_columns());
@@ -129,6 +142,8 @@ Sweep compute(const SweepPlan& plan, const StudySession& session, const StudyHoo
 }  // namespace
 
 int cmd_sweep(const Arguments& arguments) {
+  if (arguments.join && (!arguments.study.shard.empty() || !arguments.study.merge.empty()))
+    throw UsageError("--join shares the points by itself; leave out --shard and --merge");
   const SweepPlan plan = plan_of(arguments);
   if (!arguments.study.script.empty()) {
     std::cout << job_script(arguments);
@@ -138,7 +153,11 @@ int cmd_sweep(const Arguments& arguments) {
   const InterruptGuard guard;
   const std::string name = identity(scene, plan);
   StudySession session(arguments, "sweeping", name, journal_name(plan.shard));
-  const Sweep sweep = compute(plan, session, session.hooks(), arguments, name);
+  const auto team = join_team(arguments, session.directory());
+  const auto computed = compute(plan, session, session.hooks(), arguments, name, team.get());
+  if (!computed) return exit_ok;
+  const Sweep& sweep = *computed;
+  if (arguments.join && !sweep.missing.empty()) return finish(false, arguments, "");
   for (const std::string& conflict : sweep.conflicts) std::cerr << "unfurl: warning: " << conflict << "\n";
   session.write(journal_name(plan.shard), csv_text(sweep.table));
   const std::size_t bad = unanswered(plan, sweep);

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "app/command.hpp"
+#include "app/output/command_line.hpp"
+#include "app/output/receipt.hpp"
 #include "app/output/written_files.hpp"
 
 namespace unfurl {
@@ -13,21 +16,53 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::optional<fs::path> results_above(const fs::path& absolute) {
+  std::error_code error;
+  for (fs::path folder = absolute; folder.has_relative_path(); folder = folder.parent_path())
+    if (fs::exists(folder / WrittenFiles::list_name, error)) return folder;
+  return std::nullopt;
+}
+
+bool in_results(const fs::path& path) {
+  std::error_code error;
+  return results_above(fs::absolute(path, error).lexically_normal()).has_value();
+}
+
 // The directory of results that a path lies in: itself or one above it.
 fs::path results_around(const fs::path& path) {
   std::error_code error;
   const fs::path absolute = fs::absolute(path, error).lexically_normal();
   if (!fs::exists(fs::symlink_status(absolute, error))) throw FileError(path, "there is no such file");
-  for (fs::path folder = absolute; folder.has_relative_path(); folder = folder.parent_path())
-    if (fs::exists(folder / WrittenFiles::list_name, error)) return folder;
+  if (const auto folder = results_above(absolute)) return *folder;
   throw FileError(path,
                   "lies in no directory of results: none above it has a list of what unfurl wrote (.unfurl)");
+}
+
+// A file that went where no list of results is: by the receipt in it.
+int verify_by_receipt(const fs::path& file) {
+  const auto receipt = receipt_of(file);
+  if (!receipt)
+    throw FileError(
+        file,
+        "lies in no directory of results (none above it has a list of what unfurl wrote, .unfurl) "
+        "and carries no receipt");
+  if (!as_written(file)) {
+    std::cout << "changed: " << file.string() << "\n";
+    std::cerr << "unfurl: the file is not as it was written\n";
+    return exit_verification_failed;
+  }
+  std::cout << "1 file as written by unfurl " << receipt->version << ": " << as_typed(receipt->command)
+            << "\n";
+  return exit_ok;
 }
 
 }  // namespace
 
 int cmd_verify(const Arguments& arguments) {
   using Verdict = WrittenFiles::Verdict;
+  std::error_code ignored;
+  if (fs::is_regular_file(arguments.names.front(), ignored) && !in_results(arguments.names.front()))
+    return verify_by_receipt(arguments.names.front());
   const fs::path path = arguments.names.front(), directory = results_around(path);
   auto verdicts = WrittenFiles::verify(directory);
   std::error_code error;

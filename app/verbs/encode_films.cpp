@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/progress.hpp"
 #include "app/verbs/film.hpp"

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/progress.hpp"
 #include "app/verbs/frame_range.hpp"
@@ -24,6 +24,8 @@ namespace unfurl {
 namespace {
 
 constexpr double max_frames = 99999;  // five digits in the name, and more than a day of drawing
+
+constexpr std::size_t frames_of_a_piece = 4;  // that a worker of a team takes at once
 
 // PNG files are compressed beside the drawing of the next pictures.
 int writer_threads(const Arguments& arguments) {
@@ -71,8 +73,15 @@ void require_all_frames(const FilmFolder& folder, const Scene& scene, const Simu
                                                        " frames are missing; these draw them:" + commands);
 }
 
+bool all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run) {
+  const std::size_t frames = film_shots(run.trajectory, scene.render).size();
+  for (std::size_t k = 0; k < frames; ++k)
+    if (!folder.finished(k)) return false;
+  return true;
+}
+
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
-                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments) {
+                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments, Team* team) {
   const RenderOptions& options = scene.render;
   const std::vector<Shot> shots = film_shots(run.trajectory, options);
   const FrameRange range = frame_range(arguments.frames, shots.size());
@@ -92,6 +101,8 @@ bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation&
       writers.finish();
       return false;
     }
+    const std::string piece = "frames-" + std::to_string(missing[i] / frames_of_a_piece);
+    if (team && (!team->takes(piece) || folder.finished(missing[i]))) continue;
     progress.show(static_cast<double>(i) / static_cast<double>(missing.size()));
     auto image = std::make_shared<const Image>(renderer.draw(builder.build(shots[missing[i]])));
     writers.add([image = std::move(image), path = folder.frame(missing[i]), &options, alpha] {

@@ -9,6 +9,7 @@
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/scene/scene.hpp"
 #include "core/simulate/simulation.hpp"
+#include "core/study/team.hpp"
 #include "render/gl/context.hpp"
 
 namespace unfurl {
@@ -21,9 +22,13 @@ void check_film(const Scene& scene);
 bool has_alpha(const RenderOptions& options);
 
 // Draws the frames that the folder lacks, or those of them that --frames asks for. Stops at Ctrl-C. Returns
-// whether all that were asked for are there. Throws FileError, GraphicsError, UsageError.
+// whether it did not. Of a team's worker: those that no other worker is at. Throws FileError, GraphicsError,
+// UsageError.
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
-                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments);
+                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments,
+                 Team* team = nullptr);
+// Are all frames of the film there?
+bool all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run);
 
 // Throws FileError with the commands that draw what is missing.
 void require_all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,

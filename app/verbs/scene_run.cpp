@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/verbs/scene_run.hpp"
 
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,7 @@
 
 #include "app/output/interrupt.hpp"
 #include "app/output/progress.hpp"
+#include "app/output/receipt.hpp"
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/ending.hpp"
 #include "core/export/atomic_file.hpp"
@@ -36,7 +37,9 @@ bool waited_enough() {
 }  // namespace
 
 Scene scene_of(const Arguments& arguments) {
-  return read_scene_file(find_scene(arguments.names.front()), arguments.overrides);
+  Scene scene = read_scene_file(find_scene(arguments.names.front()), arguments.overrides);
+  receipt_scene(scene.name, scene_text(scene));
+  return scene;
 }
 
 std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& arguments) {
@@ -86,7 +89,9 @@ std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments) {
 void write_exports(const std::vector<const ExportFormat*>& formats, const std::filesystem::path& directory,
                    const Scene& scene, const Simulation& run, const Diagnostics& diagnostics,
                    const Arguments& arguments) {
-  const std::string text = scene_text(scene), command = as_typed(arguments.words);
+  const std::string text = scene_text(scene);
+  const std::string command =
+      as_typed(command_of_result(arguments.words, arguments.names.front(), scene.name));
   const double interval = scene.render.speed / scene.render.fps;
   for (const ExportFormat* format : formats)
     format->write(
@@ -115,7 +120,10 @@ void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arg
 }
 
 Diagnostics judge_run(Simulation& run) {
-  return judge(run, waited_enough);
+  Diagnostics diagnostics = judge(run, waited_enough);
+  receipt_errors({{"constraint_error_m", largest_magnitude(diagnostics.at("constraint_max_m").values)},
+                  {"energy_balance_J", largest_magnitude(diagnostics.at("energy_balance_J").values)}});
+  return diagnostics;
 }
 
 int exit_code_of(const Simulation& run, const Diagnostics& diagnostics) {

@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "app/output/interrupt.hpp"
+#include "app/output/receipt.hpp"
 #include "app/verbs/run_figures.hpp"
 #include "core/export/atomic_file.hpp"
-#include "core/export/checksum.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
 #include "core/text/version.hpp"
@@ -53,9 +53,8 @@ std::vector<fs::path> journals_like(const std::string& journal, const fs::path& 
 }
 
 std::string study_identity(const std::string& what, const Scene& scene) {
-  Checksum build;
-  build.add(read_text_file("/proc/self/exe").text);
-  return "# " + what + ", by unfurl " + version() + " (build " + build.text() + ")\n" + scene_text(scene);
+  return "# " + what + ", by unfurl " + version() + " (build " + checksum_of_this_program() + ")\n" +
+         scene_text(scene);
 }
 
 void require_identity(const fs::path& directory, const std::string& identity, const std::string& cure) {
@@ -74,9 +73,10 @@ void require_identity(const fs::path& directory, const std::string& identity, co
 StudySession::StudySession(const Arguments& arguments, std::string task, const std::string& identity,
                            std::string journal)
     : arguments_(arguments),
-      output_(
-          arguments.output, arguments.force, journal.substr(0, journal.find_first_of("_.")),
-          journal.find('_') != std::string::npos ? DirectoryLock::Use::shareable : DirectoryLock::Use::alone),
+      output_(arguments.output, arguments.force, journal.substr(0, journal.find_first_of("_.")),
+              arguments.join                           ? DirectoryLock::Use::joined
+              : journal.find('_') != std::string::npos ? DirectoryLock::Use::shareable
+                                                       : DirectoryLock::Use::alone),
       journal_(std::move(journal)),
       progress_(std::move(task), arguments.quiet),
       writer_(figure_options(arguments)) {
@@ -84,16 +84,19 @@ StudySession::StudySession(const Arguments& arguments, std::string task, const s
 }
 
 void StudySession::begin(const std::string& identity) {
+  std::error_code error;
+  if (arguments_.force && arguments_.join)
+    throw UsageError("--force could remove what other workers of the --join write; use another directory");
   if (arguments_.force && output_.lock().unknown())
     throw FileError(directory(),
                     "is on a file system without locks, so --force could remove what another "
                     "unfurl is writing; use another directory");
   if (arguments_.force && output_.lock().alone()) begin_anew(identity);
-  if (!journals_like(journal_, directory()).empty())
-    require_identity(directory(), identity, "use another directory, or --force to begin anew");
+  const bool begun = arguments_.join ? fs::exists(directory() / "scene.toml", error)
+                                     : !journals_like(journal_, directory()).empty();
+  if (begun) require_identity(directory(), identity, "use another directory, or --force to begin anew");
   if (!identity.empty()) write_file_atomically(directory() / "scene.toml", identity);
-  output_.written().grows(journal_);
-  std::error_code error;
+  if (!arguments_.join) output_.written().grows(journal_);
   fs::create_directories(directory() / "figures", error);
   if (error) throw FileError(directory() / "figures", error.value());
   if (shard()) output_.lock().share();

@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <filesystem>
 #include <thread>
 #include <tuple>
 
@@ -24,7 +23,6 @@
 #include "render/gl/functions.hpp"
 #include "render/gl/graphics_error.hpp"
 #include "render/image/child_process.hpp"
-#include "render/image/png.hpp"
 
 namespace unfurl {
 
@@ -191,8 +189,8 @@ class Host {
       event.type = type;
       sdl().PushEvent(&event);
     };
-    panel.set_clipboard = [](const char* text) { sdl().SetClipboardText(text); };
-    panel.get_clipboard = [] {
+    panel.clipboard.set = [](const char* text) { sdl().SetClipboardText(text); };
+    panel.clipboard.get = [] {
       char* text = sdl().GetClipboardText();
       std::string copy = text != nullptr ? text : "";
       sdl().free(text);
@@ -204,7 +202,7 @@ class Host {
   int run() {
     auto last = Clock::now();
     bool more = true;
-    while (!panel_->state().wants_quit && !interrupted()) {
+    while (!panel_->state().closed && !interrupted()) {
       if (!wait(more)) break;
       const auto now = Clock::now();
       const double seconds = std::chrono::duration<double>(now - last).count();
@@ -214,7 +212,6 @@ class Host {
         window_.show(panel_->picture());
       else
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      take_screenshot();
     }
     remember();
     return exit_ok;
@@ -250,20 +247,6 @@ class Host {
     PanelSettings now = panel_->settings();
     std::tie(now.width, now.height) = window_.units();
     if (!(now == remembered_)) save_settings(settings_file(), now);
-  }
-
-  void take_screenshot() {
-    PanelState& state = panel_->state();
-    if (!state.wants_screenshot) return;
-    state.wants_screenshot = false;
-    try {
-      std::string name = "unfurl.png";
-      for (int i = 1; std::filesystem::exists(name); ++i) name = "unfurl_" + std::to_string(i) + ".png";
-      write_png(name, panel_->picture().read());
-      state.message = "screenshot: " + name;
-    } catch (const std::exception& error) {
-      state.message = error.what();
-    }
   }
 
   // Until there is a reason to draw; false: the window is to close.

@@ -97,7 +97,7 @@ const std::array rows{
     Row{"potential_energy_J", "potential energy", "J", Needs::nothing,
         [](const Instant& s) { return s.system().potential_energy(s.q); }},
     Row{"work_J", "work of the loads", "J", Needs::nothing, [](const Instant& s) { return s.work(); }},
-    Row{"dissipated_J", "energy taken by dampers", "J", Needs::dampers,
+    Row{"dissipated_J", "energy taken by dampers and friction", "J", Needs::dampers,
         [](const Instant& s) { return s.flow.dissipated[s.i]; }},
     Row{"drive_work_J", "work of the drives", "J", Needs::drives,
         [](const Instant& s) { return s.flow.drive_work[s.i]; }},

@@ -32,6 +32,13 @@ VectorXd EnergyMeter::acceleration(const State& state) {
   return a;
 }
 
+double EnergyMeter::taken(const State& state) {
+  if (!dampers_) return 0.0;
+  system_.follow(state);
+  system_.expand(state.z, q_);
+  return system_.taken(q_);
+}
+
 // c / m of the strongest damper, from above [1/s].
 double EnergyMeter::damping_bound(const State& state) {
   system_.expand(state.z, q_);
@@ -67,6 +74,7 @@ void EnergyMeter::add(const State& a, const State& b) {
   after_ = acceleration(b);
   last_ = b.t;
   const Quintic ends{a, b, before_, after_, b.t - a.t};
+  dissipated += taken(b) - taken(a);
   system_.follow(a);
   const double fastest = dampers_ ? damping_bound(a) : 0.0;
   const bool stiff = ends.h * fastest > 2;

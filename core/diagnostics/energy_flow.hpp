@@ -16,7 +16,7 @@ struct EnergyFlow {
   std::vector<double> load_work, dissipated, drive_work, impact_loss;
 };
 
-// Powers are integrated over each step with three Gauss points (order 6) on the quintic that has the
+// What dry friction takes is exact: a force times the way. Powers are integrated over each step with three Gauss points (order 6) on the quintic that has the
 // coordinates, rates and accelerations of the states at both ends: an independent quadrature, whatever the
 // method, of order 6 where the forces are smooth within steps. A drive's power -l lambda f' takes its
 // multiplier from the index-1 equations at those points.
@@ -38,6 +38,7 @@ class EnergyMeter {
   VectorXd acceleration(const State& state);
   double damping_power(const State& state, const VectorXd& acceleration, double after);
   double damping_bound(const State& state);
+  double taken(const State& state);
   double taken_by_stiff(const State& a, const State& b, double fastest);
 
   System system_;  // follows the states

@@ -27,6 +27,7 @@ constexpr std::string_view unfinished_prefix = ".unfurl-", unfinished_suffix = "
 constexpr std::size_t unfinished_digits = 16;
 
 std::atomic<FileWatcher*> file_watcher{nullptr};
+std::atomic<FileFinisher*> finisher_of_files{nullptr};
 
 // "no space left on device": as the end of a sentence, so in lower case.
 std::string cause_text(int error_number) {
@@ -153,6 +154,7 @@ PendingFile::~PendingFile() {
 }
 
 void PendingFile::commit(Flush flush) {
+  if (FileFinisher* finisher = file_finisher(); finisher) finisher->finish(temporary_, target_);
   if (flush == Flush::at_once && ::fsync(file_) != 0 && errno != EINVAL && errno != EROFS)
     throw FileError(target_, errno);
   if (FileWatcher* watcher = file_watcher; watcher)
@@ -169,6 +171,22 @@ void PendingFile::commit(Flush flush) {
     throw FileError(target_, error);
   }
   if (flush == Flush::at_once) flush_directory_of(target_);
+}
+
+FileFinisher* finish_files(FileFinisher* finisher) {
+  return finisher_of_files.exchange(finisher);
+}
+
+FileFinisher* file_finisher() {
+  return finisher_of_files;
+}
+
+void replace_bytes(const std::filesystem::path& path, std::string_view bytes) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_TRUNC | O_NOFOLLOW | O_CLOEXEC);
+  if (file < 0) throw FileError(path, errno);
+  const auto raw = std::as_bytes(std::span(bytes.data(), bytes.size()));
+  const int error = write_all(file, raw.data(), raw.size());
+  if (::close(file) != 0 || error != 0) throw FileError(path, error != 0 ? error : errno);
 }
 
 FileWatcher* watch_files(FileWatcher* watcher) {

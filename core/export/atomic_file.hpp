@@ -78,4 +78,23 @@ class FileWatcher {
 // One for the whole program; nullptr: none. Returns the one before.
 FileWatcher* watch_files(FileWatcher* watcher);
 
+// Completes files before they are checked and get their names; may be called by several threads at once.
+class FileFinisher {
+ public:
+  // What a program that writes a whole file by itself shall put into it as a comment.
+  virtual std::string note(const std::filesystem::path& target) = 0;
+  virtual void finish(const std::filesystem::path& temporary, const std::filesystem::path& target) = 0;
+
+ protected:
+  FileFinisher() = default;
+  FileFinisher(const FileFinisher&) = default;
+  FileFinisher& operator=(const FileFinisher&) = default;
+  ~FileFinisher() = default;
+};
+// One for the whole program; nullptr: none. Returns the one before.
+FileFinisher* finish_files(FileFinisher* finisher);
+FileFinisher* file_finisher();
+// Other bytes for a file that is there. Throws FileError.
+void replace_bytes(const std::filesystem::path& file, std::string_view bytes);
+
 }  // namespace unfurl

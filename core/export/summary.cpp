@@ -145,7 +145,9 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   if (any_elastic(model.structure)) summary["strength"] = strength_json(model.structure, diagnostics);
   summary["events"] = Json::array();
   for (const auto& event : run.events) {
-    summary["events"].push_back({{"name", event.name}, {"t_s", event.t}});
+    summary["events"].push_back({{"name", event.name}, {"t_s", event.t}, {"text", event.name}});
+    if (!event.kind.empty()) summary["events"].back()["kind"] = event.kind;
+    if (!event.element.empty()) summary["events"].back()["element"] = event.element;
     if (event.energy_lost != 0.0) summary["events"].back()["energy_lost_J"] = event.energy_lost;
     if (!std::isnan(event.singular_value)) summary["events"].back()["singular_value"] = event.singular_value;
   }

@@ -5,7 +5,9 @@
 
 #include "core/forces/constant_forces.hpp"
 #include "core/forces/damping.hpp"
+#include "core/forces/friction.hpp"
 #include "core/forces/latch_spring.hpp"
+#include "core/forces/offload.hpp"
 #include "core/forces/spring.hpp"
 #include "core/forces/varying_loads.hpp"
 
@@ -26,6 +28,10 @@ std::span<const ForceKind> force_kinds() {
       ForceKind{"joint_damping", "viscous torque between the rods that meet at a node", joint_damping_block,
                 Members::each_node, joint_damping_params, fill_damping},
       ForceKind{"drag", "viscous force on nodes", drag_block, Members::each_node, drag_params, fill_damping},
+      ForceKind{"friction", "dry friction on a hinge, a length or a coordinate: it sticks or slips",
+                friction_block, Members::measure, friction_params, fill_friction},
+      ForceKind{"offload", "gravity offload of a laboratory test: each node hangs with its weight on a rope",
+                offload_block, Members::each_node, offload_params, fill_offload},
       ForceKind{
           "latch",
           "what locks the structure at solver.at_deployed = \"latch\" gives way: a spring and damper on "

@@ -49,6 +49,10 @@ class ForceBlock {
   virtual bool has_power() const { return false; }
   virtual bool dissipative() const { return false; }
   virtual double power(const Moment&, const double*, const double*) const { return 0.0; }
+  // Where that power is the rate of a function of the pose, which a difference tells better than a
+  // quadrature: what has been taken [J], dtaken/dt = -power.
+  virtual bool takes_by_pose() const { return false; }
+  virtual double taken(const Moment&, const double*) const { return 0.0; }
   // dF/dq and dF/dv, for Newton matrices; what is left out costs iterations, not accuracy.
   virtual void derivatives(const Moment&, const double*, const double*, ForceDerivative&,
                            ForceDerivative&) const {}
@@ -61,7 +65,8 @@ enum class Members {
   node_list,  // nodes = [A, B, ...]: all of them in one
   two_nodes,  // nodes = [A, B]
   rod,        // rod: one name; its direction follows the rod
-  angle       // rods = [R, S], nodes = [A, HINGE, B], or fold_angle = true
+  angle,      // rods = [R, S], nodes = [A, HINGE, B], or fold_angle = true
+  measure     // an angle as above; nodes = [A, B]: their distance; with a direction: a coordinate
 };
 
 struct ForceKind {

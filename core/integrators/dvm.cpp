@@ -251,9 +251,8 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
       if (frozen_iterations(report)) return;
     }
   }
-  if (eq_.at_ends) return;
   if ((stiff_ || is_stiff()) && stiff_iterations(state, report)) return;
-  if (!small_) return;
+  if (!small_ || eq_.at_ends) return;
   predict(state, h);
   report.status = newton_.solve(eq_, wanted, accepted, false, report);
   frozen_ = false;
@@ -261,7 +260,7 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
 
 // The frozen iteration contracts by about the larger of (h omega)^2 and h c / m, over some s^2 and s.
 bool Dvm::is_stiff() {
-  if (system_.constant_forces() || eq_.at_ends) return false;
+  if (system_.constant_forces()) return false;
   eq_.look_at_forces();
   return eq_.h_rate() > 1 || eq_.h_omega() > 1;
 }
@@ -271,7 +270,7 @@ bool Dvm::is_stiff() {
 // A long step would keep such rates, of changing sign. What follows is slow.
 double Dvm::longest_step(const State& state, double h) {
   constexpr double least_share = 2e-7;  // of a step; shorter ones are little more than noise
-  if (settled_ || system_.constant_forces() || eq_.at_ends) return h;
+  if (settled_ || system_.constant_forces()) return h;
   if (settling_ == 0) {
     eq_.start(state.t, state.z, state.w, h);
     const double z = eq_.h_rate();

@@ -54,17 +54,22 @@ void add_force_blocks(Entries& entries, StageEquations& eq) {
   }
 }
 
+// Rows of multipliers: of every stage, or the one set of the variant with constraints at the ends.
+Index multipliers(const StageEquations& eq) {
+  return eq.lambda.rows() * (eq.at_ends ? 1 : eq.c.s - 1);
+}
+
 Columns newton_matrix(StageEquations& eq, const VectorXd& scale) {
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
   Entries entries;
   SparseRows G = eq.system.jacobian_pattern();
   std::vector<double> scratch;
   for (Index k = 0; k < stages; ++k) {
-    eq.system.jacobian(eq.Q.col(k), G, scratch);
-    for (Index j = 0; j < stages; ++j) {
+    for (Index j = 0; j < stages; ++j)
       add_block(entries, eq.system.mass(), k * n, j * n, eq.c.C(k, j), false);
-      add_block(entries, G, k * n, stages * n + j * m, eq.c.C(k, j), true);
-    }
+    if (eq.at_ends) continue;
+    eq.system.jacobian(eq.Q.col(k), G, scratch);
+    for (Index j = 0; j < stages; ++j) add_block(entries, G, k * n, stages * n + j * m, eq.c.C(k, j), true);
     if (k > 0) {
       const SparseRows H = eq.system.curvature(eq.Q.col(k), eq.lambda.col(k));
       add_block(entries, H, k * n, (k - 1) * n, -eq.h * eq.h * eq.c.b[k], false);
@@ -72,22 +77,30 @@ Columns newton_matrix(StageEquations& eq, const VectorXd& scale) {
     eq.system.jacobian(eq.Q.col(k + 1), G, scratch);
     add_block(entries, G, stages * n + k * m, k * n, 1.0, false);
   }
+  if (eq.at_ends) {
+    eq.system.jacobian(eq.Q.col(0), G, scratch);
+    add_block(entries, G, 0, stages * n, 1.0, true);
+    eq.system.jacobian(eq.Q.col(stages), G, scratch);
+    add_block(entries, G, stages * n, (stages - 1) * n, 1.0, false);
+  }
+  const Index size = stages * n + multipliers(eq);
   if (!eq.system.constant_forces()) add_force_blocks(entries, eq);
   for (auto& e : entries) e = {e.row(), e.col(), e.value() * scale[e.row()] * scale[e.col()]};
-  for (Index i = stages * n; i < stages * (n + m); ++i)
+  for (Index i = stages * n; i < size; ++i)
     entries.emplace_back(static_cast<int>(i), static_cast<int>(i), -SaddleSolver::standard_regularisation);
-  Columns A(stages * (n + m), stages * (n + m));
+  Columns A(size, size);
   A.setFromTriplets(entries.begin(), entries.end());
   return A;
 }
 
 VectorXd right_hand_side(const StageEquations& eq) {
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
-  VectorXd b(stages * (n + m));
+  VectorXd b(stages * n + multipliers(eq));
   for (Index k = 0; k < stages; ++k) {
     b.segment(k * n, n) = -eq.h * eq.momentum.col(k);
-    b.segment(stages * n + k * m, m) = -eq.phi.col(k);
+    if (!eq.at_ends) b.segment(stages * n + k * m, m) = -eq.phi.col(k);
   }
+  if (eq.at_ends) b.tail(m) = -eq.phi.col(stages - 1);
   return b;
 }
 
@@ -95,9 +108,10 @@ void apply(StageEquations& eq, const VectorXd& x) {
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
   for (Index j = 0; j < stages; ++j) {
     eq.dX.col(j) += x.segment(j * n, n);
-    for (Index k = 0; k < stages; ++k)
+    for (Index k = 0; k < stages && !eq.at_ends; ++k)
       eq.lambda.col(k) -= (eq.c.C(k, j) / (eq.h * eq.h * eq.c.b[k])) * x.segment(stages * n + j * m, m);
   }
+  if (eq.at_ends) eq.lambda.col(0) -= x.tail(m) / (eq.h * eq.h * eq.multiplier_weight(0));
 }
 
 }  // namespace
@@ -123,11 +137,9 @@ void FullNewton::set_scale(const StageEquations& eq) {
   std::vector<double> scratch;
   eq.system.jacobian(eq.Q.col(0), G, scratch);
   const Scales s = scales_of(eq, G);
-  scale_.resize(stages * (n + m));
-  for (Index k = 0; k < stages; ++k) {
-    scale_.segment(k * n, n) = s.coordinate;
-    scale_.segment(stages * n + k * m, m) = s.multiplier;
-  }
+  scale_.resize(stages * n + multipliers(eq));
+  for (Index k = 0; k < stages; ++k) scale_.segment(k * n, n) = s.coordinate;
+  for (Index at = stages * n; m > 0 && at < scale_.size(); at += m) scale_.segment(at, m) = s.multiplier;
 }
 
 StepStatus FullNewton::solve(StageEquations& eq, double wanted, double accepted, bool keep,

@@ -15,10 +15,12 @@ namespace unfurl {
 //     sum_j C_kj (M dX_j + G(Q_k)^T Y_j) - h^2 b_k H_k dX_k = -h r_k,   H_k = sum_i lambda_ki Hess Phi_i(Q_k)
 //     G(Q_j) dX_j - e Y_j = -Phi_j
 //
-// with the derivatives of the forces that vary added to the first row, and a small e for redundant rows. One
-// matrix serves as long as every iteration gains a digit. It is slow (a sparse LU of all stages at once, with
-// allocation) and meant for the few steps near singular poses at which the simplified iteration does not
-// contract, and for forces that are stiff at the step, of which that iteration knows nothing.
+// (with constraints at the ends only, one Y = -h^2/2 dlambda beside G(Q_1)^T in the first row, and only the
+// last of the second), with the derivatives of the forces that vary added to the first row, and a small e for
+// redundant rows. One matrix serves as long as every iteration gains a digit. It is slow (a sparse LU of all
+// stages at once, with allocation) and meant for the few steps near singular poses at which the simplified
+// iteration does not contract, and for forces that are stiff at the step, of which that iteration knows
+// nothing.
 class FullNewton {
  public:
   // keep: begin with the matrix of the last step, where that is known.

@@ -51,16 +51,17 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   return acceleration.allFinite() && lambda.allFinite();
 }
 
-bool Index1::correct(double t, const ConstVec& z, const ConstVec& w, MutVec lambda) {
+bool Index1::correct(double t, const ConstVec& z, const ConstVec& w, std::span<VectorXd> lambdas) {
   if (!assemble(t, z, w)) return false;
-  force_.noalias() -= G_.transpose() * lambda;
-  VectorXd acceleration(w.size()), change(lambda.size());
-  saddle_.solve(force_, bias_, acceleration, change, refinements_);
-  // What no acceleration can reach is round-off of the velocities, and would come back over e.
-  bias_.noalias() = G_ * acceleration;
-  saddle_.solve(force_, bias_, acceleration, change, refinements_);
-  if (!change.allFinite()) return false;
-  lambda += change;
+  VectorXd acceleration(w.size()), change(bias_.size()), force(w.size()), rate(bias_.size());
+  for (VectorXd& lambda : lambdas) {
+    force.noalias() = force_ - G_.transpose() * lambda;
+    saddle_.solve(force, bias_, acceleration, change, refinements_);
+    // What no acceleration can reach is round-off of the velocities, and would come back over e.
+    rate.noalias() = G_ * acceleration;
+    saddle_.solve(force, rate, acceleration, change, refinements_);
+    lambda += change;
+  }
   return true;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
+
 #include "core/math/saddle_solver.hpp"
 #include "core/system/system.hpp"
 
@@ -24,8 +26,8 @@ class Index1 {
   // False where the factorisation broke down or the result is not finite.
   bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda);
   // Where G has lost rank: the multipliers that the equations determine, next to those given, of which the
-  // rest is kept. Directions of singular values below some 1e-7 count as lost.
-  bool correct(double t, const ConstVec& z, const ConstVec& w, MutVec lambda);
+  // rest is kept; for each of `lambdas`. Directions of singular values below some 1e-7 count as lost.
+  bool correct(double t, const ConstVec& z, const ConstVec& w, std::span<VectorXd> lambdas);
 
  private:
   bool assemble(double t, const ConstVec& z, const ConstVec& w);

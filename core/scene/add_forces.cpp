@@ -54,12 +54,18 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
     case Members::angle:
       measured(angle_of(e, find));
       break;
+    case Members::measure:
+      measured(measure_of(e, find));
+      break;
   }
   return forces;
 }
 
 void add_force(const SceneElement& e, ElementAdder& to) {
   const ForceKind& kind = force_kind(e.kind);
+  if (e.kind == "offload" && to.structure.gravity.isZero(0.0))
+    to.structure.notes.push_back(
+        problem_text({e.where, e.key, "does nothing without a weight: gravity.acceleration is 0"}));
   for (Force& force : forces_on(e, kind.members, to.find)) {
     try {
       kind.fill(e.values, force);
@@ -80,6 +86,7 @@ const std::vector<ElementKind>& scene_forces() {
         found.push_back({row.kind, row.help, row.members, row.params, add_force,
                          row.members == Members::two_nodes ? length_of
                          : row.members == Members::angle   ? angle_of
+                         : row.members == Members::measure ? measure_of
                                                            : nullptr});
     return found;
   }();

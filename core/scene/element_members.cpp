@@ -133,6 +133,44 @@ std::optional<Measure> angle_of(const SceneElement& element, MemberFinder& find)
   return measure;
 }
 
+std::optional<Measure> coordinate_of(const SceneElement& e, MemberFinder& find) {
+  Measure measure;
+  measure.kind = MeasureKind::coordinate;
+  measure.nodes = find.nodes(e, false);
+  measure.axis = vec3(e.values, "direction");
+  if (measure.nodes.empty()) return {};
+  if (measure.nodes.size() > 2) {
+    find.problem(e, "nodes", "must be one or two");
+    return {};
+  }
+  if (!(measure.axis.stableNorm() > 0)) {
+    find.problem(e, "direction", "must not be zero");
+    return {};
+  }
+  measure.axis.stableNormalize();
+  return measure;
+}
+
+std::optional<Measure> driven_angle(const SceneElement& e, MemberFinder& find) {
+  const auto measure = angle_of(e, find);
+  if (!measure || measure->kind == MeasureKind::fold || counts_turns(*measure) ||
+      std::abs(std::sin(measure->reference)) >= 1e-6)
+    return measure;
+  find.problem(e, "axis",
+               "is missing: the rods are in line at t = 0, where an angle without an axis has no direction "
+               "to grow in");
+  return {};
+}
+
+std::optional<Measure> measure_of(const SceneElement& element, MemberFinder& find) {
+  if (element.fold_angle || !element.rods.empty() || element.nodes.size() == 3)
+    return driven_angle(element, find);
+  if (!vec3(element.values, "direction").isZero(0.0)) return coordinate_of(element, find);
+  if (element.nodes.size() == 2) return length_of(element, find);
+  find.problem(element, "direction", "is missing: one node has a coordinate along a direction");
+  return {};
+}
+
 double start_value(const SceneElement& element, const Structure& structure) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const bool force = element.key.starts_with("forces");

@@ -53,6 +53,12 @@ struct ElementAdder {
 // A required direction, of any length but 0.
 ParamSpec direction_param(std::string_view name, std::string_view help);
 
+// A coordinate of a node, or the difference of two, along `direction`; any measure that the members say.
+std::optional<Measure> coordinate_of(const SceneElement& element, MemberFinder& find);
+std::optional<Measure> measure_of(const SceneElement& element, MemberFinder& find);
+// An angle that may grow: without an axis not one of rods in line.
+std::optional<Measure> driven_angle(const SceneElement& element, MemberFinder& find);
+
 // Kinds of [[constraints]] that hold, drive or bound a measure.
 const std::vector<ElementKind>& measured_kinds();
 

@@ -77,15 +77,21 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
       element.rods = entry.names("rod");
       return wants("rod", element.rods, 1);
     case Members::angle:
+    case Members::measure:
       break;
   }
   element.fold_angle = entry.read({boolean_param("fold_angle", false, "")}).boolean("fold_angle");
   if (entry.has("rods")) element.rods = entry.names("rods");
   if (entry.has("nodes")) element.nodes = entry.names("nodes");
   wants("rods", element.rods, 2);
-  wants("nodes", element.nodes, 3);
+  if (members == Members::angle) wants("nodes", element.nodes, 3);
+  if (members == Members::measure && element.nodes.size() > 3)
+    entry.problem("nodes", "must be 1, 2 or 3 names; got " + std::to_string(element.nodes.size()));
   if (entry.has("rods") + entry.has("nodes") + static_cast<int>(element.fold_angle) != 1)
-    entry.problem("", "must name one angle: rods = [R, S], or nodes = [A, HINGE, B], or fold_angle = true");
+    entry.problem("",
+                  members == Members::angle
+                      ? "must name one angle: rods = [R, S], or nodes = [A, HINGE, B], or fold_angle = true"
+                      : "must name one measure: " + std::string(members_text(members)));
 }
 
 std::string made_name(const SceneElement& element) {
@@ -122,6 +128,8 @@ std::string_view members_text(Members members) {
       return "rod = its name";
     case Members::angle:
       return "rods = [R, S], nodes = [A, HINGE, B] or fold_angle = true";
+    case Members::measure:
+      return "rods = [R, S], nodes = [A, HINGE, B] or [A, B] or [A] with a direction, or fold_angle = true";
   }
   return "";
 }

@@ -49,6 +49,13 @@ Keys member_keys(Members members) {
       return {names_key("nodes", 2, "A, B")};
     case Members::rod:
       return {text_param("rod", "", "its name; the direction follows it")};
+    case Members::measure:
+      return {names_key("rods", 2, "R, S: the angle between two rods that share a node", false),
+              names_key("nodes", 0,
+                        "A, HINGE, B: the angle at the middle one; A, B: their distance, or with direction the "
+                        "difference of their coordinates; A: its coordinate",
+                        false),
+              boolean_param("fold_angle", false, "the structure's fold angle, in place of rods and nodes")};
     case Members::angle:
       break;
   }

@@ -59,7 +59,7 @@ const std::vector<ParamSpec>& length_params() {
   return measured_once([] { return motion_params("m"); });
 }
 const std::vector<ParamSpec>& coordinate_params() {
-  return once(
+  return measured_once(
       [] { return std::vector{direction_param("direction", "of the coordinate")} + motion_params("m"); });
 }
 const std::vector<ParamSpec>& angle_params() {
@@ -83,13 +83,25 @@ const std::vector<ParamSpec>& length_stop_params() {
   return measured_once([] { return stop_params("m"); });
 }
 const std::vector<ParamSpec>& coordinate_stop_params() {
-  return once(
+  return measured_once(
       [] { return std::vector{direction_param("direction", "of the coordinate")} + stop_params("m"); });
 }
 const std::vector<ParamSpec>& angle_stop_params() {
   return measured_once([] {
     return std::vector{vector_param("axis", "", {0, 0, 0}, "of the hinge, as for angle")} +
            stop_params("deg");
+  });
+}
+
+const std::vector<ParamSpec>& clearance_params() {
+  return measured_once([] {
+    ParamSpec clearance =
+        positive_param("clearance", "m", 1e-4, "of the pin in its hole: the distance of the nodes at most");
+    clearance.required = true;
+    return std::vector{
+        clearance,
+        real_param("restitution", "", 0.0, 0.0, 1.0, "rebound speed over approach speed; 0: no rebound"),
+        real_param("rest_speed", "m/s", 1e-3, 0.0, infinity, "rebounds slower than this rest on the rim")};
   });
 }
 
@@ -197,40 +209,31 @@ void push_stop(const SceneElement& e, ElementAdder& to, Measure measure) {
   to.structure.stops.push_back(std::move(stop));
 }
 
-std::optional<Measure> coordinate_of(const SceneElement& e, MemberFinder& find) {
+// |x_a - x_b| <= c. The nodes may begin at one place: what acts is the rim, which they are not at.
+void add_clearance(const SceneElement& e, ElementAdder& to) {
   Measure measure;
-  measure.kind = MeasureKind::coordinate;
-  measure.nodes = find.nodes(e, false);
-  measure.axis = vec3(e.values, "direction");
-  if (measure.nodes.empty()) return {};
-  if (measure.nodes.size() > 2) {
-    find.problem(e, "nodes", "must be one or two");
-    return {};
+  measure.nodes = to.find.nodes(e, false);
+  if (measure.nodes.size() != 2) return;
+  const double clearance = e.values.real("clearance"), initial = to.find.initial(measure);
+  if (initial > clearance * (1 + 1e-9)) {
+    std::ostringstream text;
+    text << "is passed already at t = 0, where the nodes are " << initial << " m apart";
+    return to.find.problem(e, "clearance", text.str());
   }
-  if (!(measure.axis.stableNorm() > 0)) {
-    find.problem(e, "direction", "must not be zero");
-    return {};
-  }
-  measure.axis.stableNormalize();
-  return measure;
+  Stop stop{.name = e.name, .measure = measure};
+  stop.max = clearance;
+  stop.restitution = e.values.real("restitution");
+  stop.rest_speed = e.values.real("rest_speed");
+  to.structure.stops.push_back(std::move(stop));
 }
 
-std::optional<Measure> driven_angle(const SceneElement& e, MemberFinder& find) {
-  const auto measure = angle_of(e, find);
-  if (!measure || !is_unsigned(*measure) || std::abs(std::sin(measure->reference)) >= 1e-6) return measure;
-  find.problem(e, "axis",
-               "is missing: the rods are in line at t = 0, where an angle without an axis has no direction "
-               "to grow in");
-  return {};
-}
-
-template <std::optional<Measure> (*measure_of)(const SceneElement&, MemberFinder&)>
+template <std::optional<Measure> (*measured)(const SceneElement&, MemberFinder&)>
 void add_drive(const SceneElement& e, ElementAdder& to) {
-  if (const auto measure = measure_of(e, to.find)) push_drive(e, to, *measure);
+  if (const auto measure = measured(e, to.find)) push_drive(e, to, *measure);
 }
-template <std::optional<Measure> (*measure_of)(const SceneElement&, MemberFinder&)>
+template <std::optional<Measure> (*measured)(const SceneElement&, MemberFinder&)>
 void add_stop(const SceneElement& e, ElementAdder& to) {
-  if (const auto measure = measure_of(e, to.find)) push_stop(e, to, *measure);
+  if (const auto measure = measured(e, to.find)) push_stop(e, to, *measure);
 }
 
 }  // namespace
@@ -249,6 +252,8 @@ const std::vector<ElementKind>& measured_kinds() {
        Members::node_list, coordinate_stop_params, add_stop<coordinate_of>, coordinate_of},
       {"angle_stop", "end stop: the angle between two rods, or the fold angle, stays within limits",
        Members::angle, angle_stop_params, add_stop<driven_angle>, angle_of},
+      {"clearance", "a pin with play: two nodes stay within a distance of each other", Members::two_nodes,
+       clearance_params, add_clearance},
   };
   return kinds;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/deployed_event.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,6 +26,8 @@ constexpr double short_enough = 2.3e-3;
 // Released at rest from the sine s_0, time goes like sqrt(1 - s / s_0): samples keep well away from that.
 constexpr double from_start = 0.25;
 constexpr int most_stations = 200;
+// A share of the multipliers that poses next to the deployed one must agree to.
+constexpr double most_open = 1e-5;
 constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 // Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
 constexpr int most_lengths = 40;
@@ -174,27 +177,71 @@ class Locator {
       samples_.push_back({at, std::move(state)});
   }
 
-  // Lagrange extrapolation of everything, as functions of the sine, to zero.
+  // Shares of the samples in the value at zero of the polynomial of `degree` in the sine that fits them best,
+  // each weighted with sine^4: an error d of a rod's length turns it by d / (l sine), and what the hinges'
+  // velocities and accelerations take from that is d / sine^4 in the forces.
+  VectorXd shares_at_zero(int degree) const {
+    const Index count = static_cast<Index>(samples_.size());
+    MatrixXd powers(count, degree + 1);
+    VectorXd weight(count);
+    for (Index i = 0; i < count; ++i) {
+      const double x = samples_[static_cast<std::size_t>(i)].sine / samples_.front().sine;
+      weight[i] = std::pow(x, 4);
+      for (Index j = 0; j <= degree; ++j) powers(i, j) = weight[i] * std::pow(x, static_cast<double>(j));
+    }
+    // The first row of the pseudo-inverse, by R^T y = e_0: shares = W Q y.
+    const Eigen::HouseholderQR<MatrixXd> qr(powers);
+    const VectorXd y = qr.matrixQR()
+                           .topRows(degree + 1)
+                           .triangularView<Eigen::Upper>()
+                           .transpose()
+                           .solve(VectorXd::Unit(degree + 1, 0));
+    VectorXd shares = VectorXd::Zero(count);
+    shares.head(degree + 1) = y;
+    shares.applyOnTheLeft(qr.householderQ());
+    return weight.cwiseProduct(shares);
+  }
+  VectorXd at_zero(const VectorXd& shares, VectorXd State::*part) const {
+    VectorXd sum = VectorXd::Zero((samples_.front().state.*part).size());
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      sum += shares[static_cast<Index>(i)] * (samples_[i].state.*part);
+    return sum;
+  }
+
+  // The pose itself is as good as any for all of the multipliers but what its loss of rank leaves open. Of
+  // that a fit of low degree is truer than interpolation where round-off, d / sine^4, is more than what the
+  // degree leaves: the degree at which it changes least. Where even that is not known, what is left open is
+  // chosen as for any multipliers that are not unique: least norm.
+  VectorXd lambda_at_zero(const State& at) {
+    std::vector<VectorXd> fits{VectorXd::Zero(at.lambda.size())};
+    for (int degree = 0; degree < static_cast<int>(samples_.size()); ++degree)
+      fits.push_back(at_zero(shares_at_zero(degree), &State::lambda));
+    index1_.correct(at.t, at.z, at.w, fits);
+    double least = most_open * fits[0].norm();
+    std::size_t best = 0;
+    for (std::size_t i = 2; i < fits.size(); ++i) {
+      const double change = (fits[i] - fits[i - 1]).norm();
+      if (!(change < least)) continue;
+      least = change;
+      best = i;
+    }
+    return fits[best];
+  }
+
+  // Everything as a function of the sine, at zero.
   std::optional<State> extrapolate() {
+    const int most = static_cast<int>(samples_.size()) - 1;
+    const VectorXd shares = shares_at_zero(most);  // interpolation
     State out = samples_.front().state;
     out.t = 0;
-    for (VectorXd* v : {&out.z, &out.w, &out.lambda}) v->setZero();
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      double weight = 1;
-      for (std::size_t j = 0; j < samples_.size(); ++j)
-        if (j != i) weight *= samples_[j].sine / (samples_[j].sine - samples_[i].sine);
-      out.t += weight * samples_[i].state.t;
-      out.z += weight * samples_[i].state.z;
-      out.w += weight * samples_[i].state.w;
-      out.lambda += weight * samples_[i].state.lambda;
-    }
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      out.t += shares[static_cast<Index>(i)] * samples_[i].state.t;
+    out.z = at_zero(shares, &State::z);
+    out.w = at_zero(shares, &State::w);
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
     followed_.follow(samples_.front().state);
     followed_.count_on(out);
-    // An error d of a rod's length turns it by d / (l sine), and what the hinges' velocities and
-    // accelerations take from that is d / sine^4 in the forces of the nearest samples. The pose itself is as
-    // good as any: its equations say all of the multipliers but what its loss of rank leaves open.
-    index1_.correct(out.t, out.z, out.w, out.lambda);
+    out.lambda = lambda_at_zero(out);
     return out;
   }
 

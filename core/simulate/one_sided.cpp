@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/constraints/linear_rows.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -14,19 +16,27 @@ constexpr double force_zero = 1e-10;  // of the largest multiplier
 }  // namespace
 
 OneSided::OneSided(const Structure& structure, const SolverOptions& options)
-    : stops_(structure), step_(options.step), eliminate_linear_(options.eliminate_linear) {
+    : stops_(structure),
+      step_(options.step),
+      length_(reference_length(structure)),
+      eliminate_linear_(options.eliminate_linear) {
+  const std::vector<int> followed = followed_angles(structure).of_force;
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
     const Force& f = structure.forces[i];
     if (f.one_sided && (f.stiffness > 0 || f.damping > 0))
       cables_.push_back(
           {i, f.name, MeasureFunction(f.measure, structure.deployment), f.rest, f.stiffness, f.damping});
+    if (f.kind == "friction" && f.holding > 0)
+      frictions_.push_back({i, f.name, f.measure, MeasureFunction(f.measure, structure.deployment), f.kinetic,
+                            f.holding, followed[i]});
   }
-  active_.assign(stops_.size() + cables_.size(), false);
+  active_.assign(stops_.size() + cables_.size() + frictions_.size(), false);
   shift_.setZero(static_cast<Index>(stops_.size()));
 }
 
 bool OneSided::any_active() const {
-  return std::find(active_.begin(), active_.end(), true) != active_.end();
+  return std::find(active_.begin(), active_.end(), true) != active_.end() ||
+         std::any_of(frictions_.begin(), frictions_.end(), [](const Friction& f) { return f.slip != 0; });
 }
 
 bool OneSided::any_held() const {
@@ -34,10 +44,39 @@ bool OneSided::any_held() const {
 }
 
 bool OneSided::relax_cables() {
-  const auto cables = active_.begin() + static_cast<std::ptrdiff_t>(stops_.size());
-  const bool any = std::find(cables, active_.end(), true) != active_.end();
-  std::fill(cables, active_.end(), false);
+  const auto cables = active_.begin() + static_cast<std::ptrdiff_t>(stops_.size()),
+             behind = active_.begin() + static_cast<std::ptrdiff_t>(first_friction());
+  const bool any = std::find(cables, behind, true) != behind;
+  std::fill(cables, behind, false);
   return any;
+}
+
+const MeasureFunction& OneSided::measure(std::size_t i) const {
+  return is_stop(i) ? stops_[i].function : friction(i).function;
+}
+
+double OneSided::near(std::size_t i, const State& state) const {
+  if (is_stop(i)) return stops_[i].near(state);
+  const Friction& f = friction(i);
+  return f.followed >= 0 && f.followed < state.angles.size() ? state.angles[f.followed]
+                                                             : f.function.reference();
+}
+
+void OneSided::set_slip(std::size_t i, int slip) {
+  Friction& f = frictions_[i - first_friction()];
+  f.reversed = !active_[i] && f.slip == -slip;
+  f.slip = slip;
+  active_[i] = false;
+}
+
+void OneSided::stick(std::size_t i, const System& system, const State& state) {
+  Friction& f = frictions_[i - first_friction()];
+  if (active_[i]) return;
+  VectorXd q(system.coordinates());
+  system.expand(state.z, q);
+  f.held_at = f.function.value(q.data(), near(i, state));
+  f.slip = 0;
+  active_[i] = true;
 }
 
 std::set<std::size_t> OneSided::held() const {
@@ -47,9 +86,28 @@ std::set<std::size_t> OneSided::held() const {
   return out;
 }
 
-std::string OneSided::text(std::size_t i) const {
-  if (is_stop(i)) return (active_[i] ? "rests on stop " : "leaves stop ") + stops_[i].name;
-  return cables_[i - stops_.size()].name + (active_[i] ? " pulls" : " is slack");
+Event OneSided::event(std::size_t i, double t) const {
+  Event out{.name = {}, .t = t};
+  const bool on = active_[i];
+  if (is_stop(i)) {
+    out.element = stops_[i].name;
+    out.name = (on ? "rests on stop " : "leaves stop ") + out.element;
+    out.kind = on ? "contact" : "free";
+  } else if (is_friction(i)) {
+    const Friction& f = friction(i);
+    out.element = f.name;
+    out.kind = f.slip == 0 ? "stick" : f.reversed ? "reversal" : "slip";
+    out.name = f.name + (f.slip == 0 ? " sticks" : f.reversed ? " slips the other way" : " slips");
+  } else {
+    out.element = cables_[i - stops_.size()].name;
+    out.name = out.element + (on ? " pulls" : " is slack");
+    out.kind = on ? "taut" : "slack";
+  }
+  return out;
+}
+
+bool OneSided::touches(std::size_t i, const System& system, const State& state) const {
+  return active_[i] || stops_.gap(i, system, state) - shift_[static_cast<Index>(i)] <= stops_.touching();
 }
 
 void OneSided::touch(const System& system, const State& state) {
@@ -57,7 +115,7 @@ void OneSided::touch(const System& system, const State& state) {
     shift_[static_cast<Index>(i)] = active_[i] ? 0.0 : std::min(0.0, stops_.gap(i, system, state));
 }
 
-void OneSided::find_modes(const System& system, const State& state) {
+void OneSided::find_cables(const System& system, const State& state) {
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
@@ -76,7 +134,7 @@ double OneSided::stretch(const Cable& cable, const VectorXd& q, const VectorXd& 
   return cable.damping > 0 ? std::min(s, n / (cable.stiffness + cable.damping / step_)) : s;
 }
 
-void OneSided::measure_pushes(const Model& model, const State& state, Probe& probe) {
+void OneSided::measure_held(const Model& model, const State& state, Probe& probe) {
   if (!index1_) {
     followed_.emplace(model.system);
     index1_ = std::make_unique<Index1>(*followed_);
@@ -91,19 +149,43 @@ void OneSided::measure_pushes(const Model& model, const State& state, Probe& pro
   const std::set<std::size_t> held = this->held();
   for (const std::size_t i : held)
     probe.margins[static_cast<Index>(i)] = stops_.push(i, model, held, with_forces) / zero;
+  // What sticks lies before the stops that are held, in its order.
+  auto constraint = static_cast<int>(std::ssize(model.structure.constraints) - std::ssize(held));
+  for (std::size_t i = size(); i-- > first_friction();) {
+    if (!active_[i]) continue;
+    const double effort = with_forces.lambda[model.system.constraint_row(--constraint)] *
+                          (measure(i).is_angle() ? length_ : 1.0);
+    probe.margins[static_cast<Index>(i)] =
+        (holding(i) - std::abs(effort)) / std::max(zero, force_zero * holding(i));
+  }
+}
+
+void OneSided::measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
+                                Probe& probe) {
+  const Friction& f = friction(i);
+  gradient_.resize(static_cast<Index>(f.function.stencil().size()));
+  f.function.value_and_gradient(q.data(), gradient_.data(), near(i, state));
+  const double rate = f.function.rate(gradient_.data(), v.data()) / zero_rate();
+  probe.margins[static_cast<Index>(i)] = f.slip != 0 ? f.slip * rate : 2 - std::abs(rate);
 }
 
 void OneSided::measure(const Model& model, const State& state, bool forces, Probe& probe) {
   const System& system = model.system;
   const auto count = static_cast<Index>(active_.size()), stops = static_cast<Index>(stops_.size());
   probe.margins = probe.rates = VectorXd::Constant(count, unknown);
-  if (forces && any_held()) measure_pushes(model, state, probe);
+  const bool sticks = std::find(active_.begin() + static_cast<std::ptrdiff_t>(first_friction()),
+                                active_.end(), true) != active_.end();
+  if (forces && (any_held() || sticks)) measure_held(model, state, probe);
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
   for (Index i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    if (i < stops && active_[k]) continue;
+    if ((i < stops || is_friction(k)) && active_[k]) continue;
+    if (is_friction(k)) {
+      measure_friction(q, v, state, k, probe);
+      continue;
+    }
     double rate = 0, margin = 0;
     if (i < stops) {
       margin = stops_.gap(k, state, q, v, rate) - shift_[i];
@@ -129,6 +211,14 @@ std::shared_ptr<const Model> OneSided::model(const Model& base) const {
   Structure structure = base.structure;
   for (std::size_t k = 0; k < cables_.size(); ++k)
     if (active_[stops_.size() + k]) structure.forces[cables_[k].force].one_sided = false;
+  for (std::size_t k = 0; k < frictions_.size(); ++k) {
+    const Friction& f = frictions_[k];
+    structure.forces[f.force].slip = f.slip;
+    if (!active_[first_friction() + k]) continue;
+    TimeFunction held_at;
+    held_at.offset = f.held_at;
+    structure.constraints.push_back({"measure", f.name + " (sticks)", {}, {}, 0.0, f.measure, held_at});
+  }
   stops_.hold(held(), structure);
   System system(structure, eliminate_linear_);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What acts on one side only: end stops, which push or are out of touch, and cables, which pull or are slack.
+// What acts on one side only: end stops, which push or are out of touch, cables, which pull or are slack, and
+// dry friction, which holds or slips.
 #pragma once
 
 #include <memory>
@@ -10,45 +11,69 @@
 #include "core/integrators/index1.hpp"
 #include "core/integrators/solver_options.hpp"
 #include "core/simulate/crossing.hpp"
+#include "core/simulate/simulation.hpp"
 #include "core/simulate/stops.hpp"
 
 namespace unfurl {
 
-// Each of them is at any time in one of two modes, and in either the motion is smooth:
+// Each of them is at any time in one of its modes, and in each the motion is smooth:
 //
-//     stop    out of touch (gap > 0)           margin: the gap
-//             held: a constraint at its limit  margin: the force with which it pushes
-//     cable   slack: no force                  margin: -min(s - rest, n / (k + c / h))
-//             pulls: a spring on both sides    margin: min(s - rest, n / (k + c / h)),  n = k (s - rest) + c
-//             s'
+//     stop      out of touch (gap > 0)           margin: the gap
+//               held: a constraint at its limit  margin: the force with which it pushes
+//     cable     slack: no force                  margin: -min(s - rest, n / (k + c / h))
+//               pulls: a spring on both sides    margin: min(s - rest, n / (k + c / h)),  n = k (s - rest) +
+//               c s'
+//     friction  sticks: a constraint             margin: tau_s - |its force|
+//               slips: -slip tau_k along s       margin: slip s'
+//               stands where others hold it: no force and no constraint, margin: 2 zero - |s'|
 //
 // A margin that falls below zero ends the mode. Margins come in units of what counts as zero: 1e-11 of the
-// structure's length, or a part of the largest multiplier. A cable with damping c pulls with n where it is
-// both stretched and n > 0, so that it never pushes.
+// structure's length, a step's part of that for rates, or a part of the largest multiplier. A cable with
+// damping c pulls with n where it is both stretched and n > 0, so that it never pushes.
 class OneSided {
  public:
   OneSided(const Structure& structure, const SolverOptions& options);
 
   bool empty() const { return active_.empty(); }
-  std::size_t size() const { return active_.size(); }  // stops first, then cables
+  std::size_t size() const { return active_.size(); }  // stops first, then cables, then friction
   bool is_stop(std::size_t i) const { return i < stops_.size(); }
-  bool active(std::size_t i) const { return active_[i]; }  // a held stop, a cable that pulls
-  bool any_active() const;
-  bool any_held() const;
+  bool is_friction(std::size_t i) const { return i >= first_friction(); }
+  std::size_t first_friction() const { return stops_.size() + cables_.size(); }
+  bool any_friction() const { return !frictions_.empty(); }
+  bool active(std::size_t i) const { return active_[i]; }  // a held stop, a cable that pulls, what sticks
+  bool any_active() const;                                 // what is not as in the model without any of it
+  bool any_held() const;                                   // stops
   const Stops& stops() const { return stops_; }
   // "leaves stop NAME", "NAME pulls", ...: that the mode has begun.
-  std::string text(std::size_t i) const;
+  Event event(std::size_t i, double t) const;
 
   void set_active(std::size_t i, bool active) { active_[i] = active; }
   // A stop that is passed by less than rounding or by what a start left of it counts as touched there.
   void touch(const System& system, const State& state);
+  // A stop that is held or whose gap counts as zero.
+  bool touches(std::size_t i, const System& system, const State& state) const;
   // Cables that are stretched and pull.
-  void find_modes(const System& system, const State& state);
+  void find_cables(const System& system, const State& state);
   // All cables by the law that knows both of their modes; whether any was not.
   bool relax_cables();
 
+  // What a stop or friction acts along: sign * s.
+  const MeasureFunction& measure(std::size_t i) const;
+  double sign(std::size_t i) const { return is_stop(i) ? stops_[i].sign : 1.0; }
+  double near(std::size_t i, const State& state) const;
+  // Of friction: its forces, the sense in which it slips (0: it does not), and setting that.
+  double holding(std::size_t i) const { return friction(i).holding; }
+  double kinetic(std::size_t i) const { return friction(i).kinetic; }
+  int slip(std::size_t i) const { return friction(i).slip; }
+  void set_slip(std::size_t i, int slip);
+  void stand(std::size_t i) { active_[i] = false, frictions_[i - first_friction()].slip = 0; }
+  void stick(std::size_t i, const System& system, const State& state);
+  // What counts as zero, of rates and accelerations: what comes to a zero length in a step.
+  double zero_rate() const { return stops_.touching() / step_; }
+  double zero_acceleration() const { return zero_rate() / step_; }
+
   // Margins and their rates (NaN: not known) of a state of `model`, which must be that of the present modes.
-  // Without `forces`, those of held stops are left NaN, which saves a factorisation.
+  // Without `forces`, those of what is held are left NaN, which saves a factorisation.
   void measure(const Model& model, const State& state, bool forces, Probe& probe);
   void forget_model() { index1_.reset(); }
 
@@ -64,15 +89,30 @@ class OneSided {
     MeasureFunction length;
     double rest, stiffness, damping;
   };
+  struct Friction {
+    std::size_t force;
+    std::string name;
+    Measure measure;
+    MeasureFunction function;
+    double kinetic, holding;
+    int followed;  // index in State::angles; -1: it counts no turns
+    int slip = 0;
+    double held_at = 0.0;
+    bool reversed = false;  // it slipped the other way before
+  };
+  const Friction& friction(std::size_t i) const { return frictions_[i - first_friction()]; }
   std::set<std::size_t> held() const;
-  void measure_pushes(const Model& model, const State& state, Probe& probe);
+  void measure_held(const Model& model, const State& state, Probe& probe);
+  void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
+                        Probe& probe);
   double stretch(const Cable& cable, const VectorXd& q, const VectorXd& v, double& rate);
 
   Stops stops_;
   std::vector<Cable> cables_;
+  std::vector<Friction> frictions_;
   std::vector<bool> active_;
   VectorXd shift_;  // of the stops' gaps [m] or [rad]
-  double step_;
+  double step_, length_;
   bool eliminate_linear_;
   VectorXd gradient_, acceleration_, lambda_;
   std::optional<System> followed_;  // the present model's, near a state's angles

@@ -17,11 +17,14 @@ enum class RunStatus { completed, deployed, stopped, failed };  // stopped: canc
 std::string_view to_string(RunStatus status);
 
 struct Event {
-  std::string name;          // "deployed", ...
+  std::string name;          // what happened: "deployed", "cable pulls", ...
   double t = 0.0;            // [s]
   double energy_lost = 0.0;  // in an impact [J]
   // At a singular pose, that of the Jacobian (singular_poses.hpp); NaN: not said.
   double singular_value = std::numeric_limits<double>::quiet_NaN();
+  // "deployed", "latch", "singular_pose"; of what acts on one side only "contact", "free" (stops), "taut",
+  // "slack" (cables), "stick", "slip", "reversal" (friction); and of which element.
+  std::string kind = {}, element = {};
 };
 
 struct SimulationHooks {

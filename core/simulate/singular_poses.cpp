@@ -244,7 +244,7 @@ class DipSearch {
       const double times[3] = {std::max(low, t - reach), t, std::min(high, t + reach)};
       t = vertex(times, {between(times[0]), between(times[1]), between(times[2])});
     }
-    Event event{"singular pose", t};
+    Event event{.name = "singular pose", .t = t, .kind = "singular_pose"};
     event.singular_value = between(t);
     return event;
   }

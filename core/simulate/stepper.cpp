@@ -13,6 +13,7 @@
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
+#include "core/simulate/mode_change.hpp"
 #include "core/simulate/one_sided.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/singular_poses.hpp"
@@ -59,9 +60,7 @@ class Stepper::Loop {
     model_changed();
     if (!deployment_.empty() && fold(now()) > deployed_already)
       margin_ = std::min(margin_, 0.1 * fold(now()));
-    if (sides_.empty()) return;
-    sides_.find_modes(system(), now());
-    if (sides_.any_active()) set_model(sides_.model(*base_), false);
+    if (!sides_.empty()) find_first_modes();
   }
 
   bool step() { return !ended_ && now().t < grid_.end() && go(next_target()); }
@@ -107,8 +106,7 @@ class Stepper::Loop {
       h = target_ - now().t;
     }
     if (target.edge) integrator_->restart();
-    if (target.jumps) jump(target.jump);
-    return true;
+    return !target.jumps || jump(target.jump) || (ended_ = true, false);
   } catch (const CannotFactorise& error) {
     return ended_ = true, fail(error.what());
   }
@@ -163,10 +161,15 @@ class Stepper::Loop {
   }
 
   // A drive's velocity jumps: what it drives is taken along by an impulse of the constraints.
-  void jump(double t) {
+  bool jump(double t) {
     State before = now();
     before.t = t;
-    append_after_impulse(hand_over(model(), before, model()).state);
+    if (sides_.empty()) return append_after_impulse(hand_over(model(), before, model()).state), true;
+    sides_.touch(system(), before);
+    ModeChange change = modes_after(hand_over(model(), before, *base_).state);
+    if (change.failure.empty() && !change.changed && change.impacts.empty())
+      return append_after_impulse(hand_over(*base_, change.state, model()).state), true;
+    return apply(std::move(change));
   }
 
   // --- steps ---
@@ -260,62 +263,75 @@ class Stepper::Loop {
     const bool crowded = ++crowd_ == most || ++in_step_ == most_in_step * most;
     if (crowded) return hold_what_touches();
     if (crowd_ > 2 * most || in_step_ > (most_in_step + 1) * most) return stop_watching();
-    std::vector<std::size_t> turned;
-    for (const std::size_t i : which) {
-      if (sides_.is_stop(i) && !sides_.active(i)) {
-        if (!strike(i)) return false;
-        continue;
-      }
-      sides_.set_active(i, !sides_.active(i));
-      turned.push_back(i);
-    }
-    change_modes(turned);
+    return apply(modes_after(in_base(now()), which));
+  }
+
+  // Modes at the start of a run: nothing of that is an event but impacts. What cannot be ends it there.
+  void find_first_modes() try {
+    sides_.find_cables(system(), now());
+    sides_.touch(system(), now());
+    ModeChange change{.state = now()};  // the base is the model at the start
+    if (sides_.any_friction()) change = modes_after(now());
+    if (!change.failure.empty()) return ended_ = true, void(fail(change.failure));
+    record(change);
+    if (sides_.any_active()) set_model(sides_.model(*base_), change.state, false);
+  } catch (const CannotFactorise& error) {
+    ended_ = true, fail(error.what());
+  }
+
+  // A state of the present model in the coordinates of the base.
+  State in_base(State state) const {
+    VectorXd q(system().coordinates()), v(q.size());
+    system().expand(state.z, q);
+    system().expand_rate(state.w, v);
+    state.z = base_->system.reduce(q);
+    state.w = base_->system.reduce_rate(v);
+    return state;
+  }
+
+  ModeChange modes_after(const State& state, const std::vector<std::size_t>& which = {}) {
+    return change_modes(sides_, *base_, state, which, [&](std::size_t i, double approach) {
+      const StopSide& stop = sides_.stops()[i];
+      const double flight = state.t - std::exchange(last_touch_[i], state.t);
+      const bool series = stop.restitution < 1 && flight > 0 && flight <= accumulated * run_.options.step;
+      return series || stop.restitution * approach <= stop.rest_speed;
+    });
+  }
+
+  // Goes on in the modes that were found. False where there are none.
+  bool apply(ModeChange change) {
+    if (!change.failure.empty()) return fail(change.failure);
+    record(change);
+    for (const std::size_t i : change.turned)
+      if (std::ranges::find(change.impacts, i, &ModeChange::Impact::stop) == change.impacts.end())
+        run_.events.push_back(sides_.event(i, change.state.t));
+    if (change.changed)
+      set_model(sides_.model(*base_), change.state, true);
+    else if (!change.impacts.empty())
+      append_after_impulse(hand_over(*base_, change.state, model()).state);
     return true;
   }
 
-  // Rebound or rest.
-  bool strike(std::size_t i) {
-    const StopSide& stop = sides_.stops()[i];
-    State after = now();
-    const double approach = -sides_.stops().gap_rate(i, system(), after), flight = after.t - last_touch_[i];
-    last_touch_[i] = after.t;
-    if (approach < 0) return true;  // thrown back already, by another stop at this time
-    const bool series = stop.restitution < 1 && flight > 0 && flight <= accumulated * run_.options.step;
-    if (series || stop.restitution * approach <= stop.rest_speed) return hold({i});
-    const double taken = sides_.stops().rebound(i, system(), after);
-    if (std::isnan(taken)) return fail("a drive pushes against the stop " + stop.name);
-    run_.events.push_back({"stop " + stop.name, after.t, taken});
-    append_after_impulse(std::move(after));
-    return true;
-  }
-
-  bool hold(const std::vector<std::size_t>& touched) {
-    std::vector<std::size_t> turned;
-    for (const std::size_t i : touched) {
-      State trial = now();
-      const double approach = -sides_.stops().gap_rate(i, system(), trial);
-      if (std::isnan(sides_.stops().rebound(i, system(), trial))) {
-        // No impulse moves it. What others hold needs no hold of its own.
-        if (approach <= std::max(sides_.stops()[i].rest_speed, 1e-9 * trial.w.lpNorm<Eigen::Infinity>()))
-          continue;
-        return fail("a drive pushes against the stop " + sides_.stops()[i].name);
-      }
-      sides_.set_active(i, true);
-      turned.push_back(i);
+  void record(const ModeChange& change) {
+    for (const auto& [stop, energy_lost] : change.impacts) {
+      Event event = sides_.event(stop, change.state.t);
+      if (!sides_.active(stop)) event.name = "stop " + event.element;
+      event.kind = "contact";
+      event.energy_lost = energy_lost * run_.trajectory.structure().sectors;
+      run_.events.push_back(std::move(event));
     }
-    change_modes(turned);
-    return true;
   }
 
   bool hold_what_touches() {
-    begin();
     std::vector<std::size_t> touched;
     for (std::size_t i = 0; i < sides_.stops().size(); ++i)
-      if (!sides_.active(i) && begin_.margins[static_cast<Index>(i)] <= 1) touched.push_back(i);
+      if (!sides_.active(i) && sides_.touches(i, system(), now())) touched.push_back(i);
     if (!touched.empty())
       run_.warnings.push_back("at t = " + seconds(now().t) +
                               ": impacts without end; what touches a stop is held");
-    return hold(touched);
+    for (const std::size_t i : touched) last_touch_[i] = now().t;
+    return apply(
+        change_modes(sides_, *base_, in_base(now()), touched, [](std::size_t, double) { return true; }));
   }
 
   bool stop_watching() {
@@ -323,26 +339,18 @@ class Stepper::Loop {
     if (!std::exchange(unwatched_said_, true))
       run_.warnings.push_back(
           "at t = " + seconds(now().t) +
-          ": stops or cables switch without end; what they do in this step is not located");
-    if (sides_.relax_cables()) set_model(sides_.model(*base_), true);
+          ": stops, cables or friction switch without end; what they do in this step is not located");
+    if (sides_.relax_cables()) set_model(sides_.model(*base_), in_base(now()), true);
     return true;
   }
 
-  void change_modes(const std::vector<std::size_t>& turned) {
-    if (turned.empty()) return;
-    const double taken = set_model(sides_.model(*base_), true);
-    for (const std::size_t i : turned)
-      run_.events.push_back({sides_.text(i), now().t, i == turned.front() ? taken : 0.0});
-  }
-
-  // Goes on with another model of the same structure; the energy taken in the impulse that it takes [J].
-  double set_model(const std::shared_ptr<const Model>& next, bool handed_over) {
-    Handover after = hand_over(model(), now(), *next);
-    run_.trajectory.change_model(next);
+  // Goes on from a state in the coordinates of the base with another model of the same structure.
+  void set_model(const std::shared_ptr<const Model>& next, const State& from, bool handed_over) {
+    Handover after = hand_over(*base_, from, *next);
     if (!handed_over) run_.trajectory.pop_back();  // the first state of all
+    run_.trajectory.change_model(next);
     append(std::move(after.state), StepReport{});
     model_changed();
-    return after.energy_lost * run_.trajectory.structure().sectors;
   }
 
   void model_changed() {
@@ -396,7 +404,7 @@ class Stepper::Loop {
 
   bool deployed(State& event, Probe& to, double h) {
     deployed_ = true;
-    run_.events.push_back({"deployed", event.t});
+    run_.events.push_back({.name = "deployed", .t = event.t, .kind = "deployed"});
     if (run_.options.at_deployed == "pass")
       return !to.report.ok() || std::abs(fold(to.state)) < margin_ ? step_over(h) : accept(to, part_end_);
     project(system(), event);
@@ -416,9 +424,15 @@ class Stepper::Loop {
     if (gives && singular_at_end(run_.trajectory))
       return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
     base_ = latched_model(*base_, run_.options.eliminate_linear);
-    const double impulse = set_model(sides_.any_active() ? sides_.model(*base_) : base_, true);
-    const double taken = gives ? 0.0 : impulse;
-    run_.events.push_back({"latched", now().t, taken});
+    const double before = system().kinetic_energy(now().w);
+    ModeChange change{.state = hand_over(model(), now(), *base_).state};
+    if (!sides_.empty()) change = modes_after(change.state);
+    if (!change.failure.empty()) return fail(change.failure);
+    record(change);
+    set_model(sides_.any_active() ? sides_.model(*base_) : base_, change.state, true);
+    const double taken = (before - system().kinetic_energy(now().w)) * run_.trajectory.structure().sectors;
+    run_.events.push_back(
+        {.name = "latched", .t = now().t, .energy_lost = gives ? 0.0 : taken, .kind = "latch"});
     return true;
   }
 

@@ -100,6 +100,14 @@ struct Force {
   Vec3 direction = Vec3::Zero();  // of a load over time
   TimeFunction size = {};         // of a load [N]
   LinearForm form = {};           // of a latch: what it pulls to zero
+  // friction: what it gives while it slips, and at most while it sticks [N] or [N m]; the sense in which it
+  // slips, 0: it does not
+  double kinetic = 0.0, holding = 0.0;
+  int slip = 0;
+  // offload: length of the rope, infinite where its trolley follows [m]; where the trolley stays, NaN: above
+  // the node's start [m]
+  double rope = 0.0;
+  Vec3 trolley = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
 // A constant force on a node.

@@ -14,7 +14,7 @@ Journal::Journal(std::filesystem::path path, std::vector<std::string> columns, s
                  std::vector<std::size_t> numbers)
     : path_(std::move(path)), columns_(std::move(columns)), keys_(keys), numbers_(std::move(numbers)) {
   if (path_.empty()) return;
-  read();
+  take_in(path_);
   std::string text = csv_line(columns_);
   for (const auto& [key, row] : rows_) text += csv_line(row);
   write_file_atomically(path_, text);  // without what was torn
@@ -26,25 +26,25 @@ Journal::~Journal() {
   if (file_) std::fclose(file_);
 }
 
-void Journal::read() {
+void Journal::take_in(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path_, ignored)) return;
-  const TextFile file = read_text_file(path_.string());
-  if (!file.error.empty()) throw FileError(path_, file.error);
+  if (!std::filesystem::exists(path, ignored)) return;
+  const TextFile file = read_text_file(path.string());
+  if (!file.error.empty()) throw FileError(path, file.error);
   const std::size_t whole = file.text.rfind('\n');
   if (whole == std::string::npos) return;
   auto records = csv_records(std::string_view(file.text).substr(0, whole + 1));
   if (records.empty()) return;
   if (records.front() != columns_)
     throw JournalMismatch(
-        path_.string() +
+        path.string() +
         ": holds results with other columns, of another version or another question; use another "
         "directory, or --force to begin anew");
   for (std::size_t i = 1; i < records.size(); ++i) {
     auto& row = records[i];
     if (row.size() != columns_.size()) continue;
     if (!std::ranges::all_of(numbers_, [&](std::size_t c) { return is_number(row[c]); })) continue;
-    rows_[{row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_)}] = row;
+    rows_.try_emplace({row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_)}, row);
   }
 }
 

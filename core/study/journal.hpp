@@ -31,11 +31,12 @@ class Journal {
 
   const std::vector<std::string>* find(const std::vector<std::string>& key) const;
   void append(std::vector<std::string> row);  // throws FileError
+  // The results in another journal of the same columns, which may be growing, beside what is here; the file
+  // does not get them. Throws JournalMismatch, FileError.
+  void take_in(const std::filesystem::path& other);
   std::size_t size() const { return rows_.size(); }
 
  private:
-  void read();
-
   std::filesystem::path path_;
   std::vector<std::string> columns_;
   std::size_t keys_;

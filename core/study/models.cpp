@@ -55,6 +55,15 @@ void add_modulus(const TomlTree& root, std::vector<ModelChoice>& out) {
     out.push_back({"rigid rods: forces of least norm", {"structure.youngs_modulus=inf"}});
 }
 
+// Every force of a kind switched off, and what else goes with it.
+void add_without(const Scene& scene, std::string_view kind, const char* name,
+                 std::vector<std::string> changes, std::vector<ModelChoice>& out) {
+  const std::size_t others = changes.size();
+  for (const SceneElement& force : scene.forces)
+    if (force.kind == kind && force.enabled) changes.push_back(force.key + ".enabled=false");
+  if (changes.size() > others) out.push_back({name, std::move(changes)});
+}
+
 // Bytes that are in use on the heap now, mapped blocks included.
 double heap_in_use() {
   const auto info = ::mallinfo2();
@@ -148,6 +157,9 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
     for (std::string& key : keys) key += "=0";
     out.push_back({"without damping", keys});
   }
+  add_without(scene, "friction", "without friction", {}, out);
+  add_without(scene, "offload", "0 g flight: neither weight nor offload", {"gravity.acceleration=[0,0,0]"},
+              out);
   return out;
 }
 

@@ -13,11 +13,14 @@
 
 namespace unfurl {
 
+class Team;
+
 // What long work asks and tells while it runs.
 struct StudyHooks {
   std::function<void(double fraction)> progress = {};  // 0..1
   std::function<bool()> cancelled = {};
   int threads = 1;
+  Team* team = nullptr;  // others who work on the same; none: all of it is this one's
 
   bool stopped() const { return cancelled && cancelled(); }
   void tell(double fraction) const {

@@ -11,6 +11,7 @@
 #include "core/diagnostics/books.hpp"
 #include "core/study/parallel_for.hpp"
 #include "core/study/row_columns.hpp"
+#include "core/study/team.hpp"
 
 namespace unfurl {
 namespace {
@@ -164,8 +165,8 @@ std::vector<std::string> key_of(const Site& site, const Setting& setting, long s
   return {site.extreme->name, exact_number(site.value), setting.name, std::to_string(steps)};
 }
 
-// All cells of a site that the journal lacks.
-void fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mutex, const StudyHooks& hooks) {
+// All cells of a site that the journal lacks; false where another worker of the team is at them.
+bool fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mutex, const StudyHooks& hooks) {
   const TimingOptions once{.repeats = 1, .patience = 0, .limit = plan.limits.seconds};
   for (const Setting& setting : plan.settings)
     for (const long steps : plan.steps) {
@@ -174,8 +175,9 @@ void fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mute
         const std::lock_guard lock(mutex);
         if (journal.find(key)) continue;
       }
+      if (hooks.team && !hooks.team->takes(site.extreme->name + "-" + exact_number(site.value))) return false;
       if (!site.model) prepare(site, static_cast<int>(plan.steps.front()), hooks);
-      if (!site.reference) return;
+      if (!site.reference) return true;
       if (hooks.stopped()) throw Cancelled();
       StressCell cell{key[0], site.value, setting.name, steps, {}, {}};
       cell.run = measure_run(site.model, setting.options, steps, *site.reference, once, hooks);
@@ -183,6 +185,7 @@ void fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mute
       const std::lock_guard lock(mutex);
       journal.append(cells_of(cell_columns, cell));
     }
+  return true;
 }
 
 }  // namespace
@@ -204,11 +207,12 @@ Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& ho
   std::size_t done = 0;
   try {
     parallel_for(sites.size(), hooks.threads, [&](std::size_t i) {
-      fill(plan, sites[i], journal, mutex, hooks);
+      const bool filled = fill(plan, sites[i], journal, mutex, hooks);
       const std::lock_guard lock(mutex);
+      stress.complete = stress.complete && filled;
       hooks.tell(static_cast<double>(++done) / static_cast<double>(sites.size() + 2));
     });
-    stress.long_runs = long_runs(plan, hooks);
+    if (!hooks.team) stress.long_runs = long_runs(plan, hooks);
   } catch (const Cancelled&) {
     stress.complete = false;
   }

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/study/row_columns.hpp"
+#include "core/study/team.hpp"
 
 namespace unfurl {
 namespace {
@@ -121,11 +123,15 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
   study.size = structure_size(*plan.model);
   for (const Setting& setting : plan.settings) study.curves.push_back({setting, {}, {}});
   try {
-    const Reference reference =
-        solve_reference(plan.model, plan.end, static_cast<int>(plan.ladder.grid), hooks);
-    study.reference = reference.how;
-    study.reference_uncertainty = reference.uncertainty;
-    study.reference_confirmed = reference.confirmed;
+    std::optional<Reference> reference;
+    const auto solve = [&] {
+      if (!reference)
+        reference = solve_reference(plan.model, plan.end, static_cast<int>(plan.ladder.grid), hooks);
+      study.reference = reference->how;
+      study.reference_uncertainty = reference->uncertainty;
+      study.reference_confirmed = reference->confirmed;
+    };
+    if (!hooks.team) solve();  // a worker of a team may find all its work done
     double done = 0;
     double all = 0;
     for (const long steps : plan.ladder.steps)
@@ -140,8 +146,13 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
           continue;
         }
         if (hooks.stopped()) throw Cancelled();
+        if (hooks.team && !hooks.team->takes(curve.setting.name)) {
+          study.complete = false;  // another's; the rest of its ladder too
+          break;
+        }
+        solve();
         curve.runs.push_back(
-            measure_run(plan.model, curve.setting.options, steps, reference, plan.timing, hooks));
+            measure_run(plan.model, curve.setting.options, steps, *reference, plan.timing, hooks));
         journal.append(row_of(curve.setting, curve.runs.back()));
       }
     }

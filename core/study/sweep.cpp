@@ -11,6 +11,7 @@
 #include "core/study/measured_run.hpp"
 #include "core/study/parallel_for.hpp"
 #include "core/study/path_sweep.hpp"
+#include "core/study/team.hpp"
 #include "core/study/tolerance.hpp"
 
 namespace unfurl {
@@ -73,6 +74,8 @@ bool same_answer(const SweepPlan& plan, const std::vector<std::string>& a,
   return true;
 }
 
+constexpr std::size_t most_pieces = 1024;  // of a sweep, for the workers of a team
+
 std::string point_text(const SweepPlan& plan, std::size_t point) {
   std::string text;
   const auto key = plan.key(point);
@@ -109,15 +112,22 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   std::vector<std::size_t> open;
   for (const std::size_t i : own)
     if (!journal.find(plan.key(i))) open.push_back(i);
+  // What a worker of a team takes at once: points that do not lie together, since those cost alike.
+  const std::size_t pieces = std::min<std::size_t>(plan.points(), most_pieces);
+  if (hooks.team)
+    std::sort(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
+      return std::pair(scattered(a) % pieces, a) < std::pair(scattered(b) % pieces, b);
+    });
   const PathSweep along_path(plan);
   std::size_t done = 0;
   std::mutex mutex;
   parallel_for(open.size(), hooks.threads, [&](std::size_t i) {
-    if (hooks.stopped()) return;
+    const std::string piece = "points-" + std::to_string(scattered(open[i]) % pieces);
+    if (hooks.stopped() || (hooks.team && !hooks.team->takes(piece))) return;
     auto row = run_point(plan, along_path, open[i], hooks);
     if (!row) return;
     const std::lock_guard lock(mutex);
-    journal.append(std::move(*row));
+    if (!hooks.team || hooks.team->holds(piece)) journal.append(std::move(*row));
     hooks.tell(static_cast<double>(++done) / static_cast<double>(open.size()));
   });
   return collect(plan, own, [&](std::size_t i) { return journal.find(plan.key(i)); });

@@ -418,8 +418,15 @@ bool System::has_power(bool dissipative) const {
 double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const {
   double sum = 0;
   for (const auto& block : data_->forces)
-    if (block->has_power() && block->dissipative() == dissipative)
+    if (block->has_power() && block->dissipative() == dissipative && !block->takes_by_pose())
       sum += block->power(moment(t), q.data(), v.data());
+  return sum;
+}
+
+double System::taken(const ConstVec& q) const {
+  double sum = 0;
+  for (const auto& block : data_->forces)
+    if (block->takes_by_pose()) sum += block->taken(moment(since_), q.data());
   return sum;
 }
 

@@ -102,6 +102,9 @@ class System {
   // Power of the forces that have no potential [W]: loads that vary, or dampers (negative).
   bool has_power(bool dissipative) const;
   double power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const;
+  // What dissipative forces that are left out of power() have taken by the pose of the state that is
+  // followed, up to a constant [J].
+  double taken(const ConstVec& q) const;
   // dF/dz and dF/dz' of the forces that vary, for Newton matrices (allocates).
   void force_derivatives(double t, const ConstVec& q, const ConstVec& v, SparseRows& by_z,
                          SparseRows& by_w) const;

@@ -23,7 +23,8 @@ namespace unfurl {
 namespace {
 
 // What makes of pictures of any size a film that every player shows.
-std::vector<std::string> ffmpeg_arguments(const std::string& file, int width, int height, double fps) {
+std::vector<std::string> ffmpeg_arguments(const std::string& file, int width, int height, double fps,
+                                          const std::string& comment) {
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   std::ostringstream rate;
   rate << fps;
@@ -34,8 +35,8 @@ std::vector<std::string> ffmpeg_arguments(const std::string& file, int width, in
           "-c:v",      "libx264",    "-preset",    "veryfast",
           "-crf",      "18",         "-pix_fmt",   "yuv420p",
           "-threads",  "2",  // x264's result depends on how many it uses
-          "-movflags", "+faststart", "-f",         "mp4",
-          file};
+          "-movflags", "+faststart", "-metadata",  "comment=" + comment,
+          "-f",        "mp4",        file};
 }
 
 // A program that takes no frame, or does not write on after the last one, for so long hangs [s].
@@ -73,7 +74,10 @@ void Mp4Pipe::Process::start(int width, int height, double fps) {
   if (error == 0) {
     input = ends[0];
     ::fcntl(input, F_SETFL, O_NONBLOCK);
-    error = ffmpeg.start(ffmpeg_arguments(file->name().string(), width, height, fps), {.input = ends[1]});
+    FileFinisher* finisher = file_finisher();
+    const std::string comment = finisher ? finisher->note(target) : "";
+    error = ffmpeg.start(ffmpeg_arguments(file->name().string(), width, height, fps, comment),
+                         {.input = ends[1]});
     ::close(ends[1]);
   }
   if (error != 0) problem = "cannot start ffmpeg: " + std::generic_category().message(error);

@@ -98,6 +98,7 @@ void add_members(std::string& text, const ElementKind& kind, const FirstMembers&
     case Members::rod:
       return add_member(text, "rod", members.rod());
     case Members::angle:
+    case Members::measure:
       if (members.by_fold_angle()) return add_member(text, "fold_angle", true);
       return add_member(text, "nodes", members.hinge());
     case Members::two_nodes:

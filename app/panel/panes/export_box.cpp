@@ -32,17 +32,6 @@ bool of_library(const std::string& path) {
   return false;
 }
 
-void save(PanelState& state, const std::string& path) {
-  try {
-    bool anew = false;
-    state.history.saved(save_document(state.history.now(), path, anew));
-    state.message = "saved " + path + (anew ? " (written anew)" : "");
-    state.export_path = path;
-  } catch (const std::exception& error) {
-    state.message = error.what();
-  }
-}
-
 void save_as(Ui& ui, PanelState& state, float width) {
   heading(ui, "Scene");
   text_field(ui, "scene path", state.export_path, width - ui.px(90));
@@ -53,35 +42,28 @@ void save_as(Ui& ui, PanelState& state, float width) {
   const bool sound = state.problems.empty() && !state.export_path.empty();
   if (button(ui, "save", same ? "Save" : "Save as",
              "the changed values in their places; comments and order of the file stay", sound))
-    save(state, state.export_path);
+    state.intents.emplace_back([path = state.export_path](LiveSession& s) { s.save(path); });
   if (exists && !same) ImGui::TextColored(ui.theme.warning, "this file exists and would be replaced");
   if (same && of_library(state.export_path))
     ImGui::TextColored(ui.theme.warning, "this is the program's own copy of the scene");
 }
 
-void render(Ui& ui, PanelState& state, ExportProcess& job, float width) {
+void render(Ui& ui, PanelState& state, float width) {
   heading(ui, "Film and figures");
   text_field(ui, "output", state.export_output, width - ui.px(190));
-  const bool ready = !job.running() && state.problems.empty() && !state.export_output.empty();
+  const bool ready = !state.exporting.running && state.problems.empty() && !state.export_output.empty();
   const std::pair<const char*, const char*> verbs[] = {{"render", "All"}, {"figure", "Figures"}};
   for (const auto& [verb, label] : verbs) {
     ImGui::SameLine();
-    if (!button(ui, std::string("export ") + verb, label, "by the command line below, beside this window",
-                ready))
-      continue;
-    try {
-      job.start(own_program(), export_words(state.history.now(), verb, state.export_output));
-      state.message = "exporting to " + state.export_output + " \u2026";
-    } catch (const std::exception& error) {
-      state.message = error.what();
-    }
+    if (button(ui, std::string("export ") + verb, label, "by the command line below, beside this window",
+               ready))
+      state.intents.emplace_back([verb](LiveSession& s) { s.start_export(verb); });
   }
 }
 
 }  // namespace
 
-void draw_export(Ui& ui, PanelState& state, ExportProcess& job) {
-  if (const std::string report = job.take_report(); !report.empty()) state.message = report;
+void draw_export(Ui& ui, PanelState& state) {
   if (!state.export_open) return;
   if (state.export_path.empty()) {
     const std::string& path = state.history.now().path;
@@ -99,7 +81,7 @@ void draw_export(Ui& ui, PanelState& state, ExportProcess& job) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   const float inside = ImGui::GetContentRegionAvail().x;
   save_as(ui, state, inside);
-  render(ui, state, job, inside);
+  render(ui, state, inside);
   heading(ui, "Command line");
   const std::string line = command_line(state.history.now(), "render", state.export_output);
   wrapped(ui.theme.text, line);

@@ -51,7 +51,7 @@ PlacedFigure draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
     plot::ImguiCanvas canvas(list, ui.figure_font, place.scale, {place.origin.x, place.origin.y});
     ThemedCanvas themed(canvas, ui.theme.dark);
     plot::paint(*card.figure, card.layout, themed);
-    if (state.pending) list.AddRectFilled(place.origin, high, ui.color(ui.theme.window, 0.45f));
+    if (state.simulation.running) list.AddRectFilled(place.origin, high, ui.color(ui.theme.window, 0.45f));
   }
   const std::string name = card.figure->name;
   for (std::size_t i = 0; i < card.layout.panels.size(); ++i)

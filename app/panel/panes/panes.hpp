@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the panel. Each draws into the current ImGui window and changes the state.
+// The parts of the panel. Each draws into the current ImGui window, changes what is shown, and leaves what it
+// is asked to do as intents.
 #pragma once
 
-#include "app/panel/panel_state.hpp"
+#include "app/panel/live_session.hpp"
 #include "app/panel/panes/figure_cards.hpp"
 #include "app/panel/panes/ui.hpp"
-#include "app/panel/runs/export_process.hpp"
-#include "app/panel/runs/study_job.hpp"
 #include "app/panel/view/scene_view.hpp"
 
 namespace unfurl {
 
 void draw_top_bar(Ui& ui, PanelState& state);
-void draw_scene_pane(Ui& ui, PanelState& state);                                     // left
-void draw_view_pane(Ui& ui, PanelState& state, SceneView& view);                     // centre
-void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards);                // right
-void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards, StudyJob& job);  // right, other page
-void draw_right_tabs(Ui& ui, PanelState& state);                                     // above either
+void draw_scene_pane(Ui& ui, PanelState& state);                       // left
+void draw_view_pane(Ui& ui, PanelState& state, SceneView& view);       // centre
+void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards);  // right
+void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards);   // right, other page
+void draw_right_tabs(Ui& ui, PanelState& state);                       // above either
 
 struct PlacedFigure {  // a figure in the window
   ImVec2 origin;
@@ -30,7 +29,7 @@ double figure_width(const Ui& ui);              // what the window has room for 
 void draw_cursors(const Ui& ui);                // over the figures
 void draw_timeline(Ui& ui, PanelState& state);  // bottom
 void draw_help(Ui& ui, PanelState& state);
-void draw_export(Ui& ui, PanelState& state, ExportProcess& job);
+void draw_export(Ui& ui, PanelState& state);
 
 // A row of the left pane, with its menu and what is wrong with it.
 void draw_row(Ui& ui, PanelState& state, const ParamRow& row);

@@ -112,7 +112,9 @@ bool draw_entry(Ui& ui, PanelState& state, const ParamEntry& entry, const ParamR
   if (added) {
     ImGui::SameLine(ImGui::GetContentRegionMax().x - away);
     if (button(ui, "remove " + entry.key, "Remove", "take this entry away again"))
-      state.history.replace(without_entry(state.history.now(), entry.key));
+      state.intents.emplace_back([key = entry.key](LiveSession& s) {
+        s.state().history.replace(without_entry(s.state().history.now(), key));
+      });
   }
   ImGui::PopID();
   if (const SceneProblem* problem = own_problem(state, entry.key)) wrapped(ui.theme.error, problem->message);
@@ -133,12 +135,7 @@ void draw_section(Ui& ui, PanelState& state, const ParamSection& section) {
 }
 
 void add_entry(PanelState& state, const std::string& table, std::string_view kind) {
-  const SceneDocument& now = state.history.now();
-  try {
-    state.history.replace(with_entry(now, new_entry(now, table, kind, state.selected)));
-  } catch (const SceneError& error) {
-    state.message = error.problems().front().message;
-  }
+  state.intents.emplace_back([table, kind](LiveSession& s) { s.add_entry(table, kind); });
 }
 
 // "Add..." with the kinds that there are.
@@ -173,11 +170,6 @@ void draw_other_problems(const Ui& ui, const PanelState& state) {
   }
 }
 
-void open_scene(PanelState& state, const SceneDocument& document) {
-  state.history.replace(document);
-  state.orbit.reset();
-}
-
 void draw_scene_choice(Ui& ui, PanelState& state) {
   const SceneDocument& now = state.history.now();
   const std::string name = std::filesystem::path(now.name).stem().string();
@@ -187,7 +179,7 @@ void draw_scene_choice(Ui& ui, PanelState& state) {
     for (const LibraryScene& scene : library_scenes()) {
       const bool is = scene.path == now.path;
       if (ImGui::Selectable((scene.name + "   " + scene.title).c_str(), is) && !is)
-        open_scene(state, open_document(scene.path, {}));
+        state.intents.emplace_back([path = scene.path](LiveSession& s) { s.open(open_document(path, {})); });
       ui.note("scene=" + scene.name);
     }
     ImGui::EndCombo();
@@ -202,7 +194,8 @@ void draw_scene_choice(Ui& ui, PanelState& state) {
   if (ImGui::BeginCombo("##family", kind.c_str())) {
     for (const Family& family : families()) {
       if (ImGui::Selectable(std::string(family.kind).c_str(), kind == family.kind) && kind != family.kind)
-        open_scene(state, document_of_family(std::string(family.kind)));
+        state.intents.emplace_back(
+            [name = std::string(family.kind)](LiveSession& s) { s.open(document_of_family(name)); });
       tooltip(ui, std::string(family.help));
       ui.note("family=" + std::string(family.kind));
     }
@@ -217,9 +210,7 @@ void draw_scene_choice(Ui& ui, PanelState& state) {
 void draw_scene_pane(Ui& ui, PanelState& state) {
   draw_scene_choice(ui, state);
   draw_other_problems(ui, state);
-  // Copied: opening another scene while they are drawn replaces the sections.
-  const auto sections = state.sections;
-  for (const ParamSection& section : sections) {
+  for (const ParamSection& section : state.sections) {
     ImGui::PushFont(ui.bold);
     const bool open = ImGui::CollapsingHeader(
         section.title.c_str(), section.open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);

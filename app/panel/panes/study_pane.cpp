@@ -128,22 +128,23 @@ void choose_kind(Ui& ui, PanelState& state, StudyRequest& request) {
       if (request.key.empty() && row.spec.kind == ParamKind::real) choose_key(row, request);
 }
 
-void draw_start(Ui& ui, PanelState& state, StudyJob& job) {
+void draw_start(Ui& ui, PanelState& state) {
   const bool sound =
       state.problems.empty() &&
       (state.study.kind == StudyKind::sweep ? !state.study.key.empty() : !state.study.methods.empty());
-  if (job.running()) {
-    if (button(ui, "cancel study", "Cancel", "keep the points that there are")) job.cancel();
+  if (state.studying.running) {
+    if (button(ui, "cancel study", "Cancel", "keep the points that there are"))
+      state.intents.emplace_back(&LiveSession::stop_study);
     ImGui::SameLine();
-    ImGui::ProgressBar(static_cast<float>(job.progress()), {-1, 0});
+    ImGui::ProgressBar(static_cast<float>(state.studying.progress), {-1, 0});
     ui.note("study progress");
   } else if (button(ui, "start study", "Start", "beside the window, by the code of the command below",
                     sound)) {
-    job.start(state.study, simulated_part(state.history.now()));
+    state.intents.emplace_back(&LiveSession::start_study);
   }
   const std::string line = study_command(state.study, state.history.now());
-  ImGui::SameLine(0, job.running() ? 0 : ui.px(8));
-  if (!job.running()) {
+  ImGui::SameLine(0, state.studying.running ? 0 : ui.px(8));
+  if (!state.studying.running) {
     if (button(ui, "copy study", "Copy command", line)) ImGui::SetClipboardText(line.c_str());
   } else {
     ImGui::NewLine();
@@ -174,15 +175,14 @@ void name_mark(const Ui& ui, const FigureCard& card, const PlacedFigure& place) 
 
 }  // namespace
 
-void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards, StudyJob& job) {
-  if (auto outcome = job.take()) state.studied = std::move(outcome);
+void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards) {
   if (!state.shown) return;
   choose_kind(ui, state, state.study);
   if (state.study.kind == StudyKind::sweep)
     choose_sweep(ui, state, state.study);
   else
     choose_precision(ui, state.study);
-  draw_start(ui, state, job);
+  draw_start(ui, state);
   if (!state.studied) return;
   const StudyOutcome& outcome = *state.studied;
   ImGui::Separator();

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <tuple>
 
+#include "app/panel/actions.hpp"
 #include "app/panel/panes/panes.hpp"
-#include "app/panel/shortcuts.hpp"
 
 namespace unfurl {
 
@@ -25,7 +25,8 @@ void draw_controls(Ui& ui, PanelState& state, double start, double end) {
       InputEvent event;
       event.kind = InputEvent::Kind::key;
       event.key = key;
-      if (button(ui, std::string("step ") + name, name, help)) press(state, event);
+      if (button(ui, std::string("step ") + name, name, help))
+        state.intents.emplace_back([event](LiveSession& s) { press(s, event); });
       ImGui::SameLine(0, ui.px(4));
     }
   }

@@ -2,8 +2,8 @@
 // The bar along the top, and the list of keys.
 #include <cstdio>
 
+#include "app/panel/actions.hpp"
 #include "app/panel/panes/panes.hpp"
-#include "app/panel/shortcuts.hpp"
 
 namespace unfurl {
 
@@ -52,8 +52,8 @@ void draw_help(Ui& ui, PanelState& state) {
     ImGui::SameLine(ui.px(150));
     ImGui::TextUnformatted(help.c_str());
   };
-  for (const Shortcut& shortcut : shortcuts())
-    if (!shortcut.name.empty()) row(std::string(shortcut.name), std::string(shortcut.help));
+  for (const Action& action : actions())
+    if (!action.keys.empty()) row(std::string(action.keys), std::string(action.help));
   ImGui::Separator();
   row("drag", "turn the view; with Shift or the right button: move it");
   row("wheel", "nearer or farther, towards the pointer");

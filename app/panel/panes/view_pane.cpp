@@ -104,15 +104,16 @@ void draw_readings(const Ui& ui, const PanelState& state, const SceneView& view,
 
 // The older run stays in sight, dimmed, while the newer one is made.
 void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
-  if (!state.pending) return;
+  if (!state.simulation.running) return;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 high(frame.low.x + frame.size.x, frame.low.y + frame.size.y);
+  const double done = std::clamp(state.simulation.progress, 0.0, 1.0);
   list.AddRectFilled(frame.low, high, ui.color(ui.theme.window, 0.45f));
-  const float width = static_cast<float>(std::clamp(state.progress, 0.02, 1.0)) * frame.size.x;
+  const float width = static_cast<float>(std::max(done, 0.02)) * frame.size.x;
   list.AddRectFilled({frame.low.x, high.y - ui.px(4)}, {frame.low.x + width, high.y},
                      ui.color(ui.theme.accent));
-  char text[64];
-  std::snprintf(text, sizeof text, "simulating %.0f %%", 100 * std::clamp(state.progress, 0.0, 1.0));
+  char text[96];
+  std::snprintf(text, sizeof text, "%s %.0f %%", state.simulation.doing.c_str(), 100 * done);
   list.AddText({frame.low.x + ui.px(12), high.y - ui.px(26)}, ui.color(ui.theme.text), text);
 }
 
@@ -193,8 +194,7 @@ void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const F
   if (button(ui, "view options", "View", "what the view shows")) ImGui::OpenPopup("view options");
   ImGui::SetNextWindowSizeConstraints({ui.px(300), 0}, {ui.px(300), FLT_MAX});
   if (!ImGui::BeginPopup("view options")) return;
-  const auto sections = state.sections;  // copied: what is edited may replace them
-  for (const ParamSection& section : sections)
+  for (const ParamSection& section : state.sections)
     for (const ParamRow& row : section.rows)
       if (std::find(std::begin(quick_rows), std::end(quick_rows), row.key) != std::end(quick_rows))
         draw_row(ui, state, row);

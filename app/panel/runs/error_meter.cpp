@@ -23,116 +23,14 @@ double bytes_of(const LiveRun& run) {
   return states * (8 * numbers + 512);
 }
 
-}  // namespace
-
-ErrorMeter::ErrorMeter(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { work(); }) {}
-
-ErrorMeter::~ErrorMeter() {
-  {
-    const std::lock_guard lock(mutex_);
-    ending_ = true;
-  }
-  changed_.notify_all();
-  thread_.join();
-}
-
-void ErrorMeter::measure(std::shared_ptr<const LiveRun> run) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (!same_motion(wanted_, run->motion)) ++task_;
-    wanted_ = run->motion;
-    waiting_.push_back(std::move(run));
-    double bytes = 0;
-    std::size_t keep = 0;  // of the latest
-    for (auto it = waiting_.rbegin(); it != waiting_.rend() && keep < most_waiting; ++it, ++keep)
-      if (bytes += bytes_of(**it); bytes > most_waiting_bytes && keep > 0) break;
-    waiting_.erase(waiting_.begin(), waiting_.end() - static_cast<std::ptrdiff_t>(keep));
-  }
-  changed_.notify_all();
-}
-
-void ErrorMeter::hold(bool on) {
-  if (held_ == on) return;
-  {
-    const std::lock_guard lock(mutex_);
-    held_ = on;
-  }
-  changed_.notify_all();
-}
-
-std::vector<RunError> ErrorMeter::take() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(measured_, {});
-}
-
-bool ErrorMeter::has_work() const {
-  return std::any_of(waiting_.begin(), waiting_.end(),
-                     [&](const auto& run) { return same_motion(run->motion, wanted_); });
-}
-
-bool ErrorMeter::busy() const {
-  const std::lock_guard lock(mutex_);
-  return working_ || has_work() || !measured_.empty();
-}
-
-// Rests while it is held.
-bool ErrorMeter::stopped(long task) {
-  if (held_) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return !held_ || task_ != task || ending_; });
-  }
-  return task_ != task || ending_;
-}
-
-const ErrorMeter::Known* ErrorMeter::find(const MotionKey& motion) {
-  const auto it = std::find_if(known_.begin(), known_.end(),
-                               [&](const Known& known) { return same_motion(known.motion, motion); });
-  if (it == known_.end()) return nullptr;
-  known_.splice(known_.begin(), known_, it);
-  return &known_.front();
-}
-
-void ErrorMeter::remember(Known known) {
-  known_.push_front(std::move(known));
-  double bytes = 0;
-  std::size_t keep = 0;
-  for (const Known& each : known_) {
-    if (each.reference) bytes += static_cast<double>(each.reference->bytes());
-    if (keep > 0 && (bytes > most_known_bytes || keep == most_known)) break;
-    ++keep;
-  }
-  known_.resize(keep);
-}
-
-ErrorMeter::Known ErrorMeter::solve(const LiveRun& run, const std::shared_ptr<const Model>& model,
-                                    long task) {
-  Known known{run.motion, nullptr, {}};
-  ++begun_;
-  try {
-    StudyHooks hooks;
-    hooks.cancelled = [this, task] { return stopped(task); };
-    const double effort = std::clamp(effort_of_run * run.simulation.cpu_s, least_effort, most_effort);
-    known.reference =
-        std::make_shared<const ReferenceMotion>(solve_reference_motion(model, run.simulation, effort, hooks));
-    ++solved_;
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    known.why = "out of memory";
-  } catch (const std::exception& error) {
-    known.why = error.what();
-  }
-  return known;
-}
-
 // CPU time of a run up to where errors are judged, as in studies: locating the deployed pose behind that may
 // cost several times as much. A first run finds cold memory and is short enough for any other work of the
 // machine to disturb it: the median of three tells more. 0: it was not to be had.
-double ErrorMeter::timed(const LiveRun& run, double end, long task) {
+double timed(const LiveRun& run, double end, const std::function<bool()>& cancelled) {
   SolverOptions options = run.simulation.options;
   options.end_time = std::min(end, options.end_time);
   SimulationHooks hooks;
-  hooks.cancelled = [this, task] { return stopped(task); };
+  hooks.cancelled = cancelled;
   const std::shared_ptr<const Model> model(std::shared_ptr<void>(), &run.simulation.trajectory.model());
   std::vector<double> times;
   if (run.simulation.cpu_s > longest_timed) return 0;
@@ -145,56 +43,108 @@ double ErrorMeter::timed(const LiveRun& run, double end, long task) {
   return times.empty() ? 0 : times[times.size() / 2];
 }
 
-void ErrorMeter::report(const Known& known, const std::vector<std::shared_ptr<const LiveRun>>& runs,
-                        long task) {
-  for (const auto& run : runs) {
-    RunError out{.run = run->id, .why = known.why};
-    if (known.reference) {
-      out.end = known.reference->end();
-      out.cpu_s = timed(*run, out.end, task);
-      out.error = position_error(run->simulation, *known.reference);
-      out.uncertainty = known.reference->uncertainty();
-    }
-    const std::lock_guard lock(mutex_);
-    measured_.push_back(std::move(out));
-  }
+}  // namespace
+
+ErrorMeter::ErrorMeter(std::function<void()> wake)
+    : worker_([this](const Runs& runs, const Meter::Task& task) { return errors_of(runs, task); },
+              std::move(wake)) {}
+
+void ErrorMeter::measure(std::shared_ptr<const LiveRun> run) {
+  const bool same = same_motion(wanted_, run->motion);
+  wanted_ = run->motion;
+  waiting_.push_back(std::move(run));
+  double bytes = 0;
+  std::size_t keep = 0;  // of the latest
+  for (auto it = waiting_.rbegin(); it != waiting_.rend() && keep < most_waiting; ++it, ++keep)
+    if (bytes += bytes_of(**it); bytes > most_waiting_bytes && keep > 0) break;
+  waiting_.erase(waiting_.begin(), waiting_.end() - static_cast<std::ptrdiff_t>(keep));
+  if (!same || !worker_.busy()) begin();
 }
 
-void ErrorMeter::work() {
-  std::unique_lock lock(mutex_);
-  while (true) {
-    changed_.wait(lock, [this] { return ending_ || (!held_ && has_work()); });
-    if (ending_) return;
-    working_ = true;
-    const long task = task_;
-    // The latest run may have the steps that fit its motion best: the user looks at it.
-    const auto of_motion = [this](const auto& run) { return same_motion(run->motion, wanted_); };
-    const auto latest = *std::find_if(waiting_.rbegin(), waiting_.rend(), of_motion);
-    const Known* found = find(wanted_);
-    if (!found) {
-      lock.unlock();
-      Known known;
-      try {
-        const std::shared_ptr<const Model> model(latest, &latest->simulation.trajectory.model());
-        known = solve(*latest, model, task);
-      } catch (const Cancelled&) {
-      }
-      lock.lock();
-      if (known.motion) remember(std::move(known));
-    } else {
-      std::vector<std::shared_ptr<const LiveRun>> runs;
-      std::copy_if(waiting_.begin(), waiting_.end(), std::back_inserter(runs), of_motion);
-      std::erase_if(waiting_, of_motion);
-      const Known known = *found;
-      lock.unlock();
-      report(known, runs, task);
-      lock.lock();
-    }
-    working_ = false;
-    lock.unlock();  // who is woken may ask this object at once
-    if (wake_) wake_();
-    lock.lock();
+bool ErrorMeter::has_work() const {
+  return std::any_of(waiting_.begin(), waiting_.end(),
+                     [&](const auto& run) { return same_motion(run->motion, wanted_); });
+}
+
+void ErrorMeter::begin() {
+  Runs runs;
+  std::copy_if(waiting_.begin(), waiting_.end(), std::back_inserter(runs),
+               [&](const auto& run) { return same_motion(run->motion, wanted_); });
+  if (!runs.empty()) worker_.submit(std::move(runs));
+}
+
+std::vector<RunError> ErrorMeter::take() {
+  std::vector<RunError> errors = worker_.take().value_or(std::vector<RunError>());
+  for (const RunError& error : errors)
+    std::erase_if(waiting_, [&](const auto& run) { return run->id == error.run; });
+  if (!errors.empty()) begin();
+  return errors;
+}
+
+std::optional<ErrorMeter::Known> ErrorMeter::find(const MotionKey& motion) {
+  const std::lock_guard lock(mutex_);
+  const auto it = std::find_if(known_.begin(), known_.end(),
+                               [&](const Known& known) { return same_motion(known.motion, motion); });
+  if (it == known_.end()) return std::nullopt;
+  known_.splice(known_.begin(), known_, it);
+  return known_.front();
+}
+
+void ErrorMeter::remember(Known known) {
+  const std::lock_guard lock(mutex_);
+  known_.push_front(std::move(known));
+  double bytes = 0;
+  std::size_t keep = 0;
+  for (const Known& each : known_) {
+    if (each.reference) bytes += static_cast<double>(each.reference->bytes());
+    if (keep > 0 && (bytes > most_known_bytes || keep == most_known)) break;
+    ++keep;
   }
+  known_.resize(keep);
+}
+
+ErrorMeter::Known ErrorMeter::solve(const std::shared_ptr<const LiveRun>& run, const Meter::Task& task) {
+  Known known{run->motion, nullptr, {}};
+  ++begun_;
+  try {
+    StudyHooks hooks;
+    hooks.cancelled = [&task] { return task.stopped(); };
+    const double effort = std::clamp(effort_of_run * run->simulation.cpu_s, least_effort, most_effort);
+    const std::shared_ptr<const Model> model(run, &run->simulation.trajectory.model());
+    known.reference = std::make_shared<const ReferenceMotion>(
+        solve_reference_motion(model, run->simulation, effort, hooks));
+    ++solved_;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    known.why = "out of memory";
+  } catch (const std::exception& error) {
+    known.why = error.what();
+  }
+  return known;
+}
+
+std::vector<RunError> ErrorMeter::errors_of(const Runs& runs, const Meter::Task& task) {
+  std::vector<RunError> errors;
+  if (task.stopped()) return errors;
+  std::optional<Known> known = find(runs.front()->motion);
+  try {
+    // The latest run may have the steps that fit its motion best: the user looks at it.
+    if (!known) remember(*(known = solve(runs.back(), task)));
+  } catch (const Cancelled&) {
+    return errors;
+  }
+  for (const auto& run : runs) {
+    RunError out{.run = run->id, .why = known->why};
+    if (known->reference) {
+      out.end = known->reference->end();
+      out.cpu_s = timed(*run, out.end, [&task] { return task.stopped(); });
+      out.error = position_error(run->simulation, *known->reference);
+      out.uncertainty = known->reference->uncertainty();
+    }
+    errors.push_back(std::move(out));
+  }
+  return errors;
 }
 
 }  // namespace unfurl

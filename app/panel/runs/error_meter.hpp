@@ -2,17 +2,9 @@
 // Measures position errors of finished runs beside the window, against a reference of their motion.
 #pragma once
 
-#include <atomic>
-#include <condition_variable>
 #include <deque>
-#include <functional>
 #include <limits>
 #include <list>
-#include <memory>
-#include <mutex>
-#include <string>
-#include <thread>
-#include <vector>
 
 #include "app/panel/runs/simulator.hpp"
 #include "core/study/reference_motion.hpp"
@@ -32,17 +24,14 @@ class ErrorMeter {
  public:
   // `wake` is called from the worker whenever there is something new to look at.
   explicit ErrorMeter(std::function<void()> wake = {});
-  ~ErrorMeter();  // cancels what it does
-  ErrorMeter(const ErrorMeter&) = delete;
-  ErrorMeter& operator=(const ErrorMeter&) = delete;
 
   // Of this run and of earlier ones of its motion that are not measured yet. A reference of another motion
   // that is being solved is given up at once. A motion's reference is solved once.
   void measure(std::shared_ptr<const LiveRun> run);
   // Rest while something more urgent runs, and go on.
-  void hold(bool on);
-  std::vector<RunError> take();  // what was measured since the last call
-  bool busy() const;
+  void hold(bool on) { worker_.hold(on); }
+  std::vector<RunError> take();  // what was measured since the last call; begins with what came meanwhile
+  bool busy() const { return worker_.busy() || has_work(); }
   long begun() const { return begun_; }    // references
   long solved() const { return solved_; }  // of those, to the end
 
@@ -52,26 +41,21 @@ class ErrorMeter {
     std::shared_ptr<const ReferenceMotion> reference;  // null: there is none, and why
     std::string why;
   };
-  void work();
-  bool stopped(long task);
-  bool has_work() const;  // call locked
-  const Known* find(const MotionKey& motion);
-  Known solve(const LiveRun& run, const std::shared_ptr<const Model>& model, long task);
+  using Runs = std::vector<std::shared_ptr<const LiveRun>>;  // of one motion
+  using Meter = Worker<Runs, std::vector<RunError>>;
+  bool has_work() const;
+  void begin();
+  std::vector<RunError> errors_of(const Runs& runs, const Meter::Task& task);
+  std::optional<Known> find(const MotionKey& motion);
+  Known solve(const std::shared_ptr<const LiveRun>& run, const Meter::Task& task);
   void remember(Known known);
-  void report(const Known& known, const std::vector<std::shared_ptr<const LiveRun>>& runs, long task);
-  double timed(const LiveRun& run, double end, long task);
 
-  std::function<void()> wake_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
   std::deque<std::shared_ptr<const LiveRun>> waiting_;
   MotionKey wanted_;
+  std::mutex mutex_;
   std::list<Known> known_;  // the latest first
-  std::vector<RunError> measured_;
-  std::atomic<long> task_{0}, begun_{0}, solved_{0};  // task_: counts motions wanted
-  std::atomic<bool> held_{false}, ending_{false};
-  bool working_ = false;
-  std::thread thread_;  // last: it uses the members above
+  std::atomic<long> begun_{0}, solved_{0};
+  Meter worker_;  // last: it uses the members above
 };
 
 }  // namespace unfurl

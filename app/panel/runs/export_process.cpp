@@ -13,6 +13,7 @@
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write_back.hpp"
+#include "render/image/child_process.hpp"
 
 namespace unfurl {
 
@@ -61,48 +62,51 @@ std::string own_program() {
   return fs::read_symlink("/proc/self/exe", error).string();
 }
 
-ExportProcess::~ExportProcess() {
-  child_.send(SIGTERM);
-  if (thread_.joinable()) thread_.join();
-}
+namespace {
 
-void ExportProcess::start(const std::string& program, const std::vector<std::string>& words) {
-  if (running_) return;
-  if (thread_.joinable()) thread_.join();
-  std::string log = (fs::temp_directory_path() / "unfurl_export_XXXXXX").string();
-  const int file = ::mkostemp(log.data(), O_CLOEXEC);
-  if (file < 0) throw FileError(log, errno);
-  std::vector<std::string> all{program};
-  all.insert(all.end(), words.begin(), words.end());
-  const int error = child_.start(all, {.error = file});
-  ::close(file);
-  if (error != 0) {
-    ::unlink(log.c_str());
-    throw FileError(program, error);
+// A file of its own for what the program prints.
+struct Log {
+  std::string name = (fs::temp_directory_path() / "unfurl_export_XXXXXX").string();
+  int file = ::mkostemp(name.data(), O_CLOEXEC);
+  Log() {
+    if (file < 0) throw FileError(name, errno);
   }
-  const auto output = std::find(words.begin(), words.end(), "-o");
-  running_ = true;
-  thread_ =
-      std::thread([this, log, where = output == words.end() ? "" : *(output + 1)] { wait(log, where); });
-}
+  ~Log() {
+    ::close(file);
+    ::unlink(name.c_str());
+  }
+  Log(const Log&) = delete;
+  Log& operator=(const Log&) = delete;
+};
 
-void ExportProcess::wait(const std::string& log, const std::string& output) {
-  const int code = child_.wait().value_or(-1);
-  std::string text = read_text_file(log).text;
-  ::unlink(log.c_str());
+std::string exported(const ExportRequest& request, const ExportProcess::Task& task) {
+  const Log log;
+  std::vector<std::string> words{request.program};
+  words.insert(words.end(), request.words.begin(), request.words.end());
+  ChildProcess child;
+  if (const int error = child.start(words, {.error = log.file}); error != 0)
+    throw FileError(request.program, error);
+  std::optional<int> code;
+  while (!(code = child.wait(0.1)))
+    if (task.stopped()) child.send(SIGTERM);
+  std::string text = read_text_file(log.name).text;
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  {
-    const std::lock_guard lock(mutex_);
-    report_ = code == 0 ? "exported to " + output : text.substr(text.rfind('\n') + 1);
-    if (report_.empty()) report_ = "the export was ended";
-  }
-  running_ = false;
-  if (wake_) wake_();
+  const auto output = std::find(words.begin(), words.end(), "-o");
+  if (*code == 0) return "exported to " + (output == words.end() ? "" : *(output + 1));
+  return text.empty() ? "the export was ended" : text.substr(text.rfind('\n') + 1);
 }
 
-std::string ExportProcess::take_report() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(report_, "");
-}
+}  // namespace
+
+ExportProcess::ExportProcess(std::function<void()> wake)
+    : Worker(
+          [](const ExportRequest& request, const Task& task) -> std::string {
+            try {
+              return exported(request, task);
+            } catch (const std::exception& error) {
+              return error.what();
+            }
+          },
+          std::move(wake)) {}
 
 }  // namespace unfurl

@@ -2,15 +2,11 @@
 // An export: the program itself, run beside the panel with the command line that a person would type.
 #pragma once
 
-#include <atomic>
-#include <functional>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "app/panel/document/scene_document.hpp"
-#include "render/image/child_process.hpp"
+#include "app/panel/runs/worker.hpp"
 
 namespace unfurl {
 
@@ -23,28 +19,15 @@ std::vector<std::string> export_words(const SceneDocument& document, const std::
 // SceneError, FileError. `anew`: the text had to be written anew.
 SceneDocument save_document(const SceneDocument& document, const std::string& path, bool& anew);
 
-class ExportProcess {
+struct ExportRequest {
+  std::string program;             // of unfurl
+  std::vector<std::string> words;  // export_words()
+};
+
+// The result is what came of it, in a line. A run that is cancelled is ended.
+class ExportProcess : public Worker<ExportRequest, std::string> {
  public:
-  explicit ExportProcess(std::function<void()> wake) : wake_(std::move(wake)) {}
-  ~ExportProcess();  // ends a run that is under way
-  ExportProcess(const ExportProcess&) = delete;
-  ExportProcess& operator=(const ExportProcess&) = delete;
-
-  // `program`: of unfurl.
-  void start(const std::string& program, const std::vector<std::string>& words);
-  bool running() const { return running_; }
-  // What came of the last one, once; "" where there is nothing new.
-  std::string take_report();
-
- private:
-  void wait(const std::string& log, const std::string& output);
-
-  std::function<void()> wake_;
-  std::atomic<bool> running_{false};
-  std::mutex mutex_;
-  std::string report_;
-  ChildProcess child_;
-  std::thread thread_;
+  explicit ExportProcess(std::function<void()> wake = {});
 };
 
 // The file of this program.

@@ -10,69 +10,43 @@
 
 namespace unfurl {
 
-Simulator::Simulator(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { work(); }) {}
+namespace {
 
-Simulator::~Simulator() {
-  {
-    const std::lock_guard lock(mutex_);
-    ending_ = true;
-    waiting_.reset();
-    ++newest_;
-  }
-  changed_.notify_all();
-  thread_.join();
+// Counts the states that are looked at: what they are looked at for is asked before each.
+std::function<bool()> counted(const Simulator::Task& task, std::size_t states, const char* doing) {
+  return [&task, states, doing, done = std::size_t{0}]() mutable {
+    if (++done % 64 == 0)
+      task.progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(states)), doing);
+    return task.stale();
+  };
 }
 
-long Simulator::submit(SceneDocument document) {
-  long id = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    waiting_ = std::move(document);
-    finished_.reset();
-    id = ++newest_;
-  }
-  changed_.notify_all();
-  return id;
-}
-
-void Simulator::cancel() {
-  const std::lock_guard lock(mutex_);
-  waiting_.reset();
-  ++newest_;
-}
-
-std::optional<SimulationOutcome> Simulator::take() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(finished_, std::nullopt);
-}
-
-bool Simulator::busy() const {
-  const std::lock_guard lock(mutex_);
-  return running_ || waiting_ || finished_;
-}
-
-void Simulator::notify(double fraction) {
-  progress_ = fraction;
-  if (wake_) wake_();
-}
-
-SimulationOutcome Simulator::run(long id, const SceneDocument& document) {
-  SimulationOutcome outcome{id, nullptr, {}, ""};
-  try {
-    Scene scene = read_document(document);
-    SimulationHooks hooks;
-    hooks.progress = [this](double fraction) { notify(fraction); };
-    hooks.cancelled = [this, id] { return stale(id); };
-    Simulation simulation = simulate_as_asked(build_model(scene), scene.solver, hooks);
-    record_singular_poses(simulation);
-    if (stale(id)) return outcome;
-    Diagnostics diagnostics = judge(simulation);
-    std::vector<std::string> warnings = simulation.warnings;
+LiveRun live_run(const SceneDocument& document, const Simulator::Task& task) {
+  Scene scene = read_document(document);
+  SimulationHooks hooks;
+  hooks.progress = [&](double fraction) { task.progress(fraction, "simulating"); };
+  hooks.cancelled = [&] { return task.stale(); };
+  Simulation simulation = simulate_as_asked(build_model(scene), scene.solver, hooks);
+  const std::size_t states = simulation.trajectory.size();
+  record_singular_poses(simulation, counted(task, states, "looking for singular poses"));
+  Diagnostics diagnostics = judge(simulation, counted(task, states, "energies and forces"));
+  std::vector<std::string> warnings = simulation.warnings;
+  if (!task.stale())
     for (auto& warning : accuracy_warnings(simulation, diagnostics)) warnings.push_back(std::move(warning));
-    MotionKey motion = motion_of(scene);
-    outcome.run = std::make_shared<const LiveRun>(LiveRun{id, document, std::move(scene), std::move(motion),
-                                                          std::move(simulation), std::move(diagnostics),
-                                                          std::move(warnings)});
+  MotionKey motion = motion_of(scene);
+  return {task.id(),
+          document,
+          std::move(scene),
+          std::move(motion),
+          std::move(simulation),
+          std::move(diagnostics),
+          std::move(warnings)};
+}
+
+SimulationOutcome outcome_of(const SceneDocument& document, const Simulator::Task& task) {
+  SimulationOutcome outcome{task.id(), nullptr, {}, ""};
+  try {
+    outcome.run = std::make_shared<const LiveRun>(live_run(document, task));
   } catch (const SceneError& error) {
     outcome.problems = error.problems();
   } catch (const std::bad_alloc&) {
@@ -83,26 +57,8 @@ SimulationOutcome Simulator::run(long id, const SceneDocument& document) {
   return outcome;
 }
 
-void Simulator::work() {
-  std::unique_lock lock(mutex_);
-  while (true) {
-    changed_.wait(lock, [this] { return ending_ || waiting_; });
-    if (ending_) return;
-    const SceneDocument document = std::move(*waiting_);
-    waiting_.reset();
-    const long id = newest_;
-    running_ = true;
-    progress_ = 0;
-    ++started_;
-    lock.unlock();
-    SimulationOutcome outcome = run(id, document);
-    lock.lock();
-    running_ = false;
-    if (!stale(id)) finished_ = std::move(outcome);
-    lock.unlock();  // who is woken may ask this object at once
-    if (wake_) wake_();
-    lock.lock();
-  }
-}
+}  // namespace
+
+Simulator::Simulator(std::function<void()> wake) : Worker(outcome_of, std::move(wake)) {}
 
 }  // namespace unfurl

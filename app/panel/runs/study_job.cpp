@@ -89,32 +89,15 @@ std::string study_command(const StudyRequest& request, const SceneDocument& docu
   return names.empty() ? line : line + " --methods " + names;
 }
 
-StudyJob::~StudyJob() {
-  cancel();
-  if (thread_.joinable()) thread_.join();
-}
+namespace {
 
-void StudyJob::start(StudyRequest request, SceneDocument document) {
-  if (running_) return;
-  if (thread_.joinable()) thread_.join();
-  running_ = true;
-  cancelled_ = false;
-  progress_ = 0;
-  thread_ = std::thread([this, request = std::move(request), document = std::move(document)] {
-    work(request, document);
-    running_ = false;
-    if (wake_) wake_();
-  });
-}
-
-void StudyJob::work(const StudyRequest& request, const SceneDocument& document) {
+std::shared_ptr<const StudyOutcome> outcome_of_study(const std::pair<StudyRequest, SceneDocument>& asked,
+                                                     const StudyJob::Task& task) {
+  const auto& [request, document] = asked;
   auto out = std::make_shared<StudyOutcome>(StudyOutcome{request, document, {}, "", "", nullptr, nullptr});
   StudyHooks hooks;
-  hooks.progress = [this](double fraction) {
-    progress_ = fraction;
-    if (wake_) wake_();
-  };
-  hooks.cancelled = [this] { return cancelled_.load(); };
+  hooks.progress = [&task](double fraction) { task.progress(fraction); };
+  hooks.cancelled = [&task] { return task.stopped(); };
   try {
     (request.kind == StudyRequest::Kind::sweep ? study_sweep : study_precision)(hooks, *out);
   } catch (const Cancelled&) {
@@ -122,13 +105,11 @@ void StudyJob::work(const StudyRequest& request, const SceneDocument& document) 
   } catch (const std::exception& error) {
     out->message = error.what();
   }
-  const std::lock_guard lock(mutex_);
-  finished_ = std::move(out);
+  return out;
 }
 
-std::shared_ptr<const StudyOutcome> StudyJob::take() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(finished_, nullptr);
-}
+}  // namespace
+
+StudyJob::StudyJob(std::function<void()> wake) : Worker(outcome_of_study, std::move(wake)) {}
 
 }  // namespace unfurl

@@ -2,16 +2,13 @@
 // A study beside the panel: what `unfurl study` and `unfurl sweep` do, of the scene that is shown.
 #pragma once
 
-#include <atomic>
-#include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "app/panel/document/scene_document.hpp"
 #include "app/panel/runs/motion.hpp"
+#include "app/panel/runs/worker.hpp"
 #include "core/study/study.hpp"
 #include "render/plot/figure.hpp"
 
@@ -46,30 +43,10 @@ struct StudyOutcome {
 // "unfurl study hoop6 -o study --steps 0.04:0.0025 --methods dvm": the same on the command line.
 std::string study_command(const StudyRequest& request, const SceneDocument& document);
 
-class StudyJob {
+// A cancelled study (stop()) holds the points that it has.
+class StudyJob : public Worker<std::pair<StudyRequest, SceneDocument>, std::shared_ptr<const StudyOutcome>> {
  public:
-  // `wake` is called from the worker whenever there is something new to look at.
-  explicit StudyJob(std::function<void()> wake) : wake_(std::move(wake)) {}
-  ~StudyJob();  // cancels what runs
-  StudyJob(const StudyJob&) = delete;
-  StudyJob& operator=(const StudyJob&) = delete;
-
-  void start(StudyRequest request, SceneDocument document);  // nothing where one runs
-  void cancel() { cancelled_ = true; }
-  bool running() const { return running_; }
-  double progress() const { return progress_; }  // 0..1
-  // What finished since the last call; null: nothing. A cancelled one holds the points it has.
-  std::shared_ptr<const StudyOutcome> take();
-
- private:
-  void work(const StudyRequest& request, const SceneDocument& document);
-
-  std::function<void()> wake_;
-  std::atomic<bool> running_{false}, cancelled_{false};
-  std::atomic<double> progress_{0};
-  std::mutex mutex_;
-  std::shared_ptr<const StudyOutcome> finished_;
-  std::thread thread_;
+  explicit StudyJob(std::function<void()> wake = {});
 };
 
 }  // namespace unfurl

@@ -209,11 +209,11 @@ TEST_CASE("keys and buttons open and close what they say") {
 TEST_CASE("looks change the picture without a new simulation") {
   PanelDriver driver;
   driver.key(Key::end);
-  const long runs = driver.panel().simulations();
+  const long runs = driver.panel().session().simulator().started();
   const Image before = driver.picture();
   driver.state().history.edit("render.look", std::string("blueprint"));
   driver.settle();
-  CHECK(driver.panel().simulations() == runs);
+  CHECK(driver.panel().session().simulator().started() == runs);
   CHECK(driver.state().picture.look == "blueprint");
   const plot::Rect view = driver.panel().place("view");
   // A blueprint has another ground everywhere.

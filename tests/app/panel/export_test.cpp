@@ -27,11 +27,11 @@ TEST_CASE("an export from the panel is what the command line makes") {
   const ScratchDirectory scratch;
   SceneDocument document = open_document("hoop6", {});
   document.edits["solver.step"] = 0.05;
-  ExportProcess job({});
-  job.start(UNFURL_PROGRAM, export_words(document, "run", scratch / "panel"));
+  ExportProcess job;
+  job.submit({UNFURL_PROGRAM, export_words(document, "run", scratch / "panel")});
   std::string report;
   for (int i = 0; i < 60000 && report.empty(); ++i) {
-    report = job.take_report();
+    report = job.take().value_or("");
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   CHECK(report == "exported to " + (scratch / "panel"));
@@ -43,11 +43,11 @@ TEST_CASE("an export from the panel is what the command line makes") {
 TEST_CASE("an export that fails says why in one line") {
   const ScratchDirectory scratch;
   const std::string file = scratch.write("taken", "a file");
-  ExportProcess job({});
-  job.start(UNFURL_PROGRAM, export_words(open_document("hoop6", {}), "run", file));
+  ExportProcess job;
+  job.submit({UNFURL_PROGRAM, export_words(open_document("hoop6", {}), "run", file)});
   std::string report;
   for (int i = 0; i < 60000 && report.empty(); ++i) {
-    report = job.take_report();
+    report = job.take().value_or("");
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   CHECK(report.find("is a file") != std::string::npos);

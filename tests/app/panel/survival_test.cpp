@@ -15,7 +15,7 @@ TEST_CASE(
     "an exception in the middle of a frame is a message, and the next frames are as if there had been none") {
   PanelOptions options = PanelDriver::small();
   options.measure_errors = false;
-  options.set_clipboard = [](const char*) { throw std::runtime_error("no clipboard here"); };
+  options.clipboard.set = [](const char*) { throw std::runtime_error("no clipboard here"); };
   PanelDriver driver(options);
   driver.drag("structure.post_length", 0.5, 0.6);
   driver.settle();

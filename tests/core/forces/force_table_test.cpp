@@ -19,7 +19,9 @@ ParamSet values_of(const ForceKind& kind) {
   ParamSet values(kind.params());
   double number = 0.7;
   for (const ParamSpec& spec : kind.params()) {
-    if (spec.name == "times")
+    if (spec.name == "static")
+      values.set("static", 99.0);  // no less than kinetic
+    else if (spec.name == "times")
       values.set("times", std::vector<double>{0, 1, 2});
     else if (spec.name == "values")
       values.set("values", std::vector<double>{1, 3, 2});
@@ -41,7 +43,9 @@ Force force_of(const ForceKind& kind) {
   if (kind.members == Members::rod) force.nodes = {0, 1};
   if (kind.members == Members::two_nodes) force.measure = {MeasureKind::length, {0, 3}, Vec3::Zero(), 0};
   if (kind.members == Members::angle) force.measure = {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0};
+  if (kind.members == Members::measure) force.measure = {MeasureKind::length, {1, 3}, Vec3::Zero(), 0};
   kind.fill(values_of(kind), force);
+  force.slip = -1;  // of friction: what sticks has no force
   if (kind.kind == "latch")
     force.form = {{0, 2, 0}, {Vec3(0.4, -0.3, 0.9), Vec3(-1.1, 0.2, 0.5), Vec3(0.3, 0.6, -0.2)}, 0.35};
   return force;
@@ -114,6 +118,17 @@ TEST_CASE("every force kind: derivatives, potential and power agree with the for
     if (!block->constant())  // those are booked by System itself
       CHECK(block->power(t, q.data(), v.data()) ==
             Approx(force(q, v).dot(v) + rate_of_potential).margin(1e-7));
+    if (block->takes_by_pose()) {
+      if (block->power(t, q.data(), v.data()) > 0) v = -v;  // the way that it slips
+      double rate_of_taken = 0;
+      for (Index i = 0; i < n; ++i) {
+        const VectorXd unit = VectorXd::Unit(n, i) * step;
+        rate_of_taken +=
+            (block->taken(t, VectorXd(q + unit).data()) - block->taken(t, VectorXd(q - unit).data())) /
+            (2 * step) * v[i];
+      }
+      CHECK(block->power(t, q.data(), v.data()) == Approx(-rate_of_taken).epsilon(1e-7));
+    }
     if (block->dissipative()) CHECK(block->power(t, q.data(), v.data()) <= 0.0);
     if (block->constant()) CHECK((force(q, v) - force(v, q)).isZero(0.0));
   }

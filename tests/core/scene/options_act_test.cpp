@@ -65,6 +65,7 @@ std::string members_of(Members members) {
     case Members::rod:
       return "rod = \"lower\"\n";
     case Members::angle:
+    case Members::measure:
       return "nodes = [\"O\", \"A\", \"B\"]\n";
   }
   return "";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "app/command_line.hpp"
+#include "app/output/command_line.hpp"
 
 namespace unfurl {
 

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/output/receipt.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "app/output/command_line.hpp"
+#include "app/output/json_text.hpp"
+#include "app/output/receipt_formats.hpp"
+#include "core/export/checksum.hpp"
+#include "core/scene/text_file.hpp"
+#include "core/text/version.hpp"
+
+namespace unfurl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Shown {
+  std::mutex mutex;
+  std::string name, scene;
+  std::map<std::string, double> errors;
+};
+Shown& shown() {
+  static Shown shown;
+  return shown;
+}
+
+std::string bytes_of(const fs::path& file) {
+  TextFile text = read_text_file(file.string());
+  if (!text.error.empty()) throw FileError(file, text.error);
+  return std::move(text.text);
+}
+
+// Without the characters that mean something in XML and HTML.
+std::string plain(const std::string& json) {
+  std::string text;
+  for (const char c : json)
+    text += c == '<' ? "\\u003c" : c == '>' ? "\\u003e" : c == '&' ? "\\u0026" : std::string(1, c);
+  return text;
+}
+
+}  // namespace
+
+std::string checksum_of_this_program() {
+  static const std::string sum = [] {
+    Checksum build;
+    build.add(read_text_file("/proc/self/exe").text);
+    return build.text();
+  }();
+  return sum;
+}
+
+std::vector<std::string> command_of_result(std::vector<std::string> kept, const std::string& scene_word,
+                                           const std::string& scene_name) {
+  for (const char* option :
+       {"-o", "--output", "--set", "--tolerance", "--size", "--fps", "--look", "--supersample", "--frames",
+        "--lease", "--shard", "--merge", "--threads", "--export", "--script", "--jobs"})
+    kept = without_option(kept, option);
+  std::erase_if(kept, [](const std::string& word) {
+    return word == "--transparent" || word == "--join" || word == "--quiet" || word == "--json" ||
+           word == "--force" || word == "--encode-only";
+  });
+  const auto scene = std::find(kept.begin(), kept.end(), scene_word);
+  if (scene != kept.end() && !scene_name.empty()) *scene = scene_name;
+  return kept;
+}
+
+void receipt_scene(const std::string& name, const std::string& text) {
+  const std::lock_guard lock(shown().mutex);
+  shown().name = name;
+  shown().scene = text;
+}
+
+void receipt_errors(std::map<std::string, double> errors) {
+  const std::lock_guard lock(shown().mutex);
+  shown().errors = std::move(errors);
+}
+
+ReceiptWriter::ReceiptWriter(std::vector<std::string> words, std::string scene, std::string output)
+    : words_(std::move(words)),
+      scene_word_(std::move(scene)),
+      output_(fs::path(std::move(output)).lexically_normal()) {
+  before_ = finish_files(this);
+}
+
+ReceiptWriter::~ReceiptWriter() {
+  finish_files(before_);
+}
+
+std::string ReceiptWriter::note(const fs::path& target) {
+  const std::lock_guard lock(shown().mutex);
+  const fs::path inside = target.lexically_normal().lexically_relative(output_);
+  Checksum scene;
+  scene.add(shown().scene);
+  nlohmann::ordered_json json = {{"unfurl", version()},
+                                 {"build", checksum_of_this_program()},
+                                 {"command", command_of_result(words_, scene_word_, shown().name)}};
+  if (!shown().name.empty()) json["name"] = shown().name;
+  if (inside != "." && !inside.empty() && *inside.begin() != "..") json["file"] = inside.string();
+  if (!shown().scene.empty()) json["scene_hash"] = scene.text(), json["scene"] = shown().scene;
+  for (const auto& [name, value] : shown().errors)
+    if (std::isfinite(value)) json["errors"][name] = value;
+  const std::string text = plain(json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
+  return std::string(note_begin) + std::string(checksum_digits, '0') + "\"," + text.substr(1);
+}
+
+void ReceiptWriter::finish(const fs::path& temporary, const fs::path& target) {
+  const std::string extension = target.extension().string();
+  if (!takes_note(extension)) return;
+  TextFile read = read_text_file(temporary.string());
+  if (!read.error.empty()) return;  // too large for a note: it is what it would be without
+  std::string file = std::move(read.text);
+  if (extension != ".mp4") file = with_note(std::move(file), extension, note(target));
+  file = sealed(std::move(file), extension);
+  replace_bytes(temporary, file);
+}
+
+std::optional<Receipt> receipt_of(const fs::path& file) {
+  const std::string note = note_in(bytes_of(file), file.extension().string());
+  const auto json = nlohmann::json::parse(note, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  Receipt receipt{text_in(json, "unfurl"), text_in(json, "build"), {}, text_in(json, "name"),
+                  text_in(json, "file"),   text_in(json, "scene"), {}};
+  if (const auto words = json.find("command"); words != json.end() && words->is_array())
+    for (const auto& word : *words)
+      if (word.is_string()) receipt.command.push_back(word);
+  if (const auto errors = json.find("errors"); errors != json.end() && errors->is_object())
+    for (const auto& [name, value] : errors->items())
+      if (value.is_number()) receipt.errors[name] = value;
+  return receipt;
+}
+
+bool as_written(const fs::path& file) {
+  std::string bytes = bytes_of(file);
+  return sealed(bytes, file.extension().string()) == bytes;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a picture, figure, film or page says of its origin: the program, the command, the scene, the errors.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/export/atomic_file.hpp"
+
+namespace unfurl {
+
+// What was read from a file.
+struct Receipt {
+  std::string version, build;        // of the program; the build is the checksum of its executable
+  std::vector<std::string> command;  // verb, scene, and what else decides about the file
+  std::string name;                  // the word of it that is the scene; empty: the command has none
+  std::string file;                  // its name in the directory of -o; empty: -o named it
+  std::string scene;                 // its text, every --set in it
+  std::map<std::string, double> errors;
+};
+
+// Nothing where the file carries no receipt. Throws FileError where it cannot be read.
+std::optional<Receipt> receipt_of(const std::filesystem::path& file);
+// Is every byte of a file with a receipt as it was written?
+bool as_written(const std::filesystem::path& file);
+
+std::string checksum_of_this_program();
+
+// While it lives, every file of a format that takes a note gets a receipt before it gets its name.
+class ReceiptWriter final : public FileFinisher {
+ public:
+  // The words of the command line, from the verb on, which of them is the scene, and what follows -o.
+  ReceiptWriter(std::vector<std::string> words, std::string scene, std::string output);
+  ~ReceiptWriter();
+  ReceiptWriter(const ReceiptWriter&) = delete;
+  ReceiptWriter& operator=(const ReceiptWriter&) = delete;
+
+  std::string note(const std::filesystem::path& target) override;
+  void finish(const std::filesystem::path& temporary, const std::filesystem::path& target) override;
+
+ private:
+  std::vector<std::string> words_;
+  std::string scene_word_;
+  std::filesystem::path output_;
+  FileFinisher* before_ = nullptr;
+};
+
+// What files that are written from now on say of their scene, and of the run that they show.
+void receipt_scene(const std::string& name, const std::string& text);
+void receipt_errors(std::map<std::string, double> errors);
+// The command as results tell it: the scene by its name, without what only says where and by whom the work is
+// done, and without what is in the scene's text already.
+std::vector<std::string> command_of_result(std::vector<std::string> words, const std::string& scene_word,
+                                           const std::string& scene_name);
+
+}  // namespace unfurl

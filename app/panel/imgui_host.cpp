@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/panel/imgui_host.hpp"
+
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "app/panel/panes/figure_cards.hpp"
+#include "render/plot/style.hpp"
+#include "render/ui/fonts.hpp"
+#include "render/ui/imgui_canvas.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr std::pair<ImGuiKey, Key> known_keys[] = {{ImGuiKey_Tab, Key::tab},
+                                                   {ImGuiKey_LeftArrow, Key::left},
+                                                   {ImGuiKey_RightArrow, Key::right},
+                                                   {ImGuiKey_UpArrow, Key::up},
+                                                   {ImGuiKey_DownArrow, Key::down},
+                                                   {ImGuiKey_PageUp, Key::page_up},
+                                                   {ImGuiKey_PageDown, Key::page_down},
+                                                   {ImGuiKey_Home, Key::home},
+                                                   {ImGuiKey_End, Key::end},
+                                                   {ImGuiKey_Insert, Key::insert},
+                                                   {ImGuiKey_Delete, Key::del},
+                                                   {ImGuiKey_Backspace, Key::backspace},
+                                                   {ImGuiKey_Space, Key::space},
+                                                   {ImGuiKey_Enter, Key::enter},
+                                                   {ImGuiKey_Escape, Key::escape},
+                                                   {ImGuiKey_A, Key::a},
+                                                   {ImGuiKey_C, Key::c},
+                                                   {ImGuiKey_V, Key::v},
+                                                   {ImGuiKey_X, Key::x},
+                                                   {ImGuiKey_Y, Key::y},
+                                                   {ImGuiKey_Z, Key::z}};
+
+}  // namespace
+
+ImguiHost::ImguiHost(float scale, Clipboard clipboard)
+    : context_(ImGui::CreateContext()), clipboard_(std::move(clipboard)) {
+  make_current();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.MousePos = {-FLT_MAX, -FLT_MAX};
+  ImguiPainter::announce(io);
+  for (const auto& [theirs, ours] : known_keys) io.KeyMap[theirs] = static_cast<int>(ours);
+  io.ClipboardUserData = this;
+  io.SetClipboardTextFn = [](void* self, const char* text) {
+    auto& host = *static_cast<ImguiHost*>(self);
+    host.copied_ = text;
+    if (host.clipboard_.set) host.clipboard_.set(text);
+  };
+  io.GetClipboardTextFn = [](void* self) {
+    auto& host = *static_cast<ImguiHost*>(self);
+    if (host.clipboard_.get) host.copied_ = host.clipboard_.get();
+    return host.copied_.c_str();
+  };
+  ui_.scale = scale;
+  painter_ = std::make_unique<ImguiPainter>();
+  make_fonts();
+}
+
+void ImguiHost::make_fonts() {
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  ui_.regular = add_font(atlas, std::round(ui_.px(15)));
+  ui_.bold = add_font(atlas, std::round(ui_.px(15)), true);
+  ui_.small = add_font(atlas, std::round(ui_.px(12)));
+  for (const double size : plot::text_sizes) {
+    const float pixels = plot::ImguiCanvas::font_pixels(size, figure_pixels_per_point * ui_.scale);
+    figure_fonts_[static_cast<int>(std::lround(64 * pixels))] = add_font(atlas, pixels);
+  }
+  ui_.figure_font = [this](float pixels) {
+    const auto it = figure_fonts_.lower_bound(static_cast<int>(std::lround(64 * pixels)));
+    return it == figure_fonts_.end() ? figure_fonts_.rbegin()->second : it->second;
+  };
+  atlas.Build();
+  painter_->upload_fonts(atlas);
+}
+
+void ImguiHost::apply(const InputEvent& event) const {
+  ImGuiIO& io = ImGui::GetIO();
+  using Kind = InputEvent::Kind;
+  switch (event.kind) {
+    case Kind::move:
+      io.MousePos = {event.x, event.y};
+      break;
+    case Kind::button:
+      if (event.button >= 0 && event.button < 3) io.MouseDown[event.button] = event.down;
+      break;
+    case Kind::wheel:
+      io.MouseWheelH += event.x;
+      io.MouseWheel += event.y;
+      break;
+    case Kind::key:
+      io.KeysDown[static_cast<int>(event.key)] = event.down;
+      io.KeyCtrl = event.control;
+      io.KeyShift = event.shift;
+      io.KeyAlt = event.alt;
+      break;
+    case Kind::text:
+      io.AddInputCharactersUTF8(event.text.c_str());
+      break;
+    case Kind::focus_lost:
+      std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+      std::fill(std::begin(io.MouseDown), std::end(io.MouseDown), false);
+      io.KeyCtrl = io.KeyShift = io.KeyAlt = false;
+      break;
+  }
+}
+
+void ImguiHost::frame(int width, int height, double seconds, const std::function<void()>& draw) const {
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+  io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 0.25));
+  ImGui::NewFrame();
+  std::exception_ptr thrown;
+  try {
+    ImGui::PushFont(ui_.regular);
+    draw();
+    ImGui::PopFont();
+  } catch (...) {
+    thrown = std::current_exception();
+  }
+  ImGui::ErrorCheckEndFrameRecover(nullptr);  // does nothing after a frame that came to its end
+  context_->FontStack.clear();                // which it leaves as it is
+  ImGui::Render();
+  if (thrown) std::rethrow_exception(thrown);
+}
+
+}  // namespace unfurl

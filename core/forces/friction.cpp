@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/forces/friction.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "core/structure/measure.hpp"
+#include "core/structure/structure_error.hpp"
+
+namespace unfurl {
+namespace {
+
+class DryFriction final : public ForceBlock {
+ public:
+  explicit DryFriction(const Structure& structure) {
+    const std::vector<int> followed = followed_angles(structure).of_force;
+    for (std::size_t i = 0; i < structure.forces.size(); ++i) {
+      const Force& f = structure.forces[i];
+      if (f.kind != "friction") continue;
+      any_ = true;
+      if (f.slip != 0)
+        slipping_.push_back(
+            {MeasureFunction(f.measure, structure.deployment), f.slip * f.kinetic, followed[i]});
+    }
+  }
+  bool any() const { return any_; }
+  bool constant() const override { return false; }
+  bool has_power() const override { return true; }
+  bool dissipative() const override { return true; }
+  bool takes_by_pose() const override { return true; }
+
+  void add(const Moment& at, const double* q, const double*, double scale, double* f) const override {
+    VectorXd g;
+    for (const Slipping& s : slipping_) {
+      gradient(s, at, q, g);
+      const auto& stencil = s.measure.stencil();
+      for (std::size_t i = 0; i < stencil.size(); ++i)
+        f[stencil[i]] -= scale * s.force * g[static_cast<Index>(i)];
+    }
+  }
+  double power(const Moment& at, const double* q, const double* v) const override {
+    VectorXd g;
+    double sum = 0;
+    for (const Slipping& s : slipping_) {
+      gradient(s, at, q, g);
+      sum -= s.force * s.measure.rate(g.data(), v);
+    }
+    return sum;
+  }
+  double taken(const Moment& at, const double* q) const override {
+    double sum = 0;
+    for (const Slipping& s : slipping_) sum += s.force * s.measure.value(q, near(s, at));
+    return sum;
+  }
+  void derivatives(const Moment&, const double* q, const double*, ForceDerivative& by_q,
+                   ForceDerivative&) const override {
+    for (const Slipping& s : slipping_) {
+      const auto& stencil = s.measure.stencil();
+      const auto size = static_cast<Index>(stencil.size());
+      MatrixXd hess(size, size);
+      s.measure.hessian(q, hess.data());
+      for (Index j = 0; j < size; ++j)
+        for (Index i = 0; i < size; ++i)
+          if (hess(i, j) != 0.0)
+            by_q.emplace_back(stencil[static_cast<std::size_t>(i)], stencil[static_cast<std::size_t>(j)],
+                              -s.force * hess(i, j));
+    }
+  }
+
+ private:
+  struct Slipping {
+    MeasureFunction measure;
+    double force;  // slip tau_k [N] or [N m]
+    int followed;  // index among the angles that count turns; -1: not one of them
+  };
+  static double near(const Slipping& s, const Moment& at) {
+    return at.near(s.followed, s.measure.reference());
+  }
+  static void gradient(const Slipping& s, const Moment& at, const double* q, VectorXd& g) {
+    g.resize(static_cast<Index>(s.measure.stencil().size()));
+    s.measure.value_and_gradient(q, g.data(), near(s, at));
+  }
+
+  std::vector<Slipping> slipping_;
+  bool any_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<ForceBlock> friction_block(const Structure& structure, const SparseRows&) {
+  auto block = std::make_unique<DryFriction>(structure);
+  if (!block->any()) return nullptr;
+  return block;
+}
+
+const std::vector<ParamSpec>& friction_params() {
+  constexpr double endless = std::numeric_limits<double>::infinity(),
+                   as_kinetic = std::numeric_limits<double>::quiet_NaN();
+  static const std::vector<ParamSpec> params = [] {
+    ParamSpec kinetic = real_param("kinetic", "", 0.0, 0.0, endless,
+                                   "while it slips: N m on an angle, N on a length or a coordinate");
+    kinetic.required = true;
+    return std::vector<ParamSpec>{
+        kinetic,
+        real_param("static", "", as_kinetic, 0.0, endless,
+                   "up to which it sticks, at least kinetic; by default kinetic"),
+        vector_param("axis", "", {0, 0, 0},
+                     "of the hinge: the angle then has a sign and counts any number of turns"),
+        vector_param("direction", "", {0, 0, 0},
+                     "with one or two nodes: friction on their coordinate along it, or its difference")};
+  }();
+  return params;
+}
+
+void fill_friction(const ParamSet& values, Force& force) {
+  force.kinetic = values.real("kinetic");
+  const double most = values.real("static");
+  force.holding = std::isnan(most) ? force.kinetic : most;
+  if (force.holding < force.kinetic)
+    throw StructureError("static", "must be at least kinetic: what sticks would hold less than what slips");
+}
+
+}  // namespace unfurl

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/math/box_complementarity.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace unfurl {
+namespace {
+
+constexpr double box_dependent = 1e-9;  // of a unit diagonal
+constexpr double box_zero = 1e-12;      // of the largest b, in the unit diagonal
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+std::vector<Index> rows_of(const std::vector<bool>& held) {
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (held[i]) rows.push_back(static_cast<Index>(i));
+  return rows;
+}
+
+// d with d_i = 1, (D d)_k = 0 for the held rows k and zero elsewhere.
+VectorXd direction(const MatrixXd& D, const std::vector<bool>& held, Index i) {
+  const std::vector<Index> rows = rows_of(held);
+  VectorXd d = VectorXd::Zero(D.rows());
+  d[i] = 1;
+  if (rows.empty()) return d;
+  const VectorXd part = D(rows, rows).llt().solve(VectorXd(D(rows, std::vector{i}).col(0)));
+  for (std::size_t k = 0; k < rows.size(); ++k) d[rows[k]] = -part[static_cast<Index>(k)];
+  return d;
+}
+
+// Dantzig's method with bounds: one row after the other is moved until its w is right, along the line on
+// which the held rows stay at w = 0; a held row that meets a bound on the way stays there. x^T D x / 2 + b^T
+// x falls all the time.
+class BoxProblem {
+ public:
+  BoxProblem(const MatrixXd& D, const VectorXd& b, const VectorXd& low, const VectorXd& high)
+      : D_(D),
+        b_(b),
+        low_(low),
+        high_(high),
+        x_(VectorXd::Zero(b.size()).cwiseMax(low).cwiseMin(high)),
+        held_(static_cast<std::size_t>(b.size()), false),
+        zero_(box_zero * std::max((b + D * x_).lpNorm<Eigen::Infinity>(), b.lpNorm<Eigen::Infinity>())) {}
+
+  bool solve() {
+    for (Index tries = 50 * (b_.size() + 1); tries > 0; --tries) {
+      const std::optional<Index> i = wrong();
+      if (!i) return true;
+      if (!move(*i)) return false;
+    }
+    return false;
+  }
+  BoxSolution solution() const { return {x_, D_ * x_ + b_, held_}; }
+
+ private:
+  // Which way row i must go: 1, -1, or 0 where it is right.
+  int way(Index i, double w) const {
+    if (w < -zero_ && x_[i] < high_[i]) return 1;
+    if (w > zero_ && x_[i] > low_[i]) return -1;
+    return 0;
+  }
+  std::optional<Index> wrong() const {
+    const VectorXd w = D_ * x_ + b_;
+    std::optional<Index> worst;
+    for (Index i = 0; i < w.size(); ++i)
+      if (!held_[static_cast<std::size_t>(i)] && way(i, w[i]) != 0 &&
+          (!worst || std::abs(w[i]) > std::abs(w[*worst])))
+        worst = i;
+    return worst;
+  }
+
+  // False where nothing stops it.
+  bool move(Index i) {
+    for (Index passes = 2 * b_.size() + 2; passes > 0; --passes) {
+      const double w = D_.row(i).dot(x_) + b_[i];
+      const int sense = way(i, w);
+      if (sense == 0) return true;
+      const VectorXd d = sense * direction(D_, held_, i);
+      const double bend = sense * D_.row(i).dot(d);
+      double length = bend > box_dependent * D_(i, i) ? std::abs(w) / bend : unbounded;
+      Index blocks = -1;
+      for (Index k = 0; k < d.size(); ++k) {
+        const double room = d[k] > 0   ? (high_[k] - x_[k]) / d[k]
+                            : d[k] < 0 ? (low_[k] - x_[k]) / d[k]
+                                       : unbounded;
+        if (room < length) length = std::max(room, 0.0), blocks = k;
+      }
+      if (!std::isfinite(length)) return false;
+      x_ += length * d;
+      if (blocks < 0) return held_[static_cast<std::size_t>(i)] = true;
+      x_[blocks] = d[blocks] > 0 ? high_[blocks] : low_[blocks];
+      held_[static_cast<std::size_t>(blocks)] = false;
+      if (blocks == i) return true;
+    }
+    return true;
+  }
+
+  const MatrixXd& D_;
+  const VectorXd &b_, &low_, &high_;
+  VectorXd x_;
+  std::vector<bool> held_;
+  double zero_;
+};
+
+}  // namespace
+
+bool independent(const MatrixXd& D, const std::vector<bool>& held, Index i) {
+  return D(i, i) > 0 && D.row(i).dot(direction(D, held, i)) > box_dependent * D(i, i);
+}
+
+// In units in which the diagonal of D is 1; rows without any have no say.
+std::optional<BoxSolution> solve_box(const MatrixXd& D, const VectorXd& b, const VectorXd& low,
+                                     const VectorXd& high) {
+  VectorXd unit(b.size());
+  for (Index i = 0; i < b.size(); ++i) unit[i] = D(i, i) > 0 ? std::sqrt(D(i, i)) : 1.0;
+  const VectorXd inverse = unit.cwiseInverse();
+  const MatrixXd scaled = inverse.asDiagonal() * D * inverse.asDiagonal();
+  const VectorXd scaled_b = b.cwiseProduct(inverse), scaled_low = low.cwiseProduct(unit),
+                 scaled_high = high.cwiseProduct(unit);
+  BoxProblem problem(scaled, scaled_b, scaled_low, scaled_high);
+  if (!problem.solve()) return std::nullopt;
+  BoxSolution out = problem.solution();
+  out.x = out.x.cwiseProduct(inverse).cwiseMax(low).cwiseMin(high);
+  out.w = out.w.cwiseProduct(unit);
+  return out;
+}
+
+}  // namespace unfurl

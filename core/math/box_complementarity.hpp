@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pushes that are bounded and what they hold: the complementarity problem of stops and dry friction.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/math/types.hpp"
+
+namespace unfurl {
+
+// With D symmetric and positive semidefinite, w = D x + b and low <= x <= high,
+//
+//     x = low: w >= 0,     x = high: w <= 0,     between: w = 0
+//
+// (what minimises x^T D x / 2 + b^T x in the box). A stop has the box [0, inf): its push x and the gap's
+// acceleration w; dry friction [-tau, tau]: its force and the acceleration of what it holds. Where D is
+// singular w is unique and x need not be.
+struct BoxSolution {
+  VectorXd x, w;
+  // Rows that are held at w = 0; those of D are independent. Others rest at a bound, or at 0 where w = 0 by
+  // itself or by what the held rows hold.
+  std::vector<bool> held;
+};
+
+// Nothing where no x does it: a push without a bound that cannot stop what it must.
+std::optional<BoxSolution> solve_box(const MatrixXd& D, const VectorXd& b, const VectorXd& low,
+                                     const VectorXd& high);
+
+// Is row i of D independent of those held? Of unit diagonal, what they leave of it is above round-off.
+bool independent(const MatrixXd& D, const std::vector<bool>& held, Index i);
+
+}  // namespace unfurl

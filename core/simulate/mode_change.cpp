@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/simulate/mode_change.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/math/box_complementarity.hpp"
+#include "core/simulate/push_responses.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+class Change {
+ public:
+  Change(OneSided& sides, const Model& base, const State& state, const std::vector<std::size_t>& which)
+      : sides_(sides), system_(base.system.at(state)), which_(which) {
+    out_.state = state;
+  }
+
+  ModeChange run(const std::function<bool(std::size_t, double)>& rests) {
+    for (const std::size_t i : which_)
+      if (!sides_.is_stop(i) && !sides_.is_friction(i)) turn(i, !sides_.active(i));
+    find_rows();
+    if (rows_.empty()) return std::move(out_);
+    PushResponses responses(system_, out_.state);
+    if (!responses.ok()) return failed("the constraint matrix cannot be factorised where modes change");
+    for (const std::size_t i : rows_)
+      responses.add(sides_.measure(i), sides_.sign(i), sides_.near(i, out_.state));
+    D_ = responses.matrix();
+    for (Index i = 0; i < D_.rows(); ++i) movable_.push_back(responses.movable(i));
+    if (strike(responses, rests) && choose(responses)) assign();
+    return std::move(out_);
+  }
+
+ private:
+  std::size_t side(Index row) const { return rows_[static_cast<std::size_t>(row)]; }
+  bool movable(Index row) const { return movable_[static_cast<std::size_t>(row)]; }
+  bool crossed(Index row) const { return std::find(which_.begin(), which_.end(), side(row)) != which_.end(); }
+  Index count() const { return static_cast<Index>(rows_.size()); }
+
+  ModeChange failed(const std::string& why) {
+    out_.failure = why;
+    return std::move(out_);
+  }
+  bool fail_at(Index row) {
+    out_.failure = "a drive pushes against the stop " + sides_.stops()[side(row)].name;
+    return false;
+  }
+  void turn(std::size_t i, bool active) {
+    sides_.set_active(i, active);
+    out_.turned.push_back(i);
+    out_.changed = true;
+  }
+
+  void find_rows() {
+    for (std::size_t i = 0; i < sides_.stops().size(); ++i)
+      if (std::find(which_.begin(), which_.end(), i) != which_.end() ||
+          sides_.touches(i, system_, out_.state))
+        rows_.push_back(i);
+    for (std::size_t i = sides_.first_friction(); i < sides_.size(); ++i) rows_.push_back(i);
+    const auto n = rows_.size();
+    struck_.assign(n, false);
+  }
+
+  // The stops that are approached, all at once. False where there is no answer.
+  bool strike(const PushResponses& responses, const std::function<bool(std::size_t, double)>& rests) {
+    const double zero = sides_.zero_rate();
+    VectorXd u = responses.rates(out_.state.w), b = u, low = VectorXd::Zero(count()), high = low;
+    bool any = false;
+    for (Index r = 0; r < count(); ++r) {
+      const std::size_t i = side(r);
+      if (!sides_.is_stop(i)) continue;
+      high[r] = movable(r) ? infinity : 0.0;
+      const bool new_here = crossed(r) && !sides_.active(i);
+      if (!(u[r] < (new_here ? 0.0 : -zero))) continue;
+      if (!movable(r)) {
+        // No impulse moves it. What others hold needs no hold of its own.
+        if (-u[r] <= std::max(sides_.stops()[i].rest_speed, 1e-9 * out_.state.w.lpNorm<Eigen::Infinity>()))
+          continue;
+        return fail_at(r);
+      }
+      any = struck_[static_cast<std::size_t>(r)] = true;
+      if (!sides_.active(i) && !rests(i, -u[r])) b[r] += sides_.stops()[i].restitution * u[r];
+    }
+    if (!any) return true;
+    const auto impulses = solve_box(D_, b, low, high);
+    if (!impulses) return fail_at(std::find(struck_.begin(), struck_.end(), true) - struck_.begin());
+    responses.give(impulses->x, out_.state.w);
+    const VectorXd after = responses.rates(out_.state.w);
+    for (Index r = 0; r < count(); ++r)
+      if (struck_[static_cast<std::size_t>(r)])
+        out_.impacts.push_back({side(r), -0.5 * impulses->x[r] * (u[r] + after[r])});
+    return true;
+  }
+
+  // Does friction move, or does a stop stay out of it, whatever the forces are?
+  bool at_rest(Index r, double rate) const {
+    const std::size_t i = side(r);
+    if (sides_.is_friction(i)) return std::abs(rate) <= 1.0001 * sides_.zero_rate();
+    return rate <= sides_.zero_rate() || (struck_[static_cast<std::size_t>(r)] && rate <= 0);
+  }
+
+  bool choose(const PushResponses& responses) {
+    const VectorXd rate = responses.rates(out_.state.w);
+    b_ = responses.accelerations(out_.state);
+    if (b_.size() != count()) {
+      out_.failure = "the constraint matrix cannot be factorised where modes change";
+      return false;
+    }
+    low_ = high_ = VectorXd::Zero(count());
+    rests_.assign(rows_.size(), false);
+    slips_.assign(rows_.size(), 0);
+    std::vector<Index> leaving;
+    for (Index r = 0; r < count(); ++r) {
+      const std::size_t i = side(r), k = static_cast<std::size_t>(r);
+      if (!at_rest(r, rate[r])) {
+        if (sides_.is_friction(i)) slide(r, rate[r] > 0 ? 1 : -1);
+        continue;
+      }
+      if (!movable(r)) {
+        if (sides_.is_friction(i) && std::abs(b_[r]) > sides_.zero_acceleration())
+          slide(r, b_[r] > 0 ? 1 : -1);
+        continue;
+      }
+      rests_[k] = true;
+      if (crossed(r) && sides_.active(i)) leaving.push_back(r);
+      if (sides_.is_friction(i)) low_[r] = -sides_.holding(i);
+      high_[r] = sides_.is_friction(i) ? sides_.holding(i) : infinity;
+    }
+    if (!solve()) return false;
+    for (const Index r : leaving) leave(r);
+    if (!leaving.empty() && !solve()) return false;
+    // Those that do not go after all: others push them back.
+    bool back = false;
+    for (const Index r : leaving) back = come_back(r) || back;
+    return !back || solve();
+  }
+
+  void slide(Index r, int sense) {
+    slips_[static_cast<std::size_t>(r)] = sense;
+    rests_[static_cast<std::size_t>(r)] = false;
+    low_[r] = high_[r] = -sense * sides_.kinetic(side(r));
+  }
+
+  void leave(Index r) {
+    if (!rests_[static_cast<std::size_t>(r)]) return;
+    if (sides_.is_friction(side(r)))
+      slide(r, solution_.x[r] > 0 ? -1 : 1);
+    else
+      rests_[static_cast<std::size_t>(r)] = false, high_[r] = 0;
+  }
+  bool come_back(Index r) {
+    const std::size_t i = side(r), k = static_cast<std::size_t>(r);
+    const double sense = sides_.is_friction(i) ? slips_[k] : 1;
+    if (rests_[k] || sense * solution_.w[r] >= -sides_.zero_acceleration()) return false;
+    rests_[k] = true;
+    slips_[k] = 0;
+    low_[r] = sides_.is_friction(i) ? -sides_.holding(i) : 0.0;
+    high_[r] = sides_.is_friction(i) ? sides_.holding(i) : infinity;
+    return true;
+  }
+
+  // What cannot be held slips, with its kinetic force; that may let others slip.
+  bool solve() {
+    for (;;) {
+      const auto solution = solve_box(D_, b_, low_, high_);
+      if (!solution) {
+        out_.failure = "a drive pushes against what stops hold";
+        return false;
+      }
+      solution_ = *solution;
+      bool any = false;
+      for (Index r = 0; r < count(); ++r) {
+        if (!rests_[static_cast<std::size_t>(r)] || !sides_.is_friction(side(r))) continue;
+        if (solution_.held[static_cast<std::size_t>(r)] ||
+            std::abs(solution_.w[r]) <= sides_.zero_acceleration())
+          continue;
+        slide(r, solution_.w[r] > 0 ? 1 : -1);
+        any = true;
+      }
+      if (!any) return true;
+    }
+  }
+
+  // Rows that rest without a force are held too, where they are independent of the others: friction, and
+  // stops that were met or held before.
+  void assign() {
+    for (Index r = 0; r < count(); ++r) {
+      const std::size_t i = side(r), k = static_cast<std::size_t>(r);
+      const bool wants = sides_.is_friction(i) || struck_[k] || sides_.active(i) || crossed(r);
+      if (rests_[k] && !solution_.held[k] && wants && solution_.w[r] <= sides_.zero_acceleration() &&
+          independent(D_, solution_.held, r))
+        solution_.held[k] = true;
+    }
+    for (Index r = 0; r < count(); ++r) {
+      const std::size_t i = side(r), k = static_cast<std::size_t>(r);
+      const bool holds = rests_[k] && solution_.held[k];
+      if (!sides_.is_friction(i)) {
+        if (sides_.active(i) != holds) turn(i, holds);
+        continue;
+      }
+      const int slip = slips_[k], before = sides_.slip(i);
+      const bool stuck = sides_.active(i);
+      if (holds == stuck && slip == before) continue;
+      if (holds)
+        sides_.stick(i, system_, out_.state);
+      else if (slip != 0)
+        sides_.set_slip(i, slip);
+      else
+        sides_.stand(i);
+      out_.changed = true;
+      if (slip != 0 || before != 0) out_.turned.push_back(i);  // what rests still does, by other forces
+    }
+  }
+
+  OneSided& sides_;
+  const System system_;
+  const std::vector<std::size_t>& which_;
+  ModeChange out_;
+  std::vector<std::size_t> rows_;  // sides that may push: stops that are touched, then friction
+  std::vector<bool> struck_, rests_, movable_;
+  std::vector<int> slips_;
+  MatrixXd D_;
+  VectorXd b_, low_, high_;
+  BoxSolution solution_;
+};
+
+}  // namespace
+
+ModeChange change_modes(OneSided& sides, const Model& base, const State& state,
+                        const std::vector<std::size_t>& which,
+                        const std::function<bool(std::size_t stop, double approach)>& rests) {
+  return Change(sides, base, state, which).run(rests);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/simulate/push_responses.hpp"
+
+#include "core/integrators/index1.hpp"
+
+namespace unfurl {
+
+PushResponses::PushResponses(const System& system, const State& state)
+    : system_(system), G_(system.jacobian_pattern()), saddle_(system.mass(), G_), q_(system.coordinates()) {
+  std::vector<double> scratch;
+  system.expand(state.z, q_);
+  system.jacobian(q_, G_, scratch);
+  ok_ = saddle_.factorise(G_);
+}
+
+void PushResponses::add(const MeasureFunction& s, double sign, double near) {
+  const auto& stencil = s.stencil();
+  VectorXd gradient(static_cast<Index>(stencil.size())), node_force = VectorXd::Zero(q_.size());
+  s.value_and_gradient(q_.data(), gradient.data(), near);
+  for (std::size_t k = 0; k < stencil.size(); ++k)
+    node_force[stencil[k]] += sign * gradient[static_cast<Index>(k)];
+  Row row{&s, sign, VectorXd(system_.solved_coordinates()), VectorXd(system_.solved_coordinates())};
+  system_.reduce_force(node_force, row.n);
+  VectorXd mu(system_.constraints());
+  saddle_.solve(row.n, VectorXd::Zero(mu.size()), row.a, mu);
+  rows_.push_back(std::move(row));
+}
+
+MatrixXd PushResponses::matrix() const {
+  MatrixXd D(size(), size());
+  for (Index i = 0; i < size(); ++i)
+    for (Index j = 0; j < size(); ++j) {
+      const Row &r = rows_[static_cast<std::size_t>(i)], &c = rows_[static_cast<std::size_t>(j)];
+      D(i, j) = 0.5 * (r.n.dot(c.a) + c.n.dot(r.a));
+    }
+  return D;
+}
+
+bool PushResponses::movable(Index i) const {
+  const Row& row = rows_[static_cast<std::size_t>(i)];
+  const double free = row.n.cwiseAbs2().maxCoeff() / system_.mass().diagonal().maxCoeff();
+  return row.n.dot(row.a) > 1e-12 * free;
+}
+
+VectorXd PushResponses::rates(const VectorXd& w) const {
+  VectorXd out(size());
+  for (Index i = 0; i < size(); ++i) out[i] = rows_[static_cast<std::size_t>(i)].n.dot(w);
+  return out;
+}
+
+void PushResponses::give(const VectorXd& P, VectorXd& w) const {
+  for (Index i = 0; i < size(); ++i)
+    if (P[i] != 0.0) w += P[i] * rows_[static_cast<std::size_t>(i)].a;
+}
+
+VectorXd PushResponses::accelerations(const State& state) const {
+  VectorXd acceleration(state.w.size()), lambda = VectorXd::Zero(system_.constraints()), v(q_.size());
+  Index1 index1(system_);
+  if (!index1.evaluate(state.t, state.z, state.w, acceleration, lambda)) return {};
+  system_.expand_rate(state.w, v);
+  VectorXd out = rates(acceleration);
+  for (Index i = 0; i < size(); ++i) {
+    const Row& row = rows_[static_cast<std::size_t>(i)];
+    out[i] += row.sign * row.measure->curvature_along(q_.data(), v.data());
+  }
+  return out;
+}
+
+}  // namespace unfurl

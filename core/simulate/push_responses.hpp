@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What pushes along measures do to a motion.
+#pragma once
+
+#include "core/math/saddle_solver.hpp"
+#include "core/structure/measure.hpp"
+#include "core/system/system.hpp"
+
+namespace unfurl {
+
+// At the pose of a state, the constraints of the system answering, with n_i = sign_i B^T ds_i/dq,
+//
+//     M a_i + G^T mu = n_i,  G a_i = 0,     D_ij = n_i . a_j
+//
+// impulses P_j change the rates sign_i s_i' by D P, forces f_j the accelerations sign_i s_i'' by D f.
+class PushResponses {
+ public:
+  // The system must follow the state.
+  PushResponses(const System& system, const State& state);
+  bool ok() const { return ok_; }
+  void add(const MeasureFunction& s, double sign, double near);
+
+  Index size() const { return static_cast<Index>(rows_.size()); }
+  MatrixXd matrix() const;                          // D
+  bool movable(Index i) const;                      // by any push along it, as far as rounding tells
+  VectorXd rates(const VectorXd& w) const;          // sign_i s_i'
+  void give(const VectorXd& P, VectorXd& w) const;  // w += sum P_i a_i
+  // sign_i s_i'' of a state at that pose, by the system's own forces; empty where they have no solution.
+  VectorXd accelerations(const State& state) const;
+
+ private:
+  struct Row {
+    const MeasureFunction* measure;
+    double sign;
+    VectorXd n, a;
+  };
+  const System& system_;
+  SparseRows G_;
+  SaddleSolver saddle_;
+  VectorXd q_;
+  std::vector<Row> rows_;
+  bool ok_ = false;
+};
+
+}  // namespace unfurl

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a file says of its origin, and that it can be made again from that.
+#include "app/output/receipt.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+
+#include "app/output/receipt_formats.hpp"
+#include "tests/app/run_program.hpp"
+
+using namespace unfurl;
+namespace fs = std::filesystem;
+
+namespace receipt_test {
+
+namespace {
+
+std::string note_of(const std::string& text) {
+  return std::string(note_begin) + std::string(checksum_digits, '0') + "\",\"text\":\"" + text + "\"}";
+}
+
+}  // namespace
+
+TEST_CASE("a file of every format carries its receipt, and is made again from it to the byte") {
+  const ScratchDirectory dir;
+  const std::string film = dir / "film";
+  REQUIRE(run_program({"render", "pendulum", "-o", film, "--size", "96x64", "--fps", "10", "--set",
+                       "solver.end_time=0.5", "--set", "structure.length=0.7", "--export", "gltf,html",
+                       "--quiet"})
+              .code == 0);
+  for (const char* name :
+       {"figures/energy.pdf", "figures/energy.svg", "figures/energy.png", "frames/frame_00003.png",
+        "animation.webp", "animation.gif", "animation.mp4", "animation.glb", "viewer.html"}) {
+    INFO(name);
+    // Where no list of results is.
+    const std::string copy = dir / ("copy" + fs::path(name).extension().string());
+    fs::copy_file(fs::path(film) / name, copy, fs::copy_options::overwrite_existing);
+    const auto receipt = receipt_of(copy);
+    REQUIRE(receipt);
+    CHECK(receipt->command == std::vector<std::string>{"render", "pendulum"});
+    CHECK(receipt->file == name);
+    CHECK(receipt->name == "pendulum");
+    CHECK(receipt->scene == file_text(film + "/scene.toml"));
+    CHECK(receipt->scene.find("length = 0.7") != std::string::npos);
+    CHECK(receipt->errors.at("constraint_error_m") < 1e-12);
+    const ProgramResult whole = run_program({"verify", copy});
+    CHECK(whole.code == 0);
+    CHECK(whole.out.find("unfurl render pendulum") != std::string::npos);
+    const ProgramResult again = run_program({"reproduce", copy});
+    INFO(again.err);
+    CHECK(again.code == 0);
+    CHECK(again.out.starts_with("the same, byte by byte"));
+    std::string bytes = file_text(copy);
+    bytes[bytes.size() / 3] = static_cast<char>(bytes[bytes.size() / 3] ^ 1);
+    dir.write(fs::path(copy).filename().string(), bytes);
+    CHECK(run_program({"verify", copy}).code == 7);
+  }
+}
+
+TEST_CASE("a figure of its own, with options, is made again where it is asked for") {
+  const ScratchDirectory dir;
+  REQUIRE(
+      run_program({"figure", "double_pendulum", "energy", "-o", dir / "a.svg", "--style", "slide", "--quiet"})
+          .code == 0);
+  const auto receipt = receipt_of(dir / "a.svg");
+  REQUIRE(receipt);
+  CHECK(receipt->command ==
+        std::vector<std::string>{"figure", "double_pendulum", "energy", "--style", "slide"});
+  CHECK(receipt->file.empty());
+  CHECK(run_program({"reproduce", dir / "a.svg", "-o", dir / "again"}).code == 0);
+  CHECK(file_text(dir / "again/a.svg") == file_text(dir / "a.svg"));
+  const ProgramResult none = run_program({"reproduce", dir.write("b.svg", "<svg></svg>")});
+  CHECK(none.code == 5);
+  CHECK(none.err.find("carries no receipt") != std::string::npos);
+  const ProgramResult neither = run_program({"verify", dir / "b.svg"});
+  CHECK(neither.code == 5);
+  CHECK(neither.err.find("carries no receipt") != std::string::npos);
+}
+
+TEST_CASE("every byte of a sealed file counts, its receipt's own too") {
+  const ScratchDirectory dir;
+  REQUIRE(run_program({"render", "pendulum", "-o", dir / "film", "--size", "32x32", "--fps", "4", "--set",
+                       "solver.end_time=0.5", "--export", "gltf,html", "--quiet"})
+              .code == 0);
+  std::mt19937 random(5);  // a seed
+  for (const char* name :
+       {"figures/energy.pdf", "figures/energy.svg", "frames/frame_00001.png", "animation.webp",
+        "animation.gif", "animation.mp4", "animation.glb", "viewer.html"}) {
+    INFO(name);
+    const std::string extension = fs::path(name).extension().string();
+    const std::string whole = file_text(dir / (std::string("film/") + name));
+    REQUIRE(sealed(whole, extension) == whole);
+    REQUIRE_FALSE(note_in(whole, extension).empty());
+    const std::size_t receipt = whole.find(note_begin);
+    for (int i = 0; i < 300; ++i) {
+      std::string changed = whole;
+      const std::size_t at = i < 40 ? receipt + note_begin.size() + static_cast<std::size_t>(i)
+                                    : std::uniform_int_distribution<std::size_t>(0, whole.size() - 1)(random);
+      changed[at] = static_cast<char>(changed[at] ^ (1 << (random() % 8)));
+      INFO("byte " << at << " of " << whole.size());
+      // Nothing but the first words of the receipt may hide a change, and then there is no receipt.
+      const bool told = sealed(changed, extension) != changed || note_in(changed, extension).empty();
+      CHECK(told);
+    }
+  }
+}
+
+TEST_CASE("notes stand in files of any content, or leave them as they are") {
+  std::mt19937 random(11);
+  for (const char* extension : {".png", ".svg", ".pdf", ".glb", ".html", ".webp", ".gif", ".mp4", ".txt"}) {
+    for (int i = 0; i < 200; ++i) {
+      std::string file(random() % 80, '\0');
+      for (char& c : file) c = static_cast<char>(random());
+      INFO(extension << " " << i);
+      const std::string with = with_note(file, extension, note_of("x"));
+      CHECK(with.size() >= file.size());
+      const std::string once = sealed(with, extension);
+      CHECK(sealed(once, extension) == once);
+      note_in(file, extension);
+    }
+  }
+}
+
+TEST_CASE("a note is read back from where quotes, brackets and backslashes mean something") {
+  const std::string hard = R"(a \"quoted\" (word) \\ back\nslash {brace} )" + std::string(700, 'y');
+  const std::string pdf =
+      "%PDF-1.4\n1 0 obj\n<< /Type /Catalog >>\nendobj\n2 0 obj\n<< /Title (T) >>\nendobj\nxref\n0 "
+      "3\ntrailer\n<< "
+      "/Size 3 /Root 1 0 R /Info 2 0 R >>\nstartxref\n60\n%%EOF\n";
+  const std::pair<const char*, std::string> files[] = {{".pdf", pdf},
+                                                       {".gif", "GIF89a....................;"},
+                                                       {".svg", "<?xml?><svg a='b'><g/></svg>"},
+                                                       {".html", "<html><body>text</body></html>"}};
+  for (const auto& [extension, file] : files) {
+    INFO(extension);
+    const std::string with = sealed(with_note(file, extension, note_of(hard)), extension);
+    const std::string note = note_in(with, extension);
+    CHECK(note.size() == note_of(hard).size());
+    CHECK(note.ends_with(hard + "\"}"));
+  }
+  // The update of a PDF keeps the old trailer's place, and its table points at the new object.
+  const std::string with = with_note(pdf, ".pdf", note_of(hard));
+  CHECK(with.starts_with(pdf));
+  CHECK(with.find("/Prev 60 >>") != std::string::npos);
+  const std::size_t object = with.find("2 0 obj", pdf.size());
+  CHECK(with.find(std::string(10 - std::to_string(object).size(), '0') + std::to_string(object) +
+                  " 00000 n") != std::string::npos);
+}
+
+TEST_CASE("the command of a receipt is the same wherever and by whomever the work is done") {
+  const std::vector<std::string> plain = {"render", "ring"};
+  const std::vector<std::vector<std::string>> ways = {
+      {"render", "my/ring.toml", "-o", "film"},
+      {"render", "-o", "x", "--frames", "0:4", "my/ring.toml", "--threads", "2", "--quiet"},
+      {"render", "my/ring.toml", "--set", "solver.step=0.1", "--size=64x64", "--join", "--lease", "3", "-o",
+       "y"}};
+  for (const auto& words : ways) CHECK(command_of_result(words, "my/ring.toml", "ring") == plain);
+}
+
+}  // namespace receipt_test

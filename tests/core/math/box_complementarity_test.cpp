@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bounded pushes against every choice of what holds, tried one by one.
+#include "core/math/box_complementarity.hpp"
+
+#include <Eigen/QR>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace unfurl;
+
+namespace box_complementarity_test {
+
+namespace {
+
+struct Problem {
+  MatrixXd D;
+  VectorXd b, low, high;
+};
+
+// Is w right for x, up to round-off of terms of size one?
+bool fulfils(const Problem& p, const VectorXd& x, double tolerance) {
+  const VectorXd w = p.D * x + p.b;
+  for (Index i = 0; i < x.size(); ++i) {
+    if (x[i] < p.low[i] - tolerance || x[i] > p.high[i] + tolerance) return false;
+    if (w[i] > tolerance && x[i] > p.low[i] + tolerance) return false;
+    if (w[i] < -tolerance && x[i] < p.high[i] - tolerance) return false;
+  }
+  return true;
+}
+
+// Each row at its lower bound, at its upper one or held: 3^n choices, the held rows by least squares.
+std::optional<VectorXd> by_enumeration(const Problem& p) {
+  const Index n = p.b.size();
+  const auto choices = static_cast<Index>(std::lround(std::pow(3.0, static_cast<double>(n))));
+  for (Index choice = 0; choice < choices; ++choice) {
+    VectorXd x = p.low;
+    std::vector<Index> held;
+    bool finite = true;
+    for (Index i = 0, rest = choice; i < n; ++i, rest /= 3) {
+      if (rest % 3 == 1) x[i] = p.high[i], finite = finite && std::isfinite(p.high[i]);
+      if (rest % 3 == 2) x[i] = 0, held.push_back(i);
+    }
+    if (!finite) continue;
+    if (!held.empty()) {
+      const VectorXd rest = -(p.D * x + p.b);
+      const MatrixXd part = p.D(held, held);
+      const VectorXd found = part.completeOrthogonalDecomposition().solve(VectorXd(rest(held)));
+      for (std::size_t k = 0; k < held.size(); ++k) x[held[k]] = found[static_cast<Index>(k)];
+    }
+    if (fulfils(p, x, 1e-9)) return VectorXd(p.D * x + p.b);
+  }
+  return std::nullopt;
+}
+
+// Gradients of n measures in a space of `rank` dimensions; the first ones stops, the others friction.
+Problem drawn(std::mt19937& random, Index n, Index rank) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Problem p;
+  MatrixXd N(n, rank);
+  for (double& x : N.reshaped()) x = uniform(random);
+  if (n > 2 && uniform(random) > 0) N.row(n - 1) = -0.7 * N.row(0);  // two on one measure
+  const double size = std::exp(4 * uniform(random));
+  p.D = size * N * N.transpose();
+  // Half of them from a motion, which some push can stop where the rows are dependent.
+  p.b.resize(n);
+  for (double& x : p.b) x = uniform(random);
+  if (uniform(random) > 0) p.b = N * VectorXd::NullaryExpr(rank, [&] { return uniform(random); });
+  p.low = p.high = VectorXd::Zero(n);
+  for (Index i = 0; i < n; ++i) {
+    const bool stop = uniform(random) > 0;
+    p.high[i] = stop ? std::numeric_limits<double>::infinity() : std::abs(uniform(random)) / size;
+    p.low[i] = stop ? 0.0 : -p.high[i];
+  }
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("pushes in a box are those of one of all choices, for independent and redundant rows") {
+  std::mt19937 random(31);
+  int solved = 0, without = 0, redundant = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const Index n = 1 + k % 5, rank = 1 + (k / 5) % 5;
+    const Problem p = drawn(random, n, rank);
+    const auto expected = by_enumeration(p);
+    const auto found = solve_box(p.D, p.b, p.low, p.high);
+    INFO("problem " << k << ", " << n << " rows of rank " << rank);
+    REQUIRE(found.has_value() == expected.has_value());
+    if (!found) {
+      ++without;
+      continue;
+    }
+    ++solved;
+    redundant += rank < n;
+    const double size = p.b.lpNorm<Eigen::Infinity>();
+    CHECK((found->w - *expected).lpNorm<Eigen::Infinity>() <= 1e-7 * size);
+    std::vector<bool> before(static_cast<std::size_t>(n), false);
+    for (Index i = 0; i < n; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      CHECK(found->x[i] >= p.low[i]);
+      CHECK(found->x[i] <= p.high[i]);
+      if (!found->held[row]) continue;
+      CHECK(std::abs(found->w[i]) <= 1e-9 * size);
+      CHECK(independent(p.D, before, i));
+      before[row] = true;
+    }
+  }
+  CHECK(solved > 2500);
+  CHECK(without > 100);
+  CHECK(redundant > 1000);
+}
+
+}  // namespace box_complementarity_test
