@@ -10,6 +10,7 @@
 #include "core/path/path_motion.hpp"
 #include "core/path/path_scope.hpp"
 #include "core/path/path_watch.hpp"
+#include "core/simulate/deployed_event.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/one_sided.hpp"
@@ -91,7 +92,7 @@ class PathRun {
     compare_equations();
     watch_.begin(last(), base_->system);
     if (sides_.empty()) return;
-    sides_.find_modes(base_->system, last());
+    sides_.find_cables(base_->system, last());
     tell_law();
     if (sides_.any_active()) change_model(sides_.model(*base_), true);
   }
@@ -251,6 +252,14 @@ class PathRun {
 
   // --- stops and cables ---
 
+  void add_event(Event event, double taken) {
+    event.energy_lost = taken;
+    run_.events.push_back(std::move(event));
+  }
+  Event impact(const StopSide& stop) const {
+    return {.name = "stop " + stop.name, .t = motion_.t(), .kind = "contact", .element = stop.name};
+  }
+
   void turn(std::size_t i) {
     if (motion_.t() > crowd_time_) crowd_time_ = motion_.t(), crowd_ = 0;
     if (++crowd_ > most_switches)
@@ -260,7 +269,7 @@ class PathRun {
     sides_.set_active(i, !sides_.active(i));
     tell_law();
     const double taken = change_model(sides_.model(*base_));
-    run_.events.push_back({sides_.text(i), motion_.t(), taken});
+    add_event(sides_.event(i, motion_.t()), taken);
   }
 
   void strike(std::size_t i) {
@@ -275,7 +284,7 @@ class PathRun {
       const double Q = law_->at(motion_.s(), 0.0, motion_.t()).Q;
       if (stop.restitution == 0 && slope * Q > 0) {  // it is stopped and goes back at once
         const double taken = 0.5 * motion_.v() * motion_.v();
-        run_.events.push_back({"stop " + stop.name, motion_.t(), taken});
+        add_event(impact(stop), taken);
         motion_.set_speed(0);
         append(state_at(motion_.t(), motion_.s(), 0));
         return;
@@ -286,11 +295,13 @@ class PathRun {
       motion_.set_speed(0);
       resting_ = true;
       const double taken = change_model(sides_.model(*base_));
-      run_.events.push_back({sides_.text(i), motion_.t(), taken});
+      Event rests = sides_.event(i, motion_.t());
+      rests.kind = "contact";
+      add_event(std::move(rests), taken);
       return;
     }
     const double e = stop.restitution, taken = 0.5 * (1 - e * e) * motion_.v() * motion_.v();
-    run_.events.push_back({"stop " + stop.name, motion_.t(), taken});
+    add_event(impact(stop), taken);
     motion_.set_speed(-e * motion_.v());
     append(state_at(motion_.t(), motion_.s(), motion_.v()));
   }
@@ -320,7 +331,7 @@ class PathRun {
     sides_.set_active(*held_, false);
     resting_ = false;
     change_model(sides_.model(*base_));
-    run_.events.push_back({sides_.text(*held_), until, 0.0});
+    add_event(sides_.event(*held_, until), 0.0);
     held_.reset();
   }
 
@@ -329,7 +340,7 @@ class PathRun {
   void deployed() {
     watch_.deployed();
     const double t = motion_.t();
-    run_.events.push_back({"deployed", t});
+    run_.events.push_back({.name = "deployed", .t = t, .kind = "deployed"});
     if (options_.at_deployed == "pass") return;
     // States so near to a singular pose have lost digits; the time loop has none there either.
     while (run_.trajectory.size() > 1 && !watch_.clear(motion_, last().t))
@@ -352,7 +363,8 @@ class PathRun {
     base_ = latched_model(*base_, options_.eliminate_linear);
     const double speed = std::abs(motion_.v());
     const double impulse = change_model(sides_.any_active() ? sides_.model(*base_) : base_);
-    run_.events.push_back({"latched", motion_.t(), gives ? 0.0 : impulse});
+    run_.events.push_back(
+        {.name = "latched", .t = motion_.t(), .energy_lost = gives ? 0.0 : impulse, .kind = "latch"});
     if (gives) return set_law(base_->structure);
     const VectorXd& w = last().w;
     if (std::sqrt(w.dot(model().system.mass() * w)) > 1e-6 * speed)
@@ -370,8 +382,7 @@ class PathRun {
     const double far = std::min(farthest, from_start * start);
     System followed = model().system.at(last());
     Index1 index1(followed, true);
-    std::vector<double> sine;
-    std::vector<VectorXd> lambda;
+    std::vector<NearDeployed> samples;
     VectorXd a(event.z.size());
     for (int i = 0; i < count; ++i) {
       const double u = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / count);
@@ -381,19 +392,12 @@ class PathRun {
       motion_.at(*t, s, v);
       State state = state_at(*t, s, v);
       followed.follow(state);
-      if (!index1.evaluate(*t, state.z, state.w, a, state.lambda)) continue;
-      sine.push_back(watch_.remaining(s));
-      lambda.push_back(state.lambda);
+      if (index1.evaluate(*t, state.z, state.w, a, state.lambda))
+        samples.push_back({watch_.remaining(s), std::move(state)});
     }
-    if (sine.size() < 3) return;
-    for (std::size_t i = 0; i < sine.size(); ++i) {
-      double weight = 1;
-      for (std::size_t j = 0; j < sine.size(); ++j)
-        if (j != i) weight *= sine[j] / (sine[j] - sine[i]);
-      event.lambda += weight * lambda[i];
-    }
+    if (samples.size() < 3) return;
     followed.follow(event);
-    index1.correct(event.t, event.z, event.w, event.lambda);
+    event.lambda = multipliers_at_deployed(index1, samples, event);
   }
 
   // The last time before now at which the sine of the fold angle was that.
