@@ -19,7 +19,7 @@
 namespace unfurl {
 namespace {
 
-constexpr long most_pieces = 48;       // either way from where a path is traced
+constexpr long most_path_pieces = 48;  // either way from where a path is traced
 constexpr double same_length = 1e-13;  // of rods that are equal but for the rounding of their nodes
 constexpr double least_sine = 1e-3;    // nearer to the deployed pose a point goes the usual way
 constexpr double least_force = 1e-9;   // along the path, as a share of all forces: below it hangs
@@ -77,16 +77,16 @@ VectorXd forces_on_nodes(const Structure& structure, const System& system) {
   return f + system.node_mass() * structure.gravity.replicate(f.size() / 3, 1);
 }
 
+}  // namespace
+
 // A path with the deployed poses nearest to where it was traced from.
-struct Traced {
+struct PathSweep::Traced {
   std::shared_ptr<const Model> model;
   std::shared_ptr<const Path> path;
   double size = 0;
   LinearForm form;  // whose zero is the deployed pose
   std::optional<double> ahead, behind;
 };
-
-}  // namespace
 
 struct PathSweep::Data {
   const SweepPlan& plan;
@@ -160,8 +160,8 @@ struct PathSweep::Data {
     out.path = trace_path(out.model);
     out.size = out.model->system.constraint_lengths().maxCoeff();
     out.form = remaining_form(out.model->structure.deployment);
-    out.ahead = first_zero(*out.path, out.form, true, most_pieces);
-    out.behind = first_zero(*out.path, out.form, false, most_pieces);
+    out.ahead = first_zero(*out.path, out.form, true, most_path_pieces);
+    out.behind = first_zero(*out.path, out.form, false, most_path_pieces);
     return std::make_shared<const Traced>(std::move(out));
   }
 
@@ -171,7 +171,7 @@ struct PathSweep::Data {
     const System& system = on.model->system;
     const VectorXd q = positions(structure), force = forces_on_nodes(structure, system);
     if (!(on.form(q) > least_sine)) return nan;
-    const auto s = on.path->locate(on.path->system().reduce(q), most_pieces);
+    const auto s = on.path->locate(on.path->system().reduce(q), most_path_pieces);
     if (!s) return nan;
     const PathPiece& piece = *on.path->piece(*on.path->piece_of(*s));
     const VectorXd Q = (force.transpose() * piece.dq * chebyshev_transform(Path::degree)).transpose();

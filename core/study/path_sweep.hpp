@@ -24,6 +24,7 @@ class PathSweep {
   bool measure(std::size_t point, std::vector<std::string>& row) const;
 
  private:
+  struct Traced;
   struct Data;
   std::unique_ptr<Data> data_;  // empty: no point can
 };

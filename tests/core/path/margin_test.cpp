@@ -66,7 +66,7 @@ TEST_CASE("static margins are the closed form's in every pose, by source") {
   // Half the drive, with a factor.
   const Margin half = margin_in(ring(k), {{"loads", 0.5}});
   CHECK(half.worst.margin + 1 == Approx(0.5 * (margin.worst.margin + 1)).epsilon(1e-9));
-  CHECK_THROWS_WITH(margin_in(ring(k), {{"hoses", 0.5}}), Catch::Contains("did you mean \"hose\""));
+  CHECK_THROWS_WITH(margin_in(ring(k), {{"hoses", 0.5}}), Catch::Contains("did you mean"));
 }
 
 TEST_CASE("the force along the path is the reaction of a drive that is held") {
