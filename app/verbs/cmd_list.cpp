@@ -92,6 +92,9 @@ std::vector<Item> force_items() {
   for (const auto& kind : force_kinds())
     items.push_back({std::string(kind.kind), element_help(kind.help, kind.members),
                      kind.params ? &kind.params() : nullptr});
+  for (const auto& kind : scene_forces())
+    if (std::ranges::none_of(force_kinds(), [&](const ForceKind& row) { return row.kind == kind.kind; }))
+      items.push_back({std::string(kind.kind), element_help(kind.help, kind.members), &kind.params()});
   return items;
 }
 

@@ -9,6 +9,7 @@
 #include "app/verbs/film.hpp"
 #include "app/verbs/frame_range.hpp"
 #include "app/verbs/run_figures.hpp"
+#include "app/verbs/run_report.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/team_work.hpp"
 #include "core/export/atomic_file.hpp"
@@ -75,6 +76,7 @@ int cmd_render(const Arguments& arguments) {
     std::cerr << "unfurl: interrupted; what is finished is kept\n";
     return exit_interrupted;
   }
+  write_run_report(directory, scene, run, diagnostics, arguments);
   return exit_code_of(run, diagnostics);
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/structure/moment.hpp"
 #include "core/structure/structure.hpp"
 
 namespace unfurl {
@@ -38,6 +39,8 @@ class ConstraintBlock {
   virtual std::vector<int> stencil(int row) const = 0;
 
   virtual void value(const double* q, double* phi) const = 0;
+  // The same near the angles of a moment: of rows that sum up angles that count turns.
+  virtual void value_at(const Moment& /*at*/, const double* q, double* phi) const { value(q, phi); }
   // A kind that prescribes values over time is Phi(q, t) = value(q) - g(t); G does not depend on t.
   virtual bool rheonomic() const { return false; }
   // Rows whose g moves.
@@ -63,6 +66,9 @@ class ConstraintBlock {
   // For each row a dense k x k matrix lambda_row * Hess Phi_row, column by column, k the length of its
   // stencil.
   virtual void curvature(const double* q, const double* lambda, double* hess) const = 0;
+  // The same by coordinates, summed up over the rows, without the zeros of rows that are long.
+  virtual void add_curvature(const double* q, const double* lambda,
+                             std::vector<Eigen::Triplet<double>>& entries) const;
 };
 
 struct ConstraintKind {

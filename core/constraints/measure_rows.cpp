@@ -16,6 +16,7 @@ struct Measured {
   TimeFunction target;
   double scale;   // l
   double length;  // that errors are relative to [m]
+  int followed;   // the first of its angles among those that count turns; -1: at the nearest turn
 };
 
 class MeasureRows final : public ConstraintBlock {
@@ -32,6 +33,9 @@ class MeasureRows final : public ConstraintBlock {
   void value(const double* q, double* phi) const override {
     for (const Measured& row : rows_) *phi++ = row.scale * row.measure.value(q);
   }
+  void value_at(const Moment& at, const double* q, double* phi) const override {
+    for (const Measured& row : rows_) *phi++ = row.scale * row.measure.value(q, at, row.followed);
+  }
   void list_drives(std::vector<Drive>& drives) const override {
     for (std::size_t r = 0; r < rows_.size(); ++r)
       if (rows_[r].target.moves())
@@ -41,7 +45,7 @@ class MeasureRows final : public ConstraintBlock {
   void add_target(int order, double t, double scale, double* out) const override {
     for (const Measured& row : rows_) {
       *out += scale * row.scale * row.target.derivative(order, t);
-      if (order == 0 && row.measure.is_angle()) *out = std::remainder(*out, 2 * pi * row.scale);
+      if (order == 0 && row.measure.wraps()) *out = std::remainder(*out, 2 * pi * row.scale);
       ++out;
     }
   }
@@ -66,6 +70,10 @@ class MeasureRows final : public ConstraintBlock {
   void bias(const double* q, const double* v, double* phi_dd) const override {
     for (const Measured& row : rows_) *phi_dd++ = row.scale * row.measure.curvature_along(q, v);
   }
+  void add_curvature(const double* q, const double* lambda,
+                     std::vector<Eigen::Triplet<double>>& entries) const override {
+    for (const Measured& row : rows_) row.measure.add_hessian(q, *lambda++ * row.scale, entries);
+  }
   void curvature(const double* q, const double* lambda, double* hess) const override {
     for (const Measured& row : rows_) {
       const std::size_t entries = row.measure.stencil().size() * row.measure.stencil().size();
@@ -86,12 +94,13 @@ class MeasureRows final : public ConstraintBlock {
 std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure) {
   std::vector<Measured> rows;
   const double length = reference_length(structure);
+  const std::vector<int> followed = followed_angles(structure).of_constraint;
   for (std::size_t i = 0; i < structure.constraints.size(); ++i) {
     const Constraint& c = structure.constraints[i];
     if (c.kind != "measure") continue;
     MeasureFunction measure(c.measure, structure.deployment);
     const double scale = measure.is_angle() ? length : 1.0;
-    rows.push_back({c.name, static_cast<int>(i), std::move(measure), c.target, scale, length});
+    rows.push_back({c.name, static_cast<int>(i), std::move(measure), c.target, scale, length, followed[i]});
   }
   if (rows.empty()) return nullptr;
   return std::make_unique<MeasureRows>(std::move(rows));

@@ -12,7 +12,8 @@ namespace unfurl {
 //     Phi(q, t) = l (s(q) - f(t)),   G = l ds/dq,   curvature = l Hess s
 //
 // with l = 1 for lengths and coordinates and the mean rod length for angles, whose difference is taken to the
-// nearest turn, so that a crank may go round. The multiplier times l is the force or torque against s; what a
+// nearest turn, so that a crank may go round; angles in a combination (a gear, a cable drum) count their
+// turns instead. The multiplier times l is the force or torque against s; what a
 // motor must give along s is its opposite.
 std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure);
 

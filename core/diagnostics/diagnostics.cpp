@@ -7,17 +7,17 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <set>
 #include <stdexcept>
 
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/columns.hpp"
-#include "core/diagnostics/elastic_sharing.hpp"
+#include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "core/forces/latch_spring.hpp"
 #include "core/integrators/index1.hpp"
+#include "core/simulate/elastic_sharing.hpp"
 
 namespace unfurl {
 namespace {
@@ -81,7 +81,18 @@ double extreme_unique(const Instant& s, double sign) {
 }
 
 // What a scene must have for a column to mean something.
-enum class Needs { nothing, fold, dampers, drives, impacts, moduli, strengths, latch_forces, latch_torques };
+enum class Needs {
+  nothing,
+  fold,
+  deployment,
+  dampers,
+  drives,
+  impacts,
+  moduli,
+  strengths,
+  latch_forces,
+  latch_torques
+};
 
 struct Row {
   const char *name, *label, *unit;
@@ -99,7 +110,7 @@ const std::array rows{
     Row{"work_J", "work of the loads", "J", Needs::nothing, [](const Instant& s) { return s.work(); }},
     Row{"dissipated_J", "energy taken by dampers and friction", "J", Needs::dampers,
         [](const Instant& s) { return s.flow.dissipated[s.i]; }},
-    Row{"drive_work_J", "work of the drives", "J", Needs::drives,
+    Row{"drive_work_J", "work of the drives and of rods that warm", "J", Needs::drives,
         [](const Instant& s) { return s.flow.drive_work[s.i]; }},
     Row{"impact_loss_J", "energy lost in impacts", "J", Needs::impacts,
         [](const Instant& s) { return s.flow.impact_loss[s.i]; }},
@@ -119,7 +130,7 @@ const std::array rows{
     Row{"fold_angle_rad", "fold angle", "rad", Needs::fold, [](const Instant& s) { return s.fold_angle; }},
     Row{"fold_rate_rad_s", "fold rate", "rad/s", Needs::fold,
         [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v); }},
-    Row{"deployed_fraction", "deployed fraction", "", Needs::fold,
+    Row{"deployed_fraction", "deployed fraction", "", Needs::deployment,
         [](const Instant& s) { return s.deployment().fraction(s.q); }},
     Row{"axial_force_max_N", "largest axial force", "N", Needs::nothing,
         [](const Instant& s) { return s.axial_force.size() ? s.axial_force.maxCoeff() : 0.0; }},
@@ -162,11 +173,13 @@ double poisson_ratio(const Instant& s) {
 // The columns that only this structure has, at the end.
 void add_own_columns(const Structure& structure, Diagnostics& out) {
   for (const ReportedLength& m : structure.lengths) out.columns.push_back({m.name, m.label, "m", {}});
+  for (const ReportedSurface& m : structure.surfaces) out.columns.push_back({m.name, m.label, "m", {}});
   if (structure.strain_along >= 0) out.columns.push_back({"poisson_ratio", "Poisson's ratio", "", {}});
 }
 
 void add_own_values(const Structure& structure, const Instant& s, Series* column) {
   for (const ReportedLength& m : structure.lengths) (column++)->values.push_back(m.value(s.q));
+  for (const ReportedSurface& m : structure.surfaces) (column++)->values.push_back(m.rms(s.q));
   if (structure.strain_along >= 0) column->values.push_back(poisson_ratio(s));
 }
 
@@ -181,11 +194,13 @@ bool present(Needs needs, const Simulation& run) {
     case Needs::nothing:
       return true;
     case Needs::fold:
+      return model.structure.deployment.folds();
+    case Needs::deployment:
       return !model.structure.deployment.empty();
     case Needs::dampers:
       return model.system.has_power(true) || latches(std::numeric_limits<double>::min());
     case Needs::drives:
-      return !model.system.drives().empty();
+      return model.system.rheonomic();
     case Needs::impacts:
       return std::any_of(run.events.begin(), run.events.end(),
                          [](const Event& e) { return e.energy_lost != 0; });
@@ -220,7 +235,7 @@ class FoldAngle {
  public:
   explicit FoldAngle(const Deployment& deployment) : deployment_(deployment) {}
   double at(double t, const VectorXd& q, const VectorXd& v) {
-    if (deployment_.empty()) return nan;
+    if (!deployment_.folds()) return nan;
     const double angle = deployment_.fold_angle(q), rate = deployment_.fold_rate(q, v);
     const double expected = std::isnan(t_) ? angle : angle_ + 0.5 * (t - t_) * (rate_ + rate);
     t_ = t;
@@ -233,57 +248,62 @@ class FoldAngle {
   double t_ = nan, angle_ = nan, rate_ = nan;
 };
 
-// Per rod of the whole structure [N].
-void axial_forces(const Model& model, const VectorXd& lambda, VectorXd& force) {
+// Per rod of the whole structure [N]: the multiplier of its row, or what its stretch tells.
+void axial_forces(const Model& model, const State& state, const VectorXd& q, const VectorXd& v,
+                  const VectorXd& lambda, VectorXd& force) {
+  const std::vector<int>& giving = model.system.giving_rods();
+  VectorXd tension = state.tension;
+  if (tension.size() != static_cast<Index>(giving.size())) {
+    tension.resize(static_cast<Index>(giving.size()));
+    model.system.giving_rod_forces(state.t, q, v, tension);
+  }
+  for (std::size_t k = 0; k < giving.size(); ++k) force[giving[k]] = tension[static_cast<Index>(k)];
   for (Index r = 0; r < force.size(); ++r) {
     const auto ur = static_cast<std::size_t>(r);
-    force[r] = lambda[model.system.rod_rows()[ur]] / model.structure.rods[ur].multiplicity;
+    const Rod& rod = model.structure.rods[ur];
+    if (!rod.gives) force[r] = lambda[model.system.rod_rows()[ur]] * (1 + rod.warmed(state.t));
+    force[r] /= rod.multiplicity;
   }
 }
 
-// Four columns for each drive: what it prescribes, what the motor gives for it, the power, and whether the
-// effort is unique.
+// Five columns for each drive: what it prescribes or turns, what it gives for it, the power, the energy so
+// far, and whether the effort is unique.
 class DriveColumns {
  public:
-  DriveColumns(const System& system, std::vector<Series>& columns)
-      : columns_(columns), first_(columns.size()), drives_(system.drives()) {
-    std::set<std::string> taken;
-    for (const Drive& drive : drives_) {
-      std::string name = drive.name;  // a scene's names are unique, a program's need not be
-      for (int number = 2; !taken.insert(name).second; ++number)
-        name = drive.name + " (" + std::to_string(number) + ")";
+  DriveColumns(const Model& model, std::vector<Series>& columns)
+      : columns_(columns), first_(columns.size()), drives_(drive_channels(model)) {
+    for (const DriveChannel& drive : drives_) {
+      const std::string& name = drive.name();
+      const char* effort = drive.angle() ? " torque" : " force";
       columns.push_back(
-          {name + (drive.angle ? ".angle_rad" : ".value_m"), name, drive.angle ? "rad" : "m", {}});
-      columns.push_back({name + (drive.angle ? ".torque_N_m" : ".force_N"),
-                         name + (drive.angle ? " torque" : " force"),
-                         drive.angle ? "N m" : "N",
+          {name + (drive.angle() ? ".angle_rad" : ".value_m"), name, drive.angle() ? "rad" : "m", {}});
+      columns.push_back({name + (drive.angle() ? ".torque_N_m" : ".force_N"),
+                         name + effort,
+                         drive.angle() ? "N m" : "N",
                          {}});
       columns.push_back({name + ".power_W", name + " power", "W", {}});
-      columns.push_back({name + (drive.angle ? ".torque_unique" : ".force_unique"),
-                         name + (drive.angle ? " torque" : " force") + " is unique",
+      columns.push_back({name + ".energy_J", name + " energy", "J", {}});
+      columns.push_back({name + (drive.angle() ? ".torque_unique" : ".force_unique"),
+                         name + effort + " is unique",
                          "",
                          {}});
     }
   }
-  // `system`: that of the state, whose rows may be others than at the start.
-  void append(const System& system, double t, const VectorXd& lambda, const std::vector<char>& unique) {
+  // `model`: that of the state, whose rows may be others than at the start.
+  void append(const Model& model, const Instant& s, const VectorXd& lambda, const std::vector<char>& unique) {
     std::size_t column = first_;
-    for (const Drive& wanted : drives_) {
-      const Drive* drive = nullptr;
-      for (const Drive& d : system.drives())
-        if (d.constraint == wanted.constraint) drive = &d;
-      const double effort = drive ? -drive->scale * lambda[drive->row] : nan;
-      columns_[column++].values.push_back(wanted.target(t));
-      columns_[column++].values.push_back(effort);
-      columns_[column++].values.push_back(effort * wanted.target.derivative(1, t));
-      columns_[column++].values.push_back(drive && unique[static_cast<std::size_t>(drive->row)] ? 1.0 : 0.0);
+    for (std::size_t d = 0; d < drives_.size(); ++d) {
+      const DriveSample now = drives_[d].sample(model, s.system(), s.state.t, s.q, s.v, lambda, unique);
+      for (const double x :
+           {now.value, now.effort, now.power, s.flow.of_drives[d][s.i], now.unique ? 1.0 : 0.0})
+        columns_[column++].values.push_back(x);
     }
   }
 
  private:
   std::vector<Series>& columns_;
   std::size_t first_;
-  std::vector<Drive> drives_;
+  std::vector<DriveChannel> drives_;
 };
 
 }  // namespace
@@ -335,7 +355,7 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
     out.columns.push_back({row.name, row.label, row.unit, {}});
   }
   std::optional<DriveColumns> drives;
-  if (!books) drives.emplace(trajectory.model().system, out.columns);
+  if (!books) drives.emplace(trajectory.model(), out.columns);
   const std::size_t first_own = out.columns.size();
   if (!books) add_own_columns(trajectory.structure(), out);
   const EnergyFlow flow = energy_flow(run);
@@ -375,10 +395,11 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
       const bool limit = trajectory.report(i).singular_event;
       lambda = multipliers(*index1, *model, state, limit, acceleration);
       sharing->share(state.t, q, limit, lambda);
-      axial_forces(*model, lambda, force);
+      axial_forces(*model, state, q, v, lambda, force);
       const std::vector<char>& rows_unique = uniqueness->at(i);
       for (std::size_t r = 0; r < unique.size(); ++r) {
-        unique[r] = rows_unique[static_cast<std::size_t>(system.rod_rows()[r])];
+        const int row = system.rod_rows()[r];
+        unique[r] = row < 0 ? char{1} : rows_unique[static_cast<std::size_t>(row)];
         if (uniqueness->regular(i)) out.rod_unique[r] = static_cast<char>(out.rod_unique[r] & unique[r]);
         out.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
             unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);
@@ -405,7 +426,7 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
     if (!books) {
       add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
-      drives->append(system, state.t, lambda, uniqueness->at(i));
+      drives->append(*model, instant, lambda, uniqueness->at(i));
     }
   }
   leave_open(trajectory, out);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/integrators/row_noise.hpp"
@@ -16,13 +17,14 @@ EnergyMeter::EnergyMeter(const System& system)
     : system_(system),
       loads_(system.has_power(false)),
       dampers_(system.has_power(true)),
-      drives_(!system.drives().empty()) {
+      drives_(system.rheonomic()) {
   if (idle()) return;
   index1_ = std::make_unique<Index1>(system_);
   q_.resize(system.coordinates());
   v_.resize(system.coordinates());
   unused_.resize(system.solved_coordinates());
   lambda_.resize(system.constraints());
+  target_rate_.resize(system.constraints());
 }
 
 VectorXd EnergyMeter::acceleration(const State& state) {
@@ -88,20 +90,25 @@ void EnergyMeter::add(const State& a, const State& b) {
     system_.expand_rate(w, v_);
     if (loads_) load_work += weight * system_.power(false, t, q_, v_);
     if (dampers_ && !stiff) dissipated -= weight * system_.power(true, t, q_, v_);
-    if (!drives_ || !index1_->evaluate(t, z, w, unused_, lambda_)) continue;
-    for (const Drive& d : system_.drives())
-      drive_work -= weight * d.scale * lambda_[d.row] * d.target.derivative(1, t);
+    const bool known = drives_ && index1_->evaluate(t, z, w, unused_, lambda_);
+    if (at_point && (known || !drives_)) at_point(weight, t, q_, v_, lambda_);
+    if (!known) continue;
+    system_.target_rate(t, target_rate_);
+    drive_work -= weight * lambda_.dot(target_rate_);
   }
 }
 
 EnergyFlow energy_flow(const Simulation& run) {
   const Trajectory& trajectory = run.trajectory;
   EnergyFlow flow{{0.0}, {0.0}, {0.0}, {0.0}};
+  const std::vector<DriveChannel> drives = drive_channels(trajectory.model());
+  flow.of_drives.assign(drives.size(), {0.0});
   std::unique_ptr<EnergyMeter> meter;
   const Model* model = nullptr;
   for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
     for (auto* list : {&flow.load_work, &flow.dissipated, &flow.drive_work, &flow.impact_loss})
       list->push_back(list->back());
+    for (auto& energy : flow.of_drives) energy.push_back(energy.back());
     const State &a = trajectory.state(i), &b = trajectory.state(i + 1);
     if (same_instant(a.t, b.t)) {  // an impulse; where time goes on a little, of a drive
       const double gain =
@@ -113,6 +120,12 @@ EnergyFlow energy_flow(const Simulation& run) {
     if (model != &trajectory.model(i + 1)) {
       model = &trajectory.model(i + 1);
       meter = std::make_unique<EnergyMeter>(model->system);
+      meter->at_point = [&, m = meter.get()](double weight, double t, const VectorXd& q, const VectorXd& v,
+                                             const VectorXd& lambda) {
+        for (std::size_t d = 0; d < drives.size(); ++d)
+          flow.of_drives[d].back() +=
+              weight * drives[d].sample(*model, m->system(), t, q, v, lambda, {}).power;
+      };
     }
     const double load_work = meter->load_work, dissipated = meter->dissipated, drive_work = meter->drive_work;
     meter->add(a, b);

@@ -3,6 +3,7 @@
 // dampers, drives and impacts.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -14,12 +15,13 @@ namespace unfurl {
 // Since the start, at every state [J]; zeros where a scene has no such thing.
 struct EnergyFlow {
   std::vector<double> load_work, dissipated, drive_work, impact_loss;
+  std::vector<std::vector<double>> of_drives = {};  // what each of drive_channels() has put in
 };
 
 // What dry friction takes is exact: a force times the way. Powers are integrated over each step with three Gauss points (order 6) on the quintic that has the
 // coordinates, rates and accelerations of the states at both ends: an independent quadrature, whatever the
-// method, of order 6 where the forces are smooth within steps. A drive's power -l lambda f' takes its
-// multiplier from the index-1 equations at those points.
+// method, of order 6 where the forces are smooth within steps. The power -lambda g' of drives and of
+// rods that warm takes its multipliers from the index-1 equations at those points.
 // Where dampers are stiff (c / m beyond 2 / h), what they take comes from the difference of two motions that
 // are nearly one, which no interpolant tells. Their power is then that of the states and its rates there.
 EnergyFlow energy_flow(const Simulation& run);
@@ -33,6 +35,9 @@ class EnergyMeter {
   void add(const State& a, const State& b);  // the step from a to b, which follows on the last one
   void jump() { after_.resize(0); }          // velocities have changed within no time
   double load_work = 0, dissipated = 0, drive_work = 0;  // so far [J]
+  // Told every point of the quadrature: its weight [s], the time, node coordinates, velocities, multipliers.
+  std::function<void(double, double, const VectorXd&, const VectorXd&, const VectorXd&)> at_point = {};
+  const System& system() const { return system_; }
 
  private:
   VectorXd acceleration(const State& state);
@@ -44,7 +49,7 @@ class EnergyMeter {
   System system_;  // follows the states
   bool loads_, dampers_, drives_;
   std::unique_ptr<Index1> index1_;
-  VectorXd before_, after_, q_, v_, unused_, lambda_;
+  VectorXd before_, after_, q_, v_, unused_, lambda_, target_rate_;
   double last_ = 0;  // time of the state that after_ is of
 };
 

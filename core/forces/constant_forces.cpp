@@ -28,7 +28,10 @@ std::unique_ptr<ForceBlock> nodal_load_block(const Structure& structure, const S
 std::unique_ptr<ForceBlock> gravity_block(const Structure& structure, const SparseRows& node_mass) {
   if (structure.gravity.isZero(0.0)) return nullptr;
   const auto n = static_cast<Index>(structure.nodes.size());
-  return std::make_unique<ConstantForce>(node_mass * structure.gravity.replicate(n, 1));
+  VectorXd weight = node_mass * structure.gravity.replicate(n, 1);
+  for (Index i = 0; i < n; ++i)
+    if (structure.nodes[static_cast<std::size_t>(i)].ghost) weight.segment<3>(3 * i).setZero();
+  return std::make_unique<ConstantForce>(std::move(weight));
 }
 
 }  // namespace unfurl

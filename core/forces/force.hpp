@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/structure/moment.hpp"
 #include "core/structure/structure.hpp"
 #include "core/text/param_spec.hpp"
 
@@ -18,23 +19,6 @@ using ForceDerivative = std::vector<Eigen::Triplet<double>>;
 inline Eigen::Map<const Vec3> node_vector(const double* x, int node) {
   return Eigen::Map<const Vec3>(x + 3 * static_cast<Index>(node));
 }
-
-// When forces are asked for, and near which values angles that count their turns are taken: those of a state,
-// carried on with its rates, so that a step may turn by any angle that its acceleration does not change by
-// half a turn.
-struct Moment {
-  Moment(double time) : t(time) {}  // NOLINT: a time alone is a moment of a structure that follows no angle
-  double t;                         // [s]
-  double since = 0.0;               // the time of the state [s]
-  // Of each followed angle (measure.hpp) [rad], [rad/s]; nullptr: as at t = 0.
-  const double* angles = nullptr;
-  const double* rates = nullptr;
-
-  double near(int followed, double otherwise) const {
-    if (followed < 0 || !angles) return otherwise;
-    return angles[followed] + (t - since) * rates[followed];
-  }
-};
 
 class ForceBlock {
  public:
@@ -49,6 +33,12 @@ class ForceBlock {
   virtual bool has_power() const { return false; }
   virtual bool dissipative() const { return false; }
   virtual double power(const Moment&, const double*, const double*) const { return 0.0; }
+  // The part of it that dampers take; the rest is put in.
+  virtual double dissipation(const Moment& at, const double* q, const double* v) const {
+    return dissipative() ? power(at, q, v) : 0.0;
+  }
+  virtual bool dissipates() const { return has_power() && dissipative(); }
+  virtual bool supplies() const { return has_power() && !dissipative(); }
   // Where that power is the rate of a function of the pose, which a difference tells better than a
   // quadrature: what has been taken [J], dtaken/dt = -power.
   virtual bool takes_by_pose() const { return false; }
@@ -60,13 +50,17 @@ class ForceBlock {
 
 // Which members of a structure an entry of a kind names.
 enum class Members {
-  none,       // its table has a form of its own
-  each_node,  // nodes: names or globs, one force each
-  node_list,  // nodes = [A, B, ...]: all of them in one
-  two_nodes,  // nodes = [A, B]
-  rod,        // rod: one name; its direction follows the rod
-  angle,      // rods = [R, S], nodes = [A, HINGE, B], or fold_angle = true
-  measure     // an angle as above; nodes = [A, B]: their distance; with a direction: a coordinate
+  none,         // its table has a form of its own
+  each_node,    // nodes: names or globs, one force each
+  node_list,    // nodes = [A, B, ...]: all of them in one
+  two_nodes,    // nodes = [A, B]
+  three_nodes,  // nodes = [A, B, C]
+  rods,         // rods: names or globs of rods or of their groups; what the entry says becomes theirs
+  path,         // nodes = [A, B, ...]: in order; some may come again
+  terms,        // terms = ["2.5 length A B", ...]
+  rod,          // rod: one name; its direction follows the rod
+  angle,        // rods = [R, S], nodes = [A, HINGE, B], or fold_angle = true
+  measure       // an angle as above; nodes = [A, B]: their distance; with a direction: a coordinate
 };
 
 struct ForceKind {

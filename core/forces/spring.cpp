@@ -7,49 +7,55 @@
 #include <limits>
 
 #include "core/structure/measure.hpp"
+#include "core/structure/motion_params.hpp"
 
 namespace unfurl {
 namespace {
 
 struct Spring {
+  Force law;
   MeasureFunction measure;
-  double stiffness, damping, rest;
-  bool one_sided;
   int followed;  // index among the angles that count turns; -1: not one of them
-
-  double near(const Moment& at) const { return at.near(followed, measure.reference()); }
-  double stretch(double s) const { return one_sided ? std::max(s - rest, 0.0) : s - rest; }
-  // N and what of it is elastic.
-  double tension(double s, double rate) const {
-    if (one_sided && s <= rest) return 0.0;
-    const double n = stiffness * (s - rest) + damping * rate;
-    return one_sided ? std::max(n, 0.0) : n;
-  }
 };
+
+// Of a stretch e: N_e = k elastic, the share of the spring that pulls, N_e' / k, with its slope, V = k
+// energy.
+struct Pull {
+  double elastic, share, bend, energy;
+};
+
+Pull pull_of(const Force& law, double e) {
+  const double w = law.one_sided ? law.smoothing : 0.0;
+  if (!law.one_sided || (e >= w && e > 0)) return {e, 1.0, 0.0, 0.5 * e * e + w * w / 6};
+  if (e <= -w) return {0, 0, 0, 0};
+  const double u = e + w;
+  return {u * u / (4 * w), u / (2 * w), 1 / (2 * w), u * u * u / (12 * w)};
+}
 
 class Springs final : public ForceBlock {
  public:
   Springs(const std::vector<Force>& springs, const Deployment& deployment, const std::vector<int>& followed) {
-    std::size_t largest = 0;
     for (std::size_t i = 0; i < springs.size(); ++i) {
       const Force& f = springs[i];
-      springs_.push_back({MeasureFunction(f.measure, deployment), f.stiffness, f.damping, f.rest, f.one_sided,
-                          followed.empty() ? -1 : followed[i]});
-      largest = std::max(largest, springs_.back().measure.stencil().size());
+      springs_.push_back({f, MeasureFunction(f.measure, deployment), followed.empty() ? -1 : followed[i]});
+      size_ = std::max(size_, springs_.back().measure.stencil().size());
       damped_ = damped_ || f.damping > 0;
+      reeled_ = reeled_ || f.unstressed.moves();
     }
-    size_ = largest;
   }
   bool constant() const override { return false; }
-  bool has_power() const override { return damped_; }
-  bool dissipative() const override { return true; }
+  bool has_power() const override { return damped_ || reeled_; }
+  bool dissipative() const override { return !reeled_; }
+  bool dissipates() const override { return damped_; }
+  bool supplies() const override { return reeled_; }
 
   void add(const Moment& at, const double* q, const double* v, double scale, double* f) const override {
     Gradient g(size_);
     for (const Spring& spring : springs_) {
-      const double s = spring.measure.value_and_gradient(q, g.data(), spring.near(at));
-      const double rate = spring.damping > 0 ? spring.measure.rate(g.data(), v) : 0.0;
-      const double pull = scale * spring.tension(s, rate);
+      const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
+      const double rate = spring.law.damping > 0 ? spring.measure.rate(g.data(), v) : 0.0;
+      const double pull = scale * tension(spring, at.t, s, rate);
+      if (pull == 0.0) continue;
       const auto& stencil = spring.measure.stencil();
       for (std::size_t i = 0; i < stencil.size(); ++i) f[stencil[i]] -= pull * g.data()[i];
     }
@@ -58,46 +64,70 @@ class Springs final : public ForceBlock {
   double potential(const Moment& at, const double* q) const override {
     double sum = 0;
     for (const Spring& spring : springs_) {
-      const double stretch = spring.stretch(spring.measure.value(q, spring.near(at)));
-      sum += 0.5 * spring.stiffness * stretch * stretch;
+      const SpringLaw law = spring_law(spring.law, at.t);
+      const double s = spring.measure.value(q, at, spring.followed);
+      sum += law.stiffness * pull_of(spring.law, s - law.rest).energy;
     }
     return sum;
   }
 
   double power(const Moment& at, const double* q, const double* v) const override {
+    return dissipation(at, q, v) + reeling(at, q);
+  }
+
+  double dissipation(const Moment& at, const double* q, const double* v) const override {
+    if (!damped_) return 0.0;
     Gradient g(size_);
     double sum = 0;
     for (const Spring& spring : springs_) {
-      const double s = spring.measure.value_and_gradient(q, g.data(), spring.near(at));
+      if (!(spring.law.damping > 0)) continue;
+      const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
       const double rate = spring.measure.rate(g.data(), v);
-      sum -= (spring.tension(s, rate) - spring.stiffness * spring.stretch(s)) * rate;
+      const SpringLaw law = spring_law(spring.law, at.t);
+      const double elastic = law.stiffness * pull_of(spring.law, s - law.rest).elastic;
+      sum -= (tension(spring, at.t, s, rate) - elastic) * rate;
     }
     return sum;
   }
 
   void derivatives(const Moment& at, const double* q, const double* v, ForceDerivative& by_q,
                    ForceDerivative& by_v) const override {
+    VectorXd g, bend;
     for (const Spring& spring : springs_) {
       const auto& stencil = spring.measure.stencil();
-      const auto size = static_cast<Index>(stencil.size());
-      VectorXd g(size), rates(size);
-      MatrixXd hess(size, size);
-      const double s = spring.measure.value_and_gradient(q, g.data(), spring.near(at));
-      for (Index i = 0; i < size; ++i) rates[i] = v[stencil[static_cast<std::size_t>(i)]];
-      const double n = spring.tension(s, g.dot(rates));
-      if (spring.one_sided && n == 0.0) continue;
-      spring.measure.hessian(q, hess.data());
-      const MatrixXd k = -n * hess - g * (spring.stiffness * g + spring.damping * (hess * rates)).transpose();
-      for (Index j = 0; j < size; ++j)
-        for (Index i = 0; i < size; ++i) {
-          const int row = stencil[static_cast<std::size_t>(i)], column = stencil[static_cast<std::size_t>(j)];
-          by_q.emplace_back(row, column, k(i, j));
-          if (spring.damping > 0) by_v.emplace_back(row, column, -spring.damping * g[i] * g[j]);
+      g.resize(static_cast<Index>(stencil.size()));
+      const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
+      const double rate = spring.measure.rate(g.data(), v), n = tension(spring, at.t, s, rate);
+      const SpringLaw law = spring_law(spring.law, at.t);
+      const Pull pull = pull_of(spring.law, s - law.rest);
+      if (spring.law.one_sided && n == 0.0) continue;
+      spring.measure.add_hessian(q, -n, by_q);
+      const double c = spring.law.damping;
+      const double by_stretch = law.stiffness * pull.share + c * pull.bend * rate;
+      bend = by_stretch * g;
+      if (c > 0) spring.measure.add_hessian_times(q, v, c * pull.share, bend.data());
+      for (std::size_t j = 0; j < stencil.size(); ++j)
+        for (std::size_t i = 0; i < stencil.size(); ++i) {
+          const double gi = g[static_cast<Index>(i)], gj = g[static_cast<Index>(j)];
+          by_q.emplace_back(stencil[i], stencil[j], -gi * bend[static_cast<Index>(j)]);
+          if (c > 0) by_v.emplace_back(stencil[i], stencil[j], -c * pull.share * gi * gj);
         }
     }
   }
 
  private:
+  static double tension(const Spring& spring, double t, double s, double rate) {
+    return spring_pull(spring.law, t, s, rate).tension;
+  }
+
+  double reeling(const Moment& at, const double* q) const {
+    double sum = 0;
+    for (const Spring& spring : springs_)
+      if (spring.law.unstressed.moves())
+        sum += spring_pull(spring.law, at.t, spring.measure.value(q, at, spring.followed), 0.0).reeling;
+    return sum;
+  }
+
   // Room for one gradient: on the stack for all but long fold measures, so that a step allocates nothing.
   class Gradient {
    public:
@@ -113,7 +143,7 @@ class Springs final : public ForceBlock {
 
   std::vector<Spring> springs_;
   std::size_t size_ = 0;
-  bool damped_ = false;
+  bool damped_ = false, reeled_ = false;
 };
 
 std::unique_ptr<ForceBlock> block_of(const Structure& structure, std::string_view kind) {
@@ -140,6 +170,21 @@ constexpr double as_built = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
+SpringLaw spring_law(const Force& force, double t) {
+  if (!(force.axial_stiffness > 0)) return {force.stiffness, force.rest, 0.0, 0.0};
+  const double length = force.unstressed(t), rate = force.unstressed.derivative(1, t);
+  const double k = force.axial_stiffness / length;
+  return {k, length, -k * rate / length, rate};
+}
+
+// dV/dt at a fixed pose: k' V / k - N_e s_0'
+SpringPull spring_pull(const Force& force, double t, double s, double rate) {
+  const SpringLaw law = spring_law(force, t);
+  const Pull pull = pull_of(force, s - law.rest);
+  const double elastic = law.stiffness * pull.elastic, n = elastic + force.damping * pull.share * rate;
+  return {force.one_sided ? std::max(n, 0.0) : n, law.stiffness_rate * pull.energy - elastic * law.rest_rate};
+}
+
 std::unique_ptr<ForceBlock> spring_block(const std::vector<Force>& springs, const Deployment& deployment,
                                          const std::vector<int>& followed) {
   if (springs.empty()) return nullptr;
@@ -150,6 +195,14 @@ std::unique_ptr<ForceBlock> axial_spring_block(const Structure& structure, const
   return block_of(structure, "spring");
 }
 
+std::unique_ptr<ForceBlock> cable_block(const Structure& structure, const SparseRows&) {
+  return block_of(structure, "cable");
+}
+
+std::unique_ptr<ForceBlock> combination_block(const Structure& structure, const SparseRows&) {
+  return block_of(structure, "combination");
+}
+
 std::unique_ptr<ForceBlock> torsion_spring_block(const Structure& structure, const SparseRows&) {
   return block_of(structure, "torsion_spring");
 }
@@ -157,6 +210,47 @@ std::unique_ptr<ForceBlock> torsion_spring_block(const Structure& structure, con
 void fill_axial_spring(const ParamSet& values, Force& force) {
   fill_spring(values, values.real("free_length"), force);
   force.one_sided = values.boolean("tension_only");
+}
+
+const std::vector<ParamSpec>& cable_params() {
+  static const std::vector<ParamSpec> params = [] {
+    std::vector<ParamSpec> all = {
+        real_param("axial_stiffness", "N", 0.0, 0.0, infinity,
+                   "E A of an elastic cable, which pulls with E A (S / L - 1); 0: it does not stretch"),
+        positive_param("length", "m", as_built,
+                       "unstressed, at t = 0; by default the length of its path there"),
+        real_param("damping", "N s/m", 0.0, 0.0, infinity, "elastic: force per m/s of stretching"),
+        real_param("smoothing", "m", 0.0, 0.0, infinity,
+                   "elastic: it begins to pull over this much on both sides of its length, for nets of "
+                   "hundreds of cables; 0: at an event of its own")};
+    for (ParamSpec& spec : motion_params("m")) all.push_back(std::move(spec));
+    return all;
+  }();
+  return params;
+}
+
+void fill_cable(const ParamSet& values, Force& force) {
+  force.one_sided = true;
+  force.axial_stiffness = values.real("axial_stiffness");
+  force.damping = values.real("damping");
+  force.smoothing = values.real("smoothing");
+  if (const double length = values.real("length"); !std::isnan(length)) force.rest = length;
+  force.unstressed = motion_function(values, force.rest, 1.0);
+}
+
+const std::vector<ParamSpec>& combination_params() {
+  static const std::vector<ParamSpec> params = {
+      real_param("stiffness", "", 0.0, 0.0, infinity,
+                 "N/m, or N m/rad where all terms are angles: of the sum"),
+      real_param("damping", "", 0.0, 0.0, infinity, "of the sum, per its rate"),
+      real_param("free_value", "", as_built, -infinity, infinity,
+                 "of the sum without a force, m or deg; by default that at t = 0")};
+  return params;
+}
+
+void fill_combination(const ParamSet& values, Force& force) {
+  fill_spring(values, values.real("free_value") * (is_angle(force.measure) ? radians_per_degree : 1.0),
+              force);
 }
 
 void fill_torsion_spring(const ParamSet& values, Force& force) {

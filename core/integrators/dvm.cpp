@@ -25,6 +25,7 @@ constexpr int slow_iterations = 8;
 // `strong` are never looked at.
 constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double resolved = 1.5;  // h omega, from above, per stage but one: the ends tell forces of waves
 
 bool is_small(const System& system, int stages) {
   return (system.solved_coordinates() + system.constraints()) * (stages - 1) <= full_newton_unknowns;
@@ -443,6 +444,8 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   state.t += h;
   arrive(state);
   state.w = w1_;
+  state.tension.resize(0);
+  if (!system_.giving_rods().empty() && eq_.h_omega() > resolved * (c_.s - 1)) eq_.end_tension(state.tension);
   state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
 }
 

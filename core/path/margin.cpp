@@ -10,7 +10,6 @@
 #include "core/path/path_time.hpp"
 #include "core/path/scalar_motion.hpp"
 #include "core/simulate/initial_state.hpp"
-#include "core/simulate/latch.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {
@@ -118,8 +117,8 @@ class MarginMaker {
   }
 
   double fold_angle(double s) const {
-    return structure_.deployment.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                         : structure_.deployment.fold_angle(pose(s).q);
+    return structure_.deployment.folds() ? structure_.deployment.fold_angle(pose(s).q)
+                                         : std::numeric_limits<double>::quiet_NaN();
   }
 
   // The way to the deployed pose; where there is none, that of the motion.
@@ -132,10 +131,10 @@ class MarginMaker {
     const double push = speed_ != 0 ? speed_ : sources_.at(0.0, 0.0, 0.0).Q;
     sense_ = push < 0 ? -1.0 : 1.0;
     if (structure_.deployment.empty()) return;
-    const LinearForm form = remaining_form(structure_.deployment);
     sense_ = 1.0;
-    sense_ = form.rate(pose(0.0).dq) < 0 ? 1.0 : -1.0;
-    const auto zero = first_zero(*path_, form, sense_ > 0, far_enough);
+    const Pose here = pose(0.0);
+    sense_ = structure_.deployment.remaining_rate(here.q, here.dq) < 0 ? 1.0 : -1.0;
+    const auto zero = deployed_pose(*path_, structure_.deployment, sense_ > 0, far_enough);
     if (!zero) throw PathRefused("the path does not lead to a deployed pose");
     end_ = sense_ * *zero;
   }
@@ -240,7 +239,7 @@ class MarginMaker {
     MarginPoint out{s, std::numeric_limits<double>::quiet_NaN(), VectorXd(std::ssize(out_.sources)),
                     static_margin(s, t)};
     double by_angle = 1;
-    if (!structure_.deployment.empty()) {
+    if (structure_.deployment.folds()) {
       out.fold_angle = structure_.deployment.fold_angle(at.q);
       by_angle = 1 / std::abs(structure_.deployment.fold_rate(at.q, at.dq));
     }
@@ -251,7 +250,7 @@ class MarginMaker {
   }
 
   void take_points() {
-    out_.unit = structure_.deployment.empty() ? "N/kg^1/2" : "N m";
+    out_.unit = structure_.deployment.folds() ? "N m" : "N/kg^1/2";
     for (int i = 0; i < poses; ++i) out_.points.push_back(point(*end_ * i / (poses - 1)));
     const auto worst = std::min_element(out_.points.begin(), out_.points.end(),
                                         [](const auto& a, const auto& b) { return a.margin < b.margin; });
@@ -339,7 +338,8 @@ std::vector<StuckHinge> stuck_hinges(const std::shared_ptr<const Model>& model, 
   if (!structure.deployment.empty()) {
     path->point(0.0, z, tangent);
     path->system().expand_rate(tangent, v);
-    sense = remaining_form(structure.deployment).rate(v) < 0 ? 1.0 : -1.0;
+    path->system().expand(z, q);
+    sense = structure.deployment.remaining_rate(q, v) < 0 ? 1.0 : -1.0;
   } else if (margin.motion.size() > 1) {
     sense = margin.motion.back().s >= 0 ? 1.0 : -1.0;
   }

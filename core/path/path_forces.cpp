@@ -48,6 +48,7 @@ std::string unknown_to_path(const Structure& structure) {
     return std::string(what) + " of the kind \"" + std::string(kind) + "\" is not known to the path";
   };
   for (const Force& force : structure.forces) {
+    if (force.smoothing > 0) return "a cable begins to pull smoothly";
     if (!holds(known_forces, force.kind)) return kinds("a force", force.kind);
     if (!holds(known_measures, force.measure.kind))
       return "a force acts on a measure that the path does not know";
@@ -57,6 +58,8 @@ std::string unknown_to_path(const Structure& structure) {
     if (!holds(known_measures, constraint.measure.kind))
       return "a constraint holds a measure that the path does not know";
   }
+  for (const Stop& stop : structure.stops)
+    if (stop.reeled) return "a cable is paid out or drawn in";
   for (const Stop& stop : structure.stops)
     if (!holds(known_measures, stop.measure.kind))
       return "a stop bounds a measure that the path does not know";
@@ -147,9 +150,8 @@ Index PathForces::add_measure(const Measure& measure) {
   return measures_.back().column;
 }
 
-Index PathForces::add_form(const LinearForm& form) {
-  forms_.emplace_back(form, columns_);
-  return columns_++;
+Index PathForces::add_remaining() {
+  return remaining_ = columns_++;
 }
 
 VectorXd PathForces::first_angles() const {
@@ -197,12 +199,9 @@ void PathForces::evaluate(const VectorXd& q, const VectorXd& dq, VectorXd& angle
     if (tracked.angle >= 0) angles[tracked.angle] = value[tracked.column];
     scale[tracked.column] = tracked.measure.is_angle() ? pi : length_;
   }
-  for (const auto& [form, column] : forms_) {
-    value[column] = form(q);
-    scale[column] = std::max(std::abs(form.offset), 1e-3);
-    for (std::size_t i = 0; i < form.nodes.size(); ++i)
-      scale[column] += form.coefficients[i].cwiseAbs().maxCoeff() * length_;
-  }
+  if (remaining_ < 0) return;
+  value[remaining_] = structure_.deployment.remaining(q);
+  scale[remaining_] = 1.0;
 }
 
 }  // namespace unfurl

@@ -39,7 +39,7 @@ class PathForces final : public PathFunctions {
   PathForces(const Structure& structure, const System& system, bool separately);
 
   Index add_measure(const Measure& measure);  // its column; before a table is made
-  Index add_form(const LinearForm& form);
+  Index add_remaining();                      // of the deployment: 0 in the deployed pose
 
   const std::vector<Source>& sources() const { return sources_; }
   const std::vector<Cable>& cables() const { return cables_; }
@@ -70,7 +70,7 @@ class PathForces final : public PathFunctions {
   std::vector<Cable> cables_;
   std::vector<Term> terms_;
   std::vector<Tracked> measures_;
-  std::vector<std::pair<LinearForm, Index>> forms_;
+  Index remaining_ = -1;
 };
 
 }  // namespace unfurl

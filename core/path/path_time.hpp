@@ -17,8 +17,9 @@ namespace unfurl {
 // there (it begins the other way, or turns before), or hardly does, so that the quadrature does not converge.
 double time_from_rest(const Path& path, const VectorXd& force, double from, double to);
 
-// s where a linear form of the node positions first falls to zero from above, forwards or backwards from s =
-// 0, within so many pieces.
-std::optional<double> first_zero(const Path& path, const LinearForm& form, bool forward, long most_pieces);
+// s of the deployed pose next to s = 0, where the deployment's remaining() first falls to zero from above,
+// forwards or backwards, within so many pieces.
+std::optional<double> deployed_pose(const Path& path, const Deployment& deployment, bool forward,
+                                    long most_pieces);
 
 }  // namespace unfurl

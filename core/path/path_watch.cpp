@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/simulate/latch.hpp"
-
 namespace unfurl {
 namespace {
 
@@ -18,7 +16,7 @@ constexpr int samples = 24;  // within a step
 
 PathWatch::PathWatch(const Structure& structure, const OneSided& sides, double step)
     : sides_(sides),
-      form_(structure.deployment.empty() ? LinearForm{} : remaining_form(structure.deployment)),
+      deploys_(!structure.deployment.empty()),
       step_(step),
       shift_(sides.stops().size(), 0.0),
       margin_(singular_margin) {}
@@ -28,13 +26,13 @@ void PathWatch::watch(PathLaw& law) {
   stop_columns_.clear();
   for (std::size_t i = 0; i < sides_.stops().size(); ++i)
     stop_columns_.push_back(law.forces().add_measure(sides_.stops()[i].measure));
-  if (!form_.empty()) deployed_column_ = law.forces().add_form(form_);
+  if (deploys_) deployed_column_ = law.forces().add_remaining();
 }
 
 void PathWatch::begin(const State& start, const System& system) {
   for (std::size_t i = 0; i < shift_.size(); ++i)
     shift_[i] = std::min(0.0, sides_.stops().gap(i, system, start));
-  if (form_.empty()) return;
+  if (!deploys_) return;
   const double fold = remaining(0.0);
   if (fold > deployed_already) margin_ = std::min(singular_margin, 0.1 * fold);
   armed_ = fold > margin_;

@@ -37,7 +37,7 @@ class PathWatch {
   double zero_of(const PathMotion& motion, Index i, double a, double b) const;
 
   const OneSided& sides_;
-  LinearForm form_;  // whose zero is the deployed pose; empty: there is none
+  bool deploys_;
   double step_;
   const PathLaw* law_ = nullptr;
   std::vector<Index> stop_columns_;

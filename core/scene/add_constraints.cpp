@@ -156,7 +156,8 @@ const std::vector<ElementKind>& scene_constraints() {
         {"coplanar", "the fourth and further nodes stay in the plane through the first three",
          Members::node_list, no_params, add_coplanar},
     };
-    for (const ElementKind& kind : measured_kinds()) found.push_back(kind);
+    for (const auto* more : {&measured_kinds(), &combined_kinds()})
+      for (const ElementKind& kind : *more) found.push_back(kind);
     return found;
   }();
   return kinds;

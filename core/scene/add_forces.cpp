@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[forces]] of a scene into a structure: the kinds are those of the force table (forces/force.hpp).
 #include <cmath>
+#include <sstream>
 
+#include "core/forces/motor.hpp"
 #include "core/scene/element_members.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/structure_error.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 
@@ -42,6 +45,12 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
       one.nodes = find.nodes(e, true);
       if (!one.nodes.empty()) forces.push_back(one);
       break;
+    case Members::three_nodes:
+      one.nodes = find.nodes(e, false);
+      if (one.nodes.size() == 3) forces.push_back(one);
+      break;
+    case Members::rods:
+      break;
     case Members::rod:
       if (const Rod* rod = find.rod(e, 0)) {
         one.nodes = {rod->a, rod->b};
@@ -50,6 +59,12 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
       break;
     case Members::two_nodes:
       measured(length_of(e, find));
+      break;
+    case Members::path:
+      measured(path_of(e, find));
+      break;
+    case Members::terms:
+      measured(terms_of(e, find));
       break;
     case Members::angle:
       measured(angle_of(e, find));
@@ -61,8 +76,30 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
   return forces;
 }
 
+// What an entry says of rods becomes theirs.
+void warm_rods(const SceneElement& e, const ForceKind& kind, ElementAdder& to) {
+  Force warming;
+  kind.fill(e.values, warming);
+  for (const int r : to.find.rods(e)) {
+    Rod& rod = to.structure.rods[static_cast<std::size_t>(r)];
+    if (rod.expansion != 0)
+      return to.find.problem(e, "rods",
+                             "names " + in_quotes(rod.name) + ", which another entry warms already");
+    rod.expansion = warming.expansion;
+    rod.warming = warming.size;
+  }
+}
+
+// The rotor and the controller's integral of the motor that is the structure's last force.
+void add_ghosts(ElementAdder& to, double inertia, double initial) {
+  const Motor& motor = to.structure.forces.back().motor;
+  if (motor.control == Motor::Control::position && motor.integral > 0) add_integrator(to.structure, initial);
+  if (inertia > 0) add_rotor(to.structure, inertia, initial);
+}
+
 void add_force(const SceneElement& e, ElementAdder& to) {
   const ForceKind& kind = force_kind(e.kind);
+  if (kind.members == Members::rods) return warm_rods(e, kind, to);
   if (e.kind == "offload" && to.structure.gravity.isZero(0.0))
     to.structure.notes.push_back(
         problem_text({e.where, e.key, "does nothing without a weight: gravity.acceleration is 0"}));
@@ -72,22 +109,112 @@ void add_force(const SceneElement& e, ElementAdder& to) {
     } catch (const StructureError& error) {
       return to.find.problem(e, error.key, error.message);
     }
+    const double initial = force.rest;
     to.structure.forces.push_back(std::move(force));
+    if (kind.kind == "motor") add_ghosts(to, e.values.real("inertia"), initial);
   }
 }
 
 }  // namespace
+
+// A drum, a ghost whose coordinate x is what it has drawn in: the cable's measure is its path and x.
+void add_winch(const SceneElement& e, ElementAdder& to) {
+  auto measure = path_of(e, to.find);
+  if (!measure) return;
+  const ParamSet& v = e.values;
+  const double path = to.find.initial(*measure), radius = v.real("drum_radius");
+  Force motor;
+  motor.kind = "motor";
+  motor.name = e.name;
+  motor.measure.kind = MeasureKind::coordinate;
+  motor.measure.axis = Vec3::UnitX();
+  try {
+    fill_motor(v, motor);
+  } catch (const StructureError& error) {
+    return to.find.problem(e, error.key, error.message);
+  }
+  const double length = std::isnan(v.real("length")) ? path : v.real("length"),
+               ea = v.real("axial_stiffness");
+  if (!(ea > 0) && length < path * (1 - 1e-9))
+    return to.find.problem(e, "length",
+                           "is shorter than the path of the cable at t = 0; give axial_stiffness");
+  if (!(ea > 0) && v.real("damping") > 0)
+    return to.find.problem(e, "damping",
+                           "does nothing for a cable that does not stretch; give axial_stiffness");
+  const double n = motor.motor.gear_ratio;
+  const int drum =
+      add_ghost(to.structure, "drum of " + e.name, n * n * v.real("inertia") / (radius * radius), 0.0);
+  motor.measure.nodes = {drum};
+  motor.motor.gear_ratio = n / radius;
+  measure->terms.push_back({1.0, motor.measure});
+  to.structure.forces.push_back(std::move(motor));
+  add_ghosts(to, 0.0, 0.0);
+  TimeFunction limit;
+  limit.offset = length;
+  if (ea > 0) {
+    Force cable;
+    cable.kind = "cable";
+    cable.name = e.name + " cable";
+    cable.measure = *measure;
+    cable.axial_stiffness = ea;
+    cable.damping = v.real("damping");
+    cable.one_sided = true;
+    cable.rest = length;
+    cable.unstressed = limit;
+    return to.structure.forces.push_back(std::move(cable));
+  }
+  Stop stop{.name = e.name + " cable", .measure = *measure};
+  stop.reel = limit;
+  stop.reeled = true;
+  to.structure.stops.push_back(std::move(stop));
+}
+
+// What does not stretch is a stop that moves: the path is at most as long as the cable.
+void add_cable(const SceneElement& e, ElementAdder& to) {
+  const auto measure = path_of(e, to.find);
+  if (!measure) return;
+  const double path = to.find.initial(*measure);
+  Force cable;
+  cable.kind = "cable";
+  cable.name = e.name;
+  cable.measure = *measure;
+  cable.rest = path;
+  force_kind("cable").fill(e.values, cable);
+  cable.unstressed = motion_of(e, to, *measure, cable.rest);
+  if (cable.axial_stiffness > 0) {
+    to.structure.forces.push_back(std::move(cable));
+    return;
+  }
+  if (cable.rest < path * (1 - 1e-9)) {
+    std::ostringstream text;
+    text << "is shorter than the path of the cable at t = 0, which is " << path
+         << " m; give axial_stiffness, so that it can stretch, or at least that length";
+    return to.find.problem(e, "length", text.str());
+  }
+  for (const char* key : {"damping", "smoothing"})
+    if (e.values.real(key) > 0)
+      to.find.problem(e, key, "does nothing for a cable that does not stretch; give axial_stiffness");
+  Stop stop{.name = e.name, .measure = *measure};
+  stop.reel = std::move(cable.unstressed);
+  stop.reeled = true;
+  to.structure.stops.push_back(std::move(stop));
+}
 
 const std::vector<ElementKind>& scene_forces() {
   static const std::vector<ElementKind> kinds = [] {
     std::vector<ElementKind> found;
     for (const ForceKind& row : force_kinds())
       if (row.params)
-        found.push_back({row.kind, row.help, row.members, row.params, add_force,
+        found.push_back({row.kind, row.help, row.members, row.params,
+                         row.kind == "cable" ? add_cable : add_force,
                          row.members == Members::two_nodes ? length_of
+                         : row.members == Members::path    ? path_of
+                         : row.members == Members::terms   ? terms_of
                          : row.members == Members::angle   ? angle_of
                          : row.members == Members::measure ? measure_of
                                                            : nullptr});
+    found.push_back({"winch", "a motor with a drum that draws in a cable over nodes in order", Members::path,
+                     winch_params, add_winch, path_of});
     return found;
   }();
   return kinds;

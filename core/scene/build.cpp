@@ -4,9 +4,11 @@
 #include <set>
 #include <utility>
 
+#include "core/scene/element_members.hpp"
 #include "core/scene/size_limits.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/structures/family.hpp"
+#include "core/system/assemble_elastic.hpp"
 #include "core/system/consistency.hpp"
 #include "core/system/fit_lengths.hpp"
 #include "core/text/name_index.hpp"
@@ -44,7 +46,7 @@ Structure bare_structure(const Scene& scene) {
 }
 
 bool is_sector(const Structure& structure) {
-  return structure.node_copies.size() != structure.nodes.size();
+  return structure.node_copies.size() > structure.nodes.size();
 }
 
 // A sector stands for the whole only when gravity looks the same from every copy.
@@ -80,6 +82,17 @@ void check_latches(const Scene& scene, Structure& structure) {
       structure.notes.push_back(
           problem_text({force.where, force.key, "does nothing without solver.at_deployed = \"latch\""}));
   }
+}
+
+// The measure of a structure that has no fold angle, as [deployment] says.
+void add_deployment(const Scene& scene, Structure& structure) {
+  if (scene.deployment.terms.empty()) return;
+  if (!structure.deployment.empty())
+    throw SceneError(
+        {{scene.deployment.where, scene.deployment.key,
+          "is for structures that do not say themselves when they are deployed; " + scene.kind + " does"}});
+  if (is_sector(structure)) refuse_elements(scene);
+  give_deployment(scene, structure);
 }
 
 // A load on a solved node is a load on each of its copies.
@@ -141,8 +154,10 @@ Structure build_structure(const Scene& scene) {
   add_loads(scene, structure);
   if (is_sector(structure)) refuse_elements(scene);
   add_elements(scene.forces, scene_forces(), scene.solver.end_time, structure);
-  check_latches(scene, structure);
   add_elements(scene.constraints, scene_constraints(), scene.solver.end_time, structure);
+  add_deployment(scene, structure);
+  check_latches(scene, structure);
+  show_cables(structure);
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   return structure;
 }
@@ -151,6 +166,7 @@ std::shared_ptr<const Model> build_model(const Scene& scene) {
   Structure structure = build_structure(scene);
   try {
     fit_lengths(structure, scene.solver.eliminate_linear);
+    assemble_elastic(structure, scene.solver.eliminate_linear);
     System system(structure, scene.solver.eliminate_linear);
     check_consistency(structure, system);
     if (!scene.solver.sparse) fill_mass(scene, system);

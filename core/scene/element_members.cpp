@@ -52,6 +52,23 @@ std::vector<int> MemberFinder::nodes(const SceneElement& element, bool globs) {
   return good ? found : std::vector<int>{};
 }
 
+int MemberFinder::node(const SceneElement& element, const std::string& key, const std::string& name) {
+  const int found = node_names_.find(name);
+  if (found < 0)
+    problem(element, key, "there is no node " + in_quotes(name) + did_you_mean(name, node_names_.names()));
+  return found;
+}
+
+std::vector<int> MemberFinder::path(const SceneElement& element) {
+  std::vector<int> found;
+  bool good = true;
+  for (const auto& name : element.nodes) {
+    found.push_back(node(element, "nodes", name));
+    good = good && found.back() >= 0;
+  }
+  return good ? found : std::vector<int>{};
+}
+
 const Rod* MemberFinder::rod(const SceneElement& element, std::size_t index) {
   const std::string& name = element.rods[index];
   const int found = rod_names_.find(name);
@@ -59,6 +76,22 @@ const Rod* MemberFinder::rod(const SceneElement& element, std::size_t index) {
   problem(element, element.rods.size() == 1 ? "rod" : "rods",
           "there is no rod " + in_quotes(name) + did_you_mean(name, rod_names_.names()));
   return nullptr;
+}
+
+std::vector<int> MemberFinder::rods(const SceneElement& element) {
+  std::vector<int> found;
+  for (const auto& name : element.rods) {
+    std::vector<int> matches = rod_names_.matching(name);
+    if (matches.empty())
+      for (std::size_t r = 0; r < structure_.rods.size(); ++r)
+        if (glob_match(name, structure_.rods[r].group)) matches.push_back(static_cast<int>(r));
+    if (matches.empty())
+      problem(element, "rods",
+              "there is no rod and no group " + in_quotes(name) + did_you_mean(name, rod_names_.names()));
+    for (const int rod : matches)
+      if (std::ranges::find(found, rod) == found.end()) found.push_back(rod);
+  }
+  return found;
 }
 
 // In (-180, 180] degrees where it has a sign: round-off of a position does not decide on which side of the
@@ -75,7 +108,7 @@ bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure&
   if (element.fold_angle) {
     measure.kind = MeasureKind::fold;
     measure.axis.setZero();
-    if (!structure_.deployment.empty()) return true;
+    if (structure_.deployment.folds()) return true;
     problem(element, "fold_angle", "this structure has no fold angle; name rods or nodes");
     return false;
   }
@@ -99,7 +132,8 @@ bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure&
 }
 
 // An angle about an axis is that of the projections across it: a rod along the axis has none.
-bool MemberFinder::axis_is_across(const SceneElement& element, const Measure& measure) {
+bool MemberFinder::axis_is_across(const SceneElement& element, const Measure& measure,
+                                  const std::string& key) {
   if (measure.axis.isZero(0.0)) return true;
   for (const std::size_t first : {0U, 2U}) {
     const Vec3 d =
@@ -108,8 +142,9 @@ bool MemberFinder::axis_is_across(const SceneElement& element, const Measure& me
     const auto name = [&](std::size_t i) {
       return structure_.nodes[static_cast<std::size_t>(measure.nodes[i])].name;
     };
-    problem(element, "axis",
-            "is along the line from " + in_quotes(name(first)) + " to " + in_quotes(name(first + 1)) +
+    problem(element, key,
+            std::string(key == "axis" ? "" : "an axis ") + "is along the line from " +
+                in_quotes(name(first)) + " to " + in_quotes(name(first + 1)) +
                 " at t = 0: there is no angle about it; give the axis of the hinge");
     return false;
   }
@@ -179,8 +214,7 @@ double start_value(const SceneElement& element, const Structure& structure) {
   MemberFinder find(structure);
   const std::optional<Measure> measure = kind->measure(element, find);
   if (!measure) return unknown;
-  const bool angle = measure->kind == MeasureKind::angle || measure->kind == MeasureKind::fold;
-  return find.initial(*measure) / (angle ? radians_per_degree : 1.0);
+  return find.initial(*measure) / (is_angle(*measure) ? radians_per_degree : 1.0);
 }
 
 ParamSpec direction_param(std::string_view name, std::string_view help) {

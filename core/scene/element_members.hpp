@@ -16,23 +16,29 @@ inline Vec3 vec3(const ParamSet& values, std::string_view name) {
   return {v[0], v[1], v[2]};
 }
 
+struct Scene;
+
 class MemberFinder {
  public:
   explicit MemberFinder(const Structure& structure);
 
   // Each collects what is wrong instead of throwing; an empty result says that something was.
   std::vector<int> nodes(const SceneElement& element, bool globs);  // in the entry's order, none twice
+  // The same with nodes that come again: those of a path, or of several angles.
+  std::vector<int> path(const SceneElement& element);
+  int node(const SceneElement& element, const std::string& key, const std::string& name);  // -1: a problem
   const Rod* rod(const SceneElement& element, std::size_t index);
+  std::vector<int> rods(const SceneElement& element);  // by their names, or the names of their groups
   // The angle that an entry names, with a sign where `axis` is not zero. False: a problem was noted.
   bool angle(const SceneElement& element, const Vec3& axis, Measure& measure);
 
+  // False, a problem noted: a line of the angle is along its axis.
+  bool axis_is_across(const SceneElement& element, const Measure& measure, const std::string& key = "axis");
   double initial(const Measure& measure) const;  // at the structure's start
   void problem(const SceneElement& element, const std::string& key, std::string message);
   void throw_problems();  // SceneError, where there are any
 
  private:
-  bool axis_is_across(const SceneElement& element, const Measure& measure);
-
   const Structure& structure_;
   NameIndex node_names_, rod_names_;
   VectorXd start_;
@@ -50,6 +56,19 @@ struct ElementAdder {
   Vec3 direction(const SceneElement& element, const std::string& key);
 };
 
+// The measures of kinds that name a path or terms.
+std::optional<Measure> path_of(const SceneElement& element, MemberFinder& find);
+std::optional<Measure> terms_of(const SceneElement& element, MemberFinder& find);
+std::optional<Measure> sum_of_terms(const SceneElement& element, MemberFinder& find, const std::string& key);
+// An elastic cable, or one that is only paid out and drawn in.
+void add_cable(const SceneElement& element, ElementAdder& to);
+
+// What [deployment] says, into a structure. Throws SceneError.
+void give_deployment(const Scene& scene, Structure& structure);
+
+// How the entry's value moves from `initial` on [m] or [rad]; what it cannot reach is noted.
+TimeFunction motion_of(const SceneElement& element, ElementAdder& to, const Measure& measure, double initial);
+
 // A required direction, of any length but 0.
 ParamSpec direction_param(std::string_view name, std::string_view help);
 
@@ -59,7 +78,8 @@ std::optional<Measure> measure_of(const SceneElement& element, MemberFinder& fin
 // An angle that may grow: without an axis not one of rods in line.
 std::optional<Measure> driven_angle(const SceneElement& element, MemberFinder& find);
 
-// Kinds of [[constraints]] that hold, drive or bound a measure.
+// Kinds of [[constraints]] that combine measures in one row, and those that hold, drive or bound a measure.
+const std::vector<ElementKind>& combined_kinds();
 const std::vector<ElementKind>& measured_kinds();
 
 }  // namespace unfurl

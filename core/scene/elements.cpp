@@ -68,11 +68,21 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
       return;
     case Members::each_node:
     case Members::node_list:
+    case Members::path:
       element.nodes = entry.names("nodes");
+      return;
+    case Members::terms:
+      element.terms = entry.names("terms");
       return;
     case Members::two_nodes:
       element.nodes = entry.names("nodes");
       return wants("nodes", element.nodes, 2);
+    case Members::three_nodes:
+      element.nodes = entry.names("nodes");
+      return wants("nodes", element.nodes, 3);
+    case Members::rods:
+      element.rods = entry.names("rods");
+      return;
     case Members::rod:
       element.rods = entry.names("rod");
       return wants("rod", element.rods, 1);
@@ -96,7 +106,7 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
 
 std::string made_name(const SceneElement& element) {
   std::string text = element.fold_angle ? "fold angle" : "";
-  for (const auto* list : {&element.nodes, &element.rods})
+  for (const auto* list : {&element.nodes, &element.rods, &element.terms})
     for (const auto& name : *list) text += (text.empty() ? "" : "-") + name;
   return element.kind + " of " + text;
 }
@@ -122,8 +132,16 @@ std::string_view members_text(Members members) {
       return "nodes = names or globs, one for each";
     case Members::node_list:
       return "nodes = [A, B, ...]";
+    case Members::path:
+      return "nodes = [A, B, ...], in order";
+    case Members::terms:
+      return "terms = [\"2.5 length A B\", ...]";
     case Members::two_nodes:
       return "nodes = [A, B]";
+    case Members::three_nodes:
+      return "nodes = [A, B, C]";
+    case Members::rods:
+      return "rods = names or globs of rods or groups";
     case Members::rod:
       return "rod = its name";
     case Members::angle:

@@ -18,9 +18,10 @@ struct SceneElement {
   std::string name;                // for messages and columns: one of its own (settle_names)
   std::vector<std::string> nodes;  // names or globs
   std::vector<std::string> rods;
-  bool fold_angle = false;  // acts on the structure's fold angle
-  bool enabled = true;      // false: as if it were not there
-  std::string table;        // CSV file that times and values came from; empty: none
+  std::vector<std::string> terms;  // of a combination
+  bool fold_angle = false;         // acts on the structure's fold angle
+  bool enabled = true;             // false: as if it were not there
+  std::string table;               // CSV file that times and values came from; empty: none
   ParamSet values;
   std::string key;                                            // "forces[2]"
   SourceLocation where;                                       // of the entry

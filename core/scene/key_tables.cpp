@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 #include "core/integrators/solver_options.hpp"
@@ -45,17 +46,29 @@ Keys member_keys(Members members) {
       return {names_key("nodes", 0, "names or globs, one for each")};
     case Members::node_list:
       return {names_key("nodes", 0, "A, B, ...: all of them in one")};
+    case Members::path:
+      return {names_key("nodes", 0, "A, B, ...: in order")};
+    case Members::terms:
+      return {
+          names_key("terms", 0,
+                    "sum of: \"C length A B\", \"C coordinate A along X Y Z\", \"C angle A HINGE B\" (also: "
+                    "about X Y Z), \"C dihedral A B C D\"; C: a number")};
     case Members::two_nodes:
       return {names_key("nodes", 2, "A, B")};
+    case Members::three_nodes:
+      return {names_key("nodes", 3, "A, B, C: a bend at the middle one")};
+    case Members::rods:
+      return {names_key("rods", 0, "names or globs of rods or of their groups")};
     case Members::rod:
       return {text_param("rod", "", "its name; the direction follows it")};
     case Members::measure:
-      return {names_key("rods", 2, "R, S: the angle between two rods that share a node", false),
-              names_key("nodes", 0,
-                        "A, HINGE, B: the angle at the middle one; A, B: their distance, or with direction the "
-                        "difference of their coordinates; A: its coordinate",
-                        false),
-              boolean_param("fold_angle", false, "the structure's fold angle, in place of rods and nodes")};
+      return {
+          names_key("rods", 2, "R, S: the angle between two rods that share a node", false),
+          names_key("nodes", 0,
+                    "A, HINGE, B: the angle at the middle one; A, B: their distance, or with direction the "
+                    "difference of their coordinates; A: its coordinate",
+                    false),
+          boolean_param("fold_angle", false, "the structure's fold angle, in place of rods and nodes")};
     case Members::angle:
       break;
   }
@@ -106,6 +119,19 @@ const std::vector<ParamSpec>& load_params() {
   return params;
 }
 
+const std::vector<ParamSpec>& deployment_params() {
+  static const Keys params = [] {
+    constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    ParamSpec deployed = real_param("deployed", "", 0.0, -endless, endless,
+                                    "its value when deployed; m, or deg where all terms are angles");
+    deployed.required = true;
+    return Keys{deployed, real_param("stowed", "", not_given, -endless, endless,
+                                     "its value when stowed; by default that at t = 0")};
+  }();
+  return params;
+}
+
 const std::vector<KeyTable>& key_tables() {
   static const std::vector<KeyTable> tables = [] {
     std::vector<KeyTable> all = {{"scene", "", "before the first table", scene_params()}};
@@ -115,6 +141,11 @@ const std::vector<KeyTable>& key_tables() {
                    together({names_key("nodes", 0, "names or globs, the force on each")}, load_params())});
     for (const ElementKind& kind : scene_forces()) all.push_back(element_table("forces", kind));
     for (const ElementKind& kind : scene_constraints()) all.push_back(element_table("constraints", kind));
+    all.push_back({"deployment", "[deployment]", "when a structure without a fold angle is deployed",
+                   together({names_key("measure", 0,
+                                       "what is measured: a term as those of a combination, a list of them "
+                                       "that is summed up, or the name of a constraint or force")},
+                            deployment_params())});
     all.push_back({"solver", "[solver]", "how the motion is solved", solver_params()});
     all.push_back({"render", "[render]", "pictures and films", render_params()});
     all.push_back({"render.camera_keys", "[[render.camera_keys]]",

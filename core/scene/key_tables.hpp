@@ -33,6 +33,7 @@ std::string default_text(const ParamSpec& spec);
 // Keys of the tables that have no other home.
 const std::vector<ParamSpec>& scene_params();    // before the first table
 const std::vector<ParamSpec>& gravity_params();  // [gravity]
-const std::vector<ParamSpec>& load_params();     // [[loads]], beside its nodes
+const std::vector<ParamSpec>& load_params();
+const std::vector<ParamSpec>& deployment_params();  // [[loads]], beside its nodes
 
 }  // namespace unfurl

@@ -8,6 +8,7 @@
 
 #include "core/scene/element_members.hpp"
 #include "core/structure/measure.hpp"
+#include "core/structure/motion_params.hpp"
 
 namespace unfurl {
 
@@ -15,34 +16,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double as_built = std::numeric_limits<double>::quiet_NaN();
-
-// How a held or driven value moves; the unit is that of the measure.
-std::vector<ParamSpec> motion_params(std::string_view unit) {
-  return {
-      choice_param("motion", "hold", {"hold", "rate", "smooth", "table"},
-                   "hold the value at t = 0, or drive it: at a constant rate, smoothly to a value, along a "
-                   "table"),
-      only_with(
-          "motion", {"rate"},
-          real_param("rate", unit == "m" ? "m/s" : "deg/s", 0.0, -infinity, infinity, "rate: per second")),
-      only_with("motion", {"rate"},
-                real_param("ramp", "s", 0.0, 0.0, infinity, "rate: how long it takes to reach the rate")),
-      only_with("motion", {"smooth"},
-                real_param("to", unit, as_built, -infinity, infinity, "smooth: the value in the end")),
-      only_with("motion", {"rate", "smooth"},
-                real_param("start", "s", 0.0, 0.0, infinity, "rate, smooth: when the motion begins")),
-      only_with("motion", {"smooth"},
-                positive_param("duration", "s", 1.0, "smooth: how long the motion takes")),
-      only_with("motion", {"table"}, vector_param("times", "s", {}, "table: ascending, with values")),
-      only_with("motion", {"table"},
-                vector_param("values", unit, {},
-                             "table: at the times; a clamped cubic spline goes through them, at rest at both "
-                             "ends, held before "
-                             "and behind them")),
-      only_with("motion", {"table"},
-                text_param("table", "",
-                           "table: CSV file beside the scene, in place of times and values: t,value"))};
-}
 
 std::vector<ParamSpec> operator+(std::vector<ParamSpec> a, const std::vector<ParamSpec>& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -107,7 +80,7 @@ const std::vector<ParamSpec>& clearance_params() {
 
 // Of the scene's numbers in those of the measure.
 double unit_of(const Measure& measure) {
-  return measure.kind == MeasureKind::angle || measure.kind == MeasureKind::fold ? radians_per_degree : 1.0;
+  return is_angle(measure) ? radians_per_degree : 1.0;
 }
 
 // Angles without an axis stay above 0 and below 180 degrees, where they have no direction to go on in;
@@ -118,7 +91,7 @@ bool is_unsigned(const Measure& measure) {
 
 // A drive that leaves the values that its measure can take is refused, with the time when it does.
 void check_reach(const SceneElement& e, ElementAdder& to, const Measure& measure, const TimeFunction& f) {
-  const bool length = measure.kind == MeasureKind::length;
+  const bool length = measure.kind == MeasureKind::length || e.kind == "cable" || e.kind == "telescope";
   if ((!length && !is_unsigned(measure)) || !f.moves()) return;
   // A run may end before a constant rate comes that far: where it is deployed.
   if (f.kind == TimeFunction::Kind::rate && !to.structure.deployment.empty()) return;
@@ -152,27 +125,7 @@ void check_begin(const SceneElement& e, ElementAdder& to, const Measure& measure
 }
 
 void push_drive(const SceneElement& e, ElementAdder& to, const Measure& measure) {
-  const double initial = to.find.initial(measure), unit = unit_of(measure);
-  const ParamSet& v = e.values;
-  const std::string& motion = v.text("motion");
-  TimeFunction f;
-  f.offset = initial;
-  f.start = v.real("start");
-  if (motion == "rate") {
-    f.kind = TimeFunction::Kind::rate;
-    f.rate = unit * v.real("rate");
-    f.ramp = v.real("ramp");
-  } else if (motion == "smooth") {
-    f.kind = TimeFunction::Kind::smooth;
-    f.rise = unit * v.real("to") - initial;
-    f.duration = v.real("duration");
-  } else if (motion == "table") {
-    std::vector<double> values = v.vector("values");
-    for (double& x : values) x *= unit;
-    f = make_spline(v.vector("times"), std::move(values));
-    check_begin(e, to, measure, f(0.0), initial);
-  }
-  check_reach(e, to, measure, f);
+  TimeFunction f = motion_of(e, to, measure, to.find.initial(measure));
   to.structure.constraints.push_back({"measure", e.name, measure.nodes, {}, 0.0, measure, std::move(f)});
 }
 
@@ -237,6 +190,13 @@ void add_stop(const SceneElement& e, ElementAdder& to) {
 }
 
 }  // namespace
+
+TimeFunction motion_of(const SceneElement& e, ElementAdder& to, const Measure& measure, double initial) {
+  TimeFunction f = motion_function(e.values, initial, unit_of(measure));
+  if (e.values.text("motion") == "table") check_begin(e, to, measure, f(0.0), initial);
+  check_reach(e, to, measure, f);
+  return f;
+}
 
 const std::vector<ElementKind>& measured_kinds() {
   static const std::vector<ElementKind> kinds = {

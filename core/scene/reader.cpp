@@ -90,12 +90,26 @@ void read_elements(TableReader& root, std::string_view table, const std::vector<
   }
 }
 
+void read_deployment(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
+  const TomlTree* found = root.table("deployment");
+  if (!found) return;
+  TableReader table(found, "deployment", place(found, tree), notes);
+  SceneElement& element = scene.deployment;
+  element.kind = element.key = "deployment";
+  element.where = table.where();
+  element.terms = table.names("measure");
+  element.values = table.read(deployment_params());
+  table.finish();
+  element.places = table.places();
+}
+
 void read_solver(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
   const TomlTree* found = root.table("solver");
   TableReader table(found, "solver", place(found, tree), notes);
   scene.solver = solver_options(table.read(solver_params()));
   const Family* family = find_family(scene.kind);
-  if (!table.has("end_time") && family && family->deploys) scene.solver.end_time = time_to_deploy;
+  if (!table.has("end_time") && ((family && family->deploys) || !scene.deployment.terms.empty()))
+    scene.solver.end_time = time_to_deploy;
   table.finish();
   const double steps = scene.solver.end_time / scene.solver.step;
   if (steps > max_steps)
@@ -203,6 +217,7 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   read_elements(root, "constraints", scene_constraints(), folder, scene.constraints, notes);
   settle_names(scene.forces, notes);
   settle_names(scene.constraints, notes);
+  read_deployment(root, tree, scene, notes);
   read_solver(root, tree, scene, notes);
   read_render(root, tree, scene, notes);
   root.finish();

@@ -33,6 +33,7 @@ struct Scene {
   Vec3 gravity = Vec3::Zero();  // [m/s^2]
   std::vector<SceneLoad> loads;
   std::vector<SceneElement> forces, constraints;
+  SceneElement deployment;  // [deployment]: its terms are what it measures; without any, the scene has none
   SolverOptions solver;
   RenderOptions render;
   std::vector<SceneProblem> warnings;               // what is given and does nothing

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/scene/custom_reader.hpp"
+#include "core/scene/key_tables.hpp"
 #include "core/structures/family.hpp"
 
 namespace unfurl {
@@ -63,6 +64,9 @@ std::string rod_text(const CustomRod& rod) {
   if (!std::isnan(rod.youngs_modulus)) text += line("youngs_modulus", real_text(rod.youngs_modulus));
   if (!std::isnan(rod.strength)) text += line("strength", real_text(rod.strength));
   if (rod.second_moment != 0.0) text += line("second_moment", real_text(rod.second_moment));
+  if (rod.elastic) text += line("elastic", *rod.elastic ? "true" : "false");
+  if (rod.segments > 0) text += line("segments", std::to_string(rod.segments));
+  if (rod.free_length != 0.0) text += line("free_length", real_text(rod.free_length));
   if (rod.group != "rod") text += line("group", toml_string(rod.group));
   return text;
 }
@@ -80,6 +84,7 @@ std::string element_text(std::string_view table, const SceneElement& element, co
   if (!element.nodes.empty()) text += line("nodes", names_text(element.nodes));
   if (!element.rods.empty())
     text += line(kind.members == Members::rod ? "rod" : "rods", names_text(element.rods));
+  if (!element.terms.empty()) text += line("terms", names_text(element.terms));
   if (!element.enabled) text += line("enabled", "false");
   if (element.fold_angle) text += line("fold_angle", "true");
   for (const auto& spec : kind.params()) {
@@ -160,6 +165,12 @@ std::string scene_text(const Scene& scene) {
     text += element_text("forces", force, *find_kind(scene_forces(), force.kind));
   for (const auto& constraint : scene.constraints)
     text += element_text("constraints", constraint, *find_kind(scene_constraints(), constraint.kind));
+  if (const SceneElement& d = scene.deployment; !d.terms.empty()) {
+    text += "\n[deployment]\n" + line("measure", names_text(d.terms));
+    for (const auto& spec : deployment_params())
+      if (worth_writing(d.values.value(spec.name)))
+        text += line(spec.name, toml_value(d.values.value(spec.name)));
+  }
   return text + solver_text(scene) + render_text(scene.render);
 }
 

@@ -103,12 +103,14 @@ class Locator {
   double sine(const State& s) {
     q_.resize(system().coordinates());
     system().expand(s.z, q_);
-    return trajectory_.structure().deployment.remaining_sine(q_);
+    return trajectory_.structure().deployment.remaining(q_);
   }
   double sine_rate(const State& s) {
     q_.resize(system().coordinates());
-    system().expand_rate(s.w, q_);
-    return trajectory_.structure().deployment.remaining_rate(q_);
+    v_.resize(q_.size());
+    system().expand(s.z, q_);
+    system().expand_rate(s.w, v_);
+    return trajectory_.structure().deployment.remaining_rate(q_, v_);
   }
   const System& system() const { return trajectory_.last_model().system; }
 
@@ -230,7 +232,7 @@ class Locator {
   std::vector<Sample> samples_;
   std::vector<Sample> stations_;  // solved on the way, by falling sine
   std::size_t resolved_ = 0;      // the last state of the run to start from
-  VectorXd q_;
+  VectorXd q_, v_;
 };
 
 }  // namespace

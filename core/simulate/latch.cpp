@@ -17,7 +17,7 @@ bool waits(const Force& force) {
 
 }  // namespace
 
-// A form of its own: cos(d) sine - sin(d) cosine with d the deployed fold angle.
+// cos(d) sine - sin(d) cosine with d the deployed fold angle.
 LinearForm remaining_form(const Deployment& deployment) {
   LinearForm form;
   const auto add = [&form](double factor, const LinearForm& part) {
@@ -39,6 +39,14 @@ bool latch_gives(const Structure& structure) {
 std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear) {
   Structure structure = model.structure;
   const Deployment& deployment = structure.deployment;
+  if (deployment.measured && deployment.latches.empty()) {
+    TimeFunction held;
+    held.offset = deployment.deployed;
+    structure.constraints.push_back(
+        {"measure", "latch of the deployment", {}, {}, 0.0, deployment.measure, held});
+    System locked(structure, eliminate_linear);
+    return std::make_shared<const Model>(Model{std::move(structure), std::move(locked)});
+  }
   std::vector<LinearForm> latches = deployment.latches;
   if (latches.empty()) latches.push_back(remaining_form(deployment));
   std::vector<Force> springs;  // what gives in their place

@@ -28,7 +28,8 @@ class Change {
     PushResponses responses(system_, out_.state);
     if (!responses.ok()) return failed("the constraint matrix cannot be factorised where modes change");
     for (const std::size_t i : rows_)
-      responses.add(sides_.measure(i), sides_.sign(i), sides_.near(i, out_.state));
+      responses.add(sides_.measure(i), sides_.sign(i), sides_.near(i, out_.state),
+                    sides_.limit_motion(i, out_.state.t));
     D_ = responses.matrix();
     for (Index i = 0; i < D_.rows(); ++i) movable_.push_back(responses.movable(i));
     if (strike(responses, rests) && choose(responses)) assign();

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/constraints/linear_rows.hpp"
+#include "core/forces/spring.hpp"
 
 namespace unfurl {
 namespace {
@@ -23,9 +24,8 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
   const std::vector<int> followed = followed_angles(structure).of_force;
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
     const Force& f = structure.forces[i];
-    if (f.one_sided && (f.stiffness > 0 || f.damping > 0))
-      cables_.push_back(
-          {i, f.name, MeasureFunction(f.measure, structure.deployment), f.rest, f.stiffness, f.damping});
+    if (f.one_sided && f.smoothing == 0 && (f.stiffness > 0 || f.damping > 0 || f.axial_stiffness > 0))
+      cables_.push_back({i, f.name, MeasureFunction(f.measure, structure.deployment), f});
     if (f.kind == "friction" && f.holding > 0)
       frictions_.push_back({i, f.name, f.measure, MeasureFunction(f.measure, structure.deployment), f.kinetic,
                             f.holding, followed[i]});
@@ -62,6 +62,11 @@ double OneSided::near(std::size_t i, const State& state) const {
                                                              : f.function.reference();
 }
 
+LimitMotion OneSided::limit_motion(std::size_t i, double t) const {
+  if (!is_stop(i) || !stops_[i].reeled) return {};
+  return {stops_[i].reel.derivative(1, t), stops_[i].reel.derivative(2, t)};
+}
+
 void OneSided::set_slip(std::size_t i, int slip) {
   Friction& f = frictions_[i - first_friction()];
   f.reversed = !active_[i] && f.slip == -slip;
@@ -91,6 +96,11 @@ Event OneSided::event(std::size_t i, double t) const {
   const bool on = active_[i];
   if (is_stop(i)) {
     out.element = stops_[i].name;
+    if (stops_[i].reeled) {
+      out.name = out.element + (on ? " pulls" : " is slack");
+      out.kind = on ? "taut" : "slack";
+      return out;
+    }
     out.name = (on ? "rests on stop " : "leaves stop ") + out.element;
     out.kind = on ? "contact" : "free";
   } else if (is_friction(i)) {
@@ -121,17 +131,20 @@ void OneSided::find_cables(const System& system, const State& state) {
   system.expand_rate(state.w, v);
   double rate = 0;
   for (std::size_t k = 0; k < cables_.size(); ++k)
-    active_[stops_.size() + k] = stretch(cables_[k], q, v, rate) > stops_.touching();
+    active_[stops_.size() + k] = stretch(cables_[k], state.t, q, v, rate) > stops_.touching();
 }
 
 // min(s - rest, n / (k + c / h)) [m]
-double OneSided::stretch(const Cable& cable, const VectorXd& q, const VectorXd& v, double& rate) {
+double OneSided::stretch(const Cable& cable, double t, const VectorXd& q, const VectorXd& v, double& rate) {
+  const SpringLaw law = spring_law(cable.law, t);
+  const double damping = cable.law.damping;
   gradient_.resize(static_cast<Index>(cable.length.stencil().size()));
-  const double s = cable.length.value_and_gradient(q.data(), gradient_.data()) - cable.rest;
+  const double s = cable.length.value_and_gradient(q.data(), gradient_.data()) - law.rest;
   const double ds = cable.length.rate(gradient_.data(), v.data());
-  rate = cable.damping > 0 ? unknown : ds;
-  const double n = cable.stiffness * s + cable.damping * ds;
-  return cable.damping > 0 ? std::min(s, n / (cable.stiffness + cable.damping / step_)) : s;
+  const double stretching = ds - law.rest_rate;
+  rate = damping > 0 ? unknown : stretching;
+  const double n = law.stiffness * s + damping * ds;
+  return damping > 0 ? std::min(s, n / (law.stiffness + damping / step_)) : s;
 }
 
 void OneSided::measure_held(const Model& model, const State& state, Probe& probe) {
@@ -191,7 +204,7 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
       margin = stops_.gap(k, state, q, v, rate) - shift_[i];
     } else {
       const double sign = active_[k] ? 1.0 : -1.0;
-      margin = sign * stretch(cables_[k - stops_.size()], q, v, rate);
+      margin = sign * stretch(cables_[k - stops_.size()], state.t, q, v, rate);
       rate *= sign;
     }
     probe.margins[i] = margin / stops_.touching();
@@ -199,9 +212,12 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
   }
 }
 
-std::shared_ptr<const Model> OneSided::lock_held(const Model& base) {
+std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {
   Structure structure = base.structure;
-  stops_.hold(held(), structure);
+  std::set<std::size_t> locked = held();
+  std::erase_if(locked, [&](std::size_t i) { return stops_[i].reeled; });  // the winch stops
+  stops_.hold(locked, structure);
+  stops_.stop_reels(t);
   std::fill_n(active_.begin(), stops_.size(), false);
   System system(structure, eliminate_linear_);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});

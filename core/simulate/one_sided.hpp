@@ -61,6 +61,7 @@ class OneSided {
   const MeasureFunction& measure(std::size_t i) const;
   double sign(std::size_t i) const { return is_stop(i) ? stops_[i].sign : 1.0; }
   double near(std::size_t i, const State& state) const;
+  LimitMotion limit_motion(std::size_t i, double t) const;  // of a reeled cable; else it stays
   // Of friction: its forces, the sense in which it slips (0: it does not), and setting that.
   double holding(std::size_t i) const { return friction(i).holding; }
   double kinetic(std::size_t i) const { return friction(i).kinetic; }
@@ -79,15 +80,16 @@ class OneSided {
 
   // `base` in the present modes.
   std::shared_ptr<const Model> model(const Model& base) const;
-  // `base` with the held stops as constraints for good, which leaves them free here.
-  std::shared_ptr<const Model> lock_held(const Model& base);
+  // `base` with the held stops as constraints for good, which leaves them free here. Reels stop at their
+  // length at t instead.
+  std::shared_ptr<const Model> lock_held(const Model& base, double t);
 
  private:
   struct Cable {
     std::size_t force;  // of the structure
     std::string name;
     MeasureFunction length;
-    double rest, stiffness, damping;
+    Force law;
   };
   struct Friction {
     std::size_t force;
@@ -105,7 +107,7 @@ class OneSided {
   void measure_held(const Model& model, const State& state, Probe& probe);
   void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
                         Probe& probe);
-  double stretch(const Cable& cable, const VectorXd& q, const VectorXd& v, double& rate);
+  double stretch(const Cable& cable, double t, const VectorXd& q, const VectorXd& v, double& rate);
 
   Stops stops_;
   std::vector<Cable> cables_;

@@ -13,13 +13,13 @@ PushResponses::PushResponses(const System& system, const State& state)
   ok_ = saddle_.factorise(G_);
 }
 
-void PushResponses::add(const MeasureFunction& s, double sign, double near) {
+void PushResponses::add(const MeasureFunction& s, double sign, double near, const LimitMotion& limit) {
   const auto& stencil = s.stencil();
   VectorXd gradient(static_cast<Index>(stencil.size())), node_force = VectorXd::Zero(q_.size());
   s.value_and_gradient(q_.data(), gradient.data(), near);
   for (std::size_t k = 0; k < stencil.size(); ++k)
     node_force[stencil[k]] += sign * gradient[static_cast<Index>(k)];
-  Row row{&s, sign, VectorXd(system_.solved_coordinates()), VectorXd(system_.solved_coordinates())};
+  Row row{&s, sign, VectorXd(system_.solved_coordinates()), VectorXd(system_.solved_coordinates()), limit};
   system_.reduce_force(node_force, row.n);
   VectorXd mu(system_.constraints());
   saddle_.solve(row.n, VectorXd::Zero(mu.size()), row.a, mu);
@@ -44,7 +44,10 @@ bool PushResponses::movable(Index i) const {
 
 VectorXd PushResponses::rates(const VectorXd& w) const {
   VectorXd out(size());
-  for (Index i = 0; i < size(); ++i) out[i] = rows_[static_cast<std::size_t>(i)].n.dot(w);
+  for (Index i = 0; i < size(); ++i) {
+    const Row& row = rows_[static_cast<std::size_t>(i)];
+    out[i] = row.n.dot(w) - row.sign * row.limit.rate;
+  }
   return out;
 }
 
@@ -58,10 +61,11 @@ VectorXd PushResponses::accelerations(const State& state) const {
   Index1 index1(system_);
   if (!index1.evaluate(state.t, state.z, state.w, acceleration, lambda)) return {};
   system_.expand_rate(state.w, v);
-  VectorXd out = rates(acceleration);
+  VectorXd out(size());
   for (Index i = 0; i < size(); ++i) {
     const Row& row = rows_[static_cast<std::size_t>(i)];
-    out[i] += row.sign * row.measure->curvature_along(q_.data(), v.data());
+    out[i] = row.n.dot(acceleration) +
+             row.sign * (row.measure->curvature_along(q_.data(), v.data()) - row.limit.acceleration);
   }
   return out;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/math/saddle_solver.hpp"
+#include "core/simulate/stops.hpp"
 #include "core/structure/measure.hpp"
 #include "core/system/system.hpp"
 
@@ -18,7 +19,7 @@ class PushResponses {
   // The system must follow the state.
   PushResponses(const System& system, const State& state);
   bool ok() const { return ok_; }
-  void add(const MeasureFunction& s, double sign, double near);
+  void add(const MeasureFunction& s, double sign, double near, const LimitMotion& limit = {});
 
   Index size() const { return static_cast<Index>(rows_.size()); }
   MatrixXd matrix() const;                          // D
@@ -33,6 +34,7 @@ class PushResponses {
     const MeasureFunction* measure;
     double sign;
     VectorXd n, a;
+    LimitMotion limit;  // of what s is bounded by: rates and accelerations are relative to it
   };
   const System& system_;
   SparseRows G_;

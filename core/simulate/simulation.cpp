@@ -7,8 +7,10 @@
 #include <stdexcept>
 
 #include "core/integrators/integrator.hpp"
+#include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/stepper.hpp"
+#include "core/simulate/stretched.hpp"
 
 namespace unfurl {
 namespace {
@@ -72,6 +74,8 @@ Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& opt
   std::vector<std::string> warnings = model->structure.notes;
   if (std::string warning = velocity_warning(start, model->structure); !warning.empty())
     warnings.push_back(std::move(warning));
+  if (std::string warning = elastic_step_warning(*model, start.state, options); !warning.empty())
+    warnings.push_back(std::move(warning));
   const double begin = thread_cpu_seconds();
   Progress progress(hooks, start.state.t, options.end_time);
   Stepper stepper(std::move(model), options, std::move(start.state));
@@ -84,6 +88,7 @@ Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& opt
   if (run.status == RunStatus::completed || run.status == RunStatus::deployed) progress.report(1.0);
   run.warnings.insert(run.warnings.begin(), warnings.begin(), warnings.end());
   run.cpu_s = thread_cpu_seconds() - begin;
+  if (run.trajectory.structure().quasi_static) add_stretch(run.trajectory);
   return run;
 }
 

@@ -13,6 +13,7 @@
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
+#include "core/simulate/measured_event.hpp"
 #include "core/simulate/mode_change.hpp"
 #include "core/simulate/one_sided.hpp"
 #include "core/simulate/run_words.hpp"
@@ -58,6 +59,7 @@ class Stepper::Loop {
         grid_(now().t, run.options, time_edges(run.trajectory.structure(), run.options.step)),
         last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {
     model_changed();
+    if (deployment_.measured) margin_ = deployed_already;
     if (!deployment_.empty() && fold(now()) > deployed_already)
       margin_ = std::min(margin_, 0.1 * fold(now()));
     if (!sides_.empty()) find_first_modes();
@@ -365,7 +367,7 @@ class Stepper::Loop {
   double fold(const State& state) {
     q_.resize(system().coordinates());
     system().expand(state.z, q_);
-    return deployment_.remaining_sine(q_);
+    return deployment_.remaining(q_);
   }
 
   bool crosses(const State& next) {
@@ -373,16 +375,17 @@ class Stepper::Loop {
     return fold(now()) > margin_ && fold(next) <= margin_;
   }
 
-  // Could the fold angle reach zero within a time? Where sine * rate is constant it does so after sine / 2
-  // rate.
+  // Could the fold angle reach zero within a time? Where sine * rate is constant, after sine / (2 rate).
   bool may_cross(double within) {
     if (deployment_.empty() || deployed_) return false;
     const double sine = fold(now());
-    system().expand_rate(now().w, q_);
-    return sine > 0 && (sine <= singular_margin || sine + 2 * within * deployment_.remaining_rate(q_) <= 0);
+    const double way = 2 * within * remaining_rate(model(), now());
+    return sine > 0 && (sine <= singular_margin || sine + way <= 0);
   }
 
   std::optional<State> locate(double h, double latest) {
+    std::optional<State> reached = step_to_deployed(model(), *fresh_integrator(), now(), h, margin_);
+    if (regular_ = reached.has_value(); regular_) return reached;
     const bool dvm = run_.options.method == "dvm";
     const auto fresh = (dvm ? careful_dvm() : *find_method(run_.options.method)).make(system(), run_.options);
     std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
@@ -409,7 +412,7 @@ class Stepper::Loop {
       return !to.report.ok() || std::abs(fold(to.state)) < margin_ ? step_over(h) : accept(to, part_end_);
     project(system(), event);
     while (run_.trajectory.size() > 1 && run_.trajectory.end_time() >= event.t) run_.trajectory.pop_back();
-    append(std::move(event), StepReport{.singular_event = true});
+    append(std::move(event), StepReport{.singular_event = !regular_});
     ++run_.steps;
     if (run_.options.at_deployed == "latch") return latch();
     run_.status = RunStatus::deployed;
@@ -419,7 +422,7 @@ class Stepper::Loop {
   // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
   // on a stop is locked there.
   bool latch() {
-    if (sides_.any_held()) base_ = sides_.lock_held(*base_);
+    if (sides_.any_held()) base_ = sides_.lock_held(*base_, now().t);
     const bool gives = latch_gives(base_->structure);
     if (gives && singular_at_end(run_.trajectory))
       return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
@@ -462,7 +465,7 @@ class Stepper::Loop {
   std::vector<double> last_touch_;  // of each stop
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
-  bool unwatched_said_ = false, deployed_ = false, ended_ = false;
+  bool unwatched_said_ = false, deployed_ = false, ended_ = false, regular_ = false;
   double margin_ = singular_margin;  // a tenth of where the run began, if that is less
   VectorXd q_;
 };

@@ -12,6 +12,7 @@ namespace unfurl {
 namespace {
 
 std::string held_name(const StopSide& stop) {
+  if (stop.reeled) return stop.name;
   return stop.name + (stop.sign > 0 ? " (held at its lower limit)" : " (held at its upper limit)");
 }
 
@@ -23,15 +24,27 @@ Stops::Stops(const Structure& structure) : touching_(1e-11 * reference_length(st
     const Stop& stop = structure.stops[i];
     for (const double sign : {1.0, -1.0})
       if (const double limit = sign > 0 ? stop.min : stop.max; std::isfinite(limit))
-        stops_.push_back({stop.name, stop.measure, MeasureFunction(stop.measure, structure.deployment), limit,
-                          sign, stop.restitution, stop.rest_speed, followed[i]});
+        stops_.push_back({stop.name,
+                          stop.measure,
+                          MeasureFunction(stop.measure, structure.deployment),
+                          limit,
+                          sign,
+                          stop.restitution,
+                          stop.rest_speed,
+                          followed[i],
+                          {},
+                          false});
+    if (stop.reeled)
+      stops_.push_back({stop.name, stop.measure, MeasureFunction(stop.measure, structure.deployment),
+                        stop.reel(0.0), -1.0, stop.restitution, stop.rest_speed, followed[i], stop.reel,
+                        true});
   }
 }
 
 double Stops::gap(std::size_t i, const System& system, const State& state) const {
   VectorXd q(system.coordinates());
   system.expand(state.z, q);
-  return stops_[i].sign * (stops_[i].function.value(q.data(), stops_[i].near(state)) - stops_[i].limit);
+  return stops_[i].sign * (stops_[i].function.value(q.data(), stops_[i].near(state)) - stops_[i].at(state.t));
 }
 
 double Stops::gap(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v,
@@ -39,8 +52,8 @@ double Stops::gap(std::size_t i, const State& state, const VectorXd& q, const Ve
   const MeasureFunction& s = stops_[i].function;
   VectorXd gradient(static_cast<Index>(s.stencil().size()));
   const double value = s.value_and_gradient(q.data(), gradient.data(), stops_[i].near(state));
-  rate = stops_[i].sign * s.rate(gradient.data(), v.data());
-  return stops_[i].sign * (value - stops_[i].limit);
+  rate = stops_[i].sign * (s.rate(gradient.data(), v.data()) - stops_[i].rate(state.t));
+  return stops_[i].sign * (value - stops_[i].at(state.t));
 }
 
 double Stops::gap_rate(std::size_t i, const System& system, const State& state) const {
@@ -71,15 +84,24 @@ double Stops::rebound(std::size_t i, const System& system, State& state) const {
   saddle.solve(n_z, VectorXd::Zero(mu.size()), response, mu);
   const double a = n_z.dot(response), free = n_z.cwiseAbs2().maxCoeff() / system.mass().diagonal().maxCoeff();
   if (!(a > 1e-12 * free)) return std::numeric_limits<double>::quiet_NaN();
-  const double approach = -n_z.dot(state.w);
+  const double approach = -n_z.dot(state.w) + stop.sign * stop.rate(state.t);
   state.w += (1 + stop.restitution) * approach / a * response;
   return (1 - stop.restitution * stop.restitution) * approach * approach / (2 * a);
 }
 
+void Stops::stop_reels(double t) {
+  for (StopSide& stop : stops_) {
+    if (!stop.reeled) continue;
+    TimeFunction still;
+    still.offset = stop.reel(t);
+    stop.reel = still;
+  }
+}
+
 void Stops::hold(const std::set<std::size_t>& held, Structure& structure) const {
   for (const std::size_t i : held) {
-    TimeFunction limit;
-    limit.offset = stops_[i].limit;
+    TimeFunction limit = stops_[i].reel;
+    if (!stops_[i].reeled) limit.offset = stops_[i].limit;
     structure.constraints.push_back({"measure", held_name(stops_[i]), {}, {}, 0.0, stops_[i].measure, limit});
   }
 }

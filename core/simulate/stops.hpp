@@ -13,6 +13,11 @@
 
 namespace unfurl {
 
+// How the limit of a stop moves.
+struct LimitMotion {
+  double rate = 0.0, acceleration = 0.0;
+};
+
 // One side of a stop; its gap is +(s - limit) or -(s - limit), at least 0. An impact with the approach speed
 // u = -gap' > 0 gives the impulse J along the gap's gradient n, constraints answering,
 //
@@ -27,6 +32,11 @@ struct StopSide {
   double limit, sign;
   double restitution, rest_speed;
   int followed;  // index in State::angles; -1: it counts no turns
+  TimeFunction reel;
+  bool reeled = false;  // a cable: the limit is reel(t)
+
+  double at(double t) const { return reeled ? reel(t) : limit; }
+  double rate(double t) const { return reeled ? reel.derivative(1, t) : 0.0; }
 
   double near(const State& state) const {
     return followed >= 0 && followed < state.angles.size() ? state.angles[followed] : function.reference();
@@ -52,6 +62,7 @@ class Stops {
   // Turn the approach of stop i round; the energy lost [J]. NaN: the stop cannot be moved by any impulse.
   double rebound(std::size_t i, const System& system, State& state) const;
 
+  void stop_reels(double t);  // at their lengths then
   // These stops become constraints, the last ones of the structure, in their order.
   void hold(const std::set<std::size_t>& held, Structure& structure) const;
   // The force with which stop i pushes in a state of a model that holds them so, negative where it pulls [N]

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/structure/dihedral.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -54,28 +56,52 @@ double on_branch(double angle, double near) {
 }  // namespace
 
 bool counts_turns(const Measure& measure) {
-  return measure.kind == MeasureKind::fold ||
+  return measure.kind == MeasureKind::fold || measure.kind == MeasureKind::dihedral ||
          (measure.kind == MeasureKind::angle && !measure.axis.isZero(0.0));
+}
+
+bool is_angle(const Measure& measure) {
+  if (measure.kind == MeasureKind::combination)
+    return std::all_of(measure.terms.begin(), measure.terms.end(),
+                       [](const MeasureTerm& term) { return is_angle(term.measure); });
+  return measure.kind != MeasureKind::coordinate && measure.kind != MeasureKind::length;
 }
 
 FollowedAngles followed_angles(const Structure& structure) {
   FollowedAngles out;
+  const auto add = [&](const Measure& measure) {
+    if (counts_turns(measure)) out.measures.push_back(measure);
+  };
   const auto index = [&](const Measure& measure) {
-    if (!counts_turns(measure)) return -1;
-    out.measures.push_back(measure);
-    return static_cast<int>(out.measures.size()) - 1;
+    const std::size_t first = out.measures.size();
+    add(measure);
+    for (const MeasureTerm& term : measure.terms) add(term.measure);
+    return out.measures.size() > first ? static_cast<int>(first) : -1;
   };
   for (const Force& force : structure.forces) out.of_force.push_back(index(force.measure));
   for (const Stop& stop : structure.stops) out.of_stop.push_back(index(stop.measure));
+  for (const Constraint& c : structure.constraints)
+    out.of_constraint.push_back(c.measure.kind == MeasureKind::combination ? index(c.measure) : -1);
   return out;
 }
 
 MeasureFunction::MeasureFunction(const Measure& measure, const Deployment& deployment)
-    : kind_(measure.kind), axis_(measure.axis), reference_(measure.reference) {
+    : angle_(unfurl::is_angle(measure)),
+      turns_(counts_turns(measure)),
+      kind_(measure.kind),
+      axis_(measure.axis),
+      reference_(measure.reference) {
+  for (const MeasureTerm& term : measure.terms) {
+    terms_.emplace_back(term.measure, deployment);
+    coefficients_.push_back(term.coefficient);
+    const std::vector<int>& own = terms_.back().stencil_;
+    stencil_.insert(stencil_.end(), own.begin(), own.end());
+  }
   const auto coordinates_of = [&](const std::vector<int>& nodes) {
     for (const int node : nodes)
       for (int k = 0; k < 3; ++k) stencil_.push_back(3 * node + k);
   };
+  if (kind_ == MeasureKind::combination) return;
   if (kind_ != MeasureKind::fold) {
     coordinates_of(measure.nodes);
     if (kind_ != MeasureKind::coordinate) return;
@@ -101,6 +127,64 @@ MeasureFunction::MeasureFunction(const Measure& measure, const Deployment& deplo
   };
   gather(s, sine_);
   gather(c, cosine_);
+}
+
+// each(term, its coefficient, where its stencil begins, how many angles that count turns come before it)
+template <class Each>
+void MeasureFunction::each_term(const Each& each) const {
+  std::size_t first = 0;
+  int turn = 0;
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    each(terms_[i], coefficients_[i], first, turn);
+    first += terms_[i].stencil_.size();
+    turn += terms_[i].turns_ ? 1 : 0;
+  }
+}
+
+double MeasureFunction::value(const double* q, const Moment& at, int followed) const {
+  if (terms_.empty()) return value(q, at.near(followed, reference_));
+  double sum = 0;
+  each_term([&](const MeasureFunction& term, double c, std::size_t, int turn) {
+    sum += c * term.value(q, at, followed < 0 || !term.turns_ ? -1 : followed + turn);
+  });
+  return sum;
+}
+
+double MeasureFunction::value_and_gradient(const double* q, double* gradient, const Moment& at,
+                                           int followed) const {
+  if (terms_.empty()) return value_and_gradient(q, gradient, at.near(followed, reference_));
+  double sum = 0;
+  each_term([&](const MeasureFunction& term, double c, std::size_t first, int turn) {
+    double* const g = gradient + first;
+    sum += c * term.value_and_gradient(q, g, at, followed < 0 || !term.turns_ ? -1 : followed + turn);
+    for (std::size_t i = 0; i < term.stencil_.size(); ++i) g[i] *= c;
+  });
+  return sum;
+}
+
+void MeasureFunction::add_hessian(const double* q, double scale,
+                                  std::vector<Eigen::Triplet<double>>& entries) const {
+  each_term([&](const MeasureFunction& term, double c, std::size_t, int) {
+    term.add_hessian(q, scale * c, entries);
+  });
+  if (!terms_.empty() || kind_ == MeasureKind::coordinate) return;
+  std::vector<double> hess(stencil_.size() * stencil_.size());
+  hessian(q, hess.data());
+  const double* h = hess.data();
+  for (const int j : stencil_)
+    for (const int i : stencil_) entries.emplace_back(i, j, scale * *h++);
+}
+
+void MeasureFunction::add_hessian_times(const double* q, const double* v, double scale, double* out) const {
+  each_term([&](const MeasureFunction& term, double c, std::size_t first, int) {
+    term.add_hessian_times(q, v, scale * c, out + first);
+  });
+  if (!terms_.empty() || kind_ == MeasureKind::coordinate) return;
+  const std::size_t size = stencil_.size();
+  std::vector<double> hess(size * size);
+  hessian(q, hess.data());
+  for (std::size_t j = 0; j < size; ++j)
+    for (std::size_t i = 0; i < size; ++i) out[i] += scale * hess[j * size + i] * v[stencil_[j]];
 }
 
 double MeasureFunction::linear(const VectorXd& coefficients, double offset, const double* q) const {
@@ -143,8 +227,10 @@ MeasureFunction::Angle MeasureFunction::angle_terms(const double* q) const {
 }
 
 double MeasureFunction::value_and_gradient(const double* q, double* gradient, double near) const {
+  if (kind_ == MeasureKind::combination) return value_and_gradient(q, gradient, Moment(0.0), -1);
   const auto size = static_cast<Index>(stencil_.size());
   Eigen::Map<VectorXd> g(gradient, size);
+  if (kind_ == MeasureKind::dihedral) return on_branch(dihedral(q, stencil_, gradient, nullptr), near);
   if (kind_ == MeasureKind::coordinate) {
     g = sine_;
     return linear(sine_, 0.0, q);
@@ -169,6 +255,7 @@ double MeasureFunction::value_and_gradient(const double* q, double* gradient, do
 }
 
 double MeasureFunction::value(const double* q, double near) const {
+  if (kind_ == MeasureKind::combination) return value(q, Moment(0.0), -1);
   if (kind_ == MeasureKind::coordinate) return linear(sine_, 0.0, q);
   if (kind_ == MeasureKind::fold)
     return on_branch(std::atan2(linear(sine_, sine_offset_, q), linear(cosine_, cosine_offset_, q)), near);
@@ -187,11 +274,39 @@ void MeasureFunction::hessian(const double* q, double* hess) const {
       return angle_hessian(q, hess);
     case MeasureKind::fold:
       return fold_hessian(q, hess);
+    case MeasureKind::dihedral: {
+      std::array<double, 12> unused{};
+      dihedral(q, stencil_, unused.data(), hess);
+      return;
+    }
+    case MeasureKind::combination:
+      return combination_hessian(q, hess);
   }
+}
+
+// The blocks of the terms, one after the other.
+void MeasureFunction::combination_hessian(const double* q, double* hess) const {
+  const auto all = static_cast<Index>(stencil_.size());
+  Eigen::Map<MatrixXd> out(hess, all, all);
+  out.setZero();
+  std::vector<double> own;
+  each_term([&](const MeasureFunction& term, double c, std::size_t first, int) {
+    const auto size = static_cast<Index>(term.stencil_.size()), at = static_cast<Index>(first);
+    own.resize(term.stencil_.size() * term.stencil_.size());
+    term.hessian(q, own.data());
+    out.block(at, at, size, size) = c * Eigen::Map<const MatrixXd>(own.data(), size, size);
+  });
 }
 
 double MeasureFunction::curvature_along(const double* q, const double* v) const {
   if (kind_ == MeasureKind::coordinate) return 0.0;
+  if (kind_ == MeasureKind::combination) {
+    double total = 0;
+    each_term([&](const MeasureFunction& term, double c, std::size_t, int) {
+      total += c * term.curvature_along(q, v);
+    });
+    return total;
+  }
   if (kind_ == MeasureKind::fold) {  // atan2_hessian's form, with ds . v = s', dc . v = c'
     const double s = linear(sine_, sine_offset_, q), c = linear(cosine_, cosine_offset_, q);
     const double s1 = linear(sine_, 0.0, v), c1 = linear(cosine_, 0.0, v), r2 = s * s + c * c;

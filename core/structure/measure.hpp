@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/math/types.hpp"
+#include "core/structure/moment.hpp"
 #include "core/structure/structure.hpp"
 
 namespace unfurl {
@@ -17,6 +18,10 @@ namespace unfurl {
 //                 axis a: atan2(a . (d_1 x d_2), d_1 . d_2 - (a . d_1)(a . d_2)), of the projections across
 //                 a, on the branch within pi of `near`: the value of a moment ago
 //   fold        atan2(sine, cosine) of the structure's fold angle                                   [rad]
+//   dihedral    about the edge from x_1 to x_2, from the half-plane of x_0 to that of x_3: 0 where both lie
+//   on
+//               one side, pi where the four lie flat; right-handed about the edge, counts turns      [rad]
+//   combination sum_i c_i m_i of the above; each of its angles is on a branch of its own
 class MeasureFunction {
  public:
   MeasureFunction(const Measure& measure, const Deployment& deployment);
@@ -30,8 +35,15 @@ class MeasureFunction {
   double value_and_gradient(const double* q, double* gradient) const {
     return value_and_gradient(q, gradient, reference_);
   }
+  // The same near the angles of a moment; `followed`: the first of its own among them, -1: as at t = 0.
+  double value(const double* q, const Moment& at, int followed) const;
+  double value_and_gradient(const double* q, double* gradient, const Moment& at, int followed) const;
   // Hess s, dense, column by column, size of stencil squared.
   void hessian(const double* q, double* hess) const;
+  // entries += scale * Hess s, by coordinates; terms of a combination meet in no entry.
+  void add_hessian(const double* q, double scale, std::vector<Eigen::Triplet<double>>& entries) const;
+  // out += scale * Hess s v, by places in the stencil.
+  void add_hessian_times(const double* q, const double* v, double scale, double* out) const;
   // v^T Hess s v, without that matrix: a fold angle's is as large as the structure.
   double curvature_along(const double* q, const double* v) const;
   double rate(const double* gradient, const double* v) const {  // gradient . v
@@ -39,7 +51,9 @@ class MeasureFunction {
     for (std::size_t i = 0; i < stencil_.size(); ++i) sum += gradient[i] * v[stencil_[i]];
     return sum;
   }
-  bool is_angle() const { return kind_ == MeasureKind::angle || kind_ == MeasureKind::fold; }
+  bool is_angle() const { return angle_; }  // [rad]: of a combination, where all of its terms are
+  // A value and one that is a turn away are the same pose.
+  bool wraps() const { return angle_ && terms_.empty(); }
   double reference() const { return reference_; }
 
  private:
@@ -48,8 +62,15 @@ class MeasureFunction {
   void angle_hessian(const double* q, double* hess) const;
   void length_hessian(const double* q, double* hess) const;
   void fold_hessian(const double* q, double* hess) const;
+  void combination_hessian(const double* q, double* hess) const;
   double linear(const VectorXd& coefficients, double offset, const double* q) const;
+  template <class Each>
+  void each_term(const Each& each) const;
 
+  // Of a combination; the stencil is that of the terms one after the other.
+  std::vector<MeasureFunction> terms_;
+  std::vector<double> coefficients_;
+  bool angle_ = false, turns_ = false;
   MeasureKind kind_;
   Vec3 axis_;
   double reference_;
@@ -60,13 +81,15 @@ class MeasureFunction {
 
 // An angle with a sign, which may go round any number of times: about an axis, or the fold angle.
 bool counts_turns(const Measure& measure);
+// In radians: angles, and combinations of nothing else.
+bool is_angle(const Measure& measure);
 
 // The angles of a structure that count on from state to state: those with a sign that springs and stops act
-// on.
+// on, and those in combinations that are held or driven. (A row of one angle is taken to the nearest turn.)
 struct FollowedAngles {
   std::vector<Measure> measures;
-  std::vector<int> of_force,
-      of_stop;  // index in `measures` for each of Structure::forces and stops; -1: none
+  // For each of Structure::forces, stops and constraints the index in `measures` of its first angle; -1: none
+  std::vector<int> of_force, of_stop, of_constraint;
 };
 FollowedAngles followed_angles(const Structure& structure);
 

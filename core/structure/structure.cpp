@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "core/structure/measure.hpp"
+
 namespace unfurl {
 
 double LinearForm::operator()(const ConstVec& q) const {
@@ -24,16 +26,34 @@ double Deployment::fold_rate(const ConstVec& q, const ConstVec& v) const {
   return (c * fold_sine.rate(v) - s * fold_cosine.rate(v)) / (s * s + c * c);
 }
 
+namespace {
+
+MeasureFunction function_of(const Deployment& deployment) {
+  Measure measure = deployment.measure;
+  measure.reference = 0.5 * (deployment.stowed + deployment.deployed);
+  return {measure, deployment};
+}
+
+}  // namespace
+
 double Deployment::fraction(const ConstVec& q) const {
+  if (measured) return (function_of(*this).value(q.data()) - stowed) / (deployed - stowed);
   const double folded = std::cos(initial_fold_angle);
   return (std::cos(fold_angle(q)) - folded) / (std::cos(deployed_fold_angle) - folded);
 }
 
-double Deployment::remaining_sine(const ConstVec& q) const {
+double Deployment::remaining(const ConstVec& q) const {
+  if (measured) return (deployed - function_of(*this).value(q.data())) / (deployed - stowed);
   return std::cos(deployed_fold_angle) * fold_sine(q) - std::sin(deployed_fold_angle) * fold_cosine(q);
 }
 
-double Deployment::remaining_rate(const ConstVec& v) const {
+double Deployment::remaining_rate(const ConstVec& q, const ConstVec& v) const {
+  if (measured) {
+    const MeasureFunction function = function_of(*this);
+    std::vector<double> gradient(function.stencil().size());
+    function.value_and_gradient(q.data(), gradient.data());
+    return -function.rate(gradient.data(), v.data()) / (deployed - stowed);
+  }
   return std::cos(deployed_fold_angle) * fold_sine.rate(v) -
          std::sin(deployed_fold_angle) * fold_cosine.rate(v);
 }
@@ -43,13 +63,47 @@ void show_as_solved(Structure& structure) {
   structure.rod_copies.clear();
   structure.load_copies.clear();
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    structure.node_copies.push_back(
-        {structure.nodes[i].name, static_cast<int>(i), Mat3::Identity(), Vec3::Zero()});
+    if (!structure.nodes[i].ghost)
+      structure.node_copies.push_back(
+          {structure.nodes[i].name, static_cast<int>(i), Mat3::Identity(), Vec3::Zero()});
   for (std::size_t i = 0; i < structure.rods.size(); ++i)
     structure.rod_copies.push_back(
         {structure.rods[i].name, structure.rods[i].a, structure.rods[i].b, static_cast<int>(i)});
   for (const Load& load : structure.loads)
     if (load.shown) structure.load_copies.push_back({load.node, load.force});
+}
+
+void show_cables(Structure& structure) {
+  structure.lines.clear();
+  std::vector<int> copy_of(structure.nodes.size(), -1);
+  for (std::size_t i = 0; i < structure.node_copies.size(); ++i)
+    if (int& copy = copy_of[static_cast<std::size_t>(structure.node_copies[i].source)]; copy < 0)
+      copy = static_cast<int>(i);
+  const auto add_span = [&](const Measure& span, const char* group) {
+    if (span.kind != MeasureKind::length) return;
+    const int a = copy_of[static_cast<std::size_t>(span.nodes[0])],
+              b = copy_of[static_cast<std::size_t>(span.nodes[1])];
+    if (a >= 0 && b >= 0) structure.lines.push_back({a, b, group});
+  };
+  const auto add = [&](const Measure& measure, const char* group) {
+    add_span(measure, group);
+    for (const MeasureTerm& term : measure.terms) add_span(term.measure, group);
+  };
+  for (const Force& force : structure.forces)
+    if (force.kind == "cable") add(force.measure, force.smoothing > 0 ? "net" : "cable");
+  for (const Stop& stop : structure.stops)
+    if (stop.reeled) add(stop.measure, "cable");
+}
+
+double ReportedSurface::rms(const ConstVec& q) const {
+  double mean = 0, sum = 0;
+  const auto off = [&](int node) {
+    const auto x = q.segment<3>(3 * node);
+    return x[2] - x.head<2>().squaredNorm() / (4 * focal_length);
+  };
+  for (const int node : nodes) mean += off(node) / static_cast<double>(nodes.size());
+  for (const int node : nodes) sum += (off(node) - mean) * (off(node) - mean);
+  return std::sqrt(sum / static_cast<double>(nodes.size()));
 }
 
 VectorXd whole_positions(const Structure& structure, const ConstVec& q) {

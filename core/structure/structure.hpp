@@ -18,15 +18,20 @@ struct Node {
   Vec3 position = Vec3::Zero();  // at t = 0 [m]
   Vec3 velocity = Vec3::Zero();  // at t = 0 [m/s]
   double mass = 0.0;             // lumped mass, added to the rods' share [kg]
+  // A number of a drive (the turn of a rotor, the integral of a controller) that moves along x as a node
+  // does: nowhere in space, so that it has no weight, no momentum, and is not shown.
+  bool ghost = false;
 };
 
 // A uniform rod between two nodes; mass 0 makes it a pure distance constraint. Its motion is that of a rigid
-// rod; a modulus says how rods share forces that rigid ones leave open, and what they may carry.
+// rod unless it gives; a modulus says how rods share forces that rigid ones leave open, and what they may
+// carry.
 struct Rod {
   std::string name;
-  int a = 0, b = 0;     // node indices
-  double mass = 0.0;    // [kg]
-  double length = 0.0;  // [m]; the distance of its nodes at t = 0 (fit_lengths.hpp sees to that)
+  int a = 0, b = 0;   // node indices
+  double mass = 0.0;  // [kg]
+  // [m]; the distance of its nodes at t = 0 (fit_lengths.hpp sees to that), of one that gives without force
+  double length = 0.0;
   std::string group;    // "chord", "post", "rod", ...: what colours and groups of rod forces go by
   double radius = 0.0;  // for drawing; 0: not known [m]
   double multiplicity =
@@ -35,10 +40,25 @@ struct Rod {
   double youngs_modulus = std::numeric_limits<double>::infinity();  // infinite: rigid [Pa]
   double second_moment = 0.0;  // of the cross section, the smallest; 0: not known [m^4]
   double strength = std::numeric_limits<double>::infinity();  // axial stress that it may bear [Pa]
+  // Its length follows its force (forces/elastic_rods.hpp): a rod of the motion that is elastic.
+  bool gives = false;
+  double damping_time = 0.0;  // of a rod that gives: N = (e + damping_time e') / compliance [s]
+  double free_length = 0.0;   // in place of length: it starts stretched; 0: not given [m]
+  double expansion = 0.0;     // relative change of length per kelvin [1/K]
+  TimeFunction warming = {};  // above the temperature at which it has its length [K]
 
+  // The change of its length over time, as a share of it, and the derivatives of that [1, 1/s, 1/s^2].
+  double warmed(double t, int order = 0) const {
+    return expansion == 0 ? 0.0 : expansion * warming.derivative(order, t);
+  }
+  // Of a rod that gives, without force [m].
+  double rest_length(double t) const { return natural_length() * (1 + warmed(t)); }
+  double natural_length() const { return free_length > 0 ? free_length : length; }
   bool elastic() const { return area > 0 && std::isfinite(youngs_modulus); }
   // Stretch per axial force, of all that it stands for together; 0: rigid [m/N].
-  double compliance() const { return elastic() ? length / (youngs_modulus * area * multiplicity) : 0.0; }
+  double compliance() const {
+    return elastic() ? natural_length() / (youngs_modulus * area * multiplicity) : 0.0;
+  }
 };
 
 // sum_i coefficient_i . x_{node_i} + offset: a linear measure of the configuration.
@@ -54,15 +74,24 @@ struct LinearForm {
   double rate(const ConstVec& v) const;
 };
 
-enum class MeasureKind { coordinate, length, angle, fold };
+enum class MeasureKind { coordinate, length, angle, fold, dihedral, combination };
+
+struct MeasureTerm;
 
 // A scalar of the configuration; core/structure/measure.hpp says what each kind measures.
 struct Measure {
   MeasureKind kind = MeasureKind::length;
-  std::vector<int> nodes;  // coordinate: 1 or 2; length: 2; angle: 4; fold: none
+  std::vector<int> nodes;  // coordinate: 1 or 2; length: 2; angle, dihedral: 4; fold, combination: none
   Vec3 axis = Vec3::Zero();
   double reference =
       0.0;  // angles with a sign: at t = 0 they are counted on the branch within pi of it [rad]
+  std::vector<MeasureTerm> terms = std::vector<MeasureTerm>();  // of a combination: no combinations
+};
+
+// One term of sum_i coefficient_i * measure_i.
+struct MeasureTerm {
+  double coefficient = 1.0;
+  Measure measure = {};
 };
 
 // One constraint of a kind in the constraint table (constraints/constraint.hpp says how each kind reads the
@@ -85,6 +114,23 @@ struct Stop {
   double min = -std::numeric_limits<double>::infinity(), max = std::numeric_limits<double>::infinity();
   double restitution = 0.0;  // rebound speed over approach speed
   double rest_speed = 0.0;   // rebounds slower than this rest on the stop [m/s] or [rad/s]
+  // A cable that is paid out or drawn in: the upper limit over time, in place of max.
+  TimeFunction reel = {};
+  bool reeled = false;
+};
+
+// A motor that turns or pulls a measure through a gear; forces/motor.hpp says by what law.
+struct Motor {
+  enum class Control { none, position, rate };
+
+  double stall = 0.0;          // torque or force at rest, of the motor [N m] or [N]
+  double no_load_speed = 0.0;  // of the motor, where its torque is zero [rad/s] or [m/s]
+  double gear_ratio = 1.0;     // speed of the motor over that of the measure
+  double limit = std::numeric_limits<double>::infinity();  // most that the motor gives, by its current
+  Control control = Control::none;                         // none: full voltage
+  double proportional = 0.0, integral = 0.0, derivative = 0.0;
+  TimeFunction command = {};  // what a controller follows, in the measure's unit or, of a rate, per second
+  int integrator = -1;        // the ghost that sums up a controller's error; -1: none
 };
 
 // One force of a kind in the force table (forces/force.hpp).
@@ -97,8 +143,13 @@ struct Force {
   double damping = 0.0;           // [N s/m] or [N m s/rad]
   double rest = 0.0;              // value of the measure without a force [m] or [rad]
   bool one_sided = false;         // pulls only: a cable
+  double smoothing = 0.0;         // of what pulls only: half of the width over which it begins to [m]
+  double axial_stiffness = 0.0;   // of a cable, E A [N]; its stiffness is that over its unstressed length
+  TimeFunction unstressed = {};   // of a cable: that length over time [m]
+  Motor motor = {};               // of a motor
   Vec3 direction = Vec3::Zero();  // of a load over time
-  TimeFunction size = {};         // of a load [N]
+  TimeFunction size = {};         // of a load [N]; of a temperature [K]
+  double expansion = 0.0;         // of a temperature [1/K]
   LinearForm form = {};           // of a latch: what it pulls to zero
   // friction: what it gives while it slips, and at most while it sticks [N] or [N m]; the sense in which it
   // slips, 0: it does not
@@ -118,8 +169,8 @@ struct Load {
 };
 
 // How far the structure has unfolded. The fold angle atan2(fold_sine, fold_cosine) falls from its initial to
-// its deployed value. A structure that has no such measure leaves both forms empty: no deployed event, no
-// fold angle.
+// its deployed value; or some measure goes from its stowed to its deployed value. A structure that has
+// neither: no deployed event, no fold angle.
 struct Deployment {
   LinearForm fold_sine;              // [-]
   LinearForm fold_cosine;            // [-]
@@ -130,14 +181,22 @@ struct Deployment {
   // own in the deployed pose, each needs one.
   std::vector<LinearForm> latches = {};
 
-  bool empty() const { return fold_sine.empty(); }
+  // In place of a fold angle. Angles lie within half a turn of the middle of both values.
+  bool measured = false;
+  Measure measure = {};
+  double stowed = 0.0, deployed = 0.0;  // [m] or [rad]
+
+  bool empty() const { return fold_sine.empty() && !measured; }
+  bool folds() const { return !fold_sine.empty(); }              // has a fold angle
   double fold_angle(const ConstVec& q) const;                    // [rad]
   double fold_rate(const ConstVec& q, const ConstVec& v) const;  // [rad/s]
-  // (cos fold - cos initial) / (cos deployed - cos initial): 0 folded, 1 deployed.
+  // (cos fold - cos initial) / (cos deployed - cos initial), or that of the measure's values: 0 folded, 1
+  // deployed.
   double fraction(const ConstVec& q) const;
-  // sin(fold - deployed), of which the deployed event is the zero, and its rate [1/s]; both are linear.
-  double remaining_sine(const ConstVec& q) const;
-  double remaining_rate(const ConstVec& v) const;
+  // sin(fold - deployed), or 1 - fraction of a measure, of which the deployed event is the zero, and its rate
+  // [1/s]; the sine is linear.
+  double remaining(const ConstVec& q) const;
+  double remaining_rate(const ConstVec& q, const ConstVec& v) const;
 };
 
 // A length of the whole that is reported where a structure has it: `name` with its unit is a column of the
@@ -146,6 +205,23 @@ struct ReportedLength {
   std::string name;   // "column_pitch_m"
   std::string label;  // "column pitch"
   LinearForm value;   // [m]
+};
+
+// Nodes that are to lie on a paraboloid of revolution about z, z = (x^2 + y^2) / (4 focal_length) + c: the
+// root mean square of what their heights are off that with the best c is a column of the series.
+struct ReportedSurface {
+  std::string name;   // "surface_rms_m"
+  std::string label;  // "surface error"
+  std::vector<int> nodes;
+  double focal_length = 0.0;  // [m]
+
+  double rms(const ConstVec& q) const;  // [m]
+};
+
+// A straight line that is shown between two NodeCopies and is no rod: a span of a cable, a member of a net.
+struct ShownLine {
+  int a = 0, b = 0;
+  std::string group;  // "cable", "net"
 };
 
 // A node of the whole structure: map * (position of the solved node `source`) + offset.
@@ -180,6 +256,9 @@ struct Structure {
   std::vector<Force> forces;
   Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]
   bool lumped_mass = false;     // true: half of a rod's mass at each node instead of the consistent matrix
+  // The motion is that of rigid rods; what rods with a modulus give is added to what is shown of it
+  // (diagnostics/stretched.hpp).
+  bool quasi_static = false;
   Deployment deployment;
   std::vector<ReportedLength> lengths;
   // Indices of the lengths along and across a stretch; their strain increments give Poisson's ratio,
@@ -190,12 +269,16 @@ struct Structure {
   std::vector<NodeCopy> node_copies;
   std::vector<RodCopy> rod_copies;
   std::vector<LoadCopy> load_copies;
+  std::vector<ShownLine> lines = {};
+  std::vector<ReportedSurface> surfaces = {};
   std::vector<std::string> notes = {};  // what was changed of the given: warnings for whoever runs it
   double sectors = 1.0;  // how many times what is solved makes the whole: energies are reported of the whole
 };
 
 // Fill the copies with the solved nodes, rods and loads themselves.
 void show_as_solved(Structure& structure);
+// Fill the lines with the spans of all cables.
+void show_cables(Structure& structure);
 
 // Coordinates or velocities of the whole structure [3 N] from those of the solved nodes [3 n]; velocities
 // take no offset.

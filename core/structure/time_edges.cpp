@@ -50,7 +50,14 @@ void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges)
 std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
   std::vector<TimeEdge> edges;
   for (const Constraint& c : structure.constraints) add_edges(c.target, step, edges);
-  for (const Force& f : structure.forces) add_edges(f.size, step, edges);
+  for (const Stop& stop : structure.stops) add_edges(stop.reel, step, edges);
+  for (const Rod& rod : structure.rods)
+    if (rod.expansion != 0) add_edges(rod.warming, step, edges);
+  const std::size_t rows = edges.size();
+  for (const Force& f : structure.forces)
+    for (const TimeFunction* function : {&f.size, &f.unstressed, &f.motor.command})
+      add_edges(*function, step, edges);
+  for (std::size_t i = rows; i < edges.size(); ++i) edges[i].jump = false;  // a force drives no velocity
   std::sort(edges.begin(), edges.end(), [](const TimeEdge& a, const TimeEdge& b) { return a.t < b.t; });
   // Times that differ by their rounding are one; it jumps if one of them does.
   std::vector<TimeEdge> distinct;

@@ -5,10 +5,12 @@
 #include <array>
 
 #include "core/structures/bricard.hpp"
+#include "core/structures/cable_ring.hpp"
 #include "core/structures/chain.hpp"
 #include "core/structures/four_bar_ladder.hpp"
 #include "core/structures/hoberman.hpp"
 #include "core/structures/hoop.hpp"
+#include "core/structures/mesh_reflector.hpp"
 #include "core/structures/pendulum.hpp"
 #include "core/structures/reentrant_sheet.hpp"
 #include "core/structures/rod_material.hpp"
@@ -47,6 +49,10 @@ std::span<const Family> families() {
              with_material<scissor_mast_params>, of_material<build_scissor_mast>, true},
       Family{"scissor_ring", "closed ring of crossed rods pinned at their middles, which opens from a bundle",
              with_material<scissor_ring_params>, of_material<build_scissor_ring>, true},
+      Family{"cable_ring", "ring of parallelograms that one cable through telescoping diagonals deploys",
+             with_material<cable_ring_params>, of_material<build_cable_ring>, true},
+      Family{"mesh_reflector", "hoop with a front and a rear net, drawn to a paraboloid by tension ties",
+             with_material<mesh_reflector_params>, of_material<build_mesh_reflector>, true},
       Family{"hoberman", "Hoberman's ring of angulated elements, which grows in its plane",
              with_material<hoberman_params>, of_material<build_hoberman>, true},
       Family{"reentrant_sheet", "sheet of re-entrant units: a negative Poisson's ratio",

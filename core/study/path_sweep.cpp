@@ -57,8 +57,8 @@ bool same_mechanism(const Structure& a, const Structure& b, double size) {
 }
 
 bool plain(const Structure& structure) {
-  return structure.forces.empty() && structure.stops.empty() && !structure.deployment.empty() &&
-         unknown_to_path(structure).empty() &&
+  return structure.forces.empty() && structure.stops.empty() && structure.deployment.folds() &&
+         !structure.deployment.measured && unknown_to_path(structure).empty() &&
          std::all_of(structure.nodes.begin(), structure.nodes.end(),
                      [](const Node& node) { return node.velocity.isZero(0.0); });
 }
@@ -160,8 +160,8 @@ struct PathSweep::Data {
     out.path = trace_path(out.model);
     out.size = out.model->system.constraint_lengths().maxCoeff();
     out.form = remaining_form(out.model->structure.deployment);
-    out.ahead = first_zero(*out.path, out.form, true, most_path_pieces);
-    out.behind = first_zero(*out.path, out.form, false, most_path_pieces);
+    out.ahead = deployed_pose(*out.path, out.model->structure.deployment, true, most_path_pieces);
+    out.behind = deployed_pose(*out.path, out.model->structure.deployment, false, most_path_pieces);
     return std::make_shared<const Traced>(std::move(out));
   }
 

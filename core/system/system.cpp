@@ -33,11 +33,11 @@ void add_targets(const ConstraintBlocks& blocks, int order, double t, double sca
   }
 }
 
-void values_at(const ConstraintBlocks& blocks, double t, const ConstVec& q, MutVec phi) {
+void values_at(const ConstraintBlocks& blocks, const Moment& at, const ConstVec& q, MutVec phi) {
   double* row = phi.data();
   for (const ConstraintBlock* block : blocks) {
-    block->value(q.data(), row);
-    if (block->rheonomic()) block->add_target(0, t, -1.0, row);
+    block->value_at(at, q.data(), row);
+    if (block->rheonomic()) block->add_target(0, at.t, -1.0, row);
     row += block->rows();
   }
 }
@@ -144,6 +144,7 @@ void System::Data::build_forces(const Structure& structure) {
   for (const ForceKind& kind : force_kinds()) {
     auto block = kind.make(structure, node_mass);
     if (!block) continue;
+    if (const auto* rods = dynamic_cast<const ElasticRods*>(block.get())) elastic_rods = rods;
     if (block->constant())
       block->add(0.0, start.data(), start.data(), 1.0, constant_force.data());
     else
@@ -227,9 +228,11 @@ System::System(const Structure& structure, bool eliminate_linear) {
   data->build_jacobian_map();
   data->build_stencils();
   data->rod_rows.assign(structure.rods.size(), -1);
-  for (std::size_t i = 0; i < structure.rods.size(); ++i)  // rods are the last kept block
-    data->rod_rows[i] =
-        static_cast<int>(data->rows - static_cast<Index>(structure.rods.size()) + static_cast<Index>(i));
+  int row = static_cast<int>(data->rows);
+  for (std::size_t i = structure.rods.size(); i-- > 0;)  // rods are the last kept block
+    if (!structure.rods[i].gives) data->rod_rows[i] = --row;
+  for (std::size_t i = 0; i < structure.rods.size(); ++i)
+    if (structure.rods[i].gives) data->giving.push_back(static_cast<int>(i));
   data_ = std::move(data);
 }
 
@@ -323,7 +326,7 @@ bool System::constant_forces() const {
 }
 
 void System::constraint(double t, const ConstVec& q, MutVec phi) const {
-  values_at(data_->kept, t, q, phi);
+  values_at(data_->kept, moment(t), q, phi);
 }
 
 bool System::rheonomic() const {
@@ -378,14 +381,7 @@ SparseRows System::curvature(const ConstVec& q, const ConstVec& lambda) const {
   std::vector<Eigen::Triplet<double>> entries;
   Index row = 0;
   for (const ConstraintBlock* block : data_->kept) {
-    std::size_t size = 0;
-    for (int r = 0; r < block->rows(); ++r) size += block->stencil(r).size() * block->stencil(r).size();
-    std::vector<double> hess(size);
-    block->curvature(q.data(), lambda.data() + row, hess.data());
-    const double* h = hess.data();
-    for (int r = 0; r < block->rows(); ++r)
-      for (const std::vector<int> c = block->stencil(r); int j : c)
-        for (int i : c) entries.emplace_back(i, j, *h++);
+    block->add_curvature(q.data(), lambda.data() + row, entries);
     row += block->rows();
   }
   SparseRows K(coordinates(), coordinates());
@@ -411,15 +407,17 @@ const std::vector<Drive>& System::drives() const {
 
 bool System::has_power(bool dissipative) const {
   return std::any_of(data_->forces.begin(), data_->forces.end(), [&](const auto& block) {
-    return block->has_power() && block->dissipative() == dissipative;
+    return dissipative ? block->dissipates() : block->supplies();
   });
 }
 
 double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const {
   double sum = 0;
   for (const auto& block : data_->forces)
-    if (block->has_power() && block->dissipative() == dissipative && !block->takes_by_pose())
-      sum += block->power(moment(t), q.data(), v.data());
+    if ((dissipative ? block->dissipates() : block->supplies()) && !block->takes_by_pose()) {
+      const double taken = block->dissipation(moment(t), q.data(), v.data());
+      sum += dissipative ? taken : block->power(moment(t), q.data(), v.data()) - taken;
+    }
   return sum;
 }
 
@@ -448,7 +446,7 @@ Index System::all_constraints() const {
 }
 
 void System::all_constraint_values(double t, const ConstVec& q, MutVec phi) const {
-  values_at(data_->all, t, q, phi);
+  values_at(data_->all, moment(t), q, phi);
 }
 
 void System::all_constraint_rates(double t, const ConstVec& q, const ConstVec& v, MutVec rate,

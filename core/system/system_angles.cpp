@@ -33,18 +33,17 @@ void System::measure_angles(const State& state) {
 
 void System::follow(const State& state) {
   const Index n = followed_angles();
+  since_ = state.t;
   if (n == 0) return;
   if (measured_rates_.size() != n) measured_rates_.resize(n);
-  if (state.angles.size() == n) {
-    measured_ = state.angles;
-  } else {
-    measured_.resize(n);
-    for (Index i = 0; i < n; ++i) measured_[i] = data_->followed[static_cast<std::size_t>(i)].reference();
-  }
+  // What a stop or a latch holds adds angles behind the others.
+  measured_.resize(n);
+  for (Index i = 0; i < n; ++i)
+    measured_[i] =
+        i < state.angles.size() ? state.angles[i] : data_->followed[static_cast<std::size_t>(i)].reference();
   measure_angles(state);
   angles_ = measured_;
   rates_ = measured_rates_;
-  since_ = state.t;
 }
 
 System System::at(const State& state) const {

@@ -24,6 +24,13 @@ bool has_moduli(const Simulation& run, const Diagnostics&) {
 bool has_fold_angle(const Simulation&, const Diagnostics& d) {
   return d.find("fold_angle_rad") != nullptr;
 }
+bool has_drives(const Simulation&, const Diagnostics& d) {
+  return std::any_of(d.columns.begin(), d.columns.end(),
+                     [](const Series& column) { return column.name.ends_with(".power_W"); });
+}
+bool has_deployment(const Simulation&, const Diagnostics& d) {
+  return d.find("deployed_fraction") != nullptr;
+}
 bool has_poisson_ratio(const Simulation&, const Diagnostics& d) {
   return d.find("poisson_ratio") != nullptr;
 }
@@ -37,7 +44,7 @@ bool has_self_stress(const Simulation& run, const Diagnostics& d) {
 }
 
 constexpr std::array kinds{
-    FigureKind{"deployment", "fold angle and deployed fraction over time", has_fold_angle, deployment_figure},
+    FigureKind{"deployment", "fold angle and deployed fraction over time", has_deployment, deployment_figure},
     FigureKind{"constraint_error", "constraint error of positions, relative to rod length, and of velocities",
                always, constraint_error_figure},
     FigureKind{"energy",
@@ -47,6 +54,8 @@ constexpr std::array kinds{
                has_rods, rod_forces_figure},
     FigureKind{"rod_strength", "axial stress and share of Euler's buckling load, where rods have a modulus",
                has_moduli, rod_strength_figure},
+    FigureKind{"drives", "torque, force and power of motors, winches and prescribed motions", has_drives,
+               drives_figure},
     FigureKind{"poisson", "lengths along and across a stretch, Poisson's ratio", has_poisson_ratio,
                poisson_figure},
     FigureKind{"phase", "fold rate over fold angle", has_fold_angle, phase_figure},

@@ -142,6 +142,7 @@ DrawList FrameBuilder::build(const Shot& shot) const {
   DrawList list = still_;
   list.camera = path_->at({inside, shot.progress, shot.turn});
   add_rods(inside, whole, list);
+  add_lines(whole, list);
   add_joints(whole, list);
   if (style_.loads && style_.options.loads) add_loads(whole, list);
   add_ghosts(inside, list);
@@ -168,6 +169,18 @@ void FrameBuilder::add_rods(double t, const VectorXd& whole, DrawList& list) con
     const Vec3 fitted = (b - a) * (std::min(6.5 * radius, 0.2 * length) / length);  // from the joint's centre
     list.sleeves.push_back({a.cast<float>(), (a + fitted).cast<float>(), 1.32f * thick, look_->fitting});
     list.sleeves.push_back({b.cast<float>(), (b - fitted).cast<float>(), 1.32f * thick, look_->fitting});
+  }
+}
+
+// Cables and nets: thinner than any rod, so that what they hang on shows.
+void FrameBuilder::add_lines(const VectorXd& whole, DrawList& list) const {
+  double thinnest = 0.004 * bounds_.radius;
+  for (const double radius : looks_.rod_radius) thinnest = std::min(thinnest, radius);
+  for (const ShownLine& line : trajectory_.structure().lines) {
+    const bool net = line.group == "net";
+    list.tubes.push_back({node(whole, line.a).cast<float>(), node(whole, line.b).cast<float>(),
+                          static_cast<float>((net ? 0.16 : 0.4) * thinnest), net ? look_->joint : look_->load,
+                          Finish::paint});
   }
 }
 

@@ -57,6 +57,7 @@ class FrameBuilder {
   void prepare_trails();
   Color rod_color(double t, const RodCopy& rod) const;
   void add_rods(double t, const VectorXd& whole, DrawList& list) const;
+  void add_lines(const VectorXd& whole, DrawList& list) const;
   void add_joints(const VectorXd& whole, DrawList& list) const;
   void add_loads(const VectorXd& whole, DrawList& list) const;
   void add_ghosts(double t, DrawList& list) const;

@@ -61,7 +61,7 @@ class FirstMembers {
     }
     return {};
   }
-  bool by_fold_angle() const { return !chosen_ && !structure_.deployment.empty(); }
+  bool by_fold_angle() const { return !chosen_ && structure_.deployment.folds(); }
 
  private:
   bool joined(int a, int b) const {
@@ -84,7 +84,9 @@ class FirstMembers {
 std::size_t least_nodes(std::string_view kind) {
   if (kind == "coplanar") return 4;
   if (kind == "collinear") return 3;
-  return kind == "equal" ? 2 : 1;
+  if (kind == "gear") return 6;
+  if (kind == "rack") return 4;
+  return kind == "equal" || kind == "cable" || kind == "telescope" ? 2 : 1;
 }
 
 void add_member(std::string& text, std::string_view key, const ParamValue& value) {
@@ -97,14 +99,23 @@ void add_members(std::string& text, const ElementKind& kind, const FirstMembers&
       return;
     case Members::rod:
       return add_member(text, "rod", members.rod());
+    case Members::terms: {
+      const std::vector<std::string> pair = members.nodes(2);
+      return add_member(text, "terms", std::vector<std::string>{"1 length " + pair[0] + " " + pair[1]});
+    }
     case Members::angle:
     case Members::measure:
       if (members.by_fold_angle()) return add_member(text, "fold_angle", true);
       return add_member(text, "nodes", members.hinge());
     case Members::two_nodes:
       return add_member(text, "nodes", members.nodes(2));
+    case Members::three_nodes:
+      return add_member(text, "nodes", members.hinge());
+    case Members::rods:
+      return add_member(text, "rods", members.rod());
     case Members::each_node:
     case Members::node_list:
+    case Members::path:
       return add_member(text, "nodes", members.nodes(least_nodes(kind.kind)));
   }
 }

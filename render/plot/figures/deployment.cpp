@@ -6,7 +6,25 @@
 
 namespace unfurl {
 
+namespace {
+
+// Of a structure that is deployed by a measure of its own.
+Figure fraction_figure(const Simulation& run, const Diagnostics& diagnostics) {
+  Figure f;
+  f.name = "deployment";
+  f.title = "Deployment";
+  f.height_mm = 85;
+  f.caption = "Deployed fraction." + events_sentence(run) + " " + method_sentence(run);
+  Panel p = time_panel(run, "deployed fraction");
+  p.curves.push_back(over_time(diagnostics, diagnostics.at("deployed_fraction").values, "", 0));
+  f.panels.push_back(std::move(p));
+  return f;
+}
+
+}  // namespace
+
 Figure deployment_figure(const Simulation& run, const Diagnostics& diagnostics) {
+  if (!diagnostics.find("fold_angle_rad")) return fraction_figure(run, diagnostics);
   std::vector<double> degrees = diagnostics.at("fold_angle_rad").values;
   for (double& a : degrees) a /= radians_per_degree;
   const std::vector<double>& fraction = diagnostics.at("deployed_fraction").values;

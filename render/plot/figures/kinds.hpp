@@ -13,6 +13,7 @@ Figure constraint_error_figure(const Simulation& run, const Diagnostics& diagnos
 Figure energy_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure rod_forces_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure rod_strength_figure(const Simulation& run, const Diagnostics& diagnostics);
+Figure drives_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure poisson_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure phase_figure(const Simulation& run, const Diagnostics& diagnostics);
 Figure steps_figure(const Simulation& run, const Diagnostics& diagnostics);

@@ -115,7 +115,26 @@ std::vector<Case> constraint_cases() {
       c("angle", "held, about an axis", "nodes = ['O', 'A', 'C']" + axis),
       c("angle", "driven, without an axis", "nodes = ['B', 'A', 'C']" + smooth + "115"),
       c("angle", "driven, about an axis", "nodes = ['O', 'A', 'B']" + axis + smooth + "-100"),
+      c("cable", "elastic, over a node, taut", "nodes = ['B', 'A', 'C']\naxial_stiffness = 60\nlength = 0.3"),
+      c("gear", "two arms on a third", "nodes = ['O', 'A', 'B', 'O', 'A', 'C']\nradii = [0.3, 0.5]"),
+      c("rack", "an arm drives a node",
+        "nodes = ['O', 'A', 'B', 'C']\nradius = 0.3\ndirection = [0.4, 0.2, -0.7]"),
+      c("telescope", "two spans that stretch alike",
+        "nodes = ['O', 'C', 'B']\nshares = [1, 2]\nstraight = false"),
+      c("combination", "driven",
+        "terms = ['0.7 length O B', '0.4 coordinate C along 0.2 0.9 0.3', '0.3 angle O A B']\nmotion = "
+        "'rate'\n"
+        "rate = 0.2\nramp = 0.4"),
   };
+}
+
+// A massless rod from O to B that gives, E A = 110 N.
+std::string elastic_rod() {
+  std::string text = arms;
+  text.replace(text.find("kind = \"custom\""), 15, "kind = \"custom\"\ndamping_time = 7e-3");
+  return text +
+         "[[structure.rods]]\nname = 'giving'\nnodes = ['O', 'B']\nmass = 0\narea = 1e-4\n"
+         "youngs_modulus = 1.1e6\nelastic = true\n";
 }
 
 std::vector<Case> force_cases() {
@@ -133,7 +152,28 @@ std::vector<Case> force_cases() {
         "nodes = ['O', 'A', 'B']\nstiffness = 23\nfree_angle = 70\ndamping = 0.3"),
       f("torsion_spring", "about an axis",
         "nodes = ['B', 'A', 'C']\nstiffness = 7\nfree_angle = 40\naxis = [0.2, 0.9, 0.3]"),
+      f("cable", "elastic, taut, paid out",
+        "nodes = ['B', 'A', 'C']\naxial_stiffness = 60\nlength = 0.3\nmotion = "
+        "'rate'\nrate = 0.1\ndamping = 0.4"),
+      f("combination", "a length and an angle",
+        "terms = ['1 length O C', '0.5 angle B A C']\nstiffness = 12\ndamping = 0.4\nfree_value = 0.9"),
+      f("motor", "a torque-speed line and a rotor",
+        "nodes = ['O', 'A', 'B']\nstall_torque = 2\nno_load_speed = 4000\ngear_ratio = 3\ninertia = 0.01"),
+      f("motor", "a controller with an integral",
+        "nodes = ['O', 'A', 'B']\nstall_torque = 500\nno_load_speed = 40000\ncontrol = "
+        "'position'\nproportional = "
+        "5\nderivative = 0.5\nintegral = 2"),
+      f("winch", "an elastic cable that stays taut",
+        "nodes = ['O', 'B']\nstall_torque = 1\nno_load_speed = 900\ndrum_radius = 0.1\ninertia = 0.02\n"
+        "axial_stiffness = 40\nlength = 0.5"),
       f("joint_damping", "at a joint of three rods", "nodes = ['A']\ndamping = 0.9"),
+      f("bending", "of a rod in two segments", "nodes = ['O', 'A', 'B']\nstiffness = 5"),
+      f("temperature", "rigid rods that warm and cool",
+        "rods = ['A-B', 'O-A']\nexpansion = 2e-4\nchange = 80\ntimes = [0, 0.1, 0.3]\nvalues = [0, 1, 0.4]"),
+      {"temperature", "an elastic rod that warms",
+       elastic_rod() + force("kind = 'temperature'\nrods = ['giv*']\nexpansion = 2e-3\nchange = 40\n"
+                             "times = [0, 0.1, 0.3]\nvalues = [0, 1, 0.4]")},
+      {"elastic_rod", "with damping, beside rigid ones", elastic_rod()},
       f("drag", "of two nodes", "nodes = ['B', 'C']\ndamping = 1.3"),
       f("friction", "of a joint, which goes on turning",
         "nodes = ['O', 'A', 'B']\nkinetic = 0.4\nstatic = 0.5"),

@@ -60,10 +60,17 @@ std::string members_of(Members members) {
     case Members::each_node:
       return "nodes = [\"B\"]\n";
     case Members::node_list:
+    case Members::path:
     case Members::two_nodes:
       return "nodes = [\"A\", \"B\"]\n";
+    case Members::three_nodes:
+      return "nodes = [\"O\", \"A\", \"B\"]\n";
+    case Members::rods:
+      return "rods = [\"lower\"]\n";
     case Members::rod:
       return "rod = \"lower\"\n";
+    case Members::terms:
+      return "terms = [\"1 length A B\"]\n";
     case Members::angle:
     case Members::measure:
       return "nodes = [\"O\", \"A\", \"B\"]\n";

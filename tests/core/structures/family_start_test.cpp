@@ -23,7 +23,7 @@ TEST_CASE("every family: a deployment begins at fraction 0, at the fold angle th
     CHECK(deployment.fold_angle(q) == Approx(deployment.initial_fold_angle).epsilon(1e-12));
     CHECK(deployment.fraction(q) == Approx(0).margin(1e-12));
     CHECK(deployment.initial_fold_angle > deployment.deployed_fold_angle);
-    CHECK(deployment.remaining_sine(q) > 0);
+    CHECK(deployment.remaining(q) > 0);
   }
   CHECK(found >= 6);
 }

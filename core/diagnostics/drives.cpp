@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/drives.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "core/forces/motor.hpp"
+#include "core/forces/spring.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double unknown_effort = std::numeric_limits<double>::quiet_NaN();
+
+// The row of a stop that is held: it has its name, behind the structure's own constraints.
+int held_row(const Model& model, const std::string& name) {
+  const auto& constraints = model.structure.constraints;
+  for (std::size_t i = constraints.size(); i-- > 0;)
+    if (constraints[i].name == name && constraints[i].kind == "measure")
+      return model.system.constraint_row(static_cast<int>(i));
+  return -1;
+}
+
+}  // namespace
+
+DriveSample DriveChannel::of_row(const Model& model, const System& system, double t, const VectorXd& lambda,
+                                 const std::vector<char>& unique) const {
+  DriveSample s;
+  s.value = target_(t);
+  int row = -1;
+  if (kind_ == Kind::reel) {
+    row = held_row(model, name_);
+    if (row < 0) return s;  // slack
+  } else {
+    for (const Drive& d : system.drives())
+      if (d.constraint == static_cast<int>(index_)) row = d.row;
+  }
+  s.effort = row >= 0 ? -scale_ * lambda[row] : unknown_effort;
+  s.power = s.effort * target_.derivative(1, t);
+  s.unique = row >= 0 && (unique.empty() || unique[static_cast<std::size_t>(row)] != 0);
+  return s;
+}
+
+DriveSample DriveChannel::sample(const Model& model, const System& system, double t, const VectorXd& q,
+                                 const VectorXd& v, const VectorXd& lambda,
+                                 const std::vector<char>& unique) const {
+  if (kind_ == Kind::row || kind_ == Kind::reel) return of_row(model, system, t, lambda, unique);
+  const Force& force = model.structure.forces[index_];
+  const MeasureFunction& measure = measure_.front();
+  std::vector<double> gradient(measure.stencil().size());
+  if (kind_ == Kind::motor) {
+    const MotorState s =
+        motor_state(force, measure, followed_, system.moment(t), q.data(), v.data(), gradient.data());
+    return {s.value, s.effort, s.effort * s.rate, true};
+  }
+  const SpringLaw law = spring_law(force, t);
+  const double s = measure.value_and_gradient(q.data(), gradient.data(), system.moment(t), followed_);
+  const SpringPull pull = spring_pull(force, t, s, measure.rate(gradient.data(), v.data()));
+  return {law.rest, -pull.tension, pull.reeling, true};
+}
+
+std::vector<DriveChannel> drive_channels(const Model& model) {
+  std::vector<DriveChannel> out;
+  std::set<std::string> taken;
+  const auto add = [&](DriveChannel::Kind kind, const std::string& name, std::size_t index) -> DriveChannel& {
+    DriveChannel channel;
+    channel.kind_ = kind;
+    channel.index_ = index;
+    channel.name_ = name;  // a scene's names are unique in each of its tables, a program's need not be
+    for (int number = 2; !taken.insert(channel.name_).second; ++number)
+      channel.name_ = name + " (" + std::to_string(number) + ")";
+    out.push_back(std::move(channel));
+    return out.back();
+  };
+  for (const Drive& drive : model.system.drives()) {
+    DriveChannel& c = add(DriveChannel::Kind::row, drive.name, static_cast<std::size_t>(drive.constraint));
+    c.scale_ = drive.scale;
+    c.angle_ = drive.angle;
+    c.target_ = drive.target;
+  }
+  const Structure& structure = model.structure;
+  for (std::size_t i = 0; i < structure.stops.size(); ++i)
+    if (structure.stops[i].reeled)
+      add(DriveChannel::Kind::reel, structure.stops[i].name, i).target_ = structure.stops[i].reel;
+  const FollowedAngles followed = followed_angles(structure);
+  for (std::size_t i = 0; i < structure.forces.size(); ++i) {
+    const Force& force = structure.forces[i];
+    const bool winch = force.kind == "cable" && force.unstressed.moves();
+    if (force.kind != "motor" && !winch) continue;
+    DriveChannel& c = add(winch ? DriveChannel::Kind::winch : DriveChannel::Kind::motor, force.name, i);
+    c.angle_ = is_angle(force.measure);
+    c.followed_ = followed.of_force[i];
+    c.measure_.emplace_back(force.measure, structure.deployment);
+  }
+  return out;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What drives a structure, by name: rows that prescribe motions, cables that are reeled, and motors.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/simulate/trajectory.hpp"
+#include "core/structure/measure.hpp"
+
+namespace unfurl {
+
+struct DriveSample {
+  double value = 0.0;   // of the measure, or of what is prescribed [m] or [rad]
+  double effort = 0.0;  // along the measure [N] or [N m]
+  double power = 0.0;   // that goes into the structure [W]
+  bool unique = true;   // the effort is
+};
+
+class DriveChannel {
+ public:
+  const std::string& name() const { return name_; }
+  bool angle() const { return angle_; }
+  // At the node coordinates and velocities of a time; lambda: multipliers of the model's rows, `unique`: of
+  // each of them (empty: not asked).
+  DriveSample sample(const Model& model, const System& system, double t, const VectorXd& q, const VectorXd& v,
+                     const VectorXd& lambda, const std::vector<char>& unique) const;
+
+ private:
+  enum class Kind { row, reel, motor, winch };
+  friend std::vector<DriveChannel> drive_channels(const Model& model);
+  DriveSample of_row(const Model& model, const System& system, double t, const VectorXd& lambda,
+                     const std::vector<char>& unique) const;
+
+  Kind kind_ = Kind::row;
+  std::string name_;
+  bool angle_ = false;
+  std::size_t index_ = 0;  // of the constraint, stop or force
+  double scale_ = 1.0;     // of a row
+  int followed_ = -1;
+  TimeFunction target_;
+  std::vector<MeasureFunction> measure_;  // of a motor or winch
+};
+
+// Of the model that a run begins with: later ones have the same and more. Names are unique.
+std::vector<DriveChannel> drive_channels(const Model& model);
+
+}  // namespace unfurl

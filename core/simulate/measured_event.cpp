@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/simulate/measured_event.hpp"
+
+#include <cmath>
+
+namespace unfurl {
+
+std::optional<State> step_to_zero(const State& from, double h,
+                                  const std::function<double(const State&)>& left,
+                                  const std::function<bool(double length, State& state)>& solve) {
+  constexpr double nothing = 1e-15;  // of a fraction: below what its value is rounded to
+  constexpr int most = 100;
+  State to = from;
+  if (!solve(h, to)) return std::nullopt;
+  double low = 0, high = h, at_low = left(from), at_high = left(to);
+  if (at_high > 0) return std::nullopt;
+  for (int side = 0, i = 0; i < most && at_high < -nothing && high - low > nothing * h; ++i) {
+    const double length = low + (high - low) * at_low / (at_low - at_high);
+    State next = from;
+    if (!solve(length, next)) return std::nullopt;
+    const double f = left(next);
+    const int now = f > 0 ? 1 : -1;
+    if (now > 0) {
+      low = length, at_low = f;
+      if (side == now) at_high *= 0.5;
+    } else {
+      high = length, at_high = f;
+      if (side == now) at_low *= 0.5;
+    }
+    side = now;
+    to = std::move(next);
+    if (std::abs(f) <= nothing) break;
+  }
+  return to;
+}
+
+std::optional<State> step_to_deployed(const Model& model, Integrator& integrator, const State& from, double h,
+                                      double margin) {
+  if (!model.structure.deployment.measured) return std::nullopt;
+  VectorXd q(model.system.coordinates());
+  const auto left = [&](const State& state) {
+    model.system.expand(state.z, q);
+    return model.structure.deployment.remaining(q) - margin;
+  };
+  return step_to_zero(from, h, left, [&](double length, State& state) {
+    integrator.restart();
+    return integrator.step(state, length).ok();
+  });
+}
+
+double remaining_rate(const Model& model, const State& state) {
+  VectorXd q(model.system.coordinates()), v(q.size());
+  model.system.expand(state.z, q);
+  model.system.expand_rate(state.w, v);
+  return model.structure.deployment.remaining_rate(q, v);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// [deployment] of structures without a fold angle: fraction, event and latch by a measure.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/measures.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace measured_deployment_test {
+
+namespace {
+
+using testing::error_of, testing::run_scene;
+
+// Two masses on a line, 3 kg and 5 kg, pushed apart by 12 N from 0.4 m: s = 0.4 + (12/3 + 12/5) t^2 / 2.
+const std::string pushed = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], mass = 3}, {name = "B", position = [0.4, 0, 0], mass = 5}]
+[[loads]]
+nodes = ["A"]
+force = [-12, 0, 0]
+[[loads]]
+nodes = ["B"]
+force = [12, 0, 0]
+[deployment]
+measure = "length A B"
+deployed = 1.9
+[solver]
+stages = 3
+step = 0.07
+)";
+
+double time_of(const Simulation& run, const char* name) {
+  for (const Event& event : run.events)
+    if (event.name == name) return event.t;
+  return -1;
+}
+
+}  // namespace
+
+TEST_CASE("a structure is deployed when its measure says so") {
+  const double t = std::sqrt(2 * 1.5 / (12.0 / 3 + 12.0 / 5));
+  const Simulation run = run_scene(pushed);  // no end_time
+  CHECK(run.status == RunStatus::deployed);
+  CHECK(time_of(run, "deployed") == Approx(t).epsilon(1e-12));
+  const Diagnostics d = diagnose(run);
+  CHECK(d.at("deployed_fraction").values.front() == Approx(0).margin(1e-15));
+  CHECK(d.at("deployed_fraction").values.back() == Approx(1).margin(1e-11));
+  CHECK(!d.find("fold_angle_rad"));
+  CHECK(find_measure("deploy_time").value(run, d) == Approx(t).epsilon(1e-12));
+  // A swept stowed value is a scale of the fraction, not of the motion.
+  const Simulation half = run_scene(pushed, {"deployment.stowed=-1.1"});
+  CHECK(diagnose(half).at("deployed_fraction").values.front() == Approx(0.5).epsilon(1e-13));
+}
+
+TEST_CASE("a measured deployment latches and stays") {
+  const Simulation run = run_scene(pushed, {"solver.at_deployed=latch", "solver.end_time=2"});
+  CHECK(run.status == RunStatus::completed);
+  REQUIRE(time_of(run, "latched") > 0);
+  const VectorXd end = testing::end_positions(run);
+  CHECK(end[3] - end[0] == Approx(1.9).margin(1e-11));
+  // What the latch takes: both go with the velocity of their centre, which is zero.
+  const double rate = (12.0 / 3 + 12.0 / 5) * time_of(run, "deployed"), reduced = 3 * 5 / 8.0;
+  CHECK(run.events.back().energy_lost == Approx(0.5 * reduced * rate * rate).epsilon(1e-10));
+}
+
+// A drive that comes to rest where it is deployed: the measure only just gets there.
+TEST_CASE("a drive that ends in the deployed pose deploys") {
+  const std::string driven = pushed + R"(
+end_time = 3
+[[constraints]]
+kind = "length"
+name = "drive"
+nodes = ["A", "B"]
+motion = "smooth"
+to = 1.9
+duration = 1.3
+)";
+  const Simulation run = run_scene(driven, {"deployment.measure=drive"});
+  CHECK(run.status == RunStatus::deployed);
+  // 10 (1 - u)^3 = 1e-12 of the way.
+  CHECK(time_of(run, "deployed") == Approx(1.3).epsilon(1e-4));
+}
+
+TEST_CASE("a deployment that cannot be says why") {
+  CHECK(error_of(pushed, {"deployment.deployed=0.4"}).find("nothing deploys") != std::string::npos);
+  CHECK(error_of(pushed, {"deployment.deployed=0.2", "deployment.stowed=1"}) == "");
+  CHECK(error_of(pushed, {"deployment.deployed=0.2", "deployment.stowed=0.1"}).find("reached already") !=
+        std::string::npos);
+  CHECK(error_of(pushed, {"deployment.measure=length A X"}).find("deployment.measure: there is no node") !=
+        std::string::npos);
+  CHECK(error_of("[structure]\nkind = 'hoop'\n[deployment]\nmeasure = 'length B0 T0'\ndeployed = 1\n")
+            .find("is for structures that do not say themselves") != std::string::npos);
+}
+
+}  // namespace measured_deployment_test

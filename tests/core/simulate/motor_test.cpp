@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Motors against closed forms: torque-speed line, gear, rotor, current limit, controllers, winch.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/measures.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace motor_test {
+
+namespace {
+
+using testing::end_positions, testing::error_of, testing::run_scene;
+
+// A crank of inertia 0.7 * 0.5^2 = 0.175 kg m^2 about z, no gravity.
+const std::string crank = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "O", position = [0, 0, 0], fixed = true}, {name = "E", position = [1, 0, 0], fixed = true},
+  {name = "T", position = [0.3, 0.4, 0], mass = 0.7}]
+rods = [{nodes = ["O", "T"], mass = 0}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["T"]
+normal = [0, 0, 1]
+[[forces]]
+kind = "motor"
+name = "motor"
+nodes = ["E", "O", "T"]
+axis = [0, 0, 1]
+stall_torque = 0.03
+no_load_speed = 3000
+gear_ratio = 20
+[solver]
+stages = 5
+step = 0.02
+end_time = 1.5
+)";
+
+constexpr double inertia = 0.175, stall = 0.03, ratio = 20;
+const double no_load = 3000 * pi / 180, start_angle = std::atan2(0.4, 0.3);
+
+double last_of(const Diagnostics& d, const char* column) {
+  return d.at(column).values.back();
+}
+
+}  // namespace
+
+// I th'' = n T_0 (1 - n th' / w_0): th' = W (1 - exp(-t / tau)), W = w_0 / n, tau = I W / (n T_0); a rotor
+// adds n^2 J to I.
+TEST_CASE("a motor runs up along its torque-speed line, with its rotor behind the gear") {
+  for (const double rotor : {0.0, 6e-4}) {
+    const Simulation run = run_scene(crank, {"forces[0].inertia=" + std::to_string(rotor)});
+    REQUIRE(run.status == RunStatus::completed);
+    const double all = inertia + ratio * ratio * rotor, top = no_load / ratio,
+                 tau = all * top / (ratio * stall);
+    const double t = 1.5, rate = top * (1 - std::exp(-t / tau));
+    const double angle = start_angle + top * (t - tau * (1 - std::exp(-t / tau)));
+    const Diagnostics d = diagnose(run);
+    // Order 8 at h / tau = 0.02 / 0.76 and angles of 0.05 rad a step.
+    CHECK(last_of(d, "motor.angle_rad") == Approx(angle).margin(1e-10));
+    CHECK(last_of(d, "motor.torque_N_m") == Approx(ratio * stall * (1 - rate / top)).margin(1e-9));
+    CHECK(last_of(d, "motor.power_W") == Approx(ratio * stall * (1 - rate / top) * rate).margin(1e-9));
+    CHECK(last_of(d, "motor.energy_J") == Approx(0.5 * all * rate * rate).margin(1e-9));
+    CHECK(testing::largest(d, "energy_balance_J") <= 1e-9);
+  }
+}
+
+TEST_CASE("a motor gives no more than its current allows") {
+  const Simulation run = run_scene(
+      crank, {"forces[0].current_limit=2", "forces[0].torque_constant=0.005", "solver.end_time=0.5"});
+  // T = 0.01 N m while the line gives more, up to n th' = 2/3 w_0, which is later.
+  const double angle = start_angle + 0.5 * ratio * 0.01 / inertia * 0.25;
+  CHECK(last_of(diagnose(run), "motor.angle_rad") == Approx(angle).margin(1e-11));
+}
+
+// PD: I th'' = k (f - th) - c th', an oscillator about f. With k_i the third-order equation
+// I e''' + c e'' + k e' + k_i e = 0 and the load's constant torque is taken away.
+TEST_CASE("a controller holds an angle as its equations say") {
+  const std::vector<std::string> strong = {
+      "forces[0].stall_torque=3",   "forces[0].no_load_speed=300000",
+      "forces[0].control=position", "forces[0].motion=hold",
+      "forces[0].proportional=2",   "structure.nodes[2].velocity=[-0.8, 0.6, 0]"};
+  const double w = std::sqrt(2 / inertia), rate = 2.0;  // 1 m/s at 0.5 m
+  const Simulation swing = run_scene(crank, strong);
+  CHECK(last_of(diagnose(swing), "motor.angle_rad") ==
+        Approx(start_angle + rate / w * std::sin(w * 1.5)).margin(1e-8));
+  // With gains for three equal roots at -6 /s: k = 3 * 36 I, c = 18 I, k_i = 216 I. From rest with a constant
+  // torque M = -0.4 N m: e = (M / I) t^2 / 2 * exp(-6 t) has this equation's initial values e = e' = 0, e'' =
+  // -M/I.
+  std::vector<std::string> pid(strong);
+  pid[4] = "forces[0].proportional=" + std::to_string(108 * inertia);
+  pid[5] = "forces[0].derivative=" + std::to_string(18 * inertia);
+  pid.push_back("forces[0].integral=" + std::to_string(216 * inertia));
+  const Simulation run = run_scene(crank + R"(
+[[forces]]
+kind = "torsion_spring"
+nodes = ["E", "O", "T"]
+axis = [0, 0, 1]
+stiffness = 1e-9
+free_angle = -2.2918311805232929e10
+)",
+                                   pid);
+  REQUIRE(run.status == RunStatus::completed);
+  const double moment = -1e-9 * (start_angle + 2.2918311805232929e10 * pi / 180);  // -0.4, constant to 1e-9
+  const double e = -moment / inertia * 1.5 * 1.5 / 2 * std::exp(-9.0);
+  CHECK(last_of(diagnose(run), "motor.angle_rad") == Approx(start_angle - e).margin(1e-7));
+}
+
+TEST_CASE("a controller of the rate follows its command") {
+  const Simulation run = run_scene(
+      crank, {"forces[0].stall_torque=3", "forces[0].no_load_speed=300000", "forces[0].control=rate",
+              "forces[0].motion=rate", "forces[0].rate=40", "forces[0].proportional=5"});
+  // I th'' = k (r - th'): th' = r (1 - exp(-k t / I))
+  const double r = 40 * pi / 180, k = 5 / inertia, t = 1.5;
+  CHECK(last_of(diagnose(run), "motor.angle_rad") ==
+        Approx(start_angle + r * (t - (1 - std::exp(-k * t)) / k)).margin(1e-6));
+}
+
+// A winch lifts 2 kg: (m + n^2 J / r^2) x'' = n T / r - m g with T on the line.
+TEST_CASE("a winch draws in what hangs on its cable") {
+  const std::string text = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "P", position = [0, 0, 3], fixed = true}, {name = "Q", position = [0.9, 0, 3], fixed = true},
+  {name = "A", position = [0, 0, 1], mass = 2}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[[forces]]
+kind = "winch"
+name = "winch"
+nodes = ["A", "P", "Q"]
+stall_torque = 0.2
+no_load_speed = 6000
+gear_ratio = 12
+drum_radius = 0.05
+inertia = 1e-4
+[solver]
+stages = 4
+step = 0.01
+end_time = 0.8
+)";
+  const double m = 2 + 144 * 1e-4 / 0.0025, pull = 12 * 0.2 / 0.05, top = 6000 * pi / 180 * 0.05 / 12;
+  const double end = top * (1 - 2 * 9.81 / pull), tau = m * top / pull, t = 0.8;
+  const double x = end * (t - tau * (1 - std::exp(-t / tau)));
+  const Simulation run = run_scene(text);
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(end_positions(run)[8] == Approx(1 + x).margin(1e-9));
+  const Diagnostics d = diagnose(run);
+  CHECK(last_of(d, "winch.value_m") == Approx(x).margin(1e-9));
+  CHECK(testing::largest(d, "energy_balance_J") <= 1e-8);
+}
+
+TEST_CASE("columns of motors are measures by name") {
+  const auto model = testing::model_of(crank);
+  const auto columns = columns_of(model);
+  const Simulation run = run_scene(crank);
+  const Diagnostics d = diagnose(run);
+  CHECK(find_measure("max:motor.torque_N_m", columns).value(run, d) == Approx(ratio * stall).epsilon(1e-12));
+}
+
+TEST_CASE("motors that cannot be say what is wrong") {
+  CHECK(error_of(crank, {"forces[0].gear_ratio=0"}).find("gear_ratio: must not be 0") != std::string::npos);
+  CHECK(error_of(crank, {"forces[0].current_limit=2"}).find("torque_constant: is missing") !=
+        std::string::npos);
+  CHECK(error_of(crank, {"forces[0].control=position"}).find("it would do nothing") != std::string::npos);
+}
+
+}  // namespace motor_test

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ring that a cable draws open, and the net on it.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/structures/force_density.hpp"
+#include "core/system/mobility.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace cable_ring_test {
+
+namespace {
+
+using testing::error_of, testing::model_of, testing::run_scene;
+
+const std::string ring = R"(
+[structure]
+kind = "cable_ring"
+units = 6
+longeron_length = 1.7
+post_length = 0.8
+fold_angle = 77
+cable_rate = 0.6
+cable_ramp = 1.5
+joint_damping = 8
+[solver]
+stages = 3
+step = 0.02
+)";
+
+VectorXd start_of(const Structure& s) {
+  VectorXd q(3 * static_cast<Index>(s.nodes.size()));
+  for (std::size_t i = 0; i < s.nodes.size(); ++i)
+    q.segment<3>(3 * static_cast<Index>(i)) = s.nodes[i].position;
+  return q;
+}
+
+double path(double fold_deg) {
+  return 6 * std::sqrt(1.7 * 1.7 + 0.8 * 0.8 + 2 * 1.7 * 0.8 * std::sin(fold_deg * pi / 180));
+}
+
+}  // namespace
+
+// What is drawn in by t is rate (t - ramp / 2): the ring is deployed when that is the difference of the
+// paths.
+TEST_CASE("a ring drawn open by a cable is deployed when so much of it is drawn in") {
+  const Simulation run = run_scene(ring);
+  REQUIRE(run.status == RunStatus::deployed);
+  const double t = 0.75 + (path(77) - path(0)) / 0.6;
+  CHECK(run.trajectory.end_time() == Approx(t).epsilon(1e-6));
+  // On the way the fold angle follows the cable.
+  const std::size_t i = run.trajectory.size() / 2;
+  const double left = path(77) - 0.6 * (run.trajectory.time(i) - 0.75);
+  const double sine = (left * left / 36 - 1.7 * 1.7 - 0.8 * 0.8) / (2 * 1.7 * 0.8);
+  CHECK(run.trajectory.structure().deployment.fold_angle(run.trajectory.node_positions(i)) ==
+        Approx(std::asin(sine)).margin(1e-9));
+}
+
+TEST_CASE("gears leave a ring of bays one freedom, without them it has one for each bay but three more") {
+  const auto freedom = [](const std::vector<std::string>& changes) {
+    const auto model = model_of(ring, changes);
+    return analyse_mobility(model->system, start_of(model->structure)).degrees_of_freedom;
+  };
+  CHECK(freedom({}) == 6 + 1);  // of them 6 as a whole
+  CHECK(freedom({"structure.gears=false"}) == 6 + 6 - 3);
+}
+
+TEST_CASE("rings that cannot be are refused") {
+  CHECK(error_of(ring, {"structure.units=7"}).find("units: must be even") != std::string::npos);
+  CHECK(error_of("[structure]\nkind = 'mesh_reflector'\nfocal_length = 0.5\n")
+            .find("would meet in the middle") != std::string::npos);
+}
+
+// Schek's example: a chain of equal densities under equal loads. D x = f is then the second difference of x,
+// constant: x lies on a parabola, exactly.
+TEST_CASE("equal force densities under equal loads put nodes on a parabola") {
+  const int n = 17;
+  std::vector<NetMember> members;
+  std::vector<bool> fixed(n + 1, false);
+  fixed.front() = fixed.back() = true;
+  std::vector<Vec3> loads(n + 1, Vec3(0, 0, -0.3)), x(n + 1, Vec3::Zero());
+  x.front() = Vec3(0, 0, 1);
+  x.back() = Vec3(5, 0, 2);
+  for (int i = 0; i < n; ++i) members.push_back({i, i + 1, 2.5});
+  find_form(members, fixed, loads, x);
+  for (int i = 0; i <= n; ++i) {
+    const double u = i;  // z'' = 0.3 / 2.5 per node squared
+    CHECK(x[static_cast<std::size_t>(i)][0] == Approx(5 * u / n).margin(1e-13));
+    CHECK(x[static_cast<std::size_t>(i)][2] ==
+          Approx(1 + u / n - 0.5 * 0.3 / 2.5 * u * (n - u)).margin(1e-12));
+  }
+  members.erase(members.begin() + 3);
+  members.erase(members.begin() + 9);
+  CHECK_THROWS_WITH(find_form(members, fixed, loads, x), Catch::Contains("hang on nothing"));
+}
+
+// Latched and at rest the nets hang in the form that was found: no node feels a force.
+TEST_CASE("nets are slack when folded and on their paraboloid when deployed") {
+  const std::string text =
+      "[structure]\nkind = 'mesh_reflector'\nunits = 6\nnet_rings = 3\nfocal_length = 5\nfold_angle = 70\n";
+  const auto folded = model_of(text);
+  const Structure& s = folded->structure;
+  const VectorXd q = start_of(s);
+  VectorXd f = VectorXd::Zero(q.size());
+  folded->system.add_applied_force(0.0, q, VectorXd::Zero(q.size()), 1.0, f);
+  CHECK(f.isZero(0.0));
+  CHECK(s.surfaces.at(0).rms(q) > 0.01);
+}
+
+}  // namespace cable_ring_test
