@@ -61,6 +61,10 @@ constexpr Command table[] = {
      "unfurl modes hoop6 --set structure.youngs_modulus=7e10 --set structure.model=joints\n"
      "unfurl modes hoop6 --at deployed --set solver.at_deployed=latch --set structure.youngs_modulus=7e10 "
      "-o modes"},
+    {"margin", "SCENE [-o DIR]",
+     "what drives a deployment against what resists it, by source, in every pose and along the motion", 1, 1,
+     false, cmd_margin, "-o --set --factor --stuck --style --dpi --force --json --quiet",
+     "unfurl margin hoop6 --set gravity.acceleration=[0,0,-0.2] --stuck -o margin"},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
      "--set --tolerance --picture --at --dark --bench --ui-scale --size --fps --look --supersample "
      "--transparent --threads --gpu",
