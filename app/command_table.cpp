@@ -57,9 +57,12 @@ constexpr Command table[] = {
      "unfurl modes hoop6 --at deployed --set solver.at_deployed=latch --set structure.youngs_modulus=7e10 "
      "-o modes"},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
-     "--set --tolerance --picture --at --dark --bench --ui-scale --size --fps --look --supersample "
+     "--set --tolerance --picture --record --replay --at --dark --bench --ui-scale --size --fps --look "
+     "--supersample "
      "--transparent --threads --gpu",
-     "unfurl view hoop6 --picture window.png --at 4.6"},
+     "unfurl view hoop6 --picture window.png --at 4.6\n"
+     "unfurl view hoop6 --record session.jsonl\n"
+     "unfurl view --replay session.jsonl"},
     {"list", "WHAT [TABLE]",
      "what there is to choose from: structures, methods, figures, scenes, constraints, forces, looks, "
      "measures, "

@@ -149,6 +149,8 @@ TEST_CASE("the view turns, moves and zooms, and F frames it again") {
   CHECK(driver.state().orbit->distance < turned.distance);
   driver.key(Key::f);
   CHECK_FALSE(driver.state().orbit);
+  driver.click("view options");
+  driver.frame();
   driver.click("view Top");
   REQUIRE(driver.state().orbit);
   CHECK(driver.state().orbit->elevation > 1.5f);
