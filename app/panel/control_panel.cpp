@@ -116,8 +116,13 @@ void ControlPanel::take_events() {
   while (!events_.empty()) {
     const InputEvent event = std::move(events_.front());
     events_.pop_front();
-    if (event.kind == Kind::key && event.down) take_key(event);
-    host_->apply(event);
+    InputEvent seen = event;  // by widgets: of a key that was for the actions, what is held beside it
+    if (event.kind == Kind::key && event.down) {
+      const std::size_t before = state().intents.size();
+      take_key(event);
+      seen.down = state().intents.size() == before;
+    }
+    host_->apply(seen);
     keep_drawing(true);
     if (event.kind == Kind::text && event.text == "?" && !host_->typing())
       state().intents.emplace_back([](LiveSession& s) { s.state().help_open = !s.state().help_open; });

@@ -21,7 +21,7 @@ void LiveSession::take_tool(Tool tool) {
   state_.playback.t = state_.shown->simulation.trajectory.start_time();
   // A plane mechanism is built on in its plane.
   const auto& nodes = state_.shown->simulation.trajectory.structure().nodes;
-  for (int axis = 0; axis < 3; ++axis)
+  for (const int axis : {2, 0, 1})  // of a line's planes the upright one that is seen from the front
     if (std::all_of(nodes.begin(), nodes.end(), [&](const Node& node) {
           return std::abs(node.position[axis] - nodes.front().position[axis]) < 1e-9;
         }))

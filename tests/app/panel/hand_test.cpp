@@ -80,7 +80,7 @@ TEST_CASE("nodes and rods are added, moved, connected and deleted as lines of TO
   driver.key(Key::b);
   CHECK(driver.state().tool == Tool::build);
   auto& intents = driver.state().intents;
-  intents.emplace_back([](LiveSession& s) { s.add_node({0.52, 0.01, 0.98}); });
+  intents.emplace_back([](LiveSession& s) { s.add_node({0.52, 0, 0.98}); });
   driver.settle();
   CHECK(driver.state().history.now().added.back() ==
         "structure.nodes[2]={name = \"N1\", position = [0.5, 0.0, 1.0], mass = 1.0}");
