@@ -33,6 +33,7 @@ struct StudyArguments {
 // What only the window takes.
 struct ViewArguments {
   std::string picture;               // --picture FILE: draw the panel into it, without a window
+  std::string record, replay;        // --record FILE, --replay FILE: a session (panel/session_log.hpp)
   bool dark = false, bench = false;  // --dark, --bench
 };
 

@@ -66,9 +66,12 @@ constexpr Command table[] = {
      false, cmd_margin, "-o --set --factor --stuck --style --dpi --force --json --quiet",
      "unfurl margin hoop6 --set gravity.acceleration=[0,0,-0.2] --stuck -o margin"},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
-     "--set --tolerance --picture --at --dark --bench --ui-scale --size --fps --look --supersample "
+     "--set --tolerance --picture --record --replay --at --dark --bench --ui-scale --size --fps --look "
+     "--supersample "
      "--transparent --threads --gpu",
-     "unfurl view hoop6 --picture window.png --at 4.6"},
+     "unfurl view hoop6 --picture window.png --at 4.6\n"
+     "unfurl view hoop6 --record session.jsonl\n"
+     "unfurl view --replay session.jsonl"},
     {"list", "WHAT [TABLE]",
      "what there is to choose from: structures, methods, figures, scenes, constraints, forces, looks, "
      "measures, "
