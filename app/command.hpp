@@ -50,6 +50,7 @@ struct Arguments {
   std::vector<std::string> exports;    // --export, split at commas
   bool force = false;
   bool encode_only = false;  // --encode-only
+  bool plan = false;         // --plan
   bool quiet = false;
   bool json = false;
   bool all = false;       // --all, of show

@@ -7,19 +7,20 @@ namespace {
 
 constexpr Command table[] = {
     {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run,
-     "-o --set --tolerance --export --size --fps --look --supersample --transparent --force --json --quiet",
+     "-o --set --tolerance --export --size --fps --look --supersample --transparent --plan --force --json "
+     "--quiet",
      "unfurl run hoop6 -o data\n"
      "unfurl run hoop6 -o data --set structure.units=12 --set solver.step=0.005\n"
      "unfurl run my.toml -o data --tolerance 1e-8 --export vtk,npy\n"
      "unfurl run hoop6 -o data --export html"},
     {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
      "-o --set --tolerance --export --frames --join --lease --encode-only --style --dpi --size --fps --look "
-     "--supersample "
-     "--transparent "
+     "--supersample --transparent --fit --plan "
      "--force --threads --gpu --json --quiet",
      "unfurl render hoop6 -o film\n"
      "unfurl render hoop6 -o film --size 640x360 --look space --frames 0:20\n"
-     "unfurl render hoop6 -o film --size 640x360 --look space --encode-only"},
+     "unfurl render hoop6 -o film --size 640x360 --look space --encode-only\n"
+     "unfurl render scissor_mast_square -o mast --fit --plan"},
     {"figure", "SCENE NAME... -o FILE",
      "one figure, PNG, SVG or PDF by extension; NAME all: every figure, into a directory", 2, 100, true,
      cmd_figure, "-o --set --tolerance --style --dpi --gpu --quiet",
@@ -74,7 +75,7 @@ constexpr Command table[] = {
      "unfurl view --replay session.jsonl"},
     {"list", "WHAT [TABLE]",
      "what there is to choose from: structures, methods, figures, scenes, constraints, forces, looks, "
-     "measures, "
+     "surfaces, measures, "
      "columns, and keys [TABLE]: those of scenes with type, unit, range and default",
      1, 2, false, cmd_list, "--json --markdown",
      "unfurl list keys solver\n"

@@ -158,6 +158,9 @@ Structure build_structure(const Scene& scene) {
   add_deployment(scene, structure);
   check_latches(scene, structure);
   show_cables(structure);
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
+    if (scene.surfaces[i].enabled)
+      surface_nodes(scene.surfaces[i], "surfaces[" + std::to_string(i) + "].nodes", structure);
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   return structure;
 }
