@@ -23,7 +23,7 @@ constexpr double met = 1e-10;          // of a constraint, in units of the struc
 constexpr double at_rest = 1e-4;       // mu: of moving at all
 constexpr double kept = 1e4;           // W: of constraints
 constexpr double longest_step = 0.04;  // of a node, in units of the size
-constexpr int most_steps = 12, most_projections = 30;
+constexpr int most_free_steps = 12, most_projections = 30;
 constexpr double free_value = 1e-12;  // eigenvalue of G^T G, in units of the largest
 
 Structure without_drives(Structure structure) {
@@ -132,7 +132,7 @@ VectorXd FreePoses::step_towards(const VectorXd& z, int node, const Vec3& way) c
 VectorXd FreePoses::pulled(const VectorXd& q, int node, const Vec3& target) const {
   VectorXd z = system_.reduce(q);
   double away = (target - node_at(z, node)).norm(), longest = longest_step * size_;
-  for (int i = 0; i < most_steps && away > 1e-9 * size_; ++i) {
+  for (int i = 0; i < most_free_steps && away > 1e-9 * size_; ++i) {
     Vec3 way = target - node_at(z, node);
     if (way.norm() > longest) way *= longest / way.norm();
     const VectorXd step = step_towards(z, node, way);
