@@ -7,19 +7,20 @@ namespace {
 
 constexpr Command table[] = {
     {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run,
-     "-o --set --tolerance --export --size --fps --look --supersample --transparent --force --json --quiet",
+     "-o --set --tolerance --export --size --fps --look --supersample --transparent --plan --force --json "
+     "--quiet",
      "unfurl run hoop6 -o data\n"
      "unfurl run hoop6 -o data --set structure.units=12 --set solver.step=0.005\n"
      "unfurl run my.toml -o data --tolerance 1e-8 --export vtk,npy\n"
      "unfurl run hoop6 -o data --export html"},
     {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
      "-o --set --tolerance --export --frames --join --lease --encode-only --style --dpi --size --fps --look "
-     "--supersample "
-     "--transparent "
+     "--supersample --transparent --fit --plan "
      "--force --threads --gpu --json --quiet",
      "unfurl render hoop6 -o film\n"
      "unfurl render hoop6 -o film --size 640x360 --look space --frames 0:20\n"
-     "unfurl render hoop6 -o film --size 640x360 --look space --encode-only"},
+     "unfurl render hoop6 -o film --size 640x360 --look space --encode-only\n"
+     "unfurl render scissor_mast_square -o mast --fit --plan"},
     {"figure", "SCENE NAME... -o FILE",
      "one figure, PNG, SVG or PDF by extension; NAME all: every figure, into a directory", 2, 100, true,
      cmd_figure, "-o --set --tolerance --style --dpi --gpu --quiet",
@@ -61,13 +62,20 @@ constexpr Command table[] = {
      "unfurl modes hoop6 --set structure.youngs_modulus=7e10 --set structure.model=joints\n"
      "unfurl modes hoop6 --at deployed --set solver.at_deployed=latch --set structure.youngs_modulus=7e10 "
      "-o modes"},
+    {"margin", "SCENE [-o DIR]",
+     "what drives a deployment against what resists it, by source, in every pose and along the motion", 1, 1,
+     false, cmd_margin, "-o --set --factor --stuck --style --dpi --force --json --quiet",
+     "unfurl margin hoop6 --set gravity.acceleration=[0,0,-0.2] --stuck -o margin"},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
-     "--set --tolerance --picture --at --dark --bench --ui-scale --size --fps --look --supersample "
+     "--set --tolerance --picture --record --replay --at --dark --bench --ui-scale --size --fps --look "
+     "--supersample "
      "--transparent --threads --gpu",
-     "unfurl view hoop6 --picture window.png --at 4.6"},
+     "unfurl view hoop6 --picture window.png --at 4.6\n"
+     "unfurl view hoop6 --record session.jsonl\n"
+     "unfurl view --replay session.jsonl"},
     {"list", "WHAT [TABLE]",
      "what there is to choose from: structures, methods, figures, scenes, constraints, forces, looks, "
-     "measures, "
+     "surfaces, measures, "
      "columns, and keys [TABLE]: those of scenes with type, unit, range and default",
      1, 2, false, cmd_list, "--json --markdown",
      "unfurl list keys solver\n"

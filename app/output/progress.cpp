@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iostream>
 #include <string_view>
 #include <utility>
 
@@ -24,26 +25,62 @@ constexpr std::string_view wiped = "\r\x1b[K";
 
 }  // namespace
 
+namespace {
+
+constexpr double line_every = 10;  // without a terminal [s]
+
+std::string left_text(double seconds) {
+  const long s = std::lround(seconds);
+  if (s < 100) return std::to_string(s) + " s left";
+  if (s < 6000) return std::to_string((s + 30) / 60) + " min left";
+  return std::to_string((s + 1800) / 3600) + " h left";
+}
+
+}  // namespace
+
 Progress::Progress(std::string task, bool quiet)
-    : task_(std::move(task)), shown_(!quiet && isatty(STDERR_FILENO)) {}
+    : task_(std::move(task)), quiet_(quiet), terminal_(isatty(STDERR_FILENO)) {}
 
 Progress::~Progress() {
-  if (percent_ < 0) return;
+  if (percent_ < 0 || !terminal_) return;
   send_to_terminal(wiped);
   bar_is_shown(false);
 }
 
+double Progress::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
 void Progress::show(double fraction) {
-  if (!shown_ || std::isnan(fraction)) return;
-  const int percent = static_cast<int>(100.0 * std::clamp(fraction, 0.0, 1.0));
+  if (!quiet_ && !std::isnan(fraction)) print(std::clamp(fraction, 0.0, 1.0), {});
+}
+
+void Progress::show(std::size_t done, std::size_t of, const char* things) {
+  if (quiet_ || of == 0) return;
+  print(static_cast<double>(done) / static_cast<double>(of),
+        std::to_string(done) + " of " + std::to_string(of) + " " + things);
+}
+
+void Progress::print(double fraction, const std::string& counts) {
+  const int percent = static_cast<int>(100.0 * fraction);
+  const double passed = seconds();
+  std::string text = std::to_string(percent) + "%";
+  if (!counts.empty()) text += ", " + counts;
+  if (passed > 2 && fraction > 0.02) text += ", " + left_text(passed * (1 - fraction) / fraction);
+  if (!terminal_) {
+    const long due = static_cast<long>(passed / line_every);
+    if (due == told_) return;
+    told_ = due;
+    std::cerr << task_ << " " << text << "\n";
+    return;
+  }
   if (percent == percent_) return;
   percent_ = percent;
   bar_is_shown(true);
-  constexpr int width = 40;
+  constexpr int width = 30;
   const int done = percent * width / 100;
   send_to_terminal("\r" + task_ + " [" + std::string(static_cast<std::size_t>(done), '=') +
-                   std::string(static_cast<std::size_t>(width - done), ' ') + "] " + std::to_string(percent) +
-                   "%");
+                   std::string(static_cast<std::size_t>(width - done), ' ') + "] " + text + "\x1b[K");
 }
 
 Waiting::Waiting(std::string task, bool quiet) {

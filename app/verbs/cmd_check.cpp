@@ -10,8 +10,10 @@
 #include "app/command.hpp"
 #include "app/output/progress.hpp"
 #include "app/verbs/scene_run.hpp"
+#include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/system/mobility.hpp"
+#include "core/system/rigid_twin.hpp"
 #include "core/system/self_stress.hpp"
 
 namespace unfurl {
@@ -153,12 +155,17 @@ int cmd_check(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   const auto model = model_of(scene, arguments);
   const VectorXd start = start_positions(model->structure);
-  Judged judged{*model, mobility_of(*model, arguments), {}, model->system.all_names()};
-  judged.balance = force_balance(model->system, start, judged.mobility, model->structure.rods);
+  // Of rods that give, the mechanism is judged, and the forces that they share.
+  Structure rods = rigid_twin(model->structure, start);
+  System rows(rods, scene.solver.eliminate_linear);
+  const Model mechanism{std::move(rods), std::move(rows)};
+  Judged judged{mechanism, mobility_of(mechanism, arguments), {}, mechanism.system.all_names()};
+  judged.balance = force_balance(mechanism.system, start, judged.mobility, mechanism.structure.rods);
   for (const auto& note : model->structure.notes) std::cerr << "unfurl: warning: " << note << "\n";
-  const std::string warning =
-      velocity_warning(initial_state(model->structure, model->system), model->structure);
-  if (!warning.empty()) std::cerr << "unfurl: warning: " << warning << "\n";
+  const InitialState at_start = initial_state(model->structure, model->system);
+  for (const std::string& warning : {velocity_warning(at_start, model->structure),
+                                     elastic_step_warning(*model, at_start.state, scene.solver)})
+    if (!warning.empty()) std::cerr << "unfurl: warning: " << warning << "\n";
   if (arguments.json)
     print_json(scene, judged);
   else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Completions for shells and the manual page, from the tables of verbs and options: they cannot disagree.
+// Completions for shells, the manual page and what desktops list a program by, from the tables of verbs and options: they cannot disagree.
 #include <iostream>
 
 #include "app/command.hpp"
@@ -25,7 +25,7 @@ constexpr Completed completed[] = {
     {"--export", "vtk gltf csv npy mat html", ""},
     {"--extreme", "mass_ratio force fold_angle units stiffness", ""},
     {"--style", "screen single-column double-column slide", ""},
-    {"completion", "bash zsh fish man", ""},
+    {"completion", "bash zsh fish man desktop appstream", ""},
     {"new", "", "structures"},
     {"list", "structures methods figures scenes constraints forces looks measures columns keys", ""},
 };
@@ -179,12 +179,46 @@ std::string manual_page() {
          "or gpu: what draws\n.TP\n.B UNFURL_OSMESA, UNFURL_EGL\nother libraries than the system's\n";
 }
 
+constexpr std::string_view summary = "Simulate, render and measure deployable structures";
+
+std::string desktop_entry() {
+  return "[Desktop Entry]\nType=Application\nName=Unfurl\nGenericName=Deployable structures\nComment=" +
+         std::string(summary) +
+         "\nExec=unfurl view %f\nIcon=unfurl\nTerminal=false\nCategories=Science;Engineering;\n"
+         "Keywords=linkage;antenna;scissor;mechanism;simulation;\n";
+}
+
+std::string in_xml(std::string_view text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  return out;
+}
+
+std::string appstream_component() {
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<component type=\"desktop-application\">\n"
+      "  <id>io.unfurl.Unfurl</id>\n  <name>Unfurl</name>\n  <summary>" +
+      std::string(summary) +
+      "</summary>\n  <metadata_license>CC0-1.0</metadata_license>\n"
+      "  <project_license>BSD-3-Clause</project_license>\n  <developer_name>The Unfurl authors</developer_name>\n"
+      "  <description>\n    <p>Unfurl simulates how pin-jointed rods unfold, with structure-preserving variational "
+      "integrators, draws frames, films and figures without a display, and opens a window to design in.</p>\n"
+      "    <p>What it does from a terminal:</p>\n    <ul>\n";
+  for (const Command& command : commands())
+    text += "      <li>" + std::string(command.name) + ": " + in_xml(command.help) + "</li>\n";
+  return text +
+         "    </ul>\n  </description>\n  <launchable type=\"desktop-id\">unfurl.desktop</launchable>\n"
+         "  <provides>\n    <binary>unfurl</binary>\n  </provides>\n  <content_rating type=\"oars-1.1\"/>\n"
+         "</component>\n";
+}
+
 struct Script {
   std::string_view name;
   std::string (*text)();
 };
 constexpr Script scripts[] = {
-    {"bash", bash_completion}, {"zsh", zsh_completion}, {"fish", fish_completion}, {"man", manual_page}};
+    {"bash", bash_completion}, {"zsh", zsh_completion}, {"fish", fish_completion}, {"man", manual_page}, {"desktop", desktop_entry}, {"appstream", appstream_component}};
 
 }  // namespace
 

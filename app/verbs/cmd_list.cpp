@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// unfurl list structures|methods|figures|scenes|constraints|forces|looks|measures|columns|keys: what there is
-// to choose from.
+// unfurl list structures|methods|figures|scenes|constraints|forces|looks|surfaces|measures|columns|keys: what
+// there is to choose from.
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -15,6 +15,7 @@
 #include "core/scene/key_tables.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
+#include "core/scene/surfaces.hpp"
 #include "core/structures/family.hpp"
 #include "core/text/nearest_name.hpp"
 #include "core/text/wrapped.hpp"
@@ -104,6 +105,13 @@ std::vector<Item> look_items() {
   return items;
 }
 
+std::vector<Item> surface_items() {
+  std::vector<Item> items;
+  for (const auto& kind : surface_kinds())
+    items.push_back({std::string(kind.name), std::string(kind.help), nullptr});
+  return items;
+}
+
 constexpr std::string_view entry_note =
     "Every entry may also have a name, for messages and columns, and enabled = false, as if it were not "
     "there.";
@@ -112,6 +120,11 @@ constexpr std::string_view column_note =
     "A drive NAME adds NAME.angle_rad, NAME.torque_N_m and NAME.power_W (of a length NAME.value_m and "
     "NAME.force_N), a structure its own lengths. Energies of dampers, drives and impacts and what belongs to "
     "a fold angle are there where the scene has them.";
+
+constexpr std::string_view surface_note =
+    "An entry of [[surfaces]] spans its nodes, named in order around the edge; it is shown only, without "
+    "mass "
+    "or force. unfurl list keys surfaces: its keys.";
 
 struct List {
   std::string_view name;
@@ -126,6 +139,7 @@ constexpr List lists[] = {{"structures", structure_items},
                           {"constraints", constraint_items, entry_note},
                           {"forces", force_items, entry_note},
                           {"looks", look_items},
+                          {"surfaces", surface_items, surface_note},
                           {"measures", measure_items},
                           {"columns", column_items, column_note}};
 

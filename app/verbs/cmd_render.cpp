@@ -4,11 +4,14 @@
 #include <optional>
 
 #include "app/command.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/output_directory.hpp"
 #include "app/verbs/film.hpp"
 #include "app/verbs/frame_range.hpp"
+#include "app/verbs/plan.hpp"
 #include "app/verbs/run_figures.hpp"
+#include "app/verbs/run_report.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/team_work.hpp"
 #include "core/export/atomic_file.hpp"
@@ -20,6 +23,7 @@ int cmd_render(const Arguments& arguments) {
   const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
   check_film(scene);
+  if (arguments.plan) return show_plan(scene, arguments, true);
   auto model = model_of(scene, arguments);
   if (arguments.join && (arguments.force || !arguments.frames.empty()))
     throw UsageError(
@@ -48,15 +52,17 @@ int cmd_render(const Arguments& arguments) {
   if (!folder.holds_this()) FilmFolder::clear(output.written());
   folder.claim();
   lock.share();
+  const Scene shown = fitted(scene, run);
+  FrameMemory memory;
   const auto team = join_team(arguments, directory);
   if (team) {
     const bool writes = work_together(*team, arguments, [&] {
-      return draw_frames(folder, scene, run, diagnostics, *context, arguments, team.get()) &&
-             all_frames(folder, scene, run);
+      return draw_frames(folder, shown, run, diagnostics, *context, arguments, memory, team.get()) &&
+             all_frames(folder, shown, run);
     });
     if (!writes) return interrupted() ? exit_interrupted : exit_code_of(run, diagnostics);
   }
-  const std::string summary = write_data(directory, scene, run, diagnostics);
+  const std::string summary = write_data(directory, scene, run, diagnostics, as_typed(arguments.words));
   write_exports(formats, directory, scene, run, diagnostics, arguments);
   keeping.reset();
   report_run(run, diagnostics, arguments);
@@ -64,17 +70,18 @@ int cmd_render(const Arguments& arguments) {
   if (exit_code_of(run, diagnostics) == exit_interrupted) return exit_interrupted;
 
   if (arguments.encode_only) {
-    require_all_frames(folder, scene, run, arguments);
-    return encode_films(directory, folder, scene, run, arguments) ? exit_code_of(run, diagnostics)
+    require_all_frames(folder, shown, run, arguments);
+    return encode_films(directory, folder, shown, run, arguments) ? exit_code_of(run, diagnostics)
                                                                   : exit_interrupted;
   }
   FigureWriter writer(*context, style);
-  if (!draw_frames(folder, scene, run, diagnostics, *context, arguments) ||
+  if (!draw_frames(folder, shown, run, diagnostics, *context, arguments, memory) ||
       !write_figures(directory / "figures", all_figures(), run, diagnostics, writer, arguments) ||
-      !encode_films(directory, folder, scene, run, arguments)) {
+      !encode_films(directory, folder, shown, run, arguments, memory)) {
     std::cerr << "unfurl: interrupted; what is finished is kept\n";
     return exit_interrupted;
   }
+  write_run_report(directory, scene, run, diagnostics, arguments);
   return exit_code_of(run, diagnostics);
 }
 

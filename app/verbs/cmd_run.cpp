@@ -3,9 +3,11 @@
 #include <iostream>
 
 #include "app/command.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/film_folder.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/output_directory.hpp"
+#include "app/verbs/plan.hpp"
 #include "app/verbs/scene_run.hpp"
 
 namespace unfurl {
@@ -32,6 +34,7 @@ int cmd_run(const Arguments& arguments) {
     throw UsageError("-o DIR is missing (or --json, for the summary alone)");
   const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);
+  if (arguments.plan) return show_plan(scene, arguments, false);
   auto model = model_of(scene, arguments);
   OwnDirectory output(arguments.output, arguments.force, "run");
   const std::filesystem::path& directory = output.path();
@@ -42,7 +45,7 @@ int cmd_run(const Arguments& arguments) {
   Simulation run = simulate_scene(scene, std::move(model), arguments);
   const Diagnostics diagnostics = judge_run(run);
   if (!directory.empty() && !film) output.written().remove_all();
-  const std::string summary = write_data(directory, scene, run, diagnostics);
+  const std::string summary = write_data(directory, scene, run, diagnostics, as_typed(arguments.words));
   write_exports(formats, directory, scene, run, diagnostics, arguments);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary;

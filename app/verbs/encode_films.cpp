@@ -143,9 +143,8 @@ class FilmEncoders {
   void sample(const Image& frame) {
     for (const auto& film : films_) film->sample(frame);
   }
-  void add(Image image) {
+  void add(const std::shared_ptr<const Image>& frame) {
     wait();
-    const auto frame = std::make_shared<const Image>(std::move(image));
     for (const auto& film : films_)
       busy_.push_back(std::async(policy_, [&film = *film, frame] { film.add(*frame); }));
   }
@@ -178,24 +177,26 @@ bool can_make_mp4(const std::filesystem::path& directory, const Scene& scene, co
 }
 
 // A frame of the film's size.
-Image finished_frame(const FilmFolder& folder, std::size_t index, const RenderOptions& options) {
-  Image image = read_png(folder.frame(index));
-  if (image.width != options.width || image.height != options.height)
+std::shared_ptr<const Image> finished_frame(const FilmFolder& folder, std::size_t index,
+                                            const RenderOptions& options, const FrameMemory& memory) {
+  if (auto image = memory.find(index)) return image;
+  auto image = std::make_shared<const Image>(read_png(folder.frame(index)));
+  if (image->width != options.width || image->height != options.height)
     throw FileError(folder.frame(index), "is not a frame of this film");
   return image;
 }
 
 // False: interrupted. Throws FileError where a film could not be made, when all others are.
 bool encode(FilmEncoders& encoders, const FilmFolder& folder, const RenderOptions& options,
-            std::size_t frames, const Arguments& arguments) {
+            std::size_t frames, const Arguments& arguments, const FrameMemory& memory) {
   Progress progress("encoding", arguments.quiet);
   const std::size_t stride = std::max<std::size_t>(1, frames / palette_samples);
   for (std::size_t k = 0; encoders.wants_samples() && k < frames && !interrupted(); k += stride)
-    encoders.sample(finished_frame(folder, k, options));
+    encoders.sample(*finished_frame(folder, k, options, memory));
   for (std::size_t k = 0; k < frames; ++k) {
     if (interrupted()) return false;
-    progress.show(static_cast<double>(k) / static_cast<double>(frames));
-    encoders.add(finished_frame(folder, k, options));
+    progress.show(k, frames, "frames");
+    encoders.add(finished_frame(folder, k, options, memory));
   }
   std::optional<FileError> failure;
   for (const auto& film : encoders.finish()) {
@@ -215,7 +216,7 @@ bool encode(FilmEncoders& encoders, const FilmFolder& folder, const RenderOption
 }  // namespace
 
 bool encode_films(const std::filesystem::path& directory, const FilmFolder& folder, const Scene& scene,
-                  const Simulation& run, const Arguments& arguments) {
+                  const Simulation& run, const Arguments& arguments, const FrameMemory& memory) {
   const RenderOptions& options = scene.render;
   const bool webp = options.webp && !folder.encoded("animation.webp"),
              gif = options.gif && !folder.encoded("animation.gif"),
@@ -239,7 +240,7 @@ bool encode_films(const std::filesystem::path& directory, const FilmFolder& fold
   } catch (const FileError&) {
     without = std::current_exception();  // the others first
   }
-  if (!encode(encoders, folder, options, frames, arguments)) return false;
+  if (!encode(encoders, folder, options, frames, arguments, memory)) return false;
   if (without) std::rethrow_exception(without);
   return true;
 }

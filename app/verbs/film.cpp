@@ -2,6 +2,7 @@
 #include "app/verbs/film.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <thread>
@@ -12,12 +13,14 @@
 #include "app/output/progress.hpp"
 #include "app/verbs/frame_range.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/scene/size_limits.hpp"
 #include "render/image/image_scale.hpp"
 #include "render/image/png.hpp"
 #include "render/image/task_queue.hpp"
 #include "render/scene/film_style.hpp"
 #include "render/scene/frame_builder.hpp"
 #include "render/scene/renderer.hpp"
+#include "render/scene/shutter.hpp"
 
 namespace unfurl {
 
@@ -47,6 +50,24 @@ void check_film(const Scene& scene) {
   throw SceneError({{place_of(scene, "render.fps"), "render.fps",
                      "the film would have more than 99999 frames; take fewer per second, a larger "
                      "render.speed or an earlier solver.end_time"}});
+}
+
+Scene fitted(const Scene& scene, const Simulation& run) {
+  Scene out = scene;
+  RenderOptions& render = out.render;
+  if (!render.fit) return out;
+  FrameStyle style;
+  style.width = render.width, style.height = render.height;
+  style.options = render;
+  style.options.inset.clear();
+  style.options.colour_by = "group";
+  style.labels = false;
+  const double aspect = FrameBuilder(run.trajectory, style).fitting_aspect();
+  const double pixels = static_cast<double>(render.width) * render.height;
+  const auto even = [](double x) { return std::max(16, 2 * static_cast<int>(std::lround(0.5 * x))); };
+  render.height = even(std::sqrt(pixels / aspect));
+  render.width = even(std::sqrt(pixels * aspect));
+  return out;
 }
 
 bool has_alpha(const RenderOptions& options) {
@@ -80,8 +101,21 @@ bool all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& 
   return true;
 }
 
+void FrameMemory::keep(std::size_t frame, std::shared_ptr<const Image> image) {
+  static const double room = std::min(0.2 * machine_memory(), 1e9);
+  const bool held = !frames_.empty() && frames_.rbegin()->second == image;  // the same picture again
+  if (!held) bytes_ += static_cast<double>(image->rgba.size());
+  if (bytes_ < room) frames_[frame] = std::move(image);
+}
+
+std::shared_ptr<const Image> FrameMemory::find(std::size_t frame) const {
+  const auto found = frames_.find(frame);
+  return found == frames_.end() ? nullptr : found->second;
+}
+
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
-                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments, Team* team) {
+                 const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments,
+                 FrameMemory& memory, Team* team) {
   const RenderOptions& options = scene.render;
   const std::vector<Shot> shots = film_shots(run.trajectory, options);
   const FrameRange range = frame_range(arguments.frames, shots.size());
@@ -96,6 +130,8 @@ bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation&
   Renderer renderer(context, style.width, style.height);
   TaskQueue writers(writer_threads(arguments));
   Progress progress("drawing", arguments.quiet);
+  std::shared_ptr<const Image> image;
+  Shot drawn;
   for (std::size_t i = 0; i < missing.size(); ++i) {
     if (interrupted()) {
       writers.finish();
@@ -103,9 +139,13 @@ bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation&
     }
     const std::string piece = "frames-" + std::to_string(missing[i] / frames_of_a_piece);
     if (team && (!team->takes(piece) || folder.finished(missing[i]))) continue;
-    progress.show(static_cast<double>(i) / static_cast<double>(missing.size()));
-    auto image = std::make_shared<const Image>(renderer.draw(builder.build(shots[missing[i]])));
-    writers.add([image = std::move(image), path = folder.frame(missing[i]), &options, alpha] {
+    progress.show(i, missing.size(), "frames");
+    const Shot& shot = shots[missing[i]];
+    if (!image || !(shot == drawn))  // a picture that is held is drawn once
+      image = std::make_shared<const Image>(exposed(renderer, builder, shot, options.depth_of_field));
+    drawn = shot;
+    if (options.supersample == 1 && !alpha) memory.keep(missing[i], image);
+    writers.add([image, path = folder.frame(missing[i]), &options, alpha] {
       if (options.supersample == 1) return write_png(path, *image, alpha, Flush::later);
       write_png(path, scaled_down(*image, options.width, options.height), alpha, Flush::later);
     });

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
 
 #include "app/command.hpp"
 #include "app/output/film_folder.hpp"
@@ -11,12 +13,27 @@
 #include "core/simulate/simulation.hpp"
 #include "core/study/team.hpp"
 #include "render/gl/context.hpp"
+#include "render/image/image.hpp"
 
 namespace unfurl {
+
+// Frames that were drawn and need not be read back, as many as memory has room for.
+class FrameMemory {
+ public:
+  void keep(std::size_t frame, std::shared_ptr<const Image> image);
+  std::shared_ptr<const Image> find(std::size_t frame) const;  // nullptr: to be read from its file
+
+ private:
+  std::map<std::size_t, std::shared_ptr<const Image>> frames_;
+  double bytes_ = 0;
+};
 
 // How many frames a run to the scene's end time would have at most; throws SceneError where that is beyond
 // reason.
 void check_film(const Scene& scene);
+
+// The scene with a picture of the motion's shape where it asks for that (render.fit), of as many pixels.
+Scene fitted(const Scene& scene, const Simulation& run);
 
 // Do the frames have transparent pixels: because the scene says so, or its look?
 bool has_alpha(const RenderOptions& options);
@@ -26,7 +43,7 @@ bool has_alpha(const RenderOptions& options);
 // UsageError.
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,
                  const Diagnostics& diagnostics, GlContext& context, const Arguments& arguments,
-                 Team* team = nullptr);
+                 FrameMemory& memory, Team* team = nullptr);
 // Are all frames of the film there?
 bool all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run);
 
@@ -37,6 +54,6 @@ void require_all_frames(const FilmFolder& folder, const Scene& scene, const Simu
 // Makes animation.webp, animation.gif and, where ffmpeg is, animation.mp4 in the directory, once all frames
 // of the film are there; a note on stderr where they are not. Stops at Ctrl-C; returns whether it did not.
 bool encode_films(const std::filesystem::path& directory, const FilmFolder& folder, const Scene& scene,
-                  const Simulation& run, const Arguments& arguments);
+                  const Simulation& run, const Arguments& arguments, const FrameMemory& memory = {});
 
 }  // namespace unfurl

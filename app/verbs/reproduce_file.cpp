@@ -44,10 +44,11 @@ std::vector<std::string> only(const std::string& file, const std::string& verb) 
     const int k = std::atoi(stem.substr(stem.find('_') + 1).c_str());
     return {"--frames", std::to_string(k) + ":" + std::to_string(k + 1)};
   }
-  if (extension == ".glb" || extension == ".html")
-    words = {"--export", extension == ".glb" ? "gltf" : "html"};
-  if (verb == "render" && stem != "animation") words.insert(words.end(), {"--frames", "0:1"});
-  if (verb == "render" && extension == ".glb") words.insert(words.end(), {"--frames", "0:1"});
+  const bool page = stem == "viewer";
+  if (extension == ".glb" || page) words = {"--export", page ? "html" : "gltf"};
+  // A film, and the report that shows it, need every frame.
+  const bool film = stem == "report" || (stem == "animation" && extension != ".glb");
+  if (verb == "render" && !film) words.insert(words.end(), {"--frames", "0:1"});
   return words;
 }
 

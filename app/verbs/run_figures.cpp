@@ -42,7 +42,7 @@ bool write_figures(const std::filesystem::path& directory, const std::vector<con
   Progress progress("plotting", arguments.quiet);
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     if (interrupted()) return false;
-    progress.show(static_cast<double>(i) / static_cast<double>(kinds.size()));
+    progress.show(i, kinds.size(), "figures");
     if (!kinds[i]->applies(run, diagnostics)) continue;
     const Figure figure = kinds[i]->make(run, diagnostics);
     const std::string name(kinds[i]->name);

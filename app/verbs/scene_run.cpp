@@ -4,6 +4,7 @@
 #include "app/output/command_line.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -15,6 +16,7 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/ending.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/export/checksum.hpp"
 #include "core/export/csv.hpp"
 #include "core/export/summary.hpp"
 #include "core/math/largest.hpp"
@@ -29,6 +31,8 @@
 namespace unfurl {
 
 namespace {
+
+const auto started = std::chrono::steady_clock::now();  // the program
 
 bool waited_enough() {
   return interrupted_for(0.5);
@@ -59,12 +63,17 @@ Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model
 }
 
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
-                       const Diagnostics& diagnostics) {
+                       const Diagnostics& diagnostics, const std::string& command) {
   const Model& model = run.trajectory.model();
   const Mobility mobility = analyse_mobility(model.system, run.trajectory.node_positions(0));
-  const std::string summary = summary_json(scene.name, run, diagnostics, mobility);
+  const std::string text = scene_text(scene);
+  Checksum hash;
+  hash.add(text);
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const std::string summary =
+      summary_json(scene.name, run, diagnostics, mobility, {command, hash.text(), wall});
   if (directory.empty()) return summary;
-  write_file_atomically(directory / "scene.toml", scene_text(scene));
+  write_file_atomically(directory / "scene.toml", text);
   write_series_csv(directory / "series.csv", diagnostics);
   write_trajectory_csv(directory / "trajectory.csv", run.trajectory);
   write_rod_forces_csv(directory / "rod_forces.csv", run.trajectory, diagnostics);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/constraints/rod_length.hpp"
 
+#include <algorithm>
+
 #include "core/math/interleaved.hpp"
 
 namespace unfurl {
@@ -10,6 +12,8 @@ class RodLength final : public ConstraintBlock {
  public:
   explicit RodLength(const Structure& structure) {
     for (const Rod& rod : structure.rods) {
+      if (rod.gives) continue;
+      if (rod.expansion != 0) warmed_.push_back({static_cast<int>(a_.size()), rod});
       a_.push_back(3 * rod.a);
       b_.push_back(3 * rod.b);
       length_.push_back(rod.length);
@@ -57,7 +61,21 @@ class RodLength final : public ConstraintBlock {
     }
   }
 
+  // A warmed rod has the length l (1 + e), e = alpha dT(t), and the row |d|^2 / 2l - l (1 + e)^2 / 2 = 0:
+  // g = l (e + e^2 / 2), the axial force lambda (1 + e).
+  bool rheonomic() const override { return !warmed_.empty(); }
+  void add_target(int order, double t, double scale, double* out) const override {
+    for (const auto& [row, rod] : warmed_) {
+      const double e = rod.warmed(t), e1 = rod.warmed(t, 1);
+      const double g = order == 0   ? e + 0.5 * e * e
+                       : order == 1 ? (1 + e) * e1
+                                    : (1 + e) * rod.warmed(t, 2) + e1 * e1;
+      out[row] += scale * rod.length * g;
+    }
+  }
+
   bool values(int poses, const double* q, Index stride, double* phi) const override {
+    if (!warmed_.empty()) return false;
     with_columns(poses, [&](auto k) { values_of<k()>(q, stride, phi); });
     return true;
   }
@@ -124,12 +142,15 @@ class RodLength final : public ConstraintBlock {
   std::vector<int> a_, b_;  // first coordinate of each end
   std::vector<double> length_;
   std::vector<std::string> name_;
+  std::vector<std::pair<int, Rod>> warmed_;  // row, rod
 };
 
 }  // namespace
 
 std::unique_ptr<ConstraintBlock> rod_length_block(const Structure& structure) {
-  return structure.rods.empty() ? nullptr : std::make_unique<RodLength>(structure);
+  const bool all_give =
+      std::all_of(structure.rods.begin(), structure.rods.end(), [](const Rod& rod) { return rod.gives; });
+  return all_give ? nullptr : std::make_unique<RodLength>(structure);
 }
 
 }  // namespace unfurl

@@ -12,12 +12,12 @@
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/columns.hpp"
 #include "core/diagnostics/drives.hpp"
-#include "core/diagnostics/elastic_sharing.hpp"
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "core/forces/latch_spring.hpp"
 #include "core/integrators/index1.hpp"
+#include "core/simulate/elastic_sharing.hpp"
 
 namespace unfurl {
 namespace {
@@ -110,7 +110,7 @@ const std::array rows{
     Row{"work_J", "work of the loads", "J", Needs::nothing, [](const Instant& s) { return s.work(); }},
     Row{"dissipated_J", "energy taken by dampers and friction", "J", Needs::dampers,
         [](const Instant& s) { return s.flow.dissipated[s.i]; }},
-    Row{"drive_work_J", "work of the drives", "J", Needs::drives,
+    Row{"drive_work_J", "work of the drives and of rods that warm", "J", Needs::drives,
         [](const Instant& s) { return s.flow.drive_work[s.i]; }},
     Row{"impact_loss_J", "energy lost in impacts", "J", Needs::impacts,
         [](const Instant& s) { return s.flow.impact_loss[s.i]; }},
@@ -200,7 +200,7 @@ bool present(Needs needs, const Simulation& run) {
     case Needs::dampers:
       return model.system.has_power(true) || latches(std::numeric_limits<double>::min());
     case Needs::drives:
-      return !model.system.drives().empty() ||
+      return model.system.rheonomic() ||
              std::any_of(model.structure.stops.begin(), model.structure.stops.end(),
                          [](const Stop& stop) { return stop.reeled; });
     case Needs::impacts:
@@ -250,11 +250,21 @@ class FoldAngle {
   double t_ = nan, angle_ = nan, rate_ = nan;
 };
 
-// Per rod of the whole structure [N].
-void axial_forces(const Model& model, const VectorXd& lambda, VectorXd& force) {
+// Per rod of the whole structure [N]: the multiplier of its row, or what its stretch tells.
+void axial_forces(const Model& model, const State& state, const VectorXd& q, const VectorXd& v,
+                  const VectorXd& lambda, VectorXd& force) {
+  const std::vector<int>& giving = model.system.giving_rods();
+  VectorXd tension = state.tension;
+  if (tension.size() != static_cast<Index>(giving.size())) {
+    tension.resize(static_cast<Index>(giving.size()));
+    model.system.giving_rod_forces(state.t, q, v, tension);
+  }
+  for (std::size_t k = 0; k < giving.size(); ++k) force[giving[k]] = tension[static_cast<Index>(k)];
   for (Index r = 0; r < force.size(); ++r) {
     const auto ur = static_cast<std::size_t>(r);
-    force[r] = lambda[model.system.rod_rows()[ur]] / model.structure.rods[ur].multiplicity;
+    const Rod& rod = model.structure.rods[ur];
+    if (!rod.gives) force[r] = lambda[model.system.rod_rows()[ur]] * (1 + rod.warmed(state.t));
+    force[r] /= rod.multiplicity;
   }
 }
 
@@ -387,10 +397,11 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
       const bool limit = trajectory.report(i).singular_event;
       lambda = multipliers(*index1, *model, state, limit, acceleration);
       sharing->share(state.t, q, limit, lambda);
-      axial_forces(*model, lambda, force);
+      axial_forces(*model, state, q, v, lambda, force);
       const std::vector<char>& rows_unique = uniqueness->at(i);
       for (std::size_t r = 0; r < unique.size(); ++r) {
-        unique[r] = rows_unique[static_cast<std::size_t>(system.rod_rows()[r])];
+        const int row = system.rod_rows()[r];
+        unique[r] = row < 0 ? char{1} : rows_unique[static_cast<std::size_t>(row)];
         if (uniqueness->regular(i)) out.rod_unique[r] = static_cast<char>(out.rod_unique[r] & unique[r]);
         out.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
             unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);

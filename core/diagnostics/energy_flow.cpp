@@ -17,13 +17,14 @@ EnergyMeter::EnergyMeter(const System& system)
     : system_(system),
       loads_(system.has_power(false)),
       dampers_(system.has_power(true)),
-      drives_(!system.drives().empty()) {
+      drives_(system.rheonomic()) {
   if (idle()) return;
   index1_ = std::make_unique<Index1>(system_);
   q_.resize(system.coordinates());
   v_.resize(system.coordinates());
   unused_.resize(system.solved_coordinates());
   lambda_.resize(system.constraints());
+  target_rate_.resize(system.constraints());
 }
 
 VectorXd EnergyMeter::acceleration(const State& state) {
@@ -92,8 +93,8 @@ void EnergyMeter::add(const State& a, const State& b) {
     const bool known = drives_ && index1_->evaluate(t, z, w, unused_, lambda_);
     if (at_point && (known || !drives_)) at_point(weight, t, q_, v_, lambda_);
     if (!known) continue;
-    for (const Drive& d : system_.drives())
-      drive_work -= weight * d.scale * lambda_[d.row] * d.target.derivative(1, t);
+    system_.target_rate(t, target_rate_);
+    drive_work -= weight * lambda_.dot(target_rate_);
   }
 }
 

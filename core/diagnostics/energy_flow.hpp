@@ -20,8 +20,8 @@ struct EnergyFlow {
 
 // What dry friction takes is exact: a force times the way. Powers are integrated over each step with three Gauss points (order 6) on the quintic that has the
 // coordinates, rates and accelerations of the states at both ends: an independent quadrature, whatever the
-// method, of order 6 where the forces are smooth within steps. A drive's power -l lambda f' takes its
-// multiplier from the index-1 equations at those points.
+// method, of order 6 where the forces are smooth within steps. The power -lambda g' of drives and of
+// rods that warm takes its multipliers from the index-1 equations at those points.
 // Where dampers are stiff (c / m beyond 2 / h), what they take comes from the difference of two motions that
 // are nearly one, which no interpolant tells. Their power is then that of the states and its rates there.
 EnergyFlow energy_flow(const Simulation& run);
@@ -49,7 +49,7 @@ class EnergyMeter {
   System system_;  // follows the states
   bool loads_, dampers_, drives_;
   std::unique_ptr<Index1> index1_;
-  VectorXd before_, after_, q_, v_, unused_, lambda_;
+  VectorXd before_, after_, q_, v_, unused_, lambda_, target_rate_;
   double last_ = 0;  // time of the state that after_ is of
 };
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "core/diagnostics/elastic_sharing.hpp"
 #include "core/math/determined_rows.hpp"
+#include "core/simulate/elastic_sharing.hpp"
 
 namespace unfurl {
 namespace {

@@ -9,9 +9,10 @@
 #include <limits>
 #include <numeric>
 
-#include "core/diagnostics/elastic_sharing.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/determined_rows.hpp"
+#include "core/simulate/elastic_sharing.hpp"
+#include "core/system/rigid_twin.hpp"
 
 namespace unfurl {
 namespace {
@@ -44,9 +45,10 @@ MatrixXd symmetric(const MatrixXd& A) {
 // The model at the pose, in solved coordinates.
 class AtPose {
  public:
-  AtPose(const Model& model, const State& pose) : system_(model.system.at(pose)) {
+  // known: forces of rods that are given, NaN where they follow from the equations; empty: all follow.
+  AtPose(const Model& model, const State& pose, const VectorXd& known) : system_(model.system.at(pose)) {
     State rest = pose;
-    rest.w.setZero();
+    rest.w.setZero(rest.z.size());
     VectorXd q(system_.coordinates()), acceleration(rest.z.size());
     system_.expand(rest.z, q);
     SparseRows G = system_.jacobian_pattern();
@@ -60,7 +62,10 @@ class AtPose {
     VectorXd lambda = rest.lambda;
     lambda.setZero(G.rows());
     if (!index1.evaluate(rest.t, rest.z, rest.w, acceleration, lambda)) lambda.setZero();
-    ElasticSharing(model, all).share(rest.t, q, false, lambda);
+    if (known.size() > 0)
+      take_known(model, q, G, known, rest.t, lambda);
+    else
+      ElasticSharing(model, all).share(rest.t, q, false, lambda);
     const std::vector<char> determined = all ? rigidly : determined_rows(G, compliance);
     for (const int row : model.system.rod_rows())
       unique = unique && determined[static_cast<std::size_t>(row)] != 0;
@@ -74,6 +79,31 @@ class AtPose {
   bool unique = true;
 
  private:
+  // M a + G_r^T lambda_r = F - G_e^T N, G_r a = 0 with the rows G_e of rods whose forces N are known.
+  void take_known(const Model& model, const VectorXd& q, const SparseRows& G, const VectorXd& known, double t,
+                  VectorXd& lambda) {
+    std::vector<Index> rest;
+    VectorXd given = VectorXd::Zero(G.rows()), force = VectorXd::Zero(q.size()), reduced(G.cols());
+    std::vector<char> is_given(static_cast<std::size_t>(G.rows()), 0);
+    for (std::size_t r = 0; r < model.system.rod_rows().size(); ++r) {
+      if (std::isnan(known[static_cast<Index>(r)])) continue;
+      const int row = model.system.rod_rows()[r];
+      given[row] = known[static_cast<Index>(r)];
+      is_given[static_cast<std::size_t>(row)] = 1;
+    }
+    for (Index row = 0; row < G.rows(); ++row)
+      if (!is_given[static_cast<std::size_t>(row)]) rest.push_back(row);
+    system_.add_applied_force(t, q, VectorXd::Zero(q.size()), 1.0, force);
+    system_.reduce_force(force, reduced);
+    reduced -= G.transpose() * given;
+    const MatrixXd Gr = MatrixXd(G)(rest, Eigen::all);
+    const Eigen::LLT<MatrixXd> M((MatrixXd(system_.mass())));
+    const VectorXd held =
+        MatrixXd(Gr * M.solve(Gr.transpose())).completeOrthogonalDecomposition().solve(Gr * M.solve(reduced));
+    lambda = given;
+    for (std::size_t k = 0; k < rest.size(); ++k) lambda[rest[k]] = held[static_cast<Index>(k)];
+  }
+
   void take_stiffness(const Model& model, const VectorXd& q, const SparseRows& G, const VectorXd& compliance,
                       const VectorXd& lambda, const State& rest) {
     SparseRows by_z, by_w;
@@ -177,8 +207,10 @@ double Vibration::lowest_elastic() const {
              : std::numeric_limits<double>::quiet_NaN();
 }
 
-Vibration vibration(const Model& model, const State& pose) {
-  const AtPose at(model, pose);
+namespace {
+
+Vibration vibration_of(const Model& model, const State& pose, const VectorXd& known) {
+  const AtPose at(model, pose, known);
   const Solved solved = solve(at);
   Vibration out;
   out.mechanism_motions = solved.mechanism;
@@ -199,6 +231,33 @@ Vibration vibration(const Model& model, const State& pose) {
     out.modes.push_back(std::move(mode));
   }
   return out;
+}
+
+// Of the mechanism that is left where rods that give are rigid, under the forces that they have.
+Vibration vibration_of_giving(const Model& model, const State& pose) {
+  const System& system = model.system;
+  VectorXd q(system.coordinates());
+  system.expand(pose.z, q);
+  VectorXd tension(static_cast<Index>(system.giving_rods().size()));
+  system.giving_rod_forces(pose.t, q, VectorXd::Zero(q.size()), tension);
+  VectorXd known = VectorXd::Constant(static_cast<Index>(model.structure.rods.size()),
+                                      std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < system.giving_rods().size(); ++k)
+    known[system.giving_rods()[k]] = tension[static_cast<Index>(k)];
+  Structure rods = rigid_twin(model.structure, q);
+  System rows(rods, system.eliminated());
+  const Model twin{std::move(rods), std::move(rows)};
+  State at{.t = pose.t, .z = twin.system.reduce(q), .w = {}, .lambda = {}};
+  at.w.setZero(at.z.size());
+  at.angles = pose.angles;
+  return vibration_of(twin, at, known);
+}
+
+}  // namespace
+
+Vibration vibration(const Model& model, const State& pose) {
+  return model.system.giving_rods().empty() ? vibration_of(model, pose, {})
+                                            : vibration_of_giving(model, pose);
 }
 
 }  // namespace unfurl

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binary glTF 2.0 (.glb): every rod an instance of one cylinder per group, every joint of one sphere, moved
-// by translation and rotation keys. glTF's y axis points up: one parent node turns the structure's z axis to
+// Binary glTF 2.0 (.glb): every rod an instance of one cylinder per group with a fitting at each end, every
+// joint of one sphere, moved by translation and rotation keys; at rest in the last pose, which a camera sees.
+// glTF's y axis points up: one parent node turns the structure's z axis to
 // it.
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -101,6 +102,8 @@ class GltfWriter {
     add_meshes();
     for (const RodCopy& rod : structure_.rod_copies) add_rod(rod);
     for (std::size_t n = 0; n < structure_.node_copies.size(); ++n) add_joint(n);
+    for (std::size_t r = 0; r < structure_.rod_copies.size(); ++r) add_fittings(r);
+    add_camera();
     if (times_.size() > 1) animate();
     return glb_.file();
   }
@@ -122,7 +125,8 @@ class GltfWriter {
       groups_.push_back(rod.group);
       add_mesh(rod.group, rod_shape, color(groups_.size() - 1));
     }
-    add_mesh("joint", joint_shape, {0.12, 0.13, 0.15, 1.0});
+    add_mesh("fitting", rod_shape, {0.34, 0.37, 0.41, 1.0}, 0.85, 0.3);
+    add_mesh("joint", joint_shape, {0.075, 0.09, 0.112, 1.0}, 0.85, 0.3);
   }
 
   Json primitive(const ShapeMesh& mesh) {
@@ -132,20 +136,22 @@ class GltfWriter {
     return {{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"indices", indices}};
   }
 
-  // Blue, orange, green, purple, sky blue, vermilion: distinct for every kind of colour vision; linear RGB.
+  // Blue, orange, green, purple, sky blue, vermilion: distinct for every kind of colour vision, those of the
+  // pictures on a pale ground; linear RGB.
   static std::vector<double> color(std::size_t group) {
-    static const std::vector<std::vector<double>> palette = {{0.0, 0.11, 0.39, 1},  {0.75, 0.21, 0.0, 1},
-                                                             {0.0, 0.27, 0.13, 1},  {0.48, 0.12, 0.3, 1},
-                                                             {0.05, 0.34, 0.69, 1}, {0.6, 0.07, 0.0, 1}};
+    static const std::vector<std::vector<double>> palette = {
+        {0.0, 0.113, 0.394, 1},   {0.75, 0.214, 0.002, 1},  {0.0, 0.265, 0.133, 1},
+        {0.479, 0.119, 0.297, 1}, {0.051, 0.343, 0.694, 1}, {0.604, 0.073, 0.0, 1}};
     return palette[group % palette.size()];
   }
 
-  void add_mesh(const std::string& name, Json shape, const std::vector<double>& base) {
+  void add_mesh(const std::string& name, Json shape, const std::vector<double>& base, double metal = 0.35,
+                double roughness = 0.32) {
     shape["material"] = glb_.json["materials"].size();
     glb_.json["materials"].push_back(
         {{"name", name},
          {"pbrMetallicRoughness",
-          {{"baseColorFactor", base}, {"metallicFactor", 0.2}, {"roughnessFactor", 0.5}}}});
+          {{"baseColorFactor", base}, {"metallicFactor", metal}, {"roughnessFactor", roughness}}}});
     glb_.json["meshes"].push_back({{"name", name}, {"primitives", Json::array({shape})}});
   }
 
@@ -205,9 +211,9 @@ class GltfWriter {
       stretches = stretches || std::abs(length - rod.length) > 1e-3 * rod.length;
     }
     add_node(copy.name, group_index(rod.group),
-             {{"translation", first(motion.translation, 3)},
-              {"rotation", first(motion.rotation, 4)},
-              {"scale", first(motion.scale, 3)}});
+             {{"translation", last(motion.translation, 3)},
+              {"rotation", last(motion.rotation, 4)},
+              {"scale", last(motion.scale, 3)}});
     if (!stretches) motion.scale.clear();
     motions_.push_back(std::move(motion));
     for (const int end : {copy.a, copy.b}) {
@@ -224,9 +230,51 @@ class GltfWriter {
       append(motion.translation, {p[0], p[1], p[2]});
     }
     const double r = n < joint_radius_.size() && joint_radius_[n] > 0.0 ? joint_radius_[n] : point_radius();
-    add_node(structure_.node_copies[n].name, groups_.size(),
-             {{"translation", first(motion.translation, 3)}, {"scale", {r, r, r}}});
+    add_node(structure_.node_copies[n].name, groups_.size() + 1,
+             {{"translation", last(motion.translation, 3)}, {"scale", {r, r, r}}});
     motions_.push_back(std::move(motion));
+  }
+
+  // In the frame of the rod, which is as wide as its radius and from -1/2 to 1/2 long.
+  void add_fittings(std::size_t r) {
+    const Rod& rod = structure_.rods[static_cast<std::size_t>(structure_.rod_copies[r].source)];
+    const double share = rod.length > 0 ? std::min(6.5 * radius(rod) / rod.length, 0.2) : 0.2;
+    Json& children = glb_.json["nodes"][1 + r]["children"] = Json::array();
+    for (const double sign : {-1.0, 1.0}) {
+      children.push_back(glb_.json["nodes"].size());
+      glb_.json["nodes"].push_back({{"name", structure_.rod_copies[r].name + " fitting"},
+                                    {"mesh", groups_.size()},
+                                    {"translation", {0.0, sign * 0.5 * (1 - share), 0.0}},
+                                    {"scale", {1.3, share, 1.3}}});
+    }
+  }
+
+  // As the pictures look by default, from where the last pose fills the view.
+  void add_camera() {
+    const VectorXd& pose = poses_.back();
+    if (pose.size() == 0) return;
+    Vec3 low = point(pose, 0), high = low;
+    for (int n = 0; n < static_cast<int>(structure_.node_copies.size()); ++n)
+      low = low.cwiseMin(point(pose, n)), high = high.cwiseMax(point(pose, n));
+    const Vec3 middle = 0.5 * (low + high);
+    const double size = std::max(0.5 * (high - low).norm(), 1e-3);
+    constexpr double azimuth = -62 * radians_per_degree, elevation = 24 * radians_per_degree,
+                     field = 28 * radians_per_degree;
+    const Vec3 back(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
+                    std::sin(elevation));
+    const double distance = size / std::sin(0.5 * field);
+    const Vec3 eye = middle + distance * back, right = Vec3::UnitZ().cross(back).normalized();
+    Mat3 axes;
+    axes << right, back.cross(right), back;  // it looks along its -z
+    const Eigen::Quaterniond turn(axes);
+    glb_.json["cameras"] = Json::array(
+        {{{"type", "perspective"},
+          {"perspective", {{"yfov", field}, {"znear", 0.01 * distance}, {"zfar", 10 * distance}}}}});
+    glb_.json["nodes"][0]["children"].push_back(glb_.json["nodes"].size());
+    glb_.json["nodes"].push_back({{"name", "camera"},
+                                  {"camera", 0},
+                                  {"translation", {eye[0], eye[1], eye[2]}},
+                                  {"rotation", {turn.x(), turn.y(), turn.z(), turn.w()}}});
   }
 
   void animate() {
@@ -259,8 +307,8 @@ class GltfWriter {
     const auto more = floats(values);
     keys.insert(keys.end(), more.begin(), more.end());
   }
-  static std::vector<float> first(const std::vector<float>& keys, std::ptrdiff_t width) {
-    return {keys.begin(), keys.begin() + width};
+  static std::vector<float> last(const std::vector<float>& keys, std::ptrdiff_t width) {
+    return {keys.end() - width, keys.end()};
   }
 
   const ExportJob& job_;

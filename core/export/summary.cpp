@@ -45,9 +45,9 @@ Json solver_json(const Simulation& run) {
 // What the run is asked for most: "deploy_time_s", "peak_rod_force_N", ...; null where there is none.
 Json measures_json(const Simulation& run, const Diagnostics& diagnostics) {
   Json object = Json::object();
-  for (const char* name : {"deploy_time", "deployed_fraction", "peak_speed", "peak_energy", "peak_tension",
-                           "peak_compression"}) {
-    const RunMeasure measure = find_measure(name);
+  for (const NamedMeasure& named : named_measures()) {
+    if (named.name == "cpu" || named.name == "frequency") continue;  // solver.cpu_s; work of its own
+    const RunMeasure measure = find_measure(std::string(named.name));
     object[measure.column] = measure.value(run, diagnostics);
   }
   return object;
@@ -121,15 +121,21 @@ Json strength_json(const Structure& structure, const Diagnostics& diagnostics) {
 }  // namespace
 
 std::string summary_json(const std::string& scene_name, const Simulation& run, const Diagnostics& diagnostics,
-                         const Mobility& mobility) {
+                         const Mobility& mobility, const RunRecord& record) {
   const Model& model = run.trajectory.model();
   Json summary = {{"unfurl", version()}, {"scene", scene_name}, {"status", to_string(run.status)}};
+  if (!record.command.empty()) summary["command"] = record.command;
+  if (!record.scene_hash.empty()) summary["scene_hash"] = record.scene_hash;
+  if (record.wall_s > 0) summary["wall_s"] = record.wall_s;
   summary["message"] = run.message;
   summary["warnings"] = run.warnings;
   for (const auto& warning : accuracy_warnings(run, diagnostics)) summary["warnings"].push_back(warning);
   summary["notes"] = Json::array();
   if (const std::string note = ending_note(run, diagnostics); !note.empty()) summary["notes"].push_back(note);
   summary["model"] = model_json(model.structure, model.system, mobility);
+  const SolvedAs solved = solved_as(run);
+  summary["model"]["solved_as"] = solved.name;
+  summary["model"]["why"] = solved.why;
   summary["solver"] = solver_json(run);
   for (const char* name : {"constraint_max_m", "constraint_relative_max", "constraint_velocity_max_m_s"})
     summary["errors"][name] = max_abs(diagnostics, name);

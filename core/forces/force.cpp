@@ -3,13 +3,16 @@
 
 #include <array>
 
+#include "core/forces/bending.hpp"
 #include "core/forces/constant_forces.hpp"
 #include "core/forces/damping.hpp"
+#include "core/forces/elastic_rods.hpp"
 #include "core/forces/friction.hpp"
 #include "core/forces/latch_spring.hpp"
 #include "core/forces/motor.hpp"
 #include "core/forces/offload.hpp"
 #include "core/forces/spring.hpp"
+#include "core/forces/temperature.hpp"
 #include "core/forces/varying_loads.hpp"
 
 namespace unfurl {
@@ -24,6 +27,12 @@ std::span<const ForceKind> force_kinds() {
                 follower_params, fill_follower},
       ForceKind{"spring", "spring and damper between two nodes; tension_only: a cable", axial_spring_block,
                 Members::two_nodes, axial_spring_params, fill_axial_spring},
+      ForceKind{"elastic_rod", "rods that give: structure.rod_model = \"elastic\"", elastic_rods_block},
+      ForceKind{"rod_damping", "damping of rods that give: damping_ratio or damping_time", rod_dampers_block},
+      ForceKind{"bending", "bending stiffness at the node between two segments of a rod", bending_block,
+                Members::three_nodes, bending_params, fill_bending},
+      ForceKind{"temperature", "rods change their length with a temperature over time", no_block,
+                Members::rods, temperature_params, fill_temperature},
       ForceKind{"torsion_spring", "spring and damper at the hinge between two rods, or on the fold angle",
                 torsion_spring_block, Members::angle, torsion_spring_params, fill_torsion_spring},
       ForceKind{"cable", "a cable over nodes in order, which runs freely: elastic, or paid out and drawn in",

@@ -50,15 +50,17 @@ class ForceBlock {
 
 // Which members of a structure an entry of a kind names.
 enum class Members {
-  none,       // its table has a form of its own
-  each_node,  // nodes: names or globs, one force each
-  node_list,  // nodes = [A, B, ...]: all of them in one
-  two_nodes,  // nodes = [A, B]
-  rod,        // rod: one name; its direction follows the rod
-  path,       // nodes = [A, B, ...]: in order; some may come again
-  terms,      // terms = ["2.5 length A B", ...]
-  angle,      // rods = [R, S], nodes = [A, HINGE, B], or fold_angle = true
-  measure     // an angle as above; nodes = [A, B]: their distance; with a direction: a coordinate
+  none,         // its table has a form of its own
+  each_node,    // nodes: names or globs, one force each
+  node_list,    // nodes = [A, B, ...]: all of them in one
+  two_nodes,    // nodes = [A, B]
+  three_nodes,  // nodes = [A, B, C]
+  rods,         // rods: names or globs of rods or of their groups; what the entry says becomes theirs
+  path,         // nodes = [A, B, ...]: in order; some may come again
+  terms,        // terms = ["2.5 length A B", ...]
+  rod,          // rod: one name; its direction follows the rod
+  angle,        // rods = [R, S], nodes = [A, HINGE, B], or fold_angle = true
+  measure       // an angle as above; nodes = [A, B]: their distance; with a direction: a coordinate
 };
 
 struct ForceKind {

@@ -11,6 +11,7 @@ GalerkinCoefficients::GalerkinCoefficients(std::string_view family, int stages)
   b = value * weight;
   K = slope * weight.asDiagonal() * slope.transpose();
   take(gauss_legendre(s - 1));
+  tau_to_end = Barycentric(tau).values(1.0);
   C = K.topRightCorner(s - 1, s - 1);
   C_inverse = C.inverse();
   extrapolate(1.0, extrapolation);

@@ -24,6 +24,7 @@ struct GalerkinCoefficients {
   // any stiffness, and of order 2 s - 2 all the same. Elastic rows with multipliers of their own fit here.
   VectorXd tau, weight;
   MatrixXd value, slope;
+  VectorXd tau_to_end;  // values at tau_j, by their polynomial, to its value at the step's end
   MatrixXd
       extrapolation;  // row i: increments of the polynomial of a step, prolonged to c_{i+2} of the next step
 

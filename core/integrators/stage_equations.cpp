@@ -141,6 +141,16 @@ void StageEquations::applied_forces() {
   }
 }
 
+void StageEquations::end_tension(VectorXd& tension) {
+  tension.setZero(static_cast<Index>(system.giving_rods().size()));
+  VectorXd at_point(tension.size());
+  for (Index j = 0; j < c.tau.size(); ++j) {
+    move_to(j);
+    system.giving_rod_forces(t + c.tau[j] * h, q_tau_, v_tau_, at_point);
+    tension += c.tau_to_end[j] * at_point;
+  }
+}
+
 void StageEquations::force_derivatives(Index j, SparseRows& by_z, SparseRows& by_w) {
   move_to(j);
   system.force_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, by_z, by_w);

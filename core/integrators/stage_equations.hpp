@@ -45,7 +45,10 @@ class StageEquations {
   void forget_forces() { stiffness_ = -1; }  // look at them again before the next step
   double h_omega() const;                    // h sqrt(k / m) of the stiffest spring, from above
   double h_rate() const;                     // h c / m of the strongest damper, from above
-  void end_momentum(MutVec p1);              // p_1 without the share of lambda_s
+  // Axial forces of the rods that give at the step's end, by the polynomial through those at the points of
+  // the quadrature: where waves are not resolved, the end's coordinates do not tell them.
+  void end_tension(VectorXd& tension);
+  void end_momentum(MutVec p1);  // p_1 without the share of lambda_s
 
   // Residuals in units of what round-off leaves of them: 1 is as small as they get, give or take.
   double momentum_level() const { return momentum_level_; }

@@ -7,13 +7,15 @@ include(CMakePackageConfigHelpers)
 # A library that can be linked into programs, shared libraries and Python modules. Its warnings are its own.
 function(unfurl_library target)
   string(REPLACE unfurl_ "" name ${target})
-  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON EXPORT_NAME ${name})
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON EXPORT_NAME ${name}
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:unfurl_flags>)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>)
   target_include_directories(${target} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   if(UNFURL_INSTALL)
-    install(TARGETS ${target} EXPORT unfurl-${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(TARGETS ${target} EXPORT unfurl-${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+      LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
     install(EXPORT unfurl-${name} NAMESPACE unfurl:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/unfurl)
     install(DIRECTORY ${PROJECT_BINARY_DIR}/include/unfurl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   endif()

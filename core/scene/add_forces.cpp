@@ -7,6 +7,7 @@
 #include "core/scene/element_members.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/structure_error.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 
@@ -44,6 +45,12 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
       one.nodes = find.nodes(e, true);
       if (!one.nodes.empty()) forces.push_back(one);
       break;
+    case Members::three_nodes:
+      one.nodes = find.nodes(e, false);
+      if (one.nodes.size() == 3) forces.push_back(one);
+      break;
+    case Members::rods:
+      break;
     case Members::rod:
       if (const Rod* rod = find.rod(e, 0)) {
         one.nodes = {rod->a, rod->b};
@@ -69,6 +76,20 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
   return forces;
 }
 
+// What an entry says of rods becomes theirs.
+void warm_rods(const SceneElement& e, const ForceKind& kind, ElementAdder& to) {
+  Force warming;
+  kind.fill(e.values, warming);
+  for (const int r : to.find.rods(e)) {
+    Rod& rod = to.structure.rods[static_cast<std::size_t>(r)];
+    if (rod.expansion != 0)
+      return to.find.problem(e, "rods",
+                             "names " + in_quotes(rod.name) + ", which another entry warms already");
+    rod.expansion = warming.expansion;
+    rod.warming = warming.size;
+  }
+}
+
 // The rotor and the controller's integral of the motor that is the structure's last force.
 void add_ghosts(ElementAdder& to, double inertia, double initial) {
   const Motor& motor = to.structure.forces.back().motor;
@@ -78,6 +99,7 @@ void add_ghosts(ElementAdder& to, double inertia, double initial) {
 
 void add_force(const SceneElement& e, ElementAdder& to) {
   const ForceKind& kind = force_kind(e.kind);
+  if (kind.members == Members::rods) return warm_rods(e, kind, to);
   if (e.kind == "offload" && to.structure.gravity.isZero(0.0))
     to.structure.notes.push_back(
         problem_text({e.where, e.key, "does nothing without a weight: gravity.acceleration is 0"}));

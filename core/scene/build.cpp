@@ -8,6 +8,7 @@
 #include "core/scene/size_limits.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/structures/family.hpp"
+#include "core/system/assemble_elastic.hpp"
 #include "core/system/consistency.hpp"
 #include "core/system/fit_lengths.hpp"
 #include "core/text/name_index.hpp"
@@ -157,6 +158,9 @@ Structure build_structure(const Scene& scene) {
   add_deployment(scene, structure);
   check_latches(scene, structure);
   show_cables(structure);
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
+    if (scene.surfaces[i].enabled)
+      surface_nodes(scene.surfaces[i], "surfaces[" + std::to_string(i) + "].nodes", structure);
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   return structure;
 }
@@ -165,6 +169,7 @@ std::shared_ptr<const Model> build_model(const Scene& scene) {
   Structure structure = build_structure(scene);
   try {
     fit_lengths(structure, scene.solver.eliminate_linear);
+    assemble_elastic(structure, scene.solver.eliminate_linear);
     System system(structure, scene.solver.eliminate_linear);
     check_consistency(structure, system);
     if (!scene.solver.sparse) fill_mass(scene, system);

@@ -7,6 +7,7 @@
 #include "core/scene/csv_table.hpp"
 #include "core/scene/element_members.hpp"
 #include "core/scene/text_file.hpp"
+#include "core/structure/structure_error.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {
@@ -59,6 +60,9 @@ void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
     if (entry.has("youngs_modulus")) rod.youngs_modulus = values.real("youngs_modulus");
     if (entry.has("strength")) rod.strength = values.real("strength");
     if (entry.has("second_moment")) rod.second_moment = values.real("second_moment");
+    if (entry.has("elastic")) rod.elastic = values.boolean("elastic");
+    if (entry.has("segments")) rod.segments = values.integer("segments");
+    if (entry.has("free_length")) rod.free_length = values.real("free_length");
     spec.rods.push_back(std::move(rod));
   }
 }
@@ -132,22 +136,29 @@ void read_rods_file(TableReader& table, const std::string& name, const std::stri
                                                  {"length", "m", true},
                                                  {"youngs_modulus", "Pa", true},
                                                  {"strength", "Pa", true},
-                                                 {"second_moment", "m4", true}};
+                                                 {"second_moment", "m4", true},
+                                                 {"elastic", "", true, false, true},
+                                                 {"segments", "", true},
+                                                 {"free_length", "m", true}};
   for (const auto& row : file_rows(table, "rods_file", name, folder, columns, notes)) {
     const std::string key = entry_key("rods", spec.rods.size());
     notes.locations[key] = row.where;
     if (row.numbers.contains("mass") && row.numbers.contains("density"))
       notes.add(row.where, key + ".density", mass_twice);
-    spec.rods.push_back({text_cell(row, "name", ""),
-                         {text_cell(row, "a", ""), text_cell(row, "b", "")},
-                         cell(row, "mass", -1.0),
-                         cell(row, "density", 0.0),
-                         cell(row, "area", 0.0),
-                         text_cell(row, "group", "rod"),
-                         length_cell(row, key, notes),
-                         cell(row, "youngs_modulus", not_given),
-                         cell(row, "strength", not_given),
-                         cell(row, "second_moment", 0.0)});
+    spec.rods.push_back(
+        {text_cell(row, "name", ""),
+         {text_cell(row, "a", ""), text_cell(row, "b", "")},
+         cell(row, "mass", -1.0),
+         cell(row, "density", 0.0),
+         cell(row, "area", 0.0),
+         text_cell(row, "group", "rod"),
+         length_cell(row, key, notes),
+         cell(row, "youngs_modulus", not_given),
+         cell(row, "strength", not_given),
+         cell(row, "second_moment", 0.0),
+         row.numbers.contains("elastic") ? std::optional(cell(row, "elastic", 0.0) != 0.0) : std::nullopt,
+         static_cast<long>(cell(row, "segments", 0.0)),
+         cell(row, "free_length", 0.0)});
   }
 }
 
@@ -184,10 +195,9 @@ const std::vector<ParamSpec>& custom_params() {
   static const std::vector<ParamSpec> params = [] {
     ParamSpec nodes =
         text_param("nodes_file", "", "CSV file beside the scene: name,x,y,z[,vx,vy,vz,mass,fixed]");
-    ParamSpec rods =
-        text_param("rods_file", "",
-                   "CSV file beside the scene: "
-                   "a,b[,name,mass,density,area,group,length, youngs_modulus,strength,second_moment]");
+    ParamSpec rods = text_param("rods_file", "",
+                                "CSV file beside the scene: a, b [, name, mass, density, area, group, length, "
+                                "youngs_modulus, strength, second_moment, elastic, segments, free_length]");
     std::vector<ParamSpec> all{
         choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"), nodes, rods};
     all.insert(all.end(), rod_material_params().begin(), rod_material_params().end());
@@ -229,7 +239,13 @@ const std::vector<ParamSpec>& custom_rod_params() {
                        "of this rod, with area; by default that of all rods"),
         positive_param("strength", "Pa", endless, "of this rod; by default that of all rods"),
         real_param("second_moment", "m^4", 0.0, 0.0, endless,
-                   "of the cross section, the smallest; 0: that of the section")};
+                   "of the cross section, the smallest; 0: that of the section"),
+        boolean_param("elastic", false, "gives in the motion; by default as rod_model says of all rods"),
+        integer_param("segments", 1, 1, 1000,
+                      "that it is cut into, to bend; by default as structure.segments says of all rods"),
+        positive_param("free_length", "m", std::numeric_limits<double>::quiet_NaN(),
+                       "of an elastic rod without force; its nodes stay where they are given, and the rod "
+                       "is stretched at t = 0")};
   }();
   return params;
 }
@@ -241,6 +257,12 @@ CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes
   const ParamSet values = table.read(custom_params());
   spec.lumped_mass = values.text("mass") == "lumped";
   spec.material = rod_material(values);
+  try {
+    check_rod_model(spec.material);
+  } catch (const StructureError& error) {
+    // A modulus may be that of each rod.
+    if (error.key != "youngs_modulus") table.problem(error.key, error.message);
+  }
   read_nodes(table, spec, notes);
   read_nodes_file(table, values.text("nodes_file"), folder, spec, notes);
   read_rods(table, spec, notes);

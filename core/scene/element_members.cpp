@@ -78,6 +78,22 @@ const Rod* MemberFinder::rod(const SceneElement& element, std::size_t index) {
   return nullptr;
 }
 
+std::vector<int> MemberFinder::rods(const SceneElement& element) {
+  std::vector<int> found;
+  for (const auto& name : element.rods) {
+    std::vector<int> matches = rod_names_.matching(name);
+    if (matches.empty())
+      for (std::size_t r = 0; r < structure_.rods.size(); ++r)
+        if (glob_match(name, structure_.rods[r].group)) matches.push_back(static_cast<int>(r));
+    if (matches.empty())
+      problem(element, "rods",
+              "there is no rod and no group " + in_quotes(name) + did_you_mean(name, rod_names_.names()));
+    for (const int rod : matches)
+      if (std::ranges::find(found, rod) == found.end()) found.push_back(rod);
+  }
+  return found;
+}
+
 // In (-180, 180] degrees where it has a sign: round-off of a position does not decide on which side of the
 // cut it lies.
 double MemberFinder::initial(const Measure& measure) const {

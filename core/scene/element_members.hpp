@@ -28,6 +28,7 @@ class MemberFinder {
   std::vector<int> path(const SceneElement& element);
   int node(const SceneElement& element, const std::string& key, const std::string& name);  // -1: a problem
   const Rod* rod(const SceneElement& element, std::size_t index);
+  std::vector<int> rods(const SceneElement& element);  // by their names, or the names of their groups
   // The angle that an entry names, with a sign where `axis` is not zero. False: a problem was noted.
   bool angle(const SceneElement& element, const Vec3& axis, Measure& measure);
 

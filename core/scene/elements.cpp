@@ -77,6 +77,12 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
     case Members::two_nodes:
       element.nodes = entry.names("nodes");
       return wants("nodes", element.nodes, 2);
+    case Members::three_nodes:
+      element.nodes = entry.names("nodes");
+      return wants("nodes", element.nodes, 3);
+    case Members::rods:
+      element.rods = entry.names("rods");
+      return;
     case Members::rod:
       element.rods = entry.names("rod");
       return wants("rod", element.rods, 1);
@@ -132,6 +138,10 @@ std::string_view members_text(Members members) {
       return "terms = [\"2.5 length A B\", ...]";
     case Members::two_nodes:
       return "nodes = [A, B]";
+    case Members::three_nodes:
+      return "nodes = [A, B, C]";
+    case Members::rods:
+      return "rods = names or globs of rods or groups";
     case Members::rod:
       return "rod = its name";
     case Members::angle:

@@ -10,6 +10,7 @@
 #include "core/scene/custom_reader.hpp"
 #include "core/scene/elements.hpp"
 #include "core/scene/render_options.hpp"
+#include "core/scene/surfaces.hpp"
 #include "core/structures/family.hpp"
 
 namespace unfurl {
@@ -55,6 +56,10 @@ Keys member_keys(Members members) {
                     "about X Y Z), \"C dihedral A B C D\"; C: a number")};
     case Members::two_nodes:
       return {names_key("nodes", 2, "A, B")};
+    case Members::three_nodes:
+      return {names_key("nodes", 3, "A, B, C: a bend at the middle one")};
+    case Members::rods:
+      return {names_key("rods", 0, "names or globs of rods or of their groups")};
     case Members::rod:
       return {text_param("rod", "", "its name; the direction follows it")};
     case Members::measure:
@@ -142,10 +147,15 @@ const std::vector<KeyTable>& key_tables() {
                                        "what is measured: a term as those of a combination, a list of them "
                                        "that is summed up, or the name of a constraint or force")},
                             deployment_params())});
+    all.push_back(
+        {"surfaces", "[[surfaces]]", "meshes, membranes and panels shown between nodes that carry them",
+         together({names_key("nodes", 0, "names or globs, in order around the edge")}, surface_params())});
     all.push_back({"solver", "[solver]", "how the motion is solved", solver_params()});
     all.push_back({"render", "[render]", "pictures and films", render_params()});
     all.push_back({"render.camera_keys", "[[render.camera_keys]]",
                    "where the camera is at a time; between them it moves smoothly", camera_key_params()});
+    all.push_back({"render.materials", "[[render.materials]]",
+                   "what rods of a group are made of in the pictures", material_params()});
     return all;
   }();
   return tables;

@@ -80,6 +80,18 @@ void read_loads(TableReader& root, Scene& scene, SceneNotes& notes) {
   }
 }
 
+void read_surfaces(TableReader& root, Scene& scene, SceneNotes& notes) {
+  for (const TomlTree* tree : root.tables("surfaces")) {
+    TableReader entry(tree, "surfaces[" + std::to_string(scene.surfaces.size()) + "]", tree->where, notes);
+    std::vector<std::string> nodes = entry.names("nodes");
+    SceneSurface surface = scene_surface(entry.read(surface_params()));
+    surface.nodes = std::move(nodes);
+    surface.where = tree->find("nodes") ? tree->find("nodes")->where : tree->where;
+    entry.finish();
+    scene.surfaces.push_back(std::move(surface));
+  }
+}
+
 void read_elements(TableReader& root, std::string_view table, const std::vector<ElementKind>& kinds,
                    const std::string& folder, std::vector<SceneElement>& elements, SceneNotes& notes) {
   std::size_t count = 0;
@@ -131,21 +143,28 @@ void read_camera_keys(const std::vector<const TomlTree*>& trees, RenderOptions& 
   }
 }
 
+void read_materials(const std::vector<const TomlTree*>& trees, RenderOptions& render, SceneNotes& notes) {
+  for (const TomlTree* tree : trees) {
+    TableReader entry(tree, "render.materials[" + std::to_string(render.materials.size()) + "]", tree->where,
+                      notes);
+    const ParamSet values = entry.read(material_params());
+    entry.finish();
+    render.materials.push_back({values.text("group"), values.text("material")});
+  }
+}
+
 void read_render(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
   const TomlTree* found = root.table("render");
   TableReader table(found, "render", place(found, tree), notes);
   const ParamSet values = table.read(render_params());
-  const auto keys = table.tables("camera_keys");
+  const auto keys = table.tables("camera_keys"), materials = table.tables("materials");
   table.finish();
   const auto& size = values.vector("size");
   if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]))
     table.problem("size", "must be whole numbers of pixels");
   scene.render = render_options(values);
   read_camera_keys(keys, scene.render, notes);
-  const RenderOptions& r = scene.render;
-  if (r.follow && (!r.camera_keys.empty() || r.orbit != 0 || r.turntable != 0))
-    table.problem("follow",
-                  "means nothing with camera_keys, orbit or turntable: they say where the camera is");
+  read_materials(materials, scene.render, notes);
 }
 
 void read_title(TableReader& root, const TomlTree& tree, const TomlTree& own, Scene& scene) {
@@ -218,6 +237,7 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   settle_names(scene.forces, notes);
   settle_names(scene.constraints, notes);
   read_deployment(root, tree, scene, notes);
+  read_surfaces(root, scene, notes);
   read_solver(root, tree, scene, notes);
   read_render(root, tree, scene, notes);
   root.finish();

@@ -62,6 +62,10 @@ ParamSpec size_param() {
 
 using R = RenderOptions;
 
+std::vector<std::string_view> material_names() {
+  return {"anodised", "paint", "cfrp", "aluminium", "steel", "gold"};
+}
+
 std::vector<Key> picture_keys() {
   return {
       {size_param(), SizeMembers{}},
@@ -69,7 +73,7 @@ std::vector<Key> picture_keys() {
       {real_param("speed", "", 0, 1e-6, 1e6, "seconds of motion per second of film"), &R::speed},
       {integer_param("supersample", 0, 1, 4, "every pixel is the mean of N x N"), &R::supersample},
       {boolean_param("transparent", false, "no background"), &R::transparent},
-      {choice_param("look", "", {"studio", "space", "blueprint", "print"},
+      {choice_param("look", "", {"studio", "dark", "space", "blueprint", "print"},
                     "how everything looks; `unfurl list looks`"),
        &R::look},
       {choice_param("colour_by", "",
@@ -83,6 +87,7 @@ std::vector<Key> picture_keys() {
            "rod_scale", "", 0, 0, 1000,
            "rods are drawn so many times as thick as they are, 1 = true; 0: no thinner than can be seen"),
        &R::rod_scale},
+      {choice_param("material", "", material_names(), "what rods are made of in the pictures"), &R::material},
   };
 }
 
@@ -119,7 +124,28 @@ std::vector<Key> camera_keys() {
       {real_param("turntable", "s", 0, 0, 3600,
                   "after the motion one turn around its end in so much film time"),
        &R::turntable},
+      {boolean_param("fit", false, "the picture's shape is the motion's, with as many pixels"), &R::fit},
+      {real_param("depth_of_field", "", 0, 0, 1,
+                  "blurs what is off the middle: the lens's opening over its distance; 0.02 is much"),
+       &R::depth_of_field},
+  };
+}
+
+std::vector<Key> pace_keys() {
+  return {
+      {choice_param("pace", "", {"time", "even"},
+                    "film time runs with time, or evenly with the way that the nodes go"),
+       &R::pace},
+      {real_param("easing", "s", 0, 0, 60,
+                  "the motion's pace begins and ends at rest over so much film time"),
+       &R::easing},
       {real_param("hold", "s", 0, 0, 3600, "film time for which the last picture stays"), &R::hold},
+      {real_param("hold_start", "s", 0, 0, 3600, "film time for which the first picture stays"),
+       &R::hold_start},
+      {real_param("title_card", "s", 0, 0, 60, "film time of a card with the title before all else"),
+       &R::title_card},
+      {real_param("motion_blur", "", 0, 0, 1, "share of a frame's time for which its shutter is open"),
+       &R::motion_blur},
   };
 }
 
@@ -136,7 +162,7 @@ std::vector<Key> film_keys() {
 const std::vector<Key>& keys() {
   static const std::vector<Key> rows = [] {
     std::vector<Key> all = picture_keys();
-    for (const auto& more : {overlay_keys(), camera_keys(), film_keys()})
+    for (const auto& more : {overlay_keys(), camera_keys(), pace_keys(), film_keys()})
       all.insert(all.end(), more.begin(), more.end());
     for (Key& key : all) key.spec.fallback = value_of(RenderOptions{}, key.member);
     return all;
@@ -164,6 +190,17 @@ const std::vector<ParamSpec>& camera_key_params() {
         time, real_param("azimuth", "deg", fallback.azimuth, -36000, 36000, "from the x axis towards y"),
         real_param("elevation", "deg", fallback.elevation, -90, 90, "above the floor"),
         real_param("zoom", "", fallback.zoom, 0.05, 50, "1 shows the whole motion")};
+  }();
+  return params;
+}
+
+const std::vector<ParamSpec>& material_params() {
+  static const std::vector<ParamSpec> params = [] {
+    ParamSpec group = text_param("group", "", "of rods: a name or a glob");
+    group.required = true;
+    ParamSpec material = choice_param("material", "anodised", material_names(), "what they are made of");
+    material.required = true;
+    return std::vector<ParamSpec>{group, material};
   }();
   return params;
 }

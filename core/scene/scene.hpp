@@ -11,6 +11,7 @@
 #include "core/scene/elements.hpp"
 #include "core/scene/render_options.hpp"
 #include "core/scene/scene_error.hpp"
+#include "core/scene/surfaces.hpp"
 #include "core/structure/structure.hpp"
 #include "core/structures/custom.hpp"
 
@@ -34,6 +35,7 @@ struct Scene {
   std::vector<SceneLoad> loads;
   std::vector<SceneElement> forces, constraints;
   SceneElement deployment;  // [deployment]: its terms are what it measures; without any, the scene has none
+  std::vector<SceneSurface> surfaces;  // shown only
   SolverOptions solver;
   RenderOptions render;
   std::vector<SceneProblem> warnings;               // what is given and does nothing

@@ -64,6 +64,9 @@ std::string rod_text(const CustomRod& rod) {
   if (!std::isnan(rod.youngs_modulus)) text += line("youngs_modulus", real_text(rod.youngs_modulus));
   if (!std::isnan(rod.strength)) text += line("strength", real_text(rod.strength));
   if (rod.second_moment != 0.0) text += line("second_moment", real_text(rod.second_moment));
+  if (rod.elastic) text += line("elastic", *rod.elastic ? "true" : "false");
+  if (rod.segments > 0) text += line("segments", std::to_string(rod.segments));
+  if (rod.free_length != 0.0) text += line("free_length", real_text(rod.free_length));
   if (rod.group != "rod") text += line("group", toml_string(rod.group));
   return text;
 }
@@ -114,6 +117,9 @@ std::string render_text(const RenderOptions& render) {
     text += "\n[[render.camera_keys]]\n" + line("time", real_text(key.time)) +
             line("azimuth", real_text(key.azimuth)) + line("elevation", real_text(key.elevation)) +
             line("zoom", real_text(key.zoom));
+  for (const GroupMaterial& entry : render.materials)
+    text += "\n[[render.materials]]\n" + line("group", toml_string(entry.group)) +
+            line("material", toml_string(entry.material));
   return text;
 }
 
@@ -168,6 +174,9 @@ std::string scene_text(const Scene& scene) {
       if (worth_writing(d.values.value(spec.name)))
         text += line(spec.name, toml_value(d.values.value(spec.name)));
   }
+  for (const SceneSurface& surface : scene.surfaces)
+    text += "\n[[surfaces]]\n" + line("nodes", names_text(surface.nodes)) +
+            params_text(surface_params(), surface_values(surface));
   return text + solver_text(scene) + render_text(scene.render);
 }
 

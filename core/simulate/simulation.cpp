@@ -7,8 +7,10 @@
 #include <stdexcept>
 
 #include "core/integrators/integrator.hpp"
+#include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/stepper.hpp"
+#include "core/simulate/stretched.hpp"
 
 namespace unfurl {
 namespace {
@@ -55,12 +57,24 @@ std::string_view to_string(RunStatus status) {
   return "failed";
 }
 
+SolvedAs solved_as(const Simulation& run) {
+  SolvedAs out = run.solved_as;
+  const Structure& structure = run.trajectory.structure();
+  const bool sector = structure.node_copies.size() != structure.nodes.size();
+  if (out.name.empty()) out.name = sector ? "sector" : "full";
+  if (out.why.empty())
+    out.why = sector ? "structure.model = \"sector\"" : "solver.model = \"" + run.options.model + "\"";
+  return out;
+}
+
 Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
                     const SimulationHooks& hooks) {
   if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);
   InitialState start = initial_state(model->structure, model->system);
   std::vector<std::string> warnings = model->structure.notes;
   if (std::string warning = velocity_warning(start, model->structure); !warning.empty())
+    warnings.push_back(std::move(warning));
+  if (std::string warning = elastic_step_warning(*model, start.state, options); !warning.empty())
     warnings.push_back(std::move(warning));
   const double begin = thread_cpu_seconds();
   Progress progress(hooks, start.state.t, options.end_time);
@@ -74,6 +88,7 @@ Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& opt
   if (run.status == RunStatus::completed || run.status == RunStatus::deployed) progress.report(1.0);
   run.warnings.insert(run.warnings.begin(), warnings.begin(), warnings.end());
   run.cpu_s = thread_cpu_seconds() - begin;
+  if (run.trajectory.structure().quasi_static) add_stretch(run.trajectory);
   return run;
 }
 

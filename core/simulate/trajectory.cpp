@@ -30,6 +30,7 @@ void Trajectory::append(State state, StepReport report) {
 void Trajectory::pop_back() {
   states_.pop_back();
   reports_.pop_back();
+  if (stretch_.size() > states_.size()) stretch_.pop_back();
 }
 
 VectorXd Trajectory::node_positions(std::size_t i) const {
@@ -46,8 +47,23 @@ VectorXd Trajectory::node_velocities(std::size_t i) const {
   return v;
 }
 
+void Trajectory::add_stretch(std::size_t i, VectorXd displacement) {
+  if (stretch_.empty()) stretch_.assign(size(), VectorXd::Zero(displacement.size()));
+  stretch_[i] = std::move(displacement);
+}
+
+// A straight line between the states.
+VectorXd Trajectory::stretch_at(double t) const {
+  const std::size_t i = state_before(t);
+  if (i + 1 >= stretch_.size() || t <= time(i)) return stretch_[std::min(i, stretch_.size() - 1)];
+  const double u = (t - time(i)) / (time(i + 1) - time(i));
+  return (1 - u) * stretch_[i] + u * stretch_[i + 1];
+}
+
 VectorXd Trajectory::positions(std::size_t i) const {
-  return whole_positions(structure(), node_positions(i));
+  VectorXd q = node_positions(i);
+  if (!stretch_.empty()) q += stretch_[i];
+  return whole_positions(structure(), q);
 }
 VectorXd Trajectory::velocities(std::size_t i) const {
   return whole_velocities(structure(), node_velocities(i));
@@ -69,6 +85,7 @@ VectorXd Trajectory::positions_at(double t) const {
   const System& system = model(state_before(t)).system;
   VectorXd q(system.coordinates());
   system.expand(state_at(t).z, q);
+  if (!stretch_.empty()) q += stretch_at(t);
   return whole_positions(structure(), q);
 }
 

@@ -53,6 +53,9 @@ class Trajectory {
   VectorXd positions_at(double t) const;
   VectorXd velocities_at(double t) const;
   // The same in the coordinates of the model of state_before(t).
+  // What rods give in a quasi-static model is added to the positions of the whole that are shown, not to the
+  // states: displacements of the solved nodes at state i [3 n] (stretched.hpp).
+  void add_stretch(std::size_t i, VectorXd displacement);
   State state_at(double t) const;
   std::size_t state_before(double t) const;  // the last state at or before t; the first one before the start
 
@@ -62,9 +65,11 @@ class Trajectory {
     std::shared_ptr<const Model> model;
   };
   const Part& part_of(std::size_t i) const;
+  VectorXd stretch_at(double t) const;
   std::vector<Part> models_;
   std::vector<State> states_;
   std::vector<StepReport> reports_;
+  std::vector<VectorXd> stretch_;  // empty: nothing is added
   std::shared_ptr<DenseOutput> dense_;
 };
 

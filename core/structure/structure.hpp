@@ -24,12 +24,14 @@ struct Node {
 };
 
 // A uniform rod between two nodes; mass 0 makes it a pure distance constraint. Its motion is that of a rigid
-// rod; a modulus says how rods share forces that rigid ones leave open, and what they may carry.
+// rod unless it gives; a modulus says how rods share forces that rigid ones leave open, and what they may
+// carry.
 struct Rod {
   std::string name;
-  int a = 0, b = 0;     // node indices
-  double mass = 0.0;    // [kg]
-  double length = 0.0;  // [m]; the distance of its nodes at t = 0 (fit_lengths.hpp sees to that)
+  int a = 0, b = 0;   // node indices
+  double mass = 0.0;  // [kg]
+  // [m]; the distance of its nodes at t = 0 (fit_lengths.hpp sees to that), of one that gives without force
+  double length = 0.0;
   std::string group;    // "chord", "post", "rod", ...: what colours and groups of rod forces go by
   double radius = 0.0;  // for drawing; 0: not known [m]
   double multiplicity =
@@ -38,10 +40,25 @@ struct Rod {
   double youngs_modulus = std::numeric_limits<double>::infinity();  // infinite: rigid [Pa]
   double second_moment = 0.0;  // of the cross section, the smallest; 0: not known [m^4]
   double strength = std::numeric_limits<double>::infinity();  // axial stress that it may bear [Pa]
+  // Its length follows its force (forces/elastic_rods.hpp): a rod of the motion that is elastic.
+  bool gives = false;
+  double damping_time = 0.0;  // of a rod that gives: N = (e + damping_time e') / compliance [s]
+  double free_length = 0.0;   // in place of length: it starts stretched; 0: not given [m]
+  double expansion = 0.0;     // relative change of length per kelvin [1/K]
+  TimeFunction warming = {};  // above the temperature at which it has its length [K]
 
+  // The change of its length over time, as a share of it, and the derivatives of that [1, 1/s, 1/s^2].
+  double warmed(double t, int order = 0) const {
+    return expansion == 0 ? 0.0 : expansion * warming.derivative(order, t);
+  }
+  // Of a rod that gives, without force [m].
+  double rest_length(double t) const { return natural_length() * (1 + warmed(t)); }
+  double natural_length() const { return free_length > 0 ? free_length : length; }
   bool elastic() const { return area > 0 && std::isfinite(youngs_modulus); }
   // Stretch per axial force, of all that it stands for together; 0: rigid [m/N].
-  double compliance() const { return elastic() ? length / (youngs_modulus * area * multiplicity) : 0.0; }
+  double compliance() const {
+    return elastic() ? natural_length() / (youngs_modulus * area * multiplicity) : 0.0;
+  }
 };
 
 // sum_i coefficient_i . x_{node_i} + offset: a linear measure of the configuration.
@@ -131,7 +148,8 @@ struct Force {
   TimeFunction unstressed = {};   // of a cable: that length over time [m]
   Motor motor = {};               // of a motor
   Vec3 direction = Vec3::Zero();  // of a load over time
-  TimeFunction size = {};         // of a load [N]
+  TimeFunction size = {};         // of a load [N]; of a temperature [K]
+  double expansion = 0.0;         // of a temperature [1/K]
   LinearForm form = {};           // of a latch: what it pulls to zero
   // friction: what it gives while it slips, and at most while it sticks [N] or [N m]; the sense in which it
   // slips, 0: it does not
@@ -238,6 +256,9 @@ struct Structure {
   std::vector<Force> forces;
   Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]
   bool lumped_mass = false;     // true: half of a rod's mass at each node instead of the consistent matrix
+  // The motion is that of rigid rods; what rods with a modulus give is added to what is shown of it
+  // (diagnostics/stretched.hpp).
+  bool quasi_static = false;
   Deployment deployment;
   std::vector<ReportedLength> lengths;
   // Indices of the lengths along and across a stretch; their strain increments give Poisson's ratio,

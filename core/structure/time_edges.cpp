@@ -51,6 +51,8 @@ std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
   std::vector<TimeEdge> edges;
   for (const Constraint& c : structure.constraints) add_edges(c.target, step, edges);
   for (const Stop& stop : structure.stops) add_edges(stop.reel, step, edges);
+  for (const Rod& rod : structure.rods)
+    if (rod.expansion != 0) add_edges(rod.warming, step, edges);
   const std::size_t rows = edges.size();
   for (const Force& f : structure.forces)
     for (const TimeFunction* function : {&f.size, &f.unstressed, &f.motor.command})

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/structure/structure_error.hpp"
+#include "core/structures/segments.hpp"
 #include "core/text/name_index.hpp"
 
 namespace unfurl {
@@ -23,6 +24,10 @@ void give_section(const RodMaterial& all, const CustomRod& entry, Rod& rod) {
   rod.youngs_modulus = own(entry.youngs_modulus, all.youngs_modulus);
   rod.strength = own(entry.strength, all.strength);
   rod.second_moment = entry.second_moment > 0.0 ? entry.second_moment : shape.second_moment;
+  rod.gives = rod.elastic() && gives_in_motion(all, entry);
+  if (!rod.gives) return;
+  rod.free_length = entry.free_length;
+  rod.damping_time = damping_time_of(all, rod);
 }
 
 void add_nodes(const CustomSpec& spec, Structure& structure) {
@@ -35,6 +40,10 @@ void add_nodes(const CustomSpec& spec, Structure& structure) {
 }
 
 }  // namespace
+
+bool gives_in_motion(const RodMaterial& all, const CustomRod& rod) {
+  return rod.elastic.value_or(all.rod_model == "elastic");
+}
 
 std::string rod_name(const CustomRod& rod) {
   if (!rod.name.empty() || rod.nodes.size() != 2) return rod.name;
@@ -51,10 +60,12 @@ Structure build_custom(const CustomSpec& spec) {
   Structure structure;
   structure.kind = "custom";
   structure.lumped_mass = spec.lumped_mass;
+  structure.quasi_static = spec.material.rod_model == "quasi-static";
   add_nodes(spec, structure);
 
   NameIndex names;
   for (const auto& node : spec.nodes) names.add(node.name);
+  std::vector<long> segments;
   for (const auto& entry : spec.rods) {
     const int a = names.find(entry.nodes[0]), b = names.find(entry.nodes[1]);
     const double apart =
@@ -63,8 +74,13 @@ Structure build_custom(const CustomSpec& spec) {
     const double length = entry.length > 0.0 ? entry.length : apart;
     structure.rods.push_back({rod_name(entry), a, b, rod_mass(entry, length), length, entry.group, 0.0, 1.0});
     if (entry.area > 0.0) give_section(spec.material, entry, structure.rods.back());
+    segments.push_back(entry.segments > 0                ? entry.segments
+                       : structure.rods.back().elastic() ? spec.material.segments
+                                                         : 1);
   }
   show_as_solved(structure);
+  cut_rods(structure, segments);
+  add_length_errors(structure, spec.material);
   return structure;
 }
 

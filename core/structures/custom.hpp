@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,6 +34,9 @@ struct CustomRod {
   double youngs_modulus = std::numeric_limits<double>::quiet_NaN();  // [Pa]
   double strength = std::numeric_limits<double>::quiet_NaN();        // [Pa]
   double second_moment = 0.0;                                        // [m^4]; 0: that of the section
+  std::optional<bool> elastic = {};  // it gives in the motion; none: as rod_model says of all rods
+  long segments = 0;                 // that it is cut into; 0: as all rods with a modulus
+  double free_length = 0.0;          // of one that gives: without force, from t = 0; 0: length [m]
 };
 
 struct CustomSpec {
@@ -56,6 +60,9 @@ std::vector<CustomProblem> check_custom(const CustomSpec& spec);
 // Nodes in the spec's order; the rods' lengths are those given, else the distances of their nodes. Throws
 // StructureError with the first problem where check_custom has any.
 Structure build_custom(const CustomSpec& spec);
+
+// Whether a rod that has an area and a modulus gives in the motion.
+bool gives_in_motion(const RodMaterial& all, const CustomRod& rod);
 
 // The name a rod goes by: its own, or "A-B" from its nodes.
 std::string rod_name(const CustomRod& rod);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Everything that can be wrong with a list of nodes and rods.
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 #include <utility>
@@ -20,6 +21,7 @@ class Checker {
   std::vector<CustomProblem> run() {
     check_nodes();
     check_rods();
+    check_rod_model();
     return std::move(problems_);
   }
 
@@ -74,6 +76,22 @@ class Checker {
     }
   }
 
+  // What is asked of elastic rods needs some.
+  void check_rod_model() {
+    const RodMaterial& all = spec_.material;
+    const bool any = std::any_of(spec_.rods.begin(), spec_.rods.end(), [&](const CustomRod& rod) {
+      return rod.area > 0.0 && std::isfinite(modulus_of(rod));
+    });
+    if (all.rod_model != "rigid" && !any)
+      problems_.push_back(
+          {"rod_model", -1, "",
+           "\"" + all.rod_model + "\" needs rods with an area, in m^2, and a youngs_modulus, in Pa"});
+  }
+
+  double modulus_of(const CustomRod& rod) const {
+    return std::isnan(rod.youngs_modulus) ? spec_.material.youngs_modulus : rod.youngs_modulus;
+  }
+
   bool check_rod_nodes(const CustomRod& rod, std::size_t i) {
     if (rod.nodes.size() != 2) {
       add("rods", i, "nodes", "a rod joins 2 nodes; got " + std::to_string(rod.nodes.size()));
@@ -113,6 +131,11 @@ class Checker {
     if (rod.strength <= 0.0) add("rods", i, "strength", "must be > 0 Pa");
     if (!(rod.second_moment >= 0.0) || std::isinf(rod.second_moment))
       add("rods", i, "second_moment", "must be >= 0 m^4; 0: that of the section");
+    if (!(rod.free_length >= 0.0) || std::isinf(rod.free_length))
+      add("rods", i, "free_length", "must be > 0 m");
+    check_rod_model_of(rod, i);
+    if (rod.segments > 1 && !(rod.area > 0.0 && std::isfinite(modulus_of(rod))))
+      add("rods", i, "segments", "a rod that bends needs its area, in m^2, and a youngs_modulus, in Pa");
     const bool meant = std::isfinite(rod.youngs_modulus) ||
                        (std::isnan(rod.youngs_modulus) && spec_.material.elastic() && rod.mass > 0.0);
     if (meant && !(rod.area > 0.0))
@@ -123,6 +146,21 @@ class Checker {
     } catch (const StructureError& error) {
       add("rods", i, "area", error.message);
     }
+  }
+
+  void check_rod_model_of(const CustomRod& rod, std::size_t i) {
+    const bool known = rod.area > 0.0 && std::isfinite(modulus_of(rod));
+    const bool gives = gives_in_motion(spec_.material, rod) && (rod.elastic.has_value() || known);
+    if (gives && !known)
+      return add("rods", i, rod.area > 0.0 ? "youngs_modulus" : "area",
+                 "an elastic rod needs its area, in m^2, and a youngs_modulus, in Pa");
+    if (rod.free_length > 0.0 && !gives)
+      add("rods", i, "free_length", "is for elastic rods; a rigid one has its length");
+    if (rod.free_length > 0.0 && rod.length > 0.0)
+      add("rods", i, "free_length",
+          "give length, where nodes are moved to fit, or free_length, where they stay, not both");
+    if (gives && spec_.material.damping_ratio > 0.0 && rod.mass == 0.0)
+      add("rods", i, "mass", "damping_ratio needs the mass of an elastic rod; damping_time does not");
   }
 
   void check_rod_mass(const CustomRod& rod, std::size_t i) {

@@ -2,9 +2,11 @@
 #include "core/structures/rod_material.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 #include "core/structure/structure_error.hpp"
+#include "core/structures/segments.hpp"
 
 namespace unfurl {
 
@@ -35,13 +37,28 @@ const std::vector<ParamSpec>& rod_material_params() {
       only_with(
           "section", {"tube"},
           positive_param("wall_thickness", "m", endless, "of a tube; its diameter follows from the area")),
+      choice_param(
+          "rod_model", "rigid", {"rigid", "quasi-static", "elastic"},
+          "elastic: rods with a youngs_modulus give, with waves; quasi-static: the rigid motion, what "
+          "its forces stretch added to what is shown"),
+      real_param("damping_ratio", "", 0.0, 0.0, endless,
+                 "of elastic rods, of critical damping where a rod is free and alone"),
+      real_param("damping_time", "s", 0.0, 0.0, endless,
+                 "of elastic rods, in place of damping_ratio: stress = E (strain + damping_time * its rate)"),
+      integer_param("segments", 1, 1, 1000,
+                    "that rods with a youngs_modulus are cut into, to bend between their ends"),
+      real_param("length_error", "m", 0.0, 0.0, endless,
+                 "of the rods as they are made, standard deviation; elastic rods are joined all the same"),
+      integer_param("error_seed", 1, 0, 1000000000, "of the errors: another number, other errors"),
   };
   return params;
 }
 
 RodMaterial rod_material(const ParamSet& values) {
-  return {values.real("youngs_modulus"), values.real("strength"), values.text("section"),
-          values.real("wall_thickness")};
+  return {values.real("youngs_modulus"), values.real("strength"),    values.text("section"),
+          values.real("wall_thickness"), values.text("rod_model"),   values.real("damping_ratio"),
+          values.real("damping_time"),   values.integer("segments"), values.real("length_error"),
+          values.integer("error_seed")};
 }
 
 ParamSet rod_material_values(const RodMaterial& material) {
@@ -50,6 +67,12 @@ ParamSet rod_material_values(const RodMaterial& material) {
   values.set("strength", material.strength);
   values.set("section", material.section);
   values.set("wall_thickness", material.wall_thickness);
+  values.set("rod_model", material.rod_model);
+  values.set("damping_ratio", material.damping_ratio);
+  values.set("damping_time", material.damping_time);
+  values.set("segments", material.segments);
+  values.set("length_error", material.length_error);
+  values.set("error_seed", material.error_seed);
   return values;
 }
 
@@ -66,16 +89,67 @@ SectionShape section_shape(const RodMaterial& material, double area) {
   return {pi / 64 * (std::pow(outer, 4) - std::pow(inner, 4)), outer / 2};
 }
 
+double damping_time_of(const RodMaterial& material, const Rod& rod) {
+  if (material.damping_ratio == 0 || !(rod.mass > 0)) return material.damping_time;
+  const double k = rod.youngs_modulus * rod.area / rod.natural_length();
+  return 2 * material.damping_ratio / std::sqrt(12 * k / rod.mass);
+}
+
+void check_rod_model(const RodMaterial& material) {
+  if (material.damping_ratio > 0 && material.damping_time > 0)
+    throw StructureError("damping_time", "give damping_ratio or damping_time, not both");
+  if (material.rod_model != "rigid" && !material.elastic())
+    throw StructureError("youngs_modulus",
+                         "rod_model = \"" + material.rod_model + "\" needs the youngs_modulus of the rods");
+}
+
+// Uniform in (0, 1] from counters (splitmix64), normal by Box and Muller.
+namespace {
+
+double uniform(std::uint64_t counter) {
+  std::uint64_t x = counter * 0x9e3779b97f4a7c15ULL;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return static_cast<double>(((x ^ (x >> 31)) >> 11) + 1) / 9007199254740992.0;
+}
+
+double normal(std::uint64_t seed, std::uint64_t index) {
+  const std::uint64_t at = (seed << 32) + 2 * index + 1;
+  return std::sqrt(-2 * std::log(uniform(at))) * std::cos(2 * pi * uniform(at + 1));
+}
+
+}  // namespace
+
+void add_length_errors(Structure& structure, const RodMaterial& material) {
+  if (material.length_error == 0) return;
+  if (structure.sectors > 1 || structure.node_copies.size() != structure.nodes.size())
+    throw StructureError("length_error",
+                         "errors of length break the symmetry of a sector model; set structure.model to "
+                         "\"full\"");
+  for (std::size_t r = 0; r < structure.rods.size(); ++r)
+    if (Rod& rod = structure.rods[r]; rod.mass > 0)
+      rod.length += material.length_error * normal(static_cast<std::uint64_t>(material.error_seed), r);
+}
+
 void give_material(Structure& structure, double area, const RodMaterial& material) {
+  check_rod_model(material);
+  structure.quasi_static = material.rod_model == "quasi-static";
   const SectionShape shape = section_shape(material, area);
-  for (Rod& rod : structure.rods) {
+  std::vector<long> segments(structure.rods.size(), 1);
+  for (std::size_t r = 0; r < structure.rods.size(); ++r) {
+    Rod& rod = structure.rods[r];
     if (!(rod.mass > 0)) continue;
     rod.area = area;
     rod.youngs_modulus = material.youngs_modulus;
     rod.strength = material.strength;
     rod.second_moment = shape.second_moment;
     if (material.section == "tube") rod.radius = shape.radius;
+    rod.gives = material.rod_model == "elastic";
+    rod.damping_time = damping_time_of(material, rod);
+    segments[r] = material.segments;
   }
+  cut_rods(structure, segments);
+  add_length_errors(structure, material);
 }
 
 }  // namespace unfurl

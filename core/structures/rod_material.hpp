@@ -16,6 +16,12 @@ struct RodMaterial {
   double strength = std::numeric_limits<double>::infinity();        // axial stress that it may bear [Pa]
   std::string section = "round";                                    // round | tube | square
   double wall_thickness = std::numeric_limits<double>::infinity();  // of a tube [m]
+  std::string rod_model = "rigid";                                  // rigid | quasi-static | elastic
+  double damping_ratio = 0.0;                                       // of a rod that gives, free and alone
+  double damping_time = 0.0;  // its stress is E (strain + damping_time * rate of strain) [s]
+  long segments = 1;          // that a rod with a modulus is cut into, to bend
+  double length_error = 0.0;  // standard deviation of the lengths as made [m]
+  long error_seed = 1;
 
   bool elastic() const;
 };
@@ -36,7 +42,18 @@ struct SectionShape {
 // Throws StructureError with "wall_thickness" where there is no such tube.
 SectionShape section_shape(const RodMaterial& material, double area);
 
-// Gives every rod that has a mass this area [m^2] and material.
+// The damping time of a rod that gives [s]. A free uniform rod of mass m and stiffness k = E A / l stretches
+// and shrinks, as one element, at w^2 = 12 k / m; the ratio is that of this motion, T = 2 ratio / w.
+double damping_time_of(const RodMaterial& material, const Rod& rod);
+
+// Throws StructureError where the model of the rods and what is known of them do not fit.
+void check_rod_model(const RodMaterial& material);
+
+// What rods get wrong when they are made: lengths off by normally distributed errors, the same for the same
+// seed on every machine. Throws StructureError in a sector model, whose symmetry they break.
+void add_length_errors(Structure& structure, const RodMaterial& material);
+
+// Gives every rod that has a mass this area [m^2] and material; cuts them into segments.
 void give_material(Structure& structure, double area, const RodMaterial& material);
 
 }  // namespace unfurl

@@ -10,11 +10,13 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/integrators/integrator.hpp"
+#include "core/path/path.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/toml_tree.hpp"
 #include "core/scene/write.hpp"
 #include "core/simulate/simulation.hpp"
 #include "core/study/measured_run.hpp"
+#include "core/study/tolerance.hpp"
 
 namespace unfurl {
 namespace {
@@ -50,7 +52,28 @@ void add_modulus(const TomlTree& root, std::vector<ModelChoice>& out) {
   if (rigid)
     out.push_back({"forces shared by stiffness: E = 70 GPa", {"structure.youngs_modulus=7e10"}});
   else
-    out.push_back({"rigid rods: forces of least norm", {"structure.youngs_modulus=inf"}});
+    out.push_back({"rigid rods: forces of least norm",
+                   {"structure.rod_model=rigid", "structure.segments=1", "structure.youngs_modulus=inf"}});
+}
+
+// Rigid, quasi-static, elastic, bending: those that the scene does not have. Without a modulus, aluminium's.
+void add_rod_models(const TomlTree& root, std::vector<ModelChoice>& out) {
+  const std::string now = text_at(root, "structure", "rod_model");
+  if (now.empty()) return;
+  const TomlTree* modulus = root.find("structure")->find("youngs_modulus");
+  const bool endless = !modulus || std::isinf(modulus->real);
+  const std::string known = endless ? ": E = 70 GPa" : "";
+  const auto add = [&](const std::string& name, std::vector<std::string> changes) {
+    if (endless) changes.emplace_back("structure.youngs_modulus=7e10");
+    out.push_back({name + known, std::move(changes)});
+  };
+  if (now != "rigid") out.push_back({"rigid rods", {"structure.rod_model=rigid"}});
+  if (now != "quasi-static")
+    add("quasi-static rods: stretched by the rigid run's forces", {"structure.rod_model=quasi-static"});
+  if (now != "elastic") add("elastic rods, with waves", {"structure.rod_model=elastic"});
+  const TomlTree* segments = root.find("structure")->find("segments");
+  if (segments && segments->integer <= 1)
+    add("bending rods: elastic, in 4 segments", {"structure.rod_model=elastic", "structure.segments=4"});
 }
 
 // Every force of a kind switched off, and what else goes with it.
@@ -68,23 +91,35 @@ double heap_in_use() {
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-// Of the whole structure, at every time that both have.
+// Of the nodes that `a` shows, at every time that both have; segments add nodes behind them.
 double difference(const Trajectory& a, const Trajectory& b) {
-  if (a.structure().node_copies.size() != b.structure().node_copies.size()) return nan;
+  if (b.structure().node_copies.size() < a.structure().node_copies.size()) return nan;
   double largest = 0;
   for (std::size_t i = 0, k = 0; i < a.size(); ++i) {
     while (k < b.size() && b.time(k) < a.time(i) - 1e-9) ++k;
     if (k == b.size()) break;
     if (b.time(k) < a.time(i) + 1e-9)
-      largest = std::max(largest, node_distance(a.positions(i), b.positions(k)));
+      largest = std::max(largest, node_distance(a.positions(i), b.positions(k).head(a.positions(i).size())));
   }
   return largest;
+}
+
+// Of the node that moves furthest in the first run, at the last time that both have.
+double tip_difference(const Trajectory& a, const Trajectory& b) {
+  if (b.structure().node_copies.size() < a.structure().node_copies.size()) return nan;
+  const VectorXd moved = a.positions(a.size() - 1) - a.positions(0);
+  Index tip = 0;
+  for (Index i = 0; i < moved.size(); i += 3)
+    if (moved.segment<3>(i).norm() > moved.segment<3>(tip).norm()) tip = i;
+  const double t = std::min(a.end_time(), b.end_time());
+  return (a.positions_at(t) - b.positions_at(t).head(moved.size())).segment<3>(tip).norm();
 }
 
 // What drawing sees of a run: node positions in single precision. It costs no step anything.
 MeasuredModel display_mesh(const Trajectory& run) {
   MeasuredModel m;
   m.choice.name = "single precision of the display's mesh";
+  m.tip_difference = nan;
   m.cpu_median = m.cpu_min = m.cpu_max = m.memory = m.deployment_time = nan;
   m.peak_force = m.cpu_forces = nan;
   for (std::size_t i = 0; i < run.size(); ++i) {
@@ -108,7 +143,8 @@ Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hoo
   std::optional<Simulation> first;
   std::vector<double> times;
   for (int i = 0; i < repeats; ++i) {
-    Simulation run = simulate(model, scene.solver, own);
+    Simulation run = scene.solver.model == "full" ? simulate(model, scene.solver, own)
+                                                  : simulate_as_asked(model, scene.solver, own);
     if (run.status == RunStatus::stopped) throw Cancelled();
     times.push_back(run.cpu_s);
     if (!first) first = std::move(run);
@@ -153,6 +189,7 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
     const std::string now = text_at(root, table, key);
     if (!now.empty() && now != value) out.push_back({name, {std::string(table) + "." + key + "=" + value}});
   };
+  add("solver", "model", "path", "path: one number along the only way to move");
   add("structure", "model", "full", "full: every unit solved");
   add("structure", "model", "sector", "sector: one sector solved, all shown");
   add("solver", "eliminate_linear", "true", "linear constraints eliminated");
@@ -162,6 +199,7 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
   add("structure", "mass", "consistent", "consistent mass: rigid uniform rods");
   add("structure", "mass", "lumped", "lumped mass: half of a rod at each node");
   add_modulus(root, out);
+  add_rod_models(root, out);
   add_switches(scene, root, out);
   std::vector<std::string> keys;
   damping_keys(root, "", keys);
@@ -183,16 +221,23 @@ std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats
     hooks.tell(static_cast<double>(out.size()) / static_cast<double>(choices.size()));
     MeasuredModel m;
     m.choice = choice;
-    m.difference = m.deployment_time = m.peak_force = m.cpu_forces = nan;
+    m.difference = m.tip_difference = m.deployment_time = m.peak_force = m.cpu_forces = nan;
     try {
       Simulation run = measure(source, repeats, hooks, m);
-      if (!base)
-        base = std::move(run), m.difference = 0;
-      else
+      if (!base) {
+        base = std::move(run);
+        m.difference = m.tip_difference = 0;
+      } else {
         m.difference = difference(base->trajectory, run.trajectory);
+        m.tip_difference = tip_difference(base->trajectory, run.trajectory);
+      }
     } catch (const SceneError& error) {
       if (!base) throw;
       m.outcome = "not possible: " + error.problems().front().message;
+    } catch (const PathRefused& refused) {
+      if (!base) throw;
+      m.outcome = std::string("not possible: ") + refused.what();
+      m.solved_coordinates = 0;
     }
     out.push_back(std::move(m));
   }
@@ -204,7 +249,7 @@ std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats
 Table models_table(const std::vector<MeasuredModel>& models) {
   Table table{{"model", "outcome", "solved_coordinates", "constraints", "cpu_median_s", "cpu_min_s",
                "cpu_max_s", "memory_bytes", "difference_m", "deployment_time_s", "peak_rod_force_N",
-               "peak_unique", "cpu_forces_s"},
+               "peak_unique", "cpu_forces_s", "tip_difference_m"},
               {}};
   for (const MeasuredModel& m : models) {
     std::vector<std::string> row{m.choice.name, m.outcome, std::to_string(m.solved_coordinates),
@@ -214,6 +259,7 @@ Table models_table(const std::vector<MeasuredModel>& models) {
     row.push_back(exact_number(m.peak_force));
     row.push_back(m.peak_unique ? "1" : "0");
     row.push_back(exact_number(m.cpu_forces));
+    row.push_back(exact_number(m.tip_difference));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -221,18 +267,19 @@ Table models_table(const std::vector<MeasuredModel>& models) {
 
 Table models_summary(const std::vector<MeasuredModel>& models) {
   Table table{{"model", "coordinates", "constraints", "CPU (ms)", "CPU (times)", "memory (kB)",
-               "difference in the answer (m)", "deployed at (s)", "peak rod force (N)", "forces (ms)"},
+               "difference in the answer (m)", "of the tip at the end (m)", "deployed at (s)",
+               "peak rod force (N)", "forces (ms)"},
               {}};
   for (const MeasuredModel& m : models) {
     if (m.solved_coordinates == 0) {
       table.rows.push_back({m.choice.name + (m.outcome.empty() ? "" : " (" + m.outcome + ")"), "", "", "", "",
-                            "", std::isnan(m.difference) ? "" : short_number(m.difference), "", "", ""});
+                            "", std::isnan(m.difference) ? "" : short_number(m.difference), "", "", "", ""});
       continue;
     }
     table.rows.push_back(
         {m.choice.name, std::to_string(m.solved_coordinates), std::to_string(m.constraints),
          short_number(1e3 * m.cpu_median), short_number(m.cpu_median / models.front().cpu_median),
-         short_number(m.memory / 1e3), short_number(m.difference),
+         short_number(m.memory / 1e3), short_number(m.difference), short_number(m.tip_difference),
          std::isnan(m.deployment_time) ? "" : short_number(m.deployment_time, 8),
          std::isnan(m.peak_force) ? ""
                                   : short_number(m.peak_force, 6) + (m.peak_unique ? "" : " (not unique)"),

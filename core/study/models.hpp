@@ -14,8 +14,9 @@ struct ModelChoice {
 };
 
 // The scene as it stands, then every choice that it allows and does not make: full or sector, linear
-// constraints eliminated or kept, sparse or dense matrices, consistent or lumped mass, rigid rods or forces
-// shared by their stiffness, without damping.
+// constraints eliminated or kept, the path of one that can move in one way only, sparse or dense matrices,
+// consistent or lumped mass, rigid rods or forces shared by their stiffness, rigid, quasi-static, elastic or
+// bending rods, without damping.
 std::vector<ModelChoice> model_choices(const SceneSource& source);
 
 struct MeasuredModel {
@@ -25,6 +26,7 @@ struct MeasuredModel {
   double cpu_median = 0, cpu_min = 0, cpu_max = 0;  // [s]
   double memory = 0;      // of the model and the solver, without the trajectory [bytes]
   double difference = 0;  // largest distance of a node from the scene as it stands, at the times of both [m]
+  double tip_difference = 0;   // of the node that moves furthest, at the last time of both [m]
   double deployment_time = 0;  // NaN: none [s]
   double peak_force = 0;       // largest axial force of any rod; NaN: there is none [N]
   bool peak_unique = true;

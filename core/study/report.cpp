@@ -19,6 +19,7 @@ table { border-collapse: collapse; font-size: .88rem; margin: 1rem 0; display: b
 th, td { padding: .3rem .7rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
 th { border-bottom: 2px solid #888 } td.n { text-align: right; font-variant-numeric: tabular-nums }
 figure { margin: 1.5rem 0 } img { max-width: 100%; height: auto } figcaption, .caption { font-size: .88rem; color: #555 }
+pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; line-height: 1.4 }
 code { background: #f2f2f2; padding: .1em .3em; border-radius: 3px }
 )";
 
@@ -55,7 +56,8 @@ std::string html_picture(const ReportBlock& block, const std::filesystem::path& 
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   if (!file) throw FileError(path, "cannot be read");
-  const std::string type = path.extension() == ".svg" ? "svg+xml" : "png";
+  const std::string extension = path.extension().string();
+  const std::string type = extension == ".svg" ? "svg+xml" : extension == ".webp" ? "webp" : "png";
   return "<figure><img alt=\"" + xml_text(block.text) + "\" src=\"data:image/" + type + ";base64," +
          base64(std::as_bytes(std::span(bytes))) + "\"><figcaption>" + html_text(block.text) +
          "</figcaption></figure>\n";
@@ -75,6 +77,9 @@ void Report::add(Table table, std::string caption) {
 void Report::picture(std::string file, std::string caption) {
   blocks.push_back({ReportBlock::Kind::picture, std::move(caption), {}, std::move(file)});
 }
+void Report::listing(std::string text) {
+  blocks.push_back({ReportBlock::Kind::listing, std::move(text)});
+}
 
 std::string report_markdown(const Report& report) {
   std::string text = "# " + markdown_line(report.title) + "\n";
@@ -86,6 +91,7 @@ std::string report_markdown(const Report& report) {
       text += (block.text.empty() ? "" : markdown_line(block.text) + "\n\n") + markdown_text(block.table);
     if (block.kind == ReportBlock::Kind::picture)
       text += "![" + markdown_line(block.text) + "](" + block.file + ")\n";
+    if (block.kind == ReportBlock::Kind::listing) text += "```\n" + block.text + "```\n";
   }
   return text;
 }
@@ -104,6 +110,7 @@ std::string report_html(const Report& report, const std::filesystem::path& folde
       text += html_table(block.table);
     }
     if (block.kind == ReportBlock::Kind::picture) text += html_picture(block, folder);
+    if (block.kind == ReportBlock::Kind::listing) text += "<pre>" + xml_text(block.text) + "</pre>\n";
   }
   return text + "</body></html>\n";
 }

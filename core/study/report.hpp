@@ -11,7 +11,7 @@
 namespace unfurl {
 
 struct ReportBlock {
-  enum class Kind { heading, paragraph, table, picture };
+  enum class Kind { heading, paragraph, table, picture, listing };
   Kind kind = Kind::paragraph;
   std::string text;  // of a picture: its caption
   Table table = {};
@@ -27,10 +27,12 @@ struct Report {
   void paragraph(std::string text);
   void add(Table table, std::string caption = "");
   void picture(std::string file, std::string caption);
+  void listing(std::string text);  // of a file, line by line as it is
 };
 
 std::string report_markdown(const Report& report);
-// Self-contained: pictures (PNG or SVG in `folder`) are embedded. Throws FileError where one cannot be read.
+// Self-contained: pictures (PNG, SVG or WebP in `folder`) are embedded. Throws FileError where one cannot be
+// read.
 std::string report_html(const Report& report, const std::filesystem::path& folder);
 
 }  // namespace unfurl

@@ -47,7 +47,7 @@ class Checker {
     G_ = unit_rows(q_, norms_);
     if (driven)
       for (const Drive& drive : system_.drives()) check_drive(drive);
-    else if (!elastic_)
+    else if (!elastic_ && !system_.rheonomic())
       check_freedom();
   }
 

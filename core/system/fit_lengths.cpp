@@ -22,12 +22,13 @@ double node_distance_of(const Structure& structure, const Rod& rod) {
       .norm();
 }
 
-// The rod whose length is furthest from the distance of its nodes, relatively.
+// The rigid rod whose length is furthest from the distance of its nodes, relatively.
 std::size_t worst_rod(const Structure& structure) {
   std::size_t worst = 0;
   double most = -1;
   for (std::size_t i = 0; i < structure.rods.size(); ++i) {
     const Rod& rod = structure.rods[i];
+    if (rod.gives) continue;
     const double off = std::abs(node_distance_of(structure, rod) / rod.length - 1);
     if (off > most) most = off, worst = i;
   }
@@ -79,7 +80,8 @@ bool solve_for_pose(const System& system, VectorXd& q) {
 }  // namespace
 
 void fit_lengths(Structure& structure, bool eliminate_linear) {
-  if (structure.rods.empty()) return;
+  if (std::all_of(structure.rods.begin(), structure.rods.end(), [](const Rod& rod) { return rod.gives; }))
+    return;
   const std::size_t worst = worst_rod(structure);
   const Rod& rod = structure.rods[worst];
   const double off = std::abs(node_distance_of(structure, rod) / rod.length - 1);

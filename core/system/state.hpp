@@ -11,7 +11,11 @@ struct State {
   VectorXd z;       // solved coordinates [m]
   VectorXd w;       // their rates [m/s]
   VectorXd lambda;  // multipliers of the kept constraints [N]; warm start of the next step
-  VectorXd angles;  // FollowedAngles (measure.hpp), counted on from turn to turn [rad]; none: those at t = 0
+  // Of the rods that give, where a step does not resolve their waves: the axial forces of the method's stages
+  // at the state, which its coordinates do not tell then; empty: they do [N].
+  VectorXd tension = {};
+  VectorXd angles =
+      {};  // FollowedAngles (measure.hpp), counted on from turn to turn [rad]; none: those at t = 0
 };
 
 enum class StepStatus { converged, stalled, diverged, not_finite };

@@ -144,6 +144,7 @@ void System::Data::build_forces(const Structure& structure) {
   for (const ForceKind& kind : force_kinds()) {
     auto block = kind.make(structure, node_mass);
     if (!block) continue;
+    if (const auto* rods = dynamic_cast<const ElasticRods*>(block.get())) elastic_rods = rods;
     if (block->constant())
       block->add(0.0, start.data(), start.data(), 1.0, constant_force.data());
     else
@@ -227,9 +228,11 @@ System::System(const Structure& structure, bool eliminate_linear) {
   data->build_jacobian_map();
   data->build_stencils();
   data->rod_rows.assign(structure.rods.size(), -1);
-  for (std::size_t i = 0; i < structure.rods.size(); ++i)  // rods are the last kept block
-    data->rod_rows[i] =
-        static_cast<int>(data->rows - static_cast<Index>(structure.rods.size()) + static_cast<Index>(i));
+  int row = static_cast<int>(data->rows);
+  for (std::size_t i = structure.rods.size(); i-- > 0;)  // rods are the last kept block
+    if (!structure.rods[i].gives) data->rod_rows[i] = --row;
+  for (std::size_t i = 0; i < structure.rods.size(); ++i)
+    if (structure.rods[i].gives) data->giving.push_back(static_cast<int>(i));
   data_ = std::move(data);
 }
 

@@ -110,11 +110,15 @@ class System {
   void force_derivatives(double t, const ConstVec& q, const ConstVec& v, SparseRows& by_z,
                          SparseRows& by_w) const;
 
+  // Rods that give (indices of Structure::rods) and their axial forces, of all that each stands for [N].
+  const std::vector<int>& giving_rods() const;
+  void giving_rod_forces(double t, const ConstVec& q, const ConstVec& v, MutVec force) const;
+
   const std::vector<Drive>& drives() const;  // kept rows that prescribe a motion
 
   const VectorXd& constraint_lengths() const;                // [m] per kept row
   const std::vector<std::string>& constraint_names() const;  // per kept row
-  // Kept row of each rod; -1 where it is none.
+  // Kept row of each rod; -1: it gives, and is none.
   const std::vector<int>& rod_rows() const;
   // First kept row of Structure::constraints[constraint]; -1 where it was eliminated.
   int constraint_row(int constraint) const;

@@ -2,6 +2,7 @@
 // What a System holds; for its own sources only.
 #pragma once
 
+#include "core/forces/elastic_rods.hpp"
 #include "core/forces/force.hpp"
 #include "core/structure/measure.hpp"
 #include "core/system/system.hpp"
@@ -23,7 +24,8 @@ struct System::Data {
   Index coordinates = 0, rows = 0, linear_rows = 0;
   VectorXd lengths;
   std::vector<std::string> names;
-  std::vector<int> rod_rows, constraint_rows;
+  std::vector<int> rod_rows, constraint_rows, giving;
+  const ElasticRods* elastic_rods = nullptr;  // among forces; nullptr: no rod gives
   std::vector<Drive> drives;
   std::vector<MeasureFunction> followed;  // angles that count turns
   // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e,

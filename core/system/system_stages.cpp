@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What System offers to the steps of methods: kernels that work on all stages of a step at once, and sizes.
+// What System offers to the steps of methods: kernels that work on all stages of a step at once, sizes, and
+// the forces of rods that give.
 #include "core/system/system_data.hpp"
 
 namespace unfurl {
+
+const std::vector<int>& System::giving_rods() const {
+  return data_->giving;
+}
+void System::giving_rod_forces(double t, const ConstVec& q, const ConstVec& v, MutVec force) const {
+  if (data_->elastic_rods) data_->elastic_rods->forces(t, q.data(), v.data(), force.data());
+}
 
 void System::reduce_sizes(const ConstVec& f, MutVec r) const {
   r.setZero();

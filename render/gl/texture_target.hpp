@@ -5,7 +5,7 @@ namespace unfurl {
 
 enum class TextureKind {
   depth,  // 24 bits, read by a sampler2DShadow
-  shade   // one 8-bit channel
+  shade   // two 8-bit channels
 };
 
 // A square texture that one pass draws and a later one reads, bilinearly. Outside it continues its edge.

@@ -19,6 +19,8 @@ namespace {
 constexpr std::size_t colors = 255;  // and one index for "as before"
 constexpr GifByteType clear_index = 255;
 constexpr int most_side = 65535;
+constexpr int dither = 3;  // of 255
+constexpr std::array<int, 16> bayer{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
 
 struct Rect {
   int left, top, width, height;
@@ -101,9 +103,20 @@ void GifAnimation::Encoder::write_loop() {
 
 void GifAnimation::Encoder::index(const Image& frame) {
   next.resize(frame.rgba.size() / 4);
+  const auto wide = static_cast<std::size_t>(width);
   for (std::size_t i = 0; i < next.size(); ++i) {
     const std::uint8_t* pixel = &frame.rgba[4 * i];
-    next[i] = pixel[3] < 128 ? clear_index : palette.nearest(pixel);
+    if (pixel[3] < 128) {
+      next[i] = clear_index;
+      continue;
+    }
+    // Where a pixel is decides to which side it is rounded: a gradient has no steps, and what rests stays.
+    const std::size_t x = i % wide, y = i / wide;
+    const int shift = (bayer[4 * (y % 4) + x % 4] * 2 - 15) * dither / 15;
+    std::array<std::uint8_t, 3> moved{};
+    for (std::size_t c = 0; c < 3; ++c)
+      moved[c] = static_cast<std::uint8_t>(std::clamp(pixel[c] + shift, 0, 255));
+    next[i] = palette.nearest(moved.data());
   }
 }
 

@@ -28,15 +28,14 @@ std::vector<std::string> ffmpeg_arguments(const std::string& file, int width, in
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   std::ostringstream rate;
   rate << fps;
-  return {"ffmpeg",    "-y",         "-loglevel",  "quiet",
-          "-f",        "rawvideo",   "-pix_fmt",   "rgba",
-          "-s",        size,         "-framerate", rate.str(),
-          "-i",        "pipe:0",     "-vf",        "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-          "-c:v",      "libx264",    "-preset",    "veryfast",
-          "-crf",      "18",         "-pix_fmt",   "yuv420p",
-          "-threads",  "2",  // x264's result depends on how many it uses
-          "-movflags", "+faststart", "-metadata",  "comment=" + comment,
-          "-f",        "mp4",        file};
+  return {"ffmpeg", "-y", "-loglevel", "quiet", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", size,
+          "-framerate", rate.str(), "-i", "pipe:0", "-vf",
+          "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
+          // What the numbers mean, or players guess: the colours of high-definition television.
+          "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv",
+          "-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-threads",
+          "2",  // x264's result depends on how many it uses
+          "-movflags", "+faststart", "-metadata", "comment=" + comment, "-f", "mp4", file};
 }
 
 // A program that takes no frame, or does not write on after the last one, for so long hangs [s].

@@ -24,14 +24,16 @@ constexpr double away = 2.5;  // of a label from its line [points]
 // Above and below a horizontal line from right to left; right and left of a vertical one from top to bottom.
 std::vector<Rect> candidates(const Rect& frame, const ReferenceLine& line, double at, double width,
                              double height) {
-  constexpr int places = 13;
+  constexpr int places = 41;
   std::vector<Rect> boxes;
   for (int i = 0; i < places; ++i) {
     const double u = static_cast<double>(i) / (places - 1);
     if (line.horizontal) {
       const double x = frame.x1 - 3 - width - u * (frame.width() - width - 6);
-      boxes.push_back({x, at - away - height, x + width, at - away});
-      boxes.push_back({x, at + away, x + width, at + away + height});
+      for (const double gap : {away, away + 0.5 * height}) {
+        boxes.push_back({x, at - gap - height, x + width, at - gap});
+        boxes.push_back({x, at + gap, x + width, at + gap + height});
+      }
     } else {
       const double y = frame.y0 + 3 + u * (frame.height() - height - 6);
       boxes.push_back({at + away + 1, y, at + away + 1 + width, y + height});
@@ -55,10 +57,34 @@ void add_line_label(const ReferenceLine& line, Obstacles& obstacles, PanelLayout
   const Spot spot = best_of(obstacles, boxes);
   if (spot.hidden >= touches_text) return;
   obstacles.add_box(spot.box);
-  out.labels.push_back({{spot.box.x0, spot.box.y0 + ascent * small_size},
-                        text,
-                        {small_size, readable(palette(line.color))},
-                        spot.hidden > 0});
+  out.labels.push_back(
+      {{spot.box.x0, spot.box.y0 + ascent * small_size}, text, {small_size, readable(palette(line.color))}});
+}
+
+// On a map the lines of a level are broken for its value, once, away from the edges and from other values.
+void add_contour_labels(const Panel& panel, PanelLayout& out) {
+  if (panel.cells.empty()) return;
+  constexpr double enough = 60;  // distance of values [points]
+  const Rect inside = out.frame.grown(-9);
+  std::vector<Point> taken;
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    if (panel.curves[i].label.empty()) continue;
+    Point best{};
+    double most = 12;  // nearer ones would touch
+    for (const Polyline& piece : out.curves[i])
+      for (const Point& p : piece) {
+        double free =
+            std::min({enough, p.x - inside.x0, inside.x1 - p.x, p.y - inside.y0 + 6, inside.y1 - p.y + 6});
+        for (const Point& other : taken) free = std::min(free, std::hypot(p.x - other.x, p.y - other.y));
+        if (free > most) most = free, best = p;
+      }
+    if (most <= 12) continue;
+    taken.push_back(best);
+    out.labels.push_back({{best.x, best.y + cap_height * small_size / 2},
+                          panel.curves[i].label,
+                          {small_size, ink, Anchor::middle},
+                          true});
+  }
 }
 
 void say_no_data(const Panel& panel, PanelLayout& out) {
@@ -111,6 +137,7 @@ Obstacles obstacles_of(const Panel& panel, const PanelLayout& layout) {
 void add_inner_labels(const Panel& panel, PanelLayout& out) {
   Obstacles obstacles = obstacles_of(panel, out);
   for (const ReferenceLine& line : panel.lines) add_line_label(line, obstacles, out);
+  add_contour_labels(panel, out);
   add_scale_bar(panel, out);
   say_no_data(panel, out);
 }

@@ -14,6 +14,19 @@ namespace {
 
 constexpr double outer = 4.0, column_gap = 12.0, row_gap = 6.0, smallest_frame = 12.0;
 
+constexpr double letter_height = ascent * title_size + 1;
+
+bool takes_letter(const Panel& panel) {
+  constexpr double thin = 0.2;  // colour bars
+  return !panel.bare && panel.height >= thin;
+}
+
+// Where there are several to tell apart, panels have letters: a, b, ...
+bool lettered(const Figure& figure, std::size_t panel) {
+  return std::count_if(figure.panels.begin(), figure.panels.end(), takes_letter) > 1 &&
+         takes_letter(figure.panels[panel]);
+}
+
 // The frames of a grid of panels: rows and columns line up, whatever their labels need.
 class Grid {
  public:
@@ -52,6 +65,8 @@ class Grid {
       Margins &c = column_[i % column_.size()], &r = row_[i / column_.size()];
       c.left = std::max(c.left, m.left), c.right = std::max(c.right, m.right);
       r.top = std::max(r.top, m.top), r.bottom = std::max(r.bottom, m.bottom);
+      if (lettered(figure_, i))
+        r.top = std::max(r.top, letter_height), c.left = std::max(c.left, letter_height);
     }
   }
 
@@ -149,9 +164,14 @@ FigureLayout lay_out(const Figure& figure, const LayoutOptions& options) {
     }
     if (place_legends(figure, out.panels, rows)) break;
   }
+  char letter = 'a';
   for (std::size_t i = 0; i < out.panels.size(); ++i) {
     add_axis_labels(figure.panels[i], grid.cell(i), rows[i], out.panels[i]);
     add_inner_labels(figure.panels[i], out.panels[i]);
+    if (!lettered(figure, i)) continue;
+    const Rect cell = grid.cell(i);
+    out.panels[i].labels.push_back(
+        {{cell.x0 + 1, cell.y0 + ascent * title_size}, std::string(1, letter++), {title_size, ink}});
   }
   return out;
 }

@@ -18,7 +18,8 @@ std::vector<LegendEntry> entries_of(const Panel& panel) {
   const auto add = [&](const std::string& label, const Curve* curve, const Band* band) {
     if (!label.empty()) entries.push_back({curve, band, {}, {{}, label, {small_size, ink}}});
   };
-  for (const Curve& c : panel.curves) add(c.label, &c, nullptr);
+  if (panel.cells.empty())  // on a map, lines are labelled where they are
+    for (const Curve& c : panel.curves) add(c.label, &c, nullptr);
   for (const Band& b : panel.bands) add(b.label, nullptr, &b);
   return entries;
 }

@@ -55,24 +55,92 @@ Camera mixed(const Camera& a, const Camera& b, float u) {
 
 }  // namespace
 
-double most_shots(double end_time, const RenderOptions& o) {
-  return (end_time / o.speed + o.turntable + o.hold) * o.fps;
+ViewAngles first_angles(const RenderOptions& options, const MotionBounds& bounds) {
+  return preset(options.camera, bounds);
 }
 
+double most_shots(double end_time, const RenderOptions& o) {
+  return (end_time / o.speed + o.easing + o.turntable + o.hold + o.hold_start + o.title_card) * o.fps;
+}
+
+namespace {
+
+// Which moment of the motion a share of its film time shows.
+class Pace {
+ public:
+  Pace(const Trajectory& run, const RenderOptions& o)
+      : start_(run.start_time()),
+        end_(run.end_time()),
+        motion_((end_ - start_) / o.speed),
+        ease_(std::min(o.easing, motion_)) {
+    if (o.pace != "even" || !(end_ > start_)) return;
+    const Deployment& deployment = run.structure().deployment;
+    const auto measure = [&](std::size_t i) -> VectorXd {
+      if (deployment.empty()) return run.positions(i);
+      return VectorXd::Constant(1, deployment.fraction(run.node_positions(i)));
+    };
+    VectorXd last = measure(0);
+    for (std::size_t i = 0; i < run.size(); ++i) {
+      VectorXd now = measure(i);
+      way_.push_back((way_.empty() ? 0.0 : way_.back()) + (now - last).norm());
+      times_.push_back(run.time(i));
+      last = std::move(now);
+    }
+    const double whole = way_.back();
+    if (!(whole > 0)) way_.clear();
+    for (std::size_t i = 0; i < way_.size(); ++i)  // what rests still passes, in a thousandth of the film
+      way_[i] = (way_[i] / whole + 1e-3 * (times_[i] - start_) / (end_ - start_)) / 1.001;
+  }
+  double duration() const { return motion_ + ease_; }  // [s of film]
+  double share(double film_time) const {               // of the way, 0..1
+    if (!(motion_ > 0)) return 1;
+    const auto eased = [this](double x) { return ease_ * x * x * x * (1 - 0.5 * x); };
+    const double left = duration() - film_time;
+    if (film_time < ease_) return eased(film_time / ease_) / motion_;
+    if (left < ease_) return 1 - eased(left / ease_) / motion_;
+    return (film_time - 0.5 * ease_) / motion_;
+  }
+  double time(double share) const {
+    if (way_.empty()) return start_ + share * (end_ - start_);
+    const auto next = std::upper_bound(way_.begin(), way_.end(), share);
+    if (next == way_.begin()) return start_;
+    if (next == way_.end()) return end_;
+    const auto i = static_cast<std::size_t>(next - way_.begin());
+    return times_[i - 1] + (share - way_[i - 1]) / (way_[i] - way_[i - 1]) * (times_[i] - times_[i - 1]);
+  }
+
+ private:
+  double start_, end_, motion_, ease_;
+  std::vector<double> times_, way_;  // of the states
+};
+
+}  // namespace
+
 std::vector<Shot> film_shots(const Trajectory& trajectory, const RenderOptions& o) {
-  const double start = trajectory.start_time(), end = trajectory.end_time(), gap = o.speed / o.fps;
+  const double start = trajectory.start_time(), end = trajectory.end_time();
+  const Pace pace(trajectory, o);
   std::vector<Shot> shots;
+  const auto repeat = [&](const Shot& shot, double film_time) {
+    shots.insert(shots.end(), static_cast<std::size_t>(std::lround(film_time * o.fps)), shot);
+  };
+  repeat({start, 0, 0, 0, true}, o.title_card);
+  repeat({start, 0, 0}, o.hold_start);
+  const std::size_t first = shots.size();
   // A frame within a thousandth of a gap of the end would be the same picture twice.
-  for (long k = 0; start + static_cast<double>(k) * gap < end - 1e-3 * gap; ++k) {
-    const double t = start + static_cast<double>(k) * gap;
-    shots.push_back({t, (t - start) / (end - start), 0});
+  for (long k = 0; static_cast<double>(k) < pace.duration() * o.fps - 1e-3; ++k) {
+    const double share = pace.share(static_cast<double>(k) / o.fps);
+    const bool plain = o.pace == "time" && o.easing == 0;
+    shots.push_back(
+        {plain ? start + static_cast<double>(k) * (o.speed / o.fps) : pace.time(share), share, 0});
   }
   shots.push_back({end, 1, 0});
+  for (std::size_t i = first; i + 1 < shots.size(); ++i)
+    shots[i].open = o.motion_blur * (shots[i + 1].t - shots[i].t);
   const auto turning = static_cast<long>(std::lround(o.turntable * o.fps));
   for (long k = 1; k <= turning; ++k)
     shots.push_back({end, 1, static_cast<double>(k) / static_cast<double>(turning)});
   const Shot last = shots.back();
-  shots.insert(shots.end(), static_cast<std::size_t>(std::lround(o.hold * o.fps)), last);
+  repeat(last, o.hold);
   return shots;
 }
 
@@ -82,7 +150,7 @@ CameraPath::CameraPath(std::vector<std::vector<Vec3>> poses, std::vector<double>
       times_(std::move(times)),
       bounds_(bounds),
       framing_(framing),
-      start_(preset(options.camera, bounds)),
+      start_(first_angles(options, bounds)),
       orbit_(options.orbit * radians_per_degree),
       turntable_(options.turntable > 0),
       follow_(options.follow),
@@ -91,10 +159,11 @@ CameraPath::CameraPath(std::vector<std::vector<Vec3>> poses, std::vector<double>
   framing_.zoom = options.zoom;
   const PointSource all = source_of(poses_, 0, poses_.size());
   still_ = frame_points(all, bounds_, start_, framing_);
-  if (follow_) prepare_follow();
+  const bool turning = !keys_.empty() || orbit_ != 0 || turntable_;
+  if (follow_) turning ? prepare_turning_follow() : prepare_follow();
+  if (!turning) return;
   std::vector<double> elevations{start_.elevation};
   for (const CameraKey& key : keys_) elevations.push_back(key.elevation * radians_per_degree);
-  if (keys_.empty() && orbit_ == 0 && !turntable_) return;
   for (const double elevation : elevations)
     for (int k = 0; k < directions; ++k)
       distance_ = std::max(
@@ -130,6 +199,49 @@ void CameraPath::prepare_follow() {
   }
 }
 
+// A camera that turns while it follows sees, from any side, what moves within the window around a moment.
+void CameraPath::prepare_turning_follow() {
+  const double start = times_.front(), span = times_.back() - start;
+  std::vector<Place> fitted;
+  double elevation = start_.elevation;
+  for (const CameraKey& key : keys_) elevation = std::max(elevation, key.elevation * radians_per_degree);
+  for (int k = 0; k < follow_samples; ++k) {
+    const auto time = [&](int i) {
+      return start + span * std::clamp(i, 0, follow_samples - 1) / (follow_samples - 1);
+    };
+    const std::size_t first = first_before(time(k - follow_window)),
+                      end = std::min(poses_.size(), first_before(time(k + follow_window)) + 2),
+                      stride = std::max<std::size_t>(1, (end - first) / 8);
+    const PointSource window = [&](const std::function<void(const Vec3&)>& visit) {
+      for (std::size_t i = first; i < end; i += stride)
+        for (const Vec3& p : poses_[i]) visit(p);
+      for (const Vec3& p : poses_[end - 1]) visit(p);
+    };
+    Place place{motion_bounds(window).center, 0};
+    for (int i = 0; i < directions; ++i)
+      place.distance =
+          std::max(place.distance,
+                   centered_distance(window, place.center, {2 * pi * i / directions, elevation}, framing_));
+    fitted.push_back(place);
+  }
+  for (int k = 0; k < follow_samples; ++k) {
+    Place mean;
+    double count = 0;
+    for (int i = std::max(0, k - follow_window); i <= std::min(follow_samples - 1, k + follow_window); ++i) {
+      mean.center += fitted[static_cast<std::size_t>(i)].center;
+      mean.distance = std::max(mean.distance, fitted[static_cast<std::size_t>(i)].distance);
+      ++count;
+    }
+    mean.center /= count;
+    follow_places_.push_back(mean);
+  }
+}
+
+std::size_t CameraPath::first_before(double t) const {
+  const auto at = std::upper_bound(times_.begin(), times_.end(), t) - times_.begin();
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, at - 1));
+}
+
 Camera CameraPath::following(double t) const {
   const double span = times_.back() - times_.front();
   const double at = span > 0 ? std::clamp((t - times_.front()) / span, 0.0, 1.0) * (follow_samples - 1) : 0.0;
@@ -154,7 +266,16 @@ Camera CameraPath::at(const Shot& shot) const {
   if (!turning) return still_;
   Framing framing = framing_;
   if (!keys_.empty()) framing.zoom *= std::max(0.01, between(keys_, &CameraKey::zoom, shot.t));
-  return centered_camera(bounds_, bounds_.center, distance_, angles(shot), framing);
+  if (follow_places_.empty())
+    return centered_camera(bounds_, bounds_.center, distance_, angles(shot), framing);
+  const double span = times_.back() - times_.front();
+  const double at =
+      span > 0 ? std::clamp((shot.t - times_.front()) / span, 0.0, 1.0) * (follow_samples - 1) : 0.0;
+  const auto i = std::min(static_cast<std::size_t>(at), follow_places_.size() - 2);
+  const double u = at - static_cast<double>(i);
+  const Place &a = follow_places_[i], &b = follow_places_[i + 1];
+  return centered_camera(bounds_, a.center + u * (b.center - a.center),
+                         a.distance + u * (b.distance - a.distance), angles(shot), framing);
 }
 
 }  // namespace unfurl

@@ -16,14 +16,24 @@ struct Shot {
   double t = 0;         // [s]
   double progress = 0;  // of the motion part of the film, 0..1
   double turn = 0;      // of the turntable, 0..1
+  double open = 0;      // from t on the shutter is open for so long [s of motion]
+  bool card = false;    // the title alone
+
+  bool operator==(const Shot&) const = default;
 };
 
-// The pictures of a film: k speed / fps from the start of the run, its end, then a turntable and a hold where
-// the options have them.
+// The pictures of a film: the title's card, the first picture held, the motion, its end, a turntable and the
+// last picture held, those that the options have. The motion lasts (end - start) / speed of film time; a
+// pace "time" shows the moments k speed / fps from the start, "even" those at which the structure has
+// deployed by equal shares (without a measure of that: its nodes have gone equal ways). Easing e makes it
+// e longer: p' rises from 0 to 1 as x^2 (3 - 2 x), x = film time / e, and falls again before the end.
 std::vector<Shot> film_shots(const Trajectory& trajectory, const RenderOptions& options);
 
 // How many there would be at most for a run to this end time [s].
 double most_shots(double end_time, const RenderOptions& options);
+
+// From where a film begins to look.
+ViewAngles first_angles(const RenderOptions& options, const MotionBounds& bounds);
 
 class CameraPath {
  public:
@@ -39,6 +49,8 @@ class CameraPath {
   double zoom(double t) const;
   void prepare_follow();
   Camera following(double t) const;
+  void prepare_turning_follow();
+  std::size_t first_before(double t) const;
 
   std::vector<std::vector<Vec3>> poses_;
   std::vector<double> times_;
@@ -51,6 +63,11 @@ class CameraPath {
   Camera still_;
   double distance_ = 0;              // of the moving cameras from the centre [m]
   std::vector<Camera> follow_path_;  // at equal steps of the time
+  struct Place {                     // of what a camera that turns follows
+    Vec3 center = Vec3::Zero();
+    double distance = 0;
+  };
+  std::vector<Place> follow_places_;
 };
 
 }  // namespace unfurl

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ struct Color {
 };
 
 // How light meets a surface; the colour is the rest.
-enum class Finish { paint, anodised, metal };
+enum class Finish { paint, anodised, metal, carbon, foil };
 
 // How a picture is painted: lit as in a room, by a hard light in the dark, as a line drawing with hidden
 // lines, or in flat colours.
@@ -38,6 +39,14 @@ struct Sleeve {  // a short cylinder with flat, bevelled ends: end fittings, col
   Finish finish = Finish::metal;
 };
 
+struct Plate {  // flat, round around a: the lug of a hinge
+  Vec3f a, b;
+  Vec3f side;                        // across it, of unit length: the axis of the pin at a
+  float half_width, half_thickness;  // [m]
+  Color color;
+  Finish finish = Finish::metal;
+};
+
 struct Ball {
   Vec3f center;
   float radius;  // [m]
@@ -49,6 +58,24 @@ struct Arrow {  // from tail to head
   Vec3f tail, head;
   float radius;  // of the shaft; the head is wider [m]
   Color color;
+};
+
+// What a surface is made of.
+enum class Weave { mesh, net, film, cells };
+
+struct SkinVertex {
+  Vec3f at, normal;
+  Eigen::Vector2f cell;  // its place in the pattern, lines of which are where a coordinate is whole
+};
+
+// A surface with a pattern, seen from both sides.
+struct Skin {
+  std::vector<SkinVertex> vertices;
+  std::vector<std::uint32_t> triangles;
+  Weave weave = Weave::mesh;
+  Color front, back;    // the front is where normals point
+  float opacity = 1;    // of what is between the lines, seen straight on
+  bool square = false;  // the pattern has squares, not triangles
 };
 
 // Perspective, or parallel where parallel_height > 0.
@@ -78,6 +105,7 @@ struct OverlayLine {  // drawn over the picture, under the labels [pixels]
 struct OverlayArea {  // a filled rectangle over the picture, under the lines [pixels]
   float x0, y0, x1, y1;
   Color color;
+  float round = 0;  // radius of its corners
 };
 
 struct Inset {  // a figure over the picture; null: none
@@ -93,14 +121,17 @@ struct Ground {
   float cell = 1;    // grid spacing [m]
   float fade = 20;   // distance from the centre at which the grid has faded out [m]
   Vec3f center = Vec3f::Zero();
+  Color lines{0.36f, 0.44f, 0.54f, 0.34f}, shadow{0.045f, 0.10f, 0.20f, 0.50f};
 };
 
 struct DrawList {
   Camera camera;
   std::vector<Tube> tubes;
   std::vector<Sleeve> sleeves;
+  std::vector<Plate> plates;
   std::vector<Ball> balls;
   std::vector<Arrow> arrows;
+  std::vector<Skin> skins;
   std::vector<Tube> ghosts;  // as transparent as their colour says; without shadow
   std::vector<OverlayArea> areas;
   std::vector<OverlayLine> lines;
@@ -113,8 +144,10 @@ struct DrawList {
   float radius = 1;                          // [m]
   Vec3f light_direction{0.4f, -0.5f, 1.0f};  // towards the light
   Shading shading = Shading::studio;
-  bool transparent = false;  // no background; shadows are as transparent as they are light
-  float stars = 0;           // brightness of stars in the background, 0..1
+  bool transparent = false;     // no background; shadows are as transparent as they are light
+  Vec3f planet{0, 0, -1};       // the direction to the middle of the Earth,
+  float planet_half_angle = 0;  // and half of how wide it is there; 0: it is not there [rad]
+  float stars = 0;              // brightness of stars in the background, 0..1
   // The share of the background in what is as far as the far side of the sphere; none at its near side.
   float depth_fade = 0;
   float hidden_gap =

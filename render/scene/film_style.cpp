@@ -50,6 +50,10 @@ FrameStyle film_style(const Scene& scene, const Simulation& run, const Diagnosti
   check_inset(scene, diagnostics);
   style.options = options;
   style.trails = trail_nodes(scene, run.trajectory.structure());
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
+    if (const SceneSurface& s = scene.surfaces[i]; s.enabled)
+      style.surfaces.push_back(
+          {s, surface_nodes(s, "surfaces[" + std::to_string(i) + "].nodes", run.trajectory.structure())});
   style.run = &run;
   style.diagnostics = &diagnostics;
   return style;

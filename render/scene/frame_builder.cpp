@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "render/plot/text_metrics.hpp"
 #include "render/scene/frame_overlay.hpp"
 #include "render/scene/pose_times.hpp"
 
@@ -32,6 +33,25 @@ void add_dimension_ends(std::vector<Vec3>& pose, double gap) {
         pose.emplace_back(x, y + (y == low.y() ? -gap : gap), z);
       }
   pose.emplace_back(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), low.z() - gap);
+}
+
+MotionBounds bounds_of(const std::vector<std::vector<Vec3>>& poses) {
+  return motion_bounds([&](const std::function<void(const Vec3&)>& visit) {
+    for (const auto& pose : poses)
+      for (const Vec3& p : pose) visit(p);
+  });
+}
+
+// What reaches beyond the nodes: the bottom of a dish, the foot of a support.
+void add_shown(std::vector<Vec3>& pose, const std::vector<ShownSurface>& surfaces, double support_depth,
+               const Appearance& looks) {
+  for (const ShownSurface& shown : surfaces) {
+    std::vector<Vec3> edge;
+    for (const int n : shown.nodes) edge.push_back(pose[static_cast<std::size_t>(n)]);
+    pose.push_back(skin_of(shown.surface, edge).vertices.front().at.cast<double>());
+  }
+  for (std::size_t n = 0; support_depth > 0 && n < looks.fixed.size(); ++n)
+    if (looks.fixed[n] && looks.joint_radius[n] > 0) pose.push_back(pose[n] - support_depth * Vec3::UnitZ());
 }
 
 Color mixed(const Color& a, const Color& b, float u) {
@@ -67,21 +87,57 @@ double FrameBuilder::prepare_camera() {
     for (Index k = 0; k < whole.size() / 3; ++k) poses.back().push_back(node(whole, static_cast<int>(k)));
     times.push_back(trajectory_.time(i));
   }
-  bounds_ = motion_bounds([&](const std::function<void(const Vec3&)>& visit) {
-    for (const auto& pose : poses)
-      for (const Vec3& p : pose) visit(p);
-  });
+  bounds_ = bounds_of(poses);
   if (bounds_.radius <= 0) bounds_.radius = 1;  // a single node that rests
   looks_ = appearance_of(s, bounds_.radius, style_.options.rod_scale);
   const double thickest = looks_.joint_radius.empty() ? 0.0 : *std::ranges::max_element(looks_.joint_radius);
+  prepare_hardware(poses, times);
+  for (auto& pose : poses) add_shown(pose, style_.surfaces, hardware_->support_depth(), looks_);
+  bounds_ = bounds_of(poses);
+  if (bounds_.radius <= 0) bounds_.radius = 1;
   Framing framing;
   framing.around = thickest + (style_.loads && !s.load_copies.empty() ? 0.5 * looks_.arrow_length : 0.0);
   if (look_->dimensions || style_.options.dimensions)
     for (auto& pose : poses) add_dimension_ends(pose, 1.15 * dimension_gap * still_radius(thickest));
   framing.aspect = static_cast<double>(style_.width) / style_.height;
   if (!style_.options.inset.empty() && style_.diagnostics) framing.margins.right = 0.27;
+  const auto all = [&](const std::function<void(const Vec3&)>& visit) {
+    for (const auto& pose : poses)
+      for (const Vec3& p : pose) visit(p);
+  };
+  const ViewAngles view = first_angles(style_.options, bounds_);
+  fitting_aspect_ = std::clamp(unfurl::fitting_aspect(all, view, framing), 0.4, 2.5);
   path_ = std::make_unique<CameraPath>(std::move(poses), std::move(times), bounds_, framing, style_.options);
   return thickest;
+}
+
+// Joints are read off a few poses. What would be smaller than a pixel is left out.
+void FrameBuilder::prepare_hardware(const std::vector<std::vector<Vec3>>& poses,
+                                    const std::vector<double>& times) {
+  constexpr std::size_t most = 33;
+  std::vector<std::size_t> chosen;
+  for (std::size_t k = 0; k < std::min(most, poses.size()); ++k)
+    chosen.push_back(poses.size() <= most ? k : k * (poses.size() - 1) / (most - 1));
+  std::vector<std::vector<Vec3>> samples;
+  std::vector<double> sample_times;
+  for (const std::size_t k : chosen) {
+    if (!sample_times.empty() && times[k] <= sample_times.back()) continue;  // an impulse: two at one time
+    samples.push_back(poses[k]);
+    sample_times.push_back(times[k]);
+  }
+  const Structure& s = trajectory_.structure();
+  std::vector<double> radius;
+  double thickest = 0;
+  for (const RodCopy& rod : s.rod_copies) {
+    radius.push_back(looks_.rod_radius[static_cast<std::size_t>(rod.source)]);
+    thickest = std::max(thickest, radius.back());
+  }
+  const double pixels = thickest / bounds_.radius * 0.45 * std::min(style_.width, style_.height);
+  const bool lit = look_->shading == Shading::studio || look_->shading == Shading::space;
+  auto joints = std::make_unique<const Joints>(s, std::move(sample_times), samples, radius, bounds_.center,
+                                               bounds_.plane_normal);
+  hardware_ = std::make_unique<Hardware>(s, looks_, *look_, style_.options, std::move(joints), upright_,
+                                         lit && pixels > 0.8);
 }
 
 double FrameBuilder::still_radius(double thickest) const {
@@ -105,6 +161,16 @@ void FrameBuilder::prepare_still(double thickest) {
   still_.ground.center = still_.center;
   still_.ground.cell = static_cast<float>(round_length(bounds_.radius / 5));
   still_.ground.fade = static_cast<float>(3.2 * bounds_.radius);
+  still_.ground.lines = look_->grid;
+  still_.ground.shadow = look_->shadow;
+  if (look_->earth && !still_.transparent) {  // its limb a fifth of the picture below the middle
+    still_.planet_half_angle = static_cast<float>(62 * radians_per_degree);
+    const double limb = -path_->first_view().elevation - 0.24 * 28 * radians_per_degree;
+    const double down = limb - 62 * radians_per_degree, azimuth = path_->first_view().azimuth + pi + 0.16;
+    still_.planet =
+        Vec3(std::cos(azimuth) * std::cos(down), std::sin(azimuth) * std::cos(down), std::sin(down))
+            .cast<float>();
+  }
   // The key light comes from above the viewer's left shoulder.
   ViewAngles view = path_->first_view();
   view.elevation = std::min(view.elevation, 0.9);
@@ -141,9 +207,14 @@ DrawList FrameBuilder::build(const Shot& shot) const {
   const VectorXd whole = trajectory_.positions_at(inside);
   DrawList list = still_;
   list.camera = path_->at({inside, shot.progress, shot.turn});
-  add_rods(inside, whole, list);
+  if (shot.card) {
+    add_card(list);
+    return list;
+  }
+  std::vector<Vec3> at;
+  for (Index k = 0; k < whole.size() / 3; ++k) at.push_back(node(whole, static_cast<int>(k)));
+  add_bodies(inside, at, list);
   add_lines(whole, list);
-  add_joints(whole, list);
   if (style_.loads && style_.options.loads) add_loads(whole, list);
   add_ghosts(inside, list);
   add_trails(inside, whole, list);
@@ -151,25 +222,22 @@ DrawList FrameBuilder::build(const Shot& shot) const {
   return list;
 }
 
+// The title in the middle of an empty picture.
+void FrameBuilder::add_card(DrawList& list) const {
+  list.ground.shown = false;
+  const auto w = static_cast<float>(style_.width), h = static_cast<float>(style_.height);
+  const float most = 0.09f * std::min(w, h), wide = static_cast<float>(plot::text_width(style_.title, 1.0));
+  const float size = std::round(std::min(most, 0.8f * w / std::max(1.0f, 1.12f * wide)));
+  if (style_.title.empty() || size < 4) return;
+  list.labels.push_back({0.5f * w, 0.5f * h - 0.75f * size, size, look_->ink, style_.title, 0.5f, true});
+  Color rule = look_->groups->front();
+  list.areas.push_back(
+      {0.5f * w - 0.06f * w, 0.5f * h + 0.6f * size, 0.5f * w + 0.06f * w, 0.5f * h + 0.66f * size, rule});
+}
+
 Color FrameBuilder::rod_color(double t, const RodCopy& rod) const {
   if (field_) return field_->color(field_->at(t, rod.source));
   return look_->group(static_cast<std::size_t>(looks_.rod_group[static_cast<std::size_t>(rod.source)]));
-}
-
-void FrameBuilder::add_rods(double t, const VectorXd& whole, DrawList& list) const {
-  for (const RodCopy& rod : trajectory_.structure().rod_copies) {
-    const double radius = looks_.rod_radius[static_cast<std::size_t>(rod.source)];
-    const Vec3 a = node(whole, rod.a), b = node(whole, rod.b);
-    const double length = (b - a).norm();
-    const auto thick = static_cast<float>(radius);
-    // What a colour stands for must not be tinted by metal's reflections, nor be left out of a line drawing.
-    list.tubes.push_back({a.cast<float>(), b.cast<float>(), thick, rod_color(t, rod),
-                          field_ ? Finish::paint : Finish::anodised});
-    if (length <= 0) continue;
-    const Vec3 fitted = (b - a) * (std::min(6.5 * radius, 0.2 * length) / length);  // from the joint's centre
-    list.sleeves.push_back({a.cast<float>(), (a + fitted).cast<float>(), 1.32f * thick, look_->fitting});
-    list.sleeves.push_back({b.cast<float>(), (b - fitted).cast<float>(), 1.32f * thick, look_->fitting});
-  }
 }
 
 // Cables and nets: thinner than any rod, so that what they hang on shows.
@@ -184,14 +252,15 @@ void FrameBuilder::add_lines(const VectorXd& whole, DrawList& list) const {
   }
 }
 
-void FrameBuilder::add_joints(const VectorXd& whole, DrawList& list) const {
-  for (std::size_t i = 0; i < looks_.joint_radius.size(); ++i) {
-    if (looks_.joint_radius[i] <= 0) continue;
-    const double scale = looks_.fixed[i] ? 1.5 : 1.0;
-    const Vec3 at = node(whole, static_cast<int>(i));
-    list.balls.push_back({at.cast<float>(), static_cast<float>(scale * looks_.joint_radius[i]),
-                          looks_.fixed[i] ? look_->anchor : look_->joint,
-                          looks_.fixed[i] ? Finish::paint : Finish::metal});
+void FrameBuilder::add_bodies(double t, const std::vector<Vec3>& at, DrawList& list) const {
+  std::vector<Color> colors;
+  if (field_)
+    for (const RodCopy& rod : trajectory_.structure().rod_copies) colors.push_back(rod_color(t, rod));
+  hardware_->add(t, at, colors, list);
+  for (const ShownSurface& shown : style_.surfaces) {
+    std::vector<Vec3> edge;
+    for (const int n : shown.nodes) edge.push_back(at[static_cast<std::size_t>(n)]);
+    list.skins.push_back(skin_of(shown.surface, edge));
   }
 }
 
@@ -222,7 +291,7 @@ void FrameBuilder::add_trails(double t, const VectorXd& whole, DrawList& list) c
   for (const Trail& trail : trails_) {
     const double joint = looks_.joint_radius[static_cast<std::size_t>(trail.node)];
     const auto thick = static_cast<float>(0.3 * (joint > 0 ? joint : 0.01 * bounds_.radius));
-    Color color = mixed(look_->load, look_->background_bottom, 0.15f);
+    Color color = look_->group(3);
     color.a = 0.85f;
     Vec3 last = trail.points.front();
     for (std::size_t i = 1; i <= trail.points.size(); ++i) {
@@ -239,6 +308,7 @@ std::vector<double> frame_times(const Trajectory& trajectory, double fps, double
   RenderOptions options;
   options.fps = fps;
   options.speed = speed;
+  options.hold = 0;
   std::vector<double> times;
   for (const Shot& shot : film_shots(trajectory, options)) times.push_back(shot.t);
   return times;

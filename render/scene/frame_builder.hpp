@@ -12,8 +12,10 @@
 #include "render/scene/camera_path.hpp"
 #include "render/scene/draw_list.hpp"
 #include "render/scene/framing.hpp"
+#include "render/scene/hardware.hpp"
 #include "render/scene/look.hpp"
 #include "render/scene/rod_field.hpp"
+#include "render/scene/skins.hpp"
 
 namespace unfurl {
 
@@ -27,6 +29,7 @@ struct FrameStyle {
   const Simulation* run = nullptr;
   const Diagnostics* diagnostics = nullptr;
   std::vector<int> trails = {};  // the copied nodes that leave one (options.trails is their pattern)
+  std::vector<ShownSurface> surfaces = {};
 };
 
 class FrameOverlay;
@@ -45,20 +48,23 @@ class FrameBuilder {
   DrawList build(double t) const;
   DrawList build(const Shot& shot) const;
   const Camera& camera() const { return still_.camera; }  // of the first picture
+  // Width over height of the picture that the whole motion fills, within reason: 2/5 to 5/2.
+  double fitting_aspect() const { return fitting_aspect_; }
   // The scene's coordinates to the picture's (a rotation; z is up in the picture).
   const Mat3& upright() const { return upright_; }
 
  private:
   Vec3 node(const VectorXd& whole, int i) const { return upright_ * whole.segment<3>(3 * i); }
+  void add_card(DrawList& list) const;
   double prepare_camera();                     // returns the radius of the thickest joint [m]
   double still_radius(double thickest) const;  // of a sphere around all that is drawn [m]
   void prepare_still(double thickest);
   void prepare_ghosts();
   void prepare_trails();
   Color rod_color(double t, const RodCopy& rod) const;
-  void add_rods(double t, const VectorXd& whole, DrawList& list) const;
+  void prepare_hardware(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times);
+  void add_bodies(double t, const std::vector<Vec3>& at, DrawList& list) const;
   void add_lines(const VectorXd& whole, DrawList& list) const;
-  void add_joints(const VectorXd& whole, DrawList& list) const;
   void add_loads(const VectorXd& whole, DrawList& list) const;
   void add_ghosts(double t, DrawList& list) const;
   void add_trails(double t, const VectorXd& whole, DrawList& list) const;
@@ -79,6 +85,8 @@ class FrameBuilder {
   const Look* look_;
   Appearance looks_;
   MotionBounds bounds_;
+  double fitting_aspect_ = 1;
+  std::unique_ptr<Hardware> hardware_;
   std::unique_ptr<RodField> field_;  // null: coloured by group
   std::unique_ptr<CameraPath> path_;
   std::unique_ptr<FrameOverlay> overlay_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "render/plot/text_metrics.hpp"
 #include "render/scene/view.hpp"
 
 namespace unfurl {
@@ -103,30 +104,39 @@ VectorXd FrameOverlay::solved(const VectorXd& whole) const {
   return q;
 }
 
+TextLabel FrameOverlay::quiet(const DrawList& list, TextLabel label) const {
+  if (list.transparent) return label;
+  const float down = (label.y + 0.5f * label.height) / height_;
+  const Color &a = look_.background_top, &b = look_.background_bottom;
+  label.backing = {a.r + down * (b.r - a.r), a.g + down * (b.g - a.g), a.b + down * (b.b - a.b), 0.84f};
+  return label;
+}
+
 void FrameOverlay::add_heading(double t, DrawList& list) const {
   float y = 0.8f * edge_;
   if (!style_.title.empty() && style_.options.title) {
-    list.labels.push_back({edge_, y, large_, look_.ink, style_.title, 0, true});
+    list.labels.push_back(quiet(list, {edge_, y, large_, look_.ink, style_.title, 0, true}));
     y += 1.35f * large_;
   }
   const float line = std::round(0.85f * small_);
   if (const std::string note = scale_text(looks_); !note.empty() && style_.options.legend) {
-    list.labels.push_back({edge_, y, small_, look_.ink, note});
+    list.labels.push_back(quiet(list, {edge_, y, small_, look_.ink, note}));
     y += 1.3f * small_;
   }
   if (style_.options.method && style_.run) {
     const SolverOptions& solver = style_.run->options;
     std::string text = solver.method;
     if (solver.method == "dvm") text += ", s = " + std::to_string(solver.stages);
-    list.labels.push_back({edge_, y, line, look_.ink, text + ", h = " + number_text(solver.step) + " s"});
+    list.labels.push_back(
+        quiet(list, {edge_, y, line, look_.ink, text + ", h = " + number_text(solver.step) + " s"}));
     y += 1.3f * line;
   }
   if (style_.options.errors && style_.diagnostics) {
     const Diagnostics& d = *style_.diagnostics;
-    list.labels.push_back({edge_, y, line, look_.ink,
-                           "so far: constraints " + number_text(largest_until(d, "constraint_max_m", t)) +
-                               " m, energy balance " + number_text(largest_until(d, "energy_balance_J", t)) +
-                               " J"});
+    list.labels.push_back(quiet(
+        list, {edge_, y, line, look_.ink,
+               "so far: constraints " + number_text(largest_until(d, "constraint_max_m", t)) +
+                   " m, energy balance " + number_text(largest_until(d, "energy_balance_J", t)) + " J"}));
   }
 }
 
@@ -134,20 +144,33 @@ void FrameOverlay::add_status(double t, const VectorXd& whole, DrawList& list) c
   std::string status = time_text(t, trajectory_.end_time() - trajectory_.start_time());
   const Deployment& deployment = trajectory_.structure().deployment;
   if (!deployment.empty()) status += "    " + deployed_text(deployment.fraction(solved(whole)));
-  list.labels.push_back({edge_, height_ - edge_ - small_, small_, look_.ink, status});
+  list.labels.push_back(quiet(list, {edge_, height_ - edge_ - small_, small_, look_.ink, status}));
 }
 
+// The name in ink, which can be read on any ground, behind a sign in the colour.
 void FrameOverlay::add_legend(DrawList& list) const {
-  std::vector<std::pair<std::string, Color>> legend;
-  if (looks_.groups.size() > 1) {
+  struct Entry {
+    const char* sign;
+    std::string name;
+    Color color;
+  };
+  std::vector<Entry> legend;
+  if (looks_.groups.size() > 1)
     for (std::size_t i = 0; i < looks_.groups.size(); ++i)
-      legend.emplace_back("\u25A0 " + looks_.groups[i], look_.group(i));
-  }
-  if (!list.arrows.empty()) legend.emplace_back("\u2192 load", look_.load);
+      legend.push_back({"\u25A0", looks_.groups[i], look_.group(i)});
+  if (!list.arrows.empty()) legend.push_back({"\u2192", "load", look_.load});
+  if (!style_.trails.empty()) legend.push_back({"\u25A0", "trail", look_.group(3)});
+  const float y = height_ - edge_ - small_, sign_width = 0.95f * small_;
   float right = width_ - edge_;
   for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry) {
-    list.labels.push_back({right, height_ - edge_ - small_, small_, entry->second, entry->first, 1});
-    right -= about_width(entry->first, small_) + 1.2f * small_;
+    const auto wide = static_cast<float>(plot::text_width(entry->name, static_cast<double>(small_)));
+    const TextLabel name = quiet(list, {right, y, small_, look_.ink, entry->name, 1});
+    const float left = right - wide - sign_width, room = 0.25f * small_;
+    if (name.backing.a > 0)
+      list.areas.push_back({left - room, y, right + room, y + small_, name.backing, room});
+    list.labels.push_back({left + sign_width, y, small_, look_.ink, entry->name, 0});
+    list.labels.push_back({left, y, small_, entry->color, entry->sign, 0});
+    right = left - 1.0f * small_;
   }
 }
 
@@ -178,12 +201,12 @@ void FrameOverlay::add_color_bar(DrawList& list) const {
   for (const double u : {0.0, 0.5, 1.0}) {
     const float at = x + length * static_cast<float>(u);
     list.lines.push_back({at, y + thick, at, y + thick + 4 * unit_, 1.5f * unit_, look_.ink});
-    list.labels.push_back({at, y + thick + 5 * unit_, line, look_.ink,
-                           end_mark(*field_, u) + number_text(value(u)), static_cast<float>(u)});
+    list.labels.push_back(quiet(list, {at, y + thick + 5 * unit_, line, look_.ink,
+                                       end_mark(*field_, u) + number_text(value(u)), static_cast<float>(u)}));
   }
   const bool longer = about_width(field_->label, line) > length;  // it then ends where the bar ends
-  list.labels.push_back(
-      {longer ? x + length : x, y - 1.35f * line, line, look_.ink, field_->label, longer ? 1.0f : 0.0f});
+  list.labels.push_back(quiet(list, {longer ? x + length : x, y - 1.35f * line, line, look_.ink,
+                                     field_->label, longer ? 1.0f : 0.0f}));
 }
 
 }  // namespace unfurl

@@ -25,6 +25,8 @@ class FrameOverlay {
     bool overlaps(const Box& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
   };
   VectorXd solved(const VectorXd& whole) const;
+  // A text on ground as quiet as the background: what is behind shines through a little.
+  TextLabel quiet(const DrawList& list, TextLabel label) const;
   void prepare_inset();
   void add_heading(double t, DrawList& list) const;
   void add_status(double t, const VectorXd& whole, DrawList& list) const;

@@ -161,6 +161,13 @@ Camera frame_points(const PointSource& points, const MotionBounds& bounds, const
       bounds, view, f, 0);
 }
 
+double fitting_aspect(const PointSource& points, const ViewAngles& view, const Framing& framing) {
+  Framing parallel = framing;
+  parallel.parallel = true;
+  const Sight sight(points, view, parallel);
+  return (sight.x.high + sight.x.low) / sight.share_x / ((sight.y.high + sight.y.low) / sight.share_y);
+}
+
 double centered_distance(const PointSource& points, const Vec3& center, const ViewAngles& view,
                          const Framing& f) {
   const Sight sight(points, view, f);

@@ -53,6 +53,9 @@ struct Framing {
 Camera frame_points(const PointSource& points, const MotionBounds& bounds, const ViewAngles& view,
                     const Framing& framing);
 
+// Width over height of the picture that they fill in that direction, if it has no perspective.
+double fitting_aspect(const PointSource& points, const ViewAngles& view, const Framing& framing);
+
 // How far such a camera must be from `center` at least (or how high its parallel picture) if it looks
 // straight at it [m].
 double centered_distance(const PointSource& points, const Vec3& center, const ViewAngles& view,

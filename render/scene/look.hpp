@@ -21,7 +21,9 @@ struct Look {
   Color load;                    // of arrows
   Color fitting, joint, anchor;  // of rod ends, hinges, held nodes
   const GroupColors* groups = nullptr;
-  bool ground = false;  // with grid and shadow
+  Color grid{0.36f, 0.44f, 0.54f, 0.34f}, shadow{0.045f, 0.10f, 0.20f, 0.50f};  // of the ground
+  bool ground = false;                                                          // with grid and shadow
+  bool earth = false;
   bool dimensions = false;
   bool transparent = false;
   float stars = 0, depth_fade = 0;

@@ -15,7 +15,14 @@ namespace {
 
 using Eigen::Matrix4f;
 
-constexpr int shadow_side = 1536, shade_side = 384;  // [pixels]
+// Sides of the shadow maps, for a picture of 720 pixels on its shorter side; of larger ones more, or their
+// texels would be seen [pixels].
+constexpr int shadow_side = 1536, shade_side = 384, shadow_per_shade = shadow_side / shade_side;
+
+int shade_side_for(int width, int height) {
+  const int wanted = shade_side * std::min(width, height) / 720;
+  return std::clamp(wanted / 2 * 2, shade_side, 4096 / shadow_per_shade);
+}
 
 // The camera's place, or the direction to it where the projection is parallel.
 Eigen::Vector4f eye_of(const Camera& camera) {
@@ -44,13 +51,16 @@ Renderer::Renderer(GlContext& context, int width, int height, int samples)
     : frame_((context.make_current(), width), height, samples),
       backdrop_(width, height, 0),
       depth_("shadow", solid_vertex(false), shaders::depth_fragment),
+      skin_depth_("shadow of a surface", shaders::skin_vertex, shaders::skin_depth_fragment),
       shade_("shade", shaders::background_vertex, shaders::shade_fragment),
       background_("background", shaders::background_vertex, shaders::background_fragment),
       grid_("grid", shaders::ground_vertex, shaders::grid_fragment),
       floor_shadow_("floor shadow", shaders::ground_vertex, shaders::floor_shadow_fragment),
-      shadow_map_(TextureKind::depth, shadow_side),
-      shade_across_(TextureKind::shade, shade_side),
-      shade_on_floor_(TextureKind::shade, shade_side) {
+      shadow_map_(TextureKind::depth, shadow_per_shade * shade_side_for(width, height)),
+      shade_across_(TextureKind::shade, shade_side_for(width, height)),
+      shade_on_floor_(TextureKind::shade, shade_side_for(width, height)),
+      soft_across_(TextureKind::shade, shade_side_for(width, height) / 2),
+      soft_on_floor_(TextureKind::shade, shade_side_for(width, height) / 2) {
   gl::GenVertexArrays(1, &empty_array_);
 }
 
@@ -69,6 +79,11 @@ const Program& Renderer::solid_program(const char* name, const char* fragment, b
 const Program& Renderer::begin_solids(const char* name, const char* fragment, const DrawList& list,
                                       const View& view, bool hidden) {
   const Program& program = solid_program(name, fragment, hidden);
+  begin_solids(program, list, view);
+  return program;
+}
+
+void Renderer::begin_solids(const Program& program, const DrawList& list, const View& view) const {
   program.use();
   set_background(program, list);
   program.set("view_projection", view.camera);
@@ -80,7 +95,8 @@ const Program& Renderer::begin_solids(const char* name, const char* fragment, co
   program.set("fade", Eigen::Vector2f(list.radius, list.depth_fade));
   const float floor = list.ground.shown ? list.ground.z : -1e6f;
   program.set("floor_height_reach", Eigen::Vector2f(floor, 0.25f * list.radius));
-  return program;
+  program.set("to_eye", Vec3f((list.camera.eye - list.camera.target).normalized()));
+  set_planet(program, list);
 }
 
 void Renderer::draw_bodies(const Program& program) const {
@@ -90,6 +106,8 @@ void Renderer::draw_bodies(const Program& program) const {
   balls_.draw();
   program.set("meets", 1);  // fittings and arrows, at the joint that they begin in
   cylinders_.draw();
+  program.set("meets", 0);
+  plates_.draw();
 }
 
 void Renderer::draw_solids(const DrawList& list, const View& view) {
@@ -126,6 +144,24 @@ void Renderer::draw_ghosts(const DrawList& list, const View& view) {
   end_blending();
 }
 
+// What is solid first, then from far to near, blended over it.
+void Renderer::draw_skins(const DrawList& list, const View& view) {
+  if (list.skins.empty()) return;
+  std::unique_ptr<Program>& program = solid_["skin"];
+  if (!program)
+    program = std::make_unique<Program>("skin", shaders::skin_vertex,
+                                        std::string(shaders::solid_head) + shaders::skin_fragment);
+  begin_solids(*program, list, view);
+  program->set("night", list.shading == Shading::space ? 1 : 0);
+  program->set("plain", list.shading == Shading::outline || list.shading == Shading::flat ? 1 : 0);
+  gl::Disable(GL_CULL_FACE);
+  begin_blending();
+  gl::DepthMask(GL_TRUE);
+  skins_.draw(*program);
+  end_blending();
+  gl::Enable(GL_CULL_FACE);
+}
+
 void Renderer::begin_blending() {
   gl::Enable(GL_BLEND);
   gl::BlendEquation(GL_FUNC_ADD);
@@ -145,6 +181,8 @@ bool Renderer::upload_solids(const DrawList& list) {
   bool moved = capsules_.set(std::move(solids.capsules), list.camera, height);
   moved |= balls_.set(std::move(solids.balls), list.camera, height);
   moved |= cylinders_.set(std::move(solids.cylinders), list.camera, height);
+  moved |= plates_.set(std::move(solids.plates), list.camera, height);
+  moved |= skins_.set(list.skins, list.camera);
   std::vector<SolidInstance> ghosts = tubes_of(list.ghosts);
   for (std::size_t i = 0; i < ghosts.size(); ++i) ghosts[i].metal = list.ghosts[i].color.a;
   ghosts_.set(std::move(ghosts), list.camera, height);
@@ -157,18 +195,19 @@ PixelRect Renderer::solid_part(const DrawList& list, const Matrix4f& camera) con
   const float right = camera.row(0).head<3>().norm(), up = camera.row(1).head<3>().norm();
   Eigen::Array2f low(1, 1), high(-1, -1);
   bool near = false;
-  for (const RendererBodies* bodies : {&capsules_, &balls_, &cylinders_, &ghosts_})
-    for (const SolidInstance& body : bodies->bodies()) {
-      const float r = 1.1f * std::max(body.radius_a, body.radius_b);
-      for (const Vec3f& end : {body.a, body.b}) {
-        near |= forward.dot(end - list.camera.eye) - r < list.camera.near_plane;
-        const Eigen::Vector4f clip = camera * end.homogeneous();
-        const float reach = list.camera.parallel_height > 0 ? 0.0f : r;  // towards the camera
-        const Eigen::Array2f at = clip.head<2>().array() / clip.w(),
-                             around = (Eigen::Array2f(right, up) + at.abs()) * r / (clip.w() - reach);
-        low = low.min(at - around), high = high.max(at + around);
-      }
-    }
+  const auto add = [&](const Vec3f& end, float r) {
+    near |= forward.dot(end - list.camera.eye) - r < list.camera.near_plane;
+    const Eigen::Vector4f clip = camera * end.homogeneous();
+    const float reach = list.camera.parallel_height > 0 ? 0.0f : r;  // towards the camera
+    const Eigen::Array2f at = clip.head<2>().array() / clip.w(),
+                         around = (Eigen::Array2f(right, up) + at.abs()) * r / (clip.w() - reach);
+    low = low.min(at - around), high = high.max(at + around);
+  };
+  for (const RendererBodies* bodies : {&capsules_, &balls_, &cylinders_, &plates_, &ghosts_})
+    for (const SolidInstance& body : bodies->bodies())
+      for (const Vec3f& end : {body.a, body.b}) add(end, 1.1f * std::max(body.radius_a, body.radius_b));
+  for (const Skin& skin : list.skins)
+    for (const SkinVertex& v : skin.vertices) add(v.at, 0);
   if (near) return frame_.whole();
   const auto pixel = [](float ndc, int size, float pad) {
     return static_cast<int>(
@@ -207,6 +246,7 @@ void Renderer::paint(const DrawList& list, bool coarse) {
   gl::Clear(GL_DEPTH_BUFFER_BIT);
   shadow_map_.use_as_texture(0);
   draw_solids(list, view);
+  draw_skins(list, view);
   draw_ghosts(list, view);
   gl::Disable(GL_CULL_FACE);
   if (!coarse) frame_.resolve(view.solid);

@@ -14,6 +14,7 @@
 #include "render/image/image.hpp"
 #include "render/scene/draw_list.hpp"
 #include "render/scene/renderer_bodies.hpp"
+#include "render/scene/renderer_skins.hpp"
 #include "render/scene/text_overlay.hpp"
 
 namespace unfurl {
@@ -44,7 +45,7 @@ class Renderer {
   bool upload_solids(const DrawList& list);
   PixelRect solid_part(const DrawList& list, const Matrix4f& camera) const;
   void draw_shadows(const DrawList& list, const Matrix4f& light);
-  void blur_shadows() const;
+  void blur_shadows(const DrawList& list, const Matrix4f& light) const;
   void draw_backdrop(const DrawList& list, const Matrix4f& camera);
   void draw_floor_shadow(const DrawList& list, const View& view) const;
   const Program& begin_floor(const Program& program, const DrawList& list, const Matrix4f& camera) const;
@@ -52,22 +53,27 @@ class Renderer {
   const Program& solid_program(const char* name, const char* fragment, bool hidden);
   const Program& begin_solids(const char* name, const char* fragment, const DrawList& list, const View& view,
                               bool hidden = false);
+  void begin_solids(const Program& program, const DrawList& list, const View& view) const;
   void draw_solids(const DrawList& list, const View& view);
   void draw_outlines(const DrawList& list, const View& view);
   void draw_ghosts(const DrawList& list, const View& view);
+  void draw_skins(const DrawList& list, const View& view);
+  void set_planet(const Program& program, const DrawList& list) const;
   void draw_bodies(const Program& program) const;
   static void begin_blending();
   static void end_blending();
   void set_background(const Program& program, const DrawList& list) const;
 
   Framebuffer frame_, backdrop_;  // backdrop: what is behind the bodies, but for shadows
-  Program depth_, shade_, background_, grid_, floor_shadow_;
+  Program depth_, skin_depth_, shade_, background_, grid_, floor_shadow_;
   std::map<std::string, std::unique_ptr<Program>> solid_;  // by name
   RendererBodies capsules_{BodyKind::capsule}, balls_{BodyKind::ball}, cylinders_{BodyKind::cylinder},
-      ghosts_{BodyKind::capsule};
+      plates_{BodyKind::plate}, ghosts_{BodyKind::capsule};
+  RendererSkins skins_;
   unsigned empty_array_ = 0;
   TextureTarget shadow_map_;                     // depth from the light
   TextureTarget shade_across_, shade_on_floor_;  // the shadow on the floor, blurred one way, then both
+  TextureTarget soft_across_, soft_on_floor_;    // the same, blurred more
   TextOverlay text_;
   bool transparent_ = false;                  // of the picture that was painted last
   std::vector<float> backdrop_of_;            // what the backdrop shows

@@ -69,7 +69,9 @@ Mesh detailed_mesh(BodyKind kind, int level) {
     case BodyKind::ball:
       return capsule_mesh(round, round / 4);
     case BodyKind::cylinder:
-      return level == 0 ? plain_cylinder_mesh(sides) : cylinder_mesh(sides);
+      return level < 3 ? plain_cylinder_mesh(sides) : cylinder_mesh(sides);
+    case BodyKind::plate:
+      return plate_mesh(sides / 2);
   }
   return {};
 }
@@ -92,6 +94,7 @@ RendererBodies::Shape RendererBodies::make_shape(const Mesh& mesh, unsigned inst
   describe(5, 2, sizeof(SolidInstance), offsetof(SolidInstance, radius_a), 1);
   describe(6, 3, sizeof(SolidInstance), offsetof(SolidInstance, red), 1);
   describe(7, 2, sizeof(SolidInstance), offsetof(SolidInstance, metal), 1);
+  describe(8, 3, sizeof(SolidInstance), offsetof(SolidInstance, side), 1);
   gl::BindVertexArray(0);
   return shape;
 }

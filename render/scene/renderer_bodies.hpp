@@ -11,7 +11,7 @@
 
 namespace unfurl {
 
-enum class BodyKind { capsule, ball, cylinder };
+enum class BodyKind { capsule, ball, cylinder, plate };
 
 // The level of detail whose facets are nowhere farther than a third of a pixel from the round body: 0, the
 // coarsest, to detail_levels - 1. radius: [pixels].

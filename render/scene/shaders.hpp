@@ -18,11 +18,12 @@ layout(location = 4) in vec3 point_b;
 layout(location = 5) in vec2 radii;
 layout(location = 6) in vec3 color;
 layout(location = 7) in vec2 surface;
+layout(location = 8) in vec3 side;  // of a plate; else zero
 uniform mat4 view_projection;
 uniform vec4 eye;  // the camera, or (w = 0) the direction to it
 uniform float nearer;
-out vec3 world;
-out vec3 normal;
+centroid out vec3 world;  // not beyond the edge, where there is nothing to be lit
+centroid out vec3 normal;
 flat out vec3 axis;  // unit; zero for a ball
 flat out vec3 albedo;
 flat out vec2 metal_roughness;
@@ -32,10 +33,12 @@ void main() {
   vec3 along = point_b - point_a;
   float span = length(along);
   vec3 z = span > 0.0 ? along / span : vec3(0.0, 0.0, 1.0);
-  vec3 x = normalize(cross(abs(z.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0), z));
+  bool plate = dot(side, side) > 0.0;
+  vec3 x = normalize(plate ? side : cross(abs(z.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0), z));
   vec3 y = cross(z, x);
-  world = mix(point_a, point_b, end) + mix(radii.x, radii.y, end) * (x * offset.x + y * offset.y + z * offset.z);
-  float tilt = span > 0.0 ? (radii.x - radii.y) / span : 0.0;  // of a cone's side
+  vec3 scale = plate ? radii.yxx : vec3(mix(radii.x, radii.y, end));
+  world = mix(point_a, point_b, end) + x * offset.x * scale.x + y * offset.y * scale.y + z * offset.z * scale.z;
+  float tilt = span > 0.0 && !plate ? (radii.x - radii.y) / span : 0.0;  // of a cone's side
   normal = x * axis_normal.x + y * axis_normal.y + z * (axis_normal.z + tilt * length(axis_normal.xy));
   albedo = pow(color, vec3(2.2));
   metal_roughness = surface;
@@ -55,8 +58,8 @@ void main() {})";
 // What the fragment stages of all looks begin with: inputs, the key light with its shadow and highlight, and
 // the mist that tells near from far.
 inline constexpr const char* solid_head = R"(#version 330 core
-in vec3 world;
-in vec3 normal;
+centroid in vec3 world;
+centroid in vec3 normal;
 flat in vec3 axis;
 flat in vec3 albedo;
 flat in vec2 metal_roughness;
@@ -93,8 +96,16 @@ float key_light(vec3 n) {  // what arrives of it: by the angle and past what is 
   return n_l > 0.0 ? n_l * lit(world, n, texel) : 0.0;
 }
 
-float highlight(vec3 n, vec3 v) {  // of the key light, as a rough metal shows it (GGX)
-  float a2 = pow(metal_roughness.y, 4.0), n_h = max(dot(n, normalize(v + to_light)), 0.0);
+// Rougher where the normal turns within a pixel: else what is thin glitters (Kaplanyan et al., Filtering
+// distributions of normals for shading antialiasing, 2016).
+float rough_alpha(vec3 n) {
+  vec3 dx = dFdx(n), dy = dFdy(n);
+  float alpha = metal_roughness.y * metal_roughness.y;
+  return sqrt(min(alpha * alpha + min(0.5 * (dot(dx, dx) + dot(dy, dy)), 0.35), 1.0));
+}
+
+float highlight(vec3 n, vec3 v, float alpha) {  // of the key light, as a rough metal shows it (GGX)
+  float a2 = alpha * alpha, n_h = max(dot(n, normalize(v + to_light)), 0.0);
   float d = n_h * n_h * (a2 - 1.0) + 1.0;
   return a2 / (3.14159 * d * d) * 0.25 / mix(max(dot(n, v), 0.02), 1.0, 0.5);
 }
@@ -112,44 +123,134 @@ float open_to_room() {
   return mix(0.15, 1.0, smoothstep(0.0, meets == 1 ? 4.5 : 14.0, away));
 }
 
-vec3 room(vec3 d) {  // what a mirror would show: a pale floor, a bright horizon, a lamp overhead
-  vec3 c = mix(vec3(0.40, 0.41, 0.43), vec3(0.78, 0.84, 0.92), smoothstep(-0.35, 0.25, d.z));
-  return c + vec3(1.3) * smoothstep(0.80, 0.98, dot(d, normalize(to_light + vec3(0.0, 0.0, 0.6))));
+// The studio as a small sky: a floor that throws light back, walls that grow brighter upwards, a wide lamp
+// overhead on the key light's side and a strip of light low on the other. `blur`: 0 a mirror's, 1 a matt one's.
+vec3 room(vec3 d, float blur) {
+  vec3 lamp = normalize(to_light + vec3(0.0, 0.0, 0.6)), strip = normalize(vec3(-to_light.xy, 0.25));
+  float edge = 0.05 + 0.5 * blur;
+  vec3 c = mix(vec3(0.36, 0.36, 0.37), vec3(0.74, 0.80, 0.88), smoothstep(-0.2 - edge, 0.1 + edge, d.z));
+  c *= mix(1.0, 0.55, smoothstep(0.02, 0.10 + edge, d.z) * (1.0 - smoothstep(0.12, 0.45 + edge, d.z)));
+  c += vec3(2.1, 2.05, 1.95) * smoothstep(0.88 - edge, 0.92 + 0.5 * edge, dot(d, lamp)) / (1.0 + 3.0 * blur);
+  c += vec3(0.75, 0.85, 1.0) * smoothstep(0.90 - edge, 0.94 + 0.5 * edge, dot(d, strip)) / (1.0 + 4.0 * blur);
+  return c;
 }
 
 void main() {
   vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
-  float metal = metal_roughness.x, roughness = metal_roughness.y;
+  float metal = metal_roughness.x, alpha = rough_alpha(n), roughness = sqrt(alpha);
   float n_v = max(dot(n, v), 0.02), key = key_light(n);
-  float occlusion = mix(0.55, 1.0, smoothstep(0.0, 1.0, (world.z - floor_height_reach.x) / floor_height_reach.y)) *
-                    mix(0.75, 1.0, 0.5 + 0.5 * n.z) * open_to_room();
+  float occlusion = mix(0.45, 1.0, smoothstep(0.0, 1.0, (world.z - floor_height_reach.x) / floor_height_reach.y)) *
+                    mix(0.72, 1.0, 0.5 + 0.5 * n.z) * open_to_room();
   key *= mix(0.6, 1.0, occlusion);
-  vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.55, 0.60, 0.68), 0.5 + 0.5 * n.z) * occlusion;
+  vec3 ambient = mix(vec3(0.27, 0.26, 0.25), vec3(0.52, 0.57, 0.65), 0.5 + 0.5 * n.z) * occlusion;
 
   vec3 f0 = mix(vec3(0.04), albedo, metal);
   vec3 fresnel = f0 + (max(vec3(1.0 - roughness), f0) - f0) * pow(1.0 - n_v, 5.0);
 
-  vec3 light = albedo * (1.0 - 0.75 * metal) * (ambient + 1.25 * vec3(1.0, 0.97, 0.92) * key);
-  light += fresnel * room(reflect(-v, n)) * mix(0.4, 1.0, occlusion);
-  light += f0 * min(highlight(n, v), 6.0) * key;
-  light = light / (1.0 + 0.18 * light) * 1.12;  // rolls off what is brighter than paper
+  vec3 light = albedo * (1.0 - 0.75 * metal) * (ambient + 1.45 * vec3(1.0, 0.96, 0.90) * key);
+  light += fresnel * room(reflect(-v, n), roughness) * mix(0.35, 1.0, occlusion);
+  light += f0 * min(highlight(n, v, alpha), 6.0) * key;
+  light = light / (1.0 + 0.20 * light) * 1.13;  // rolls off what is brighter than paper
   color = vec4(misty(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2))), 1.0);
 })";
 
 // Sunlight in the dark: a hard key light, hardly anything from elsewhere, and a bright rim against the night.
 inline constexpr const char* space_fragment = R"(
+uniform vec4 planet;  // direction to its middle, cosine of half its width
+uniform vec3 to_eye;  // from the middle of the picture
 void main() {
   vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
-  float metal = metal_roughness.x;
+  float metal = metal_roughness.x, alpha = rough_alpha(n);
   float n_v = max(dot(n, v), 0.02), key = key_light(n);
   vec3 f0 = mix(vec3(0.04), albedo, metal);
-  vec3 planet = mix(vec3(0.05, 0.06, 0.09), vec3(0.10, 0.20, 0.38), 0.5 - 0.5 * n.z);
-  vec3 light = albedo * (planet + 1.7 * key * vec3(1.0, 0.97, 0.93));
-  light += f0 * min(highlight(n, v), 8.0) * key * 1.5;
-  float behind = max(dot(n, normalize(vec3(-to_light.xy, 0.6))), 0.0);  // a second sun's glow at the edge
-  light += (0.25 + 0.75 * behind) * pow(1.0 - n_v, 3.0) * mix(vec3(0.45, 0.70, 1.0), albedo, 0.3);
-  light = light / (1.0 + 0.15 * light);
+  float below = 0.5 + 0.5 * dot(n, planet.xyz);
+  vec3 shine = vec3(0.16, 0.25, 0.40) * below * below;                         // of the Earth
+  float fill = 0.16 * (0.25 + 0.75 * max(dot(n, normalize(to_eye + vec3(0.0, 0.0, 0.35))), 0.0));
+  vec3 light = albedo * (shine + fill + 1.35 * key * vec3(1.0, 0.97, 0.92));
+  vec3 r = reflect(-v, n);
+  light += f0 * smoothstep(planet.w - 0.25, planet.w + 0.1, dot(r, planet.xyz)) * vec3(0.22, 0.36, 0.55);
+  light += f0 * min(highlight(n, v, alpha), 10.0) * key * 0.9;
+  float behind = max(dot(n, normalize(vec3(-to_light.xy, 0.4))), 0.0);  // sunlight that grazes the edge
+  light += (0.12 + 0.6 * behind) * pow(1.0 - n_v, 3.0) * mix(vec3(0.55, 0.72, 1.0), albedo, 0.4);
+  light = light / (1.0 + 0.18 * light) * 1.08;
   color = vec4(misty(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2))), 1.0);
+})";
+
+// Surfaces: a pattern of lines with something thinner between them, lit from both sides.
+inline constexpr const char* skin_vertex = R"(#version 330 core
+layout(location = 0) in vec3 at;
+layout(location = 1) in vec3 up;
+layout(location = 2) in vec2 place;
+uniform mat4 view_projection;
+uniform float pushed;  // back, for shadows: the rods along its edge have none of it
+centroid out vec3 world;  // not beyond the edge, where there is nothing to be lit
+centroid out vec3 normal;
+flat out vec3 axis;
+flat out vec3 albedo;
+flat out vec2 metal_roughness;
+out float along_axis;
+flat out float whole_axis;
+out vec2 cell;
+void main() {
+  world = at, normal = up, cell = place;
+  axis = vec3(0.0), albedo = vec3(0.0), metal_roughness = vec2(0.9, 0.45), along_axis = 0.0, whole_axis = 0.0;
+  gl_Position = view_projection * vec4(at, 1.0);
+  gl_Position.z += pushed * gl_Position.w;
+})";
+
+inline constexpr const char* skin_fragment = R"(
+in vec2 cell;
+uniform vec3 front, back;
+uniform float opacity, cord;  // cord: half its thickness in cells
+uniform int weave;            // 0 mesh, 1 net, 2 film, 3 cells
+uniform int square, night, plain;
+
+float line(float x, float width) {  // share of a pixel that lines at whole x cover
+  float pixel = max(fwidth(x), 1e-5), away = abs(fract(x - 0.5) - 0.5);
+  float crisp = clamp((width - away) / pixel + 0.5, 0.0, 1.0) * min(1.0, 2.0 * width / pixel + 0.25);
+  return mix(crisp, 2.0 * width, smoothstep(0.35, 0.7, pixel));
+}
+
+float pattern(float width) {
+  float x = line(cell.x, width);
+  if (square == 1) return max(x, line(cell.y, width));
+  return max(x, max(line(0.5 * cell.x + 0.8660254 * cell.y, width), line(0.5 * cell.x - 0.8660254 * cell.y, width)));
+}
+
+void main() {
+  vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
+  bool is_front = dot(n, v) > 0.0;
+  if (!is_front) n = -n;
+  float n_v = max(dot(n, v), 0.05), cords = weave == 2 ? 0.0 : pattern(cord);
+  vec3 hue = pow(is_front || weave < 2 ? front : back, vec3(2.2));
+  float a = weave >= 2 ? opacity : 1.0 - pow(1.0 - opacity, 1.0 / max(n_v, 0.18));  // denser at a slant
+  if (weave == 1) a = opacity;
+  if (weave == 3 && is_front) hue = mix(hue, vec3(0.55, 0.58, 0.62), cords);
+  if (weave < 2) a = max(a, cords * 0.95), hue = mix(hue, hue * vec3(0.80, 0.70, 0.55), cords);
+  if (plain == 1) {
+    color = vec4(misty(pow(hue, vec3(1.0 / 2.2))), 0.25 * a + 0.6 * cords * a);
+    return;
+  }
+  float metal = weave == 3 ? 0.35 : 0.7;
+  float lit_front = key_light(n), lit_back = key_light(-n);  // what comes through
+  float through = weave < 2 ? 0.55 : weave == 2 ? 0.10 : 0.0;
+  vec3 sky = night == 1 ? vec3(0.12, 0.15, 0.20) : mix(vec3(0.26, 0.25, 0.25), vec3(0.42, 0.44, 0.47), 0.5 + 0.5 * n.z);
+  vec3 light = hue * (sky + (night == 1 ? 1.2 : 0.75) * vec3(1.0, 0.97, 0.93) * (lit_front + through * lit_back));
+  vec3 r = reflect(-v, n);
+  float lamp = smoothstep(weave == 3 ? 0.92 : 0.55, 1.0, dot(r, normalize(to_light + vec3(0.0, 0.0, 0.4))));
+  light += mix(vec3(0.05), hue, metal) * lamp * (night == 1 ? lit_front * 1.2 : 0.45);
+  light += (night == 1 ? 0.10 : 0.22) * pow(1.0 - n_v, 4.0);
+  light = light / (1.0 + 0.22 * light) * 1.12;
+  color = vec4(misty(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2))), a);
+})";
+
+// In the shadow map a surface is as many of sixteen texels as it keeps of the light.
+inline constexpr const char* skin_depth_fragment = R"(#version 330 core
+uniform float coverage;
+void main() {
+  ivec2 p = ivec2(gl_FragCoord.xy) & 3;
+  int order = (((p.x ^ p.y) & 1) << 3) | ((p.y & 1) << 2) | ((((p.x ^ p.y) >> 1) & 1) << 1) | (p.y >> 1);
+  if (float(order) + 0.5 > 16.0 * coverage) discard;
 })";
 
 // Flat colours in two tones, as if printed.
@@ -190,26 +291,38 @@ void main() {
   color = vec4(misty(pow(albedo, vec3(1.0 / 2.2)) * mix(0.85, 1.0, 0.5 + 0.5 * n.z)), opacity);
 })";
 
-// Two passes of a blur. Across: of the depth map, whatever is nearer to the light than the floor. Then along.
+// Passes of a blur. 0: of the depth map, along rows, whatever is nearer to the light than the floor, and how
+// much nearer; 1: of that, along columns; 2 and 3: the same again, four times as wide.
 inline constexpr const char* shade_fragment = R"(#version 330 core
-uniform int across, texels;  // of the depth map for one of the shade
+uniform int pass, texels;  // of the depth map for one of the shade
+uniform vec3 floor_depth;  // of the floor in the map: x, y and 1
 uniform sampler2D depth, shade;
-layout(location = 0) out float color;
+layout(location = 0) out vec2 color;  // share of the light that is missing; times how far its cause is away
 void main() {
-  if (across == 1) {
+  if (pass == 0) {
     ivec2 at = ivec2(gl_FragCoord.xy) * texels + ivec2(texels / 2);
     ivec2 last = textureSize(depth, 0) - 1;
-    float sum = 0.0;
+    vec2 sum = vec2(0.0);
     for (int i = 0; i < 8; ++i) {  // on different rows, or a shadow along the rows would be dashed
       ivec2 p = clamp(at + ivec2(3 * i / 2 - 5, (3 * i & 3) - 2) * texels / 4, ivec2(0), last);
-      sum += texelFetch(depth, p, 0).r < 1.0 ? 1.0 : 0.0;
+      float d = texelFetch(depth, p, 0).r;
+      if (d < 1.0) sum += vec2(1.0, clamp(dot(floor_depth, vec3(vec2(p) / vec2(last), 1.0)) - d, 0.0, 0.5) * 2.0);
     }
     color = sum / 8.0;
   } else {
-    vec2 texel = 1.0 / vec2(textureSize(shade, 0)), at = gl_FragCoord.xy * texel;
-    float sum = 0.0;
-    for (int i = -3; i <= 3; i += 2) sum += texture(shade, at + vec2(0.0, 0.45 * float(i)) * texel).r;
-    color = 0.25 * sum;
+    vec2 texel = 1.0 / vec2(textureSize(shade, 0));
+    vec2 at = pass == 1 ? gl_FragCoord.xy * texel : gl_FragCoord.xy * texel * (pass == 2 ? 2.0 : 1.0);
+    vec2 way = pass == 2 ? vec2(texel.x, 0.0) : vec2(0.0, texel.y), sum = vec2(0.0);
+    if (pass == 1) {
+      for (int i = -3; i <= 3; i += 2) sum += texture(shade, at + 0.45 * float(i) * way).rg;
+      color = 0.25 * sum;
+    } else {
+      way *= pass == 2 ? 2.0 : 1.0;  // a Gauss curve of 2.4 texels, two of them with each read
+      sum = 0.171 * texture(shade, at).rg;
+      sum += 0.272 * (texture(shade, at + 1.46 * way).rg + texture(shade, at - 1.46 * way).rg);
+      sum += 0.1145 * (texture(shade, at + 3.4 * way).rg + texture(shade, at - 3.4 * way).rg);
+      color = sum + 0.028 * (texture(shade, at + 5.3 * way).rg + texture(shade, at - 5.3 * way).rg);
+    }
   }
 })";
 
@@ -219,22 +332,68 @@ void main() {  // one triangle over the whole picture, behind everything
   gl_Position = vec4(corner, 1.0, 1.0);
 })";
 
+// A gradient; before it stars, and the Earth as it is seen from a low orbit: day and night, clouds, and air
+// that glows at its limb.
 inline constexpr const char* background_fragment = R"(#version 330 core
 uniform vec4 background_top, background_bottom;
 uniform float picture_height, stars;
+uniform vec4 planet;                       // direction to its middle, cosine of half its width; 2: none
+uniform vec3 view_right, view_up, view_forward, to_light;  // right and up: of half a picture's height
+uniform vec2 picture_middle;
 layout(location = 0) out vec4 color;
 float scatter(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }
+float scatter3(vec3 p) { return fract(sin(dot(p, vec3(12.9898, 78.233, 37.719))) * 43758.5453); }
+float noise(vec3 p) {
+  vec3 i = floor(p), f = fract(p);
+  f = f * f * (3.0 - 2.0 * f);
+  vec4 a = vec4(scatter3(i), scatter3(i + vec3(1, 0, 0)), scatter3(i + vec3(0, 1, 0)), scatter3(i + vec3(1, 1, 0)));
+  vec4 b = vec4(scatter3(i + vec3(0, 0, 1)), scatter3(i + vec3(1, 0, 1)), scatter3(i + vec3(0, 1, 1)), scatter3(i + vec3(1)));
+  vec4 c = mix(a, b, f.z);
+  return mix(mix(c.x, c.y, f.x), mix(c.z, c.w, f.x), f.y);
+}
+float clouds(vec3 p) {
+  float sum = 0.0, size = 0.5;
+  for (int i = 0; i < 5; ++i) sum += size * noise(p), p = 2.03 * p + 3.1, size *= 0.5;
+  return sum;
+}
 void main() {
   color = mix(background_bottom, background_top, gl_FragCoord.y / picture_height);
-  if (stars > 0.0) {  // at most one in each cell of a grid
+  vec2 screen = (gl_FragCoord.xy - picture_middle) / (0.5 * picture_height);
+  vec3 d = normalize(view_forward + screen.x * view_right + screen.y * view_up);
+  float toward = dot(d, planet.xyz), edge = planet.w;
+  if (stars > 0.0 && toward < edge) {  // at most one in each cell of a grid
     float unit = picture_height / 720.0;
-    vec2 at = gl_FragCoord.xy / (36.0 * unit), cell = floor(at);
-    float luck = scatter(cell);
-    vec2 place = vec2(scatter(cell + 17.0), scatter(cell + 43.0)) * 0.8 + 0.1;
-    float away = length(at - cell - place) * 36.0;
-    float bright = stars * smoothstep(0.45, 1.0, luck) * smoothstep(1.3, 0.2, away);
-    color.rgb += bright * mix(vec3(0.75, 0.85, 1.0), vec3(1.0, 0.92, 0.8), scatter(cell + 5.0));
+    for (int layer = 0; layer < 2; ++layer) {
+      float size = layer == 0 ? 26.0 : 61.0;
+      vec2 at = gl_FragCoord.xy / (size * unit), cell = floor(at) + 91.0 * float(layer);
+      at += 91.0 * float(layer);
+      float luck = scatter(cell);
+      vec2 place = vec2(scatter(cell + 17.0), scatter(cell + 43.0)) * 0.8 + 0.1;
+      float away = length(at - cell - place) * size, wide = layer == 0 ? 1.0 : 1.7;
+      float bright = stars * (layer == 0 ? 0.75 : 1.3) * smoothstep(0.35, 1.0, luck) * smoothstep(wide, 0.1, away);
+      color.rgb += bright * mix(vec3(0.70, 0.82, 1.0), vec3(1.0, 0.90, 0.78), scatter(cell + 5.0));
+    }
   }
+  if (edge > 1.0) return;
+  float half_width = acos(edge), from = acos(clamp(toward, -1.0, 1.0));
+  float above = (from - half_width) / half_width;  // of the limb
+  // Where the ray meets a sphere of radius 1 whose middle is 1 / sin(half_width) away.
+  float distance = 1.0 / sin(half_width), along = distance * toward;
+  float inside = along * along - (distance * distance - 1.0);
+  vec3 hit = d * (along - sqrt(max(inside, 0.0))) - planet.xyz * distance;
+  vec3 n = above < 0.0 ? normalize(hit) : normalize(d * along - planet.xyz * distance);
+  float day = smoothstep(-0.10, 0.30, dot(n, to_light));
+  vec3 air = mix(vec3(0.10, 0.13, 0.30), vec3(0.30, 0.58, 1.0), day) * (0.10 + 0.90 * day);
+  if (above < 0.0) {
+    float land = smoothstep(0.50, 0.60, clouds(n * 3.1 + 7.0)), cloud = smoothstep(0.46, 0.72, clouds(n * vec3(11.0, 11.0, 17.0)));
+    vec3 ground = mix(vec3(0.035, 0.13, 0.30), mix(vec3(0.12, 0.20, 0.10), vec3(0.36, 0.30, 0.19), clouds(n * 11.0)), land);
+    ground = mix(ground, vec3(0.88, 0.91, 0.95), 0.85 * cloud);
+    float slant = 1.0 - max(dot(n, -d), 0.0);
+    vec3 c = ground * (0.015 + 0.85 * day);
+    c = mix(c, air, clamp(0.10 + 0.80 * pow(slant, 5.0), 0.0, 1.0) * (0.15 + 0.85 * day));
+    color.rgb = mix(color.rgb, c, smoothstep(0.0, -0.004, above));
+  }
+  color.rgb += air * exp(-max(above, 0.0) * 70.0) * smoothstep(-0.004, 0.0, above) * 0.9;
 })";
 
 inline constexpr const char* ground_vertex = R"(#version 330 core
@@ -252,6 +411,7 @@ inline constexpr const char* grid_fragment = R"(#version 330 core
 in vec2 world;
 uniform vec2 center;
 uniform float picture_height, reach, cell;
+uniform vec4 lines_color;
 layout(location = 0) out vec4 color;
 
 float lines(vec2 p, float pixels) {  // 1 on the lines of the unit grid
@@ -264,21 +424,27 @@ float lines(vec2 p, float pixels) {  // 1 on the lines of the unit grid
 void main() {
   float fade = 1.0 - smoothstep(0.35, 1.0, length(world - center) / reach);
   float finer = max(1.0, picture_height / 720.0);  // lines as wide for the eye in pictures of any size
-  float grid = max(0.20 * lines(world / cell, 1.1 * finer), 0.34 * lines(world / (5.0 * cell), 1.3 * finer));
-  color = vec4(0.36, 0.44, 0.54, grid * fade);
+  float grid = max(0.59 * lines(world / cell, 1.1 * finer), lines(world / (5.0 * cell), 1.3 * finer));
+  color = vec4(lines_color.rgb, lines_color.a * grid * fade);
 })";
 
+// Sharp where what throws it is near, softer the farther away it is.
 inline constexpr const char* floor_shadow_fragment = R"(#version 330 core
 in vec2 world;
 uniform float floor_height, reach;
 uniform vec2 center;
+uniform vec4 shadow_color;
 uniform mat4 light_projection;
-uniform sampler2D shade;
+uniform sampler2D shade, soft_shade;
 layout(location = 0) out vec4 color;
 void main() {
   float fade = 1.0 - smoothstep(0.35, 1.0, length(world - center) / reach);
   vec2 at = (light_projection * vec4(world, floor_height, 1.0)).xy * 0.5 + 0.5;
-  color = vec4(0.045, 0.11, 0.23, 0.42 * fade * texture(shade, at).r);
+  vec2 sharp = texture(shade, at).rg, soft = texture(soft_shade, at).rg;
+  float away = soft.g / max(soft.r, 1e-3);
+  float dark = mix(sharp.r, soft.r, smoothstep(0.08, 1.1, away));
+  dark = max(dark, 0.35 * soft.r);  // light from the sky that is kept off as well
+  color = vec4(shadow_color.rgb, shadow_color.a * fade * dark);
 })";
 
 }  // namespace unfurl::shaders

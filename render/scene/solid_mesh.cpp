@@ -51,6 +51,10 @@ Surface surface_of(Finish finish) {
       return {0.35f, 0.32f};
     case Finish::metal:
       return {0.85f, 0.30f};
+    case Finish::carbon:
+      return {0.0f, 0.22f};
+    case Finish::foil:
+      return {0.95f, 0.38f};
   }
   return {0.0f, 0.5f};
 }
@@ -58,7 +62,7 @@ Surface surface_of(Finish finish) {
 SolidInstance solid(const Vec3f& a, const Vec3f& b, float radius_a, float radius_b, const Color& c,
                     Finish finish) {
   const Surface surface = surface_of(finish);
-  return {a, b, radius_a, radius_b, c.r, c.g, c.b, surface.metal, surface.roughness};
+  return {a, b, radius_a, radius_b, c.r, c.g, c.b, surface.metal, surface.roughness, Vec3f::Zero()};
 }
 
 void add_arrow(const Arrow& arrow, std::vector<SolidInstance>& cylinders) {
@@ -112,6 +116,41 @@ Mesh plain_cylinder_mesh(int sides) {
                  sides);
 }
 
+// The outline in the plane of y and z, counter-clockwise seen from +x: round at a, then along to b.
+Mesh plate_mesh(int parts) {
+  struct Corner {
+    float y, z, end;
+  };
+  std::vector<Corner> outline;
+  for (int k = 0; k <= parts; ++k) {
+    const float angle = pi_f * (1 + static_cast<float>(k) / static_cast<float>(parts));
+    outline.push_back({std::cos(angle), std::sin(angle), 0});
+  }
+  outline.push_back({1, 0, 1});
+  outline.push_back({-1, 0, 1});
+  Mesh mesh;
+  const auto count = outline.size();
+  for (const float x : {-1.0f, 1.0f})
+    for (const Corner& c : outline) mesh.vertices.push_back({{x, c.y, c.z}, {x, 0, 0}, c.end});
+  const auto corner = [&](std::size_t i) { mesh.indices.push_back(static_cast<std::uint16_t>(i)); };
+  for (std::size_t k = 1; k + 1 < count; ++k) {
+    corner(0), corner(k + 1), corner(k);
+    corner(count), corner(count + k), corner(count + k + 1);
+  }
+  for (std::size_t k = 0; k < count; ++k) {  // the rim
+    const Corner &p = outline[k], &q = outline[(k + 1) % count];
+    const bool arc = k < static_cast<std::size_t>(parts);
+    const Vec3f flat(0, k + 2 == count ? 0.0f : p.y, k + 2 == count ? 1.0f : 0.0f);
+    for (const Corner* c : {&p, &q})
+      for (const float x : {-1.0f, 1.0f})
+        mesh.vertices.push_back({{x, c->y, c->z}, arc ? Vec3f(0, c->y, c->z) : flat, c->end});
+    const std::size_t first = mesh.vertices.size() - 4;
+    corner(first), corner(first + 2), corner(first + 1);
+    corner(first + 1), corner(first + 2), corner(first + 3);
+  }
+  return mesh;
+}
+
 std::vector<SolidInstance> tubes_of(const std::vector<Tube>& tubes) {
   std::vector<SolidInstance> out;
   for (const Tube& t : tubes) out.push_back(solid(t.a, t.b, t.radius, t.radius, t.color, t.finish));
@@ -123,6 +162,10 @@ Solids solids_of(const DrawList& list) {
   out.capsules = tubes_of(list.tubes);
   for (const Sleeve& s : list.sleeves)
     out.cylinders.push_back(solid(s.a, s.b, s.radius, s.radius, s.color, s.finish));
+  for (const Plate& p : list.plates) {
+    out.plates.push_back(solid(p.a, p.b, p.half_width, p.half_thickness, p.color, p.finish));
+    out.plates.back().side = p.side;
+  }
   for (const Ball& b : list.balls) {
     out.balls.push_back(solid(b.center, b.center, b.radius, b.radius, b.color, b.finish));
   }

@@ -24,19 +24,21 @@ struct Mesh {
 
 Mesh capsule_mesh(int sides, int cap_rings);  // round ends beyond a and b; a ball where a = b
 Mesh cylinder_mesh(int sides);                // flat ends at a and b with a bevel; a cone where a radius is 0
+Mesh plate_mesh(int parts);                   // round around a, flat at b; x is across it
 Mesh plain_cylinder_mesh(int sides);          // the same without the bevel
 
-// One body of a mesh: 13 floats, as the shader takes them.
+// One body of a mesh: 16 floats, as the shader takes them.
 struct SolidInstance {
   Vec3f a, b;
-  float radius_a, radius_b;  // [m]
-  float red, green, blue;    // sRGB-encoded
-  float metal, roughness;    // 0..1
+  float radius_a, radius_b;    // of a plate half its width and half its thickness [m]
+  float red, green, blue;      // sRGB-encoded
+  float metal, roughness;      // 0..1
+  Vec3f side = Vec3f::Zero();  // of a plate: across it; else zero
 };
 
 // The instances of a picture by the mesh that they use.
 struct Solids {
-  std::vector<SolidInstance> capsules, balls, cylinders;
+  std::vector<SolidInstance> capsules, balls, cylinders, plates;
 };
 Solids solids_of(const DrawList& list);
 std::vector<SolidInstance> tubes_of(const std::vector<Tube>& tubes);

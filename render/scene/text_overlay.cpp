@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/scene/text_overlay.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/plot/painter.hpp"
@@ -28,13 +29,25 @@ void write(const TextLabel& label, const ImFont& font, ImDrawList& paper) {
   paper.AddText(&font, label.height, at, packed(label.color), first);
 }
 
-void draw_inset(const Inset& inset, Sheet& sheet, ImDrawList& paper) {
+// Dark for light and light for dark, hues as they are: a figure for paper before the night.
+ImU32 at_night(ImU32 color) {
+  const ImVec4 c = ImGui::ColorConvertU32ToFloat4(color);
+  const float high = std::max({c.x, c.y, c.z}), low = std::min({c.x, c.y, c.z}), shift = 1 - high - low;
+  const auto moved = [&](float x) { return std::clamp(0.07f + 0.93f * (x + shift), 0.0f, 1.0f); };
+  return ImGui::ColorConvertFloat4ToU32({moved(c.x), moved(c.y), moved(c.z), c.w});
+}
+
+void draw_inset(const Inset& inset, bool night, Sheet& sheet, ImDrawList& paper) {
+  const int first = paper.VtxBuffer.Size;
   paper.AddRectFilled({inset.x, inset.y}, {inset.x + inset.width, inset.y + inset.height},
                       packed({1, 1, 1, 0.85f}), 0.03f * inset.height);
   const plot::FigureLayout layout = plot::lay_out(*inset.figure, {.title = false, .caption = false});
   plot::ImguiCanvas canvas(paper, [&](float pixels) { return sheet.font(pixels); }, inset.pixels_per_point,
                            {static_cast<double>(inset.x), static_cast<double>(inset.y)});
   plot::paint(*inset.figure, layout, canvas);
+  if (!night) return;
+  for (int i = first; i < paper.VtxBuffer.Size; ++i)
+    paper.VtxBuffer[i].col = at_night(paper.VtxBuffer[i].col);
 }
 
 }  // namespace
@@ -56,11 +69,13 @@ void TextOverlay::draw(const DrawList& list, int width, int height) {
       sheet.font(plot::ImguiCanvas::font_pixels(size, inset.pixels_per_point));
   ImDrawList& paper = sheet.begin(width, height);
   for (const OverlayArea& area : list.areas)
-    paper.AddRectFilled({area.x0, area.y0}, {area.x1, area.y1}, packed(area.color));
+    paper.AddRectFilled({area.x0, area.y0}, {area.x1, area.y1}, packed(area.color), area.round);
   for (const OverlayLine& line : list.lines)
     paper.AddLine({line.x0, line.y0}, {line.x1, line.y1}, packed(line.color), line.width);
   for (const TextLabel& label : list.labels) write(label, *sheet.font(label.height, label.bold), paper);
-  if (inset.figure) draw_inset(inset, sheet, paper);
+  const Color& ground = list.background_top;
+  const bool night = !list.transparent && ground.r + ground.g + ground.b < 1.2f;
+  if (inset.figure) draw_inset(inset, night, sheet, paper);
   sheet.end();
 }
 

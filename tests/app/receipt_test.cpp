@@ -32,7 +32,7 @@ TEST_CASE("a file of every format carries its receipt, and is made again from it
               .code == 0);
   for (const char* name :
        {"figures/energy.pdf", "figures/energy.svg", "figures/energy.png", "frames/frame_00003.png",
-        "animation.webp", "animation.gif", "animation.mp4", "animation.glb", "viewer.html"}) {
+        "animation.webp", "animation.gif", "animation.mp4", "animation.glb", "viewer.html", "report.html"}) {
     INFO(name);
     // Where no list of results is.
     const std::string copy = dir / ("copy" + fs::path(name).extension().string());

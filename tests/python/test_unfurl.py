@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The Python module against the command line, closed forms and its own promises: python3 -m pytest tests/python"""
+import ast
 import gc
 import json
 import os
@@ -163,6 +164,47 @@ def test_examples_run(script, tmp_path):
     done = subprocess.run([sys.executable, script], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stdout
+
+
+@pytest.mark.parametrize("notebook", sorted((Path(__file__).parents[2] / "assets/examples/python").glob("*.ipynb")), ids=lambda p: p.name)
+def test_notebooks_run(notebook, tmp_path, monkeypatch):
+    """Every cell, and what a notebook would show of its last line."""
+    monkeypatch.chdir(tmp_path)
+    shown, names = 0, {}
+    for cell in json.loads(notebook.read_text())["cells"]:
+        if cell["cell_type"] != "code":
+            continue
+        assert cell["outputs"] == [], "committed without outputs"
+        *body, last = ast.parse("".join(cell["source"])).body
+        if not isinstance(last, ast.Expr):
+            body, last = [*body, last], None
+        exec(compile(ast.Module(body, []), notebook.name, "exec"), names)
+        if last is None:
+            continue
+        value = eval(compile(ast.Expression(last.value), notebook.name, "eval"), names)
+        picture = getattr(value, "_repr_svg_", None) or getattr(value, "_repr_html_", None) or (lambda: repr(value))
+        shown += picture() not in ("", "None")
+    assert shown >= 3
+
+
+def test_stubs_name_what_is_there():
+    folder = Path(unfurl.__file__).parent
+    assert (folder / "py.typed").exists()
+    told = {}
+    for node in ast.parse((folder / "_unfurl.pyi").read_text()).body:
+        if isinstance(node, ast.ClassDef):
+            told[node.name] = {m.name if isinstance(m, ast.FunctionDef) else m.target.id for m in node.body
+                               if isinstance(m, (ast.FunctionDef, ast.AnnAssign))}
+        elif isinstance(node, ast.FunctionDef):
+            told[node.name] = set()
+        elif isinstance(node, ast.AnnAssign):
+            told[node.target.id] = set()
+    there = {name: value for name, value in vars(unfurl._unfurl).items() if not name.startswith("__") or name == "__version__"}
+    assert set(told) == set(there)
+    for name, value in there.items():
+        if isinstance(value, type) and not issubclass(value, Exception):
+            public = {m for m in vars(value) if not m.startswith("_")}
+            assert {m for m in told[name] if not m.startswith("_")} == public, name
 
 
 def test_pictures_and_files(tmp_path):

@@ -100,12 +100,12 @@ void add_member_rows(ParamSection& section, const SceneElement& element, Members
   ParamSpec nodes = names_param("nodes", "separated by commas");
   if (members == Members::each_node) nodes.help = "names or globs, separated by commas";
   if (members == Members::two_nodes) nodes.length = 2;
-  if (members == Members::angle) nodes.length = 3;
+  if (members == Members::angle || members == Members::three_nodes) nodes.length = 3;
   if (!element.nodes.empty()) add_row(section, nodes, element.nodes);
   if (!element.terms.empty())
     add_row(section, names_param("terms", "summed up, separated by commas"), element.terms);
   ParamSpec rods = names_param(members == Members::rod ? "rod" : "rods", "separated by commas");
-  rods.length = members == Members::rod ? 1 : 2;
+  rods.length = members == Members::rods ? 0 : members == Members::rod ? 1 : 2;
   if (!element.rods.empty()) add_row(section, rods, element.rods);
 }
 

@@ -69,7 +69,7 @@ Figure energy_figure(const Simulation& run, const Diagnostics& diagnostics) {
   f.title = "Energy";
   f.rows = 2;
   f.height_mm = 105;
-  f.caption = "Above: energies and work since the start. Below: magnitude of " + balance +
+  f.caption = "a, energies and work since the start. b, magnitude of " + balance +
               " \u2212 the energy at the start (kinetic + potential), at most " +
               plot::format_number(largest_magnitude(error), 2) + " J." + zeros_sentence(error) + " " +
               method_sentence(run);

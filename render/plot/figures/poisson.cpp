@@ -24,7 +24,7 @@ Figure poisson_figure(const Simulation& run, const Diagnostics& diagnostics) {
   f.rows = 2;
   f.height_mm = 105;
   f.caption =
-      "Above: the lengths along and across the stretch. Below: the ratio of their strain increments, "
+      "a, the lengths along and across the stretch. b, the ratio of their strain increments, "
       "\u2212(across\u2032/across) / (along\u2032/along), from " +
       plot::format_number(ratio.front(), 4) + " to " + plot::format_number(ratio.back(), 4) +
       "; negative: the structure grows both ways. " + method_sentence(run);

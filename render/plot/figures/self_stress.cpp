@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/system/self_stress.hpp"
+#include "core/system/rigid_twin.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -107,8 +108,10 @@ void name_colors(Panel& p) {
 Figure self_stress_figure(const Simulation& run, const Diagnostics& diagnostics) {
   const Trajectory& trajectory = run.trajectory;
   const std::size_t i = chosen_state(diagnostics);
-  const Model& model = trajectory.model(i);
   const VectorXd q = trajectory.node_positions(i), whole = trajectory.positions(i);
+  Structure rods = rigid_twin(trajectory.model(i).structure, q);
+  System rows(rods, run.options.eliminate_linear);
+  const Model model{std::move(rods), std::move(rows)};
   const ForceBalance balance = force_balance(model.system, q, analyse_mobility(model.system, q));
   const std::size_t states = balance.states.size(), drawn = std::min(states, most_states);
 

@@ -175,6 +175,19 @@ Panel color_bar(const ValueRange& range, const std::vector<double>& levels, std:
   return bar;
 }
 
+// Where the map is known: a dot at every point of the grid that has a value.
+Curve sample_points(const plot::Field& field) {
+  Curve dots;
+  dots.width = 0;
+  dots.marker = Marker::circle;
+  dots.marker_size = 0.4f;
+  dots.color = 6;
+  for (std::size_t i = 0; i < field.x.size(); ++i)
+    for (std::size_t j = 0; j < field.y.size(); ++j)
+      if (!std::isnan(field.value(i, j))) dots.x.push_back(field.x[i]), dots.y.push_back(field.y[j]);
+  return dots;
+}
+
 Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure) {
   const plot::Field field = field_of(plan, sweep, measure);
   const ValueRange range = range_of(field);
@@ -199,8 +212,10 @@ Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
     c.y = std::move(lines.y);
     c.color = 6;
     c.width = 0.6f;
+    c.label = plot::format_number(level, 4);
     map.curves.push_back(std::move(c));
   }
+  map.curves.push_back(sample_points(field));
   f.panels = {std::move(map)};
   if (range.lo < range.hi) f.panels.push_back(color_bar(range, levels, plan.measures[measure].label));
   if (f.panels.size() == 1) f.rows = 1;
@@ -226,7 +241,9 @@ std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, con
     Figure f;
     if (map) {
       f = map_figure(plan, sweep, m);
-      f.caption = "Colour and contour lines: " + plan.measures[m].label + ". ";
+      f.caption = "Colour and contour lines: " + plan.measures[m].label + ", computed on a grid of " +
+                  std::to_string(plan.axes[0].values.size()) + " x " +
+                  std::to_string(plan.axes[1].values.size()) + " points (dots), interpolated bilinearly. ";
     } else {
       f.panels.push_back(curve_panel(plan, sweep, m, across));
     }

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/diagnostics/elastic_sharing.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/scene/library.hpp"
+#include "core/simulate/elastic_sharing.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;

@@ -236,8 +236,8 @@ TEST_CASE("glTF: every rod and joint of the whole is where it was") {
   const Exported e("gltf");
   const Glb glb(e.text("animation.glb"));
   const auto& nodes = glb.json["nodes"];
-  REQUIRE(nodes.size() == 1 + e.rods + e.nodes);
-  REQUIRE(nodes[0]["children"].size() == e.rods + e.nodes);
+  REQUIRE(nodes.size() == 1 + e.rods + e.nodes + 2 * e.rods + 1);  // two fittings each, and a camera
+  REQUIRE(nodes[0]["children"].size() == e.rods + e.nodes + 1);
   // z up becomes y up, x stays.
   const auto root = nodes[0]["rotation"].get<std::vector<double>>();
   const Eigen::Quaterniond up(root[3], root[0], root[1], root[2]);
@@ -278,9 +278,9 @@ TEST_CASE("glTF: rods and joints have names, places, sizes and the colours of th
     const Rod& source = e.structure.rods[static_cast<std::size_t>(e.structure.rod_copies[r].source)];
     CHECK(node["name"] == e.structure.rod_copies[r].name);
     CHECK(mesh_of.emplace(source.group, node["mesh"].get<std::size_t>()).first->second == node["mesh"]);
-    for (const char* path : {"translation", "rotation"}) {  // at rest it is as in the first frame
-      const auto first = node[path].get<std::vector<float>>(), keys = glb.keys(1 + r, path);
-      CHECK(std::equal(first.begin(), first.end(), keys.begin()));
+    for (const char* path : {"translation", "rotation"}) {  // at rest it is as in the last frame
+      const auto last = node[path].get<std::vector<float>>(), keys = glb.keys(1 + r, path);
+      CHECK(std::equal(last.rbegin(), last.rend(), keys.rbegin()));
     }
     CHECK(node["scale"][0].get<double>() == Approx(source.radius).epsilon(1e-6));
     CHECK(node["scale"][1].get<double>() == Approx(source.length).epsilon(1e-6));
@@ -297,9 +297,9 @@ TEST_CASE("glTF: rods and joints have names, places, sizes and the colours of th
         thickest = std::max(thickest, e.structure.rods[static_cast<std::size_t>(rod.source)].radius);
     CHECK(node["scale"][1].get<double>() == Approx(1.5 * thickest).epsilon(1e-6));
   }
-  // A mesh with a colour of its own for each group, and one for the joints.
+  // A mesh with a colour of its own for each group, one for fittings and one for joints.
   REQUIRE(mesh_of.size() >= 2);
-  CHECK(json["meshes"].size() == mesh_of.size() + 1);
+  CHECK(json["meshes"].size() == mesh_of.size() + 2);
   std::set<std::vector<double>> colours;
   for (const auto& [group, mesh] : mesh_of) {
     CHECK(json["meshes"][mesh]["name"] == group);

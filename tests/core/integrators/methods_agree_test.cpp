@@ -128,6 +128,15 @@ std::vector<Case> constraint_cases() {
   };
 }
 
+// A massless rod from O to B that gives, E A = 110 N.
+std::string elastic_rod() {
+  std::string text = arms;
+  text.replace(text.find("kind = \"custom\""), 15, "kind = \"custom\"\ndamping_time = 7e-3");
+  return text +
+         "[[structure.rods]]\nname = 'giving'\nnodes = ['O', 'B']\nmass = 0\narea = 1e-4\n"
+         "youngs_modulus = 1.1e6\nelastic = true\n";
+}
+
 std::vector<Case> force_cases() {
   const auto f = [](const std::string& kind, const std::string& what, const std::string& keys) {
     return Case{kind, what, arms + force("kind = '" + kind + "'\n" + keys)};
@@ -158,6 +167,13 @@ std::vector<Case> force_cases() {
         "nodes = ['O', 'B']\nstall_torque = 1\nno_load_speed = 900\ndrum_radius = 0.1\ninertia = 0.02\n"
         "axial_stiffness = 40\nlength = 0.5"),
       f("joint_damping", "at a joint of three rods", "nodes = ['A']\ndamping = 0.9"),
+      f("bending", "of a rod in two segments", "nodes = ['O', 'A', 'B']\nstiffness = 5"),
+      f("temperature", "rigid rods that warm and cool",
+        "rods = ['A-B', 'O-A']\nexpansion = 2e-4\nchange = 80\ntimes = [0, 0.1, 0.3]\nvalues = [0, 1, 0.4]"),
+      {"temperature", "an elastic rod that warms",
+       elastic_rod() + force("kind = 'temperature'\nrods = ['giv*']\nexpansion = 2e-3\nchange = 40\n"
+                             "times = [0, 0.1, 0.3]\nvalues = [0, 1, 0.4]")},
+      {"elastic_rod", "with damping, beside rigid ones", elastic_rod()},
       f("drag", "of two nodes", "nodes = ['B', 'C']\ndamping = 1.3"),
       f("friction", "of a joint, which goes on turning",
         "nodes = ['O', 'A', 'B']\nkinetic = 0.4\nstatic = 0.5"),

@@ -63,6 +63,10 @@ std::string members_of(Members members) {
     case Members::path:
     case Members::two_nodes:
       return "nodes = [\"A\", \"B\"]\n";
+    case Members::three_nodes:
+      return "nodes = [\"O\", \"A\", \"B\"]\n";
+    case Members::rods:
+      return "rods = [\"lower\"]\n";
     case Members::rod:
       return "rod = \"lower\"\n";
     case Members::terms:

@@ -147,4 +147,76 @@ TEST_CASE("turntable and hold come after the motion") {
   CHECK(shots.back().t == run.trajectory.end_time());
 }
 
+TEST_CASE("an even pace shows equal shares of the deployment, and the time's pace equal times") {
+  const Simulation run = ring();
+  const Trajectory& motion = run.trajectory;
+  const Deployment& deployment = motion.structure().deployment;
+  REQUIRE(!deployment.empty());
+  RenderOptions options;
+  options.fps = 24;
+  options.hold = 0;
+  const std::size_t count = film_shots(motion, options).size();
+  options.pace = "even";
+  const auto shots = film_shots(motion, options);
+  CHECK(shots.size() == count);
+  const auto fraction = [&](double t) {
+    return deployment.fraction(motion.node_positions(motion.state_before(t)));
+  };
+  // Between two states the fraction is taken to be linear, and a thousandth of the film is for what rests:
+  // together less than the largest step of the fraction from state to state, 0.03 here.
+  for (std::size_t k = 0; k + 1 < shots.size(); ++k)
+    CHECK(std::abs(fraction(shots[k].t) - static_cast<double>(k) / static_cast<double>(shots.size() - 1)) <
+          0.035);
+  options.pace = "time";
+  options.easing = 0.5;
+  const auto eased = film_shots(motion, options);
+  CHECK(eased.size() == count + 12);  // half a second
+  const auto step = [&](std::size_t k) { return eased[k + 1].t - eased[k].t; };
+  CHECK(step(0) < 0.01 * options.speed / options.fps);
+  CHECK(step(eased.size() - 3) < 0.05 * options.speed / options.fps);
+  CHECK(step(eased.size() / 2) == Approx(options.speed / options.fps).epsilon(1e-9));
+}
+
+TEST_CASE("a film begins with its card and its first picture, and its last one stays") {
+  const Simulation run = ring();
+  RenderOptions options;
+  options.fps = 10;
+  options.title_card = 0.7;
+  options.hold_start = 0.4;
+  const auto shots = film_shots(run.trajectory, options);
+  for (std::size_t k = 0; k < 11; ++k) {
+    CHECK(shots[k].card == (k < 7));
+    CHECK(shots[k].t == run.trajectory.start_time());
+  }
+  CHECK(shots[12].t > shots[11].t);
+  CHECK(shots[shots.size() - 11] == shots.back());  // a second, by default
+  CHECK(shots[shots.size() - 12].t < shots.back().t);
+}
+
+TEST_CASE("a camera that follows while it turns has every pose in the picture, larger at the start") {
+  const Simulation run = ring();
+  RenderOptions options;
+  options.orbit = 70;
+  const double start = run.trajectory.start_time();
+  const auto size_at = [&](const FrameBuilder& frames, double t) {
+    const DrawList list = frames.build(t);
+    float low = 1e9f, high = -1e9f;
+    for (const Tube& tube : list.tubes)
+      for (const Vec3f& end : {tube.a, tube.b}) {
+        const Vec3f p = project(list.camera, 1280, 720, end);
+        CHECK(p.x() > 0);
+        CHECK(p.x() < 1280);
+        CHECK(p.y() > 0);
+        CHECK(p.y() < 720);
+        low = std::min(low, p.y()), high = std::max(high, p.y());
+      }
+    return high - low;
+  };
+  const float plain = size_at(builder(run, options), start);
+  options.follow = true;
+  const FrameBuilder frames = builder(run, options);
+  CHECK(size_at(frames, start) > 1.3f * plain);
+  for (const double share : {0.3, 0.7, 0.9, 1.0}) size_at(frames, share * run.trajectory.end_time());
+}
+
 }  // namespace camera_path_test

@@ -92,8 +92,8 @@ TEST_CASE("parts of the ring are all there, coloured by group, and stay above th
   for (const double share : {0.0, 0.5, 0.9, 1.0}) {
     const DrawList list = builder.build(share * result.trajectory.end_time());
     CHECK(list.tubes.size() == 30);
-    CHECK(list.sleeves.size() == 60);
-    CHECK(list.balls.size() == 24);
+    CHECK(list.sleeves.size() >= 60);  // an end's fitting, and pins
+    CHECK(list.balls.size() == 12);    // where a post and two faces meet; hinges between two chords have none
     CHECK(list.arrows.size() == 12);
     for (const Ball& ball : list.balls) {
       CHECK(ball.center.z() - ball.radius > list.ground.z);
@@ -113,10 +113,14 @@ TEST_CASE("joints are where the trajectory says at that time") {
   const double t = 0.617 * result.trajectory.end_time();
   const VectorXd q = result.trajectory.positions_at(t);
   const DrawList list = builder.build(t);
-  for (std::size_t i = 0; i < list.balls.size(); ++i) {
+  const auto& copies = result.trajectory.structure().node_copies;
+  std::size_t ball = 0;
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    if (copies[i].name.front() == 'M') continue;  // hinges of two chords
     // The ring is some 6 m in size: single precision holds it to 1e-6 m.
-    CHECK((list.balls[i].center.cast<double>() - q.segment<3>(3 * static_cast<Index>(i))).norm() < 1e-6);
+    CHECK((list.balls[ball++].center.cast<double>() - q.segment<3>(3 * static_cast<Index>(i))).norm() < 1e-6);
   }
+  CHECK(ball == list.balls.size());
 }
 
 TEST_CASE("title, time and deployed fraction are written") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/diagnostics/elastic_sharing.hpp"
+#include "core/simulate/elastic_sharing.hpp"
 
 namespace unfurl {
 
@@ -12,7 +12,8 @@ constexpr std::size_t most_before = 5;  // states that a limit is extrapolated f
 VectorXd row_compliance(const Model& model) {
   const std::vector<Rod>& rods = model.structure.rods;
   VectorXd compliance = VectorXd::Zero(model.system.constraints());
-  for (std::size_t r = 0; r < rods.size(); ++r) compliance[model.system.rod_rows()[r]] = rods[r].compliance();
+  for (std::size_t r = 0; r < rods.size(); ++r)
+    if (!rods[r].gives) compliance[model.system.rod_rows()[r]] = rods[r].compliance();
   return compliance.isZero(0.0) ? VectorXd() : compliance;
 }
 

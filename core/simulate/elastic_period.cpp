@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/simulate/elastic_period.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "core/integrators/integrator.hpp"
+#include "core/math/saddle_solver.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr int power_steps = 60;
+constexpr double settled_share = 1e-3;   // of w^2, from one step to the next
+constexpr double followed_share = 0.25;  // of a period: steps up to that follow it
+
+bool has_waves(const Structure& structure) {
+  return std::any_of(structure.rods.begin(), structure.rods.end(), [](const Rod& r) { return r.gives; }) ||
+         std::any_of(structure.forces.begin(), structure.forces.end(),
+                     [](const Force& f) { return f.kind == "bending"; });
+}
+
+}  // namespace
+
+double fastest_elastic_period(const Model& model, const State& state) {
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  if (!has_waves(model.structure)) return endless;
+  const System system = model.system.at(state);
+  VectorXd q(system.coordinates());
+  system.expand(state.z, q);
+  SparseRows by_z, by_w, G = system.jacobian_pattern();
+  system.force_derivatives(state.t, q, VectorXd::Zero(q.size()), by_z, by_w);
+  std::vector<double> scratch;
+  system.jacobian(q, G, scratch);
+  SaddleSolver saddle(system.mass(), G);
+  if (!saddle.factorise(G)) return endless;
+  VectorXd x(system.solved_coordinates()), a(x.size()), y(G.rows());
+  for (Index i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
+  const VectorXd none = VectorXd::Zero(G.rows());
+  double square = 0;
+  for (int it = 0; it < power_steps; ++it) {
+    saddle.solve(by_z * x, none, a, y);
+    // Rayleigh's quotient in the mass metric: from below.
+    const double before = square;
+    square = std::sqrt(std::max(a.dot(system.mass() * a), 0.0) / x.dot(system.mass() * x));
+    if (!(square > 0) || !a.allFinite()) return endless;
+    x = a / a.lpNorm<Eigen::Infinity>();
+    if (it > 8 && std::abs(square - before) <= settled_share * square) break;
+  }
+  return 2 * pi / std::sqrt(square);
+}
+
+std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options) {
+  if (options.tolerance > 0) return {};  // steps are found
+  const Method* method = find_method(options.method);
+  if (!method || method->claims(options).damps) return {};
+  const double period = fastest_elastic_period(model, start);
+  if (!(options.step > followed_share * period)) return {};
+  std::ostringstream text;
+  text.precision(3);
+  text << "the step of " << options.step << " s does not resolve the fastest elastic period, " << period
+       << " s: such waves are kept but not followed, and forces at single states are theirs. To follow them, "
+          "solver.step = "
+       << followed_share * period
+       << "; to let them die out, structure.damping_ratio or solver.method = \"generalized_alpha\"; to leave "
+          "them out, structure.rod_model = \"quasi-static\"";
+  return text.str();
+}
+
+}  // namespace unfurl

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The quasi-static rung between rigid and elastic rods: no waves.
+#pragma once
+
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+
+// Adds to the shown positions of a run of rigid rods what its forces stretch them by. With the multipliers
+// lambda of least complementary energy and the compliances C of the rods' rows,
+//
+//     G u = C lambda,     u of least kinetic metric u^T M u
+//
+// which is no motion of the mechanism. Of first order in C; forces and motion stay those of the rigid run.
+// Poses at which the rank falls take the displacement of the state before, u being infinite there.
+void add_stretch(Trajectory& trajectory);
+
+}  // namespace unfurl

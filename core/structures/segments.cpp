@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/structures/segments.hpp"
+
+#include <algorithm>
+
+#include "core/structure/structure_error.hpp"
+
+namespace unfurl {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw StructureError("segments", message);
+}
+
+// A node without mass and without a rod follows from others: a point of a rod.
+void refuse_points_on_rods(const Structure& structure) {
+  std::vector<char> ends(structure.nodes.size(), 0);
+  for (const Rod& rod : structure.rods)
+    ends[static_cast<std::size_t>(rod.a)] = ends[static_cast<std::size_t>(rod.b)] = 1;
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    if (!ends[i] && structure.nodes[i].mass == 0)
+      refuse("rods that carry a pin between their ends (" + structure.nodes[i].name + ") cannot be cut");
+}
+
+class Cutter {
+ public:
+  explicit Cutter(Structure& structure) : s_(structure), rods_(std::move(structure.rods)) {
+    s_.rods.clear();
+    first_.reserve(rods_.size());
+  }
+
+  void cut(const std::vector<long>& segments) {
+    for (std::size_t r = 0; r < rods_.size(); ++r) {
+      first_.push_back(static_cast<int>(s_.rods.size()));
+      if (segments[r] <= 1)
+        s_.rods.push_back(rods_[r]);
+      else
+        cut(rods_[r], segments[r]);
+    }
+    copy(segments);
+  }
+
+ private:
+  void cut(const Rod& rod, long count) {
+    if (!rod.elastic() || !(rod.second_moment > 0))
+      refuse("rod " + rod.name + " needs area and youngs_modulus to bend");
+    std::vector<int> nodes{rod.a};
+    const Node a = s_.nodes[static_cast<std::size_t>(rod.a)], b = s_.nodes[static_cast<std::size_t>(rod.b)];
+    for (long k = 1; k < count; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(count);
+      nodes.push_back(static_cast<int>(s_.nodes.size()));
+      s_.nodes.push_back({rod.name + "." + std::to_string(k), (1 - share) * a.position + share * b.position,
+                          (1 - share) * a.velocity + share * b.velocity, 0.0});
+    }
+    nodes.push_back(rod.b);
+    for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+      Rod part = rod;
+      part.name = rod.name + "." + std::to_string(k + 1);
+      part.a = nodes[k], part.b = nodes[k + 1];
+      part.mass /= static_cast<double>(count);
+      part.length /= static_cast<double>(count);
+      part.free_length /= static_cast<double>(count);
+      s_.rods.push_back(std::move(part));
+      if (k == 0) continue;
+      Force bend;
+      bend.kind = "bending";
+      bend.name = "bending of " + s_.nodes[static_cast<std::size_t>(nodes[k])].name;
+      bend.nodes = {nodes[k - 1], nodes[k], nodes[k + 1]};
+      bend.stiffness = rod.youngs_modulus * rod.second_moment * rod.multiplicity;
+      s_.forces.push_back(std::move(bend));
+    }
+  }
+
+  // What is shown: the nodes as they are, every part of a shown rod.
+  void copy(const std::vector<long>& segments) {
+    for (std::size_t i = s_.node_copies.size(); i < s_.nodes.size(); ++i)
+      s_.node_copies.push_back({s_.nodes[i].name, static_cast<int>(i), Mat3::Identity(), Vec3::Zero()});
+    std::vector<RodCopy> shown;
+    for (const RodCopy& whole : s_.rod_copies) {
+      const auto source = static_cast<std::size_t>(whole.source);
+      const long parts = std::max(segments[source], 1L);
+      for (long k = 0; k < parts; ++k) {
+        const int r = first_[source] + static_cast<int>(k);
+        const Rod& rod = s_.rods[static_cast<std::size_t>(r)];
+        shown.push_back({parts > 1 ? rod.name : whole.name, rod.a, rod.b, r});
+      }
+    }
+    s_.rod_copies = std::move(shown);
+  }
+
+  Structure& s_;
+  std::vector<Rod> rods_;   // as they were
+  std::vector<int> first_;  // part of each, among the new ones
+};
+
+}  // namespace
+
+void cut_rods(Structure& structure, const std::vector<long>& segments) {
+  if (std::all_of(segments.begin(), segments.end(), [](long k) { return k <= 1; })) return;
+  if (structure.sectors > 1 || structure.node_copies.size() != structure.nodes.size())
+    refuse("a sector model cannot cut its rods; set structure.model to \"full\"");
+  refuse_points_on_rods(structure);
+  Cutter(structure).cut(segments);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/system/assemble_elastic.hpp"
+
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/structure/structure_error.hpp"
+#include "core/system/fit_lengths.hpp"
+#include "core/system/system.hpp"
+
+namespace unfurl {
+namespace {
+
+using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+constexpr double joins = 1e-12;      // of the length: what fits
+constexpr double shortening = 1e-8;  // e M over K
+constexpr double redundant = 1e-3;   // times 1 / K: for rows that depend on others
+constexpr int most_steps = 60;
+
+double misfit(const Structure& structure, const Rod& rod) {
+  const Vec3 d = structure.nodes[static_cast<std::size_t>(rod.b)].position -
+                 structure.nodes[static_cast<std::size_t>(rod.a)].position;
+  return std::abs(d.norm() / rod.length - 1);
+}
+
+// The rod that gives whose own length is furthest off; -1: all fit.
+int furthest_off(const Structure& structure) {
+  int worst = -1;
+  double most = joins;
+  for (std::size_t r = 0; r < structure.rods.size(); ++r) {
+    const Rod& rod = structure.rods[r];
+    if (!rod.gives || rod.free_length > 0) continue;
+    if (const double off = misfit(structure, rod); off > most) most = off, worst = static_cast<int>(r);
+  }
+  return worst;
+}
+
+// Rods and constraints alone.
+Structure unloaded(const Structure& structure) {
+  Structure bare = structure;
+  bare.forces.clear();
+  bare.loads.clear();
+  bare.gravity.setZero();
+  for (Rod& rod : bare.rods) rod.damping_time = 0;
+  return bare;
+}
+
+void add(std::vector<Eigen::Triplet<double>>& entries, const SparseRows& A, double scale) {
+  for (int i = 0; i < A.outerSize(); ++i)
+    for (SparseRows::InnerIterator it(A, i); it; ++it)
+      entries.emplace_back(i, static_cast<int>(it.col()), scale * it.value());
+}
+
+class Balance {
+ public:
+  explicit Balance(const System& system) : system_(system), G_(system.jacobian_pattern()) {}
+
+  // True where it is found; q: the pose that was reached.
+  bool find(VectorXd& q) {
+    VectorXd z = system_.reduce(q);
+    double before = std::numeric_limits<double>::infinity();
+    for (int it = 0; it < most_steps; ++it) {
+      VectorXd step;
+      system_.expand(z, q);
+      if (!solve(q, step)) return false;
+      z += step;
+      const double size = step.lpNorm<Eigen::Infinity>(), reach = q.lpNorm<Eigen::Infinity>();
+      // Newton's steps fall to what rounding leaves, along the mechanism of the size of round-off / e.
+      if (size <= 1e-13 * reach || (size <= 1e-7 * reach && size > 0.5 * before)) {
+        system_.expand(z, q);
+        return true;
+      }
+      before = size;
+    }
+    return false;
+  }
+
+ private:
+  bool solve(const VectorXd& q, VectorXd& step) {
+    const Index n = system_.solved_coordinates(), m = system_.constraints();
+    const VectorXd rest = VectorXd::Zero(q.size());
+    SparseRows by_z, by_w;
+    system_.force_derivatives(0.0, q, rest, by_z, by_w);
+    system_.jacobian(q, G_, scratch_);
+    double stiffest = 0, largest = 1e-300;
+    for (Index i = 0; i < n; ++i) {
+      largest = std::max(largest, std::abs(by_z.coeff(i, i)));
+      stiffest = std::max(stiffest, std::abs(by_z.coeff(i, i)) / system_.mass().coeff(i, i));
+    }
+    std::vector<Eigen::Triplet<double>> entries;
+    add(entries, by_z, -1.0);
+    add(entries, system_.mass(), shortening * stiffest);
+    for (int r = 0; r < G_.outerSize(); ++r) {
+      const int row = static_cast<int>(n) + r;
+      for (SparseRows::InnerIterator it(G_, r); it; ++it) {
+        entries.emplace_back(row, static_cast<int>(it.col()), it.value());
+        entries.emplace_back(static_cast<int>(it.col()), row, it.value());
+      }
+      entries.emplace_back(row, row, -redundant / largest);
+    }
+    Columns A(n + m, n + m);
+    A.setFromTriplets(entries.begin(), entries.end());
+    VectorXd force = VectorXd::Zero(q.size()), phi(m), b(n + m), reduced(n);
+    system_.add_applied_force(0.0, q, rest, 1.0, force);
+    system_.reduce_force(force, reduced);
+    system_.constraint(0.0, q, phi);
+    b << reduced, -phi;
+    const Eigen::SparseLU<Columns> factors(A);
+    if (factors.info() != Eigen::Success) return false;
+    step = VectorXd(factors.solve(b)).head(n);
+    return step.allFinite();
+  }
+
+  const System& system_;
+  SparseRows G_;
+  std::vector<double> scratch_;
+};
+
+void note_self_stress(Structure& structure, const System& system, const VectorXd& q, double most) {
+  VectorXd force(static_cast<Index>(system.giving_rods().size()));
+  system.giving_rod_forces(0.0, q, VectorXd::Zero(q.size()), force);
+  Index at = 0;
+  for (Index k = 0; k < force.size(); ++k) {
+    force[k] /= structure.rods[static_cast<std::size_t>(system.giving_rods()[static_cast<std::size_t>(k)])]
+                    .multiplicity;
+    if (std::abs(force[k]) > std::abs(force[at])) at = k;
+  }
+  const Rod& rod =
+      structure.rods[static_cast<std::size_t>(system.giving_rods()[static_cast<std::size_t>(at)])];
+  std::ostringstream note;
+  note << "rods that do not quite fit were joined: nodes were moved by at most " << most
+       << " m, and the largest force of self-stress is " << force[at] << " N (rod " << rod.name << ")";
+  structure.notes.push_back(note.str());
+}
+
+}  // namespace
+
+void assemble_elastic(Structure& structure, bool eliminate_linear) {
+  const int worst = furthest_off(structure);
+  if (worst < 0) return;
+  const Rod& rod = structure.rods[static_cast<std::size_t>(worst)];
+  const std::string key = "rods[" + std::to_string(worst) + "].length";
+  std::ostringstream off;
+  off << "elastic rod " << rod.name << " is " << 100 * misfit(structure, rod)
+      << " % off the distance of its nodes";
+  if (misfit(structure, rod) > fitted_share)
+    throw StructureError(key, off.str() +
+                                  "; nodes are moved for differences up to 1 % only: give positions "
+                                  "that fit, or free_length for a rod that starts stretched");
+  const System system(unloaded(structure), eliminate_linear);
+  VectorXd given(system.coordinates());
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    given.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  VectorXd q = given;
+  if (!Balance(system).find(q))
+    throw StructureError(key, off.str() + ", and no pose near the given one has the rods in balance");
+  double most = 0;
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i) {
+    const auto at = static_cast<Index>(3 * i);
+    structure.nodes[i].position = q.segment<3>(at);
+    most = std::max(most, (q - given).segment<3>(at).norm());
+  }
+  note_self_stress(structure, system, q, most);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rods, joints, supports and payloads of a pose as bodies: tubes with end fittings, hinges with lugs and
+// pins, scissor arms side by side, plates under what is held, cables and springs.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/scene/render_options.hpp"
+#include "core/structure/structure.hpp"
+#include "render/scene/appearance.hpp"
+#include "render/scene/draw_list.hpp"
+#include "render/scene/joints.hpp"
+#include "render/scene/look.hpp"
+
+namespace unfurl {
+
+// What a rod's surface looks like, and its fittings.
+struct RodCoat {
+  Color rod, fitting;
+  Finish rod_finish = Finish::anodised, fitting_finish = Finish::metal;
+};
+
+class Hardware {
+ public:
+  // Everything given must outlive this. upright: the scene's coordinates to the picture's. detailed: with
+  // lugs and pins, and rods side by side; else rods meet in balls.
+  Hardware(const Structure& structure, const Appearance& looks, const Look& look,
+           const RenderOptions& options, std::unique_ptr<const Joints> joints, const Mat3& upright,
+           bool detailed);
+
+  // The bodies at a time; `at`: the copied nodes' places, z up. rod_colors: per copied rod; empty: by group.
+  void add(double t, const std::vector<Vec3>& at, const std::vector<Color>& rod_colors, DrawList& list) const;
+  // Of a group in the picture and in its legend.
+  Color group_color(std::size_t group) const;
+  // How far below the lowest node a support reaches [m].
+  double support_depth() const { return support_depth_; }
+
+ private:
+  void find_supports();
+  RodCoat coat(int group, const Color* field) const;
+  Vec3 offset(std::size_t rod, double t) const;
+  void add_rod(std::size_t i, double t, const std::vector<Vec3>& at, const Color* field,
+               DrawList& list) const;
+  void add_end(const RodEnd& end, double t, const Vec3& node, const Vec3& along, double length,
+               const RodCoat& coat, DrawList& list) const;
+  double trimmed(const RodEnd& end, double length) const;
+  void add_joint(std::size_t node, double t, const std::vector<Vec3>& at, DrawList& list) const;
+  void add_pin(const Vec3& at, const Vec3& axis, double radius, double half_length, DrawList& list) const;
+  void add_pins(std::size_t node, double t, const Vec3& at, DrawList& list) const;
+  void add_crossings(double t, const std::vector<Vec3>& at, DrawList& list) const;
+  void add_support(std::size_t node, const Vec3& at, DrawList& list) const;
+  void add_payload(std::size_t node, const Vec3& at, DrawList& list) const;
+  void add_forces(const std::vector<Vec3>& at, DrawList& list) const;
+  bool cable(std::size_t rod) const { return cables_[rod]; }
+  double radius(std::size_t rod) const;  // as drawn [m]
+  Vec3 axis_of(const RodEnd& end, double t, const Vec3& along) const;
+
+  const Structure& structure_;
+  const Appearance& looks_;
+  const Look& look_;
+  const RenderOptions& options_;
+  std::unique_ptr<const Joints> joints_;
+  Mat3 upright_;
+  bool detailed_;
+  std::vector<bool> cables_;            // per copied rod
+  std::vector<std::string> materials_;  // per group
+  std::vector<Vec3> support_;           // per copied node: from it to its plate [m]; zero: none
+  std::vector<int> copy_of_;            // a copy of each solved node
+  double support_depth_ = 0;
+};
+
+}  // namespace unfurl

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Surfaces of a scene as triangles: what is spanned between nodes at a moment.
+#pragma once
+
+#include <vector>
+
+#include "core/math/types.hpp"
+#include "core/scene/surfaces.hpp"
+#include "render/scene/draw_list.hpp"
+
+namespace unfurl {
+
+// A surface of the scene with the copied nodes along its edge.
+struct ShownSurface {
+  SceneSurface surface;
+  std::vector<int> nodes;
+};
+
+// `edge`: the places of its nodes [m], z up. A flat one is straight lines between the middle of its edge and
+// the edge (with four nodes: between opposite edges). A paraboloid sinks below those lines by
+// depth (1 - s^2), s from 0 in the middle to 1 at the edge, depth = D / (16 F) for the diameter D of the ring
+// and F = focal_ratio, towards the side that is lower.
+Skin skin_of(const SceneSurface& surface, const std::vector<Vec3>& edge);
+
+}  // namespace unfurl

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rods that bend, against the elastica.
+#include <Eigen/LU>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/vibration.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace bending_test {
+
+namespace {
+
+constexpr double EI = 0.37, L = 1.3;
+
+// A cantilever of k segments along x, clamped at its first node, under P across its end: rows of equal
+// segments, with bending stiffness at the inner nodes. The clamp is a node behind the first, half a segment
+// away on the other side: its bend belongs to half a segment, and so resists with E I over l / 2.
+std::string cantilever(int k, double alpha) {
+  const double l = L / k;
+  std::ostringstream text;
+  text.precision(17);
+  text << "[structure]\nkind = 'custom'\n"
+       << "[[structure.nodes]]\nname = 'wall'\nposition = [" << -l / 2 << ", 0, 0]\nfixed = true\n";
+  for (int i = 0; i <= k; ++i)
+    text << "[[structure.nodes]]\nname = 'N" << i << "'\nposition = [" << i * l << ", 0, 0]\n"
+         << (i == 0 ? "fixed = true\n" : "mass = 0.1\n");
+  for (int i = 0; i < k; ++i)
+    text << "[[structure.rods]]\nnodes = ['N" << i << "', 'N" << i + 1 << "']\nmass = 0\n";
+  // The mean length at the clamp is 3/4 l; E I / (l / 2) there.
+  text << "[[forces]]\nkind = 'bending'\nnodes = ['wall', 'N0', 'N1']\nstiffness = " << EI * 1.5 << "\n";
+  for (int i = 1; i < k; ++i)
+    text << "[[forces]]\nkind = 'bending'\nnodes = ['N" << i - 1 << "', 'N" << i << "', 'N" << i + 1
+         << "']\nstiffness = " << EI << "\n";
+  text << "[[loads]]\nnodes = ['N" << k << "']\nforce = [0, " << alpha * EI / (L * L) << ", 0]\n";
+  return text.str();
+}
+
+// The pose at rest: Newton on F(q) - G^T lambda = 0, Phi(q) = 0 with the load in `steps` parts.
+VectorXd equilibrium(const Model& model, int steps) {
+  const System& system = model.system;
+  const Index n = system.solved_coordinates(), m = system.constraints();
+  VectorXd q(system.coordinates()), rest = VectorXd::Zero(system.coordinates()), lambda = VectorXd::Zero(m);
+  for (std::size_t i = 0; i < model.structure.nodes.size(); ++i)
+    q.segment<3>(3 * static_cast<Index>(i)) = model.structure.nodes[i].position;
+  VectorXd z = system.reduce(q), load = VectorXd::Zero(q.size());
+  for (const Load& l : model.structure.loads) load.segment<3>(3 * l.node) += l.force;
+  SparseRows G = system.jacobian_pattern(), by_z, by_w;
+  std::vector<double> scratch;
+  for (int part = 1; part <= steps; ++part)
+    for (int it = 0; it < 40; ++it) {
+      system.expand(z, q);
+      VectorXd f = (static_cast<double>(part) / steps - 1) * load, r(n), phi(m);
+      system.add_applied_force(0, q, rest, 1.0, f);
+      system.add_constraint_force(q, lambda, -1.0, f);
+      system.reduce_force(f, r);
+      system.constraint(0, q, phi);
+      system.jacobian(q, G, scratch);
+      system.force_derivatives(0, q, rest, by_z, by_w);
+      MatrixXd A = MatrixXd::Zero(n + m, n + m);
+      A.topLeftCorner(n, n) = MatrixXd(system.curvature(q, lambda)) - MatrixXd(by_z);
+      A.topRightCorner(n, m) = MatrixXd(G).transpose();
+      A.bottomLeftCorner(m, n) = MatrixXd(G);
+      VectorXd b(n + m);
+      b << r, -phi;
+      const VectorXd x = A.fullPivLu().solve(b);
+      z += x.head(n);
+      lambda += x.tail(m);
+      if (x.head(n).lpNorm<Eigen::Infinity>() < 1e-13) break;
+    }
+  system.expand(z, q);
+  return q;
+}
+
+}  // namespace
+
+TEST_CASE("bending: a cantilever of k segments is the elastica, to the second order in 1/k") {
+  struct Row {
+    double alpha, slope, shortening, deflection;
+  };
+  // Tip slope [rad], u / L, w / L of the elastica with alpha = P L^2 / E I.
+  const Row rows[] = {{1, 0.46135194971188, 0.056433236283377, 0.30172077379981},
+                      {2, 0.78174983155654, 0.16064172082517, 0.49345748039671},
+                      {5, 1.2153681176117, 0.38762836072443, 0.71379152361191}};
+  for (const Row& row : rows) {
+    std::vector<Vec3> off;
+    for (const int k : {8, 16, 32}) {
+      const VectorXd q = equilibrium(*model_of(cantilever(k, row.alpha)), 5);
+      const Vec3 tip = q.tail<3>(), end = q.segment<3>(q.size() - 6);
+      off.emplace_back(tip.y() / L - row.deflection, 1 - tip.x() / L - row.shortening,
+                       std::atan2(tip.y() - end.y(), tip.x() - end.x()) - row.slope);
+      // Of second order with constants of order one: curvature is at most alpha / L.
+      CHECK(off.back().lpNorm<Eigen::Infinity>() <= row.alpha / (k * k));
+    }
+    for (int i = 0; i < 3; ++i) {
+      // e = a / k^2 + b / k^3, both of one size: what is left without the first falls eightfold.
+      const double coarse = (4 * off[1][i] - off[0][i]) / 3, fine = (4 * off[2][i] - off[1][i]) / 3;
+      INFO("alpha = " << row.alpha << ", " << i << ": " << off[0][i] << ", " << off[1][i] << ", "
+                      << off[2][i]);
+      CHECK(std::abs(fine) <= std::abs(coarse) / 5);
+      CHECK(std::abs(fine) <= 1e-4);
+    }
+  }
+}
+
+TEST_CASE("bending: forces are the derivatives of the potential, and theirs theirs") {
+  const auto model = model_of(cantilever(3, 1.0));
+  const System& system = model->system;
+  VectorXd q(system.coordinates());
+  for (Index i = 0; i < q.size(); ++i)
+    q[i] = (i % 3 == 0 ? 0.4 * static_cast<double>(i / 3) : 0) +
+           0.2 * std::sin(2.0 + 1.7 * static_cast<double>(i));
+  const VectorXd rest = VectorXd::Zero(q.size());
+  const auto force = [&](const VectorXd& x) {
+    VectorXd f = VectorXd::Zero(x.size());
+    system.add_applied_force(0, x, rest, 1.0, f);
+    return f;
+  };
+  SparseRows by_z, by_w;
+  system.force_derivatives(0, q, rest, by_z, by_w);
+  const double e = 1e-6;
+  const VectorXd f = force(q);
+  VectorXd load = VectorXd::Zero(q.size());
+  for (const Load& l : model->structure.loads) load.segment<3>(3 * l.node) += l.force;
+  for (Index i = 0; i < q.size(); ++i) {
+    VectorXd there = q, back = q;
+    there[i] += e, back[i] -= e;
+    const double slope = (system.potential_energy(there) - system.potential_energy(back)) / (2 * e);
+    CHECK(f[i] - load[i] == Approx(-slope).margin(1e-8 * f.norm()));  // e^2 and 1e-16 / e of it
+  }
+  const MatrixXd by_q = MatrixXd(by_z);
+  for (Index c = 0; c < by_q.cols(); ++c) {
+    VectorXd dz = VectorXd::Zero(by_q.cols()), move(q.size()), reduced(by_q.cols());
+    dz[c] = e;
+    system.expand_rate(dz, move);
+    system.reduce_force((force(q + move) - force(q - move)) / (2 * e), reduced);
+    CHECK((reduced - by_q.col(c)).lpNorm<Eigen::Infinity>() <= 1e-7 * by_q.lpNorm<Eigen::Infinity>());
+  }
+}
+
+TEST_CASE("bending: segments = k cuts a rod, and its first bending frequency is that of a beam") {
+  // Pinned ends: w = (pi / l)^2 sqrt(E I / (rho A)); segments of a heavy rod tend to it.
+  const auto scene = [](int k) {
+    return "[structure]\nkind = 'custom'\nyoungs_modulus = 7e10\nsegments = " + std::to_string(k) +
+           "\n[[structure.nodes]]\nname = 'A'\nposition = [0, 0, 0]\nfixed = true\n"
+           "[[structure.nodes]]\nname = 'B'\nposition = [1.4, 0, 0]\n"
+           "[[structure.rods]]\nnodes = ['A', 'B']\ndensity = 2700\narea = 1e-4\n"
+           "[[constraints]]\nkind = 'line'\nnodes = ['B']\ndirection = [1, 0, 0]\n"
+           "[[constraints]]\nkind = 'plane'\nnodes = ['A-B.*']\nnormal = [0, 0, 1]\n";
+  };
+  const auto model = model_of(scene(6));
+  CHECK(model->structure.rods.size() == 6);
+  CHECK(model->structure.rods[2].name == "A-B.3");
+  CHECK(model->structure.nodes[3].name == "A-B.2");
+  double mass = 0;
+  for (const Rod& rod : model->structure.rods) mass += rod.mass;
+  CHECK(mass == Approx(2700 * 1e-4 * 1.4).epsilon(1e-14));
+  const double wanted = pi / (2 * 1.4 * 1.4) * std::sqrt(7e10 * (1e-4 / (4 * pi)) / 2700);
+  double before = 0;
+  for (const int k : {6, 12}) {
+    const auto cut = model_of(scene(k));
+    const double f =
+        vibration(*cut, initial_state(cut->structure, cut->system).state).modes.front().frequency;
+    INFO("k = " << k << ": " << f << " Hz of " << wanted);
+    CHECK(f == Approx(wanted).epsilon(2.0 / (k * k)));                        // pi^2 / 12 k^2 and the like
+    if (before != 0) CHECK(before / (f - wanted) == Approx(16).margin(1.5));  // of fourth order
+    before = f - wanted;
+  }
+  CHECK_THAT(error_of("[structure]\nkind = 'scissor_mast'\nyoungs_modulus = 7e10\nsegments = 4\n"),
+             Catch::Contains("structure.segments: rods that carry a pin between their ends"));
+  CHECK_THAT(error_of("[structure]\nkind = 'hoop'\nmodel = 'sector'\nyoungs_modulus = 7e10\nsegments = 4\n"),
+             Catch::Contains("structure.segments: a sector model"));
+}
+
+}  // namespace bending_test

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rods that do not quite fit, and rods that warm.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/library.hpp"
+#include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace assemble_elastic_test {
+
+namespace {
+
+// A square of side a with both diagonals, free in its plane; the diagonal 1-3 is made `error` too long.
+constexpr double a = 1.3, EA = 7e10 * 2e-4;
+std::string square(double error, const std::string& more = "", const std::string& made = "length") {
+  std::ostringstream text;
+  text.precision(17);
+  text << "[structure]\nkind = 'custom'\nyoungs_modulus = 7e10\n" << more;
+  const char* at[] = {"[0, 0, 0]", "[1.3, 0, 0]", "[1.3, 1.3, 0]", "[0, 1.3, 0]"};
+  for (int k = 0; k < 4; ++k)
+    text << "[[structure.nodes]]\nname = '" << k + 1 << "'\nposition = " << at[k] << "\nmass = 0.7\n";
+  for (const char* name : {"12", "23", "34", "41", "13", "24"})
+    text << "[[structure.rods]]\nname = '" << name << "'\nnodes = ['" << name[0] << "', '" << name[1]
+         << "']\nmass = 0.2\narea = 2e-4\n"
+         << (error != 0 && name[0] == '1' && name[1] == '3' ? made + " = " + std::to_string(0) + "\n"
+                                                            : std::string());
+  std::string out = text.str();
+  if (error != 0) {
+    std::ostringstream length;
+    length.precision(17);
+    length << made << " = " << a * std::sqrt(2.0) + error << "\n";
+    const std::string mark = made + " = 0\n";
+    out.replace(out.find(mark), mark.size(), length.str());
+  }
+  return out +
+         "[[structure.constraints]]\nkind = 'plane'\nnodes = ['1', '2', '3', '4']\nnormal = [0, 0, 1]\n" +
+         "[solver]\nstep = 1e-5\nend_time = 3e-5\n";
+}
+
+VectorXd first_forces(const Simulation& run) {
+  return diagnose(run).axial_force.row(0).transpose();
+}
+
+}  // namespace
+
+TEST_CASE("assembly: a square with a diagonal made too long has the self-stress of the unit load method") {
+  const double error = 1e-5;
+  const Simulation run = run_scene(square(error, "rod_model = 'elastic'\n"));
+  REQUIRE(run.status == RunStatus::completed);
+  // X (-1/sqrt 2 in each side, 1 in the diagonals): X = -error E A / sum S^2 l, to the first order in the
+  // strain, 5e-6.
+  const double X = -error * EA / (2 * a + 2 * std::sqrt(2.0) * a), s = -X / std::sqrt(2.0);
+  const VectorXd force = first_forces(run);
+  const double wanted[] = {s, s, s, s, X, X};
+  for (Index r = 0; r < 6; ++r) CHECK(force[r] == Approx(wanted[r]).epsilon(2e-5));
+  // It is in balance: nothing moves, and the note tells the largest force.
+  CHECK(largest(diagnose(run), "kinetic_energy_J") < 1e-18);
+  REQUIRE(run.warnings.size() >= 1);
+  CHECK_THAT(run.warnings.front(),
+             Catch::Contains("the largest force of self-stress is -") && Catch::Contains("N (rod 13)"));
+  // With free_length the nodes stay where they are, and the diagonal starts with all of it.
+  const VectorXd stretched = first_forces(run_scene(square(error, "rod_model = 'elastic'\n", "free_length")));
+  CHECK(stretched[4] == Approx(-error * EA / (a * std::sqrt(2.0) + error)).epsilon(1e-9));
+  CHECK(stretched.head(4).lpNorm<Eigen::Infinity>() < 1e-6);
+  // Rigid rods cannot be joined.
+  CHECK_THAT(error_of(square(error)), Catch::Contains("rod 13 is given a length"));
+  CHECK_THAT(error_of(square(0.03, "rod_model = 'elastic'\n")), Catch::Contains("up to 1 % only"));
+}
+
+TEST_CASE("assembly: a ring whose rods are off by seeded errors joins, and the sector refuses") {
+  const std::vector<std::string> changes{"structure.model=joints",        "structure.rod_model=elastic",
+                                         "structure.youngs_modulus=7e10", "structure.length_error=1e-4",
+                                         "structure.fold_angle=60",       "structure.hinge_force=0"};
+  const auto model = build_model(read_scene_file(find_scene("hoop6"), changes));
+  const System& system = model->system;
+  VectorXd q(system.coordinates());
+  for (std::size_t i = 0; i < model->structure.nodes.size(); ++i)
+    q.segment<3>(3 * static_cast<Index>(i)) = model->structure.nodes[i].position;
+  VectorXd force(static_cast<Index>(system.giving_rods().size()));
+  system.giving_rod_forces(0, q, VectorXd::Zero(q.size()), force);
+  // Errors of 1e-4 m in loops of rods of 3 m: strains of 1e-5, some hundred newtons of 2000.
+  CHECK(force.lpNorm<Eigen::Infinity>() > 10);
+  CHECK(force.lpNorm<Eigen::Infinity>() < 2 * 7e10 * 9e-4 * 1e-4 / 1.2);
+  // In balance with the planes of the faces: what is left of the forces is not felt by any free motion.
+  auto other = changes;
+  other.emplace_back("structure.error_seed=7");
+  const auto again = build_model(read_scene_file(find_scene("hoop6"), changes)),
+             differs = build_model(read_scene_file(find_scene("hoop6"), other));
+  for (std::size_t r = 0; r < model->structure.rods.size(); ++r)
+    CHECK(again->structure.rods[r].length == model->structure.rods[r].length);
+  CHECK(differs->structure.rods[0].length != model->structure.rods[0].length);
+  CHECK_THROWS_WITH(
+      build_model(read_scene_file(
+          find_scene("hoop6_sector"),
+          {"structure.rod_model=elastic", "structure.youngs_modulus=7e10", "structure.length_error=1e-4"})),
+      Catch::Contains("structure.length_error: errors of length break the symmetry of a sector"));
+}
+
+TEST_CASE("temperature: a clamped elastic rod carries -E A alpha dT") {
+  const std::string scene =
+      "[structure]\nkind = 'custom'\nyoungs_modulus = 7e10\nrod_model = 'elastic'\ndamping_time = 1e-4\n"
+      "[[structure.nodes]]\nname = 'A'\nposition = [0.1, 0.2, 0]\nfixed = true\n"
+      "[[structure.nodes]]\nname = 'M'\nposition = [0.5, 0.2, 0]\nmass = 0.3\n"
+      "[[structure.nodes]]\nname = 'B'\nposition = [1.4, 0.2, 0]\nfixed = true\n"
+      "[[structure.rods]]\nnodes = ['A', 'M']\nmass = 0.1\narea = 3e-4\n"
+      "[[structure.rods]]\nnodes = ['M', 'B']\nmass = 0.2\narea = 3e-4\n"
+      "[[constraints]]\nkind = 'line'\nnodes = ['M']\ndirection = [1, 0, 0]\n"
+      "[[forces]]\nkind = 'temperature'\nrods = ['rod']\nexpansion = 23e-6\nchange = -60\n"
+      "times = [0, 0.02, 0.05]\nvalues = [0, 0.4, 1]\n[solver]\nstep = 1e-3\nend_time = 0.07\n";
+  const Simulation run = run_scene(scene);
+  REQUIRE(run.status == RunStatus::completed);
+  const Diagnostics d = diagnose(run);
+  // Colder: tension. N = -E A e / (1 + e) with e = alpha dT, E A over the length without force.
+  const double e = 23e-6 * -60, wanted = -7e10 * 3e-4 * e;
+  for (const Index r : {0, 1})
+    CHECK(d.axial_force(d.axial_force.rows() - 1, r) == Approx(wanted).epsilon(1e-7));
+  // What the cold puts in is in the books.
+  CHECK(largest(d, "energy_balance_J") < 1e-6 * largest(d, "potential_energy_J"));
+}
+
+TEST_CASE("temperature: a ring of rigid rods that warms evenly grows and keeps its angles") {
+  std::string ring = "[structure]\nkind = 'custom'\n";
+  const int n = 5;
+  for (int i = 0; i < n; ++i) {
+    const double angle = 0.3 + 2 * pi * i / n;
+    ring += "[[structure.nodes]]\nname = '" + std::to_string(i) + "'\nposition = [" +
+            std::to_string(std::cos(angle)) + ", " + std::to_string(std::sin(angle)) + ", 0]\n";
+  }
+  ring += "[[structure.constraints]]\nkind = 'plane'\nnodes = ['*']\nnormal = [0, 0, 1]\n";
+  for (int i = 0; i < n; ++i)
+    ring += "[[structure.rods]]\nnodes = ['" + std::to_string(i) + "', '" + std::to_string((i + 1) % n) +
+            "']\nmass = 0.4\n";
+  const Simulation run =
+      run_scene(ring +
+                "[[forces]]\nkind = 'temperature'\nrods = ['*-*']\nexpansion = 2e-5\nchange = 150\n"
+                "times = [0, 0.5]\nvalues = [0, 1]\n[solver]\nend_time = 0.6\n");
+  REQUIRE(run.status == RunStatus::completed);
+  const VectorXd first = run.trajectory.node_positions(0), last = end_positions(run);
+  const Diagnostics d = diagnose(run);
+  // Positions of six digits: angles as given, to the round-off of the motion's forces.
+  for (int i = 0; i < n; ++i) {
+    const auto edge = [&](const VectorXd& q, int k) -> Vec3 {
+      return q.segment<3>(3 * ((k + 1) % n)) - q.segment<3>(3 * (k % n));
+    };
+    CHECK(edge(last, i).norm() / edge(first, i).norm() == Approx(1 + 2e-5 * 150).epsilon(1e-13));
+    const auto turn = [&](const VectorXd& q) {
+      return edge(q, i).normalized().dot(edge(q, i + 1).normalized());
+    };
+    CHECK(turn(last) == Approx(turn(first)).margin(1e-7));
+  }
+  CHECK(largest(d, "energy_balance_J") < 1e-9);
+}
+
+}  // namespace assemble_elastic_test

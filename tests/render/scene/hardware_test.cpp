@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joints as they would be built: where their axes are, which rods lie side by side, what holds and what is
+// carried.
+#include "render/scene/hardware.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "core/simulate/simulation.hpp"
+#include "render/scene/frame_builder.hpp"
+
+using namespace unfurl;
+
+namespace hardware_test {
+
+namespace {
+
+struct Run {
+  Scene scene;
+  Simulation simulation;
+};
+
+Run run(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  Run out;
+  out.scene = read_scene_file(find_scene(name), overrides);
+  out.simulation = simulate(build_model(out.scene), out.scene.solver);
+  return out;
+}
+
+FrameBuilder builder(const Run& r) {
+  FrameStyle style;
+  style.options = r.scene.render;
+  return {r.simulation.trajectory, style};
+}
+
+// The smallest distance of two segments, by trying 200 x 200 points: off by at most a half of a 200th of each
+// length, which the tubes' clearance has to spare.
+float distance(const Tube& a, const Tube& b) {
+  float least = 1e9f;
+  for (int i = 0; i <= 200; ++i) {
+    const Vec3f p = a.a + static_cast<float>(i) / 200 * (a.b - a.a);
+    const Vec3f along = b.b - b.a;
+    const float u = std::clamp((p - b.a).dot(along) / along.squaredNorm(), 0.0f, 1.0f);
+    least = std::min(least, (p - b.a - u * along).norm());
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("rods that cross lie side by side, pinned or not, in every pose") {
+  for (const char* name : {"scissor_mast", "scissor_mast_square", "scissor_ring", "hoop6"}) {
+    const Run r = run(name);
+    const FrameBuilder frames = builder(r);
+    const auto& copies = r.simulation.trajectory.structure().rod_copies;
+    int crossings = 0;
+    for (const double share : {0.3, 0.55, 0.8}) {
+      const Trajectory& motion = r.simulation.trajectory;
+      const DrawList list =
+          frames.build(motion.start_time() + share * (motion.end_time() - motion.start_time()));
+      for (std::size_t i = 0; i < copies.size(); ++i)
+        for (std::size_t j = i + 1; j < copies.size(); ++j) {
+          const RodCopy &p = copies[i], &q = copies[j];
+          if (p.a == q.a || p.a == q.b || p.b == q.a || p.b == q.b) continue;
+          const Tube &a = list.tubes[i], &b = list.tubes[j];
+          const Vec3f x = (a.b - a.a).normalized(), y = (b.b - b.a).normalized();
+          if (x.cross(y).norm() < 0.15f) continue;  // nearly parallel: stowed
+          const float apart = distance(a, b);
+          if (apart > 3 * (a.radius + b.radius)) continue;
+          ++crossings;
+          INFO(name << " at " << share << ": " << p.name << " and " << q.name);
+          CHECK(apart > 1.02f * (a.radius + b.radius));
+        }
+    }
+    CHECK(crossings >= 9);
+  }
+}
+
+TEST_CASE("a lug's pin is across its rod, and at a hinge across both") {
+  const Run r = run("hoop6");
+  const FrameBuilder frames = builder(r);
+  for (const double share : {0.4, 0.95, 1.0}) {  // at the end the chords are on one line
+    const DrawList list = frames.build(share * r.simulation.trajectory.end_time());
+    REQUIRE(list.plates.size() >= 60);  // an end has one or two
+    for (const Plate& plate : list.plates) {
+      CHECK(std::abs(plate.side.norm() - 1) < 1e-5f);
+      CHECK(std::abs(plate.side.dot((plate.b - plate.a).normalized())) < 1e-5f);
+    }
+  }
+  // The chords of a face turn in its plane: their axes are level and point away from the ring's axis.
+  const DrawList list = frames.build(0.8 * r.simulation.trajectory.end_time());
+  std::size_t level = 0;
+  for (const Plate& plate : list.plates) level += std::abs(plate.side.z()) < 1e-3f;
+  CHECK(level == list.plates.size());
+}
+
+TEST_CASE("what is held stands on a plate, what is carried is a body") {
+  const Run r = run("scissor_mast_square");
+  const DrawList list = builder(r).build(0.5);
+  const Structure& s = r.simulation.trajectory.structure();
+  std::size_t carried = 0;
+  for (const NodeCopy& copy : s.node_copies)
+    carried += s.nodes[static_cast<std::size_t>(copy.source)].mass > 0;
+  REQUIRE(carried == 4);
+  const auto foil = std::ranges::count(list.sleeves, Finish::foil, &Sleeve::finish);
+  CHECK(static_cast<std::size_t>(foil) == carried);
+
+  const Run bar = run("four_bar");
+  const FrameBuilder frames = builder(bar);
+  const DrawList linkage = frames.build(0);
+  float widest = 0, thickest = 0;
+  for (const Sleeve& sleeve : linkage.sleeves) widest = std::max(widest, sleeve.radius);
+  for (const Tube& tube : linkage.tubes) thickest = std::max(thickest, tube.radius);
+  CHECK(widest > 3.5f * thickest);  // a plate, not a fitting
+  for (const Sleeve& sleeve : linkage.sleeves) CHECK(std::min(sleeve.a.z(), sleeve.b.z()) > linkage.ground.z);
+}
+
+TEST_CASE("a material is that of its groups, and the fittings then tell the group") {
+  const Run r =
+      run("hoop6", {"render.material=aluminium", "render.materials=[{group=\"ch*\",material=\"cfrp\"}]"});
+  const DrawList list = builder(r).build(3.0);
+  const auto carbon = std::ranges::count(list.tubes, Finish::carbon, &Tube::finish);
+  CHECK(carbon == 24);  // the chords
+  CHECK(std::ranges::count(list.tubes, Finish::metal, &Tube::finish) == 6);
+  const auto in_group_color = [&](std::size_t group) {
+    return std::ranges::count_if(list.sleeves, [&](const Sleeve& s) {
+      const Color c = group_color(group);
+      return s.color.r == c.r && s.color.g == c.g && s.color.b == c.b;
+    });
+  };
+  CHECK(in_group_color(0) == 48);
+  CHECK(in_group_color(1) == 12);
+}
+
+TEST_CASE("a line drawing has plain joints") {
+  const Run r = run("hoop6", {"render.look=blueprint"});
+  const DrawList list = builder(r).build(3.0);
+  CHECK(list.plates.empty());
+  CHECK(list.balls.size() == 24);
+}
+
+}  // namespace hardware_test

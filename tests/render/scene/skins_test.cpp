@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/scene/skins.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/scene/write.hpp"
+#include "core/simulate/simulation.hpp"
+#include "render/scene/film_style.hpp"
+#include "render/scene/renderer.hpp"
+#include "render/scene/view.hpp"
+
+using namespace unfurl;
+
+namespace skins_test {
+
+namespace {
+
+std::vector<Vec3> ring(int n, double radius, const Vec3& center) {
+  std::vector<Vec3> out;
+  for (int k = 0; k < n; ++k)
+    out.push_back(center + radius * Vec3(std::cos(2 * pi * k / n), std::sin(2 * pi * k / n), 0));
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a paraboloid has its focus where its ratio says") {
+  const double radius = 2.3, ratio = 0.41, focal_length = ratio * 2 * radius;
+  const Vec3 center(0.3, -0.7, 1.9);
+  SceneSurface surface;
+  surface.kind = "paraboloid", surface.shape = "paraboloid", surface.focal_ratio = ratio;
+  // 48 nodes: every point of the fan lies on a ray from the middle to a node.
+  const Skin skin = skin_of(surface, ring(48, radius, center));
+  REQUIRE(skin.vertices.size() > 400);
+  double lowest = 1e9;
+  for (const SkinVertex& v : skin.vertices) lowest = std::min(lowest, static_cast<double>(v.at.z()));
+  for (const SkinVertex& v : skin.vertices) {
+    // Every point of a paraboloid is as far from its focus as from its directrix. Single precision at 2 m.
+    const Vec3 at = v.at.cast<double>(), focus(center.x(), center.y(), lowest + focal_length);
+    CHECK((at - focus).norm() == Approx(at.z() - (lowest - focal_length)).margin(2e-6));
+  }
+}
+
+TEST_CASE("a panel is spanned between its edges, whichever way its nodes go around") {
+  const std::vector<Vec3> edge = {{0, 0, 1}, {2, 0, 1.3}, {2, 1, 1}, {0, 1, 0.8}};
+  SceneSurface surface;
+  surface.kind = "solar_panel";
+  const std::vector<Vec3> back(edge.rbegin(), edge.rend());
+  for (const Skin& skin : {skin_of(surface, edge), skin_of(surface, back)}) {
+    for (const SkinVertex& v : skin.vertices) {
+      const double x = static_cast<double>(v.at.x()) / 2, y = static_cast<double>(v.at.y());
+      const double z = (1 - y) * ((1 - x) * 1 + x * 1.3) + y * ((1 - x) * 0.8 + x * 1);
+      CHECK(static_cast<double>(v.at.z()) == Approx(z).margin(1e-6));
+      CHECK(v.normal.z() > 0.5f);  // the front is above
+    }
+    CHECK(skin.opacity == 1.0f);
+  }
+}
+
+namespace {
+
+const std::string linkage = R"(
+[structure]
+kind = "hoop"
+units = 4
+fold_angle = 80.0
+[solver]
+end_time = 10.0
+[[surfaces]]
+kind = "net"
+nodes = ["T*"]
+cells = 7
+[[surfaces]]
+kind = "membrane"
+nodes = ["B0", "Mb0", "B1"]
+enabled = false
+)";
+
+}  // namespace
+
+TEST_CASE("surfaces are carried by their nodes, read back as written, and wrong names are told") {
+  const Scene scene = read_scene_text(linkage, "net.toml");
+  REQUIRE(scene.surfaces.size() == 2);
+  const Scene again = read_scene_text(scene_text(scene), "again.toml");
+  CHECK(again.surfaces == scene.surfaces);
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics diagnostics = diagnose(run);
+  const FrameBuilder frames(run.trajectory, film_style(scene, run, diagnostics));
+  const DrawList list = frames.build(1.7);
+  REQUIRE(list.skins.size() == 1);  // the other is not enabled
+  const VectorXd q = run.trajectory.positions_at(1.7);
+  const Structure& s = run.trajectory.structure();
+  for (std::size_t i = 0; i < s.node_copies.size(); ++i) {
+    if (s.node_copies[i].name.front() != 'T') continue;
+    float least = 1e9f;
+    for (const SkinVertex& v : list.skins[0].vertices)
+      least = std::min(least, (v.at - q.segment<3>(3 * static_cast<Index>(i)).cast<float>()).norm());
+    CHECK(least < 1e-5f);
+  }
+  std::string wrong = linkage;
+  wrong.replace(wrong.find("\"T*\""), 4, "\"T0\", \"T9\", \"T1\"");
+  CHECK_THROWS_WITH(build_model(read_scene_text(wrong, "x.toml")),
+                    Catch::Contains("surfaces[0].nodes") && Catch::Contains("no node matches 'T9'"));
+  wrong.replace(wrong.find("\"T9\", "), 6, "");
+  CHECK_THROWS_WITH(build_model(read_scene_text(wrong, "x.toml")), Catch::Contains("three nodes"));
+}
+
+TEST_CASE("a mesh lets light through and shades the floor, a panel does not") {
+  const auto context = make_offscreen_context();
+  constexpr int width = 320, height = 180;
+  Renderer renderer(*context, width, height);
+  DrawList list;
+  list.camera.eye = {0, -8, 6};
+  list.camera.target = {0, 0, 0.5f};
+  list.camera.vertical_field_of_view = 0.6f;
+  list.radius = 4;
+  list.light_direction = {0, 0, 1};
+  list.ground.cell = 100;
+  list.ground.fade = 30;
+  const auto brightness = [&](const Image& image, const Vec3f& at) {
+    const Vec3f p = project(list.camera, width, height, at);
+    const auto i = 4 * (static_cast<std::size_t>(p.y()) * width + static_cast<std::size_t>(p.x()));
+    return image.rgba[i] + image.rgba[i + 1] + image.rgba[i + 2];
+  };
+  const Vec3f below(0.4f, 0.15f, 0), seen(0.4f, 0.15f, 0);
+  const int bare = brightness(renderer.draw(list), below);
+  const auto with = [&](const char* kind) {
+    SceneSurface surface;
+    surface.kind = kind;
+    // High above: its shadow is below it, the camera sees the floor past it.
+    list.skins = {skin_of(surface, {{-1.5, -1.5, 3.0}, {1.5, -1.5, 3.0}, {1.5, 1.5, 3.0}, {-1.5, 1.5, 3.0}})};
+    return brightness(renderer.draw(list), seen);
+  };
+  const int mesh = with("mesh"), panel = with("solar_panel");
+  CHECK(mesh < bare - 30);
+  CHECK(panel < mesh - 30);
+}
+
+}  // namespace skins_test
