@@ -69,9 +69,10 @@ TEST_CASE("gears and nets are switched off one by one") {
   CHECK(std::find(names.begin(), names.end(), "without wheels") != names.end());
   CHECK(std::find(changes.begin(), changes.end(), "constraints[0].enabled=false") != changes.end());
   CHECK(std::find(changes.begin(), changes.end(), "forces[0].enabled=false") != changes.end());
+  const SceneSource reflector{
+      "r.toml", {}, std::make_shared<const std::string>("[structure]\nkind = 'mesh_reflector'\n")};
   names.clear();
-  for (const ModelChoice& choice : model_choices({find_scene("mesh_reflector"), {}}))
-    names.push_back(choice.name);
+  for (const ModelChoice& choice : model_choices(reflector)) names.push_back(choice.name);
   CHECK(std::find(names.begin(), names.end(), "without nets") != names.end());
   CHECK(std::find(names.begin(), names.end(), "without synchronising gears") != names.end());
 }
