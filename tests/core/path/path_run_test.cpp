@@ -99,7 +99,11 @@ TEST_CASE("on every scene of the library the path is the full model's motion, or
     if (scene.solver.constraints_at == "ends") continue;  // the same scene as another, by a method of order 2
     const std::string why = refusal(scene);
     if (!why.empty()) {
-      CHECK(why.find("degrees of freedom") != std::string::npos);
+      INFO(why);
+      const bool reason = why.find("degrees of freedom") != std::string::npos ||
+                          why.find("not known to the path") != std::string::npos ||
+                          why.find("cable") != std::string::npos;
+      CHECK(reason);
       continue;
     }
     ++along;
