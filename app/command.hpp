@@ -25,12 +25,15 @@ struct StudyArguments {
   std::vector<std::string> merge;     // --merge DIR
   std::string script;                 // --script NAME
   int jobs = 16;                      // --jobs N, of the script
+  std::vector<std::string> factors;   // --factor NAME=VALUE
+  bool stuck = false;                 // --stuck
   std::string find, target, between;  // --find KEY --target NAME=VALUE --between LOW:HIGH
 };
 
 // What only the window takes.
 struct ViewArguments {
   std::string picture;               // --picture FILE: draw the panel into it, without a window
+  std::string record, replay;        // --record FILE, --replay FILE: a session (panel/session_log.hpp)
   bool dark = false, bench = false;  // --dark, --bench
 };
 
@@ -88,6 +91,7 @@ int cmd_reproduce(const Arguments& arguments);
 int cmd_view(const Arguments& arguments);
 int cmd_list(const Arguments& arguments);
 int cmd_show(const Arguments& arguments);
+int cmd_margin(const Arguments& arguments);
 int cmd_modes(const Arguments& arguments);
 int cmd_new(const Arguments& arguments);
 int cmd_verify(const Arguments& arguments);

@@ -15,8 +15,7 @@ constexpr Command table[] = {
      "unfurl run hoop6 -o data --export html"},
     {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
      "-o --set --tolerance --export --frames --join --lease --encode-only --style --dpi --size --fps --look "
-     "--supersample "
-     "--transparent --fit --plan "
+     "--supersample --transparent --fit --plan "
      "--force --threads --gpu --json --quiet",
      "unfurl render hoop6 -o film\n"
      "unfurl render hoop6 -o film --size 640x360 --look space --frames 0:20\n"
@@ -63,10 +62,17 @@ constexpr Command table[] = {
      "unfurl modes hoop6 --set structure.youngs_modulus=7e10 --set structure.model=joints\n"
      "unfurl modes hoop6 --at deployed --set solver.at_deployed=latch --set structure.youngs_modulus=7e10 "
      "-o modes"},
+    {"margin", "SCENE [-o DIR]",
+     "what drives a deployment against what resists it, by source, in every pose and along the motion", 1, 1,
+     false, cmd_margin, "-o --set --factor --stuck --style --dpi --force --json --quiet",
+     "unfurl margin hoop6 --set gravity.acceleration=[0,0,-0.2] --stuck -o margin"},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
-     "--set --tolerance --picture --at --dark --bench --ui-scale --size --fps --look --supersample "
+     "--set --tolerance --picture --record --replay --at --dark --bench --ui-scale --size --fps --look "
+     "--supersample "
      "--transparent --threads --gpu",
-     "unfurl view hoop6 --picture window.png --at 4.6"},
+     "unfurl view hoop6 --picture window.png --at 4.6\n"
+     "unfurl view hoop6 --record session.jsonl\n"
+     "unfurl view --replay session.jsonl"},
     {"list", "WHAT [TABLE]",
      "what there is to choose from: structures, methods, figures, scenes, constraints, forces, looks, "
      "surfaces, measures, "

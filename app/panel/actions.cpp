@@ -2,6 +2,7 @@
 #include "app/panel/actions.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace unfurl {
 
@@ -51,12 +52,26 @@ void reset_edits(LiveSession& session) {
 
 void escape(LiveSession& session) {
   PanelState& state = session.state();
-  if (state.help_open || state.export_open)
-    state.help_open = state.export_open = false;
+  if (close_box(state)) return;
+  if (state.pose)
+    session.let_go();
   else if (state.simulation.running)
     session.stop_simulation();
-  else
+  else if (state.selected.kind != Selection::Kind::none)
     state.selected = {};
+  else
+    state.tool = Tool::read;
+}
+
+void save_scene(LiveSession& session) {
+  session.save_or_ask();
+}
+
+void open_palette(LiveSession& session) {
+  PanelState& state = session.state();
+  state.palette_open = true;
+  state.palette_query.clear();
+  state.palette_row = 0;
 }
 
 void pin(PanelState& state) {
@@ -80,40 +95,64 @@ void toggle(LiveSession& session) {
 std::span<const Action> actions() {
   using S = PanelState;
   static constexpr Action rows[] = {
-      {Key::space, false, false, "space", "play, pause", on<play>},
-      {Key::left, false, false, "\u2190 \u2192", "one step back, forward", on<[](S& s) { step(s, -1); }>},
-      {Key::right, false, false, "", "", on<[](S& s) { step(s, 1); }>},
-      {Key::left, false, true, "Shift \u2190 \u2192", "a twentieth back, forward",
-       on<[](S& s) { leap(s, -1); }>},
-      {Key::right, false, true, "", "", on<[](S& s) { leap(s, 1); }>},
-      {Key::home, false, false, "Home, End", "to the start, the end", on<[](S& s) { go(s, false); }>},
-      {Key::end, false, false, "", "", on<[](S& s) { go(s, true); }>},
+      {Key::space, false, false, "Space", "play or pause", on<play>},
+      {Key::left, false, false, "\u2190", "one step back", on<[](S& s) { step(s, -1); }>},
+      {Key::right, false, false, "\u2192", "one step forward", on<[](S& s) { step(s, 1); }>},
+      {Key::left, false, true, "Shift \u2190", "a twentieth back", on<[](S& s) { leap(s, -1); }>},
+      {Key::right, false, true, "Shift \u2192", "a twentieth forward", on<[](S& s) { leap(s, 1); }>},
+      {Key::home, false, false, "Home", "to the start", on<[](S& s) { go(s, false); }>},
+      {Key::end, false, false, "End", "to the end", on<[](S& s) { go(s, true); }>},
       {Key::f, false, false, "F", "frame: see the whole motion", on<[](S& s) { s.orbit.reset(); }>},
-      {Key::r, false, false, "R", "reset every change of the scene", reset_edits},
-      {Key::z, true, false, "Ctrl Z", "undo", on<[](S& s) { s.history.undo(); }>},
-      {Key::y, true, false, "Ctrl Y", "redo, also Ctrl Shift Z", on<[](S& s) { s.history.redo(); }>},
-      {Key::z, true, true, "", "", on<[](S& s) { s.history.redo(); }>},
-      {Key::p, false, false, "P", "pin this run as A to compare with; again: no longer", on<pin>},
+      {Key::v, false, false, "V", "use this view for the film", [](LiveSession& s) { s.use_view(true); }},
+      {Key::k, false, false, "K", "camera key here, at the present time",
+       [](LiveSession& s) { s.use_view(false); }},
+      {Key::g, false, false, "G", "pull nodes by hand, or no longer",
+       [](LiveSession& s) { s.take_tool(Tool::pull); }},
+      {Key::b, false, false, "B", "build: nodes and rods, or no longer",
+       [](LiveSession& s) { s.take_tool(Tool::build); }},
+      {Key::w, false, false, "W", "wiggle: the next free motion of this pose",
+       [](LiveSession& s) { s.wiggle(); }},
+      {Key::del, false, false, "Del", "take the selected node or rod away",
+       [](LiveSession& s) { s.remove_selected(); }},
+      {Key::o, true, false, "Ctrl O", "open a file, a new scene", toggle<&S::files_open>},
+      {Key::s, true, false, "Ctrl S", "save the scene", &save_scene},
+      {Key::e, false, false, "E", "export", toggle<&S::export_open>},
       {Key::s, false, false, "S", "screenshot, a PNG in the current directory",
        [](LiveSession& s) { s.screenshot(); }},
-      {Key::e, false, false, "E", "export", toggle<&S::export_open>},
+      {Key::r, false, false, "R", "reset every change of the scene", reset_edits},
+      {Key::z, true, false, "Ctrl Z", "undo", on<[](S& s) { s.history.undo(); }>},
+      {Key::y, true, false, "Ctrl Y", "redo", on<[](S& s) { s.history.redo(); }>},
+      {Key::z, true, true, "Ctrl Shift Z", "redo once more", on<[](S& s) { s.history.redo(); }>},
+      {Key::p, false, false, "P", "pin this run as A to compare with, or no longer", on<pin>},
+      {Key::p, true, false, "Ctrl P", "find an action or a parameter", open_palette},
       {Key::l, false, false, "L", "the film's title and time",
        on<[](S& s) { s.view.labels = !s.view.labels; }>},
       {Key::t, false, false, "T", "light or dark", toggle<&S::dark>},
-      {Key::one, false, false, "1, 2", "hide or show the left, the right pane", toggle<&S::left_open>},
-      {Key::two, false, false, "", "", toggle<&S::right_open>},
+      {Key::one, false, false, "1", "hide or show the left pane", toggle<&S::left_open>},
+      {Key::two, false, false, "2", "hide or show the right pane", toggle<&S::right_open>},
       {Key::three, false, false, "3", "on the right: figures or studies", toggle<&S::studies_open>},
-      {Key::f1, false, false, "F1, ?", "this list", toggle<&S::help_open>},
-      {Key::escape, false, false, "Esc", "close a box, stop a simulation, select nothing", escape},
-      {Key::q, true, false, "Ctrl Q", "quit", on<[](S& s) { s.closed = true; }>},
+      {Key::none, false, false, "", "guided tour", on<[](S& s) { s.tour = 1; }>},
+      {Key::f1, false, false, "F1, ?", "list of keys", toggle<&S::help_open>},
+      {Key::escape, false, false, "Esc", "close what is open, stop a simulation, select nothing", escape},
+      {Key::q, true, false, "Ctrl Q", "quit", [](LiveSession& s) { s.ask_to_close(); }},
   };
   return rows;
+}
+
+bool close_box(PanelState& state) {
+  if (!state.question.text.empty()) return state.question = {}, true;
+  if (state.tour > 0) return state.tour = 0, true;
+  for (bool PanelState::*box :
+       {&PanelState::palette_open, &PanelState::files_open, &PanelState::export_open, &PanelState::help_open})
+    if (std::exchange(state.*box, false)) return true;
+  return false;
 }
 
 void press(LiveSession& session, const InputEvent& event) {
   if (event.alt) return;
   for (const Action& row : actions())
-    if (row.key == event.key && row.control == event.control && row.shift == event.shift)
+    if (row.key != Key::none && row.key == event.key && row.control == event.control &&
+        row.shift == event.shift)
       return row.act(session);
 }
 

@@ -20,38 +20,20 @@ constexpr double slow_frame = 1.0 / 30;
 constexpr int slow_enough = 3;
 constexpr float bar_height = 46, timeline_height = 58;  // [points]
 
-// One pane: an ImGui window that fills a rectangle.
-struct Pane {
-  Pane(const char* name, float x, float y, float width, float height, ImGuiWindowFlags flags = 0) {
-    ImGui::SetNextWindowPos({x, y});
-    ImGui::SetNextWindowSize({std::max(1.0f, width), std::max(1.0f, height)});
-    ImGui::Begin(name, nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
-  }
-  // Where an exception passes, ImGui closes what is open, in its order (ControlPanel::draw).
-  ~Pane() {
-    if (std::uncaught_exceptions() == before_) ImGui::End();
-  }
-  Pane(const Pane&) = delete;
-  Pane& operator=(const Pane&) = delete;
-
- private:
-  int before_ = std::uncaught_exceptions();
-};
-
 }  // namespace
 
 ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOptions options)
     : context_(context),
       options_(std::move(options)),
-      session_(std::move(document),
-               {options_.at, options_.measure_errors, options_.wake, [this] { return picture_->read(); }}),
+      session_(std::move(document), {options_.at, options_.measure_errors, options_.wake,
+                                     [this] { return picture_->read(); }, options_.replayed}),
       view_(context) {
   PanelState& now = state();
   now.dark = options_.settings.dark;
   now.left_open = options_.settings.left_open;
   now.right_open = options_.settings.right_open;
+  now.recent = options_.settings.recent;
+  now.tour = options_.settings.tour_seen ? 0 : 1;
   const auto& open = options_.settings.open_figures;
   const auto is_open = [&](std::string_view name) {
     return std::find(open.begin(), open.end(), name) != open.end();
@@ -59,7 +41,20 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
   cards_.trade().open = is_open("trade");
   for (FigureCard& card : cards_.cards()) card.open = is_open(card.kind->name);
   context_.make_current();
-  host_ = std::make_unique<ImguiHost>(options_.scale, options_.clipboard);
+  Clipboard clipboard = options_.clipboard;
+  if (!options_.record.empty()) {
+    recorder_ = std::make_unique<SessionRecorder>(
+        options_.record,
+        SessionStart{now.history.now(), options_.settings, options_.width, options_.height, options_.scale,
+                     options_.at, options_.measure_errors, context_.description()});
+    if (clipboard.get)
+      clipboard.get = [this, get = options_.clipboard.get] {
+        std::string text = get();
+        recorder_->note_clipboard(text);
+        return text;
+      };
+  }
+  host_ = std::make_unique<ImguiHost>(options_.scale, std::move(clipboard));
   resize(options_.width, options_.height);
 }
 
@@ -73,6 +68,8 @@ PanelSettings ControlPanel::settings() {
   now.dark = state().dark;
   now.left_open = state().left_open;
   now.right_open = state().right_open;
+  now.recent = state().recent;
+  now.tour_seen = now.tour_seen || state().tour == 0;
   now.open_figures.clear();
   if (cards_.trade().open) now.open_figures.emplace_back("trade");
   for (const FigureCard& card : cards_.cards())
@@ -81,6 +78,7 @@ PanelSettings ControlPanel::settings() {
 }
 
 void ControlPanel::resize(int width, int height) {
+  if (recorder_ && picture_) recorder_->note_size(width, height);
   options_.width = std::max(width, 64);
   options_.height = std::max(height, 64);
   context_.make_current();
@@ -91,20 +89,46 @@ void ControlPanel::resize(int width, int height) {
   settling_ = 3;
 }
 
+void ControlPanel::handle(const InputEvent& event) {
+  if (recorder_) recorder_->note(event);
+  events_.push_back(event);
+}
+
+// A key goes to the text that is typed, to the widget that has the keyboard, or to the actions. Esc closes
+// what is open, whoever has it.
+void ControlPanel::take_key(const InputEvent& event) {
+  const bool escape = event.key == Key::escape;
+  const bool box = state().palette_open || state().files_open || state().export_open || state().help_open ||
+                   state().tour > 0 || !state().question.text.empty();
+  if (escape && host_->close_popups()) return;
+  if (host_->typing() && !(escape && box) && !event.control) return;
+  if (host_->typing() && event.control && event.key != Key::p && event.key != Key::o && event.key != Key::q)
+    return;
+  if (host_->widget_takes(event.key) && !(escape && box)) return;
+  if (event.key == Key::tab || event.key == Key::f6) return host_->focus_pane(event.key == Key::f6);
+  if (!state().question.text.empty() && !escape) return;
+  state().intents.emplace_back([event](LiveSession& s) { press(s, event); });
+}
+
 // Up to the next press or release of a button or key, so that a click shorter than a frame is seen.
 void ControlPanel::take_events() {
   using Kind = InputEvent::Kind;
   while (!events_.empty()) {
     const InputEvent event = std::move(events_.front());
     events_.pop_front();
-    host_->apply(event);
-    keep_drawing(true);
-    if (!host_->typing()) {
-      if (event.kind == Kind::key && event.down)
-        state().intents.emplace_back([event](LiveSession& s) { press(s, event); });
-      if (event.kind == Kind::text && event.text == "?")
-        state().intents.emplace_back([](LiveSession& s) { s.state().help_open = !s.state().help_open; });
+    InputEvent seen = event;  // by widgets: of a key that was for the actions, what is held beside it
+    if (event.kind == Kind::key && event.down) {
+      const std::size_t before = state().intents.size();
+      take_key(event);
+      seen.down = state().intents.size() == before;
     }
+    host_->apply(seen);
+    keep_drawing(true);
+    if (event.kind == Kind::text && event.text == "?" && !host_->typing())
+      state().intents.emplace_back([](LiveSession& s) { s.state().help_open = !s.state().help_open; });
+    if (event.kind == Kind::drop)
+      state().intents.emplace_back([path = event.text](LiveSession& s) { s.open_file(path); });
+    if (event.kind == Kind::close) state().intents.emplace_back(&LiveSession::ask_to_close);
     if (event.kind == Kind::button || event.kind == Kind::key) break;
   }
 }
@@ -176,6 +200,10 @@ void ControlPanel::draw_panes() {
   if (right > 0) draw_splitter("right edge", width - right, top, bottom, options_.settings.right_width, -1);
   draw_help(ui, now);
   draw_export(ui, now);
+  draw_files(ui, now);
+  draw_palette(ui, now);
+  draw_tour(ui, now);
+  draw_question(ui, now);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.AddRectFilled({0, 0}, {width, top}, ui.color(ui.theme.window));
 }
@@ -257,23 +285,12 @@ void ControlPanel::survive(const std::function<void()>& part) {
   }
 }
 
-void ControlPanel::advance(double seconds) {
-  PanelState& now = state();
-  if (!now.shown) return;
-  const Trajectory& trajectory = now.shown->simulation.trajectory;
-  if (now.playback.playing && seconds > 0) {
-    const double rate = 1 / seconds, before = now.frames_per_second;
-    now.frames_per_second = before > 0 ? before + 0.1 * (rate - before) : rate;
-  }
-  now.playback = advanced(now.playback, seconds, trajectory.start_time(), trajectory.end_time());
-}
-
 bool ControlPanel::frame(double seconds, bool visible) {
   context_.make_current();
   host_->make_current();
   take_events();
   survive([this] { keep_drawing(session_.take_results()); });
-  advance(seconds);
+  session_.advance(seconds);
   Ui& ui = host_->ui();
   if (dark_drawn_ != state().dark) ui.theme = apply_theme(*(dark_drawn_ = state().dark), ui.scale);
   ui.places.clear();
@@ -287,8 +304,12 @@ bool ControlPanel::frame(double seconds, bool visible) {
   survive([this] { keep_drawing(session_.follow_document()); });
   if (visible) paint(coarse_view(seconds));
   settling_ = std::max(0, settling_ - 1);
-  return settling_ > 0 || !events_.empty() || state().playback.playing || host_->typing() ||
-         (visible && view_.coarse());
+  const bool more = settling_ > 0 || !events_.empty() || state().playback.playing || state().wiggled >= 0 ||
+                    host_->typing() || (visible && view_.coarse());
+  if (recorder_)
+    recorder_->frame(seconds, visible, session_,
+                     !more && visible ? std::optional(picture_->read()) : std::nullopt);
+  return more;
 }
 
 }  // namespace unfurl

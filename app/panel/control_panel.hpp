@@ -10,6 +10,7 @@
 #include "app/panel/imgui_host.hpp"
 #include "app/panel/live_session.hpp"
 #include "app/panel/panes/figure_cards.hpp"
+#include "app/panel/session_log.hpp"
 #include "app/panel/settings.hpp"
 #include "app/panel/view/scene_view.hpp"
 #include "render/gl/framebuffer.hpp"
@@ -31,6 +32,8 @@ struct PanelOptions {
   bool measured = false;           // wait for the graphics after every part, so that frame_times() is true
   std::function<void()> wake;      // called by the simulating thread when there is news
   Clipboard clipboard;
+  std::string record;     // a file for what is done (session_log.hpp); empty: none
+  bool replayed = false;  // what arrives from the work beside is told by such a file
 };
 
 class ControlPanel {
@@ -43,7 +46,9 @@ class ControlPanel {
   ControlPanel& operator=(const ControlPanel&) = delete;
 
   void resize(int width, int height);
-  void handle(const InputEvent& event) { events_.push_back(event); }
+  void handle(const InputEvent& event);
+  void tell(Arrivals arrivals) { session_.tell(std::move(arrivals)); }
+
   // Take input, move on by `seconds`, draw. Returns whether another frame is wanted without further input:
   // the motion plays, events wait, or widgets settle.
   // A panel that nobody can see is not painted.
@@ -65,7 +70,7 @@ class ControlPanel {
 
  private:
   void take_events();
-  void advance(double seconds);
+  void take_key(const InputEvent& event);
   void draw_panes();
   void draw_right_pane(const plot::Rect& place);
   void draw_splitter(const char* name, float x, float top, float bottom, float& width, float way);
@@ -91,6 +96,7 @@ class ControlPanel {
   std::optional<bool> dark_drawn_;
   int settling_ = 3;  // frames until new widgets have their sizes
   FrameTimes times_;
+  std::unique_ptr<SessionRecorder> recorder_;  // null: nothing is recorded
 };
 
 }  // namespace unfurl

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iterator>
 #include <utility>
 
 #include "app/panel/panes/figure_cards.hpp"
@@ -47,6 +48,7 @@ ImguiHost::ImguiHost(float scale, Clipboard clipboard)
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
   io.MousePos = {-FLT_MAX, -FLT_MAX};
   ImguiPainter::announce(io);
   for (const auto& [theirs, ours] : known_keys) io.KeyMap[theirs] = static_cast<int>(ours);
@@ -106,12 +108,41 @@ void ImguiHost::apply(const InputEvent& event) const {
     case Kind::text:
       io.AddInputCharactersUTF8(event.text.c_str());
       break;
+    case Kind::drop:
+    case Kind::close:
+      break;
     case Kind::focus_lost:
       std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
       std::fill(std::begin(io.MouseDown), std::end(io.MouseDown), false);
       io.KeyCtrl = io.KeyShift = io.KeyAlt = false;
       break;
   }
+}
+
+bool ImguiHost::widget_takes(Key key) const {
+  constexpr Key used[] = {Key::tab, Key::left,    Key::right,     Key::up,    Key::down,  Key::home,
+                          Key::end, Key::page_up, Key::page_down, Key::space, Key::enter, Key::escape};
+  return ImGui::GetIO().NavVisible && std::find(std::begin(used), std::end(used), key) != std::end(used);
+}
+
+void ImguiHost::focus_pane(bool next) {
+  constexpr const char* panes[] = {"scene", "figures", "timeline", "bar", "view"};
+  constexpr int count = static_cast<int>(std::size(panes));
+  pane_ = next && context_->NavId != 0 ? (pane_ + 1) % count : 0;
+  for (int i = 0; i < count; ++i, pane_ = (pane_ + 1) % count)  // the next one that is open
+    if (ImGuiWindow* window = ImGui::FindWindowByName(panes[pane_]); window != nullptr && window->WasActive) {
+      ImGui::FocusWindow(window);
+      ImGui::NavInitWindow(window, true);
+      context_->NavDisableHighlight = false;
+      context_->NavDisableMouseHover = true;
+      return;
+    }
+}
+
+bool ImguiHost::close_popups() const {
+  if (context_->OpenPopupStack.Size == 0) return false;
+  ImGui::ClosePopupToLevel(0, true);
+  return true;
 }
 
 void ImguiHost::frame(int width, int height, double seconds, const std::function<void()>& draw) const {

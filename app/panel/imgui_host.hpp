@@ -31,6 +31,11 @@ class ImguiHost {
   void make_current() const { ImGui::SetCurrentContext(context_.get()); }
   void apply(const InputEvent& event) const;
   bool typing() const { return ImGui::GetIO().WantTextInput; }
+  // The widget that has the keyboard, where one has, uses this key.
+  bool widget_takes(Key key) const;
+  // Gives the keyboard to the widgets of a pane: the left one, or (`next`) the one behind that which has it.
+  void focus_pane(bool next);
+  bool close_popups() const;  // true: one was open
   // A frame: `draw` makes its widgets. What it throws passes when the frame is whole and the next can be
   // drawn.
   void frame(int width, int height, double seconds, const std::function<void()>& draw) const;
@@ -51,6 +56,7 @@ class ImguiHost {
   std::string copied_;
   std::map<int, ImFont*> figure_fonts_;  // by size in 1/64 pixels
   Ui ui_;
+  int pane_ = -1;  // that was given the keyboard last
 };
 
 }  // namespace unfurl

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace unfurl {
 
@@ -24,6 +25,7 @@ enum class Key {
   enter,
   escape,
   f1,
+  f6,
   a,
   b,
   c,
@@ -58,14 +60,17 @@ enum class Key {
 };
 
 struct InputEvent {
-  enum class Kind { move, button, wheel, key, text, focus_lost };
+  enum class Kind { move, button, wheel, key, text, focus_lost, drop, close };
   Kind kind = Kind::move;
   float x = 0, y = 0;  // move: pixels from the top left; wheel: steps to the right and up
   int button = 0;      // 0 left, 1 right, 2 middle
   bool down = false;   // button, key
   Key key = Key::none;
   bool control = false, shift = false, alt = false;  // key
-  std::string text = {};                             // text: UTF-8
+  std::string text = {};                             // text: UTF-8; drop: the file's path
 };
+
+std::string_view name_of(Key key);     // "page_up", "a", "1"
+Key key_named(std::string_view name);  // Key::none where none has that name
 
 }  // namespace unfurl

@@ -2,10 +2,14 @@
 #include "app/panel/live_session.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <thread>
 #include <utility>
 
 #include "app/panel/document/scene_entries.hpp"
+#include "app/panel/view/film_camera.hpp"
+#include "core/export/atomic_file.hpp"
 #include "render/image/png.hpp"
 
 namespace unfurl {
@@ -32,23 +36,57 @@ LiveSession::LiveSession(SceneDocument document, SessionOptions options)
   follow_document();
 }
 
+// Or, where a session is played again, what had come in this frame: its numbers are made anew, its times are
+// those that were measured.
+void LiveSession::collect() {
+  if (!options_.replayed) {
+    arrived_ = {};
+    outcome_ = simulator_.take();
+    arrived_.run = outcome_.has_value();
+    if (outcome_ && outcome_->run) arrived_.run_cpu_s = outcome_->run->simulation.cpu_s;
+    arrived_.errors = errors_.take();
+    auto study = study_.take();
+    arrived_.study = study.has_value();
+    if (study) state_.studied = std::move(*study);
+    arrived_.report = export_.take().value_or("");
+    arrived_.simulation = state_of(simulator_);
+    arrived_.studying = state_of(study_);
+    arrived_.exporting = state_of(export_);
+    return;
+  }
+  const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+  outcome_.reset();
+  while (arrived_.run && !outcome_ && simulator_.busy())
+    if (!(outcome_ = simulator_.take())) wait();
+  if (outcome_ && outcome_->run) {
+    LiveRun run = *outcome_->run;
+    run.simulation.cpu_s = arrived_.run_cpu_s;
+    outcome_->run = std::make_shared<const LiveRun>(std::move(run));
+  }
+  std::optional<std::shared_ptr<const StudyOutcome>> study;
+  while (arrived_.study && !study && study_.busy())
+    if (!(study = study_.take())) wait();
+  if (study) state_.studied = std::move(*study);
+}
+
 bool LiveSession::take_results() {
-  const bool studied = state_.studying.running, exported = state_.exporting.running;
-  const auto outcome = simulator_.take();
-  if (outcome) take_run(*outcome);
-  state_.simulation = state_of(simulator_);
-  const std::vector<RunError> errors = errors_.take();
-  for (const RunError& error : errors) {
+  collect();
+  const bool other = state_.studying.running != arrived_.studying.running ||
+                     state_.exporting.running != arrived_.exporting.running;
+  if (outcome_) take_run(*outcome_);
+  for (const RunError& error : arrived_.errors) {
     note_error(state_.trade, error);
     ++state_.trade_news;
   }
+  state_.simulation = arrived_.simulation;
+  state_.studying = arrived_.studying;
+  state_.exporting = arrived_.exporting;
   errors_.hold(state_.simulation.running);  // the next run comes first
-  if (auto study = study_.take()) state_.studied = std::move(*study);
-  state_.studying = state_of(study_);
-  if (auto report = export_.take()) state_.message = std::move(*report);
-  state_.exporting = state_of(export_);
-  return outcome || !errors.empty() || studied != state_.studying.running ||
-         exported != state_.exporting.running;
+  if (!arrived_.report.empty()) {
+    state_.message = arrived_.report;
+    state_.exported = exporting_to_;
+  }
+  return outcome_ || !arrived_.errors.empty() || other;
 }
 
 void LiveSession::take_run(const SimulationOutcome& outcome) {
@@ -56,12 +94,13 @@ void LiveSession::take_run(const SimulationOutcome& outcome) {
   state_.message = outcome.message;
   if (!outcome.run || outcome.run->simulation.trajectory.empty()) return;
   const bool first = !state_.shown;
+  let_go();  // of the run before
   state_.shown = outcome.run;
   state_.trade.push_back(trade_point(*state_.shown));
   ++state_.trade_news;
-  if (options_.measure_errors)
+  if (options_.measure_errors && !options_.replayed)
     errors_.measure(state_.shown);
-  else
+  else if (!options_.measure_errors)
     note_error(state_.trade, {.run = state_.shown->id, .why = "not asked for"});
   if (state_.trade.size() > most_trade_points) state_.trade.erase(state_.trade.begin());
   if (state_.shown->document == state_.history.now())
@@ -88,6 +127,13 @@ void LiveSession::describe() {
   state_.base = base_scene(state_.history.now());
   state_.described = state_.selected;
   state_.sections = param_sections(state_.base, state_.selected);
+  const Scene& base = state_.base;
+  if (!submitted_ || *submitted_->text != *state_.history.now().text)
+    for (const ParamSection& section : state_.sections)  // two screens full of springs help nobody
+      for (const ParamEntry& entry : section.entries)
+        if (section.entries.size() > 3) state_.folded.insert(entry.key);
+  state_.title_row = {"title", "title", text_param("title", "", "of pictures and figures"),
+                      base.title_pattern.empty() ? base.title : base.title_pattern};
 }
 
 bool LiveSession::act() {
@@ -134,33 +180,127 @@ void LiveSession::start_study() {
   if (!study_.busy()) study_.submit({state_.study, simulated_part(state_.history.now())});
 }
 
-void LiveSession::start_export(const std::string& verb) {
-  export_.submit({own_program(), export_words(state_.history.now(), verb, state_.export_output)});
-  state_.message = "exporting to " + state_.export_output + " \u2026";
+namespace {
+
+bool holds_files(const std::string& folder) {
+  std::error_code unknown;
+  return std::filesystem::is_directory(folder, unknown) && !std::filesystem::is_empty(folder, unknown);
+}
+
+std::string absolute(const std::string& path) {
+  std::error_code unknown;
+  const auto whole = std::filesystem::absolute(path, unknown);
+  return unknown ? path : whole.lexically_normal().string();
+}
+
+}  // namespace
+
+void LiveSession::start_export(bool replace) {
+  const std::string output = state_.export_output;
+  if (!replace && holds_files(output)) {
+    state_.question = {absolute(output) + " holds files. Replace those of the same names?",
+                       {{"Replace", [](LiveSession& s) { s.start_export(true); }}, {"Cancel", {}}}};
+    return;
+  }
+  const ExportKind& kind = export_kinds()[state_.export_kind];
+  exporting_to_ = absolute(output);
+  state_.message = "exporting to " + exporting_to_ + " \u2026";
+  if (options_.replayed) return;
+  export_.submit({own_program(), export_words(state_.history.now(), kind, output, replace)});
+}
+
+void LiveSession::open_folder() {
+  if (options_.replayed) return;
+  const std::string folder = state_.exported.empty() ? absolute(".") : state_.exported;
+  const int error = folder_.start({"xdg-open", folder}, {});
+  state_.message = error == 0 ? "opened " + folder : "there is no xdg-open; the folder is " + folder;
 }
 
 void LiveSession::save(const std::string& path) {
-  bool anew = false;
-  state_.history.saved(save_document(state_.history.now(), path, anew));
-  state_.message = "saved " + path + (anew ? " (written anew)" : "");
-  state_.export_path = path;
+  std::error_code unknown;
+  if (path == state_.history.now().path || !std::filesystem::exists(path, unknown)) return save_now(path);
+  state_.question = {absolute(path) + " exists. Replace it?",
+                     {{"Replace", [path](LiveSession& s) { s.save_now(path); }}, {"Cancel", {}}}};
 }
 
-void LiveSession::add_entry(const std::string& table, std::string_view kind) {
+void LiveSession::save_now(const std::string& path) {
+  bool anew = false;
+  const SceneDocument saved = saved_document(state_.history.now(), path, anew);
+  if (!options_.replayed) write_file_atomically(path, *saved.text);
+  state_.history.saved(saved);
+  state_.message = "saved " + absolute(path) + (anew ? ", written anew" : ", comments kept");
+  state_.export_path = path;
+  remember(path);
+}
+
+void LiveSession::save_or_ask() {
+  const std::string& path = state_.history.now().path;
+  if (!path.empty() && !of_library(path)) return save_now(path);
+  state_.export_open = true;
+  state_.message = "a name for the scene's own file, then Save as";
+}
+
+void LiveSession::add_entry(const ElementOffer& offer) {
   const SceneDocument& now = state_.history.now();
-  state_.history.replace(with_entry(now, new_entry(now, table, kind, state_.selected)));
+  state_.history.replace(
+      with_entry(now, new_entry(now, offer.table, offer.kind, state_.selected, offer.extra)));
+  state_.message = offer.name + ": " + offer.sentence;
 }
 
 void LiveSession::open(const SceneDocument& document) {
+  read_document(document);  // what is wrong with it is said, and the scene that is open stays
   state_.history.replace(document);
   state_.orbit.reset();
+  state_.export_path.clear();
+  state_.files_open = false;
+  state_.message = document.path.empty() ? "a new scene" : "opened " + document.path;
+}
+
+void LiveSession::open_file(const std::string& path) {
+  open(open_document(path, {}));
+  remember(state_.history.now().path);
+}
+
+void LiveSession::remember(const std::string& path) {
+  constexpr std::size_t most = 12;
+  const std::string whole = absolute(path);
+  if (of_library(path)) return;
+  std::erase(state_.recent, whole);
+  state_.recent.insert(state_.recent.begin(), whole);
+  if (state_.recent.size() > most) state_.recent.resize(most);
+}
+
+void LiveSession::use_view(bool only) {
+  if (!state_.shown || !state_.orbit) {
+    state_.message = "the film has this view already: turn it first";
+    return;
+  }
+  state_.history.replace(with_camera(state_.history.now(), *state_.shown, state_.picture, *state_.orbit,
+                                     state_.playback.t, only));
+  state_.orbit.reset();
+  state_.message = only ? "this is the film's view" : "a camera key at the present time";
+}
+
+void LiveSession::ask_to_close() {
+  if (!is_edited(state_.history.now())) {
+    state_.closed = true;
+    return;
+  }
+  const std::string name = std::filesystem::path(state_.history.now().name).filename().string();
+  const auto save = [](LiveSession& s) {
+    s.save_or_ask();
+    s.state().closed = !is_edited(s.state().history.now());
+  };
+  state_.question = {
+      name + " has changes that are in no file.",
+      {{"Save", save}, {"Discard", [](LiveSession& s) { s.state().closed = true; }}, {"Cancel", {}}}};
 }
 
 void LiveSession::screenshot() {
   if (!options_.picture) return;
   std::string name = "unfurl.png";
   for (int i = 1; std::filesystem::exists(name); ++i) name = "unfurl_" + std::to_string(i) + ".png";
-  write_png(name, options_.picture());
+  if (!options_.replayed) write_png(name, options_.picture());
   state_.message = "screenshot: " + name;
 }
 

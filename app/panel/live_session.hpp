@@ -3,9 +3,12 @@
 // exports. Knows nothing of how any of it is shown.
 #pragma once
 
+#include "app/panel/document/element_menu.hpp"
 #include "app/panel/panel_state.hpp"
 #include "app/panel/runs/error_meter.hpp"
 #include "app/panel/runs/export_process.hpp"
+#include "app/panel/runs/hand.hpp"
+#include "render/image/child_process.hpp"
 #include "render/image/image.hpp"
 
 namespace unfurl {
@@ -15,6 +18,17 @@ struct SessionOptions {
   bool measure_errors = true;           // of positions, against references
   std::function<void()> wake;           // called by threads beside when there is news
   std::function<Image()> picture = {};  // as it is on the screen
+  bool replayed = false;                // what arrives is told (tell()), and nothing is written or opened
+};
+
+// What came from the work beside in one frame, and how that stands.
+struct Arrivals {
+  bool run = false;
+  double run_cpu_s = 0;
+  std::vector<RunError> errors;
+  bool study = false;
+  std::string report;  // of an export
+  JobState simulation, studying, exporting;
 };
 
 class LiveSession {
@@ -27,8 +41,11 @@ class LiveSession {
   // The parts of a frame; each returns whether there is something new to show. What finished beside; what was
   // asked for; what the document now asks for.
   bool take_results();
+  const Arrivals& arrived() const { return arrived_; }
+  void tell(Arrivals arrivals) { arrived_ = std::move(arrivals); }  // of a replay, before take_results()
   bool act();
   bool follow_document();
+  void advance(double seconds);  // the motion plays, a hand wiggles
 
   bool busy() const { return state_.simulation.running || simulator_.busy() || errors_.busy(); }
   const Simulator& simulator() const { return simulator_; }
@@ -38,20 +55,44 @@ class LiveSession {
   void stop_simulation() { simulator_.cancel(); }
   void start_study();
   void stop_study() { study_.stop(); }
-  void start_export(const std::string& verb);
-  void save(const std::string& path);
-  void add_entry(const std::string& table, std::string_view kind);
+  void start_export(bool replace = false);  // asks where something would be replaced
+  void open_folder();                       // of the last export, in the desktop's own way
+  void save(const std::string& path);       // asks likewise
+  void save_now(const std::string& path);
+  void save_or_ask();  // into its own file, or where to
+  void add_entry(const ElementOffer& offer);
   void open(const SceneDocument& document);
+  void open_file(const std::string& path);
+  void use_view(bool only);  // the camera as a key of the film at the present time; `only`: for all of it
+  void ask_to_close();
+  void take_tool(Tool tool);                               // again: put it away
+  void pull(const std::string& node, const Vec3& target);  // of the whole structure [m]
+  void wiggle();
+  void let_go();
+  // Building: nodes where nothing is, moved, joined by a rod, taken away.
+  void add_node(const Vec3& place);
+  void move_node(const std::string& node, const Vec3& place);
+  void connect(const std::string& a, const std::string& b);
+  void remove_selected();
   void screenshot();  // a PNG in the current directory
 
  private:
+  void collect();
   void take_run(const SimulationOutcome& outcome);
+  void remember(const std::string& path);
+  void show_hand();
+  void build(const std::string& gesture, SceneDocument document);
   void describe();
   void update_picture();
 
   SessionOptions options_;
   PanelState state_;
   std::optional<SceneDocument> submitted_;
+  Arrivals arrived_;
+  std::optional<SimulationOutcome> outcome_;
+  std::string exporting_to_;
+  ChildProcess folder_;
+  Hand hand_;
   ExportProcess export_;
   StudyJob study_;
   ErrorMeter errors_;

@@ -5,9 +5,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/panel/document/build_edits.hpp"
 #include "app/panel/document/edit_history.hpp"
 #include "app/panel/document/param_rows.hpp"
 #include "app/panel/runs/simulator.hpp"
@@ -40,6 +43,15 @@ struct JobState {
   bool operator==(const JobState&) const = default;
 };
 
+// What the mouse does in the view beside turning it.
+enum class Tool { read, pull, build };
+
+// A person is asked before something is lost; each answer with what it does.
+struct Question {
+  std::string text;  // empty: there is none
+  std::vector<std::pair<std::string, Intent>> answers;
+};
+
 struct PanelState {
   explicit PanelState(SceneDocument document) : history(std::move(document)) {}
 
@@ -47,6 +59,7 @@ struct PanelState {
   Scene base;                          // the scene without edits
   Selection described;                 // what sections were made for
   std::vector<ParamSection> sections;  // of the scene without edits
+  ParamRow title_row;                  // likewise
   std::vector<Intent> intents;         // of the frame that is drawn
 
   std::shared_ptr<const LiveRun> shown;        // the latest run that finished; null at first
@@ -66,9 +79,24 @@ struct PanelState {
   Selection selected, hovered;
 
   bool dark = false;
-  bool help_open = false, export_open = false;
+  bool help_open = false, export_open = false, files_open = false, palette_open = false;
   std::string export_path;            // of the scene's file; empty: not thought of yet
   std::string export_output = "out";  // directory of film and figures
+  std::size_t export_kind = 0;        // of export_kinds()
+  std::string exported;               // the directory of the last export that came to its end
+  std::string file_path;              // typed in the box of files
+  std::vector<std::string> recent;    // scene files, the latest first
+  std::string palette_query;
+  int palette_row = 0;
+  std::string reveal;            // a parameter's key: scrolled to and given the keyboard, once
+  std::set<std::string> folded;  // entries of lists whose rows are not shown, by key
+  Question question;
+  int tour = 0;  // step of the guided tour; 0: none
+  Tool tool = Tool::read;
+  std::string grabbed;            // the node that the mouse holds; empty: none
+  std::optional<VectorXd> pose;   // that a hand leads the whole structure to [3 N]
+  int wiggled = -1, motions = 0;  // the free motion that is shown, of how many
+  BuildGrid grid;
   bool left_open = true, right_open = true;
   bool studies_open = false;                    // on the right, instead of figures
   StudyRequest study;                           // to be started

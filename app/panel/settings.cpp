@@ -26,6 +26,14 @@ bool flag(const json& file, const char* key, bool fallback) {
   return it != file.end() && it->is_boolean() ? it->get<bool>() : fallback;
 }
 
+void words(const json& file, const char* key, std::vector<std::string>& list) {
+  const auto it = file.find(key);
+  if (it == file.end() || !it->is_array()) return;
+  list.clear();
+  for (const json& word : *it)
+    if (word.is_string()) list.push_back(word.get<std::string>());
+}
+
 }  // namespace
 
 std::filesystem::path settings_file() {
@@ -36,10 +44,9 @@ std::filesystem::path settings_file() {
   return std::filesystem::path(home) / ".config/unfurl/window.json";
 }
 
-PanelSettings load_settings(const std::filesystem::path& file) {
+PanelSettings settings_of(const std::string& text) {
   PanelSettings s;
-  if (file.empty()) return s;
-  const json found = json::parse(read_text_file(file.string()).text, nullptr, false);
+  const json found = json::parse(text, nullptr, false);
   if (!found.is_object()) return s;
   s.width = number(found, "width", s.width, 640, 16384);
   s.height = number(found, "height", s.height, 400, 16384);
@@ -48,16 +55,13 @@ PanelSettings load_settings(const std::filesystem::path& file) {
   s.left_open = flag(found, "left_open", s.left_open);
   s.right_open = flag(found, "right_open", s.right_open);
   s.dark = flag(found, "dark", s.dark);
-  const auto figures = found.find("open_figures");
-  if (figures == found.end() || !figures->is_array()) return s;
-  s.open_figures.clear();
-  for (const json& name : *figures)
-    if (name.is_string()) s.open_figures.push_back(name.get<std::string>());
+  s.tour_seen = flag(found, "tour_seen", s.tour_seen);
+  words(found, "open_figures", s.open_figures);
+  words(found, "recent", s.recent);
   return s;
 }
 
-bool save_settings(const std::filesystem::path& file, const PanelSettings& s) {
-  if (file.empty()) return false;
+std::string settings_text(const PanelSettings& s) {
   const json text = {{"width", s.width},
                      {"height", s.height},
                      {"left_width", s.left_width},
@@ -65,11 +69,22 @@ bool save_settings(const std::filesystem::path& file, const PanelSettings& s) {
                      {"left_open", s.left_open},
                      {"right_open", s.right_open},
                      {"dark", s.dark},
-                     {"open_figures", s.open_figures}};
+                     {"tour_seen", s.tour_seen},
+                     {"open_figures", s.open_figures},
+                     {"recent", s.recent}};
+  return text.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+PanelSettings load_settings(const std::filesystem::path& file) {
+  return file.empty() ? PanelSettings() : settings_of(read_text_file(file.string()).text);
+}
+
+bool save_settings(const std::filesystem::path& file, const PanelSettings& s) {
+  if (file.empty()) return false;
   try {
     std::error_code error;
     std::filesystem::create_directories(file.parent_path(), error);
-    write_file_atomically(file, text.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+    write_file_atomically(file, settings_text(s));
     return true;
   } catch (const std::exception&) {  // a read-only home is no reason to complain
     return false;

@@ -112,7 +112,8 @@ int cmd_solve(const Arguments& arguments) {
   const Objective objective = [&](double x) {
     try {
       const Scene changed = source.read({study.find + "=" + exact_number(x)});
-      Simulation run = simulate_as_asked(build_model(changed), changed.solver, hooks);
+      Simulation run = simulate_as_asked(build_model(changed),
+                                         study_solver(changed, {study.find}, {target.measure}), hooks);
       const Diagnostics diagnostics = judge(run);
       if (run.status == RunStatus::failed) return std::numeric_limits<double>::quiet_NaN();
       if (!flag.empty()) unique[x] = find_measure(flag).value(run, diagnostics) != 0.0;

@@ -8,6 +8,7 @@
 #include "app/output/output_directory.hpp"
 #include "app/panel/control_panel.hpp"
 #include "app/panel/panel_bench.hpp"
+#include "app/panel/session_log.hpp"
 #include "app/window/window.hpp"
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
@@ -39,6 +40,7 @@ struct OffscreenPanel {
     options.height = height;
     options.scale = arguments.ui_scale > 0 ? static_cast<float>(arguments.ui_scale) : 1.0f;
     options.settings.dark = arguments.view.dark;
+    options.settings.tour_seen = true;
     options.at = start_of(arguments);
     options.measured = arguments.view.bench;
     return options;
@@ -56,6 +58,20 @@ int draw_picture(SceneDocument document, const Scene& scene, const Arguments& ar
   return exit_ok;
 }
 
+// Says what was compared; what differs is a line each.
+int replay(const Arguments& arguments) {
+  if (!arguments.names.empty() || !arguments.overrides.empty())
+    throw UsageError("--replay plays the scene that was recorded: give no other and no --set");
+  const auto context = make_offscreen_context({arguments.threads, arguments.gpu});
+  const Replay played = replay_session(*context, arguments.view.replay);
+  if (!arguments.view.picture.empty()) write_png(arguments.view.picture, played.last);
+  std::printf("%ld frames, %ld states and %ld pictures compared%s: %s\n", played.frames, played.states,
+              played.pictures, played.same_graphics ? "" : " (pictures to a shade: drawn by other graphics)",
+              played.differences.empty() ? "the same" : "not the same");
+  for (const std::string& difference : played.differences) std::printf("%s\n", difference.c_str());
+  return played.differences.empty() ? exit_ok : exit_verification_failed;
+}
+
 int bench_offscreen(SceneDocument document, const Arguments& arguments) {
   OffscreenPanel offscreen(std::move(document), arguments, 1280, 720);
   std::printf("no display: %s, 1280 x 720 pixels\n", offscreen.context->description().c_str());
@@ -66,6 +82,7 @@ int bench_offscreen(SceneDocument document, const Arguments& arguments) {
 }  // namespace
 
 int cmd_view(const Arguments& arguments) {
+  if (!arguments.view.replay.empty()) return replay(arguments);
   const std::string name = arguments.names.empty() ? "hoop6" : arguments.names.front();
   SceneDocument document = open_document(name, arguments.overrides);
   // What is wrong with the scene is said here, before a window opens.
@@ -77,6 +94,7 @@ int cmd_view(const Arguments& arguments) {
   options.dark = arguments.view.dark;
   options.at = start_of(arguments);
   options.bench = arguments.view.bench;
+  options.record = arguments.view.record;
   return show_window(std::move(document), options);
 }
 

@@ -94,6 +94,13 @@ void require_all_frames(const FilmFolder& folder, const Scene& scene, const Simu
                                                        " frames are missing; these draw them:" + commands);
 }
 
+bool all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run) {
+  const std::size_t frames = film_shots(run.trajectory, scene.render).size();
+  for (std::size_t k = 0; k < frames; ++k)
+    if (!folder.finished(k)) return false;
+  return true;
+}
+
 void FrameMemory::keep(std::size_t frame, std::shared_ptr<const Image> image) {
   static const double room = std::min(0.2 * machine_memory(), 1e9);
   const bool held = !frames_.empty() && frames_.rbegin()->second == image;  // the same picture again
@@ -104,13 +111,6 @@ void FrameMemory::keep(std::size_t frame, std::shared_ptr<const Image> image) {
 std::shared_ptr<const Image> FrameMemory::find(std::size_t frame) const {
   const auto found = frames_.find(frame);
   return found == frames_.end() ? nullptr : found->second;
-}
-
-bool all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run) {
-  const std::size_t frames = film_shots(run.trajectory, scene.render).size();
-  for (std::size_t k = 0; k < frames; ++k)
-    if (!folder.finished(k)) return false;
-  return true;
 }
 
 bool draw_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,

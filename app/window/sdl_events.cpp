@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "app/window/sdl_library.hpp"
+
 namespace unfurl {
 
 namespace {
@@ -24,7 +26,8 @@ Key key_of(SDL_Keycode code) {
                                                    {SDLK_RETURN, Key::enter},
                                                    {SDLK_KP_ENTER, Key::enter},
                                                    {SDLK_ESCAPE, Key::escape},
-                                                   {SDLK_F1, Key::f1}};
+                                                   {SDLK_F1, Key::f1},
+                                                   {SDLK_F6, Key::f6}};
   for (const auto& [theirs, ours] : named)
     if (theirs == code) return ours;
   if (code >= SDLK_a && code <= SDLK_z) return static_cast<Key>(static_cast<int>(Key::a) + (code - SDLK_a));
@@ -75,6 +78,14 @@ std::optional<InputEvent> input_event(const SDL_Event& event, float pixels) {
     case SDL_TEXTINPUT:
       out.kind = InputEvent::Kind::text;
       out.text = event.text.text;
+      return out;
+    case SDL_DROPFILE:
+      out.kind = InputEvent::Kind::drop;
+      out.text = event.drop.file;
+      sdl().free(event.drop.file);
+      return out;
+    case SDL_QUIT:
+      out.kind = InputEvent::Kind::close;
       return out;
     case SDL_WINDOWEVENT:
       if (event.window.event != SDL_WINDOWEVENT_FOCUS_LOST) return std::nullopt;

@@ -179,8 +179,10 @@ class Host {
     PanelOptions panel;
     panel.settings = remembered_;
     if (options.dark) panel.settings.dark = true;
+    if (options.bench) panel.settings.tour_seen = true;
     panel.at = options.at;
     panel.measured = options.bench;
+    panel.record = options.record;
     panel.width = width;
     panel.height = height;
     panel.scale = scale;
@@ -203,7 +205,7 @@ class Host {
     auto last = Clock::now();
     bool more = true;
     while (!panel_->state().closed && !interrupted()) {
-      if (!wait(more)) break;
+      wait(more);
       const auto now = Clock::now();
       const double seconds = std::chrono::duration<double>(now - last).count();
       last = now;
@@ -231,7 +233,7 @@ class Host {
     while (std::chrono::duration<double>(Clock::now() - start).count() < idle && !interrupted()) {
       if (sdl().WaitEventTimeout(&event, 500) == 0) continue;
       ++frames;
-      if (!take(event)) break;
+      take(event);
       while (panel_->frame(0)) window_.show(panel_->picture());
     }
     const double used = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
@@ -249,27 +251,23 @@ class Host {
     if (!(now == remembered_)) save_settings(settings_file(), now);
   }
 
-  // Until there is a reason to draw; false: the window is to close.
-  bool wait(bool more) {
+  // Until there is a reason to draw.
+  void wait(bool more) {
     SDL_Event event;
-    bool open = true, drawn = more;
-    while (open && !drawn && !interrupted()) {
+    while (!more && !interrupted()) {
       if (sdl().WaitEventTimeout(&event, 500) == 0) continue;  // Ctrl-C is looked for twice a second
-      drawn = true;
-      open = take(event);
+      more = true;
+      take(event);
     }
-    while (open && sdl().PollEvent(&event) != 0) open = take(event);
-    return open;
+    while (sdl().PollEvent(&event) != 0) take(event);
   }
 
-  bool take(const SDL_Event& event) {
-    if (event.type == SDL_QUIT) return false;
+  void take(const SDL_Event& event) {
     if (event.type == SDL_WINDOWEVENT && event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
       const auto [width, height] = window_.pixels();
       panel_->resize(width, height);
     }
     if (const auto input = input_event(event, window_.pixels_per_unit())) panel_->handle(*input);
-    return true;
   }
 
   PanelSettings remembered_;

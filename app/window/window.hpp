@@ -13,6 +13,7 @@ struct WindowOptions {
   float ui_scale = 0;  // 0: the monitor's
   bool dark = false;   // else as it was left the last time
   double at = 0;       // of the motion, at first [s]
+  std::string record;  // a file for the session (panel/session_log.hpp); empty: none
   bool bench = false;  // no person: measure (panel_bench.hpp), print, close
 };
 

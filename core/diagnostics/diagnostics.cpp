@@ -200,7 +200,9 @@ bool present(Needs needs, const Simulation& run) {
     case Needs::dampers:
       return model.system.has_power(true) || latches(std::numeric_limits<double>::min());
     case Needs::drives:
-      return model.system.rheonomic();
+      return model.system.rheonomic() ||
+             std::any_of(model.structure.stops.begin(), model.structure.stops.end(),
+                         [](const Stop& stop) { return stop.reeled; });
     case Needs::impacts:
       return std::any_of(run.events.begin(), run.events.end(),
                          [](const Event& e) { return e.energy_lost != 0; });

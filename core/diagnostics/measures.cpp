@@ -88,7 +88,8 @@ double peak_speed(const Simulation& run, const Diagnostics&) {
 }
 
 const std::array measure_table{
-    NamedMeasure{"deploy_time", "deployment time", "s", "when the structure is fully deployed", deploy_time},
+    NamedMeasure{"deploy_time", "deployment time", "s", "when the structure is fully deployed", deploy_time,
+                 MeasureNeeds::events},
     NamedMeasure{"peak_rod_force", "peak rod force", "N",
                  "largest axial force of any rod, tension or compression; the mean over the rod's length",
                  peak_force},
@@ -141,17 +142,21 @@ const std::array measure_table{
     NamedMeasure{"peak_speed", "peak speed", "m/s", "largest speed of any node", peak_speed},
     NamedMeasure{
         "energy_error", "energy error", "J", "largest error of the energy balance",
-        [](const Simulation&, const Diagnostics& d) { return largest_magnitude_of(d, "energy_balance_J"); }},
+        [](const Simulation&, const Diagnostics& d) { return largest_magnitude_of(d, "energy_balance_J"); },
+        MeasureNeeds::method},
     NamedMeasure{
         "constraint_error", "constraint error", "m", "largest constraint error",
-        [](const Simulation&, const Diagnostics& d) { return largest_magnitude_of(d, "constraint_max_m"); }},
+        [](const Simulation&, const Diagnostics& d) { return largest_magnitude_of(d, "constraint_max_m"); },
+        MeasureNeeds::method},
     NamedMeasure{"end_time", "end of the run", "s", "when the run ended, by whatever reason",
-                 [](const Simulation& run, const Diagnostics&) { return run.trajectory.end_time(); }},
+                 [](const Simulation& run, const Diagnostics&) { return run.trajectory.end_time(); },
+                 MeasureNeeds::events},
     NamedMeasure{"cpu", "CPU time", "s", "CPU time of the stepping loop",
-                 [](const Simulation& run, const Diagnostics&) { return run.cpu_s; }},
+                 [](const Simulation& run, const Diagnostics&) { return run.cpu_s; }, MeasureNeeds::method},
     NamedMeasure{
         "newton_iterations", "Newton iterations", "", "in sum",
-        [](const Simulation& run, const Diagnostics&) { return static_cast<double>(run.newton_iterations); }},
+        [](const Simulation& run, const Diagnostics&) { return static_cast<double>(run.newton_iterations); },
+        MeasureNeeds::method},
 };
 
 struct Statistic {
@@ -161,6 +166,12 @@ struct Statistic {
 constexpr std::array statistics{Statistic{"max", "largest ", largest_of_column},
                                 Statistic{"min", "smallest ", smallest_of_column},
                                 Statistic{"final", "final ", last_of}};
+
+// Columns that tell of the method rather than of the motion.
+bool of_method(std::string_view column) {
+  return column.starts_with("constraint_") || column == "energy_balance_J" || column == "step_s" ||
+         column == "newton_iterations";
+}
 
 std::string with_unit(std::string_view label, std::string_view unit) {
   return std::string(label) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
@@ -198,7 +209,8 @@ std::vector<std::string> columns_of(const std::shared_ptr<const Model>& model) {
 RunMeasure find_measure(const std::string& name, const std::vector<std::string>& columns) {
   std::vector<std::string_view> known;
   for (const NamedMeasure& row : measure_table) {
-    if (row.name == name) return {name, name + suffix(row.unit), with_unit(row.label, row.unit), row.value};
+    if (row.name == name)
+      return {name, name + suffix(row.unit), with_unit(row.label, row.unit), row.value, row.needs};
     known.push_back(row.name);
   }
   const std::size_t colon = name.find(':');
@@ -210,7 +222,8 @@ RunMeasure find_measure(const std::string& name, const std::vector<std::string>&
     if (std::find(there.begin(), there.end(), of) == there.end())
       throw StudyError("no column " + in_quotes(of) + " to measure" + did_you_mean(of, there));
     return {name, std::string(s.name) + "_" + of, std::string(s.label) + of,
-            [of, f = s.of](const Simulation& run, const Diagnostics& d) { return f(run, d, of); }};
+            [of, f = s.of](const Simulation& run, const Diagnostics& d) { return f(run, d, of); },
+            of_method(of) ? MeasureNeeds::method : MeasureNeeds::states};
   }
   throw StudyError("no measure " + in_quotes(name) + did_you_mean(name, known) +
                    " (or max:, min:, final: and a column of series.csv)");

@@ -11,16 +11,21 @@
 
 namespace unfurl {
 
+// What a measure is taken from: a run's events alone, its states, or what its method makes of it.
+enum class MeasureNeeds { events, states, method };
+
 struct RunMeasure {
   std::string name;    // "deploy_time", or "max:kinetic_energy_J"
   std::string column;  // with the unit as suffix: "deploy_time_s"
   std::string label;   // for axes: "deployment time (s)"
   std::function<double(const Simulation&, const Diagnostics&)> value;
+  MeasureNeeds needs = MeasureNeeds::states;
 };
 
 struct NamedMeasure {
   std::string_view name, label, unit, help;
   double (*value)(const Simulation&, const Diagnostics&);
+  MeasureNeeds needs = MeasureNeeds::states;
 };
 // To add one: a function and a row.
 std::span<const NamedMeasure> named_measures();

@@ -133,6 +133,9 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   summary["notes"] = Json::array();
   if (const std::string note = ending_note(run, diagnostics); !note.empty()) summary["notes"].push_back(note);
   summary["model"] = model_json(model.structure, model.system, mobility);
+  const SolvedAs solved = solved_as(run);
+  summary["model"]["solved_as"] = solved.name;
+  summary["model"]["why"] = solved.why;
   summary["solver"] = solver_json(run);
   for (const char* name : {"constraint_max_m", "constraint_relative_max", "constraint_velocity_max_m_s"})
     summary["errors"][name] = max_abs(diagnostics, name);

@@ -25,6 +25,7 @@ constexpr int slow_iterations = 8;
 // `strong` are never looked at.
 constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double most_prolonged = 4;  // steps of the last one's length
 constexpr double resolved = 1.5;  // h omega, from above, per stage but one: the ends tell forces of waves
 
 bool is_small(const System& system, int stages) {
@@ -159,10 +160,13 @@ void Dvm::set_matrices(double h) {
 
 // Prolong the last step's polynomial; at a start, fly on with the present velocity. Multipliers start from
 // the last step's end, which is solved afresh every step: prolonging stage multipliers would amplify their
-// round-off in directions where they are not unique.
+// round-off in directions where they are not unique. A step much longer than the last one learns from it
+// neither: prolonged so far its round-off grows by the ratio's power, and its multipliers are round-off over
+// the square of its length.
 void Dvm::predict(const State& state, double h) {
-  if (have_history_) {
-    const double ratio = h / previous_h_;
+  const double ratio = have_history_ ? h / previous_h_ : 0.0;
+  const bool far = std::abs(ratio) > most_prolonged;
+  if (have_history_ && !far) {
     if (std::abs(ratio - 1.0) < 1e-12)
       prolong_ = c_.extrapolation;
     else
@@ -174,7 +178,7 @@ void Dvm::predict(const State& state, double h) {
     for (int j = 0; j + 1 < c_.s; ++j) eq_.dX.col(j) = (h * c_.basis.nodes()[j + 1]) * state.w;
   }
   eq_.lambda.setZero();
-  if (state.lambda.size() > 0 && state.lambda.size() == eq_.lambda.rows())
+  if (!far && state.lambda.size() > 0 && state.lambda.size() == eq_.lambda.rows())
     for (int k = 0; k < (eq_.at_ends ? 1 : c_.s - 1); ++k) eq_.lambda.col(k) = state.lambda;
 }
 

@@ -18,6 +18,10 @@ std::vector<std::string_view> method_names() {
 const std::vector<ParamSpec>& solver_params() {
   static const SolverOptions fallback;
   static const std::vector<ParamSpec> params = {
+      choice_param(
+          "model", fallback.model, {"auto", "full", "path"},
+          "every node by the method (full), one number along the path of a structure that can move "
+          "in one way only (path), or that where it applies (auto; default of sweep, solve, margin)"),
       choice_param("method", fallback.method, method_names(), "integrator; `unfurl list methods`"),
       only_with("method", {"dvm"},
                 integer_param("stages", fallback.stages, 2, 8, "s, the interpolation nodes on a step (dvm)")),
@@ -61,6 +65,7 @@ const std::vector<ParamSpec>& solver_params() {
 
 SolverOptions solver_options(const ParamSet& values) {
   SolverOptions options;
+  options.model = values.text("model");
   options.method = values.text("method");
   options.stages = static_cast<int>(values.integer("stages"));
   options.nodes = values.text("nodes");
@@ -80,6 +85,7 @@ SolverOptions solver_options(const ParamSet& values) {
 
 ParamSet solver_values(const SolverOptions& solver) {
   ParamSet values;
+  values.set("model", solver.model);
   values.set("method", solver.method);
   values.set("stages", static_cast<long>(solver.stages));
   values.set("nodes", solver.nodes);

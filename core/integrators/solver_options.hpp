@@ -9,6 +9,7 @@ namespace unfurl {
 
 // The [solver] table of a scene, checked.
 struct SolverOptions {
+  std::string model = "full";  // full | path | auto: what is solved for (study/tolerance.hpp)
   std::string method = "dvm";
   int stages = 3;                        // s, the interpolation nodes on a step
   std::string nodes = "lobatto";         // lobatto | equidistant | chebyshev

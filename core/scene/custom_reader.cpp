@@ -196,9 +196,8 @@ const std::vector<ParamSpec>& custom_params() {
     ParamSpec nodes =
         text_param("nodes_file", "", "CSV file beside the scene: name,x,y,z[,vx,vy,vz,mass,fixed]");
     ParamSpec rods = text_param("rods_file", "",
-                                "CSV file beside the scene: "
-                                "a,b[,name,mass,density,area,group,length,"
-                                "youngs_modulus,strength,second_moment,elastic,segments,free_length]");
+                                "CSV file beside the scene: a, b [, name, mass, density, area, group, length, "
+                                "youngs_modulus, strength, second_moment, elastic, segments, free_length]");
     std::vector<ParamSpec> all{
         choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"), nodes, rods};
     all.insert(all.end(), rod_material_params().begin(), rod_material_params().end());
@@ -244,7 +243,7 @@ const std::vector<ParamSpec>& custom_rod_params() {
         boolean_param("elastic", false, "gives in the motion; by default as rod_model says of all rods"),
         integer_param("segments", 1, 1, 1000,
                       "that it is cut into, to bend; by default as structure.segments says of all rods"),
-        positive_param("free_length", "m", 0.0,
+        positive_param("free_length", "m", std::numeric_limits<double>::quiet_NaN(),
                        "of an elastic rod without force; its nodes stay where they are given, and the rod "
                        "is stretched at t = 0")};
   }();

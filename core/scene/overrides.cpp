@@ -113,7 +113,8 @@ std::string entry_name(const TomlTree& entry) {
 
 // Lists of entries to which one more may be added.
 bool grows(std::string_view key) {
-  return key == "loads" || key == "forces" || key == "constraints";
+  return key == "loads" || key == "forces" || key == "constraints" || key == "structure.nodes" ||
+         key == "structure.rods" || key == "structure.constraints";
 }
 
 TomlTree made_here(TomlTree::Kind kind) {

@@ -236,8 +236,8 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   read_elements(root, "constraints", scene_constraints(), folder, scene.constraints, notes);
   settle_names(scene.forces, notes);
   settle_names(scene.constraints, notes);
-  read_surfaces(root, scene, notes);
   read_deployment(root, tree, scene, notes);
+  read_surfaces(root, scene, notes);
   read_solver(root, tree, scene, notes);
   read_render(root, tree, scene, notes);
   root.finish();

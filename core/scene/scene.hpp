@@ -34,8 +34,8 @@ struct Scene {
   Vec3 gravity = Vec3::Zero();  // [m/s^2]
   std::vector<SceneLoad> loads;
   std::vector<SceneElement> forces, constraints;
-  std::vector<SceneSurface> surfaces;  // shown only
   SceneElement deployment;  // [deployment]: its terms are what it measures; without any, the scene has none
+  std::vector<SceneSurface> surfaces;  // shown only
   SolverOptions solver;
   RenderOptions render;
   std::vector<SceneProblem> warnings;               // what is given and does nothing

@@ -23,6 +23,10 @@ std::string limit_text(const std::string& what, double count, long most) {
 
 }  // namespace
 
+bool counts(const ParamSpec& spec) {
+  return spec.kind == ParamKind::integer && spec.name != "error_seed";
+}
+
 void require_buildable(const Scene& scene) {
   const Family* family = find_family(scene.kind);
   if (!family) {
@@ -41,6 +45,7 @@ void require_buildable(const Scene& scene) {
   for (const ParamSpec& spec : family->params()) {
     if (spec.kind != ParamKind::integer || !scene.structure.has(spec.name)) continue;
     const long value = scene.structure.integer(spec.name);
+    if (!counts(spec) || value == 1) continue;
     units *= static_cast<double>(value);
     product += (product.empty() ? "" : " x ") + std::string(spec.name);
     if (largest.empty() || value > scene.structure.integer(largest)) largest = spec.name;

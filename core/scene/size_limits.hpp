@@ -13,6 +13,8 @@ namespace unfurl {
 inline constexpr long most_units = 100000, most_custom_nodes = 4 * most_units,
                       most_custom_rods = 5 * most_units;
 
+// Is it a number of things that are built? A seed is not.
+bool counts(const ParamSpec& spec);
 // Throws StructureError with the key and the number where the structure would be larger.
 void require_buildable(const Scene& scene);
 

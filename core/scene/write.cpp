@@ -168,15 +168,15 @@ std::string scene_text(const Scene& scene) {
     text += element_text("forces", force, *find_kind(scene_forces(), force.kind));
   for (const auto& constraint : scene.constraints)
     text += element_text("constraints", constraint, *find_kind(scene_constraints(), constraint.kind));
-  for (const SceneSurface& surface : scene.surfaces)
-    text += "\n[[surfaces]]\n" + line("nodes", names_text(surface.nodes)) +
-            params_text(surface_params(), surface_values(surface));
   if (const SceneElement& d = scene.deployment; !d.terms.empty()) {
     text += "\n[deployment]\n" + line("measure", names_text(d.terms));
     for (const auto& spec : deployment_params())
       if (worth_writing(d.values.value(spec.name)))
         text += line(spec.name, toml_value(d.values.value(spec.name)));
   }
+  for (const SceneSurface& surface : scene.surfaces)
+    text += "\n[[surfaces]]\n" + line("nodes", names_text(surface.nodes)) +
+            params_text(surface_params(), surface_values(surface));
   return text + solver_text(scene) + render_text(scene.render);
 }
 

@@ -128,8 +128,11 @@ std::optional<Replacement> replacement(std::string_view text, const TomlTree& ro
     }
   }
   const std::string line = steps.back().name + " = " + value + "\n";
-  if (steps.size() == 2 && steps[1].index)  // a new entry of a list
-    return at_the_end(text, "[[" + steps[0].name + "]]\n" + member_lines(value));
+  if (steps.size() >= 2 && steps.back().index) {  // a new entry of a list
+    std::string list;
+    for (std::size_t i = 0; i + 1 < steps.size(); ++i) list += (i == 0 ? "" : ".") + steps[i].name;
+    return at_the_end(text, "[[" + list + "]]\n" + member_lines(value));
+  }
   if (table) {
     const auto end = end_of_table(text, *table);
     if (!end) return std::nullopt;

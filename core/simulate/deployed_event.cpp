@@ -32,10 +32,38 @@ constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 // Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
 constexpr int most_lengths = 40;
 
-struct Sample {
-  double sine;
-  State state;
-};
+using Sample = NearDeployed;
+
+// Shares of the samples in the value at zero of the polynomial of `degree` in the sine that fits them best,
+// each weighted with sine^4: an error d of a rod's length turns it by d / (l sine), and what the hinges'
+// velocities and accelerations take from that is d / sine^4 in the forces.
+VectorXd shares_at_zero(const std::vector<Sample>& samples, int degree) {
+  const Index count = static_cast<Index>(samples.size());
+  MatrixXd powers(count, degree + 1);
+  VectorXd weight(count);
+  for (Index i = 0; i < count; ++i) {
+    const double x = samples[static_cast<std::size_t>(i)].sine / samples.front().sine;
+    weight[i] = std::pow(x, 4);
+    for (Index j = 0; j <= degree; ++j) powers(i, j) = weight[i] * std::pow(x, static_cast<double>(j));
+  }
+  // The first row of the pseudo-inverse, by R^T y = e_0: shares = W Q y.
+  const Eigen::HouseholderQR<MatrixXd> qr(powers);
+  const VectorXd y = qr.matrixQR()
+                         .topRows(degree + 1)
+                         .triangularView<Eigen::Upper>()
+                         .transpose()
+                         .solve(VectorXd::Unit(degree + 1, 0));
+  VectorXd shares = VectorXd::Zero(count);
+  shares.head(degree + 1) = y;
+  shares.applyOnTheLeft(qr.householderQ());
+  return weight.cwiseProduct(shares);
+}
+VectorXd at_zero(const std::vector<Sample>& samples, const VectorXd& shares, VectorXd State::*part) {
+  VectorXd sum = VectorXd::Zero((samples.front().state.*part).size());
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    sum += shares[static_cast<Index>(i)] * (samples[i].state.*part);
+  return sum;
+}
 
 class Locator {
  public:
@@ -179,71 +207,20 @@ class Locator {
       samples_.push_back({at, std::move(state)});
   }
 
-  // Shares of the samples in the value at zero of the polynomial of `degree` in the sine that fits them best,
-  // each weighted with sine^4: an error d of a rod's length turns it by d / (l sine), and what the hinges'
-  // velocities and accelerations take from that is d / sine^4 in the forces.
-  VectorXd shares_at_zero(int degree) const {
-    const Index count = static_cast<Index>(samples_.size());
-    MatrixXd powers(count, degree + 1);
-    VectorXd weight(count);
-    for (Index i = 0; i < count; ++i) {
-      const double x = samples_[static_cast<std::size_t>(i)].sine / samples_.front().sine;
-      weight[i] = std::pow(x, 4);
-      for (Index j = 0; j <= degree; ++j) powers(i, j) = weight[i] * std::pow(x, static_cast<double>(j));
-    }
-    // The first row of the pseudo-inverse, by R^T y = e_0: shares = W Q y.
-    const Eigen::HouseholderQR<MatrixXd> qr(powers);
-    const VectorXd y = qr.matrixQR()
-                           .topRows(degree + 1)
-                           .triangularView<Eigen::Upper>()
-                           .transpose()
-                           .solve(VectorXd::Unit(degree + 1, 0));
-    VectorXd shares = VectorXd::Zero(count);
-    shares.head(degree + 1) = y;
-    shares.applyOnTheLeft(qr.householderQ());
-    return weight.cwiseProduct(shares);
-  }
-  VectorXd at_zero(const VectorXd& shares, VectorXd State::*part) const {
-    VectorXd sum = VectorXd::Zero((samples_.front().state.*part).size());
-    for (std::size_t i = 0; i < samples_.size(); ++i)
-      sum += shares[static_cast<Index>(i)] * (samples_[i].state.*part);
-    return sum;
-  }
-
-  // The pose itself is as good as any for all of the multipliers but what its loss of rank leaves open. Of
-  // that a fit of low degree is truer than interpolation where round-off, d / sine^4, is more than what the
-  // degree leaves: the degree at which it changes least. Where even that is not known, what is left open is
-  // chosen as for any multipliers that are not unique: least norm.
-  VectorXd lambda_at_zero(const State& at) {
-    std::vector<VectorXd> fits{VectorXd::Zero(at.lambda.size())};
-    for (int degree = 0; degree < static_cast<int>(samples_.size()); ++degree)
-      fits.push_back(at_zero(shares_at_zero(degree), &State::lambda));
-    index1_.correct(at.t, at.z, at.w, fits);
-    double least = most_open * fits[0].norm();
-    std::size_t best = 0;
-    for (std::size_t i = 2; i < fits.size(); ++i) {
-      const double change = (fits[i] - fits[i - 1]).norm();
-      if (!(change < least)) continue;
-      least = change;
-      best = i;
-    }
-    return fits[best];
-  }
-
   // Everything as a function of the sine, at zero.
   std::optional<State> extrapolate() {
     const int most = static_cast<int>(samples_.size()) - 1;
-    const VectorXd shares = shares_at_zero(most);  // interpolation
+    const VectorXd shares = shares_at_zero(samples_, most);  // interpolation
     State out = samples_.front().state;
     out.t = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i)
       out.t += shares[static_cast<Index>(i)] * samples_[i].state.t;
-    out.z = at_zero(shares, &State::z);
-    out.w = at_zero(shares, &State::w);
+    out.z = at_zero(samples_, shares, &State::z);
+    out.w = at_zero(samples_, shares, &State::w);
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
     followed_.follow(samples_.front().state);
     followed_.count_on(out);
-    out.lambda = lambda_at_zero(out);
+    out.lambda = multipliers_at_deployed(index1_, samples_, out);
     return out;
   }
 
@@ -259,6 +236,22 @@ class Locator {
 };
 
 }  // namespace
+
+VectorXd multipliers_at_deployed(Index1& index1, const std::vector<NearDeployed>& samples, const State& at) {
+  std::vector<VectorXd> fits{VectorXd::Zero(at.lambda.size())};
+  for (int degree = 0; degree < static_cast<int>(samples.size()); ++degree)
+    fits.push_back(at_zero(samples, shares_at_zero(samples, degree), &State::lambda));
+  index1.correct(at.t, at.z, at.w, fits);
+  double least = most_open * fits[0].norm();
+  std::size_t best = 0;
+  for (std::size_t i = 2; i < fits.size(); ++i) {
+    const double change = (fits[i] - fits[i - 1]).norm();
+    if (!(change < least)) continue;
+    least = change;
+    best = i;
+  }
+  return fits[best];
+}
 
 std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h) {
   return Locator(trajectory, integrator, h).locate();

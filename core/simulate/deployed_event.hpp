@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "core/integrators/index1.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/trajectory.hpp"
 
@@ -14,5 +16,18 @@ namespace unfurl {
 // extrapolated from them to 0. The trajectory's last state must lie before the event, its next step (of size
 // h) at or behind it.
 std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h);
+
+// A pose next to the deployed one, with its multipliers, and the sine of its fold angle.
+struct NearDeployed {
+  double sine;
+  State state;
+};
+
+// The multipliers in the deployed pose, from those of such poses, the farthest one first, and its equations.
+// The pose itself is as good as any for all of the multipliers but what its loss of rank leaves open. Of
+// that a fit of low degree is truer than interpolation where round-off, d / sine^4, is more than what the
+// degree leaves: the degree at which it changes least. Where even that is not known, what is left open is
+// chosen as for any multipliers that are not unique: least norm.
+VectorXd multipliers_at_deployed(Index1& index1, const std::vector<NearDeployed>& samples, const State& at);
 
 }  // namespace unfurl

@@ -11,9 +11,14 @@
 namespace unfurl {
 namespace {
 
-// Deployment::remaining of a fold angle as a form of its own: cos(d) sine - sin(d) cosine with d the deployed
-// fold angle.
-LinearForm remaining(const Deployment& deployment) {
+bool waits(const Force& force) {
+  return force.kind == "latch" && force.form.empty();
+}
+
+}  // namespace
+
+// cos(d) sine - sin(d) cosine with d the deployed fold angle.
+LinearForm remaining_form(const Deployment& deployment) {
   LinearForm form;
   const auto add = [&form](double factor, const LinearForm& part) {
     for (std::size_t i = 0; i < part.nodes.size(); ++i) {
@@ -26,12 +31,6 @@ LinearForm remaining(const Deployment& deployment) {
   if (const double s = std::sin(deployment.deployed_fold_angle); s != 0) add(-s, deployment.fold_cosine);
   return form;
 }
-
-bool waits(const Force& force) {
-  return force.kind == "latch" && force.form.empty();
-}
-
-}  // namespace
 
 bool latch_gives(const Structure& structure) {
   return std::any_of(structure.forces.begin(), structure.forces.end(), waits);
@@ -49,7 +48,7 @@ std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_li
     return std::make_shared<const Model>(Model{std::move(structure), std::move(locked)});
   }
   std::vector<LinearForm> latches = deployment.latches;
-  if (latches.empty()) latches.push_back(remaining(deployment));
+  if (latches.empty()) latches.push_back(remaining_form(deployment));
   std::vector<Force> springs;  // what gives in their place
   std::copy_if(structure.forces.begin(), structure.forces.end(), std::back_inserter(springs), waits);
   for (const LinearForm& form : latches) {

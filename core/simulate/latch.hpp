@@ -11,7 +11,8 @@ namespace unfurl {
 // The model with the latches of its deployment held at zero (structure.hpp); where it names none, the sine of
 // what is left to its deployed fold angle. A structure with forces of the kind "latch" gets each of them on
 // every latch instead: nothing is held then, and no impulse is needed.
-bool latch_gives(const Structure& structure);  // it has such forces, which wait
+LinearForm remaining_form(const Deployment& deployment);  // Deployment::remaining_sine
+bool latch_gives(const Structure& structure);             // it has such forces, which wait
 std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear);
 
 // A state after the constraints have become those of another model of the same nodes: node positions stay,

@@ -3,6 +3,7 @@
 // dry friction, which holds or slips.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +41,9 @@ class OneSided {
   bool is_friction(std::size_t i) const { return i >= first_friction(); }
   std::size_t first_friction() const { return stops_.size() + cables_.size(); }
   bool any_friction() const { return !frictions_.empty(); }
+  bool only_friction(const std::vector<std::size_t>& which) const {
+    return std::all_of(which.begin(), which.end(), [this](std::size_t i) { return is_friction(i); });
+  }
   bool active(std::size_t i) const { return active_[i]; }  // a held stop, a cable that pulls, what sticks
   bool any_active() const;                                 // what is not as in the model without any of it
   bool any_held() const;                                   // stops

@@ -57,6 +57,16 @@ std::string_view to_string(RunStatus status) {
   return "failed";
 }
 
+SolvedAs solved_as(const Simulation& run) {
+  SolvedAs out = run.solved_as;
+  const Structure& structure = run.trajectory.structure();
+  const bool sector = structure.node_copies.size() != structure.nodes.size();
+  if (out.name.empty()) out.name = sector ? "sector" : "full";
+  if (out.why.empty())
+    out.why = sector ? "structure.model = \"sector\"" : "solver.model = \"" + run.options.model + "\"";
+  return out;
+}
+
 Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
                     const SimulationHooks& hooks) {
   if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);

@@ -32,6 +32,12 @@ struct SimulationHooks {
   std::function<bool()> cancelled;                // asked before every step
 };
 
+// What was solved for a run.
+struct SolvedAs {
+  std::string name;  // "full", "sector", "path"; empty: full, or sector where the structure is one
+  std::string why;   // and not another
+};
+
 struct Simulation {
   Trajectory trajectory;
   RunStatus status = RunStatus::completed;
@@ -39,6 +45,7 @@ struct Simulation {
   std::vector<std::string> warnings = {};
   std::vector<Event> events = {};
   SolverOptions options = {};
+  SolvedAs solved_as = {};
   // Estimated error of the node positions, from a second solution [m]; NaN: none was made
   // (study/tolerance.hpp).
   double position_estimate = std::numeric_limits<double>::quiet_NaN();
@@ -47,6 +54,9 @@ struct Simulation {
   long factorisations = 0;
   double cpu_s = 0.0;  // CPU time of the stepping loop
 };
+
+// The same filled in: a run of the time loop solves what its model holds.
+SolvedAs solved_as(const Simulation& run);
 
 // Throws std::invalid_argument on an unknown method; everything that goes wrong while stepping is in the
 // result.

@@ -11,6 +11,7 @@
 #include "core/integrators/dvm.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/deployed_event.hpp"
+#include "core/simulate/drift.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/measured_event.hpp"
@@ -41,6 +42,9 @@ constexpr long most_in_step = 50;  // times as many in one step, at whatever tim
 constexpr double shortest = 1e-7;
 // So many steps before the deployed pose a failed step is put down to it.
 constexpr double near_deployed = 5;
+// Friction that turns round within this share of a step before the deployed pose is at it, where rods in line
+// let angles without a sign turn round.
+constexpr double straight = 1e-3;
 // Parts of a step for the hints where margins dip between solved states.
 constexpr int parts = 8;
 
@@ -128,7 +132,8 @@ class Stepper::Loop {
     std::optional<State> event;
     if (!find_deployed(to, h, event)) return false;
     if (watched && to.report.ok())
-      if (auto crossing = find_crossing(to); crossing && (!event || now().t + crossing->probe.at < event->t))
+      if (auto crossing = find_crossing(to);
+          crossing && now().t + crossing->probe.at < latest(event, *crossing, h))
         return go_to(std::move(*crossing));
     if (event) return deployed(*event, to, h);
     return accept(to, part_end_);
@@ -177,24 +182,10 @@ class Stepper::Loop {
   // --- steps ---
 
   StepReport take_step(Integrator& integrator, State& state, double h) {
-    if (h < shortest * run_.options.step) return drift(state, h);
+    if (h < shortest * run_.options.step) return drift(system(), state, h);
     const StepReport report = integrator.step(state, h);
     run_.newton_iterations += report.newton_iterations;
     run_.factorisations += report.factorisations;
-    return report;
-  }
-
-  // What is too short for a step of the method: two terms of Taylor's series.
-  StepReport drift(State& state, double h) {
-    VectorXd acceleration(state.w.size());
-    VectorXd lambda = state.lambda;
-    const System followed = system().at(state);
-    Index1 index1(followed);
-    StepReport report;
-    if (!index1.evaluate(state.t, state.z, state.w, acceleration, lambda)) acceleration.setZero();
-    state.t += h;
-    state.z += h * state.w + 0.5 * h * h * acceleration;
-    state.w += h * acceleration;
     return report;
   }
 
@@ -218,6 +209,11 @@ class Stepper::Loop {
     sides_.touch(system(), now());
     sides_.measure(model(), now(), true, begin_);
     have_begin_ = true;
+  }
+
+  double latest(const std::optional<State>& event, const Crossing& crossing, double h) const {
+    if (!event) return std::numeric_limits<double>::infinity();
+    return sides_.only_friction(crossing.which) ? event->t - straight * h : event->t;
   }
 
   std::optional<Crossing> find_crossing(Probe& to) {

@@ -10,11 +10,13 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/integrators/integrator.hpp"
+#include "core/path/path.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/toml_tree.hpp"
 #include "core/scene/write.hpp"
 #include "core/simulate/simulation.hpp"
 #include "core/study/measured_run.hpp"
+#include "core/study/tolerance.hpp"
 
 namespace unfurl {
 namespace {
@@ -141,7 +143,8 @@ Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hoo
   std::optional<Simulation> first;
   std::vector<double> times;
   for (int i = 0; i < repeats; ++i) {
-    Simulation run = simulate(model, scene.solver, own);
+    Simulation run = scene.solver.model == "full" ? simulate(model, scene.solver, own)
+                                                  : simulate_as_asked(model, scene.solver, own);
     if (run.status == RunStatus::stopped) throw Cancelled();
     times.push_back(run.cpu_s);
     if (!first) first = std::move(run);
@@ -186,6 +189,7 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
     const std::string now = text_at(root, table, key);
     if (!now.empty() && now != value) out.push_back({name, {std::string(table) + "." + key + "=" + value}});
   };
+  add("solver", "model", "path", "path: one number along the only way to move");
   add("structure", "model", "full", "full: every unit solved");
   add("structure", "model", "sector", "sector: one sector solved, all shown");
   add("solver", "eliminate_linear", "true", "linear constraints eliminated");
@@ -230,6 +234,10 @@ std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats
     } catch (const SceneError& error) {
       if (!base) throw;
       m.outcome = "not possible: " + error.problems().front().message;
+    } catch (const PathRefused& refused) {
+      if (!base) throw;
+      m.outcome = std::string("not possible: ") + refused.what();
+      m.solved_coordinates = 0;
     }
     out.push_back(std::move(m));
   }

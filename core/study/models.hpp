@@ -14,8 +14,9 @@ struct ModelChoice {
 };
 
 // The scene as it stands, then every choice that it allows and does not make: full or sector, linear
-// constraints eliminated or kept, sparse or dense matrices, consistent or lumped mass, rigid rods or forces
-// shared by their stiffness, rigid, quasi-static, elastic or bending rods, without damping.
+// constraints eliminated or kept, the path of one that can move in one way only, sparse or dense matrices,
+// consistent or lumped mass, rigid rods or forces shared by their stiffness, rigid, quasi-static, elastic or
+// bending rods, without damping.
 std::vector<ModelChoice> model_choices(const SceneSource& source);
 
 struct MeasuredModel {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/study/scene_variation.hpp"
 
+#include <algorithm>
+
 #include "core/scene/reader.hpp"
 #include "core/scene/toml_tree.hpp"
 #include "core/scene/write.hpp"
@@ -11,6 +13,22 @@ Scene SceneSource::read(const std::vector<std::string>& changes) const {
   std::vector<std::string> all = overrides;
   all.insert(all.end(), changes.begin(), changes.end());
   return text ? read_scene_text(*text, path, all, folder) : read_scene_file(path, all);
+}
+
+SolverOptions study_solver(const Scene& scene, const std::vector<std::string>& varied,
+                           const std::vector<RunMeasure>& measures) {
+  SolverOptions options = scene.solver;
+  if (scene.locations.contains("solver.model")) return options;
+  const bool method = std::any_of(varied.begin(), varied.end(),
+                                  [](const std::string& key) {
+                                    return key.starts_with("solver.") && key != "solver.end_time" &&
+                                           key != "solver.at_deployed";
+                                  }) ||
+                      std::any_of(measures.begin(), measures.end(), [](const RunMeasure& measure) {
+                        return measure.needs == MeasureNeeds::method;
+                      });
+  options.model = method ? "full" : "auto";
+  return options;
 }
 
 namespace {

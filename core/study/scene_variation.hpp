@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/diagnostics/measures.hpp"
 #include "core/scene/scene.hpp"
 #include "core/simulate/trajectory.hpp"
 
@@ -23,6 +24,11 @@ struct SceneSource {
   // With these "key=value" behind the overrides. Throws SceneError, UnreadableScene.
   Scene read(const std::vector<std::string>& changes = {}) const;
 };
+
+// The solver of a scene of which many are run: its model is "auto" where the scene does not say, but "full"
+// where a key that is varied, or a measure, is about the method itself.
+SolverOptions study_solver(const Scene& scene, const std::vector<std::string>& varied,
+                           const std::vector<RunMeasure>& measures);
 
 // The number at a dotted key, written out in the scene or a default; nothing where there is none.
 std::optional<double> scene_number(const Scene& scene, const std::string& key);

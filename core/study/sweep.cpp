@@ -10,24 +10,38 @@
 #include "core/scene/build.hpp"
 #include "core/study/measured_run.hpp"
 #include "core/study/parallel_for.hpp"
+#include "core/study/path_sweep.hpp"
 #include "core/study/team.hpp"
 #include "core/study/tolerance.hpp"
 
 namespace unfurl {
 namespace {
 
+// What the measures are taken from; a run along the path whose events alone are asked for is at round-off,
+// and there is nothing to judge it by.
+Diagnostics asked_of(const SweepPlan& plan, Simulation& run) {
+  const bool states = std::any_of(plan.measures.begin(), plan.measures.end(),
+                                  [](const RunMeasure& m) { return m.needs != MeasureNeeds::events; });
+  return states || run.solved_as.name != "path" ? judge(run) : Diagnostics{};
+}
+
 // One point; nothing where it was cancelled.
-std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const std::vector<std::string>& key,
-                                                  const StudyHooks& hooks) {
-  std::vector<std::string> changes, row = key;
-  for (std::size_t a = 0; a < key.size(); ++a) changes.push_back(plan.axes[a].key + "=" + key[a]);
+std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const PathSweep& along_path,
+                                                  std::size_t point, const StudyHooks& hooks) {
+  const std::vector<std::string> key = plan.key(point);
+  std::vector<std::string> changes, row = key, varied;
+  if (along_path.measure(point, row)) return row;
+  for (std::size_t a = 0; a < key.size(); ++a) {
+    changes.push_back(plan.axes[a].key + "=" + key[a]);
+    varied.push_back(plan.axes[a].key);
+  }
   try {
     const Scene scene = plan.source.read(changes);
     SimulationHooks own;
     own.cancelled = hooks.cancelled;
-    Simulation run = simulate_as_asked(build_model(scene), scene.solver, own);
+    Simulation run = simulate_as_asked(build_model(scene), study_solver(scene, varied, plan.measures), own);
     if (run.status == RunStatus::stopped) return std::nullopt;
-    const Diagnostics diagnostics = judge(run);
+    const Diagnostics diagnostics = asked_of(plan, run);
     row.emplace_back(to_string(run.status));
     for (const RunMeasure& measure : plan.measures)
       row.push_back(exact_number(run.status == RunStatus::failed ? nan : measure.value(run, diagnostics)));
@@ -104,12 +118,13 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
     std::sort(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
       return std::pair(scattered(a) % pieces, a) < std::pair(scattered(b) % pieces, b);
     });
+  const PathSweep along_path(plan);
   std::size_t done = 0;
   std::mutex mutex;
   parallel_for(open.size(), hooks.threads, [&](std::size_t i) {
     const std::string piece = "points-" + std::to_string(scattered(open[i]) % pieces);
     if (hooks.stopped() || (hooks.team && !hooks.team->takes(piece))) return;
-    auto row = run_point(plan, plan.key(open[i]), hooks);
+    auto row = run_point(plan, along_path, open[i], hooks);
     if (!row) return;
     const std::lock_guard lock(mutex);
     if (!hooks.team || hooks.team->holds(piece)) journal.append(std::move(*row));

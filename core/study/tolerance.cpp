@@ -9,6 +9,7 @@
 
 #include "core/integrators/integrator.hpp"
 #include "core/math/largest.hpp"
+#include "core/path/path_run.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/table.hpp"
 
@@ -20,6 +21,8 @@ constexpr double most = 0.5, least = 0.02, aim = 0.2;
 // Numbers of steps are multiples of 35, for what other grids share with them (solve).
 constexpr long multiple = 35, first_steps = 4 * multiple, fewest_steps = multiple, max_steps = 100'000'000;
 constexpr int tries = 8;  // per number of stages
+// What a run along the path is off by at most, as a share of the structure's size.
+constexpr double path_share = 1e-12;
 // Work of the whole search, in solves times unknowns: a minute or two of one core.
 constexpr double most_work = 2e8;
 
@@ -218,8 +221,24 @@ bool order_depends_on_stages(const SolverOptions& options) {
 
 Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const SolverOptions& options,
                              const SimulationHooks& hooks) {
-  if (options.tolerance > 0) return Picker(model, options, hooks).pick();
-  return simulate(model, options, hooks);
+  const auto full = [&] {
+    if (options.tolerance > 0) return Picker(model, options, hooks).pick();
+    return simulate(model, options, hooks);
+  };
+  if (options.model == "full") return full();
+  try {
+    Simulation run = simulate_on_path(model, options, hooks);
+    run.solved_as = {"path", "one degree of freedom; solver.model = \"" + options.model + "\""};
+    if (options.tolerance > 0) run.position_estimate = path_share * structure_size(*model);
+    return run;
+  } catch (const PathRefused& refused) {
+    if (options.model == "path")
+      throw PathRefused("solver.model = \"path\": " + std::string(refused.what()) +
+                        "; \"auto\" takes the full model where the path does not apply");
+    Simulation run = full();
+    run.solved_as.why = std::string("no path: ") + refused.what();
+    return run;
+  }
 }
 
 }  // namespace unfurl

@@ -15,6 +15,10 @@ namespace unfurl {
 //
 // The choice is the same on every machine: work is counted (a factorisation as much as eight solves), not
 // timed.
+//
+// Before that options.model decides what is solved: "path" and, where it applies, "auto" take the path
+// (path/path_run.hpp), whose answer is at round-off, so that no tolerance is looked after. Throws PathRefused
+// where "path" does not apply.
 Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const SolverOptions& options,
                              const SimulationHooks& hooks = {});
 

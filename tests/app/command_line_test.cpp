@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the program says and returns for every kind of command line. Error texts are part of the contract.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -103,6 +104,69 @@ TEST_CASE("check counts the six-unit ring and names its redundant constraints") 
   const std::string text = run_program({"check", "hoop6"}).out;
   CHECK(contains(text, "rank                          71\n"));
   for (const auto& name : json["redundant"]) CHECK(contains(text, "  " + name.get<std::string>() + "\n"));
+}
+
+TEST_CASE("margin: drives against resistances by source, in words, JSON and files") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> scene{
+      "margin", "hoop6",
+      "--set",  "structure.fold_angle=60",
+      "--set",  R"(forces=[{kind="torsion_spring",name="hose",fold_angle=true,stiffness=500}])"};
+  auto words = scene;
+  for (const char* word : {"--json", "--stuck", "--factor", "hose=1.5", "-o"}) words.emplace_back(word);
+  words.push_back(dir / "margin");
+  const ProgramResult r = run_program(words);
+  REQUIRE(r.code == 0);
+  const auto json = nlohmann::json::parse(r.out);
+  // 12 hinges of 200 N on rods of 3 m, against 1.5 x 500 N m/rad over 60 degrees, deployed.
+  const double pi = 3.14159265358979;
+  CHECK(json["static_margin_min"].get<double>() == Approx(12 * 200 * 3 / (750 * pi / 3) - 1).epsilon(1e-8));
+  CHECK(std::abs(json["static_margin_at"].get<double>()) < 1e-4);
+  // 12 f l sin(60 deg) over half of 750 (pi / 3)^2.
+  CHECK(json["dynamic_margin_min"].get<double>() ==
+        Approx(12 * 200 * 3 * std::sin(pi / 3) / (375 * pi * pi / 9) - 1).epsilon(1e-6));
+  CHECK(json["sources"].size() == 2);
+  CHECK(json["sources"][1]["name"] == "hose");
+  CHECK(json["sources"][1]["factor"] == 1.5);
+  CHECK(json["arrives"] == true);
+  CHECK_FALSE(json["stuck"].empty());
+  for (const char* file :
+       {"margin.csv", "motion.csv", "stuck.csv", "margin.json", "figures/margin.pdf", "figures/margin.png"})
+    CHECK(std::filesystem::exists(dir / "margin" + "/" + file));
+  const ProgramResult text = run_program(scene);
+  CHECK(contains(text.out, "hoop6: static margin "));
+  CHECK(contains(text.out, "the motion arrives"));
+  const ProgramResult chain = run_program({"margin", "chain"});
+  CHECK(chain.code == 3);
+  CHECK(contains(chain.err, "no margin: the structure has 32 degrees of freedom"));
+  const ProgramResult unknown = run_program({"margin", "hoop6", "--factor", "wind=2"});
+  CHECK(unknown.code == 2);
+  CHECK(contains(unknown.err, "nothing that acts is called 'wind'"));
+  CHECK(run_program({"margin", "hoop6", "--factor", "loads"}).code == 2);
+}
+
+TEST_CASE("solver.model: the summary says what was solved and why, and path refuses what it cannot") {
+  const auto model_of = [](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"run"};
+    words.insert(words.end(), more.begin(), more.end());
+    words.emplace_back("--json");
+    const ProgramResult r = run_program(words);
+    INFO(r.err);
+    REQUIRE(r.code == 0);
+    return nlohmann::json::parse(r.out)["model"];
+  };
+  const std::string short_run = "solver.end_time=0.1";
+  CHECK(model_of({"hoop6", "--set", short_run})["solved_as"] == "full");
+  CHECK(model_of({"hoop6_sector", "--set", short_run})["solved_as"] == "sector");
+  const auto path = model_of({"hoop6_sector", "--set", short_run, "--set", "solver.model=path"});
+  CHECK(path["solved_as"] == "path");
+  CHECK(contains(path["why"], "one degree of freedom"));
+  const auto chain = model_of({"chain", "--set", short_run, "--set", "solver.model=auto"});
+  CHECK(chain["solved_as"] == "full");
+  CHECK(contains(chain["why"], "32 degrees of freedom"));
+  const ProgramResult refused = run_program({"run", "chain", "--set", "solver.model=path"});
+  CHECK(refused.code == 3);
+  CHECK(contains(refused.err, "solver.model = \"path\""));
 }
 
 TEST_CASE("modes: the mechanism's own first, then those of elastic rods, a modulus makes forces unique") {

@@ -150,6 +150,10 @@ Image screen_when(const XServer& server, const plot::Rect& in, const Condition& 
 
 // The program's window; what it prints is in the file "log".
 pid_t open_window(const XServer& server, const ScratchDirectory& scratch, const std::string& arguments) {
+  PanelSettings seen;  // as of somebody who has been here before, and looked at the cards of the twin
+  seen.tour_seen = true;
+  seen.open_figures = {"deployment", "trade", "constraint_error"};
+  save_settings(scratch / "config/unfurl/window.json", seen);
   // A sanitizer would report what the display's GL driver leaks (240 bytes, from a module that is unloaded by
   // then); leaks of the panel are looked for where it is driven without a window.
   return start("sh -c 'cd " + (scratch / "") + " && exec env ASAN_OPTIONS=detect_leaks=0 DISPLAY=" +
@@ -271,6 +275,40 @@ TEST_CASE("the window is as large as the monitor's fine pixels ask for, or as th
     CHECK(end_of(window, 10) == 0);
     CHECK(file_text(scratch / "log") == "");
   }
+}
+
+TEST_CASE("a session in a window is recorded, and has the same states without one") {
+  if (tools_missing()) return;
+  const ScratchDirectory scratch;
+  const plot::Rect slider = [] {
+    PanelDriver twin{PanelOptions()};
+    return twin.panel().place("structure.post_length");
+  }();
+  const XServer server;
+  const pid_t window =
+      open_window(server, scratch, "hoop6 --set solver.step=0.05 --record " + (scratch / "session.jsonl"));
+  REQUIRE(server.tool("search --sync --name Unfurl") == 0);
+  const auto recorded = [&](const char* what) {  // within a minute
+    for (int i = 0; i < 600; ++i) {
+      if (file_text(scratch / "session.jsonl").find(what) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+  };
+  REQUIRE(recorded("\"shown\""));
+  server.tool("mousemove 600 400 key End");
+  server.tool("mousemove " + middle_of(slider, 0.5) +
+              " mousedown 1 mousemove_relative 20 0 mousemove_relative 30 0 mouseup 1 mousemove 600 400");
+  REQUIRE(recorded("structure.post_length="));
+  server.tool("key ctrl+z");
+  server.tool("key t");
+  REQUIRE(recorded("\"dark\":true"));
+  server.tool("key ctrl+q");
+  CHECK(end_of(window, 20) == 0);
+  const ProgramResult replay = run_program({"view", "--replay", scratch / "session.jsonl"});
+  INFO(replay.out << replay.err);
+  CHECK(replay.code == 0);
+  CHECK(replay.out.find(": the same\n") != std::string::npos);
 }
 
 TEST_CASE("a display that goes away ends the window with its exit code, in one line") {

@@ -97,7 +97,7 @@ TEST_CASE("core draws nothing and prints nothing") {
 TEST_CASE("each room of core knows only those before it") {
   const std::vector<std::string> rooms = {"text",   "math",       "structure",   "constraints", "forces",
                                           "system", "structures", "integrators", "simulate",    "diagnostics",
-                                          "scene",  "export",     "study"};
+                                          "path",   "scene",      "export",      "study"};
   for (std::size_t i = 0; i < rooms.size(); ++i) {
     std::vector<std::string> later;
     for (std::size_t k = i + 1; k < rooms.size(); ++k) later.push_back("core/" + rooms[k] + "/");

@@ -18,6 +18,14 @@ void EditHistory::edit(const std::string& key, ParamValue value) {
   now_.edits[key] = std::move(value);
 }
 
+void EditHistory::change(const std::string& gesture, SceneDocument document) {
+  if (document == now_) return;
+  if (gesture_ != gesture) remember();
+  gesture_ = gesture;
+  future_.clear();
+  now_ = std::move(document);
+}
+
 void EditHistory::forget(const std::string& key) {
   end_gesture();
   if (!now_.edits.contains(key)) return;

@@ -17,6 +17,8 @@ class EditHistory {
   // A change of one key; changes of the same key join into one step until end_gesture, so that a slider's way
   // from press to release is undone at once. Equal values are no change.
   void edit(const std::string& key, ParamValue value);
+  // Many keys at once; changes of one gesture join.
+  void change(const std::string& gesture, SceneDocument document);
   void forget(const std::string& key);   // back to the file's value
   void replace(SceneDocument document);  // another scene, or none of the edits
   void saved(SceneDocument document);    // the same scene, now in a file: no step

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/panel/document/scene_document.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core/scene/library.hpp"
@@ -37,8 +38,26 @@ SceneDocument document_of_family(const std::string& kind) {
   return document;
 }
 
+SceneDocument blank_document() {
+  SceneDocument document;
+  document.name = "untitled";
+  document.text = std::make_shared<const std::string>(
+      "title = \"Untitled\"\n\n[structure]\nkind = \"custom\"\n\n"
+      "[[structure.nodes]]\nname = \"A\"\nposition = [0, 0, 0]\nfixed = true\n\n"
+      "[[structure.nodes]]\nname = \"B\"\nposition = [1, 0, 0]\n\n"
+      "[[structure.rods]]\nnodes = [\"A\", \"B\"]\nmass = 1.0\n\n"
+      "[gravity]\nacceleration = [0, 0, -9.81]\n\n[solver]\nend_time = 2.0\n");
+  return document;
+}
+
+bool of_library(const std::string& path) {
+  const auto scenes = library_scenes();
+  return std::any_of(scenes.begin(), scenes.end(), [&](const auto& scene) { return scene.path == path; });
+}
+
 SceneDocument simulated_part(SceneDocument document) {
   std::erase_if(document.edits, [](const auto& edit) { return edit.first.starts_with("render."); });
+  std::erase_if(document.added, [](const std::string& text) { return text.starts_with("render."); });
   return document;
 }
 

@@ -32,6 +32,10 @@ SceneDocument open_document(const std::string& scene, std::vector<std::string> o
 // A scene of a family: the library's first one of that kind, or the family's defaults.
 SceneDocument document_of_family(const std::string& kind);
 
+// Two nodes and a rod: the least from which a structure can be built by hand.
+SceneDocument blank_document();
+bool of_library(const std::string& path);  // a scene that comes with the program
+
 // The document without edits that change only pictures: where it is the same, so is the run.
 SceneDocument simulated_part(SceneDocument document);
 

@@ -160,22 +160,34 @@ std::size_t entries_of(const Scene& scene, std::string_view table) {
       all.begin(), all.end(), [&](const SceneElement& element) { return element.key.starts_with(table); }));
 }
 
-// A drive that stays at the value of t = 0, a stop that is there.
+// Where a new drive goes: somewhere that is seen. The deployed pose itself may be singular.
+double drive_target(const ElementKind& kind, const Structure& structure, double now, bool fold) {
+  constexpr double short_of_deployed = 0.05;
+  if (fold) {
+    const double deployed = structure.deployment.deployed_fold_angle / radians_per_degree;
+    return deployed + short_of_deployed * (now - deployed);
+  }
+  if (kind.members == Members::angle) return now + (now > 90 ? -15 : 15);
+  return kind.members == Members::two_nodes ? 0.9 * now : now + 0.1;
+}
+
+// A drive that moves, a stop that is there.
 void add_start(std::string& text, const ElementKind& kind, const SceneDocument& document,
-               const std::string& key, double end_time) {
+               const Structure& structure, const std::string& key, double end_time) {
   const bool stop = has_param(kind, "restitution");
   if (!stop && !has_param(kind, "motion")) return;
   const double now = value_at_start(document, key, text);
   if (stop) return add_member(text, "min", now);
+  const bool fold = text.find("fold_angle = true") != std::string::npos;
   add_member(text, "motion", std::string("smooth"));
-  add_member(text, "to", now);
+  add_member(text, "to", std::round(1e3 * drive_target(kind, structure, now, fold)) / 1e3);
   add_member(text, "duration", end_time);
 }
 
 }  // namespace
 
 std::string new_entry(const SceneDocument& document, std::string_view table, std::string_view kind_name,
-                      const Selection& selected) {
+                      const Selection& selected, std::string_view extra) {
   const Scene base = base_scene(document);
   Scene bare = base;
   bare.loads.clear();
@@ -195,8 +207,9 @@ std::string new_entry(const SceneDocument& document, std::string_view table, std
     add_member(text, "kind", std::string(kind_name));
     add_members(text, kind, members);
     add_values(text, kind);
-    add_start(text, kind, document, key, base.solver.end_time);
+    add_start(text, kind, document, structure, key, base.solver.end_time);
   }
+  if (!extra.empty()) text.append(", ").append(extra);
   const std::string entry = key + "={" + text + "}";
   base_scene(with_entry(document, entry));  // can be read
   return entry;

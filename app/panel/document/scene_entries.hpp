@@ -12,10 +12,11 @@ namespace unfurl {
 
 // A first version of an entry of `table` ("loads", "forces", "constraints"), to be changed by hand, as an
 // override: "constraints[1]={kind = \"angle\", ...}". It acts on what is selected, where that fits the kind;
-// a drive stays at the value of t = 0, a stop is there. Throws SceneError where the scene has no sound
-// structure, or no members for the kind.
+// a drive moves (the fold to the deployed pose but a little, an angle by 15 degrees, a distance by a tenth),
+// a stop is there. `extra`: members beside, "tension_only = true". Throws SceneError where the scene has no
+// sound structure, or no members for the kind.
 std::string new_entry(const SceneDocument& document, std::string_view table, std::string_view kind,
-                      const Selection& selected);
+                      const Selection& selected, std::string_view extra = {});
 
 SceneDocument with_entry(SceneDocument document, std::string entry);
 // Without an entry that the panel added, and edits of it; the ones behind it move up. `key`: "forces[2]".

@@ -2,6 +2,8 @@
 #include "app/panel/panes/figure_cards.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <string_view>
 
 #include "render/plot/style.hpp"
 
@@ -50,13 +52,17 @@ Figure with_pinned(Figure present, const Figure& pinned) {
   return present;
 }
 
+// A designer's first: what the structure bears and how it deploys, then how well that was computed. What is
+// not named here follows in the table's order.
 FigureCards::FigureCards() {
-  for (const FigureKind& kind : figure_kinds()) {
-    FigureCard card;
-    card.kind = &kind;
-    card.open = cards_.size() < 3;
-    cards_.push_back(std::move(card));
-  }
+  constexpr std::string_view first[] = {"rod_forces", "drives",     "rod_strength",
+                                        "margin",     "deployment", "energy"};
+  const auto rank = [&](const FigureCard& card) {
+    return std::find(std::begin(first), std::end(first), card.kind->name) - std::begin(first);
+  };
+  for (const FigureKind& kind : figure_kinds()) cards_.push_back({&kind, false, nullptr, {}});
+  std::stable_sort(cards_.begin(), cards_.end(),
+                   [&](const FigureCard& a, const FigureCard& b) { return rank(a) < rank(b); });
 }
 
 void FigureCards::show(const std::shared_ptr<const LiveRun>& run,

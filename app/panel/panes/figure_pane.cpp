@@ -123,14 +123,17 @@ void draw_trade(Ui& ui, PanelState& state, FigureCards& cards) {
 
 void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards) {
   cards.show(state.shown, state.pinned, figure_width(ui));
-  draw_trade(ui, state, cards);
+  bool traded = false;  // speed against accuracy stands before the figures of how well it was computed
   for (FigureCard& card : cards.cards()) {
     if (!cards.applies(card)) continue;
+    if (!traded && (card.kind->name == "constraint_error" || card.kind->name == "energy"))
+      traded = true, draw_trade(ui, state, cards);
     const std::string name(card.kind->name);
     if (!draw_header(ui, card, name, name, std::string(card.kind->help))) continue;
     cards.make(card);
     draw_figure(ui, state, card);
   }
+  if (!traded) draw_trade(ui, state, cards);
 }
 
 void draw_right_tabs(Ui& ui, PanelState& state) {

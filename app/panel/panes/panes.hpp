@@ -30,6 +30,18 @@ void draw_cursors(const Ui& ui);                // over the figures
 void draw_timeline(Ui& ui, PanelState& state);  // bottom
 void draw_help(Ui& ui, PanelState& state);
 void draw_export(Ui& ui, PanelState& state);
+void draw_files(Ui& ui, PanelState& state);
+void draw_question(Ui& ui, PanelState& state);
+void draw_palette(Ui& ui, PanelState& state);
+void draw_tour(Ui& ui, PanelState& state);
+
+struct PaletteItem {
+  std::string name, note;
+  int points = 0;  // how well it fits
+  Intent act;
+};
+// What fits a query, the best first.
+std::vector<PaletteItem> palette_items(const PanelState& state, const std::string& query);
 
 // A row of the left pane, with its menu and what is wrong with it.
 void draw_row(Ui& ui, PanelState& state, const ParamRow& row);

@@ -59,7 +59,13 @@ void draw_row(Ui& ui, PanelState& state, const ParamRow& row) {
   std::string wrong = not_given(value) ? "" : range_error(row.spec, value);
   if (wrong.empty())
     if (const SceneProblem* problem = problem_of(state, row.key)) wrong = problem->message;
+  const bool revealed = state.reveal == row.key;
+  if (revealed) {
+    ImGui::SetKeyboardFocusHere();
+    state.reveal.clear();
+  }
   if (draw_param(ui, row, value, !wrong.empty())) state.history.edit(row.key, value);
+  if (revealed) ImGui::SetScrollHereY();
   if (ImGui::IsItemDeactivated()) state.history.end_gesture();
   reset_menu(ui, state, row);
   if (!wrong.empty()) wrapped(ui.theme.error, wrong);
@@ -89,7 +95,7 @@ bool matters(const PanelState& state, const ParamSection& section, const ParamRo
 }
 
 // What an entry is, with a box to switch it off, and a button that takes it away where the panel added it.
-// Returns whether it is on.
+// Returns whether its rows are to be seen: it is on, and not folded.
 bool draw_entry(Ui& ui, PanelState& state, const ParamEntry& entry, const ParamRow& row) {
   ImGui::PushID(entry.key.c_str());
   ParamValue on = present_value(state, row);
@@ -100,7 +106,16 @@ bool draw_entry(Ui& ui, PanelState& state, const ParamEntry& entry, const ParamR
   }
   ui.note(row.key);
   tooltip(ui, "switch it off and on\n" + row.key);
-  ImGui::SameLine(0, ui.px(6));
+  ImGui::SameLine(0, ui.px(2));
+  const bool folded = state.folded.contains(entry.key);
+  if (ImGui::ArrowButton("##fold", folded ? ImGuiDir_Right : ImGuiDir_Down)) {
+    if (folded)
+      state.folded.erase(entry.key);
+    else
+      state.folded.insert(entry.key);
+  }
+  ui.note("fold " + entry.key);
+  ImGui::SameLine(0, ui.px(4));
   const bool added = is_added(state.history.now(), entry.key);
   const float away = added ? ImGui::CalcTextSize("Remove").x + 2 * ImGui::GetStyle().FramePadding.x : 0.0f;
   ImGui::AlignTextToFramePadding();
@@ -118,7 +133,7 @@ bool draw_entry(Ui& ui, PanelState& state, const ParamEntry& entry, const ParamR
   }
   ImGui::PopID();
   if (const SceneProblem* problem = own_problem(state, entry.key)) wrapped(ui.theme.error, problem->message);
-  return std::get<bool>(on);
+  return std::get<bool>(on) && !state.folded.contains(entry.key);
 }
 
 void draw_section(Ui& ui, PanelState& state, const ParamSection& section) {
@@ -134,26 +149,25 @@ void draw_section(Ui& ui, PanelState& state, const ParamSection& section) {
   }
 }
 
-void add_entry(PanelState& state, const std::string& table, std::string_view kind) {
-  state.intents.emplace_back([table, kind](LiveSession& s) { s.add_entry(table, kind); });
-}
-
-// "Add..." with the kinds that there are.
+// "Add..." with what there is, under the names that engineers know.
 void draw_add(Ui& ui, PanelState& state, const std::string& table) {
   const std::string popup = "kinds of " + table, help = "to what is selected in the view";
+  const auto add = [&](const ElementOffer& offer) {
+    state.intents.emplace_back([offer](LiveSession& s) { s.add_entry(offer); });
+  };
   if (table == "loads") {
-    if (button(ui, "add loads", "Add a load", help)) add_entry(state, table, "");
+    if (button(ui, "add loads", "Add a load", help)) add(element_offers(table).front());
     return;
   }
   const bool forces = table == "forces";
-  if (button(ui, "add " + table, forces ? "Add a force\u2026" : "Add a drive or constraint\u2026", help))
+  if (button(ui, "add " + table, forces ? "Add a spring, a cable\u2026" : "Add a motor, a stop\u2026", help))
     ImGui::OpenPopup(popup.c_str());
   if (!ImGui::BeginPopup(popup.c_str())) return;
-  for (const ElementKind& kind : forces ? scene_forces() : scene_constraints()) {
-    const std::string name(kind.kind);
-    if (ImGui::Selectable(name.c_str())) add_entry(state, table, kind.kind);
-    ui.note("add " + name);
-    tooltip(ui, std::string(kind.help));
+  for (const ElementOffer& offer : element_offers(table)) {
+    if (ImGui::Selectable(offer.name.c_str())) add(offer);
+    ui.note("add " + std::string(offer.kind) + (offer.extra.empty() ? "" : " " + offer.name));
+    ImGui::SameLine(ui.px(130));
+    ImGui::TextColored(ui.theme.dim, "%s", offer.sentence.c_str());
   }
   ImGui::EndPopup();
 }
@@ -207,10 +221,21 @@ void draw_scene_choice(Ui& ui, PanelState& state) {
 
 }  // namespace
 
+// Opens a section in which a parameter is looked for.
+void reveal_in(PanelState& state, const ParamSection& section) {
+  for (const ParamRow& row : section.rows)
+    if (row.key == state.reveal) {
+      ImGui::SetNextItemOpen(true);
+      state.folded.erase(row.entry);
+    }
+}
+
 void draw_scene_pane(Ui& ui, PanelState& state) {
   draw_scene_choice(ui, state);
+  draw_row(ui, state, state.title_row);
   draw_other_problems(ui, state);
   for (const ParamSection& section : state.sections) {
+    if (!state.reveal.empty()) reveal_in(state, section);
     ImGui::PushFont(ui.bold);
     const bool open = ImGui::CollapsingHeader(
         section.title.c_str(), section.open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);

@@ -1,10 +1,74 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/panel/panes/ui.hpp"
 
+#include <algorithm>
+#include <cstdio>
+
 namespace unfurl {
 
+Pane::Pane(const char* name, float x, float y, float width, float height, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos({x, y});
+  ImGui::SetNextWindowSize({std::max(1.0f, width), std::max(1.0f, height)});
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
+}
+
+Pane::~Pane() {
+  if (std::uncaught_exceptions() == before_) ImGui::End();
+}
+
+Box::Box(Ui& ui, const char* name, float width, bool top) : ui_(ui), name_(name) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float room = screen.x - ui.px(24);
+  ImGui::SetNextWindowPos({0.5f * screen.x, top ? ui.px(52) : 0.5f * screen.y}, ImGuiCond_Always,
+                          {0.5f, top ? 0.0f : 0.5f});
+  if (width > 0) ImGui::SetNextWindowSize({std::min(ui.px(width), room), 0});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {room, screen.y - ui.px(60)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0f);
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_PopupBg));
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   (width > 0 ? 0 : ImGuiWindowFlags_AlwaysAutoResize));
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
+}
+
+Box::~Box() {
+  if (std::uncaught_exceptions() != before_) return;
+  const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  ui_.places[name_ + " box"] = {low.x, low.y, low.x + size.x, low.y + size.y};
+}
+
+void Box::heading(const char* text) const {
+  ImGui::Dummy({0, ui_.px(2)});
+  ImGui::PushFont(ui_.bold);
+  ImGui::TextUnformatted(text);
+  ImGui::PopFont();
+}
+
+bool text_field(Ui& ui, const std::string& key, std::string& value, float width, const char* hint,
+                ImGuiInputTextFlags flags, ImGuiInputTextCallback callback) {
+  char buffer[4096];
+  std::snprintf(buffer, sizeof buffer, "%s", value.c_str());
+  ImGui::SetNextItemWidth(width);
+  const bool entered =
+      ImGui::InputTextWithHint(("##" + key).c_str(), hint, buffer, sizeof buffer, flags, callback);
+  ui.note(key);
+  const bool changed = value != buffer;
+  if (changed) value = buffer;
+  return (flags & ImGuiInputTextFlags_EnterReturnsTrue) != 0 ? entered : changed;
+}
+
+// Below the widget, or above it where there is no room: it covers none of its neighbours in a row.
 void tooltip(const Ui& ui, const std::string& text) {
   if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const float lines = ImGui::CalcTextSize(text.c_str(), nullptr, false, ui.px(340)).y + ui.px(30);
+  const bool above = high.y + lines > ImGui::GetIO().DisplaySize.y;
+  ImGui::SetNextWindowPos({low.x, above ? low.y - ui.px(6) : high.y + ui.px(6)}, ImGuiCond_Always,
+                          {0, above ? 1.0f : 0.0f});
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(ui.px(340));
   ImGui::TextUnformatted(text.c_str());

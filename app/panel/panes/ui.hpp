@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include <exception>
 #include <functional>
 #include <map>
 #include <string>
@@ -34,6 +35,38 @@ struct Ui {
     places[key] = {a.x, a.y, b.x, b.y};
   }
 };
+
+// A window that fills a rectangle of the panel. Where an exception passes, ImGui closes what is open, in its
+// order (ImguiHost::frame).
+class Pane {
+ public:
+  Pane(const char* name, float x, float y, float width, float height, ImGuiWindowFlags flags = 0);
+  ~Pane();
+  Pane(const Pane&) = delete;
+  Pane& operator=(const Pane&) = delete;
+
+ protected:
+  Pane() = default;
+  int before_ = std::uncaught_exceptions();
+};
+
+// A window over the others, in their middle or (`top`) below the top bar; as wide as that [points], 0: as its
+// contents. Its place is noted as "NAME box".
+class Box : public Pane {
+ public:
+  Box(Ui& ui, const char* name, float width, bool top = false);
+  ~Box();
+  float width() const { return ImGui::GetContentRegionAvail().x; }
+  void heading(const char* text) const;
+
+ private:
+  Ui& ui_;
+  std::string name_;
+};
+
+// A line of text to type; true where it changed.
+bool text_field(Ui& ui, const std::string& key, std::string& value, float width, const char* hint = "",
+                ImGuiInputTextFlags flags = 0, ImGuiInputTextCallback callback = nullptr);
 
 void tooltip(const Ui& ui, const std::string& text);  // over the last widget
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The centre: the 3-D view, what the mouse does in it, and what lies over it.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "app/panel/panes/panes.hpp"
 #include "app/panel/runs/comparison.hpp"
 #include "core/diagnostics/diagnostics.hpp"
+#include "render/scene/view.hpp"
 
 namespace unfurl {
 
@@ -14,37 +17,151 @@ namespace {
 
 struct Frame {  // of the view [pixels]
   ImVec2 low, size;
+  float x() const { return ImGui::GetIO().MousePos.x - low.x; }  // of the pointer in it
+  float y() const { return ImGui::GetIO().MousePos.y - low.y; }
 };
 
 void steer(PanelState& state, const SceneView& view, const Frame& frame) {
   const ImGuiIO& io = ImGui::GetIO();
   const OrbitCamera now = state.orbit ? *state.orbit : view.framed();
   const bool moved = io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
-  if (ImGui::IsItemActive() && moved) {
+  if (ImGui::IsItemActive() && moved && state.grabbed.empty()) {
     const bool pan = io.KeyShift || ImGui::IsMouseDown(1) || ImGui::IsMouseDown(2);
     state.orbit = (pan ? panned : orbited)(now, io.MouseDelta.x, io.MouseDelta.y, frame.size.y);
   }
   if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
-    const Vec3f along = ray_through(view.camera(state), io.MousePos.x - frame.low.x,
-                                    io.MousePos.y - frame.low.y, frame.size.x, frame.size.y);
+    const Vec3f along = ray_through(view.camera(state), frame.x(), frame.y(), frame.size.x, frame.size.y);
     state.orbit = zoomed(now, io.MouseWheel, along);
   }
 }
 
-void point_at(const Ui& ui, PanelState& state, const SceneView& view, const Frame& frame) {
+// What the pointer means in space: a point of the plane through `through` [m of the scene]; none where the
+// line of sight runs along it.
+std::optional<Vec3> point_in_plane(const PanelState& state, const SceneView& view, const Frame& frame,
+                                   const Vec3& through, int axis) {
+  const PickView pick = view.pick_view(state);
+  const Camera& camera = pick.camera;
+  const Vec3f forward = (camera.target - camera.eye).normalized();
+  Vec3f eye = camera.eye, along = ray_through(camera, frame.x(), frame.y(), frame.size.x, frame.size.y);
+  if (camera.parallel_height > 0) {  // rays are parallel: from where the pointer's is in the picture's plane
+    const Vec3f right = forward.cross(camera.up).normalized(), up = right.cross(forward);
+    const float metres = camera.parallel_height / frame.size.y;
+    eye +=
+        right * (frame.x() - 0.5f * frame.size.x) * metres - up * (frame.y() - 0.5f * frame.size.y) * metres;
+    along = forward;
+  }
+  const Mat3 back = pick.upright.transpose();
+  const Vec3 from = back * eye.cast<double>(), way = back * along.cast<double>();
+  const Vec3 normal = axis < 0 ? Vec3(back * forward.cast<double>()) : Vec3(Vec3::Unit(axis));
+  const double slope = way.dot(normal);
+  if (std::abs(slope) < 1e-3) return std::nullopt;
+  const double far = (through - from).dot(normal) / slope;
+  return far > 0 ? std::optional<Vec3>(from + far * way) : std::nullopt;
+}
+
+std::optional<Vec3> place_of_node(const PanelState& state, const std::string& name) {
+  const Trajectory& trajectory = state.shown->simulation.trajectory;
+  const auto& nodes = trajectory.structure().node_copies;
+  const auto at = std::find_if(nodes.begin(), nodes.end(), [&](const NodeCopy& n) { return n.name == name; });
+  if (at == nodes.end()) return std::nullopt;
+  const VectorXd whole = state.pose ? *state.pose : trajectory.positions_at(state.playback.t);
+  return Vec3(whole.segment<3>(3 * (at - nodes.begin())));
+}
+
+// A node that is held goes where the pointer goes, as far as it can.
+void lead_node(PanelState& state, const SceneView& view, const Frame& frame) {
   const ImGuiIO& io = ImGui::GetIO();
+  if (state.tool == Tool::read) return;
+  if (ImGui::IsItemActivated() && ImGui::IsMouseDown(0) && state.hovered.kind == Selection::Kind::node &&
+      !io.KeyShift)
+    state.grabbed = state.hovered.name;
+  if (state.grabbed.empty()) return;
+  if (!ImGui::IsItemActive()) {
+    state.grabbed.clear();
+    state.history.end_gesture();
+    return;
+  }
+  const auto place = place_of_node(state, state.grabbed);
+  if (!place || (io.MouseDelta.x == 0 && io.MouseDelta.y == 0)) return;
+  const bool build = state.tool == Tool::build;
+  const auto target = point_in_plane(state, view, frame, *place, build ? state.grid.plane : -1);
+  if (!target) return;
+  state.intents.emplace_back([build, node = state.grabbed, to = *target](LiveSession& s) {
+    if (build)
+      s.move_node(node, to);
+    else
+      s.pull(node, to);
+  });
+}
+
+// Clicks of a builder: twice where nothing is, a node; with Shift on another node, a rod.
+void click_to_build(PanelState& state, const SceneView& view, const Frame& frame) {
+  if (state.tool != Tool::build || !ImGui::IsItemHovered()) return;
+  const bool free = state.hovered.kind == Selection::Kind::none;
+  if (free && ImGui::IsMouseDoubleClicked(0)) {
+    const Vec3 through = place_of_node(state, state.selected.name).value_or(Vec3::Zero());
+    if (const auto place = point_in_plane(state, view, frame, through, state.grid.plane))
+      state.intents.emplace_back([to = *place](LiveSession& s) { s.add_node(to); });
+  }
+  if (ImGui::GetIO().KeyShift && ImGui::IsMouseClicked(0) && state.hovered.kind == Selection::Kind::node &&
+      state.selected.kind == Selection::Kind::node)
+    state.intents.emplace_back(
+        [a = state.selected.name, b = state.hovered.name](LiveSession& s) { s.connect(a, b); });
+}
+
+void point_at(const Ui& ui, PanelState& state, const SceneView& view, const Frame& frame) {
   state.hovered = {};
   if (!ImGui::IsItemHovered()) return;
   const bool dragging = ImGui::IsMouseDragging(0) || ImGui::IsMouseDragging(1) || ImGui::IsMouseDragging(2);
   if (!dragging)
-    state.hovered = pick(*state.shown, state.playback.t, view.pick_view(state), io.MousePos.x - frame.low.x,
-                         io.MousePos.y - frame.low.y, ui.px(9));
+    state.hovered =
+        pick(*state.shown, state.playback.t, view.pick_view(state), frame.x(), frame.y(), ui.px(9));
   const ImVec2 way = ImGui::GetMouseDragDelta(0, 0);
   if (ImGui::IsMouseReleased(0) && std::hypot(way.x, way.y) < ui.px(4)) state.selected = state.hovered;
 }
 
+// The pose that a hand leads the structure to, over the run's own.
+void draw_pose(const Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame) {
+  if (!state.pose) return;
+  const Structure& structure = state.shown->simulation.trajectory.structure();
+  const PickView pick = view.pick_view(state);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(frame.low, {frame.low.x + frame.size.x, frame.low.y + frame.size.y},
+                     ui.color(ui.theme.window, 0.55f));
+  const auto at = [&](int node) {
+    const Vec3 place = pick.upright * state.pose->segment<3>(3 * node);
+    return project(pick.camera, pick.width, pick.height, place.cast<float>());
+  };
+  for (const RodCopy& rod : structure.rod_copies) {
+    const Vec3f a = at(rod.a), b = at(rod.b);
+    if (a.z() <= 0 || b.z() <= 0) continue;
+    list.AddLine({frame.low.x + a.x(), frame.low.y + a.y()}, {frame.low.x + b.x(), frame.low.y + b.y()},
+                 ui.color(ui.theme.accent), ui.px(4));
+  }
+  for (std::size_t i = 0; i < structure.node_copies.size(); ++i) {
+    const Vec3f p = at(static_cast<int>(i));
+    const ImVec2 center(frame.low.x + p.x(), frame.low.y + p.y());
+    if (p.z() <= 0) continue;
+    list.AddCircleFilled(center, ui.px(5), ui.color(ui.theme.window));
+    list.AddCircle(center, ui.px(5), ui.color(ui.theme.accent), 0, ui.px(2));
+  }
+}
+
+// Its name beside the pointer.
+void name_hovered(const Ui& ui, const PanelState& state) {
+  if (state.hovered.kind == Selection::Kind::none) return;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 mouse = ImGui::GetIO().MousePos, size = ImGui::CalcTextSize(state.hovered.name.c_str());
+  const ImVec2 low(mouse.x + ui.px(14), mouse.y - size.y - ui.px(8));
+  list.AddRectFilled({low.x - ui.px(5), low.y - ui.px(2)},
+                     {low.x + size.x + ui.px(5), low.y + size.y + ui.px(2)}, ui.color(ui.theme.window, 0.92f),
+                     ui.px(4));
+  list.AddText(low, ui.color(ui.theme.text), state.hovered.name.c_str());
+}
+
 void mark(const Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame,
           const Selection& selection, ImU32 color) {
+  if (state.pose) return;  // the run's own pose is not what is looked at
   const PickedPlace place = place_of(selection, *state.shown, state.playback.t, view.pick_view(state));
   if (!place.found || place.a.z() <= 0 || place.b.z() <= 0) return;
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -117,41 +234,53 @@ void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
   list.AddText({frame.low.x + ui.px(12), high.y - ui.px(26)}, ui.color(ui.theme.text), text);
 }
 
-void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame, bool dark_ground) {
+// On a ground of its own: the structure may be behind it.
+void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame) {
   const LiveRun& run = *state.shown;
-  std::string text = run.scene.title;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 at(frame.low.x + ui.px(14), frame.low.y + ui.px(46));
-  const ImVec4 ink = dark_ground ? ImVec4(0.92f, 0.94f, 0.96f, 1) : ImVec4(0.12f, 0.15f, 0.18f, 1);
-  list.AddText(ui.bold, ui.bold->FontSize, at, ui.color(ink), text.c_str());
-  std::string line = std::string(to_string(run.simulation.status));
+  const std::string title = shortened(run.scene.title, frame.size.x - ui.px(40));
   char facts[160];
   std::snprintf(facts, sizeof facts, " at %.4g s, %ld steps, %.3g s of CPU time",
                 run.simulation.trajectory.end_time(), run.simulation.steps, run.simulation.cpu_s);
-  if (state.playback.playing && state.frames_per_second > 0) {
-    const std::size_t end = std::char_traits<char>::length(facts);
-    std::snprintf(facts + end, sizeof facts - end, ", %.0f frames/s", state.frames_per_second);
-  }
   const bool failed = run.simulation.status == RunStatus::failed;
-  line = failed ? "the solver failed " + run.simulation.message : line + facts;
-  const float room = frame.low.x + frame.size.x - at.x - ui.px(14);
+  std::string line = failed ? "the solver failed " + run.simulation.message
+                            : std::string(to_string(run.simulation.status)) + facts;
+  if (state.playback.playing && state.frames_per_second > 0) {
+    std::snprintf(facts, sizeof facts, ", %.0f frames/s", state.frames_per_second);
+    line += facts;
+  }
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float pad = ui.px(7), room = frame.size.x - ui.px(40);
+  const ImVec2 at(frame.low.x + ui.px(17), frame.low.y + ui.px(52));
+  const ImVec2 text = ImGui::CalcTextSize(line.c_str(), nullptr, false, room);
+  const float wide = std::max(text.x, ui.bold->CalcTextSizeA(ui.bold->FontSize, FLT_MAX, 0, title.c_str()).x);
+  list.AddRectFilled({at.x - pad, at.y - pad},
+                     {at.x + wide + pad, at.y + ui.bold->FontSize + ui.px(4) + text.y + pad},
+                     ui.color(ui.theme.window, 0.72f), ui.px(5));
+  list.AddText(ui.bold, ui.bold->FontSize, at, ui.color(ui.theme.text), title.c_str());
   list.AddText(ui.regular, ui.regular->FontSize, {at.x, at.y + ui.bold->FontSize + ui.px(4)},
-               ui.color(failed ? ui.theme.error : ink, failed ? 1.0f : 0.75f), line.c_str(), nullptr,
-               std::max(room, ui.px(60)));
+               ui.color(failed ? ui.theme.error : ui.theme.dim), line.c_str(), nullptr, room);
 }
 
-// A and B side by side, in the lower left corner.
+// A and B side by side, on the left below the title: the legend stands at the bottom.
 void draw_comparison(Ui& ui, const PanelState& state, const Frame& frame) {
   if (!state.pinned) return;
   const auto rows = compare(*state.pinned, *state.shown, point_of(state.trade, *state.pinned),
                             point_of(state.trade, *state.shown));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ui.regular->FontSize + ui.px(3), pad = ui.px(10);
-  const float columns[] = {ui.px(118), ui.px(110), ui.px(110), ui.px(92)};
+  const ComparisonRow heading{"", "A (pinned)", "B (now)", "B/A"};
+  float columns[4] = {};
+  const auto widen = [&](const ComparisonRow& row) {
+    const std::string* cells[] = {&row.label, &row.a, &row.b, &row.change};
+    for (int i = 0; i < 4; ++i)
+      columns[i] = std::max(columns[i], ImGui::CalcTextSize(cells[i]->c_str()).x + ui.px(i < 3 ? 16 : 0));
+  };
+  widen(heading);
+  for (const ComparisonRow& row : rows) widen(row);
   float width = 2 * pad;
   for (const float column : columns) width += column;
   const float height = 2 * pad + line * static_cast<float>(rows.size() + 1);
-  const ImVec2 low(frame.low.x + ui.px(12), frame.low.y + frame.size.y - height - ui.px(12));
+  const ImVec2 low(frame.low.x + ui.px(10), frame.low.y + ui.px(108));
   list.AddRectFilled(low, {low.x + width, low.y + height}, ui.color(ui.theme.window, 0.92f), ui.px(6));
   list.AddRect(low, {low.x + width, low.y + height}, ui.color(ui.theme.rule), ui.px(6));
   float y = low.y + pad;
@@ -162,12 +291,13 @@ void draw_comparison(Ui& ui, const PanelState& state, const Frame& frame) {
     for (int i = 0; i < 4; ++i) {
       right += columns[i];
       const float wide = ImGui::CalcTextSize(cells[i].first->c_str()).x;
-      list.AddText({i == 0 ? right - columns[0] : right - wide, y}, ui.color(*cells[i].second),
+      const float gap = i < 3 ? ui.px(16) : 0;
+      list.AddText({i == 0 ? right - columns[0] : right - wide - gap, y}, ui.color(*cells[i].second),
                    cells[i].first->c_str());
     }
     y += line;
   };
-  draw({"", "A (pinned)", "B (now)", "B/A"}, ui.theme.curve_a, ui.theme.curve_b);
+  draw(heading, ui.theme.curve_a, ui.theme.curve_b);
   for (const ComparisonRow& row : rows) draw(row, ui.theme.text, ui.theme.text);
   ui.places["comparison"] = {low.x, low.y, low.x + width, low.y + height};
 }
@@ -181,19 +311,25 @@ void choose_preset(PanelState& state, const SceneView& view, ViewPreset preset) 
 constexpr std::string_view quick_rows[] = {"render.look", "render.colour_by", "render.ghosts",
                                            "render.node_labels", "render.rod_labels"};
 
-void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const Frame& frame) {
-  ImGui::SetCursorScreenPos({frame.low.x + ui.px(10), frame.low.y + ui.px(10)});
-  if (button(ui, "frame", "Frame", "see the whole motion (F)")) state.orbit.reset();
-  constexpr std::pair<const char*, ViewPreset> presets[] = {
-      {"Front", ViewPreset::front}, {"Side", ViewPreset::side}, {"Top", ViewPreset::top}};
+void draw_view_options(Ui& ui, PanelState& state, const SceneView& view) {
+  ImGui::SetNextWindowSizeConstraints({ui.px(320), 0}, {ui.px(320), FLT_MAX});
+  if (!ImGui::BeginPopup("view options")) return;
+  constexpr std::pair<const char*, ViewPreset> presets[] = {{"Front", ViewPreset::front},
+                                                            {"Side", ViewPreset::side},
+                                                            {"Top", ViewPreset::top},
+                                                            {"Corner", ViewPreset::three_quarter}};
   for (const auto& [label, preset] : presets) {
-    ImGui::SameLine(0, ui.px(4));
+    if (preset != ViewPreset::front) ImGui::SameLine(0, ui.px(4));
     if (button(ui, std::string("view ") + label, label, "look from here")) choose_preset(state, view, preset);
   }
-  ImGui::SameLine(0, ui.px(12));
-  if (button(ui, "view options", "View", "what the view shows")) ImGui::OpenPopup("view options");
-  ImGui::SetNextWindowSizeConstraints({ui.px(300), 0}, {ui.px(300), FLT_MAX});
-  if (!ImGui::BeginPopup("view options")) return;
+  const auto use = [&](const char* key, const char* label, const char* help, bool only) {
+    if (button(ui, key, label, help, state.orbit.has_value()))
+      state.intents.emplace_back([only](LiveSession& s) { s.use_view(only); });
+  };
+  use("use view", "Use this view", "azimuth, elevation and zoom go into the scene, and into every export (V)",
+      true);
+  ImGui::SameLine(0, ui.px(4));
+  use("camera key", "Camera key here", "the film's camera is here at the present time (K)", false);
   for (const ParamSection& section : state.sections)
     for (const ParamRow& row : section.rows)
       if (std::find(std::begin(quick_rows), std::end(quick_rows), row.key) != std::end(quick_rows))
@@ -205,6 +341,71 @@ void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const F
   ImGui::Checkbox("the pinned run as a ghost", &state.view.ghost);
   ui.note("view.ghost");
   ImGui::EndPopup();
+}
+
+void draw_build_options(Ui& ui, PanelState& state, const Frame& frame) {
+  BuildGrid& grid = state.grid;
+  ImGui::SetCursorScreenPos({frame.low.x + ui.px(10), frame.low.y + frame.size.y - ui.px(62)});
+  const auto choose = [&](const char* key, const char* const* names, int count, int first, int& value) {
+    ImGui::SetNextItemWidth(ui.px(112));
+    int chosen = value - first;
+    if (ImGui::Combo((std::string("##") + key).c_str(), &chosen, names, count)) value = chosen + first;
+    ui.note(key);
+    ImGui::SameLine(0, ui.px(6));
+  };
+  constexpr const char* planes[] = {"view plane", "across x", "across y", "across z"};
+  constexpr const char* mirrors[] = {"no mirror", "mirror x = 0", "mirror y = 0", "mirror z = 0"};
+  constexpr const char* steps[] = {"no grid", "grid 0.01 m", "grid 0.1 m", "grid 0.5 m", "grid 1 m"};
+  constexpr double sizes[] = {0, 0.01, 0.1, 0.5, 1};
+  int step = static_cast<int>(std::find(std::begin(sizes), std::end(sizes), grid.step) - std::begin(sizes));
+  choose("build plane", planes, 4, -1, grid.plane);
+  choose("build grid", steps, 5, 0, step);
+  grid.step = sizes[std::clamp(step, 0, 4)];
+  choose("build mirror", mirrors, 4, -1, grid.mirror);
+  ImGui::Checkbox("lengths follow", &grid.follow);
+  ui.note("build follow");
+  tooltip(ui, "rods take the distance of their nodes; else they keep their lengths and the rest moves along");
+  ImGui::SameLine(0, ui.px(6));
+  if (button(ui, "remove part", "Delete", "what is selected (Del)",
+             state.selected.kind != Selection::Kind::none))
+    state.intents.emplace_back(&LiveSession::remove_selected);
+}
+
+// What the tool that is taken does.
+void draw_tool(Ui& ui, PanelState& state, const Frame& frame) {
+  if (state.tool == Tool::read) return;
+  if (state.tool == Tool::build) draw_build_options(ui, state, frame);
+  const char* hint = state.tool == Tool::pull
+                         ? "Pull: drag a node; drives let go. Esc: back to the run"
+                         : "Build: click twice for a node, drag it, Shift click from node to node for a rod";
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 at(frame.low.x + ui.px(14), frame.low.y + frame.size.y - ui.px(26));
+  const ImVec2 size = ImGui::CalcTextSize(hint);
+  list.AddRectFilled({at.x - ui.px(5), at.y - ui.px(3)}, {at.x + size.x + ui.px(5), at.y + size.y + ui.px(3)},
+                     ui.color(ui.theme.window, 0.85f), ui.px(4));
+  list.AddText(at, ui.color(ui.theme.text), hint);
+}
+
+void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const Frame& frame) {
+  ImGui::SetCursorScreenPos({frame.low.x + ui.px(10), frame.low.y + ui.px(10)});
+  if (button(ui, "view options", "View\u2026", "where from, the film's camera, what is shown"))
+    ImGui::OpenPopup("view options");
+  ImGui::SameLine(0, ui.px(4));
+  if (button(ui, "frame", "Frame", "see the whole motion (F)")) state.orbit.reset();
+  const auto tool = [&](const char* key, const char* label, const char* help, Tool which) {
+    ImGui::SameLine(0, ui.px(4));
+    const bool is = state.tool == which;
+    if (is) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    if (button(ui, key, label, help))
+      state.intents.emplace_back([which](LiveSession& s) { s.take_tool(which); });
+    if (is) ImGui::PopStyleColor();
+  };
+  tool("tool pull", "Pull", "take nodes by hand: what the mechanism allows (G)", Tool::pull);
+  tool("tool build", "Build", "add, drag, connect, delete nodes and rods of a custom scene (B)", Tool::build);
+  ImGui::SameLine(0, ui.px(4));
+  if (button(ui, "wiggle", "Wiggle", "each free motion of this pose, one after the other (W)"))
+    state.intents.emplace_back(&LiveSession::wiggle);
+  draw_view_options(ui, state, view);
 }
 
 }  // namespace
@@ -222,15 +423,20 @@ void draw_view_pane(Ui& ui, PanelState& state, SceneView& view) {
                              ImGuiButtonFlags_MouseButtonMiddle);
   ImGui::SetItemAllowOverlap();
   ui.note("view");
-  steer(state, view, frame);
   point_at(ui, state, view, frame);
+  lead_node(state, view, frame);
+  steer(state, view, frame);
+  click_to_build(state, view, frame);
+  draw_pose(ui, state, view, frame);
   mark(ui, state, view, frame, state.selected, ui.color(ui.theme.accent));
   if (!(state.hovered == state.selected))
     mark(ui, state, view, frame, state.hovered, ui.color(ui.theme.accent, 0.6f));
+  name_hovered(ui, state);
   draw_readings(ui, state, view, frame);
-  draw_state_line(ui, state, frame, view.dark_ground());
+  draw_state_line(ui, state, frame);
   draw_comparison(ui, state, frame);
   draw_view_buttons(ui, state, view, frame);
+  draw_tool(ui, state, frame);
   draw_pending(ui, state, frame);
 }
 

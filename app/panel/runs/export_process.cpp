@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <utility>
@@ -30,18 +31,60 @@ std::string free_name(const std::string& output, const std::string& text) {
   }
 }
 
+// "12 files, 3.4 MB"
+std::string size_of_folder(const std::string& folder) {
+  std::error_code unknown;
+  long files = 0;
+  double bytes = 0;
+  for (auto it = fs::recursive_directory_iterator(folder, unknown); it != fs::recursive_directory_iterator();
+       it.increment(unknown)) {
+    if (unknown) break;
+    if (!it->is_regular_file(unknown)) continue;
+    ++files;
+    bytes += static_cast<double>(it->file_size(unknown));
+  }
+  char text[64];
+  std::snprintf(text, sizeof text, "%ld %s, %.3g MB", files, files == 1 ? "file" : "files", bytes / 1e6);
+  return text;
+}
+
 }  // namespace
 
-std::vector<std::string> export_words(const SceneDocument& document, const std::string& verb,
-                                      const std::string& output) {
+std::span<const ExportKind> export_kinds() {
+  static constexpr ExportKind rows[] = {
+      {"Film, figures, data", "everything that the program makes of a scene", "render", ""},
+      {"Figures", "every figure as PNG, SVG, PDF and its numbers as CSV", "figure", ""},
+      {"Data", "summary, series and trajectory", "run", ""},
+      {"glTF", "the moving structure for Blender and the web", "run", "gltf"},
+      {"VTK", "the moving structure for ParaView", "run", "vtk"},
+      {"Web page", "an HTML page in which the structure turns and plays", "run", "html"},
+      {"Tables", "tidy CSV tables", "run", "csv"}};
+  return rows;
+}
+
+namespace {
+
+// Behind the scene's name.
+std::vector<std::string> words_behind(const ExportKind& kind, const std::string& output, bool replace) {
+  std::vector<std::string> words;
+  if (kind.verb == "figure") words.emplace_back("all");
+  words.insert(words.end(), {"-o", output});
+  if (!kind.formats.empty()) words.insert(words.end(), {"--export", std::string(kind.formats)});
+  if (replace && kind.verb != "figure") words.emplace_back("--force");
+  return words;
+}
+
+}  // namespace
+
+std::vector<std::string> export_words(const SceneDocument& document, const ExportKind& kind,
+                                      const std::string& output, bool replace) {
   std::string scene = document.path;
   if (scene.empty()) {
     scene = free_name(output, *document.text);
     write_file_atomically(scene, *document.text);
   }
-  std::vector<std::string> words{verb, scene};
-  if (verb == "figure") words.push_back("all");
-  words.insert(words.end(), {"-o", output});
+  std::vector<std::string> words{std::string(kind.verb), scene};
+  for (std::string& word : words_behind(kind, output, replace)) words.push_back(std::move(word));
   for (std::string& text : overrides_of(document)) {
     words.push_back("--set");
     words.push_back(std::move(text));
@@ -49,12 +92,29 @@ std::vector<std::string> export_words(const SceneDocument& document, const std::
   return words;
 }
 
-SceneDocument save_document(const SceneDocument& document, const std::string& path, bool& anew) {
-  const WrittenBack written =
-      write_back(*document.text, document.name, overrides_of(document), document.folder);
+std::string export_command(const SceneDocument& document, const ExportKind& kind, const std::string& output) {
+  std::string verb(kind.verb), line = command_line(document, verb, output);
+  const std::string plain = " -o " + shell_word(output);
+  std::string behind;
+  for (const std::string& word : words_behind(kind, output, false)) behind += " " + shell_word(word);
+  return line.replace(line.find(plain), plain.size(), behind);
+}
+
+SceneDocument saved_document(const SceneDocument& document, const std::string& path, bool& anew) {
+  WrittenBack written = write_back(*document.text, document.name, overrides_of(document), document.folder);
   anew = written.anew;
-  write_file_atomically(path, written.text);
-  return open_document(path, {});
+  SceneDocument saved;
+  saved.path = saved.name = path;
+  saved.text = std::make_shared<const std::string>(std::move(written.text));
+  saved.folder = fs::path(path).parent_path().string();
+  if (saved.folder.empty()) saved.folder = ".";
+  return saved;
+}
+
+SceneDocument save_document(const SceneDocument& document, const std::string& path, bool& anew) {
+  SceneDocument saved = saved_document(document, path, anew);
+  write_file_atomically(path, *saved.text);
+  return saved;
 }
 
 std::string own_program() {
@@ -92,7 +152,10 @@ std::string exported(const ExportRequest& request, const ExportProcess::Task& ta
   std::string text = read_text_file(log.name).text;
   while (!text.empty() && text.back() == '\n') text.pop_back();
   const auto output = std::find(words.begin(), words.end(), "-o");
-  if (*code == 0) return "exported to " + (output == words.end() ? "" : *(output + 1));
+  if (*code == 0) {
+    const std::string folder = output == words.end() ? "." : *(output + 1);
+    return "exported to " + fs::absolute(folder).lexically_normal().string() + ": " + size_of_folder(folder);
+  }
   return text.empty() ? "the export was ended" : text.substr(text.rfind('\n') + 1);
 }
 

@@ -2,7 +2,9 @@
 // An export: the program itself, run beside the panel with the command line that a person would type.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/panel/document/scene_document.hpp"
@@ -10,13 +12,23 @@
 
 namespace unfurl {
 
-// The words of "unfurl VERB SCENE -o OUTPUT --set ..." for a document; a scene without a file is written to
-// one beside the output. Throws FileError.
-std::vector<std::string> export_words(const SceneDocument& document, const std::string& verb,
-                                      const std::string& output);
+// What can be exported: a verb and what it is to write beside.
+struct ExportKind {
+  std::string_view name, help, verb, formats;
+};
+std::span<const ExportKind> export_kinds();
 
-// Writes the document's scene, comments kept, to a file, and returns the document of that file. Throws
-// SceneError, FileError. `anew`: the text had to be written anew.
+// The words of "unfurl VERB SCENE -o OUTPUT --set ..." for a document; a scene without a file is written to
+// one beside the output. `replace`: what is there. Throws FileError.
+std::vector<std::string> export_words(const SceneDocument& document, const ExportKind& kind,
+                                      const std::string& output, bool replace = false);
+// The same as a person would type it; writes nothing.
+std::string export_command(const SceneDocument& document, const ExportKind& kind, const std::string& output);
+
+// The document with its changes in the text, comments kept, as a file of that path would hold it. Throws
+// SceneError. `anew`: the text had to be written anew.
+SceneDocument saved_document(const SceneDocument& document, const std::string& path, bool& anew);
+// Writes that file. Throws FileError.
 SceneDocument save_document(const SceneDocument& document, const std::string& path, bool& anew);
 
 struct ExportRequest {

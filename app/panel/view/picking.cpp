@@ -93,9 +93,10 @@ std::vector<Reading> node_readings(int index, const LiveRun& run, double t) {
 
 }  // namespace
 
-Selection pick(const LiveRun& run, double t, const PickView& view, float x, float y, float reach) {
+Selection pick(const LiveRun& run, double t, const PickView& view, float x, float y, float reach,
+               const VectorXd* pose) {
   const Structure& structure = run.simulation.trajectory.structure();
-  const VectorXd whole = run.simulation.trajectory.positions_at(t);
+  const VectorXd whole = pose != nullptr ? *pose : run.simulation.trajectory.positions_at(t);
   Selection best;
   float nearest = reach, depth = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < structure.node_copies.size(); ++i) {

@@ -18,7 +18,9 @@ struct PickView {
 };
 
 // The node, or else the rod, whose picture is nearest to a pixel and within `reach` pixels.
-Selection pick(const LiveRun& run, double t, const PickView& view, float x, float y, float reach);
+// `pose`: another than the run's own at t [3 N].
+Selection pick(const LiveRun& run, double t, const PickView& view, float x, float y, float reach,
+               const VectorXd* pose = nullptr);
 
 // Where it is in the picture: two ends of a rod, twice the same point of a node; `found` false: the structure
 // has no such part.

@@ -148,11 +148,6 @@ DrawList SceneView::decorated(const PanelState& state) const {
   return list;
 }
 
-bool SceneView::dark_ground() const {
-  if (picture_.look == "studio") return dark_;
-  return !list_.transparent && lightness(list_.background_top) < 0.5f;
-}
-
 bool SceneView::moved(const PanelState& state) const {
   return builder_ && (t_ != painted_.t || !same(camera(state), painted_.camera));
 }

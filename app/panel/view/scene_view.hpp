@@ -29,7 +29,6 @@ class SceneView {
   Camera camera(const PanelState& state) const;
   OrbitCamera framed() const { return orbit_of(list_.camera); }  // the film's own camera
   PickView pick_view(const PanelState& state) const;
-  bool dark_ground() const;  // is light text what one can read on it?
   // The sphere around the whole motion.
   Vec3f center() const { return list_.center; }
   float radius() const { return list_.radius; }

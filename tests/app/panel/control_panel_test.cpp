@@ -149,6 +149,8 @@ TEST_CASE("the view turns, moves and zooms, and F frames it again") {
   CHECK(driver.state().orbit->distance < turned.distance);
   driver.key(Key::f);
   CHECK_FALSE(driver.state().orbit);
+  driver.click("view options");
+  driver.frame();
   driver.click("view Top");
   REQUIRE(driver.state().orbit);
   CHECK(driver.state().orbit->elevation > 1.5f);
@@ -165,9 +167,16 @@ TEST_CASE("a click in the view reads a rod") {
   style.height = static_cast<int>(view.height());
   const FrameBuilder builder(driver.state().shown->simulation.trajectory, style);
   const PickView pick_view{builder.camera(), style.width, style.height, builder.upright()};
-  const Selection rod{Selection::Kind::rod, structure.rod_copies[0].name};
-  const PickedPlace at = place_of(rod, *driver.state().shown, driver.state().playback.t, pick_view);
-  driver.move(view.x0 + 0.5 * (at.a.x() + at.b.x()), view.y0 + 0.5 * (at.a.y() + at.b.y()));
+  // The lowest one in the picture: buttons and titles are at the top.
+  double lowest = 0;
+  Eigen::Vector2d middle(0, 0);
+  for (const RodCopy& copy : structure.rod_copies) {
+    const PickedPlace at = place_of({Selection::Kind::rod, copy.name}, *driver.state().shown,
+                                    driver.state().playback.t, pick_view);
+    const double y = 0.5 * (at.a.y() + at.b.y());
+    if (y > lowest) lowest = y, middle = {view.x0 + 0.5 * (at.a.x() + at.b.x()), view.y0 + y};
+  }
+  driver.move(middle.x(), middle.y());
   CHECK(driver.state().hovered.kind == Selection::Kind::rod);
   driver.press(true);
   driver.press(false);

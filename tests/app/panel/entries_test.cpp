@@ -2,6 +2,7 @@
 // Entries of [[loads]], [[forces]] and [[constraints]] in the left pane.
 #include <catch2/catch.hpp>
 
+#include "app/panel/document/element_menu.hpp"
 #include "app/panel/document/scene_entries.hpp"
 #include "app/panel/runs/export_process.hpp"
 #include "core/scene/build.hpp"
@@ -90,10 +91,9 @@ TEST_CASE("a drive is added in the left pane, acts, is written into the file and
   CHECK(driver.state().problems.empty());
   const SceneDocument added = driver.state().history.now();
   CHECK(added.added.size() == 1);
-  // It begins as a motor that holds the fold angle of t = 0.
+  // It begins as a motor that all but deploys the ring: to a twentieth of its fold angle (rounded to 0.001).
   const auto angle = degrees(driver);
-  CHECK(angle.back() ==
-        Approx(angle.front()).margin(1e-6));  // "to" is rounded to six digits behind the point
+  CHECK(angle.back() == Approx(0.05 * angle.front()).margin(1e-3));
   driver.drag("constraints[0].to", 0.7, 0.6);
   driver.settle();
   const SceneDocument edited = driver.state().history.now();
@@ -170,9 +170,26 @@ TEST_CASE("a new drive or stop begins at what its members measure, whatever they
   SceneDocument document = open_document("pendulum", {});
   document.text = std::make_shared<const std::string>(scene);
   const Selection up{Selection::Kind::node, "up_stop"};
-  CHECK(new_entry(document, "constraints", "length", up).find("to = 3.0,") != std::string::npos);
+  CHECK(new_entry(document, "constraints", "length", up).find("to = 2.7,") != std::string::npos);
   CHECK(new_entry(document, "constraints", "length_stop", up).ends_with("min = 3.0}"));
   CHECK(new_entry(document, "constraints", "coordinate_stop", up).ends_with("min = 3.0}"));
+}
+
+TEST_CASE("what is offered has a name and a sentence, and a cable is a spring that only pulls") {
+  for (const char* table : {"loads", "forces", "constraints"})
+    for (const ElementOffer& offer : element_offers(table)) {
+      INFO(offer.kind);
+      CHECK(offer.name.size() > 3);
+      CHECK(offer.sentence.size() > 10);
+    }
+  const auto offers = element_offers("forces");
+  const auto cable =
+      std::find_if(offers.begin(), offers.end(), [](const auto& o) { return o.name == "Cable"; });
+  REQUIRE(cable != offers.end());
+  const SceneDocument document = open_document("four_bar", {});
+  const Scene scene =
+      base_scene(with_entry(document, new_entry(document, cable->table, cable->kind, {}, cable->extra)));
+  CHECK(scene.forces.at(0).values.boolean("tension_only"));
 }
 
 TEST_CASE("taking an entry away moves the ones behind it up, with their edits") {

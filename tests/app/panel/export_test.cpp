@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <catch2/catch.hpp>
+#include <filesystem>
 
 #include "app/panel/runs/export_process.hpp"
 #include "core/scene/reader.hpp"
@@ -28,13 +29,16 @@ TEST_CASE("an export from the panel is what the command line makes") {
   SceneDocument document = open_document("hoop6", {});
   document.edits["solver.step"] = 0.05;
   ExportProcess job;
-  job.submit({UNFURL_PROGRAM, export_words(document, "run", scratch / "panel")});
+  job.submit({UNFURL_PROGRAM, export_words(document, export_kinds()[2], scratch / "panel")});
   std::string report;
   for (int i = 0; i < 60000 && report.empty(); ++i) {
     report = job.take().value_or("");
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  CHECK(report == "exported to " + (scratch / "panel"));
+  // What, where, how much.
+  const auto files = std::distance(std::filesystem::directory_iterator(scratch / "panel"),
+                                   std::filesystem::directory_iterator());
+  CHECK(report.starts_with("exported to " + (scratch / "panel") + ": " + std::to_string(files) + " files, "));
   REQUIRE(run_program({"run", "hoop6", "-o", scratch / "shell", "--set", "solver.step=0.05"}).code == 0);
   CHECK(file_text(scratch / "panel/trajectory.csv") == file_text(scratch / "shell/trajectory.csv"));
   CHECK_FALSE(file_text(scratch / "panel/trajectory.csv").empty());
@@ -44,11 +48,31 @@ TEST_CASE("an export that fails says why in one line") {
   const ScratchDirectory scratch;
   const std::string file = scratch.write("taken", "a file");
   ExportProcess job;
-  job.submit({UNFURL_PROGRAM, export_words(open_document("hoop6", {}), "run", file)});
+  job.submit({UNFURL_PROGRAM, export_words(open_document("hoop6", {}), export_kinds()[2], file)});
   std::string report;
   for (int i = 0; i < 60000 && report.empty(); ++i) {
     report = job.take().value_or("");
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   CHECK(report.find("is a file") != std::string::npos);
+}
+
+TEST_CASE("every kind of export has a command line that its verb takes") {
+  const SceneDocument document = open_document("hoop6", {"solver.step=0.05"});
+  for (const ExportKind& kind : export_kinds()) {
+    const std::string line = export_command(document, kind, "my out");
+    INFO(line);
+    CHECK(line.starts_with("unfurl " + std::string(kind.verb) + " hoop6"));
+    CHECK(line.find(" -o 'my out'") != std::string::npos);
+    if (!kind.formats.empty())
+      CHECK(line.find(" --export " + std::string(kind.formats)) != std::string::npos);
+    CHECK(line.ends_with(" --set solver.step=0.05"));
+    std::vector<std::string> words = export_words(document, kind, "out", true);
+    words[0] = "help";  // the verb's help names every option that is used
+    words.resize(1);
+    words.emplace_back(kind.verb);
+    const std::string help = run_program(words).out;
+    if (!kind.formats.empty()) CHECK(help.find("--export") != std::string::npos);
+    CHECK((kind.verb == "figure" || help.find("--force") != std::string::npos));
+  }
 }

@@ -9,9 +9,21 @@ namespace unfurl {
 
 class PanelDriver {
  public:
-  explicit PanelDriver(PanelOptions options = small(), const std::string& scene = "hoop6")
-      : context_(make_offscreen_context()), panel_(*context_, document(scene), std::move(options)) {
+  // `first_start`: with the guided tour.
+  explicit PanelDriver(PanelOptions options = small(), const std::string& scene = "hoop6",
+                       bool first_start = false)
+      : PanelDriver(std::move(options), document(scene), first_start) {}
+  PanelDriver(PanelOptions options, SceneDocument scene, bool first_start = false)
+      : context_(make_offscreen_context()),
+        panel_(*context_, std::move(scene), with_cards(std::move(options), first_start)) {
     settle();
+  }
+
+  // The cards that these tests look at are open.
+  static PanelOptions with_cards(PanelOptions options, bool first_start) {
+    options.settings.open_figures = {"deployment", "trade", "constraint_error"};
+    options.settings.tour_seen = !first_start;
+    return options;
   }
 
   // Quick to draw.

@@ -61,7 +61,7 @@ TEST_CASE("ten thousand random events harm nothing, and undo leads back to the s
   for (int i = 0; i < 10000; ++i) {
     driver.panel().handle(random_event(random, options.width, options.height));
     // Not an export: it would write files.
-    driver.state().export_open = false;
+    driver.state().export_open = driver.state().files_open = false;
     driver.frame(1.0 / 60, i % 100 == 0);  // painted now and then
     edits += driver.state().history.can_undo() ? 1 : 0;
   }

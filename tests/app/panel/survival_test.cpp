@@ -84,10 +84,10 @@ TEST_CASE("an export of a scene that is in no file replaces none") {
   const std::string mine = scratch.write("out.toml", "# my own scene\n");
   SceneDocument document = document_of_family("pendulum");
   document.path.clear();
-  const auto words = export_words(document, "run", scratch / "out");
+  const auto words = export_words(document, export_kinds()[2], scratch / "out");
   CHECK(file_text(mine) == "# my own scene\n");
   CHECK(words[1] == scratch / "out-2.toml");
-  CHECK(export_words(document, "run", scratch / "out")[1] == words[1]);  // the same text
+  CHECK(export_words(document, export_kinds()[2], scratch / "out")[1] == words[1]);  // the same text
 }
 
 }  // namespace unfurl::survival_test

@@ -86,7 +86,8 @@ TEST_CASE(
     const Scene scene = read_scene_file(entry.path, {});
     const auto model = build_model(scene);
     const Structure& s = model->structure;
-    if (s.deployment.empty() || !model->system.drives().empty()) continue;
+    // Of constant loads alone: what winches and springs have done is not force times way.
+    if (s.deployment.empty() || !model->system.drives().empty() || !s.forces.empty()) continue;
     SolverOptions options = scene.solver;
     options.at_deployed = "latch";
     const Simulation run = simulate(model, options);

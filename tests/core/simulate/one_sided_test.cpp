@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "core/integrators/integrator.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "core/simulate/latch.hpp"
+#include "core/simulate/stepper.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -225,6 +228,94 @@ TEST_CASE("impacts without end are cut by a limit that is said") {
   CHECK(run.warnings[0].find("impacts without end") != std::string::npos);
   CHECK(std::abs(end_positions(run)[2]) <= 1.1e-8);
   CHECK(testing::largest(diagnose(run), "energy_balance_J") <= 1e-8);
+}
+
+TEST_CASE("two stops that are touched at one time throw back together") {
+  // A bar of 2 kg falls flat by 0.2 m at 10 m/s^2 on a stop at each end: one after the other they would turn
+  // it. Each end goes back with its own restitution.
+  const std::string bar = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "A", position = [0, 0, 0.2]},
+  {name = "B", position = [1.3, 0, 0.2]}]
+rods = [{nodes = ["A", "B"], mass = 2}]
+[[constraints]]
+kind = "coordinate_stop"
+name = "left"
+nodes = ["A"]
+direction = [0, 0, 1]
+min = 0
+restitution = 0.5
+[[constraints]]
+kind = "coordinate_stop"
+name = "right"
+nodes = ["B"]
+direction = [0, 0, 1]
+min = 0
+restitution = 0.5
+[gravity]
+acceleration = [0, 0, -10]
+[solver]
+stages = 4
+step = 0.03
+end_time = 1
+)";
+  const Simulation run = run_scene(bar);
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.warnings.empty());
+  REQUIRE(run.events.size() >= 4);
+  for (const std::size_t i : {0U, 1U}) {
+    CHECK(run.events[i].kind == "contact");
+    CHECK(run.events[i].t == Approx(0.2).epsilon(1e-11));
+    CHECK(run.events[i].energy_lost == Approx(0.5 * 0.75 * 0.5 * 2 * 4).epsilon(1e-9));
+    CHECK(run.events[i + 2].t == Approx(0.4).epsilon(1e-10));
+  }
+  const VectorXd end = end_positions(run);
+  CHECK(end[2] == Approx(0).margin(1e-9));
+  CHECK(end[5] == Approx(0).margin(1e-9));
+  CHECK(end[0] == Approx(0).margin(1e-9));
+  CHECK(testing::largest(diagnose(run), "energy_balance_J") <= 1e-9);
+  const Simulation just_after = run_scene(
+      bar, {"constraints[0].restitution=0.8", "constraints[1].restitution=0.3", "solver.end_time=0.201"});
+  REQUIRE(just_after.status == RunStatus::completed);
+  const VectorXd v = just_after.trajectory.node_velocities(just_after.trajectory.size() - 1);
+  CHECK(v[2] == Approx(0.8 * 2 - 0.01).margin(2e-3));  // and what turning takes in a millisecond
+  CHECK(v[5] == Approx(0.3 * 2 - 0.01).margin(2e-3));
+}
+
+TEST_CASE("a start that has no answer ends the run with a reason") {
+  // A cable that pulls at t = 0, and an angle about an axis that one of its lines is along: no equations.
+  const auto at_start = [](const Vec3& tip) {
+    Structure s;
+    s.nodes = {{"O", {0, 0, 0}, Vec3::Zero(), 1.0},
+               {"P", {1, 0, 0}, Vec3::Zero(), 1.0},
+               {"A", tip, Vec3::Zero(), 1.0},
+               {"B", {0, 1, 1}, Vec3::Zero(), 1.0}};
+    s.constraints.push_back(
+        {"measure", "hinge", {}, {}, 0.0, {MeasureKind::angle, {0, 1, 0, 2}, Vec3::UnitZ(), 0.0}, {}});
+    Force cable;
+    cable.kind = "spring";
+    cable.name = "cable";
+    cable.measure = {MeasureKind::length, {0, 3}, Vec3::Zero(), 0.0};
+    cable.stiffness = 10;
+    cable.rest = 1;
+    cable.one_sided = true;
+    s.forces.push_back(cable);
+    show_as_solved(s);
+    System system(s, true);
+    return std::make_shared<const Model>(Model{std::move(s), std::move(system)});
+  };
+  SolverOptions options;
+  options.end_time = 0.1;
+  const auto singular = at_start({0, 0, 1}), regular = at_start({0.8, 0.1, 1});
+  Stepper stepper(singular, options);
+  CHECK_FALSE(stepper.step());
+  CHECK(stepper.run().status == RunStatus::failed);
+  CHECK(stepper.run().message.find("cannot be factorised") != std::string::npos);
+  CHECK_THROWS_AS(hand_over(*regular, initial_state(singular->structure, singular->system).state, *singular),
+                  CannotFactorise);
 }
 
 }  // namespace one_sided_test

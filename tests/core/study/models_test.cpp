@@ -69,9 +69,10 @@ TEST_CASE("gears and nets are switched off one by one") {
   CHECK(std::find(names.begin(), names.end(), "without wheels") != names.end());
   CHECK(std::find(changes.begin(), changes.end(), "constraints[0].enabled=false") != changes.end());
   CHECK(std::find(changes.begin(), changes.end(), "forces[0].enabled=false") != changes.end());
+  const SceneSource reflector{
+      "r.toml", {}, std::make_shared<const std::string>("[structure]\nkind = 'mesh_reflector'\n")};
   names.clear();
-  for (const ModelChoice& choice : model_choices({find_scene("mesh_reflector"), {}}))
-    names.push_back(choice.name);
+  for (const ModelChoice& choice : model_choices(reflector)) names.push_back(choice.name);
   CHECK(std::find(names.begin(), names.end(), "without nets") != names.end());
   CHECK(std::find(names.begin(), names.end(), "without synchronising gears") != names.end());
 }
@@ -80,6 +81,35 @@ TEST_CASE("dense matrices are refused where they would not fit") {
   const SceneSource source{find_scene("hoop6"), {"solver.sparse=false", "structure.units=2000"}};
   CHECK_THROWS_WITH(build_model(source.read()),
                     Catch::Contains("solver.sparse") && Catch::Contains("3000 at most"));
+}
+
+TEST_CASE("what friction and a test rig add is measured beside the scene") {
+  const auto named = [](const std::vector<MeasuredModel>& models, std::string_view name) {
+    for (const MeasuredModel& m : models)
+      if (m.choice.name == name) return m;
+    FAIL("no choice " << name);
+    throw std::logic_error("unreachable");
+  };
+  const SceneSource rig{find_scene("hoop6"),
+                        {"gravity.acceleration=[0,0,-9.81]", "solver.end_time=6",
+                         "forces[0]={kind=\"offload\", nodes=[\"*\"], trolley=\"following\"}",
+                         "forces[1]={kind=\"friction\", fold_angle=true, kinetic=20, static=25}"}};
+  const auto models = compare_models(rig, 1, {});
+  // Ropes that follow carry the weight and nothing else; hinges with friction deploy later.
+  const MeasuredModel flight = named(models, "0 g flight: neither weight nor offload"),
+                      smooth = named(models, "without friction"), test = models.front();
+  CHECK(flight.outcome == "deployed");
+  CHECK(flight.deployment_time == Approx(test.deployment_time).epsilon(1e-9));
+  // The largest rod force is one of those next to the singular deployed pose, which rounding may change.
+  CHECK(flight.peak_force == Approx(test.peak_force).epsilon(1e-2));
+  CHECK(smooth.deployment_time < test.deployment_time - 1e-3);
+  // From trolleys that stay the ring is pulled back.
+  const SceneSource fixed{find_scene("hoop6"),
+                          {"gravity.acceleration=[0,0,-9.81]", "solver.end_time=9",
+                           "forces[0]={kind=\"offload\", nodes=[\"*\"], length=40}"}};
+  const auto pulled = compare_models(fixed, 1, {});
+  CHECK(pulled.front().deployment_time >
+        named(pulled, "0 g flight: neither weight nor offload").deployment_time + 1e-3);
 }
 
 }  // namespace models_test

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/panel/view/film_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/scene/write.hpp"
+#include "render/scene/film_style.hpp"
+
+namespace unfurl {
+
+namespace {
+
+// Half of the height that a camera sees at its target [m].
+double reach(const OrbitCamera& orbit) {
+  return orbit.distance * std::tan(0.5 * orbit.field_of_view);
+}
+
+// The same of a film with these keys at a zoom of 1.
+double film_reach(const LiveRun& run, const RenderOptions& picture, std::vector<CameraKey> keys) {
+  Scene scene = run.scene;
+  scene.render = picture;
+  scene.render.follow = false;
+  scene.render.orbit = scene.render.turntable = 0;
+  scene.render.inset = scene.render.trails = "";
+  for (CameraKey& key : keys) key.zoom = 1;
+  scene.render.camera_keys = std::move(keys);
+  FrameStyle style = film_style(scene, run.simulation, run.diagnostics);
+  style.labels = false;
+  const Camera camera = FrameBuilder(run.simulation.trajectory, style).camera();
+  return camera.parallel_height > 0 ? 0.5 * static_cast<double>(camera.parallel_height)
+                                    : reach(orbit_of(camera));
+}
+
+double in_degrees(float radians) {
+  return std::round(10 * static_cast<double>(radians) / radians_per_degree) / 10;
+}
+
+std::string key_text(const CameraKey& key) {
+  return "{time = " + toml_value(key.time) + ", azimuth = " + toml_value(key.azimuth) +
+         ", elevation = " + toml_value(key.elevation) + ", zoom = " + toml_value(key.zoom) + "}";
+}
+
+}  // namespace
+
+std::vector<CameraKey> keys_with(std::vector<CameraKey> others, const LiveRun& run,
+                                 const RenderOptions& picture, const OrbitCamera& orbit, double t) {
+  const double before = others.empty() ? 0 : film_reach(run, picture, others);
+  std::erase_if(others, [&](const CameraKey& key) { return std::abs(key.time - t) < 1e-6; });
+  CameraKey key{t, in_degrees(orbit.azimuth), std::clamp(in_degrees(orbit.elevation), -90.0, 90.0), 1};
+  std::vector<CameraKey> keys = others;
+  keys.insert(std::upper_bound(keys.begin(), keys.end(), t,
+                               [](double at, const CameraKey& other) { return at < other.time; }),
+              key);
+  const double after = film_reach(run, picture, keys);
+  for (CameraKey& each : keys) {
+    const double zoom = each.time == t ? after / reach(orbit) : each.zoom * after / before;
+    each.zoom = std::clamp(std::round(1000 * zoom) / 1000, 0.05, 50.0);
+  }
+  return keys;
+}
+
+SceneDocument with_camera(SceneDocument document, const LiveRun& run, const RenderOptions& picture,
+                          const OrbitCamera& orbit, double t, bool only) {
+  const double at = only ? 0.0 : std::round(1e4 * t) / 1e4;
+  std::string list;
+  for (const CameraKey& key :
+       keys_with(only ? std::vector<CameraKey>() : picture.camera_keys, run, picture, orbit, at))
+    list += (list.empty() ? "" : ", ") + key_text(key);
+  std::erase_if(document.added,
+                [](const std::string& text) { return text.starts_with("render.camera_keys="); });
+  document.added.push_back("render.camera_keys=[" + list + "]");
+  if (picture.follow) document.edits["render.follow"] = false;
+  if (picture.orbit != 0) document.edits["render.orbit"] = 0.0;
+  if (picture.turntable != 0) document.edits["render.turntable"] = 0.0;
+  return document;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl margin SCENE [--factor NAME=VALUE] [--stuck] [-o DIR]: drives against resistances along the path.
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/command.hpp"
+#include "app/output/interrupt.hpp"
+#include "app/verbs/scene_run.hpp"
+#include "app/verbs/study_session.hpp"
+#include "core/path/margin.hpp"
+#include "core/path/path.hpp"
+#include "core/study/table.hpp"
+#include "core/text/nearest_name.hpp"
+#include "render/plot/figures/margin_figure.hpp"
+
+namespace unfurl {
+
+namespace {
+
+std::map<std::string, double> factors_of(const Arguments& arguments) {
+  std::map<std::string, double> out;
+  for (const std::string& text : arguments.study.factors) {
+    const std::size_t at = text.rfind('=');
+    const double value = at == std::string::npos ? -1 : number_of(text.substr(at + 1));
+    if (at == 0 || !(value >= 0) || !std::isfinite(value))
+      throw UsageError("--factor must be NAME=VALUE with a number >= 0; got " + in_quotes(text));
+    if (!out.emplace(text.substr(0, at), value).second)
+      throw UsageError("--factor gives " + in_quotes(text.substr(0, at)) + " twice");
+  }
+  return out;
+}
+
+bool folds(const Margin& margin) {
+  return margin.unit == "N m";
+}
+
+// Degrees of the fold angle, or how far along the path.
+double place(const Margin& margin, double fold_angle, double s) {
+  return folds(margin) ? fold_angle / radians_per_degree : s;
+}
+
+std::string place_column(const Margin& margin) {
+  return folds(margin) ? "fold_angle_deg" : "way_m_kg_1_2";
+}
+
+Table poses_table(const Margin& margin) {
+  Table table{{place_column(margin), "static_margin"}, {}};
+  for (const MarginSource& source : margin.sources)
+    table.columns.push_back(source.name + (folds(margin) ? ".torque_N_m" : ".force_N_kg_1_2"));
+  for (const MarginPoint& p : margin.points) {
+    table.rows.push_back({exact_number(place(margin, p.fold_angle, p.s)), exact_number(p.margin)});
+    for (const double force : p.forces) table.rows.back().push_back(exact_number(force));
+  }
+  return table;
+}
+
+Table motion_table(const Margin& margin) {
+  Table table{{"t_s", place_column(margin), "dynamic_margin", "kinetic_energy_J", "driven_J", "resisted_J"},
+              {}};
+  for (const MarginReach& r : margin.motion)
+    table.rows.push_back({exact_number(r.t), exact_number(place(margin, r.fold_angle, r.s)),
+                          exact_number(r.margin()), exact_number(r.kinetic), exact_number(r.driven),
+                          exact_number(r.resisted)});
+  return table;
+}
+
+Table stuck_table(const Margin& margin, const std::vector<StuckHinge>& hinges) {
+  Table table{
+      {"hinge", "stall_torque_N_m", "stalls_at_" + place_column(margin), "static_torque_N_m", "turn_rad"},
+      {}};
+  for (const StuckHinge& h : hinges)
+    table.rows.push_back({h.name, exact_number(h.stall_torque),
+                          exact_number(place(margin, h.stall_fold, h.stall_at)),
+                          exact_number(h.static_torque), exact_number(h.turn)});
+  return table;
+}
+
+using Json = nlohmann::ordered_json;
+
+Json sources_json(const Margin& margin) {
+  Json sources = Json::array();
+  for (std::size_t k = 0; k < margin.sources.size(); ++k) {
+    double drive = 0, resistance = 0;
+    for (const MarginPoint& p : margin.points) {
+      drive = std::max(drive, p.forces[static_cast<Index>(k)]);
+      resistance = std::max(resistance, -p.forces[static_cast<Index>(k)]);
+    }
+    sources.push_back({{"name", margin.sources[k].name},
+                       {"kind", margin.sources[k].kind},
+                       {"factor", margin.sources[k].factor},
+                       {"largest_drive", drive},
+                       {"largest_resistance", resistance},
+                       {"at_worst", margin.worst.forces[static_cast<Index>(k)]}});
+  }
+  return sources;
+}
+
+// A margin without bound is null.
+Json margin_json(const Scene& scene, const Margin& margin, const std::vector<StuckHinge>& hinges,
+                 bool stuck) {
+  const MarginReach& last = margin.motion.back();
+  Json json{{"scene", scene.name},
+            {"static_margin_min", margin.worst.margin},
+            {"static_margin_at", place(margin, margin.worst.fold_angle, margin.worst.s)},
+            {"dynamic_margin_min", margin.dynamic_min},
+            {"at_unit", folds(margin) ? "deg" : "m kg^1/2"},
+            {"arrives", margin.arrives},
+            {"stalls_at", margin.arrives ? Json() : Json(place(margin, last.fold_angle, last.s))},
+            {"force_unit", margin.unit},
+            {"sources", sources_json(margin)}};
+  if (!stuck) return json;
+  json["stuck"] = Json::array();
+  for (const StuckHinge& h : hinges)
+    json["stuck"].push_back({{"hinge", h.name},
+                             {"stall_torque_N_m", h.stall_torque},
+                             {"stalls_at", place(margin, h.stall_fold, h.stall_at)},
+                             {"static_torque_N_m", h.static_torque},
+                             {"turn_rad", h.turn}});
+  return json;
+}
+
+std::string words(double margin) {
+  return std::isfinite(margin) ? short_number(margin, 6) : "without bound";
+}
+
+void print_margin(const Scene& scene, const Margin& margin, const std::vector<StuckHinge>& hinges) {
+  const std::string unit = folds(margin) ? " deg" : " m kg^1/2";
+  const MarginReach& last = margin.motion.back();
+  std::cout << scene.name << ": static margin " << words(margin.worst.margin) << " at "
+            << short_number(place(margin, margin.worst.fold_angle, margin.worst.s), 6) << unit
+            << ", dynamic margin " << words(margin.dynamic_min)
+            << (margin.arrives ? "; the motion arrives"
+                               : "; the motion ends at " +
+                                     short_number(place(margin, last.fold_angle, last.s), 6) + unit)
+            << "\nsource                        factor   at the worst pose (" << margin.unit << ")\n";
+  for (std::size_t k = 0; k < margin.sources.size(); ++k)
+    std::cout << std::left << std::setw(30) << margin.sources[k].name << std::setw(9)
+              << short_number(margin.sources[k].factor, 4)
+              << short_number(margin.worst.forces[static_cast<Index>(k)], 6) << "\n";
+  if (hinges.empty()) return;
+  std::cout << "hinge jammed                  stalls by (N m)   at\n";
+  for (const StuckHinge& h : hinges)
+    std::cout << std::left << std::setw(30) << h.name << std::setw(18) << short_number(h.stall_torque, 6)
+              << short_number(place(margin, h.stall_fold, h.stall_at), 5) << unit << "\n";
+}
+
+}  // namespace
+
+int cmd_margin(const Arguments& arguments) {
+  const Scene scene = scene_of(arguments);
+  const auto factors = factors_of(arguments);
+  const InterruptGuard guard;
+  const auto model = model_of(scene, arguments);
+  const Margin margin = [&] {
+    try {
+      return margin_of(model, scene.solver, factors);
+    } catch (const PathRefused& refused) {
+      throw PathRefused(scene.name + ": no margin: " + refused.what());
+    }
+  }();
+  constexpr std::size_t few = 12;  // hinges whose pairs are told too
+  std::vector<StuckHinge> hinges;
+  if (arguments.study.stuck) {
+    hinges = stuck_hinges(model, margin, false);
+    if (hinges.size() <= few) hinges = stuck_hinges(model, margin, true);
+  }
+  if (arguments.json)
+    std::cout << margin_json(scene, margin, hinges, arguments.study.stuck).dump(2) << "\n";
+  else
+    print_margin(scene, margin, hinges);
+  if (arguments.output.empty()) return exit_ok;
+  std::string asked = "Margins";
+  for (const std::string& factor : arguments.study.factors) asked += " " + factor;
+  StudySession session(arguments, "margins", study_identity(asked, scene), "margin.csv");
+  session.write("margin.csv", csv_text(poses_table(margin)));
+  session.write("motion.csv", csv_text(motion_table(margin)));
+  if (arguments.study.stuck) session.write("stuck.csv", csv_text(stuck_table(margin, hinges)));
+  session.write("margin.json", margin_json(scene, margin, hinges, arguments.study.stuck).dump(2) + "\n");
+  session.write(margin_figure(margin, scene.title));
+  return exit_ok;
+}
+
+}  // namespace unfurl

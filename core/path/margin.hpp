@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What drives a deployment against what resists it, along the only way that the structure can move.
+//
+// At a pose s the force of source k along the path is Q_k = F_k . dq/ds (path_forces.hpp), times its
+// uncertainty factor. Those that push the way the structure deploys are drives, the others resist:
+//
+//     static margin  = sum of drives / sum of resistances - 1               at rest in every pose
+//     dynamic margin = (K_0 + work of drives) / work of resistances - 1     along the motion from its start
+//
+// The second has inertia and rates in it: the kinetic energy is K = K_0 + work of drives - work of
+// resistances, so that the margin is K over what has been resisted, and 0 where the motion stalls. At the
+// start it is the static one. Where nothing resists a margin is infinite.
+#pragma once
+
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/integrators/solver_options.hpp"
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+
+struct MarginSource {
+  std::string name, kind;
+  double factor = 1.0;
+};
+
+struct MarginPoint {
+  double s = 0.0;           // along the path, the way it deploys [m kg^1/2]
+  double fold_angle = 0.0;  // [rad]; NaN: the structure has none
+  VectorXd forces;          // of the sources; drives > 0 [Margin::unit]
+  double margin = 0.0;      // static
+};
+
+struct MarginReach {  // of the motion
+  double s = 0.0, t = 0.0, fold_angle = 0.0;
+  double kinetic = 0.0, driven = 0.0, resisted = 0.0;  // energies since the start, of the whole structure [J]
+  double margin() const;
+};
+
+struct Margin {
+  std::vector<MarginSource> sources;
+  std::string unit;  // of forces: "N m" per radian of fold angle, else "N/kg^1/2" per s
+  std::vector<MarginPoint> points;
+  MarginPoint worst;                // of the static margins
+  std::vector<MarginReach> motion;  // with the factors
+  double dynamic_min = std::numeric_limits<double>::infinity();
+  double dynamic_at = 0.0;  // s
+  bool arrives = false;     // the motion reaches the end of the path that was looked at
+};
+
+// From the pose at the start to the deployed one; where there is none, as far as the motion goes in
+// options.end_time. Factors by the names of sources, 1 where not named; cables pull where they are stretched.
+// Throws PathRefused where there is no path or a drive prescribes the motion, StudyError for a factor of what
+// is not there.
+Margin margin_of(const std::shared_ptr<const Model>& model, const SolverOptions& options,
+                 const std::map<std::string, double>& factors = {});
+
+// A hinge between two rods that jams with a friction torque, all else as in the margin.
+struct StuckHinge {
+  std::string name;
+  double static_torque = 0.0;  // that holds the structure in some pose if it comes to rest there [N m]
+  double stall_torque = 0.0;   // that stalls the motion from the start [N m]
+  double stall_at = 0.0;       // s of that
+  double stall_fold = 0.0;     // its fold angle [rad]
+  double turn = 0.0;           // of the hinge from the start to the end [rad]
+};
+// Every hinge that turns, then (pairs) every two of them, jammed alike. The stall follows from the energy of
+// the motion without the jam, K(s) = torque times the angle turned so far; dampers are taken as in that
+// motion.
+std::vector<StuckHinge> stuck_hinges(const std::shared_ptr<const Model>& model, const Margin& margin,
+                                     bool pairs);
+
+}  // namespace unfurl

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/path/path_forces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/constraints/constraint.hpp"
+#include "core/constraints/linear_rows.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr std::array known_forces{"load",  "gravity",        "load_over_time", "follower", "spring",
+                                  "latch", "torsion_spring", "joint_damping",  "drag",     "offload"};
+constexpr std::array known_constraints{"plane",   "line",      "fixed",    "relation",
+                                       "measure", "collinear", "coplanar", "rod"};
+constexpr std::array known_measures{MeasureKind::coordinate, MeasureKind::length, MeasureKind::angle,
+                                    MeasureKind::fold};
+
+template <class List, class Kind>
+bool holds(const List& list, const Kind& kind) {
+  return std::find(list.begin(), list.end(), kind) != list.end();
+}
+
+// The structure without anything that acts on it.
+Structure bare(const Structure& structure) {
+  Structure out = structure;
+  out.loads.clear();
+  out.forces.clear();
+  out.constraints.clear();
+  out.stops.clear();
+  out.node_copies.clear();
+  out.rod_copies.clear();
+  out.load_copies.clear();
+  out.gravity.setZero();
+  return out;
+}
+
+bool is_cable(const Force& force) {
+  return force.one_sided && (force.stiffness > 0 || force.damping > 0);
+}
+
+}  // namespace
+
+std::string unknown_to_path(const Structure& structure) {
+  const auto kinds = [](std::string_view what, std::string_view kind) {
+    return std::string(what) + " of the kind \"" + std::string(kind) + "\" is not known to the path";
+  };
+  for (const Force& force : structure.forces) {
+    if (force.smoothing > 0) return "a cable begins to pull smoothly";
+    if (!holds(known_forces, force.kind)) return kinds("a force", force.kind);
+    if (!holds(known_measures, force.measure.kind))
+      return "a force acts on a measure that the path does not know";
+  }
+  for (const Constraint& constraint : structure.constraints) {
+    if (!holds(known_constraints, constraint.kind)) return kinds("a constraint", constraint.kind);
+    if (!holds(known_measures, constraint.measure.kind))
+      return "a constraint holds a measure that the path does not know";
+  }
+  for (const Stop& stop : structure.stops)
+    if (stop.reeled) return "a cable is paid out or drawn in";
+  for (const Stop& stop : structure.stops)
+    if (!holds(known_measures, stop.measure.kind))
+      return "a stop bounds a measure that the path does not know";
+  // Kinds that are made of something else than the structure's lists.
+  SparseRows mass(3 * std::ssize(structure.nodes), 3 * std::ssize(structure.nodes));
+  for (const ForceKind& kind : force_kinds())
+    if (!holds(known_forces, kind.kind) && kind.make(structure, mass)) return kinds("a force", kind.kind);
+  for (const ConstraintKind& kind : constraint_kinds())
+    if (!holds(known_constraints, kind.kind) && kind.make(structure)) return kinds("a constraint", kind.kind);
+  return "";
+}
+
+PathForces::PathForces(const Structure& structure, const System& system, bool separately)
+    : structure_(structure), length_(reference_length(structure)) {
+  Structure one = bare(structure);
+  columns_ = separately ? 0 : 2;  // what all have in common: position, damping
+  const auto add = [&](const std::string& name, std::string_view kind, const TimeFunction* size, bool cable) {
+    Source source{name, std::string(kind)};
+    source.timed = size != nullptr;
+    if (size) source.size = *size;
+    const bool own = separately || size || cable;
+    source.position = own ? columns_++ : 0;
+    source.damping = own ? columns_++ : 1;
+    if (cable) {
+      const Force& f = one.forces.front();
+      source.cable = static_cast<int>(cables_.size());
+      cables_.push_back({f.name, add_measure(f.measure), f.rest, f.stiffness, f.damping});
+    }
+    add_term(one, kind, source, system);
+    sources_.push_back(std::move(source));
+  };
+  one.loads = structure.loads;
+  if (!one.loads.empty()) add("loads", "load", nullptr, false);
+  one.loads.clear();
+  one.gravity = structure.gravity;
+  if (!one.gravity.isZero(0.0)) add("gravity", "gravity", nullptr, false);
+  one.gravity.setZero();
+  std::vector<char> done(structure.forces.size(), 0);
+  for (std::size_t i = 0; i < structure.forces.size(); ++i) {
+    const Force& force = structure.forces[i];
+    if (done[i] || (force.kind == "latch" && force.form.empty())) continue;
+    one.forces = {force};
+    const bool timed = force.size.moves();
+    if (timed) {
+      TimeFunction unit;
+      unit.offset = 1;
+      one.forces[0].size = unit;
+    } else if (is_cable(force)) {
+      one.forces[0].one_sided = false;  // as it is while it pulls
+    } else {
+      for (std::size_t k = i + 1; k < structure.forces.size(); ++k) {
+        const Force& other = structure.forces[k];
+        if (other.kind != force.kind || other.size.moves() || is_cable(other) ||
+            (separately && other.name != force.name) || (other.kind == "latch" && other.form.empty()))
+          continue;
+        one.forces.push_back(other);
+        done[k] = 1;
+      }
+    }
+    add(force.name, force.kind, timed ? &force.size : nullptr, is_cable(force));
+  }
+}
+
+void PathForces::add_term(const Structure& one, std::string_view kind, const Source& source,
+                          const System& system) {
+  Term term;
+  for (const ForceKind& row : force_kinds())
+    if (row.kind == kind) term.block = row.make(one, system.node_mass());
+  if (!term.block) return;
+  term.position = source.position;
+  term.damping = source.damping;
+  if (term.block->constant()) {
+    const VectorXd nowhere = VectorXd::Zero(system.coordinates());
+    term.constant = nowhere;
+    term.block->add(0.0, nowhere.data(), nowhere.data(), 1.0, term.constant.data());
+  }
+  term.first_angle = angle_count_;
+  for (const Measure& measure : followed_angles(one).measures)
+    term.angles.emplace_back(measure, one.deployment);
+  angle_count_ += std::ssize(term.angles);
+  terms_.push_back(std::move(term));
+}
+
+Index PathForces::add_measure(const Measure& measure) {
+  Tracked tracked{MeasureFunction(measure, structure_.deployment), columns_++};
+  if (counts_turns(measure)) tracked.angle = angle_count_++;
+  measures_.push_back(std::move(tracked));
+  return measures_.back().column;
+}
+
+Index PathForces::add_remaining() {
+  return remaining_ = columns_++;
+}
+
+VectorXd PathForces::first_angles() const {
+  VectorXd angles(angle_count_);
+  for (const Term& term : terms_)
+    for (std::size_t i = 0; i < term.angles.size(); ++i)
+      angles[term.first_angle + static_cast<Index>(i)] = term.angles[i].reference();
+  for (const Tracked& tracked : measures_)
+    if (tracked.angle >= 0) angles[tracked.angle] = tracked.measure.reference();
+  return angles;
+}
+
+void PathForces::evaluate(const VectorXd& q, const VectorXd& dq, VectorXd& angles, VectorXd& value,
+                          VectorXd& scale) const {
+  value.setZero();
+  scale.setConstant(std::numeric_limits<double>::min());
+  const VectorXd at_rest = VectorXd::Zero(q.size()), no_rates = VectorXd::Zero(angles.size());
+  VectorXd f(q.size()), moving(q.size());
+  for (const Term& term : terms_) {
+    if (term.constant.size() > 0) {
+      value[term.position] += term.constant.dot(dq);
+      scale[term.position] += term.constant.cwiseAbs().dot(dq.cwiseAbs());
+      continue;
+    }
+    for (std::size_t i = 0; i < term.angles.size(); ++i) {
+      double& angle = angles[term.first_angle + static_cast<Index>(i)];
+      angle = term.angles[i].value(q.data(), angle);
+    }
+    Moment at(0.0);
+    at.angles = angles.data() + term.first_angle;
+    at.rates = no_rates.data();
+    f.setZero();
+    term.block->add(at, q.data(), at_rest.data(), 1.0, f.data());
+    value[term.position] += f.dot(dq);
+    scale[term.position] += f.cwiseAbs().dot(dq.cwiseAbs());
+    if (!term.block->has_power()) continue;
+    moving.setZero();
+    term.block->add(at, q.data(), dq.data(), 1.0, moving.data());
+    value[term.damping] += (f - moving).dot(dq);
+    scale[term.damping] += (f.cwiseAbs() + moving.cwiseAbs()).dot(dq.cwiseAbs());
+  }
+  for (const Tracked& tracked : measures_) {
+    const double near = tracked.angle >= 0 ? angles[tracked.angle] : tracked.measure.reference();
+    value[tracked.column] = tracked.measure.value(q.data(), near);
+    if (tracked.angle >= 0) angles[tracked.angle] = value[tracked.column];
+    scale[tracked.column] = tracked.measure.is_angle() ? pi : length_;
+  }
+  if (remaining_ < 0) return;
+  value[remaining_] = structure_.deployment.remaining(q);
+  scale[remaining_] = 1.0;
+}
+
+}  // namespace unfurl

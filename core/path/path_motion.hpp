@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// s(t) of a run, between events.
+#pragma once
+
+#include <vector>
+
+#include "core/path/path_forces.hpp"
+#include "core/path/scalar_motion.hpp"
+#include "core/structure/time_edges.hpp"
+
+namespace unfurl {
+
+// Everything that acts, tabulated along the path, and the law of motion that follows.
+class PathLaw final : public ScalarLaw {
+ public:
+  PathLaw(const Path& path, const Structure& structure);
+
+  Value at(double s, double v, double t) const override;
+  PathForces& forces() { return forces_; }
+  const PathForces& forces() const { return forces_; }
+  PathTable& table() const { return *table_; }
+  void tabulate();  // once every measure has been added
+  void set_pulling(std::size_t cable, bool pulls) { pulling_[cable] = pulls; }
+  bool timed() const;  // a load changes with time
+  // Trial steps from s see no further than the pieces next to that of s, so that none is traced in vain.
+  void look_from(double s);
+
+ private:
+  const Path& path_;
+  PathForces forces_;
+  std::vector<char> pulling_;
+  double low_ = 0, high_ = 0;  // where it may be asked
+  mutable std::optional<PathTable> table_;
+};
+
+// What prescribes the motion: s follows from measure(s) = target(t).
+struct PathDrive {
+  TimeFunction target;
+  Index column = -1;
+  bool there() const { return column >= 0; }
+};
+
+// s(t) as far as it is known, from a start at one time to the last.
+class PathMotion {
+ public:
+  void begin(double t, double s, double v) { t_ = t, s_ = s, v_ = v; }
+  void prescribe(const PathLaw& law, const PathDrive& drive) { law_ = &law, drive_ = drive; }
+
+  // On to `latest` or less. Throws PathRefused where no step can be solved.
+  void advance(PathLaw& law, double latest);
+  void cut(double t);                      // what lies behind is forgotten
+  void set_speed(double v) { v_ = v; }     // an impulse, now
+  void rest(double t) { t_ = t, v_ = 0; }  // stood still until then
+  void at(double t, double& s, double& v) const;
+
+  double t() const { return t_; }
+  double s() const { return s_; }
+  double v() const { return v_; }
+  double step_start() const { return from_; }  // of the last step
+  long iterations() const { return iterations_; }
+  long steps() const { return std::ssize(steps_); }
+
+ private:
+  void on_drive(double t, double& s, double& v) const;
+
+  double t_ = 0, s_ = 0, v_ = 0, from_ = 0, h_ = 0;
+  std::vector<ScalarStep> steps_;
+  const PathLaw* law_ = nullptr;
+  PathDrive drive_;
+  long iterations_ = 0;
+};
+
+}  // namespace unfurl

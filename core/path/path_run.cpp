@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/path/path_run.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/integrators/index1.hpp"
+#include "core/path/path_motion.hpp"
+#include "core/path/path_scope.hpp"
+#include "core/path/path_watch.hpp"
+#include "core/simulate/deployed_event.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "core/simulate/latch.hpp"
+#include "core/simulate/one_sided.hpp"
+#include "core/simulate/run_words.hpp"
+#include "core/simulate/singular_poses.hpp"
+#include "core/simulate/time_grid.hpp"
+
+namespace unfurl {
+namespace {
+
+// As the time loop has it (simulate/stepper.cpp): impacts that follow each other within this share of a step
+// have accumulated.
+constexpr double accumulated = 1e-4;
+constexpr long most_switches = 100;  // at one time
+// Two solutions of one equation, next to a pose where it is nearly singular.
+constexpr double same_equations = 1e-7;
+
+double thread_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+class PathRun {
+ public:
+  PathRun(std::shared_ptr<const Model> model, const SolverOptions& options, const SimulationHooks& hooks)
+      : base_(std::move(model)),
+        options_(options),
+        hooks_(hooks),
+        path_(trace_path(base_)),
+        sides_(base_->structure, options),
+        watch_(base_->structure, sides_, options.step),
+        grid_(0.0, options, time_edges(base_->structure, options.step)),
+        run_{.trajectory = Trajectory(base_, options), .options = options},
+        last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {}
+
+  Simulation run() {
+    begin();
+    while (!ended_ && motion_.t() < grid_.end()) {
+      if (hooks_.cancelled && hooks_.cancelled()) {
+        run_.status = RunStatus::stopped;
+        run_.message = "stopped by the user at t = " + seconds(motion_.t());
+        break;
+      }
+      if (hooks_.progress) hooks_.progress(motion_.t() / grid_.end());
+      if (resting_)
+        rest();
+      else
+        move();
+    }
+    if (hooks_.progress && run_.status != RunStatus::stopped) hooks_.progress(1.0);
+    run_.newton_iterations = motion_.iterations();
+    return std::move(run_);
+  }
+
+ private:
+  const Structure& structure() const { return base_->structure; }
+  const Model& model() const { return run_.trajectory.last_model(); }
+  const State& last() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
+
+  // --- start ---
+
+  void begin() {
+    InitialState start = initial_state(structure(), base_->system);
+    run_.warnings = structure().notes;
+    if (std::string warning = velocity_warning(start, structure()); !warning.empty())
+      run_.warnings.push_back(std::move(warning));
+    set_law(structure());
+    VectorXd z, tangent, q(base_->system.coordinates());
+    if (!path_->point(0.0, z, tangent)) throw PathRefused("no path leads on from the pose at the start");
+    base_->system.expand_rate(start.state.w, q);
+    const double v = tangent.dot(path_->system().mass() * path_->system().reduce_rate(q));
+    motion_.begin(0.0, 0.0, v);
+    if (const Constraint* drive = driven_row(structure())) {
+      drive_ = {drive->target, drive_column_};
+      motion_.prescribe(*law_, drive_);
+    }
+    run_.trajectory.append(std::move(start.state), StepReport{});
+    compare_equations();
+    watch_.begin(last(), base_->system);
+    if (sides_.empty()) return;
+    sides_.find_cables(base_->system, last());
+    tell_law();
+    if (sides_.any_active()) change_model(sides_.model(*base_), true);
+  }
+
+  void set_law(const Structure& acting) {
+    law_ = std::make_unique<PathLaw>(*path_, acting);
+    watch_.watch(*law_);
+    if (const Constraint* drive = driven_row(structure()))
+      drive_column_ = law_->forces().add_measure(drive->measure);
+    law_->tabulate();
+    tell_law();
+  }
+
+  void tell_law() {
+    for (std::size_t k = 0; k < law_->forces().cables().size(); ++k)
+      law_->set_pulling(k, sides_.active(sides_.stops().size() + k));
+  }
+
+  // The path's equation and all the structure's must say the same of the start, at its speed and at one that
+  // is not zero: whatever the path has overlooked shows there.
+  void compare_equations() {
+    law_->look_from(0.0);
+    const System followed = base_->system.at(last());
+    Index1 index1(followed);
+    const ScalarLaw::Value still = law_->at(0.0, 0.0, 0.0);
+    const PathPiece* piece = path_->piece(0);
+    std::vector<double> speeds{motion_.v()};
+    if (!drive_.there())
+      speeds.push_back(std::sqrt(std::abs(still.Q) * (piece->b - piece->a)) + std::abs(motion_.v()));
+    for (const double v : speeds) {
+      State state = state_at(0.0, 0.0, v);
+      VectorXd a(state.z.size()), lambda = VectorXd::Zero(base_->system.constraints()), curvature, along;
+      if (!index1.evaluate(0.0, state.z, state.w, a, lambda))
+        throw PathRefused("the equations of motion have no solution at the start");
+      VectorXd z, tangent;
+      path_->point(0.0, z, tangent);
+      bend(*piece, curvature);
+      const double along_path = drive_.there() ? a_on_drive(0.0) : law_->at(0.0, v, 0.0).Q;
+      VectorXd expected = along_path * tangent + v * v * curvature, q(base_->system.coordinates());
+      path_->system().expand_rate(expected, q);
+      const VectorXd in_model = base_->system.reduce_rate(q);
+      const auto size = [&](const VectorXd& x) { return std::sqrt(x.dot(base_->system.mass() * x)); };
+      if (!(size(a - in_model) <= same_equations * (size(a) + size(in_model)) + 1e-12))
+        throw PathRefused("the equations of motion hold something that the path does not know");
+    }
+  }
+
+  // d tangent / ds at s = 0, where piece 0 begins.
+  void bend(const PathPiece& piece, VectorXd& out) const {
+    out.setZero(piece.tangent.rows());
+    for (Index k = 1; k < piece.tangent.cols(); ++k)  // T_k'(-1) = (-1)^(k-1) k^2
+      out += (k % 2 ? 1.0 : -1.0) * static_cast<double>(k * k) * piece.tangent.col(k);
+    out *= 2 / (piece.b - piece.a);
+  }
+
+  // s'' that a drive asks for: f'' = m'' s'^2 + m' s''.
+  double a_on_drive(double t) const {
+    double s = 0, v = 0;
+    motion_.at(t, s, v);
+    const double h = 1e-3 * (path_->piece(0)->b - path_->piece(0)->a);
+    const double bent =
+        (law_->table().at(drive_.column, s + h).slope - law_->table().at(drive_.column, s - h).slope) /
+        (2 * h);
+    return (drive_.target.derivative(2, t) - bent * v * v) / law_->table().at(drive_.column, s).slope;
+  }
+
+  // --- states ---
+
+  State state_at(double t, double s, double v) const {
+    VectorXd z, tangent;
+    if (!path_->point(s, z, tangent)) throw PathRefused("the path ends at t = " + seconds(t));
+    State out;
+    out.t = t;
+    const System& system = model().system;
+    if (&system == &path_->system()) {
+      out.z = std::move(z);
+      out.w = v * tangent;
+    } else {
+      VectorXd q(system.coordinates());
+      path_->system().expand(z, q);
+      out.z = system.reduce(q);
+      path_->system().expand_rate(v * tangent, q);
+      out.w = system.reduce_rate(q);
+    }
+    out.lambda.setZero(system.constraints());
+    if (system.followed_angles() > 0) {
+      System followed = system.at(last());
+      followed.count_on(out);
+    }
+    return out;
+  }
+
+  void append(State state, const StepReport& report = {}) {
+    run_.trajectory.append(std::move(state), report);
+  }
+
+  // All times of the grid up to t.
+  void append_grid(double until) {
+    for (TimeGrid::Target next = grid_.next(last().t); next.t <= until && last().t < grid_.end();
+         next = grid_.next(last().t)) {
+      double s = motion_.s(), v = 0;
+      if (!resting_) motion_.at(next.t, s, v);
+      if (next.t > last().t) {
+        append(state_at(next.t, s, v));
+        ++run_.steps;
+      }
+      if (!next.jumps) continue;
+      if (!resting_) motion_.at(next.jump, s, v);
+      append(state_at(next.jump, s, v));
+    }
+  }
+
+  // Where an event ended what could be solved at once.
+  void append_here(bool counted) {
+    if (motion_.t() > last().t) {
+      append(state_at(motion_.t(), motion_.s(), motion_.v()));
+      run_.steps += counted ? 1 : 0;
+    }
+  }
+
+  double change_model(const std::shared_ptr<const Model>& next, bool first = false) {
+    Handover after = hand_over(model(), last(), *next);
+    run_.trajectory.change_model(next);
+    if (first) run_.trajectory.pop_back();
+    append(std::move(after.state));
+    return after.energy_lost * structure().sectors;
+  }
+
+  // --- motion ---
+
+  double latest() const {
+    if (!drive_.there()) {
+      double t = grid_.end();
+      for (const TimeEdge& edge : time_edges(structure(), options_.step))
+        if (edge.t > motion_.t() * (1 + 1e-15) + 1e-15) return std::min(t, edge.t);
+      return t;
+    }
+    const TimeGrid::Target next = grid_.next(motion_.t());
+    return next.jumps ? next.jump : next.t;
+  }
+
+  void move() {
+    const double from = motion_.t();
+    motion_.advance(*law_, latest());
+    const auto [t, which] = watch_.first_event(motion_, from, motion_.t());
+    if (which < 0) return append_grid(motion_.t());
+    motion_.cut(t);
+    append_grid(before(t));
+    if (which == static_cast<int>(sides_.size()))
+      deployed();
+    else
+      turn(static_cast<std::size_t>(which));
+  }
+
+  // The grid's times that lie before an event.
+  static double before(double t) { return std::nextafter(t, 0.0); }
+
+  // --- stops and cables ---
+
+  void add_event(Event event, double taken) {
+    event.energy_lost = taken;
+    run_.events.push_back(std::move(event));
+  }
+  Event impact(const StopSide& stop) const {
+    return {.name = "stop " + stop.name, .t = motion_.t(), .kind = "contact", .element = stop.name};
+  }
+
+  void turn(std::size_t i) {
+    if (motion_.t() > crowd_time_) crowd_time_ = motion_.t(), crowd_ = 0;
+    if (++crowd_ > most_switches)
+      throw PathRefused("at t = " + seconds(motion_.t()) + ": stops or cables switch without end");
+    append_here(true);
+    if (sides_.is_stop(i)) return strike(i);
+    sides_.set_active(i, !sides_.active(i));
+    tell_law();
+    const double taken = change_model(sides_.model(*base_));
+    add_event(sides_.event(i, motion_.t()), taken);
+  }
+
+  void strike(std::size_t i) {
+    if (drive_.there()) throw PathRefused("at t = " + seconds(motion_.t()) + ": a drive meets a stop");
+    const StopSide& stop = sides_.stops()[i];
+    const double slope = watch_.gap_slope(i, motion_.s());
+    const double approach = -slope * motion_.v(), flight = motion_.t() - last_touch_[i];
+    last_touch_[i] = motion_.t();
+    if (approach < 0) return;
+    const bool series = stop.restitution < 1 && flight > 0 && flight <= accumulated * options_.step;
+    if (series || stop.restitution * approach <= stop.rest_speed) {
+      const double Q = law_->at(motion_.s(), 0.0, motion_.t()).Q;
+      if (stop.restitution == 0 && slope * Q > 0) {  // it is stopped and goes back at once
+        const double taken = 0.5 * motion_.v() * motion_.v();
+        add_event(impact(stop), taken);
+        motion_.set_speed(0);
+        append(state_at(motion_.t(), motion_.s(), 0));
+        return;
+      }
+      sides_.set_active(i, true);
+      held_ = i;
+      held_slope_ = slope;
+      motion_.set_speed(0);
+      resting_ = true;
+      const double taken = change_model(sides_.model(*base_));
+      Event rests = sides_.event(i, motion_.t());
+      rests.kind = "contact";
+      add_event(std::move(rests), taken);
+      return;
+    }
+    const double e = stop.restitution, taken = 0.5 * (1 - e * e) * motion_.v() * motion_.v();
+    add_event(impact(stop), taken);
+    motion_.set_speed(-e * motion_.v());
+    append(state_at(motion_.t(), motion_.s(), motion_.v()));
+  }
+
+  // Held by a stop, until what pushes against it pulls; or locked, until the end.
+  void rest() {
+    double until = grid_.end();
+    const double now = motion_.t();
+    if (held_ && law_->timed()) {
+      const auto pull = [&](double t) { return held_slope_ * law_->at(motion_.s(), 0.0, t).Q; };
+      const double h = std::min(options_.step, (until - now) / 8);
+      for (double a = now; a < grid_.end();) {
+        const double b = std::min(a + h, grid_.end());
+        if (pull(b) > 0) {
+          double low = a, high = b;
+          for (int it = 0; it < 60; ++it) (pull(0.5 * (low + high)) > 0 ? high : low) = 0.5 * (low + high);
+          until = high;
+          break;
+        }
+        a = b;
+      }
+    }
+    append_grid(until < grid_.end() ? before(until) : until);
+    motion_.rest(until);
+    if (!held_ || until >= grid_.end()) return;
+    append_here(true);
+    sides_.set_active(*held_, false);
+    resting_ = false;
+    change_model(sides_.model(*base_));
+    add_event(sides_.event(*held_, until), 0.0);
+    held_.reset();
+  }
+
+  // --- the deployed pose ---
+
+  void deployed() {
+    watch_.deployed();
+    const double t = motion_.t();
+    run_.events.push_back({.name = "deployed", .t = t, .kind = "deployed"});
+    if (options_.at_deployed == "pass") return;
+    // States so near to a singular pose have lost digits; the time loop has none there either.
+    while (run_.trajectory.size() > 1 && !watch_.clear(motion_, last().t))
+      run_.trajectory.pop_back(), --run_.steps;
+    State event = state_at(t, motion_.s(), motion_.v());
+    limit_multipliers(event);
+    if (last().t >= t) run_.trajectory.pop_back();
+    append(std::move(event), StepReport{.singular_event = true});
+    ++run_.steps;
+    if (options_.at_deployed == "latch") return latch();
+    run_.status = RunStatus::deployed;
+    ended_ = true;
+  }
+
+  void latch() {
+    if (drive_.there()) throw PathRefused("a drive goes on behind a latch");
+    const bool gives = latch_gives(base_->structure);
+    if (gives && singular_at_end(run_.trajectory))
+      throw PathRefused("a latch that gives, in a deployed pose in which the constraints lose rank");
+    base_ = latched_model(*base_, options_.eliminate_linear);
+    const double speed = std::abs(motion_.v());
+    const double impulse = change_model(sides_.any_active() ? sides_.model(*base_) : base_);
+    run_.events.push_back(
+        {.name = "latched", .t = motion_.t(), .energy_lost = gives ? 0.0 : impulse, .kind = "latch"});
+    if (gives) return set_law(base_->structure);
+    const VectorXd& w = last().w;
+    if (std::sqrt(w.dot(model().system.mass() * w)) > 1e-6 * speed)
+      throw PathRefused("what is latched in the deployed pose can still move");
+    motion_.set_speed(0);
+    resting_ = true;
+  }
+
+  // The deployed pose may be singular: multipliers are smooth functions of the sine of the fold angle, and
+  // extrapolated to it from poses before it, at the same sines as the time loop does it.
+  void limit_multipliers(State& event) {
+    constexpr double farthest = 3e-2, span = 12, from_start = 0.25;
+    constexpr int count = 9;
+    const double start = std::abs(watch_.remaining(0.0));
+    const double far = std::min(farthest, from_start * start);
+    System followed = model().system.at(last());
+    Index1 index1(followed, true);
+    std::vector<NearDeployed> samples;
+    VectorXd a(event.z.size());
+    for (int i = 0; i < count; ++i) {
+      const double u = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / count);
+      const auto t = time_at_sine(far + u * (far / span - far));
+      if (!t) continue;
+      double s = 0, v = 0;
+      motion_.at(*t, s, v);
+      State state = state_at(*t, s, v);
+      followed.follow(state);
+      if (index1.evaluate(*t, state.z, state.w, a, state.lambda))
+        samples.push_back({watch_.remaining(s), std::move(state)});
+    }
+    if (samples.size() < 3) return;
+    followed.follow(event);
+    event.lambda = multipliers_at_deployed(index1, samples, event);
+  }
+
+  // The last time before now at which the sine of the fold angle was that.
+  std::optional<double> time_at_sine(double wanted) const {
+    const auto sine = [&](double t) {
+      double s = 0, v = 0;
+      motion_.at(t, s, v);
+      return watch_.remaining(s);
+    };
+    double b = motion_.t(), a = b;
+    for (double h = options_.step; sine(a) < wanted; h *= 1.5) {
+      if (a <= 0) return std::nullopt;
+      b = a;
+      a = std::max(0.0, a - h);
+    }
+    for (int it = 0; it < 60; ++it) (sine(0.5 * (a + b)) < wanted ? b : a) = 0.5 * (a + b);
+    return b;
+  }
+
+  std::shared_ptr<const Model> base_;  // without what is held or pulls
+  const SolverOptions options_;
+  const SimulationHooks& hooks_;
+  std::shared_ptr<const Path> path_;
+  OneSided sides_;
+  PathWatch watch_;
+  TimeGrid grid_;
+  Simulation run_;
+  std::unique_ptr<PathLaw> law_;
+  PathMotion motion_;
+  PathDrive drive_;
+  std::vector<double> last_touch_;  // of the stops
+  Index drive_column_ = -1;
+  std::optional<std::size_t> held_;
+  double held_slope_ = 0;  // of the gap along the path
+  double crowd_time_ = -1;
+  long crowd_ = 0;
+  bool resting_ = false, ended_ = false;
+};
+
+}  // namespace
+
+Simulation simulate_on_path(const std::shared_ptr<const Model>& model, const SolverOptions& options,
+                            const SimulationHooks& hooks) {
+  const double begin = thread_cpu_seconds();
+  Simulation run = PathRun(model, options, hooks).run();
+  run.cpu_s = thread_cpu_seconds() - begin;
+  return run;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/path/path_scope.hpp"
+
+#include <algorithm>
+
+#include "core/path/path_forces.hpp"
+#include "core/system/mobility.hpp"
+
+namespace unfurl {
+namespace {
+
+bool drives_something(const Constraint& constraint) {
+  return constraint.kind == "measure" && constraint.target.moves();
+}
+
+}  // namespace
+
+const Constraint* driven_row(const Structure& structure) {
+  const Constraint* found = nullptr;
+  for (const Constraint& constraint : structure.constraints) {
+    if (!drives_something(constraint)) continue;
+    if (found) throw PathRefused("more than one drive prescribes the motion");
+    found = &constraint;
+  }
+  return found;
+}
+
+namespace {
+
+bool has_cables(const Structure& structure) {
+  return std::any_of(structure.forces.begin(), structure.forces.end(),
+                     [](const Force& force) { return force.one_sided; });
+}
+
+}  // namespace
+
+std::shared_ptr<const System> path_system(const std::shared_ptr<const Model>& model) {
+  const Structure& structure = model->structure;
+  if (const std::string unknown = unknown_to_path(structure); !unknown.empty()) throw PathRefused(unknown);
+  std::shared_ptr<const System> system(model, &model->system);
+  if (const Constraint* drive = driven_row(structure)) {
+    if (!structure.stops.empty() || has_cables(structure))
+      throw PathRefused("a drive beside stops or cables");
+    Structure freed = structure;
+    freed.constraints.erase(freed.constraints.begin() + (drive - structure.constraints.data()));
+    system = std::make_shared<const System>(freed, true);
+  }
+  if (system->rheonomic()) throw PathRefused("constraints change with time");
+  VectorXd q(system->coordinates());
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  const Mobility mobility = analyse_mobility(*system, q);
+  if (mobility.degrees_of_freedom != 1)
+    throw PathRefused("the structure has " + std::to_string(mobility.degrees_of_freedom) +
+                      " degrees of freedom at its start, and a path needs 1" +
+                      (mobility.rigid_motions > 0 ? " (" + std::to_string(mobility.rigid_motions) +
+                                                        " of them move it as a rigid body)"
+                                                  : ""));
+  return system;
+}
+
+std::shared_ptr<const Path> trace_path(const std::shared_ptr<const Model>& model) {
+  auto system = path_system(model);
+  VectorXd q(system->coordinates());
+  for (std::size_t i = 0; i < model->structure.nodes.size(); ++i)
+    q.segment<3>(3 * static_cast<Index>(i)) = model->structure.nodes[i].position;
+  const VectorXd z = system->reduce(q);
+  return std::make_shared<const Path>(std::move(system), z);
+}
+
+}  // namespace unfurl

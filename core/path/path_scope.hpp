@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the path can describe of a model.
+#pragma once
+
+#include "core/path/path.hpp"
+
+namespace unfurl {
+
+// The row that prescribes a motion; nullptr where none does. Throws PathRefused where there are several.
+const Constraint* driven_row(const Structure& structure);
+
+// The equations of a model without the row that drives it; that of the model where nothing does. Throws
+// PathRefused where the path cannot describe the model: more or fewer ways to move than one, what it does not
+// know (path_forces.hpp), motions prescribed in a way that it cannot take.
+std::shared_ptr<const System> path_system(const std::shared_ptr<const Model>& model);
+std::shared_ptr<const Path> trace_path(const std::shared_ptr<const Model>& model);
+
+}  // namespace unfurl

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/path/path_time.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/math/chebyshev.hpp"
+#include "core/math/quadrature.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr int gauss = 16;
+using Panel = Eigen::Array<double, gauss, 1>;
+// Two halves that agree so well with the whole are right to the square of that and more.
+constexpr double agree = 1e-9;
+constexpr int most_halvings_of_time = 40;
+
+struct Rule16 {
+  Panel node, weight;
+};
+
+const Rule16& rule16() {
+  static const Rule16 made = [] {
+    const Quadrature g = gauss_legendre(gauss);
+    return Rule16{g.nodes.array(), g.weights.array()};
+  }();
+  return made;
+}
+
+// Part of the way within one piece: W = before + W_piece(s) - W_piece(entry), forwards in the sense of
+// motion.
+class Part {
+ public:
+  Part(const PathPiece& piece, const VectorXd& force, double sense, double start, double entry, double before)
+      : sense_(sense), start_(start), a_(piece.a), b_(piece.b), before_(before) {
+    const VectorXd Q = sense * (force.transpose() * piece.dq * chebyshev_transform(Path::degree)).transpose();
+    W_ = 0.5 * (b_ - a_) * chebyshev_integral(Q);
+    y_ = x_of(entry);
+    first_ = entry == start;
+  }
+
+  // W at its other end.
+  double leave(double exit) const {
+    return before_ +
+           sense_ * (x_of(exit) - y_) * chebyshev_divided_difference(W_.data(), W_.size(), x_of(exit), y_);
+  }
+
+  // Adds the time from x0 to x1 (roots of the distances from the start) to `sum`; false where W is not
+  // positive.
+  bool integrate(double x0, double x1, double& sum) const {
+    double whole = 0;
+    return panel(x0, x1, whole) && refine(x0, x1, whole, 0, sum);
+  }
+
+ private:
+  double x_of(double s) const { return (2 * s - (a_ + b_)) / (b_ - a_); }
+
+  bool refine(double x0, double x1, double whole, int depth, double& sum) const {
+    const double middle = 0.5 * (x0 + x1);
+    double left = 0, right = 0;
+    if (depth > most_halvings_of_time || !panel(x0, middle, left) || !panel(middle, x1, right)) return false;
+    if (std::abs(left + right - whole) <= agree * std::abs(whole)) {
+      sum += left + right;
+      return true;
+    }
+    return refine(x0, middle, left, depth + 1, sum) && refine(middle, x1, right, depth + 1, sum);
+  }
+
+  // At all points of the panel at once: Clenshaw's recurrence for the divided difference [x, y] of W.
+  bool panel(double x0, double x1, double& out) const {
+    const Panel way = x0 + (x1 - x0) * rule16().node;
+    const Panel s = start_ + sense_ * way.square();
+    const Panel x = ((2 * s) - (a_ + b_)) / (b_ - a_);
+    double b1 = 0, b2 = 0;
+    Panel d1 = Panel::Zero(), d2 = d1;
+    for (Index k = W_.size() - 1; k > 0; --k) {
+      const Panel d = 2 * b1 + 2 * x * d1 - d2;
+      d2 = d1;
+      d1 = d;
+      const double b = W_[k] + 2 * y_ * b1 - b2;
+      b2 = b1;
+      b1 = b;
+    }
+    const Panel D = b1 + x * d1 - d2;  // by x of the piece
+    // 2 x / sqrt(2 W); where W begins here, W = way^2 D 2 / (b - a) and `way` cancels.
+    Panel W;
+    if (first_) {
+      W = 2 / (b_ - a_) * D;
+      if (!(W > 0).all()) return false;
+      out = (x1 - x0) * (rule16().weight * 2 / (2 * W).sqrt()).sum();
+    } else {
+      W = before_ + sense_ * (x - y_) * D;
+      if (!(W > 0).all()) return false;
+      out = (x1 - x0) * (rule16().weight * 2 * way / (2 * W).sqrt()).sum();
+    }
+    return true;
+  }
+
+  double sense_, start_, a_, b_, before_, y_ = 0;
+  VectorXd W_;  // integral of Q ds over the piece, in the sense of motion
+  bool first_ = false;
+};
+
+}  // namespace
+
+double time_from_rest(const Path& path, const VectorXd& force, double from, double to) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const double sense = to > from ? 1.0 : -1.0;
+  const auto first = path.piece_of(from), last = path.piece_of(to);
+  if (!first || !last) return nan;
+  double sum = 0, entry = from, before = 0;
+  for (long k = *first;; k += sense > 0 ? 1 : -1) {
+    const PathPiece& piece = *path.piece(k);
+    const double end = sense > 0 ? std::min(piece.b, to) : std::max(piece.a, to);
+    if (end != entry) {
+      const Part part(piece, force, sense, from, entry, before);
+      const double x0 = std::sqrt(std::abs(entry - from)), x1 = std::sqrt(std::abs(end - from));
+      if (!part.integrate(x0, x1, sum)) return nan;
+      before = part.leave(end);
+      entry = end;
+    }
+    if (k == *last) return sum;
+  }
+}
+
+std::optional<double> deployed_pose(const Path& path, const Deployment& deployment, bool forward,
+                                    long most_pieces) {
+  const VectorXd x = chebyshev_points(Path::degree);
+  bool armed = false;
+  for (long k = 0; k < most_pieces; ++k) {
+    const PathPiece* piece = path.piece(forward ? k : -k - 1);
+    if (!piece) return std::nullopt;
+    VectorXd values(x.size());
+    for (Index i = 0; i < x.size(); ++i) values[i] = deployment.remaining(piece->q.col(i));
+    const VectorXd c = (values.transpose() * chebyshev_transform(Path::degree)).transpose();
+    for (Index i = 0; i < x.size(); ++i) {
+      const Index at = forward ? i : x.size() - 1 - i, before = forward ? at - 1 : at + 1;
+      armed = armed || values[at] > 0;
+      if (!armed || values[at] > 0 || before < 0 || before >= x.size()) continue;
+      double low = x[before], high = x[at];
+      for (int it = 0; it < 60; ++it)
+        (chebyshev_value(c.data(), c.size(), 0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
+      return piece->at(high);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/path/path_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace unfurl {
+namespace {
+
+// As the time loop has them (simulate/stepper.cpp): the deployed pose counts as reached anew from this sine
+// of the fold angle on.
+constexpr double singular_margin = 1e-4, deployed_already = 1e-12;
+constexpr int samples = 24;  // within a step
+
+}  // namespace
+
+PathWatch::PathWatch(const Structure& structure, const OneSided& sides, double step)
+    : sides_(sides),
+      deploys_(!structure.deployment.empty()),
+      step_(step),
+      shift_(sides.stops().size(), 0.0),
+      margin_(singular_margin) {}
+
+void PathWatch::watch(PathLaw& law) {
+  law_ = &law;
+  stop_columns_.clear();
+  for (std::size_t i = 0; i < sides_.stops().size(); ++i)
+    stop_columns_.push_back(law.forces().add_measure(sides_.stops()[i].measure));
+  if (deploys_) deployed_column_ = law.forces().add_remaining();
+}
+
+void PathWatch::begin(const State& start, const System& system) {
+  for (std::size_t i = 0; i < shift_.size(); ++i)
+    shift_[i] = std::min(0.0, sides_.stops().gap(i, system, start));
+  if (!deploys_) return;
+  const double fold = remaining(0.0);
+  if (fold > deployed_already) margin_ = std::min(singular_margin, 0.1 * fold);
+  armed_ = fold > margin_;
+}
+
+bool PathWatch::clear(const PathMotion& motion, double t) const {
+  double s = 0, v = 0;
+  motion.at(t, s, v);
+  return remaining(s) > margin_;
+}
+
+double PathWatch::gap_slope(std::size_t stop, double s) const {
+  return sides_.stops()[stop].sign * law_->table().at(stop_columns_[stop], s).slope;
+}
+
+// In units of what counts as touching, as OneSided has them; positive where nothing happens.
+void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out) const {
+  double s = 0, v = 0;
+  motion.at(t, s, v);
+  const std::size_t stops = sides_.stops().size();
+  out.setConstant(static_cast<Index>(sides_.size()) + 1, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < stops; ++i) {
+    const StopSide& stop = sides_.stops()[i];
+    const double m = law_->table().at(stop_columns_[i], s).value;
+    out[static_cast<Index>(i)] = stop.sign * (m - stop.limit) - shift_[i];
+  }
+  for (std::size_t k = 0; k < law_->forces().cables().size(); ++k) {
+    const PathForces::Cable& cable = law_->forces().cables()[k];
+    const ValueAndSlope m = law_->table().at(cable.measure, s);
+    const double e = m.value - cable.rest, n = cable.stiffness * e + cable.damping * m.slope * v;
+    const double stretch = cable.damping > 0 ? std::min(e, n / (cable.stiffness + cable.damping / step_)) : e;
+    out[static_cast<Index>(stops + k)] = sides_.active(stops + k) ? stretch : -stretch;
+  }
+  if (deployed_column_ >= 0 && !deployed_) out[out.size() - 1] = remaining(s);
+  out.head(out.size() - 1) /= sides_.stops().touching();
+}
+
+std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double from, double to) {
+  VectorXd a, b;
+  margins(motion, from, a);
+  const Index deployed = a.size() - 1;
+  for (Index i = 0; i < deployed; ++i)
+    if (a[i] < -1) return {from, static_cast<int>(i)};
+  std::pair<double, int> first{to, -1};
+  double t0 = from;
+  for (const double t1 : looked_at(motion, from, to)) {
+    margins(motion, t1, b);
+    if (a[deployed] > margin_) armed_ = true;
+    for (Index i = 0; i <= deployed; ++i) {
+      const bool below = i < deployed ? b[i] < -1 : armed_ && b[i] <= 0;
+      if (!below || !(a[i] > b[i])) continue;
+      const double t = zero_of(motion, i, t0, t1);
+      if (t < first.first || first.second < 0) first = {t, static_cast<int>(i)};
+    }
+    if (first.second >= 0) break;
+    a = b;
+    t0 = t1;
+  }
+  return first;
+}
+
+// Equal parts of a step, and the time at which the motion turns: margins are smallest there.
+std::vector<double> PathWatch::looked_at(const PathMotion& motion, double from, double to) const {
+  std::vector<double> times;
+  double s = 0, before = 0, v = 0, t0 = from;
+  motion.at(from, s, before);
+  for (int k = 1; k <= samples; ++k) {
+    const double t1 = k == samples ? to : from + (to - from) * k / samples;
+    motion.at(t1, s, v);
+    if (before * v < 0) {
+      double low = t0, high = t1, middle = 0;
+      for (int it = 0; it < 50; ++it) {
+        const double t = 0.5 * (low + high);
+        motion.at(t, s, middle);
+        (before * middle > 0 ? low : high) = t;
+      }
+      if (high > t0 && high < t1) times.push_back(high);
+    }
+    times.push_back(t1);
+    before = v;
+    t0 = t1;
+  }
+  return times;
+}
+
+// Regula falsi and, every third time, bisection: to the last bit of the time. A margin that begins at zero
+// and rises first, as behind a rebound, is followed to where it falls again.
+double PathWatch::zero_of(const PathMotion& motion, Index i, double a, double b) const {
+  VectorXd m;
+  margins(motion, a, m);
+  double fa = m[i];
+  margins(motion, b, m);
+  double fb = m[i];
+  if (i + 1 < m.size() && fa <= 1) {
+    double up = b;
+    for (int it = 0; it < 60 && !(m[i] > std::max(fa, 0.0)); ++it) {
+      b = up;
+      up = a + 0.5 * (b - a);
+      margins(motion, up, m);
+    }
+    if (!(m[i] > std::max(fa, 0.0)) || !(b > up)) return a;
+    a = up, fa = m[i];
+    margins(motion, b, m);
+    fb = m[i];
+  }
+  for (int it = 0; it < 200 && b - a > 2e-16 * std::abs(b); ++it) {
+    double t = it % 3 == 2 ? 0.5 * (a + b) : b - fb * (b - a) / (fb - fa);
+    if (!(t > a && t < b)) t = 0.5 * (a + b);
+    if (!(t > a && t < b)) break;
+    margins(motion, t, m);
+    if (m[i] == 0) return t;
+    if (m[i] > 0)
+      a = t, fa = m[i];
+    else
+      b = t, fb = m[i];
+  }
+  return b;
+}
+
+}  // namespace unfurl

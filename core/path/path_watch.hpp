@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When something happens on a path: a stop is touched, a cable pulls or is slack, the deployed pose is
+// reached.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "core/path/path_motion.hpp"
+#include "core/simulate/one_sided.hpp"
+
+namespace unfurl {
+
+class PathWatch {
+ public:
+  PathWatch(const Structure& structure, const OneSided& sides, double step);
+
+  // Adds what is watched to the law's measures, which are then tabulated; again for every new law.
+  void watch(PathLaw& law);
+  // As of the state at the start: stops that are passed there count as touched, and the deployed pose as
+  // reached anew only behind a margin.
+  void begin(const State& start, const System& system);
+
+  // The first margin that falls below zero in (from, to], and when; -1: none. Stops and cables in their
+  // order, then the deployed pose.
+  std::pair<double, int> first_event(const PathMotion& motion, double from, double to);
+  void deployed() { deployed_ = true; }
+
+  // The deployed pose was further away than the margin at that time.
+  bool clear(const PathMotion& motion, double t) const;
+  double remaining(double s) const { return law_->table().at(deployed_column_, s).value; }  // sine
+  double gap_slope(std::size_t stop, double s) const;                                       // by s
+
+ private:
+  void margins(const PathMotion& motion, double t, VectorXd& out) const;
+  std::vector<double> looked_at(const PathMotion& motion, double from, double to) const;
+  double zero_of(const PathMotion& motion, Index i, double a, double b) const;
+
+  const OneSided& sides_;
+  bool deploys_;
+  double step_;
+  const PathLaw* law_ = nullptr;
+  std::vector<Index> stop_columns_;
+  std::vector<double> shift_;
+  Index deployed_column_ = -1;
+  double margin_ = 0;
+  bool armed_ = false, deployed_ = false;
+};
+
+}  // namespace unfurl

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// With z the solved coordinates, Phi(z) the constraints, G their Jacobian and x(z) = J z + x0 a node:
+//
+//   a step towards x + d      min  mu |dz|^2 + |J dz - d|^2 + W |G dz|^2
+//   back onto Phi = 0         dz = -(G^T G + eps)^-1 G^T Phi, again and again (Gauss and Newton; redundant
+//   rows
+//                             do no harm, and what is free stays where it is)
+#include "core/system/free_poses.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+
+namespace unfurl {
+
+namespace {
+
+using Columns = Eigen::SparseMatrix<double>;
+
+constexpr double met = 1e-10;          // of a constraint, in units of the structure's size
+constexpr double at_rest = 1e-4;       // mu: of moving at all
+constexpr double kept = 1e4;           // W: of constraints
+constexpr double longest_step = 0.04;  // of a node, in units of the size
+constexpr int most_free_steps = 12, most_projections = 30;
+constexpr double free_value = 1e-12;  // eigenvalue of G^T G, in units of the largest
+
+Structure without_drives(Structure structure) {
+  std::erase_if(structure.constraints, [](const Constraint& c) { return c.kind == "measure"; });
+  return structure;
+}
+
+double size_of_structure(const Structure& structure) {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Node& node : structure.nodes) {
+    low = low.cwiseMin(node.position);
+    high = high.cwiseMax(node.position);
+  }
+  const double size = (high - low).norm();
+  return size > 0 && std::isfinite(size) ? size : 1.0;
+}
+
+Columns identity(Index n, double value) {
+  Columns I(n, n);
+  I.setIdentity();
+  return value * I;
+}
+
+// Velocities of a rigid body at the pose q: three translations, three rotations about the middle.
+MatrixXd rigid_motions(const VectorXd& q) {
+  MatrixXd R = MatrixXd::Zero(q.size(), 6);
+  Vec3 middle = Vec3::Zero();
+  for (Index i = 0; i < q.size(); i += 3) middle += q.segment<3>(i) / (static_cast<double>(q.size()) / 3);
+  for (Index i = 0; i < q.size(); i += 3)
+    for (Index k = 0; k < 3; ++k) {
+      R(i + k, k) = 1;
+      R.block<3, 1>(i, 3 + k) = Vec3::Unit(k).cross(q.segment<3>(i) - middle);
+    }
+  return R;
+}
+
+// An orthonormal basis of what the columns span.
+MatrixXd orthonormal(const MatrixXd& A, double least) {
+  if (A.cols() == 0) return A;
+  const Eigen::BDCSVD<MatrixXd> svd(A, Eigen::ComputeThinU);
+  Index rank = 0;
+  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > least) ++rank;
+  return svd.matrixU().leftCols(rank);
+}
+
+}  // namespace
+
+FreePoses::FreePoses(const Structure& structure)
+    : system_(without_drives(structure), true), size_(size_of_structure(structure)) {}
+
+SparseRows FreePoses::jacobian(const VectorXd& z, VectorXd& phi) const {
+  VectorXd q(system_.coordinates());
+  system_.expand(z, q);
+  phi.resize(system_.constraints());
+  system_.constraint(0, q, phi);
+  SparseRows G = system_.jacobian_pattern();
+  std::vector<double> scratch;
+  system_.jacobian(q, G, scratch);
+  return G;
+}
+
+double FreePoses::error(const VectorXd& q) const {
+  VectorXd phi(system_.constraints());
+  system_.constraint(0, q, phi);
+  return phi.size() > 0 ? phi.cwiseAbs().maxCoeff() : 0.0;
+}
+
+bool FreePoses::project(VectorXd& z) const {
+  for (int i = 0; i < most_projections; ++i) {
+    VectorXd phi;
+    const SparseRows G = jacobian(z, phi);
+    if (phi.size() == 0 || phi.cwiseAbs().maxCoeff() <= met * size_) return true;
+    Columns A = Columns(G.transpose() * G) + identity(z.size(), 1e-10);
+    const Eigen::SimplicialLDLT<Columns> solver(A);
+    const VectorXd step = solver.solve(VectorXd(G.transpose() * phi));
+    if (solver.info() != Eigen::Success || !step.allFinite() || step.cwiseAbs().maxCoeff() > size_)
+      return false;
+    z -= step;
+  }
+  return false;
+}
+
+VectorXd FreePoses::node_at(const VectorXd& z, int node) const {
+  VectorXd q(system_.coordinates());
+  system_.expand(z, q);
+  return q.segment<3>(3 * node);
+}
+
+VectorXd FreePoses::step_towards(const VectorXd& z, int node, const Vec3& way) const {
+  VectorXd phi;
+  const SparseRows G = jacobian(z, phi);
+  Columns A = kept * Columns(G.transpose() * G) + identity(z.size(), at_rest);
+  VectorXd right = VectorXd::Zero(z.size());
+  for (Index c = 0; c < 3; ++c) {  // a row of J each
+    VectorXd unit = VectorXd::Zero(system_.coordinates()), row = VectorXd::Zero(z.size());
+    unit[3 * node + c] = 1;
+    system_.reduce_force(unit, row);
+    const Columns J = row.sparseView();
+    A += Columns(J * J.transpose());
+    right += way[c] * row;
+  }
+  const Eigen::SimplicialLDLT<Columns> solver(A);
+  return solver.solve(right);
+}
+
+VectorXd FreePoses::pulled(const VectorXd& q, int node, const Vec3& target) const {
+  VectorXd z = system_.reduce(q);
+  double away = (target - node_at(z, node)).norm(), longest = longest_step * size_;
+  for (int i = 0; i < most_free_steps && away > 1e-9 * size_; ++i) {
+    Vec3 way = target - node_at(z, node);
+    if (way.norm() > longest) way *= longest / way.norm();
+    const VectorXd step = step_towards(z, node, way);
+    VectorXd next = z + step;
+    const bool sound = step.allFinite() && project(next);
+    const double left = sound ? (target - node_at(next, node)).norm() : away;
+    if (left < away * (1 - 1e-6)) {
+      z = std::move(next);
+      away = left;
+    } else {
+      longest *= 0.3;  // around a bend, or at the end of the way
+    }
+  }
+  VectorXd pose(system_.coordinates());
+  system_.expand(z, pose);
+  return error(pose) <= 2 * met * size_ ? pose : q;
+}
+
+MatrixXd FreePoses::motions(const VectorXd& q) const {
+  const VectorXd z = system_.reduce(q);
+  if (z.size() == 0 || z.size() > most_coordinates) return MatrixXd(q.size(), 0);
+  VectorXd phi;
+  const MatrixXd G = MatrixXd(jacobian(z, phi));
+  MatrixXd N = MatrixXd::Identity(z.size(), z.size());
+  if (G.rows() > 0) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(G.transpose() * G);
+    const double largest = std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
+    Index count = 0;
+    while (count < z.size() && eigen.eigenvalues()[count] < free_value * largest) ++count;
+    N = eigen.eigenvectors().leftCols(count).eval();
+  }
+  MatrixXd V(q.size(), N.cols());
+  for (Index k = 0; k < N.cols(); ++k) {
+    VectorXd v(q.size());
+    system_.expand_rate(N.col(k), v);
+    V.col(k) = v;
+  }
+  V = orthonormal(V, 1e-9);
+  // Rigid motions that are free, and what is left without them.
+  const MatrixXd R = orthonormal(rigid_motions(q), 1e-9 * std::max(1.0, size_));
+  const MatrixXd rest = R - V * (V.transpose() * R);
+  const Eigen::BDCSVD<MatrixXd> svd(rest, Eigen::ComputeThinV);
+  MatrixXd rigid(q.size(), 0);
+  for (Index k = 0; k < svd.singularValues().size(); ++k)
+    if (svd.singularValues()[k] < 1e-6) {
+      rigid.conservativeResize(Eigen::NoChange, rigid.cols() + 1);
+      rigid.rightCols(1) = R * svd.matrixV().col(k);
+    }
+  return orthonormal(V - rigid * (rigid.transpose() * V), 1e-6);
+}
+
+VectorXd FreePoses::moved(const VectorXd& q, const VectorXd& motion, double distance) const {
+  double most = 0;
+  for (Index i = 0; i < motion.size(); i += 3) most = std::max(most, motion.segment<3>(i).norm());
+  VectorXd z = system_.reduce(q);
+  if (most > 0) z += system_.reduce_rate(distance / most * motion);
+  if (!project(z)) return q;
+  VectorXd pose(system_.coordinates());
+  system_.expand(z, pose);
+  return pose;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/plot/figures/margin_figure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/plot/ticks.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double most_margin = 20;  // drawn: where hardly anything resists a margin means little
+constexpr int zero_line = 7;
+
+double along(const Margin& margin, double fold_angle, double s) {
+  return margin.unit == "N m" ? fold_angle / radians_per_degree : s;
+}
+
+// Values of all sources at a pose, those of one sign above each other.
+void add_stack(const Margin& margin, double sign, Panel& panel) {
+  std::vector<double> floor(margin.points.size(), 0.0);
+  for (std::size_t k = 0; k < margin.sources.size(); ++k) {
+    Band band{margin.sources[k].name, {}, {}, {}, static_cast<int>(k)};
+    bool any = false;
+    for (std::size_t i = 0; i < margin.points.size(); ++i) {
+      const MarginPoint& p = margin.points[i];
+      const double own = sign * std::max(0.0, sign * p.forces[static_cast<Index>(k)]);
+      any = any || own != 0;
+      band.x.push_back(along(margin, p.fold_angle, p.s));
+      band.lower.push_back(std::min(floor[i], floor[i] + own));
+      band.upper.push_back(std::max(floor[i], floor[i] + own));
+      floor[i] += own;
+    }
+    if (!any) continue;
+    const bool named = std::any_of(panel.bands.begin(), panel.bands.end(),
+                                   [&](const Band& other) { return other.label == band.label; });
+    if (named) band.label.clear();
+    panel.bands.push_back(std::move(band));
+  }
+}
+
+double drawn(double margin) {
+  return margin <= most_margin ? margin : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string words(double margin) {
+  return std::isfinite(margin) ? plot::format_number(margin, 4) : "without bound";
+}
+
+}  // namespace
+
+Figure margin_figure(const Margin& margin, const std::string& title) {
+  const bool folds = margin.unit == "N m";
+  const std::string across = folds ? "fold angle (deg)" : "way along the path (m kg^1/2)";
+  Panel forces, margins;
+  forces.title = "Drives above, resistances below zero";
+  forces.y.label = folds ? "torque about the fold angle (N m)" : "force along the path (N/kg^1/2)";
+  forces.x.label = margins.x.label = across;
+  forces.x.shown = false;
+  add_stack(margin, 1.0, forces);
+  add_stack(margin, -1.0, forces);
+  forces.lines.push_back({0.0, true, "", zero_line});
+  margins.title = "Margins";
+  margins.y.label = "margin";
+  Curve still{"static, at rest", {}, {}, 0}, moving{"dynamic, along the motion", {}, {}, 1, Dash::dashed};
+  for (const MarginPoint& p : margin.points) {
+    still.x.push_back(along(margin, p.fold_angle, p.s));
+    still.y.push_back(drawn(p.margin));
+  }
+  for (const MarginReach& r : margin.motion) {
+    moving.x.push_back(along(margin, r.fold_angle, r.s));
+    moving.y.push_back(drawn(r.margin()));
+  }
+  margins.curves = {std::move(still), std::move(moving)};
+  margins.lines.push_back({0.0, true, "", zero_line});
+  Figure figure{"margin", "Margins: " + title, "", 2, 1, {std::move(forces), std::move(margins)}};
+  figure.height_mm = 150;
+  figure.caption = "Least static margin " + words(margin.worst.margin) + " at " +
+                   plot::format_number(along(margin, margin.worst.fold_angle, margin.worst.s), 4) +
+                   (folds ? " deg" : "") + ", least dynamic margin " + words(margin.dynamic_min) + "; " +
+                   (margin.arrives ? "the motion arrives." : "the motion stalls on the way.");
+  for (const MarginSource& source : margin.sources)
+    if (source.factor != 1.0)
+      figure.caption += " " + source.name + " times " + plot::format_number(source.factor, 4) + ".";
+  return figure;
+}
+
+}  // namespace unfurl

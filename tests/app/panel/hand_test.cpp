@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A hand on the structure: pulling nodes, wiggling, building.
+#include <catch2/catch.hpp>
+
+#include "app/panel/document/build_edits.hpp"
+#include "core/scene/build.hpp"
+#include "render/scene/view.hpp"
+#include "tests/app/panel/panel_driver.hpp"
+
+using namespace unfurl;
+
+namespace hand_test {
+
+namespace {
+
+PanelOptions quick() {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  return options;
+}
+
+// Where a node of the shown run is in the window, by the camera that frames the motion.
+Eigen::Vector2d pixel_of(PanelDriver& driver, const std::string& node) {
+  const plot::Rect view = driver.panel().place("view");
+  FrameStyle style;
+  style.width = static_cast<int>(view.width());
+  style.height = static_cast<int>(view.height());
+  const FrameBuilder builder(driver.state().shown->simulation.trajectory, style);
+  const PickView pick{builder.camera(), style.width, style.height, builder.upright()};
+  const PickedPlace at =
+      place_of({Selection::Kind::node, node}, *driver.state().shown, driver.state().playback.t, pick);
+  REQUIRE(at.found);
+  return {view.x0 + at.a.x(), view.y0 + at.a.y()};
+}
+
+void drag_node(PanelDriver& driver, const std::string& node, double dx, double dy) {
+  const Eigen::Vector2d at = pixel_of(driver, node);
+  driver.move(at.x(), at.y());
+  REQUIRE(driver.state().hovered.name == node);
+  driver.press(true);
+  for (int i = 1; i <= 4; ++i) driver.move(at.x() + dx * i / 4, at.y() + dy * i / 4);
+}
+
+}  // namespace
+
+TEST_CASE("a node is pulled with the mouse, rods keep their lengths, and Esc gives the run back") {
+  PanelDriver driver(quick(), "four_bar");
+  driver.click("tool pull");
+  drag_node(driver, "C", -40, 25);
+  REQUIRE(driver.state().pose);
+  const Structure& structure = driver.state().shown->simulation.trajectory.structure();
+  const VectorXd& pose = *driver.state().pose;
+  CHECK((pose - driver.state().shown->simulation.trajectory.positions(0)).norm() > 0.05);
+  for (const Rod& rod : structure.rods)
+    CHECK((pose.segment<3>(3 * rod.b) - pose.segment<3>(3 * rod.a)).norm() ==
+          Approx(rod.length).epsilon(1e-9));
+  driver.press(false);
+  CHECK(driver.state().pose);         // it stays where it was led
+  CHECK_FALSE(driver.state().orbit);  // and the view did not turn
+  driver.key(Key::escape);
+  CHECK_FALSE(driver.state().pose);
+}
+
+TEST_CASE("the free motions of a pose are shown one after the other") {
+  PanelDriver driver(quick(), "four_bar");
+  driver.key(Key::w);
+  CHECK(driver.state().motions == 1);
+  CHECK(driver.state().wiggled == 0);
+  const VectorXd start = *driver.state().pose;
+  driver.frame(0.4);
+  CHECK((*driver.state().pose - start).norm() > 0.01);
+  CHECK(driver.panel().frame(0.1));  // it goes on by itself
+  driver.key(Key::w);
+  CHECK_FALSE(driver.state().pose);
+}
+
+TEST_CASE("nodes and rods are added, moved, connected and deleted as lines of TOML, and undone") {
+  PanelDriver driver(quick(), blank_document());
+  const SceneDocument start = driver.state().history.now();
+  driver.key(Key::b);
+  CHECK(driver.state().tool == Tool::build);
+  auto& intents = driver.state().intents;
+  intents.emplace_back([](LiveSession& s) { s.add_node({0.52, 0, 0.98}); });
+  driver.settle();
+  CHECK(driver.state().history.now().added.back() ==
+        "structure.nodes[2]={name = \"N1\", position = [0.5, 0.0, 1.0], mass = 1.0}");
+  CHECK(driver.state().selected.name == "N1");
+  intents.emplace_back([](LiveSession& s) { s.connect("B", "N1"); });
+  driver.settle();
+  CHECK(driver.state().history.now().added.back() ==
+        "structure.rods[1]={nodes = [\"B\", \"N1\"], mass = 1.0}");
+  REQUIRE(driver.state().shown->simulation.trajectory.structure().rods.size() == 2);
+  driver.state().playback.t = 0;
+  driver.frame();
+  const Vec3 before = driver.state().shown->scene.custom.nodes.at(2).position;
+  drag_node(driver, "N1", 30, -20);
+  driver.press(false);
+  driver.settle();
+  const Vec3 after = driver.state().shown->scene.custom.nodes.at(2).position;
+  CHECK((after - before).norm() > 0.05);
+  for (Index i = 0; i < 3; ++i)
+    CHECK(std::remainder(after[i], 0.1) == Approx(0).margin(1e-9));  // on the grid
+  CHECK(driver.state().history.now().edits.contains("structure.nodes[2].position"));
+  driver.key(Key::z, true);  // the whole drag is one step
+  driver.settle();
+  CHECK(driver.state().shown->scene.custom.nodes.at(2).position == before);
+  driver.state().selected = {Selection::Kind::node, "N1"};
+  driver.key(Key::del);
+  driver.settle();
+  CHECK(driver.state().shown->scene.custom.nodes.size() == 2);
+  CHECK(driver.state().shown->scene.custom.rods.size() == 1);
+  while (driver.state().history.undo()) {
+  }
+  CHECK(driver.state().history.now() == start);
+}
+
+TEST_CASE("building has a mirror, a saved scene has what was built, and a family refuses in words") {
+  PanelDriver driver(quick(), blank_document());
+  driver.state().grid.mirror = 1;
+  driver.state().intents.emplace_back([](LiveSession& s) { s.add_node({0.5, 0.7, 0.3}); });
+  driver.settle();
+  const auto& nodes = driver.state().shown->scene.custom.nodes;
+  REQUIRE(nodes.size() == 4);
+  CHECK(nodes[3].position.isApprox(Vec3(0.5, -0.7, 0.3)));
+  driver.state().intents.emplace_back([](LiveSession& s) { s.connect("A", "N1"); });
+  driver.settle();
+  CHECK(driver.state().shown->scene.custom.rods.size() == 3);  // and its image, A-N2
+  bool anew = true;
+  const SceneDocument saved = saved_document(driver.state().history.now(), "built.toml", anew);
+  CHECK_FALSE(anew);
+  CHECK(saved.text->find("[[structure.rods]]\nnodes = [\"A\", \"N2\"]") != std::string::npos);
+  CHECK(read_document(saved).custom.nodes.size() == 4);
+
+  PanelDriver family(quick());
+  family.state().intents.emplace_back([](LiveSession& s) { s.add_node({0, 0, 0}); });
+  family.frame();
+  CHECK(family.state().message.find("custom") != std::string::npos);
+  CHECK(family.state().history.now().added.empty());
+}
+
+TEST_CASE("where lengths stay, the rest of the structure goes along and stays assembled") {
+  PanelDriver driver(quick(), "four_bar");
+  driver.key(Key::b);
+  driver.state().grid.follow = false;
+  driver.state().grid.step = 0;
+  const Structure before = build_structure(driver.state().shown->scene);
+  driver.state().intents.emplace_back([&](LiveSession& s) { s.move_node("C", {2.4, 0, 2.5}); });
+  driver.settle();
+  const Structure after = build_structure(driver.state().shown->scene);
+  CHECK((after.nodes[2].position - before.nodes[2].position).norm() > 0.05);
+  CHECK((after.nodes[1].position - before.nodes[1].position).norm() > 0.01);  // B went along
+  for (std::size_t i = 0; i < before.rods.size(); ++i)
+    CHECK(after.rods[i].length == Approx(before.rods[i].length).epsilon(1e-8));
+}
+
+}  // namespace hand_test

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The panel without a mouse.
+#include <catch2/catch.hpp>
+
+#include "app/panel/actions.hpp"
+#include "app/panel/panes/panes.hpp"
+#include "tests/app/panel/panel_driver.hpp"
+
+using namespace unfurl;
+
+namespace keyboard_test {
+
+TEST_CASE("Tab reaches the parameters, a value is typed, Esc leaves, and keys mean actions again") {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  PanelDriver driver(options);
+  driver.key(Key::tab);
+  driver.frame();
+  CHECK(driver.state().history.now().edits.empty());
+  std::string edited;
+  for (int i = 0; i < 12 && edited.empty();
+       ++i) {  // from one to the next, until a number takes what is typed
+    driver.key(Key::tab);
+    driver.type("7");
+    driver.key(Key::enter);
+    driver.frame();
+    for (const auto& [key, value] : driver.state().history.now().edits)
+      if (key != "title") edited = key;
+  }
+  INFO(edited);
+  CHECK_FALSE(edited.empty());
+  driver.key(Key::escape);
+  driver.key(Key::escape);
+  driver.settle();
+  driver.move_to("view", 0.5, 0.9);
+  driver.press(true);
+  driver.press(false);
+  driver.key(Key::end);
+  REQUIRE(driver.state().shown);
+  CHECK(driver.state().playback.t == driver.state().shown->simulation.trajectory.end_time());
+}
+
+TEST_CASE("the palette finds actions and parameters, and Enter does them") {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  PanelDriver driver(options);
+  driver.key(Key::p, true);
+  driver.frame();
+  REQUIRE(driver.panel().has_place("palette query"));
+  driver.type("light or");
+  driver.key(Key::enter);
+  driver.frame();
+  CHECK(driver.state().dark);
+  CHECK_FALSE(driver.state().palette_open);
+  const auto items = palette_items(driver.state(), "post length");
+  REQUIRE_FALSE(items.empty());
+  CHECK(items.front().name.find("structure.post_length") != std::string::npos);
+  driver.key(Key::p, true);
+  driver.frame();
+  driver.type("post length");
+  driver.key(Key::enter);
+  for (int i = 0; i < 3; ++i) driver.frame();
+  CHECK(driver.state().reveal.empty());  // it was drawn, and has the keyboard
+  driver.type("1.75");
+  driver.key(Key::enter);
+  driver.settle();
+  CHECK(std::get<double>(driver.state().history.now().edits.at("structure.post_length")) == 1.75);
+  // Esc closes what is open: the palette, a drop-down.
+  driver.key(Key::p, true);
+  driver.frame();
+  driver.key(Key::escape);
+  CHECK_FALSE(driver.state().palette_open);
+  driver.click("view options");
+  driver.frame();
+  REQUIRE(driver.panel().has_place("render.look"));
+  driver.key(Key::escape);
+  driver.frame();
+  CHECK_FALSE(driver.panel().has_place("use view"));
+}
+
+TEST_CASE("every action has a name, and no two have one key") {
+  for (const Action& a : actions()) {
+    CHECK_FALSE(a.help.empty());
+    for (const Action& b : actions())
+      CHECK(
+          (&a == &b || a.key == Key::none || a.key != b.key || a.control != b.control || a.shift != b.shift));
+  }
+}
+
+TEST_CASE("the guided tour has six steps, comes once, and can be called again") {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  PanelDriver driver(options, "hoop6", true);
+  CHECK(driver.state().tour == 1);
+  CHECK_FALSE(driver.panel().settings().tour_seen);
+  for (int step = 1; step <= 6; ++step) {
+    CHECK(driver.state().tour == step);
+    driver.frame();
+    driver.click("tour next");
+  }
+  CHECK(driver.state().tour == 0);
+  CHECK(driver.panel().settings().tour_seen);
+  PanelDriver second(options);
+  CHECK(second.state().tour == 0);
+}
+
+}  // namespace keyboard_test

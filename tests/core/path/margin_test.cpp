@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Margins against closed forms, held drives and runs that stall.
+#include "core/path/margin.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/integrators/index1.hpp"
+#include "core/path/path.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "core/simulate/simulation.hpp"
+#include "core/study/table.hpp"
+
+using namespace unfurl;
+
+namespace margin_test {
+
+namespace {
+
+// The ring of six: chord rods of 3 m, f on each of its 12 hinges; the torque about its fold angle t is
+// 12 f l cos t. A spring with free angle at the start resists with k (t_0 - t).
+constexpr double f = 170, l = 3.0, start = 74.0 * radians_per_degree;
+
+Scene ring(double stiffness, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> changes{"structure.fold_angle=74", "structure.hinge_force=170", "solver.stages=5",
+                                   "solver.end_time=20"};
+  if (stiffness > 0)
+    changes.push_back(
+        R"(forces[0]={kind="torsion_spring",name="hose",fold_angle=true,free_angle=74,stiffness=)" +
+        exact_number(stiffness) + "}");
+  changes.insert(changes.end(), more.begin(), more.end());
+  return read_scene_file(find_scene("hoop6"), changes);
+}
+
+Margin margin_in(const Scene& scene, const std::map<std::string, double>& factors = {}) {
+  return margin_of(build_model(scene), scene.solver, factors);
+}
+
+double driven(double angle) {
+  return 12 * f * l * (std::sin(start) - std::sin(angle));
+}
+
+}  // namespace
+
+TEST_CASE("static margins are the closed form's in every pose, by source") {
+  const double k = 900;
+  const Margin margin = margin_in(ring(k));
+  REQUIRE(margin.sources.size() == 2);
+  CHECK(margin.unit == "N m");
+  for (std::size_t i = 1; i < margin.points.size(); i += 7) {
+    const MarginPoint& p = margin.points[i];
+    const double drive = 12 * f * l * std::cos(p.fold_angle), resistance = k * (start - p.fold_angle);
+    // Tangents next to the deployed pose have errors of 1e-16 over the square of the angle to it, 1e-9 at
+    // most at the poses taken here.
+    CHECK(p.forces[0] == Approx(drive).epsilon(1e-9));
+    CHECK(p.forces[1] == Approx(-resistance).epsilon(1e-9));
+    CHECK(p.margin == Approx(drive / resistance - 1).epsilon(1e-9).margin(1e-9));
+  }
+  // Here what drives falls by less than what resists rises: the worst pose is the last one.
+  CHECK(std::abs(margin.worst.fold_angle) <= 1e-6);
+  CHECK(margin.worst.margin == Approx(12 * f * l / (k * start) - 1).epsilon(1e-8));
+  // Half the drive, with a factor.
+  const Margin half = margin_in(ring(k), {{"loads", 0.5}});
+  CHECK(half.worst.margin + 1 == Approx(0.5 * (margin.worst.margin + 1)).epsilon(1e-9));
+  CHECK_THROWS_WITH(margin_in(ring(k), {{"hoses", 0.5}}), Catch::Contains("did you mean"));
+}
+
+TEST_CASE("the force along the path is the reaction of a drive that is held") {
+  const double k = 900;
+  for (const double angle : {71.3, 43.9, 11.7}) {
+    const std::vector<std::string> at{"structure.fold_angle=" + std::to_string(angle),
+                                      "gravity.acceleration=[0,0,-0.7]"};
+    const Margin free = margin_in(ring(k, at));
+    std::vector<std::string> locked = at;
+    locked.emplace_back(R"(constraints=[{kind="angle",name="motor",fold_angle=true}])");
+    // A scene in which nothing can move is refused: these are its equations.
+    const Structure structure = build_structure(ring(k, locked));
+    const System system(structure, true);
+    State state = initial_state(structure, system).state;
+    Index1 index1(system, true);
+    VectorXd acceleration(state.z.size());
+    REQUIRE(index1.evaluate(0.0, state.z, state.w, acceleration, state.lambda));
+    const int row = system.constraint_row(static_cast<int>(structure.constraints.size()) - 1);
+    REQUIRE(row >= 0);
+    // The row is its length times the angle: its force on the angle is -length lambda, and balances all
+    // others.
+    const double reaction = system.constraint_lengths()[row] * state.lambda[row];
+    CHECK(std::abs(std::abs(reaction) - std::abs(free.points[0].forces.sum())) <=
+          1e-12 * free.points[0].forces.cwiseAbs().sum());
+  }
+}
+
+TEST_CASE("where the dynamic margin is exactly zero at a known angle, the run stalls there") {
+  // All energy is in the spring at 31 degrees: 12 f l (sin t_0 - sin t) = k/2 (t_0 - t)^2.
+  const double stall = 31 * radians_per_degree, k = 2 * driven(stall) / ((start - stall) * (start - stall));
+  const Scene scene = ring(k);
+  const Margin margin = margin_in(scene);
+  CHECK_FALSE(margin.arrives);
+  CHECK(std::abs(margin.motion.back().fold_angle - stall) <= 1e-9);
+  CHECK(std::abs(margin.dynamic_min) <= 1e-12);
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  CHECK(run.status == RunStatus::completed);
+  double least = start;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i)
+    least =
+        std::min(least, run.trajectory.structure().deployment.fold_angle(run.trajectory.node_positions(i)));
+  CHECK(least >= stall - 1e-9);
+  // Between two states at rest a step of 0.01 s apart it is nearer by a t^2 / 2 with some 1 rad/s^2.
+  CHECK(least <= stall + 1e-4);
+  CHECK_FALSE(margin_in(ring(1.001 * k)).arrives);
+  // A little less resistance than what would stall it at the deployed pose: it arrives.
+  const double last = 2 * driven(0) / (start * start);
+  CHECK(margin_in(ring(0.999 * last)).arrives);
+  CHECK(margin_in(ring(0.999 * last)).dynamic_min == Approx(1 / 0.999 - 1).epsilon(1e-6));
+}
+
+TEST_CASE("a jammed hinge stalls the motion where its energy is used up") {
+  const Scene scene = ring(0);
+  const auto model = build_model(scene);
+  const auto hinges = stuck_hinges(model, margin_of(model, scene.solver), false);
+  REQUIRE_FALSE(hinges.empty());
+  // The hinge in the middle of a chord turns by 2 (t_0 - t).
+  double torque = 1e300;
+  for (int i = 1; i <= 20000; ++i) {
+    const double angle = start * (1 - i / 20000.0);
+    torque = std::min(torque, driven(angle) / (2 * (start - angle)));
+  }
+  const auto chord = std::find_if(hinges.begin(), hinges.end(),
+                                  [](const StuckHinge& h) { return std::abs(h.turn - 2 * start) < 1e-6; });
+  REQUIRE(chord != hinges.end());
+  // Least at the start, where it is half of 12 f l cos(t_0); the first part of a step is 1e-6 of the way.
+  CHECK(chord->stall_torque == Approx(torque).epsilon(1e-3));
+  // A stop at its angle instead: the run comes to rest on it there.
+  const Scene jam = ring(0, {R"(constraints=[{kind="angle_stop",name="jam",fold_angle=true,min=52}])"});
+  const Simulation run = simulate(build_model(jam), jam.solver);
+  const double fold = run.trajectory.structure().deployment.fold_angle(
+      run.trajectory.node_positions(run.trajectory.size() - 1));
+  CHECK(fold == Approx(52 * radians_per_degree).epsilon(1e-10));
+}
+
+TEST_CASE("no margin where there is no path, or a drive does what it is told") {
+  const auto refusal = [](const char* name) {
+    const Scene scene = read_scene_file(find_scene(name), {});
+    try {
+      margin_in(scene);
+    } catch (const PathRefused& refused) {
+      return std::string(refused.what());
+    }
+    return std::string();
+  };
+  CHECK(refusal("hoop6_motor").find("a drive prescribes the motion") != std::string::npos);
+  CHECK(refusal("chain").find("degrees of freedom") != std::string::npos);
+}
+
+}  // namespace margin_test
