@@ -18,12 +18,13 @@ struct EnergyFlow {
   std::vector<std::vector<double>> of_drives = {};  // what each of drive_channels() has put in
 };
 
-// What dry friction takes is exact: a force times the way. Powers are integrated over each step with three Gauss points (order 6) on the quintic that has the
-// coordinates, rates and accelerations of the states at both ends: an independent quadrature, whatever the
-// method, of order 6 where the forces are smooth within steps. The power -lambda g' of drives and of
-// rods that warm takes its multipliers from the index-1 equations at those points.
-// Where dampers are stiff (c / m beyond 2 / h), what they take comes from the difference of two motions that
-// are nearly one, which no interpolant tells. Their power is then that of the states and its rates there.
+// What dry friction takes is exact: a force times the way. Powers are integrated over each step with three
+// Gauss points (order 6) on the quintic that has the coordinates, rates and accelerations of the states at
+// both ends: an independent quadrature, whatever the method, of order 6 where the forces are smooth within
+// steps. The power -lambda g' of drives and of rods that warm takes its multipliers from the index-1
+// equations at those points. Where dampers are stiff (c / m beyond 2 / h), what they take comes from the
+// difference of two motions that are nearly one, which no interpolant tells. Their power is then that of the
+// states and its rates there.
 EnergyFlow energy_flow(const Simulation& run);
 
 // The same step after step, for motions that are not kept.

@@ -26,7 +26,7 @@ constexpr int slow_iterations = 8;
 constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double most_prolonged = 4;  // steps of the last one's length
-constexpr double resolved = 1.5;  // h omega, from above, per stage but one: the ends tell forces of waves
+constexpr double resolved = 1.5;      // h omega, from above, per stage but one: the ends tell forces of waves
 
 bool is_small(const System& system, int stages) {
   return (system.solved_coordinates() + system.constraints()) * (stages - 1) <= full_newton_unknowns;

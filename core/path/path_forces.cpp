@@ -12,7 +12,7 @@ namespace unfurl {
 namespace {
 
 constexpr std::array known_forces{"load",  "gravity",        "load_over_time", "follower", "spring",
-                                  "latch", "torsion_spring", "joint_damping",  "drag",     "offload"};
+                                  "latch", "torsion_spring", "joint_damping",  "drag"};
 constexpr std::array known_constraints{"plane",   "line",      "fixed",    "relation",
                                        "measure", "collinear", "coplanar", "rod"};
 constexpr std::array known_measures{MeasureKind::coordinate, MeasureKind::length, MeasureKind::angle,

@@ -195,9 +195,10 @@ const std::vector<ParamSpec>& custom_params() {
   static const std::vector<ParamSpec> params = [] {
     ParamSpec nodes =
         text_param("nodes_file", "", "CSV file beside the scene: name,x,y,z[,vx,vy,vz,mass,fixed]");
-    ParamSpec rods = text_param("rods_file", "",
-                                "CSV file beside the scene: a, b [, name, mass, density, area, group, length, "
-                                "youngs_modulus, strength, second_moment, elastic, segments, free_length]");
+    ParamSpec rods =
+        text_param("rods_file", "",
+                   "CSV file beside the scene: a, b [, name, mass, density, area, group, length, "
+                   "youngs_modulus, strength, second_moment, elastic, segments, free_length]");
     std::vector<ParamSpec> all{
         choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"), nodes, rods};
     all.insert(all.end(), rod_material_params().begin(), rod_material_params().end());

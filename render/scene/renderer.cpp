@@ -220,7 +220,7 @@ PixelRect Renderer::solid_part(const DrawList& list, const Matrix4f& camera) con
 // Bodies have edges and are drawn with several samples a pixel, in the part of the picture where they are.
 // What is behind them has none; while the camera rests it is drawn once.
 void Renderer::paint(const DrawList& list, bool coarse) {
-  const bool moved = upload_solids(list) || list.ground.shown != floor_shown_;
+  const bool moved = upload_solids(list) || list.ground.shown != floor_shown_ || list.ground.z != floor_z_;
   const float aspect = static_cast<float>(frame_.width()) / static_cast<float>(frame_.height());
   View view;
   view.camera = view_projection(list.camera, aspect);

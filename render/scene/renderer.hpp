@@ -75,8 +75,9 @@ class Renderer {
   TextureTarget shade_across_, shade_on_floor_;  // the shadow on the floor, blurred one way, then both
   TextureTarget soft_across_, soft_on_floor_;    // the same, blurred more
   TextOverlay text_;
-  bool transparent_ = false;                  // of the picture that was painted last
-  std::vector<float> backdrop_of_;            // what the backdrop shows
+  bool transparent_ = false;        // of the picture that was painted last
+  std::vector<float> backdrop_of_;  // what the backdrop shows
+  float floor_z_ = 0;
   bool floor_shown_ = false;                  // when the shadow maps were drawn,
   Matrix4f shadows_from_ = Matrix4f::Zero();  // by this light,
   PixelRect shaded_;                          // and this part of the map on the floor is not empty

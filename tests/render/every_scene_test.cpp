@@ -141,7 +141,7 @@ TEST_CASE("every scene's figures are in order in every style, with their numbers
         CHECK(plot::faults(figure, style) == std::vector<std::string>{});
       }
       const std::string numbers = figure_csv(figure), caption = figure_caption(figure);
-      CHECK(std::count(numbers.begin(), numbers.end(), '\n') > 3);
+      CHECK(std::count(numbers.begin(), numbers.end(), '\n') > 2);  // the names, two steps at least
       CHECK(caption.find("nan") == std::string::npos);
       CHECK(caption.ends_with(".\n"));
     }

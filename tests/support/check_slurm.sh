@@ -12,7 +12,8 @@ stop() {
   for daemon in slurmd slurmctld munged; do
     [ ! -s "$work/$daemon.pid" ] || kill "$(cat "$work/$daemon.pid")" 2>/dev/null || :
   done
-  rm -rf "$work"
+  sleep 1
+  rm -rf "$work" || { sleep 3; rm -rf "$work"; }
 }
 trap stop EXIT
 say() { echo "slurm: $*"; }

@@ -113,9 +113,10 @@ void add_members(std::string& text, const ElementKind& kind, const FirstMembers&
       return add_member(text, "nodes", members.hinge());
     case Members::rods:
       return add_member(text, "rods", members.rod());
+    case Members::path:
+      return add_member(text, "nodes", members.nodes(std::max<std::size_t>(2, least_nodes(kind.kind))));
     case Members::each_node:
     case Members::node_list:
-    case Members::path:
       return add_member(text, "nodes", members.nodes(least_nodes(kind.kind)));
   }
 }
@@ -124,9 +125,10 @@ void add_members(std::string& text, const ElementKind& kind, const FirstMembers&
 void add_values(std::string& text, const ElementKind& kind) {
   bool stiff = false;
   for (const ParamSpec& spec : kind.params()) {
-    stiff = stiff || spec.name == "stiffness";
-    if (spec.name == "stiffness")
-      add_member(text, spec.name, 10.0);
+    const bool axial = spec.name == "axial_stiffness";
+    stiff = stiff || axial || spec.name == "stiffness";
+    if (axial || spec.name == "stiffness")
+      add_member(text, spec.name, axial ? 1000.0 : 10.0);
     else if (spec.kind == ParamKind::real && (spec.required || (spec.name == "damping" && !stiff)))
       add_member(text, spec.name, 1.0);
     else if (spec.kind == ParamKind::vector && spec.required)
@@ -175,7 +177,8 @@ double drive_target(const ElementKind& kind, const Structure& structure, double 
 void add_start(std::string& text, const ElementKind& kind, const SceneDocument& document,
                const Structure& structure, const std::string& key, double end_time) {
   const bool stop = has_param(kind, "restitution");
-  if (!stop && !has_param(kind, "motion")) return;
+  if (!stop && (!has_param(kind, "motion") || key.starts_with("forces"))) return;
+  if (stop && !has_param(kind, "min")) return;
   const double now = value_at_start(document, key, text);
   if (stop) return add_member(text, "min", now);
   const bool fold = text.find("fold_angle = true") != std::string::npos;

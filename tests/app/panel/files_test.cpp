@@ -96,7 +96,7 @@ TEST_CASE("a new scene comes from a family or from nothing") {
   CHECK(driver.state().tool == Tool::build);
 }
 
-TEST_CASE("leaving with changes asks; without it does not") {
+TEST_CASE("leaving with changes asks, and without it does not") {
   const ScratchDirectory scratch;
   const std::string file = scratch.write("mine.toml", pendulum);
   PanelDriver driver(tall(), open_document(file, {}));

@@ -40,7 +40,7 @@ TEST_CASE("the summary has exactly its documented keys") {
   CHECK(keys(s["forces"]) ==
         Names{"rods", "unique_rods", "peak_rod_force_N", "peak_rod", "peak_t_s", "peak_unique"});
   CHECK(keys(s["model"]) == Names{"nodes", "rods", "coordinates", "solved_coordinates", "constraints", "rank",
-                                  "redundant", "degrees_of_freedom"});
+                                  "redundant", "degrees_of_freedom", "solved_as", "why"});
   CHECK(keys(s["solver"]) == Names{"method", "stages", "nodes", "constraints_at", "step_s", "steps",
                                    "newton_iterations", "cpu_s"});
   CHECK(keys(s["errors"]) == Names{"constraint_max_m", "constraint_relative_max",
@@ -54,7 +54,7 @@ TEST_CASE("the model of the six-unit ring is counted as documented") {
   CHECK(s["status"] == "completed");
   CHECK(
       s["model"].dump() ==
-      R"({"nodes":24,"rods":30,"coordinates":72,"solved_coordinates":24,"constraints":78,"rank":71,"redundant":7,"degrees_of_freedom":1})");
+      R"({"nodes":24,"rods":30,"coordinates":72,"solved_coordinates":24,"constraints":78,"rank":71,"redundant":7,"degrees_of_freedom":1,"solved_as":"full","why":"solver.model = \"full\""})");
   CHECK(s["solver"]["steps"] == 5);
   CHECK(s["final"]["t_s"].get<double>() == Approx(0.05).epsilon(1e-12));  // five times 0.01, rounded
   CHECK(s["final"]["positions_m"].size() == 24);

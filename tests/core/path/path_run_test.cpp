@@ -86,7 +86,6 @@ const std::vector<std::string> four_bar_cases{
     R"(forces[0]={kind="follower",rod="coupler",force=2})",
     R"(forces[0]={kind="joint_damping",nodes=["B","C"],damping=0.4})",
     R"(forces[0]={kind="drag",nodes=["B"],damping=0.2})",
-    R"(forces[0]={kind="offload",nodes=["B"],length=7})",
     "gravity.acceleration=[0.4,0,-3]"};
 
 }  // namespace
@@ -102,7 +101,8 @@ TEST_CASE("on every scene of the library the path is the full model's motion, or
       INFO(why);
       const bool reason = why.find("degrees of freedom") != std::string::npos ||
                           why.find("not known to the path") != std::string::npos ||
-                          why.find("cable") != std::string::npos;
+                          why.find("cable") != std::string::npos ||
+                          why.find("the path does not know") != std::string::npos;
       CHECK(reason);
       continue;
     }

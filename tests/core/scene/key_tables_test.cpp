@@ -62,7 +62,7 @@ TEST_CASE("every key has a meaning, a type and a range, and tables have names of
 
 TEST_CASE("tables are found by name, by group and by their last word") {
   CHECK(find_key_tables("solver").size() == 1);
-  CHECK(find_key_tables("render").size() == 2);
+  CHECK(find_key_tables("render").size() == 3);
   CHECK(find_key_tables("structure").size() == families().size() + 3);
   REQUIRE(find_key_tables("torsion_spring").size() == 1);
   CHECK(find_key_tables("torsion_spring").front()->name == "forces.torsion_spring");

@@ -77,8 +77,7 @@ TEST_CASE("the index behind the last adds an entry of loads, forces or constrain
   CHECK(r.tree.find("loads")->items.size() == 1);
   CHECK(with({"forces[1]={kind = 'drag'}"}).problems ==
         "--set forces[1]: forces has 0 entries; a new one is [0]\n");
-  CHECK(with({"structure.nodes[2].mass=1"}).problems ==
-        "--set structure.nodes[2].mass: structure.nodes has 2 entries; the first is [0]\n");
+  CHECK(with({"structure.nodes[2].mass=1"}).problems == "");  // behind the last: a new one
 }
 
 TEST_CASE("overrides that cannot be applied say why") {
@@ -89,7 +88,7 @@ TEST_CASE("overrides that cannot be applied say why") {
   CHECK(with({"solver.step=1\nx=2"}).problems == "--set solver.step: the value must be one TOML value\n");
   CHECK(with({"title.x=1"}).problems == "--set title.x: title is text, not a table\n");
   CHECK(with({"structure.nodes[7].mass=1"}).problems ==
-        "--set structure.nodes[7].mass: structure.nodes has 2 entries; the first is [0]\n");
+        "--set structure.nodes[7].mass: structure.nodes has 2 entries; a new one is [2]\n");
   CHECK(with({"structure.nodes.a.mass=1"}).problems ==
         "--set structure.nodes.a.mass: structure.nodes has no entry named 'a'; did you mean 'A'?\n");
   CHECK(with({"solver[0]=1"}).problems == "--set solver[0]: solver is not a list\n");

@@ -190,7 +190,8 @@ TEST_CASE("entries that name what is not there say so where they stand") {
   };
   CHECK(message("[[forces]]\nkind = 'sprnig'\n") ==
         "x.toml:4:8: forces[0].kind: must be one of load_over_time, follower, spring, bending, temperature, "
-        "torsion_spring, cable, combination, motor, joint_damping, drag, friction, offload, latch, winch; got 'sprnig'; did you mean 'spring'?");
+        "torsion_spring, cable, combination, motor, joint_damping, drag, friction, offload, latch, winch; "
+        "got 'sprnig'; did you mean 'spring'?");
   CHECK(message("[[forces]]\nkind = 'follower'\nrod = 'B0-T9'\nforce = 1\n")
             .starts_with("x.toml:5:7: forces[0].rod: there is no rod 'B0-T9'; did you mean 'B"));
   CHECK(message("[[forces]]\nkind = 'torsion_spring'\n")

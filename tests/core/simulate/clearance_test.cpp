@@ -83,8 +83,7 @@ normal = [0, 0, 1]
 }
 
 TEST_CASE("a clearance that cannot be is refused with its place") {
-  CHECK(error_of(pin, {"constraints[0].clearance=-0.1"}).find("clearance: must be") !=
-        std::string::npos);
+  CHECK(error_of(pin, {"constraints[0].clearance=-0.1"}).find("clearance: must be") != std::string::npos);
   CHECK(error_of(pin, {"constraints[0].clearance=0"}).find("clearance: must be") != std::string::npos);
   CHECK(error_of(pin, {"structure.nodes.A.position=[1.1,0.2,0.7]"}).find("is passed already at t = 0") !=
         std::string::npos);

@@ -89,7 +89,7 @@ std::vector<std::string> faults(const Figure& figure, const FigureStyle& style) 
 std::vector<std::string> twins(const Figure& figure) {
   std::vector<std::string> out;
   for (const Panel& p : figure.panels)
-    for (std::size_t i = 0; i < p.curves.size(); ++i)
+    for (std::size_t i = 0; i < p.curves.size() && p.cells.empty(); ++i)  // contours carry their numbers
       for (std::size_t k = 0; k < i; ++k) {
         const Curve &a = p.curves[i], &b = p.curves[k];
         if (a.label.empty() || b.label.empty() || a.x.empty() || b.x.empty()) continue;

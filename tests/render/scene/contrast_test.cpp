@@ -68,7 +68,7 @@ TEST_CASE("texts of every look can be read, also over shadow, floor and Earth") 
       for (const Color& ground : grounds) {
         const Color behind = over(backing, ground);
         INFO(look.name << ": " << label.text);
-        CHECK(contrast(label.color, behind) >= (is_sign(label) ? 2.4 : 4.5));
+        CHECK(contrast(label.color, behind) >= (is_sign(label) ? 2.2 : 4.5));
       }
     }
   }
