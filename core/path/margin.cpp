@@ -19,6 +19,8 @@ namespace {
 constexpr int poses = 400;       // at which margins are taken
 constexpr int parts = 8;         // of a step of the motion
 constexpr long far_enough = 64;  // pieces of the path, to the deployed pose
+// What is left of forces across the path is rounding.
+constexpr double rounding = 1e-13;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // The sources with their factors, and the law of motion that follows. The sense is the way it deploys.
@@ -229,8 +231,7 @@ class MarginMaker {
       const double q = sense_ * sources_.force(k, sense_ * s, 0.0, t);
       (q > 0 ? drives : resistances) += std::abs(q);
     }
-    // What is left of forces across the path is rounding.
-    if (resistances <= 1e-13 * drives) return drives > 0 ? infinite : 0.0;
+    if (resistances <= rounding * drives) return drives > 0 ? infinite : 0.0;
     return drives / resistances - 1;
   }
 
@@ -321,7 +322,7 @@ StuckHinge stuck(const std::string& name, const std::vector<double>& turned, con
 }  // namespace
 
 double MarginReach::margin() const {
-  return resisted > 0 ? driven / resisted - 1 : infinite;
+  return resisted > rounding * driven ? driven / resisted - 1 : infinite;
 }
 
 Margin margin_of(const std::shared_ptr<const Model>& model, const SolverOptions& options,
