@@ -106,6 +106,8 @@ void add_members(std::string& text, const ElementKind& kind, const FirstMembers&
     case Members::angle:
     case Members::measure:
       if (members.by_fold_angle()) return add_member(text, "fold_angle", true);
+      if (kind.members == Members::measure && members.hinge().empty())
+        return add_member(text, "nodes", members.nodes(2));
       return add_member(text, "nodes", members.hinge());
     case Members::two_nodes:
       return add_member(text, "nodes", members.nodes(2));
@@ -131,6 +133,8 @@ void add_values(std::string& text, const ElementKind& kind) {
       add_member(text, spec.name, axial ? 1000.0 : 10.0);
     else if (spec.kind == ParamKind::real && (spec.required || (spec.name == "damping" && !stiff)))
       add_member(text, spec.name, 1.0);
+    else if (spec.name == "radii")
+      add_member(text, spec.name, std::vector<double>{1.0, 1.0});
     else if (spec.kind == ParamKind::vector && spec.required)
       add_member(text, spec.name, std::vector<double>{0.0, 0.0, spec.name == "force" ? -1.0 : 1.0});
   }
@@ -207,6 +211,9 @@ std::string new_entry(const SceneDocument& document, std::string_view table, std
     const ElementKind& kind = *find_kind(table == "forces" ? scene_forces() : scene_constraints(), kind_name);
     if (kind_name == "latch" && structure.deployment.empty())
       throw SceneError({{{"", 0, 0}, key, "the structure has no deployed pose to latch in"}});
+    const bool hinged = kind.members == Members::three_nodes || kind_name == "motor";
+    if (hinged && members.hinge().empty())
+      throw SceneError({{{"", 0, 0}, key, "the structure has no two rods that share a node"}});
     add_member(text, "kind", std::string(kind_name));
     add_members(text, kind, members);
     add_values(text, kind);
