@@ -226,7 +226,7 @@ VectorXd multipliers(Index1& index1, const Model& model, const State& state, boo
                      VectorXd& node_acceleration) {
   VectorXd acceleration(model.system.solved_coordinates()), lambda = state.lambda;
   acceleration.setConstant(nan);
-  const bool ok = singular_event || index1.evaluate(state.t, state.z, state.w, acceleration, lambda);
+  const bool ok = singular_event || index1.evaluate(state, acceleration, lambda);
   node_acceleration.resize(model.system.coordinates());
   model.system.expand_rate(acceleration, node_acceleration);
   return ok ? lambda : VectorXd::Constant(lambda.size(), nan);

@@ -30,7 +30,7 @@ EnergyMeter::EnergyMeter(const System& system)
 VectorXd EnergyMeter::acceleration(const State& state) {
   VectorXd a(state.z.size());
   system_.follow(state);
-  if (!index1_->evaluate(state.t, state.z, state.w, a, lambda_)) a.setZero();
+  if (!index1_->evaluate(state, a, lambda_)) a.setZero();
   return a;
 }
 

@@ -33,7 +33,7 @@ class Neighbourhood {
       VectorXd a(t.state(k).z.size());
       const State& s = t.state(k);
       system.follow(s);
-      const bool known = index1.evaluate(s.t, s.z, s.w, a, lambda);
+      const bool known = index1.evaluate(s, a, lambda);
       accelerations_.push_back(known ? a : VectorXd());
     }
     if (first_ < i && !known(first_)) first_ = i;

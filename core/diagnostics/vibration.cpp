@@ -61,7 +61,7 @@ class AtPose {
     Index1 index1(system_, true);
     VectorXd lambda = rest.lambda;
     lambda.setZero(G.rows());
-    if (!index1.evaluate(rest.t, rest.z, rest.w, acceleration, lambda)) lambda.setZero();
+    if (!index1.evaluate(rest, acceleration, lambda)) lambda.setZero();
     if (known.size() > 0)
       take_known(model, q, G, known, rest.t, lambda);
     else

@@ -138,6 +138,10 @@ void ElasticRods::forces(double t, const double* q, const double* v, double* for
   }
 }
 
+void ElasticRods::add_forces(const double* q, const double* force, double scale, double* f) const {
+  for (const Rod& rod : rods_) pull(rod, scale * *force++ * span_of(rod, q).along, f);
+}
+
 std::unique_ptr<ForceBlock> elastic_rods_block(const Structure& structure, const SparseRows&) {
   return giving_rods_of(structure).empty() ? nullptr : std::make_unique<ElasticRods>(structure);
 }

@@ -29,6 +29,8 @@ class ElasticRods final : public ForceBlock {
 
   // Axial forces, dampers included, tension positive, in the order of the rods that give [N].
   void forces(double t, const double* q, const double* v, double* force) const;
+  // f += scale * what rods with these axial forces pull their nodes with.
+  void add_forces(const double* q, const double* force, double scale, double* f) const;
 
  private:
   std::vector<Rod> rods_;

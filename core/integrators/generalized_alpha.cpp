@@ -107,7 +107,7 @@ bool GeneralizedAlpha::begin(const State& state, StepReport& report) {
   if (have_acceleration_) return true;
   ++report.factorisations;
   ++report.right_hand_sides;
-  if (!start_.evaluate(state.t, state.z, state.w, acceleration0_, lambda_)) {
+  if (!start_.evaluate(state, acceleration0_, lambda_)) {
     report.status = StepStatus::not_finite;
     return false;
   }

@@ -24,13 +24,18 @@ Index1::Index1(const System& system, bool clean_multipliers)
       bias_(system.constraints()),
       phi_(system.constraints()) {}
 
-bool Index1::assemble(double t, const ConstVec& z, const ConstVec& w) {
+bool Index1::assemble(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension) {
   system_.expand(z, q_);
   system_.expand_rate(w, v_);
   system_.jacobian(q_, G_, scratch_);
   if (!saddle_.factorise(G_)) return false;
   f_.setZero();
   system_.add_applied_force(t, q_, v_, 1.0, f_);
+  if (tension.size() > 0) {
+    VectorXd by_lengths(tension.size());
+    system_.giving_rod_forces(t, q_, v_, by_lengths);
+    system_.add_giving_rod_forces(q_, tension - by_lengths, 1.0, f_);
+  }
   system_.reduce_force(f_, force_);
   system_.constraint_bias(t, q_, v_, bias_);
   bias_ = -bias_;
@@ -38,7 +43,14 @@ bool Index1::assemble(double t, const ConstVec& z, const ConstVec& w) {
 }
 
 bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda) {
-  if (!assemble(t, z, w)) return false;
+  return assemble(t, z, w) && solve(t, w, acceleration, lambda);
+}
+
+bool Index1::evaluate(const State& state, MutVec acceleration, MutVec lambda) {
+  return assemble(state.t, state.z, state.w, state.tension) && solve(state.t, state.w, acceleration, lambda);
+}
+
+bool Index1::solve(double t, const ConstVec& w, MutVec acceleration, MutVec lambda) {
   saddle_.weakest_pivot(weak_);
   if (alpha_ > 0) {
     system_.target_rate(t, phi_);
@@ -51,9 +63,10 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   return acceleration.allFinite() && lambda.allFinite();
 }
 
-bool Index1::correct(double t, const ConstVec& z, const ConstVec& w, std::span<VectorXd> lambdas) {
-  if (!assemble(t, z, w)) return false;
-  VectorXd acceleration(w.size()), change(bias_.size()), force(w.size()), rate(bias_.size());
+bool Index1::correct(const State& state, std::span<VectorXd> lambdas) {
+  if (!assemble(state.t, state.z, state.w, state.tension)) return false;
+  const Index n = state.w.size(), m = bias_.size();
+  VectorXd acceleration(n), change(m), force(n), rate(m);
   for (VectorXd& lambda : lambdas) {
     force.noalias() = force_ - G_.transpose() * lambda;
     saddle_.solve(force, bias_, acceleration, change, refinements_);

@@ -25,12 +25,16 @@ class Index1 {
   void stabilise(double alpha) { alpha_ = alpha; }
   // False where the factorisation broke down or the result is not finite.
   bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda);
+  // The same at a state. What rods that give pull with is what the state says, where its step did not resolve
+  // them and their lengths do not tell.
+  bool evaluate(const State& state, MutVec acceleration, MutVec lambda);
   // Where G has lost rank: the multipliers that the equations determine, next to those given, of which the
   // rest is kept; for each of `lambdas`. Directions of singular values below some 1e-7 count as lost.
-  bool correct(double t, const ConstVec& z, const ConstVec& w, std::span<VectorXd> lambdas);
+  bool correct(const State& state, std::span<VectorXd> lambdas);
 
  private:
-  bool assemble(double t, const ConstVec& z, const ConstVec& w);
+  bool assemble(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension = {});
+  bool solve(double t, const ConstVec& w, MutVec acceleration, MutVec lambda);
   const System& system_;
   SparseRows G_;
   std::vector<double> scratch_;

@@ -203,8 +203,7 @@ class Locator {
   void keep(double at, State state) {
     VectorXd acceleration(state.w.size());
     followed_.follow(state);
-    if (index1_.evaluate(state.t, state.z, state.w, acceleration, state.lambda))
-      samples_.push_back({at, std::move(state)});
+    if (index1_.evaluate(state, acceleration, state.lambda)) samples_.push_back({at, std::move(state)});
   }
 
   // Everything as a function of the sine, at zero.
@@ -217,6 +216,10 @@ class Locator {
       out.t += shares[static_cast<Index>(i)] * samples_[i].state.t;
     out.z = at_zero(samples_, shares, &State::z);
     out.w = at_zero(samples_, shares, &State::w);
+    const bool all_tell = std::all_of(samples_.begin(), samples_.end(), [&](const NearDeployed& sample) {
+      return sample.state.tension.size() == out.tension.size();
+    });
+    out.tension = all_tell ? at_zero(samples_, shares, &State::tension) : VectorXd();
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
     followed_.follow(samples_.front().state);
     followed_.count_on(out);
@@ -241,7 +244,7 @@ VectorXd multipliers_at_deployed(Index1& index1, const std::vector<NearDeployed>
   std::vector<VectorXd> fits{VectorXd::Zero(at.lambda.size())};
   for (int degree = 0; degree < static_cast<int>(samples.size()); ++degree)
     fits.push_back(at_zero(samples, shares_at_zero(samples, degree), &State::lambda));
-  index1.correct(at.t, at.z, at.w, fits);
+  index1.correct(at, fits);
   double least = most_open * fits[0].norm();
   std::size_t best = 0;
   for (std::size_t i = 2; i < fits.size(); ++i) {

@@ -83,7 +83,7 @@ Handover hand_over(const Model& from, const State& state, const Model& to) {
   s.angles = state.angles;
   const System followed = to.system.at(s);
   Index1 index1(followed);
-  if (!index1.evaluate(s.t, s.z, s.w, acceleration, s.lambda)) s.lambda.setZero();
+  if (!index1.evaluate(s, acceleration, s.lambda)) s.lambda.setZero();
   out.energy_lost = from.system.kinetic_energy(state.w) - to.system.kinetic_energy(s.w);
   return out;
 }

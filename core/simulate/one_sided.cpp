@@ -156,7 +156,7 @@ void OneSided::measure_held(const Model& model, const State& state, Probe& probe
   acceleration_.resize(state.z.size());
   lambda_ = state.lambda;
   State with_forces = state;
-  if (index1_->evaluate(state.t, state.z, state.w, acceleration_, lambda_)) with_forces.lambda = lambda_;
+  if (index1_->evaluate(state, acceleration_, lambda_)) with_forces.lambda = lambda_;
   const double zero =
       std::max(force_zero * with_forces.lambda.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
   const std::set<std::size_t> held = this->held();

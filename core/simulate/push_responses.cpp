@@ -59,7 +59,7 @@ void PushResponses::give(const VectorXd& P, VectorXd& w) const {
 VectorXd PushResponses::accelerations(const State& state) const {
   VectorXd acceleration(state.w.size()), lambda = VectorXd::Zero(system_.constraints()), v(q_.size());
   Index1 index1(system_);
-  if (!index1.evaluate(state.t, state.z, state.w, acceleration, lambda)) return {};
+  if (!index1.evaluate(state, acceleration, lambda)) return {};
   system_.expand_rate(state.w, v);
   VectorXd out(size());
   for (Index i = 0; i < size(); ++i) {

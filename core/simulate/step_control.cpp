@@ -28,7 +28,7 @@ double StepControl::density(const State& state) {
   for (const Rod& rod : structure_.rods)
     omega = std::max(omega, (v_.segment<3>(3 * rod.b) - v_.segment<3>(3 * rod.a)).norm() / rod.length);
   double change = 0;
-  if (index1_.evaluate(state.t, state.z, state.w, acceleration_, lambda_)) {
+  if (index1_.evaluate(state, acceleration_, lambda_)) {
     const double r0 = turn_ / largest_;
     const double w = std::sqrt(2 * system_.kinetic_energy(state.w));
     const double a = std::sqrt(2 * system_.kinetic_energy(acceleration_));

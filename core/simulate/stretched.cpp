@@ -33,7 +33,7 @@ class Stretch {
     VectorXd q(system_.coordinates()), acceleration(state.w.size()), lambda = state.lambda;
     system_.follow(state);
     system_.expand(state.z, q);
-    if (!index1_.evaluate(state.t, state.z, state.w, acceleration, lambda)) return false;
+    if (!index1_.evaluate(state, acceleration, lambda)) return false;
     sharing_->share(state.t, q, false, lambda);
     system_.jacobian(q, G_, scratch_);
     if (!saddle_.factorise(G_)) return false;

@@ -113,6 +113,8 @@ class System {
   // Rods that give (indices of Structure::rods) and their axial forces, of all that each stands for [N].
   const std::vector<int>& giving_rods() const;
   void giving_rod_forces(double t, const ConstVec& q, const ConstVec& v, MutVec force) const;
+  // f += scale * what rods with these axial forces pull their nodes with.
+  void add_giving_rod_forces(const ConstVec& q, const ConstVec& force, double scale, MutVec f) const;
 
   const std::vector<Drive>& drives() const;  // kept rows that prescribe a motion
 

@@ -11,6 +11,9 @@ const std::vector<int>& System::giving_rods() const {
 void System::giving_rod_forces(double t, const ConstVec& q, const ConstVec& v, MutVec force) const {
   if (data_->elastic_rods) data_->elastic_rods->forces(t, q.data(), v.data(), force.data());
 }
+void System::add_giving_rod_forces(const ConstVec& q, const ConstVec& force, double scale, MutVec f) const {
+  if (data_->elastic_rods) data_->elastic_rods->add_forces(q.data(), force.data(), scale, f.data());
+}
 
 void System::reduce_sizes(const ConstVec& f, MutVec r) const {
   r.setZero();
