@@ -12,7 +12,7 @@ namespace unfurl {
 namespace {
 
 constexpr std::array known_forces{"load",  "gravity",        "load_over_time", "follower", "spring",
-                                  "latch", "torsion_spring", "joint_damping",  "drag"};
+                                  "latch", "torsion_spring", "joint_damping",  "drag",     "offload"};
 constexpr std::array known_constraints{"plane",   "line",      "fixed",    "relation",
                                        "measure", "collinear", "coplanar", "rod"};
 constexpr std::array known_measures{MeasureKind::coordinate, MeasureKind::length, MeasureKind::angle,
@@ -95,8 +95,8 @@ PathForces::PathForces(const Structure& structure, const System& system, bool se
   if (!one.loads.empty()) add("loads", "load", nullptr, false);
   one.loads.clear();
   one.gravity = structure.gravity;
+  // It stays: what an offload carries is weight. The blocks of other kinds do not look at it.
   if (!one.gravity.isZero(0.0)) add("gravity", "gravity", nullptr, false);
-  one.gravity.setZero();
   std::vector<char> done(structure.forces.size(), 0);
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
     const Force& force = structure.forces[i];

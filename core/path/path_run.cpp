@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/integrators/index1.hpp"
 #include "core/path/path_motion.hpp"
@@ -111,41 +112,50 @@ class PathRun {
       law_->set_pulling(k, sides_.active(sides_.stops().size() + k));
   }
 
-  // The path's equation and all the structure's must say the same of the start, at its speed and at one that
-  // is not zero: whatever the path has overlooked shows there.
+  // The path's equation and all the structure's must say the same of the start and of a pose on the way from
+  // it, at the start's speed and at one that is not zero: whatever the path has overlooked shows there.
   void compare_equations() {
-    law_->look_from(0.0);
-    const System followed = base_->system.at(last());
-    Index1 index1(followed);
-    const ScalarLaw::Value still = law_->at(0.0, 0.0, 0.0);
     const PathPiece* piece = path_->piece(0);
-    std::vector<double> speeds{motion_.v()};
-    if (!drive_.there())
-      speeds.push_back(std::sqrt(std::abs(still.Q) * (piece->b - piece->a)) + std::abs(motion_.v()));
-    for (const double v : speeds) {
-      State state = state_at(0.0, 0.0, v);
-      VectorXd a(state.z.size()), lambda = VectorXd::Zero(base_->system.constraints()), curvature, along;
-      if (!index1.evaluate(0.0, state.z, state.w, a, lambda))
-        throw PathRefused("the equations of motion have no solution at the start");
-      VectorXd z, tangent;
-      path_->point(0.0, z, tangent);
-      bend(*piece, curvature);
-      const double along_path = drive_.there() ? a_on_drive(0.0) : law_->at(0.0, v, 0.0).Q;
-      VectorXd expected = along_path * tangent + v * v * curvature, q(base_->system.coordinates());
-      path_->system().expand_rate(expected, q);
-      const VectorXd in_model = base_->system.reduce_rate(q);
-      const auto size = [&](const VectorXd& x) { return std::sqrt(x.dot(base_->system.mass() * x)); };
-      if (!(size(a - in_model) <= same_equations * (size(a) + size(in_model)) + 1e-12))
-        throw PathRefused("the equations of motion hold something that the path does not know");
-    }
+    compare_equations(*piece, -1, motion_.v());
+    if (drive_.there()) return;
+    const double length = piece->b - piece->a;
+    const double speed = std::sqrt(std::abs(law_->at(0.0, 0.0, 0.0).Q) * length) + std::abs(motion_.v());
+    compare_equations(*piece, -1, speed);
+    if (!law_->forces().cables().empty()) return;  // which of them pull there is not known yet
+    for (const double on_the_way : {-0.37, 0.61}) compare_equations(*piece, on_the_way, speed);
+    law_->look_from(0.0);
   }
 
-  // d tangent / ds at s = 0, where piece 0 begins.
-  void bend(const PathPiece& piece, VectorXd& out) const {
-    out.setZero(piece.tangent.rows());
-    for (Index k = 1; k < piece.tangent.cols(); ++k)  // T_k'(-1) = (-1)^(k-1) k^2
-      out += (k % 2 ? 1.0 : -1.0) * static_cast<double>(k * k) * piece.tangent.col(k);
-    out *= 2 / (piece.b - piece.a);
+  // At x in [-1, 1] of a piece, at the speed v.
+  void compare_equations(const PathPiece& piece, double x, double v) {
+    const double s = 0.5 * (piece.a + piece.b) + 0.5 * x * (piece.b - piece.a);
+    law_->look_from(s);
+    const State state = state_at(0.0, s, v);
+    const System followed = base_->system.at(last());
+    Index1 index1(followed);
+    VectorXd a(state.z.size()), lambda = VectorXd::Zero(base_->system.constraints());
+    if (!index1.evaluate(0.0, state.z, state.w, a, lambda))
+      throw PathRefused("the equations of motion have no solution at the start");
+    VectorXd z, tangent;
+    path_->point(s, z, tangent);
+    const double along_path = drive_.there() ? a_on_drive(0.0) : law_->at(s, v, 0.0).Q;
+    VectorXd q(base_->system.coordinates());
+    path_->system().expand_rate(along_path * tangent + v * v * bend(piece, x), q);
+    const VectorXd in_model = base_->system.reduce_rate(q);
+    const auto size = [&](const VectorXd& u) { return std::sqrt(u.dot(base_->system.mass() * u)); };
+    if (!(size(a - in_model) <= same_equations * (size(a) + size(in_model)) + 1e-12))
+      throw PathRefused("the equations of motion hold something that the path does not know");
+  }
+
+  // d tangent / ds at x in [-1, 1] of a piece: T_k'(x) = k U_{k-1}(x).
+  static VectorXd bend(const PathPiece& piece, double x) {
+    VectorXd out = VectorXd::Zero(piece.tangent.rows());
+    double u = 1, before = 0;  // U_{k-1}, U_{k-2}
+    for (Index k = 1; k < piece.tangent.cols(); ++k) {
+      out += static_cast<double>(k) * u * piece.tangent.col(k);
+      before = std::exchange(u, 2 * x * u - before);
+    }
+    return out * (2 / (piece.b - piece.a));
   }
 
   // s'' that a drive asks for: f'' = m'' s'^2 + m' s''.

@@ -86,6 +86,7 @@ const std::vector<std::string> four_bar_cases{
     R"(forces[0]={kind="follower",rod="coupler",force=2})",
     R"(forces[0]={kind="joint_damping",nodes=["B","C"],damping=0.4})",
     R"(forces[0]={kind="drag",nodes=["B"],damping=0.2})",
+    R"(forces[0]={kind="offload",nodes=["B"],length=7})",
     "gravity.acceleration=[0.4,0,-3]"};
 
 }  // namespace
