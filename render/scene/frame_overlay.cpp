@@ -147,19 +147,27 @@ void FrameOverlay::add_status(double t, const VectorXd& whole, DrawList& list) c
   list.labels.push_back(quiet(list, {edge_, height_ - edge_ - small_, small_, look_.ink, status}));
 }
 
+// A square in the colour, framed in ink: a colour as light as the ground has an edge on it.
+void FrameOverlay::add_swatch(DrawList& list, float x, float y, const Color& color) const {
+  const float side = std::round(0.66f * small_), frame = std::max(1.0f, std::round(0.06f * small_));
+  const float top = y + 0.5f * (small_ - side), inside = side - frame;
+  list.areas.push_back({x, top, x + side, top + side, look_.ink});
+  list.areas.push_back({x + frame, top + frame, x + inside, top + inside, color});
+}
+
 // The name in ink, which can be read on any ground, behind a sign in the colour.
 void FrameOverlay::add_legend(DrawList& list) const {
   struct Entry {
-    const char* sign;
+    bool arrow;
     std::string name;
     Color color;
   };
   std::vector<Entry> legend;
   if (looks_.groups.size() > 1)
     for (std::size_t i = 0; i < looks_.groups.size(); ++i)
-      legend.push_back({"\u25A0", looks_.groups[i], look_.group(i)});
-  if (!list.arrows.empty()) legend.push_back({"\u2192", "load", look_.load});
-  if (!style_.trails.empty()) legend.push_back({"\u25A0", "trail", look_.group(3)});
+      legend.push_back({false, looks_.groups[i], look_.group(i)});
+  if (!list.arrows.empty()) legend.push_back({true, "load", look_.load});
+  if (!style_.trails.empty()) legend.push_back({false, "trail", look_.group(3)});
   const float y = height_ - edge_ - small_, sign_width = 0.95f * small_;
   float right = width_ - edge_;
   for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry) {
@@ -169,7 +177,10 @@ void FrameOverlay::add_legend(DrawList& list) const {
     if (name.backing.a > 0)
       list.areas.push_back({left - room, y, right + room, y + small_, name.backing, room});
     list.labels.push_back({left + sign_width, y, small_, look_.ink, entry->name, 0});
-    list.labels.push_back({left, y, small_, entry->color, entry->sign, 0});
+    if (entry->arrow)
+      list.labels.push_back({left, y, small_, entry->color, "\u2192", 0});
+    else
+      add_swatch(list, left, y, entry->color);
     right = left - 1.0f * small_;
   }
 }

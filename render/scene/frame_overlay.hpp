@@ -25,6 +25,7 @@ class FrameOverlay {
     bool overlaps(const Box& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
   };
   VectorXd solved(const VectorXd& whole) const;
+  void add_swatch(DrawList& list, float x, float y, const Color& color) const;
   // A text on ground as quiet as the background: what is behind shines through a little.
   TextLabel quiet(const DrawList& list, TextLabel label) const;
   void prepare_inset();

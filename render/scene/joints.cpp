@@ -102,6 +102,30 @@ DirectionTrack Joints::normal_of(const RodEnd& a, const RodEnd& b) const {
   return track;
 }
 
+// A pin keeps its direction while a rod turns about it: of the others that the rod turns against by a good
+// part of the most, the one whose common normal wanders least; of equal ones, the one against which it turns
+// most.
+DirectionTrack Joints::axis_of(const RodEnd& end, const std::vector<RodEnd>& ends) const {
+  double most = 0;
+  for (const RodEnd& other : ends)
+    if (other.rod != end.rod) most = std::max(most, angle_range(end, other));
+  DirectionTrack best;
+  double least = 2, best_range = -1;
+  for (const RodEnd& other : ends) {
+    if (other.rod == end.rod) continue;
+    const double range = angle_range(end, other);
+    if (range < 0.2 * most) continue;
+    DirectionTrack track = normal_of(end, other);
+    if (track.empty() && !best.empty()) continue;
+    double wander = 0;
+    for (const Vec3& axis : track) wander = std::max(wander, 1 - std::abs(axis.dot(track.front())));
+    const bool steadier = wander < least - 1e-6;
+    if (!best.empty() && !steadier && !(wander < least + 1e-6 && range > best_range + 1e-6)) continue;
+    best = std::move(track), least = wander, best_range = range;
+  }
+  return best;
+}
+
 void Joints::find_axes(const Structure& structure, const Vec3& plane_normal) {
   std::vector<bool> fixed(structure.nodes.size(), false);
   for (const Constraint& c : structure.constraints)
@@ -114,16 +138,7 @@ void Joints::find_axes(const Structure& structure, const Vec3& plane_normal) {
       const bool pivot = fixed[static_cast<std::size_t>(structure.node_copies[n].source)];
       if (pivot && !plane_normal.isZero()) axes_[index(ends[0])].assign(times_.size(), plane_normal);
     }
-    for (const RodEnd& end : ends) {
-      double most = -1;
-      RodEnd partner;
-      for (const RodEnd& other : ends) {
-        if (other.rod == end.rod) continue;
-        const double range = angle_range(end, other);
-        if (range > most + 1e-6) most = range, partner = other;
-      }
-      if (most >= 0) axes_[index(end)] = normal_of(end, partner);
-    }
+    for (const RodEnd& end : ends) axes_[index(end)] = axis_of(end, ends);
     JointKind& kind = kinds_[n] = JointKind::hinge;
     const DirectionTrack& first = axes_[index(ends[0])];
     for (const RodEnd& end : ends) {

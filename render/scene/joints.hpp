@@ -50,6 +50,7 @@ class Joints {
   static std::size_t index(const RodEnd& e) { return static_cast<std::size_t>(2 * e.rod + e.end); }
   Vec3 direction(const RodEnd& end, std::size_t sample) const;  // unit, away from the node
   DirectionTrack normal_of(const RodEnd& a, const RodEnd& b) const;
+  DirectionTrack axis_of(const RodEnd& end, const std::vector<RodEnd>& ends) const;
   double angle_range(const RodEnd& a, const RodEnd& b) const;  // [rad]
   Vec3 at(const DirectionTrack& track, double t) const;
   void find_axes(const Structure& structure, const Vec3& plane_normal);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 #include "render/gl/functions.hpp"
 
@@ -80,7 +81,10 @@ bool RendererSkins::set(const std::vector<Skin>& skins, const Camera& camera) {
     part.count = static_cast<int>(triangles.size()) - part.first;
     parts_.push_back(std::move(part));
   }
-  if (same_bytes(vertices, vertices_) && triangles == triangles_) return false;
+  std::vector<float> coverage;
+  for (const Part& part : parts_) coverage.push_back(coverage_of(part.skin));
+  const bool same_light = std::exchange(coverage_, coverage) == coverage;
+  if (same_bytes(vertices, vertices_) && triangles == triangles_) return !same_light;
   vertices_ = std::move(vertices);
   triangles_ = std::move(triangles);
   gl::BindVertexArray(array_);

@@ -31,6 +31,7 @@ class RendererSkins {
   };
   std::vector<Part> parts_;
   std::vector<SkinVertex> vertices_;
+  std::vector<float> coverage_;  // per part: what it keeps of the light
   std::vector<std::uint32_t> triangles_;
   unsigned array_ = 0, vertex_buffer_ = 0, index_buffer_ = 0;
 };

@@ -37,7 +37,7 @@ Color over(const Color& top, const Color& below) {
 }
 
 bool is_sign(const TextLabel& label) {
-  return label.text == "\u25A0" || label.text == "\u2192";
+  return label.text == "\u2192";
 }
 
 }  // namespace
@@ -59,6 +59,17 @@ TEST_CASE("texts of every look can be read, also over shadow, floor and Earth") 
     std::vector<Color> grounds = {list.background_top, list.background_bottom};
     if (list.ground.shown) grounds.push_back(over(list.ground.shadow, list.background_bottom));
     if (list.planet_half_angle > 0) grounds.push_back({0.75f, 0.80f, 0.88f, 1});
+    // A swatch is a square in its colour within one of ink, which stands out from what is behind both.
+    int swatches = 0;
+    for (std::size_t i = 0; i + 2 < list.areas.size(); ++i) {
+      const OverlayArea &ground = list.areas[i], &frame = list.areas[i + 1], &square = list.areas[i + 2];
+      const bool inside =
+          frame.x0 < square.x0 && square.x1 < frame.x1 && frame.y0 < square.y0 && square.y1 < frame.y1;
+      if (!inside) continue;
+      ++swatches;
+      for (const Color& far : grounds) CHECK(contrast(frame.color, over(ground.color, far)) >= 3);
+    }
+    CHECK(swatches >= 2);
     for (const TextLabel& label : list.labels) {
       Color backing = label.backing;
       for (const OverlayArea& area : list.areas)
@@ -68,7 +79,7 @@ TEST_CASE("texts of every look can be read, also over shadow, floor and Earth") 
       for (const Color& ground : grounds) {
         const Color behind = over(backing, ground);
         INFO(look.name << ": " << label.text);
-        CHECK(contrast(label.color, behind) >= (is_sign(label) ? 2.2 : 4.5));
+        CHECK(contrast(label.color, behind) >= (is_sign(label) ? 3 : 4.5));
       }
     }
   }
