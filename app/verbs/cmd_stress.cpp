@@ -46,19 +46,19 @@ int cmd_stress(const Arguments& arguments) {
   const StressPlan plan = plan_stress(source, arguments.study.extremes);
   const InterruptGuard guard;
   StudySession session(arguments, "stressing", study_identity("An atlas", scene), "stress.csv");
-  Stress stress;
   const auto team = join_team(arguments, session.directory());
+  std::optional<Stress> found;
   {
     const StudyHooks hooks = session.hooks();
     Journal journal(team ? team->journal() : session.journal(), stress_columns(), stress_key_columns,
                     stress_number_columns());
-    const auto whole = [&](Journal& all, const StudyHooks& own) {
-      return run_stress(plan, all, own).complete;
-    };
-    if (team && !study_together(*team, arguments, journal, hooks, whole))
-      return interrupted() ? finish(false, arguments, "") : exit_ok;
-    stress = run_stress(plan, journal, hooks);
+    found = alone_or_joined(
+        team.get(), arguments, journal, hooks,
+        [&](Journal& all, const StudyHooks& own) { return run_stress(plan, all, own); },
+        [](const Stress& result) { return result.complete; });
   }
+  if (!found) return nothing_to_write(arguments);
+  const Stress& stress = *found;
   if (stress.complete && arguments.study.extremes.empty())
     session.write("stress.csv", csv_text(cells_table(stress)));
   Report report{"Stability at the extremes: " + scene.title};

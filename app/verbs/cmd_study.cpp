@@ -90,18 +90,18 @@ int cmd_study(const Arguments& arguments) {
   StudyPlan plan = plan_study(std::move(model), scene.solver, range.from, range.to, hooks);
   keep_methods(plan, arguments.study.methods);
   plan.timing.repeats = repeats;
-  Study study;
   const auto team = join_team(arguments, session.directory());
+  std::optional<Study> found;
   {
     Journal journal(team ? team->journal() : session.journal(), study_columns(), study_key_columns,
                     study_number_columns());
-    const auto whole = [&](Journal& all, const StudyHooks& own) {
-      return run_study(plan, all, own).complete;
-    };
-    if (team && !study_together(*team, arguments, journal, hooks, whole))
-      return interrupted() ? finish(false, arguments, "") : exit_ok;
-    study = run_study(plan, journal, hooks);
+    found = alone_or_joined(
+        team.get(), arguments, journal, hooks,
+        [&](Journal& all, const StudyHooks& own) { return run_study(plan, all, own); },
+        [](const Study& result) { return result.complete; });
   }
+  if (!found) return nothing_to_write(arguments);
+  const Study& study = *found;
   if (study.complete) session.write("study.csv", csv_text(points_table(study)));
   std::vector<std::string> pictures;
   for (const Figure& figure :

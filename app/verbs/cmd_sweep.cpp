@@ -120,20 +120,14 @@ std::string cure(const SweepPlan& plan, const Sweep& sweep, const Arguments& arg
 std::optional<Sweep> compute(const SweepPlan& plan, const StudySession& session, const StudyHooks& hooks,
                              const Arguments& arguments, const std::string& identity, Team* team) {
   try {
-    if (team) {
-      Journal journal(team->journal(), plan.columns(), plan.axes.size(), plan.number_columns());
-      std::optional<Sweep> sweep;
-      const bool writes =
-          study_together(*team, arguments, journal, hooks, [&](Journal& all, const StudyHooks& own) {
-            sweep = run_sweep(plan, all, own);
-            return sweep->missing.empty();
-          });
-      return writes || interrupted() ? sweep : std::nullopt;
-    }
     if (!arguments.study.merge.empty())
       return merge_sweep(plan, journals_in(arguments.study.merge, identity));
-    Journal journal(session.journal(), plan.columns(), plan.axes.size(), plan.number_columns());
-    return run_sweep(plan, journal, hooks);
+    Journal journal(team ? team->journal() : session.journal(), plan.columns(), plan.axes.size(),
+                    plan.number_columns());
+    return alone_or_joined(
+        team, arguments, journal, hooks,
+        [&](Journal& all, const StudyHooks& own) { return run_sweep(plan, all, own); },
+        [](const Sweep& sweep) { return sweep.missing.empty(); });
   } catch (const JournalMismatch& error) {
     throw FileError(session.directory(), std::string(error.what()) + "; other --vary or --measure than now?");
   }
@@ -155,9 +149,8 @@ int cmd_sweep(const Arguments& arguments) {
   StudySession session(arguments, "sweeping", name, journal_name(plan.shard));
   const auto team = join_team(arguments, session.directory());
   const auto computed = compute(plan, session, session.hooks(), arguments, name, team.get());
-  if (!computed) return exit_ok;
+  if (!computed) return nothing_to_write(arguments);
   const Sweep& sweep = *computed;
-  if (arguments.join && !sweep.missing.empty()) return finish(false, arguments, "");
   for (const std::string& conflict : sweep.conflicts) std::cerr << "unfurl: warning: " << conflict << "\n";
   session.write(journal_name(plan.shard), csv_text(sweep.table));
   const std::size_t bad = unanswered(plan, sweep);

@@ -7,10 +7,12 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "app/command.hpp"
 #include "app/output/interrupt.hpp"
+#include "app/verbs/study_session.hpp"
 #include "core/study/journal.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/team.hpp"
@@ -38,16 +40,26 @@ bool work_together(Team& team, const Arguments& arguments, const Done& done) {
   return false;
 }
 
-// Fills the journal of a worker with its share and takes in those of the others; `whole` runs the study over
-// the journal and says whether nothing is missing.
-template <class Whole>
-bool study_together(Team& team, const Arguments& arguments, Journal& journal, StudyHooks hooks,
-                    const Whole& whole) {
-  hooks.team = &team;
-  return work_together(team, arguments, [&] {
-    for (const auto& path : team.journals_of_others()) journal.take_in(path);
-    return whole(journal, hooks);
-  });
+// What `run(journal, hooks)` finds over this process's journal, or with a team over its own and those of the
+// others, until `whole(result)`. None: another worker writes the results, or a person interrupted the wait.
+template <class Run, class Whole>
+auto alone_or_joined(Team* team, const Arguments& arguments, Journal& journal, StudyHooks hooks,
+                     const Run& run, const Whole& whole) -> std::optional<decltype(run(journal, hooks))> {
+  if (team) {
+    StudyHooks shared = hooks;
+    shared.team = team;
+    const bool writes = work_together(*team, arguments, [&] {
+      for (const auto& path : team->journals_of_others()) journal.take_in(path);
+      return whole(run(journal, shared));
+    });
+    if (!writes) return std::nullopt;
+  }
+  return run(journal, hooks);
+}
+
+// The exit code where there is no result to write.
+inline int nothing_to_write(const Arguments& arguments) {
+  return interrupted() ? finish(false, arguments, "") : exit_ok;
 }
 
 }  // namespace unfurl

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/path/path.hpp"
 #include "core/scene/build.hpp"
 #include "core/study/measured_run.hpp"
 #include "core/study/parallel_for.hpp"
@@ -47,8 +48,10 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const P
       row.push_back(exact_number(run.status == RunStatus::failed ? nan : measure.value(run, diagnostics)));
   } catch (const SceneError&) {
     row.emplace_back("invalid");
-    row.resize(key.size() + 1 + plan.measures.size(), "nan");
+  } catch (const PathRefused&) {  // solver.model = "path": one point without an answer
+    row.emplace_back("failed");
   }
+  row.resize(key.size() + 1 + plan.measures.size(), "nan");
   return row;
 }
 

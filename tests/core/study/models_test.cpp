@@ -100,8 +100,10 @@ TEST_CASE("what friction and a test rig add is measured beside the scene") {
                       smooth = named(models, "without friction"), test = models.front();
   CHECK(flight.outcome == "deployed");
   CHECK(flight.deployment_time == Approx(test.deployment_time).epsilon(1e-9));
-  // The largest rod force is one of those next to the singular deployed pose, which rounding may change.
-  CHECK(flight.peak_force == Approx(test.peak_force).epsilon(1e-2));
+  // The largest rod force is that of a state 1e-4 s before the singular pose, at 6e-4 rad: one of those that
+  // the rigid model leaves open, where round-off of 1e-16 over the third power of the angle is some 1e-4 of
+  // it.
+  CHECK(flight.peak_force == Approx(test.peak_force).epsilon(1e-3));
   CHECK(smooth.deployment_time < test.deployment_time - 1e-3);
   // From trolleys that stay the ring is pulled back.
   const SceneSource fixed{find_scene("hoop6"),
