@@ -3,8 +3,9 @@
 //
 //   a step towards x + d      min  mu |dz|^2 + |J dz - d|^2 + W |G dz|^2
 //   back onto Phi = 0         dz = -(G^T G + eps)^-1 G^T Phi, again and again (Gauss and Newton; redundant
-//   rows
-//                             do no harm, and what is free stays where it is)
+//                             rows do no harm, and what is free stays where it is)
+//
+// mu grows while a step leads away from x + d, and falls again (Levenberg and Marquardt).
 #include "core/system/free_poses.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -20,7 +21,7 @@ namespace {
 using Columns = Eigen::SparseMatrix<double>;
 
 constexpr double met = 1e-10;          // of a constraint, in units of the structure's size
-constexpr double at_rest = 1e-4;       // mu: of moving at all
+constexpr double at_rest = 1e-4;       // mu: of moving at all, where nothing speaks for more
 constexpr double kept = 1e4;           // W: of constraints
 constexpr double longest_step = 0.04;  // of a node, in units of the size
 constexpr int most_free_steps = 12, most_projections = 30;
@@ -112,10 +113,10 @@ VectorXd FreePoses::node_at(const VectorXd& z, int node) const {
   return q.segment<3>(3 * node);
 }
 
-VectorXd FreePoses::step_towards(const VectorXd& z, int node, const Vec3& way) const {
+VectorXd FreePoses::step_towards(const VectorXd& z, int node, const Vec3& way, double damping) const {
   VectorXd phi;
   const SparseRows G = jacobian(z, phi);
-  Columns A = kept * Columns(G.transpose() * G) + identity(z.size(), at_rest);
+  Columns A = kept * Columns(G.transpose() * G) + identity(z.size(), damping);
   VectorXd right = VectorXd::Zero(z.size());
   for (Index c = 0; c < 3; ++c) {  // a row of J each
     VectorXd unit = VectorXd::Zero(system_.coordinates()), row = VectorXd::Zero(z.size());
@@ -131,19 +132,21 @@ VectorXd FreePoses::step_towards(const VectorXd& z, int node, const Vec3& way) c
 
 VectorXd FreePoses::pulled(const VectorXd& q, int node, const Vec3& target) const {
   VectorXd z = system_.reduce(q);
-  double away = (target - node_at(z, node)).norm(), longest = longest_step * size_;
+  double away = (target - node_at(z, node)).norm(), damping = at_rest;
   for (int i = 0; i < most_free_steps && away > 1e-9 * size_; ++i) {
     Vec3 way = target - node_at(z, node);
-    if (way.norm() > longest) way *= longest / way.norm();
-    const VectorXd step = step_towards(z, node, way);
+    if (way.norm() > longest_step * size_) way *= longest_step * size_ / way.norm();
+    const VectorXd step = step_towards(z, node, way, damping);
     VectorXd next = z + step;
     const bool sound = step.allFinite() && project(next);
     const double left = sound ? (target - node_at(next, node)).norm() : away;
     if (left < away * (1 - 1e-6)) {
       z = std::move(next);
       away = left;
+      damping = std::max(0.1 * damping, at_rest);
     } else {
-      longest *= 0.3;  // around a bend, or at the end of the way
+      // Near the end of the way, all but stretched, a node goes nowhere for small dz and back for large ones.
+      damping *= 10;
     }
   }
   VectorXd pose(system_.coordinates());

@@ -29,7 +29,7 @@ class FreePoses {
  private:
   bool project(VectorXd& z) const;
   VectorXd node_at(const VectorXd& z, int node) const;
-  VectorXd step_towards(const VectorXd& z, int node, const Vec3& way) const;
+  VectorXd step_towards(const VectorXd& z, int node, const Vec3& way, double damping) const;
   SparseRows jacobian(const VectorXd& z, VectorXd& phi) const;
 
   System system_;

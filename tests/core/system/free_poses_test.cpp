@@ -58,8 +58,7 @@ TEST_CASE("what can be reached is reached, what cannot as near as the rods let i
   CHECK(poses.error(q) < 1e-9);
   const Vec3 far(0, 0, 5);
   for (int i = 0; i < 60; ++i) q = poses.pulled(q, 2, far);
-  CHECK((q.segment<3>(6) - far).norm() <
-        (near - far).norm());  // nearer; stretched, the way there is singular
+  CHECK((q.segment<3>(6) - Vec3(0, 0, 2.1)).norm() < 0.02);  // stretched: 1.3 m and 0.8 m
   CHECK(poses.error(q) < 1e-9);
 }
 
