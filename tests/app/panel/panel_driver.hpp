@@ -60,7 +60,17 @@ class PanelDriver {
     const plot::Rect r = panel_.place(key);
     move(r.x0 + share_x * r.width(), r.y0 + share_y * r.height());
   }
+  // Until a widget stays where it is: a box is as large as what was in it a frame ago.
+  void rest(const std::string& key) {
+    for (int i = 0; i < 5; ++i) {
+      const plot::Rect before = panel_.place(key);
+      frame();
+      const plot::Rect now = panel_.place(key);
+      if (now.x0 == before.x0 && now.y0 == before.y0) return;
+    }
+  }
   void click(const std::string& key, int button = 0) {
+    rest(key);
     move_to(key);
     press(true, button);
     press(false, button);
