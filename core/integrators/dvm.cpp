@@ -442,14 +442,13 @@ void Dvm::finish(State& state, double h, StepReport& report) {
     settle_end();
   const auto norm = [](const auto& phi) { return phi.size() ? phi.template lpNorm<Eigen::Infinity>() : 0.0; };
   report.constraint_norm = tight_ ? norm(rate_) : norm(eq_.phi.col(c_.s - 2));
-  previous_ = eq_.dX;
-  previous_h_ = h;
-  have_history_ = true;
+  previous_ = eq_.dX, previous_h_ = h, have_history_ = true;
   state.t += h;
   arrive(state);
   state.w = w1_;
   state.tension.resize(0);
-  if (!system_.giving_rods().empty() && eq_.h_omega() > resolved * (c_.s - 1)) eq_.end_tension(state.tension);
+  const bool elastic = !system_.giving_rods().empty();
+  if (elastic && eq_.h_omega() > resolved * (c_.s - 1) && !eq_.held()) eq_.end_tension(state.tension);
   state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
 }
 

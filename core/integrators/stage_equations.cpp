@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/stage_equations.hpp"
 
+#include <Eigen/QR>
+
 namespace unfurl {
 
 StageEquations::StageEquations(const System& sys, const GalerkinCoefficients& coefficients, bool ends)
@@ -149,6 +151,20 @@ void StageEquations::end_tension(VectorXd& tension) {
     system.giving_rod_forces(t + c.tau[j] * h, q_tau_, v_tau_, at_point);
     tension += c.tau_to_end[j] * at_point;
   }
+}
+
+bool StageEquations::held() {
+  constexpr Index most_coordinates = 300;  // of a rank by dense factors
+  if (held_) return *held_;
+  const Index n = dX.rows();
+  held_ = phi.rows() >= n && n <= most_coordinates;
+  if (*held_) {
+    SparseRows G = system.jacobian_pattern();
+    std::vector<double> scratch;
+    system.jacobian(q_0_, G, scratch);
+    held_ = MatrixXd(G).colPivHouseholderQr().rank() == n;
+  }
+  return *held_;
 }
 
 void StageEquations::force_derivatives(Index j, SparseRows& by_z, SparseRows& by_w) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/integrators/constraint_increment.hpp"
@@ -48,6 +49,9 @@ class StageEquations {
   // Axial forces of the rods that give at the step's end, by the polynomial through those at the points of
   // the quadrature: where waves are not resolved, the end's coordinates do not tell them.
   void end_tension(VectorXd& tension);
+  // Whether the constraints leave no motion free (looked for once, at the present start, and not in
+  // structures of many coordinates): lengths are what drives make them, and tell forces whatever the step.
+  bool held();
   void end_momentum(MutVec p1);  // p_1 without the share of lambda_s
 
   // Residuals in units of what round-off leaves of them: 1 is as small as they get, give or take.
@@ -104,10 +108,11 @@ class StageEquations {
   // Largest magnitudes: forces, coordinates, M dX, momentum; whether all residuals are finite.
   double force_scale_ = 0, reach_ = 0, inertia_size_ = 0, momentum_size_ = 0;
   bool finite_ = true;
-  SparseRows by_z_, by_w_;                // dF/dz [N/m], dF/dz' [N s/m] where they were looked at last
-  double stiffness_ = -1;                 // largest entry of by_z_; negative: not looked at yet
-  double damping_ = 0;                    // and of by_w_
-  double looked_ = 0;                     // when [s]
+  SparseRows by_z_, by_w_;  // dF/dz [N/m], dF/dz' [N s/m] where they were looked at last
+  double stiffness_ = -1;   // largest entry of by_z_; negative: not looked at yet
+  double damping_ = 0;      // and of by_w_
+  double looked_ = 0;       // when [s]
+  std::optional<bool> held_;
   double least_mass_ = 0, steepest_ = 0;  // smallest M_ii; largest sum over k of |l_k'(tau_j)|
   RowNoise rows_;                         // the same row by row, where that makes a difference
   // Some nodes are so far from the origin that the noise of each row goes by its own reach.
