@@ -63,7 +63,7 @@ std::unique_ptr<ForceBlock> joint_damping_block(const Structure& structure, cons
       for (std::size_t j = i + 1; j < ends.size(); ++j) {
         dampers.push_back(f);
         dampers.back().stiffness = 0;
-        dampers.back().measure = {MeasureKind::angle, {joint, ends[i], joint, ends[j]}, Vec3::Zero(), 0};
+        dampers.back().measure = {MeasureKind::angle, {joint, ends[i], joint, ends[j]}, Vec3::Zero(), 0, {}};
       }
   }
   return spring_block(dampers, structure.deployment);

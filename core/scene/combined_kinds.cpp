@@ -185,7 +185,7 @@ std::optional<MeasureTerm> term_of(const SceneElement& e, MemberFinder& find, co
   }
   if (kind->kind == MeasureKind::coordinate && direction.isZero(0.0))
     return bad_term(e, find, key, text, "has no direction");
-  term.measure = {kind->kind, std::move(nodes), unit_of(direction), 0.0};
+  term.measure = {kind->kind, std::move(nodes), unit_of(direction), 0.0, {}};
   if (kind->kind == MeasureKind::dihedral) term.measure.reference = find.initial(term.measure);
   return term;
 }
@@ -241,7 +241,7 @@ std::optional<Measure> rack_of(const SceneElement& e, MemberFinder& find) {
   const auto angle = angle_at(e, find, {nodes[0], nodes[1], nodes[2]}, vec3(e.values, "axis"), "nodes");
   if (!angle || radius == 0.0 || !(direction.stableNorm() > 0)) return {};
   MeasureTerm x{1.0, {}};
-  x.measure = {MeasureKind::coordinate, {nodes.begin() + 3, nodes.end()}, unit_of(direction), 0.0};
+  x.measure = {MeasureKind::coordinate, {nodes.begin() + 3, nodes.end()}, unit_of(direction), 0.0, {}};
   return sum_of({x, {-radius, *angle}});
 }
 

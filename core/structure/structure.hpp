@@ -85,7 +85,7 @@ struct Measure {
   Vec3 axis = Vec3::Zero();
   double reference =
       0.0;  // angles with a sign: at t = 0 they are counted on the branch within pi of it [rad]
-  std::vector<MeasureTerm> terms = std::vector<MeasureTerm>();  // of a combination: no combinations
+  std::vector<MeasureTerm> terms;  // of a combination: no combinations
 };
 
 // One term of sum_i coefficient_i * measure_i.

@@ -27,18 +27,18 @@ Structure sample() {
                    {"coplanar", "coplanar", {0, 1, 2, 3}, {}, 0.0}};
   Measure sum;
   sum.kind = MeasureKind::combination;
-  sum.terms = {{0.7, {MeasureKind::length, {1, 3}, Vec3::Zero(), 0}},
-               {-1.3, {MeasureKind::coordinate, {0, 2}, n, 0}},
-               {0.4, {MeasureKind::angle, {0, 1, 2, 3}, n, 0.5}},
-               {0.9, {MeasureKind::dihedral, {3, 0, 1, 2}, Vec3::Zero(), -0.4}}};
+  sum.terms = {{0.7, {MeasureKind::length, {1, 3}, Vec3::Zero(), 0, {}}},
+               {-1.3, {MeasureKind::coordinate, {0, 2}, n, 0, {}}},
+               {0.4, {MeasureKind::angle, {0, 1, 2, 3}, n, 0.5, {}}},
+               {0.9, {MeasureKind::dihedral, {3, 0, 1, 2}, Vec3::Zero(), -0.4, {}}}};
   const Measure measures[] = {sum,
-                              {MeasureKind::dihedral, {0, 1, 2, 3}, Vec3::Zero(), 0.3},
-                              {MeasureKind::coordinate, {2}, n, 0},
-                              {MeasureKind::coordinate, {0, 3}, n, 0},
-                              {MeasureKind::length, {1, 3}, Vec3::Zero(), 0},
-                              {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0},
-                              {MeasureKind::angle, {0, 1, 2, 3}, n, 0.5},
-                              {MeasureKind::fold, {}, Vec3::Zero(), 0}};
+                              {MeasureKind::dihedral, {0, 1, 2, 3}, Vec3::Zero(), 0.3, {}},
+                              {MeasureKind::coordinate, {2}, n, 0, {}},
+                              {MeasureKind::coordinate, {0, 3}, n, 0, {}},
+                              {MeasureKind::length, {1, 3}, Vec3::Zero(), 0, {}},
+                              {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0, {}},
+                              {MeasureKind::angle, {0, 1, 2, 3}, n, 0.5, {}},
+                              {MeasureKind::fold, {}, Vec3::Zero(), 0, {}}};
   for (const Measure& measure : measures) {
     s.constraints.push_back({"measure", "measure", {}, {}, 0.0, measure, {}});
     TimeFunction& target = s.constraints.back().target;

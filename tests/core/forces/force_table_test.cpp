@@ -43,17 +43,17 @@ Force force_of(const ForceKind& kind) {
   if (kind.members == Members::node_list) force.nodes = {0, 2, 3};
   if (kind.members == Members::three_nodes) force.nodes = {0, 1, 2};
   if (kind.members == Members::rod) force.nodes = {0, 1};
-  if (kind.members == Members::two_nodes) force.measure = {MeasureKind::length, {0, 3}, Vec3::Zero(), 0};
-  if (kind.members == Members::angle) force.measure = {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0};
+  if (kind.members == Members::two_nodes) force.measure = {MeasureKind::length, {0, 3}, Vec3::Zero(), 0, {}};
+  if (kind.members == Members::angle) force.measure = {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0, {}};
   if (kind.members == Members::path || kind.members == Members::terms) {
     force.measure.kind = MeasureKind::combination;
-    force.measure.terms = {{1.0, {MeasureKind::length, {0, 1}, Vec3::Zero(), 0}},
-                           {1.0, {MeasureKind::length, {1, 3}, Vec3::Zero(), 0}}};
+    force.measure.terms = {{1.0, {MeasureKind::length, {0, 1}, Vec3::Zero(), 0, {}}},
+                           {1.0, {MeasureKind::length, {1, 3}, Vec3::Zero(), 0, {}}}};
     force.rest = 0.4;  // of more than two spans: taut
   }
   if (kind.members == Members::terms)
-    force.measure.terms.push_back({-0.6, {MeasureKind::dihedral, {3, 0, 1, 2}, Vec3::Zero(), -0.4}});
-  if (kind.members == Members::measure) force.measure = {MeasureKind::length, {1, 3}, Vec3::Zero(), 0};
+    force.measure.terms.push_back({-0.6, {MeasureKind::dihedral, {3, 0, 1, 2}, Vec3::Zero(), -0.4, {}}});
+  if (kind.members == Members::measure) force.measure = {MeasureKind::length, {1, 3}, Vec3::Zero(), 0, {}};
   kind.fill(values_of(kind), force);
   force.slip = -1;  // of friction: what sticks has no force
   if (kind.members == Members::path) {
@@ -93,15 +93,15 @@ Structure sample() {
   for (const ForceKind& kind : force_kinds())
     if (kind.params) s.forces.push_back(force_of(kind));
   Force& cable = add("spring", {});
-  cable.measure = {MeasureKind::length, {0, 2}, Vec3::Zero(), 0};
+  cable.measure = {MeasureKind::length, {0, 2}, Vec3::Zero(), 0, {}};
   cable.one_sided = true;
   Force net = force_of(*std::find_if(force_kinds().begin(), force_kinds().end(),
                                      [](const ForceKind& kind) { return kind.members == Members::path; }));
   net.smoothing = 5.0;  // wider than any stretch here: within its bend
   net.damping = 0.3;
   s.forces.push_back(net);
-  add("torsion_spring", {}).measure = {MeasureKind::angle, {0, 1, 2, 3}, n, 0.5};
-  add("torsion_spring", {}).measure = {MeasureKind::fold, {}, Vec3::Zero(), 0};
+  add("torsion_spring", {}).measure = {MeasureKind::angle, {0, 1, 2, 3}, n, 0.5, {}};
+  add("torsion_spring", {}).measure = {MeasureKind::fold, {}, Vec3::Zero(), 0, {}};
   return s;
 }
 

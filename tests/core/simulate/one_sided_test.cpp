@@ -294,11 +294,11 @@ TEST_CASE("a start that has no answer ends the run with a reason") {
                {"A", tip, Vec3::Zero(), 1.0},
                {"B", {0, 1, 1}, Vec3::Zero(), 1.0}};
     s.constraints.push_back(
-        {"measure", "hinge", {}, {}, 0.0, {MeasureKind::angle, {0, 1, 0, 2}, Vec3::UnitZ(), 0.0}, {}});
+        {"measure", "hinge", {}, {}, 0.0, {MeasureKind::angle, {0, 1, 0, 2}, Vec3::UnitZ(), 0.0, {}}, {}});
     Force cable;
     cable.kind = "spring";
     cable.name = "cable";
-    cable.measure = {MeasureKind::length, {0, 3}, Vec3::Zero(), 0.0};
+    cable.measure = {MeasureKind::length, {0, 3}, Vec3::Zero(), 0.0, {}};
     cable.stiffness = 10;
     cable.rest = 1;
     cable.one_sided = true;

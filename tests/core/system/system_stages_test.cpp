@@ -19,7 +19,7 @@ Structure every_kind() {
   const Vec3 n = Vec3(1, 2, 2) / 3;
   s.constraints.push_back({"relation", "relation", {1, 2}, {Vec3(1, 0, 1), Vec3(0, 2, 0)}, 0.5});
   s.constraints.push_back({"collinear", "collinear", {0, 1, 2}, {}, 0.0});
-  s.constraints.push_back({"measure", "measure", {}, {}, 0.0, {MeasureKind::coordinate, {2}, n, 0}, {}});
+  s.constraints.push_back({"measure", "measure", {}, {}, 0.0, {MeasureKind::coordinate, {2}, n, 0, {}}, {}});
   TimeFunction& target = s.constraints.back().target;
   target.kind = TimeFunction::Kind::smooth;
   target.rise = 0.7;
