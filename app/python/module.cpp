@@ -2,6 +2,7 @@
 // Unfurl's solver, studies and figures as a Python module: unfurl._unfurl, which
 // app/python/unfurl/__init__.py makes pleasant. Long work runs without the interpreter's lock and hears
 // Ctrl-C.
+#include <pybind11/eigen.h>
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -9,6 +10,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/measures.hpp"
@@ -312,6 +314,31 @@ class SteppedScene {
     for (const Event& event : stepper_.run().events) found.emplace_back(event.name, event.t);
     return found;
   }
+  // A solved node by its name or its index.
+  int node(const py::object& key) const {
+    const auto& nodes = trajectory().structure().nodes;
+    if (py::isinstance<py::str>(key)) {
+      const auto name = key.cast<std::string>();
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (nodes[i].name == name && !nodes[i].ghost) return static_cast<int>(i);
+      throw py::key_error("no solved node is called " + name);
+    }
+    const auto index = key.cast<py::ssize_t>();
+    if (index < 0 || index >= static_cast<py::ssize_t>(nodes.size()))
+      throw py::index_error("no solved node has the index " + std::to_string(index));
+    return static_cast<int>(index);
+  }
+  void set_force(const py::object& key, const Vec3& force) {
+    if (!force.allFinite()) throw py::value_error("a force is three finite numbers [N]");
+    const int of = node(key);
+    const py::gil_scoped_release release;
+    stepper_.set_force(of, force);
+    forces_[of] = force;
+  }
+  Vec3 force(const py::object& key) const {
+    const auto found = forces_.find(node(key));
+    return found == forces_.end() ? Vec3(Vec3::Zero()) : found->second;
+  }
   std::shared_ptr<Run> finish() { return std::make_shared<Run>(scene_, Simulation(stepper_.run())); }
 
  private:
@@ -321,6 +348,12 @@ class SteppedScene {
   }
   Scene scene_;
   Stepper stepper_;
+  std::map<int, Vec3> forces_;
+};
+
+// stepper.force["B0"] = [fx, fy, fz]
+struct NodeForces {
+  SteppedScene& of;
 };
 
 template <class Kind>
@@ -390,7 +423,16 @@ void add_run(py::module_& module) {
 }
 
 void add_scene(py::module_& module) {
+  py::class_<NodeForces>(module, "NodeForces")
+      .def("__setitem__", [](NodeForces& forces, const py::object& node,
+                             const Vec3& force) { forces.of.set_force(node, force); })
+      .def("__getitem__",
+           [](const NodeForces& forces, const py::object& node) { return forces.of.force(node); });
   py::class_<SteppedScene>(module, "Stepper")
+      .def("__enter__", [](py::object self) { return self; })
+      .def("__exit__", [](SteppedScene&, const py::args&) {})
+      .def_property_readonly("force", py::cpp_function([](SteppedScene& self) { return NodeForces{self}; },
+                                                       py::keep_alive<0, 1>()))
       .def("step", &SteppedScene::step)
       .def("advance_to", &SteppedScene::advance_to, py::arg("t"))
       .def("finish", &SteppedScene::finish)

@@ -98,6 +98,19 @@ void EnergyMeter::add(const State& a, const State& b) {
   }
 }
 
+namespace {
+
+// What the work of the constant loads since the start jumps by where these become others: their work before
+// that stays what it was.
+double other_loads(const System& from, const System& to, const VectorXd& z) {
+  if (&from == &to) return 0.0;
+  VectorXd q(to.coordinates());
+  to.expand(z, q);
+  return to.load_work(q) - from.load_work(q);
+}
+
+}  // namespace
+
 EnergyFlow energy_flow(const Simulation& run) {
   const Trajectory& trajectory = run.trajectory;
   EnergyFlow flow{{0.0}, {0.0}, {0.0}, {0.0}};
@@ -114,6 +127,7 @@ EnergyFlow energy_flow(const Simulation& run) {
       const double gain =
           trajectory.model(i + 1).system.kinetic_energy(b.w) - trajectory.model(i).system.kinetic_energy(a.w);
       (b.t > a.t ? flow.drive_work : flow.impact_loss).back() += b.t > a.t ? gain : -gain;
+      flow.load_work.back() -= other_loads(trajectory.model(i).system, trajectory.model(i + 1).system, b.z);
       if (meter) meter->jump();
       continue;
     }

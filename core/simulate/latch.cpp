@@ -69,6 +69,16 @@ std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_li
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
 }
 
+State in_coordinates(const System& from, const State& state, const System& to) {
+  VectorXd q(from.coordinates()), v(q.size());
+  from.expand(state.z, q);
+  from.expand_rate(state.w, v);
+  State moved = state;
+  moved.z = to.reduce(q);
+  moved.w = to.reduce_rate(v);
+  return moved;
+}
+
 Handover hand_over(const Model& from, const State& state, const Model& to) {
   VectorXd q(from.system.coordinates()), v(q.size());
   from.system.expand(state.z, q);

@@ -15,6 +15,9 @@ LinearForm remaining_form(const Deployment& deployment);  // Deployment::remaini
 bool latch_gives(const Structure& structure);             // it has such forces, which wait
 std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear);
 
+// A state in the solved coordinates of another system of the same nodes, whose constraints it fulfils.
+State in_coordinates(const System& from, const State& state, const System& to);
+
 // A state after the constraints have become those of another model of the same nodes: node positions stay,
 // the constraints' impulse takes the part of the velocities that they forbid and nothing else,
 //

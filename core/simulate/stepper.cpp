@@ -17,6 +17,7 @@
 #include "core/simulate/measured_event.hpp"
 #include "core/simulate/mode_change.hpp"
 #include "core/simulate/one_sided.hpp"
+#include "core/simulate/pushed_model.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/simulate/step_control.hpp"
@@ -79,6 +80,14 @@ class Stepper::Loop {
       if (!go(target)) return false;
     }
     return !ended_;
+  }
+
+  void set_force(int node, const Vec3& force) {
+    const auto pushed = pushed_model(*base_, run_.trajectory.structure().loads.size(), node, force,
+                                     run_.options.eliminate_linear);
+    if (ended_ || !pushed) return;
+    base_ = pushed;
+    set_model(sides_.any_active() ? sides_.model(*base_) : base_, in_base(now()), run_.trajectory.size() > 1);
   }
 
   void end() { ended_ = true; }
@@ -277,15 +286,7 @@ class Stepper::Loop {
     ended_ = true, fail(error.what());
   }
 
-  // A state of the present model in the coordinates of the base.
-  State in_base(State state) const {
-    VectorXd q(system().coordinates()), v(q.size());
-    system().expand(state.z, q);
-    system().expand_rate(state.w, v);
-    state.z = base_->system.reduce(q);
-    state.w = base_->system.reduce_rate(v);
-    return state;
-  }
+  State in_base(const State& state) const { return in_coordinates(system(), state, base_->system); }
 
   ModeChange modes_after(const State& state, const std::vector<std::size_t>& which = {}) {
     return change_modes(sides_, *base_, state, which, [&](std::size_t i, double approach) {
@@ -483,6 +484,9 @@ bool Stepper::step() {
 }
 bool Stepper::advance_to(double t) {
   return loop_->advance_to(t);
+}
+void Stepper::set_force(int node, const Vec3& force) {
+  loop_->set_force(node, force);
 }
 void Stepper::stop() {
   loop_->end();

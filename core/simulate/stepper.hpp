@@ -34,7 +34,11 @@ class Stepper {
   const Model& model() const { return run_.trajectory.last_model(); }
   const Simulation& run() const { return run_; }  // all so far
   Simulation take() { return std::move(run_); }   // the same, for good: the stepper is of no use after it
-  void stop();                                    // ends the run as stopped by the user
+  // A force [N] on a solved node from now on, in place of the one that was set before, beside what the scene
+  // has: what a controller does between steps. Its work is among that of the loads. The method begins anew,
+  // as after any jump of a load; a force that stays the same costs nothing.
+  void set_force(int node, const Vec3& force);
+  void stop();  // ends the run as stopped by the user
 
   // Called with every state that is appended to the run, in order, the report of its step beside it.
   void on_step(std::function<void(const State&, const StepReport&)> callback);

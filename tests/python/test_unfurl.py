@@ -103,6 +103,27 @@ def test_stepper_goes_through_events_and_gives_the_same_run():
     assert np.array_equal(stepper.x, stepped.x[-1])
 
 
+def test_forces_are_set_between_steps():
+    # A free mass of 2 kg: the force of each step gives parabola after parabola.
+    mass = unfurl.Scene(text="[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'P'\nposition = [1, 0, 0]\nmass = 2\n"
+                             "[solver]\nstep = 0.1\nend_time = 1\n")
+    x, v = np.array([1.0, 0, 0]), np.zeros(3)
+    with mass.stepper() as stepper:
+        while stepper.t < 0.95:
+            force = -3 * stepper.x[0] - 0.5 * stepper.v[0] + [0, stepper.t, 0]
+            stepper.force["P"] = force
+            assert np.array_equal(stepper.force[0], force)
+            stepper.step()
+            x, v = x + 0.1 * v + 0.0025 * force, v + 0.05 * force
+            assert np.abs(stepper.x[0] - x).max() < 1e-13
+        with pytest.raises(KeyError):
+            stepper.force["Q"] = [1, 0, 0]
+        with pytest.raises(ValueError):
+            stepper.force["P"] = [np.nan, 0, 0]
+        run = stepper.finish()
+    assert np.abs(run.series["energy_balance_J"]).max() < 1e-13
+
+
 def test_sweep_and_solve_agree_with_single_runs():
     # The method of the scene in both: a sweep would take the path, which knows no steps.
     ring = unfurl.Scene("hoop6_sector", set={"solver.step": 0.05, "solver.stages": 5, "solver.model": "full"})

@@ -53,6 +53,38 @@ TEST_CASE("a stepper goes to any time and keeps its grid") {
   CHECK((stepper.state().z - whole.trajectory.state(50).z).lpNorm<Eigen::Infinity>() <= 1e-9);
 }
 
+TEST_CASE("a force that is set between steps acts from then on, and its work is in the books") {
+  // A mass of 1.7 kg on a line through (2, 1, -2) / 3: what is set pushes it by the share along the line,
+  // plus gravity's; parabola after parabola.
+  const Vec3 along = Vec3(2, 1, -2) / 3;
+  const auto model = build_model(read_scene_text(
+      "[structure]\nkind = 'custom'\ngravity = [0, 0, -9.81]\n[[structure.nodes]]\nname = 'P'\nposition = "
+      "[0.2, 0.3, "
+      "-0.1]\nmass = 1.7\n[[constraints]]\nkind = 'line'\nnodes = ['P']\ndirection = [2, 1, -2]\n",
+      "line.toml"));
+  Stepper stepper(model, dvm_options(3, 0.05, 1.0));
+  double x = 0, v = 0;
+  for (int k = 0; k < 20; ++k) {
+    const Vec3 push(3.0 * std::sin(1.3 * k), k < 5 ? 0.0 : 2.5, 0.4 * k);
+    stepper.set_force(0, push);
+    REQUIRE(stepper.step());
+    const double a = along.dot(push) / 1.7 + along.dot(Vec3(0, 0, -9.81));
+    x += 0.05 * v + 0.5 * a * 0.05 * 0.05;
+    v += 0.05 * a;
+    VectorXd q(3);
+    stepper.model().system.expand(stepper.state().z, q);
+    CHECK((q - Vec3(0.2, 0.3, -0.1) - x * along).norm() < 1e-13);
+  }
+  const std::size_t states = stepper.run().trajectory.size();
+  CHECK(states == 40);  // both sides of each jump but the first
+  stepper.set_force(0, Vec3(3.0 * std::sin(1.3 * 19), 2.5, 0.4 * 19));  // as it is
+  CHECK(stepper.run().trajectory.size() == states);
+  CHECK_THROWS_AS(stepper.set_force(1, Vec3::Zero()), std::out_of_range);
+  const Diagnostics books = diagnose(stepper.run());
+  for (const double balance : books.at("energy_balance_J").values) CHECK(std::abs(balance) < 1e-12);
+  CHECK(std::abs(books.at("work_J").values.back()) > 0.1);
+}
+
 TEST_CASE("between its steps a motion is as accurate as at them") {
   // The upright of the ladder turns by up to 1.5 rad in a step: a cubic through the ends is centimetres off.
   const Simulation run = simulate(make_model(ladder_structure(1, 1.0)), dvm_options(7, 0.1, 3.0));
