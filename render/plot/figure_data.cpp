@@ -75,14 +75,17 @@ class PanelTable {
   std::string& out_;
 };
 
-// Tables of a run or of the user's own are not for us to replace.
-void refuse_other_data(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
+// Tables of a run or of the user's own are not for us to replace. A caption is ours where it stands beside a
+// table of ours.
+void refuse_other_data(const std::filesystem::path& table, const std::filesystem::path& caption) {
+  std::ifstream file(table, std::ios::binary);
   std::string line;
-  if (!file || !std::getline(file, line)) return;
-  if (line + '\n' != figure_csv_header)
-    throw FileError(path,
+  const bool there = file && std::getline(file, line);
+  if (there && line + '\n' != figure_csv_header)
+    throw FileError(table,
                     "holds other data, which the figure's numbers would replace; name the figure otherwise");
+  if (!there && std::filesystem::exists(caption))
+    throw FileError(caption, "is not of a figure, whose caption would replace it; name the figure otherwise");
 }
 
 }  // namespace
@@ -103,7 +106,7 @@ void write_figure_data(const Figure& figure, const std::filesystem::path& pictur
   std::filesystem::path table = picture, caption = picture;
   table.replace_extension(".csv");
   caption.replace_extension(".caption.txt");
-  refuse_other_data(table);
+  refuse_other_data(table, caption);
   write_file_atomically(table, figure_csv(figure));
   write_file_atomically(caption, figure_caption(figure));
 }

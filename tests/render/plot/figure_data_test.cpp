@@ -64,6 +64,9 @@ TEST_CASE("the numbers of a figure stand beside it and never replace other data"
   CHECK(fs::exists(folder / "f.caption.txt"));
   std::ofstream(folder / "series.csv") << "t_s,work_J\n0,0\n";
   CHECK_THROWS_AS(write_figure_data(small(), folder / "series.svg"), FileError);
+  std::ofstream(folder / "mine.caption.txt") << "not of a figure\n";
+  CHECK_THROWS_AS(write_figure_data(small(), folder / "mine.svg"), FileError);
+  CHECK_FALSE(fs::exists(folder / "mine.csv"));
   fs::remove_all(folder);
 }
 
