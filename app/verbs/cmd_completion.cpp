@@ -6,29 +6,47 @@
 #include "app/command.hpp"
 #include "app/output/command_line.hpp"
 #include "app/own_options.hpp"
+#include "app/verbs/key_list.hpp"
+#include "core/export/formats.hpp"
+#include "core/study/extremes.hpp"
 #include "core/text/nearest_name.hpp"
 #include "core/text/version.hpp"
+#include "render/plot/figure_style.hpp"
 
 namespace unfurl {
 
 namespace {
 
-// What a word in this place can be completed with: a list that the program prints, or one of its own.
+// The names of a table, a space between them.
+template <class Table>
+std::string names_of(const Table& table) {
+  std::string text;
+  for (const auto& row : table) text.append(text.empty() ? "" : " ").append(row.name);
+  return text;
+}
+std::string listed_names() {
+  std::string text;
+  for (const std::string_view name : list_names()) text.append(text.empty() ? "" : " ").append(name);
+  return text;
+}
+std::string script_names();
+
+// What a word in this place can be completed with: names of a table, or a list that the program prints.
 struct Completed {
-  std::string_view place;  // an option, or the name of a verb
-  std::string_view words;  // fixed ones, or ...
-  std::string_view list;   // ... `unfurl list` of this
+  std::string_view place;            // an option, or the name of a verb
+  std::string (*words)() = nullptr;  // of the table, or ...
+  std::string_view list = {};        // ... `unfurl list` of this
 };
 constexpr Completed completed[] = {
-    {"--methods", "", "methods"},
-    {"--measure", "", "measures"},
-    {"--look", "", "looks"},
-    {"--export", "vtk gltf csv npy mat html", ""},
-    {"--extreme", "mass_ratio force fold_angle units stiffness", ""},
-    {"--style", "screen single-column double-column slide", ""},
-    {"completion", "bash zsh fish man desktop appstream", ""},
-    {"new", "", "structures"},
-    {"list", "structures methods figures scenes constraints forces looks measures columns keys", ""},
+    {"--methods", nullptr, "methods"},
+    {"--measure", nullptr, "measures"},
+    {"--look", nullptr, "looks"},
+    {"--export", [] { return names_of(export_formats()); }},
+    {"--extreme", [] { return names_of(extreme_kinds()); }},
+    {"--style", [] { return names_of(figure_styles()); }},
+    {"completion", script_names},
+    {"new", nullptr, "structures"},
+    {"list", listed_names},
 };
 
 std::string options_of(const Command& command) {
@@ -61,7 +79,7 @@ std::string bash_completion() {
   for (const Completed& row : completed) {
     if (!row.place.starts_with("-")) continue;
     text += "    " + std::string(row.place) + ") COMPREPLY=($(compgen -W \"" +
-            (row.list.empty() ? std::string(row.words) : "$(" + listed(row.list) + ")") +
+            (row.list.empty() ? row.words() : "$(" + listed(row.list) + ")") +
             "\" -- \"$word\")); return ;;\n";
   }
   text +=
@@ -74,7 +92,7 @@ std::string bash_completion() {
   for (const Completed& row : completed) {
     if (row.place.starts_with("-")) continue;
     text += "      " + std::string(row.place) + ") words=\"" +
-            (row.list.empty() ? std::string(row.words) : "$(" + listed(row.list) + ")") + "\" ;;\n";
+            (row.list.empty() ? row.words() : "$(" + listed(row.list) + ")") + "\" ;;\n";
   }
   text += "      *) words=\"$(" + listed("scenes") +
           ")\" ;;\n    esac\n  fi\n"
@@ -111,7 +129,7 @@ std::string zsh_completion() {
   for (const Completed& row : completed) {
     if (row.place.starts_with("-")) continue;
     text += "    " + std::string(row.place) + ") compadd " +
-            (row.list.empty() ? std::string(row.words) : "$(" + listed(row.list) + ")") + " ;;\n";
+            (row.list.empty() ? row.words() : "$(" + listed(row.list) + ")") + " ;;\n";
   }
   return text + "    *) compadd $(" + listed("scenes") + "); _files ;;\n  esac\n}\n_unfurl \"$@\"\n";
 }
@@ -134,7 +152,7 @@ std::string fish_completion() {
   for (const Completed& row : completed) {
     if (row.place.starts_with("-")) continue;
     text += "complete -c unfurl -f -n '__fish_seen_subcommand_from " + std::string(row.place) + "' -a \"" +
-            (row.list.empty() ? std::string(row.words) : "(" + listed(row.list) + ")") + "\"\n";
+            (row.list.empty() ? row.words() : "(" + listed(row.list) + ")") + "\"\n";
   }
   return text;
 }
@@ -223,6 +241,10 @@ struct Script {
 constexpr Script scripts[] = {{"bash", bash_completion},  {"zsh", zsh_completion},
                               {"fish", fish_completion},  {"man", manual_page},
                               {"desktop", desktop_entry}, {"appstream", appstream_component}};
+
+std::string script_names() {
+  return names_of(scripts);
+}
 
 }  // namespace
 

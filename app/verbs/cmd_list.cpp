@@ -214,6 +214,12 @@ int list_items(const List& list, const Arguments& arguments) {
 
 }  // namespace
 
+std::vector<std::string_view> list_names() {
+  std::vector<std::string_view> names = {"keys", "solver", "render", "scene"};
+  for (const List& list : lists) names.push_back(list.name);
+  return names;
+}
+
 int cmd_list(const Arguments& arguments) {
   const std::string& name = arguments.names.front();
   const bool keys = name == "keys" || is_key_table(name);
@@ -222,12 +228,9 @@ int cmd_list(const Arguments& arguments) {
   if (!keys && arguments.markdown) throw UsageError("--markdown is for list keys");
   if (name == "keys") return list_keys(arguments.names.size() > 1 ? arguments.names[1] : "", arguments);
   if (keys) return list_keys(name, arguments);
-  std::vector<std::string_view> names = {"keys", "solver", "render", "scene"};
-  for (const auto& list : lists) {
-    names.push_back(list.name);
+  for (const List& list : lists)
     if (list.name == name) return list_items(list, arguments);
-  }
-  throw UsageError("no list " + in_quotes(name) + did_you_mean(name, names));
+  throw UsageError("no list " + in_quotes(name) + did_you_mean(name, list_names()));
 }
 
 }  // namespace unfurl

@@ -6,6 +6,9 @@
 #include <fstream>
 
 #include "app/own_options.hpp"
+#include "core/export/formats.hpp"
+#include "core/study/extremes.hpp"
+#include "render/plot/figure_style.hpp"
 #include "tests/app/run_program.hpp"
 
 using namespace unfurl;
@@ -75,6 +78,21 @@ TEST_CASE("bash completes verbs, options of the verb and scenes") {
   CHECK(completed("unfurl run hoop6_s", 2) == "hoop6_sector ");
   CHECK(completed("unfurl study hoop6 --methods rk4_b", 4) == "rk4_baumgarte ");
   CHECK(completed("unfurl completion z", 2) == "zsh ");
+  CHECK(completed("unfurl list surf", 2) == "surfaces ");
+  CHECK(completed("unfurl list sol", 2) == "solver ");
+  for (const ExportFormat& format : export_formats())
+    CHECK(names(completed("unfurl run hoop6 --export " + std::string(format.name), 4), format.name));
+}
+
+TEST_CASE("the help of a list option has every name of its table") {
+  const auto help_of = [](std::string_view option) {
+    for (const OwnOption& own : own_options())
+      if (own.name == option) return std::string(own.help);
+    return std::string();
+  };
+  for (const ExportFormat& format : export_formats()) CHECK(names(help_of("--export"), format.name));
+  for (const FigureStyle& style : figure_styles()) CHECK(names(help_of("--style"), style.name));
+  for (const ExtremeKind& extreme : extreme_kinds()) CHECK(names(help_of("--extreme"), extreme.name));
 }
 
 TEST_CASE("the manual page is sound troff") {
