@@ -94,20 +94,23 @@ void ControlPanel::handle(const InputEvent& event) {
   events_.push_back(event);
 }
 
-// A key goes to the text that is typed, to the widget that has the keyboard, or to the actions. Esc closes
-// what is open, whoever has it.
-void ControlPanel::take_key(const InputEvent& event) {
-  const bool escape = event.key == Key::escape;
+// A key goes to the text that is typed, to the widget that has the keyboard, or to the actions: true. Esc
+// closes what is open, whoever has it.
+bool ControlPanel::take_key(const InputEvent& event) {
+  const bool escape = event.key == Key::escape, question = !state().question.text.empty();
   const bool box = state().palette_open || state().files_open || state().export_open || state().help_open ||
-                   state().tour > 0 || !state().question.text.empty();
-  if (escape && host_->close_popups()) return;
-  if (host_->typing() && !(escape && box) && !event.control) return;
-  if (host_->typing() && event.control && event.key != Key::p && event.key != Key::o && event.key != Key::q)
-    return;
-  if (host_->widget_takes(event.key) && !(escape && box)) return;
-  if (event.key == Key::tab || event.key == Key::f6) return host_->focus_pane(event.key == Key::f6);
-  if (!state().question.text.empty() && !escape) return;
+                   state().tour > 0 || question;
+  const bool anywhere = event.control && (event.key == Key::p || event.key == Key::o || event.key == Key::q);
+  if (escape && host_->close_popups()) return true;
+  if (host_->typing() && !(escape && box) && !anywhere) return false;
+  if (host_->widget_takes(event.key) && !(escape && box)) return false;
+  if (event.key == Key::tab || event.key == Key::f6) {
+    host_->focus_pane(event.key == Key::f6);
+    return event.key == Key::f6;  // Tab goes on to the pane's first widget
+  }
+  if (question && !escape) return false;
   state().intents.emplace_back([event](LiveSession& s) { press(s, event); });
+  return true;
 }
 
 // Up to the next press or release of a button or key, so that a click shorter than a frame is seen.
@@ -116,12 +119,8 @@ void ControlPanel::take_events() {
   while (!events_.empty()) {
     const InputEvent event = std::move(events_.front());
     events_.pop_front();
-    InputEvent seen = event;  // by widgets: of a key that was for the actions, what is held beside it
-    if (event.kind == Kind::key && event.down) {
-      const std::size_t before = state().intents.size();
-      take_key(event);
-      seen.down = state().intents.size() == before;
-    }
+    InputEvent seen = event;  // by widgets: nothing of a key that was for others but what is held beside it
+    if (event.kind == Kind::key && event.down) seen.down = !take_key(event);
     host_->apply(seen);
     keep_drawing(true);
     if (event.kind == Kind::text && event.text == "?" && !host_->typing())
@@ -168,7 +167,7 @@ void ControlPanel::draw_panes() {
   const auto width = static_cast<float>(options_.width), height = static_cast<float>(options_.height);
   const float top = std::round(ui.px(bar_height)), bottom = height - std::round(ui.px(timeline_height));
   const auto side = [&](bool open, float points) {
-    return open ? std::min(std::round(ui.px(points)), 0.4f * width) : 0;
+    return open ? std::min(std::round(ui.px(points)), 0.32f * width) : 0;
   };
   const float left = side(now.left_open, options_.settings.left_width);
   const float right = side(now.right_open, options_.settings.right_width);

@@ -70,7 +70,7 @@ class ControlPanel {
 
  private:
   void take_events();
-  void take_key(const InputEvent& event);
+  bool take_key(const InputEvent& event);
   void draw_panes();
   void draw_right_pane(const plot::Rect& place);
   void draw_splitter(const char* name, float x, float top, float bottom, float& width, float way);

@@ -122,7 +122,8 @@ void ImguiHost::apply(const InputEvent& event) const {
 bool ImguiHost::widget_takes(Key key) const {
   constexpr Key used[] = {Key::tab, Key::left,    Key::right,     Key::up,    Key::down,  Key::home,
                           Key::end, Key::page_up, Key::page_down, Key::space, Key::enter, Key::escape};
-  return ImGui::GetIO().NavVisible && std::find(std::begin(used), std::end(used), key) != std::end(used);
+  const bool has = ImGui::GetIO().NavVisible || context_->OpenPopupStack.Size > 0;
+  return has && std::find(std::begin(used), std::end(used), key) != std::end(used);
 }
 
 void ImguiHost::focus_pane(bool next) {

@@ -43,7 +43,10 @@ void LiveSession::collect() {
     arrived_ = {};
     outcome_ = simulator_.take();
     arrived_.run = outcome_.has_value();
-    if (outcome_ && outcome_->run) arrived_.run_cpu_s = outcome_->run->simulation.cpu_s;
+    if (outcome_ && outcome_->run) {
+      arrived_.run_cpu_s = outcome_->run->simulation.cpu_s;
+      arrived_.coarse = outcome_->run->coarse;
+    }
     arrived_.errors = errors_.take();
     auto study = study_.take();
     arrived_.study = study.has_value();
@@ -57,7 +60,10 @@ void LiveSession::collect() {
   const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
   outcome_.reset();
   while (arrived_.run && !outcome_ && simulator_.busy())
-    if (!(outcome_ = simulator_.take())) wait();
+    if (outcome_ = simulator_.take(); !outcome_)
+      wait();
+    else if (outcome_->run && outcome_->run->coarse && !arrived_.coarse)
+      outcome_.reset();  // it was not looked at
   if (outcome_ && outcome_->run) {
     LiveRun run = *outcome_->run;
     run.simulation.cpu_s = arrived_.run_cpu_s;
@@ -96,13 +102,7 @@ void LiveSession::take_run(const SimulationOutcome& outcome) {
   const bool first = !state_.shown;
   let_go();  // of the run before
   state_.shown = outcome.run;
-  state_.trade.push_back(trade_point(*state_.shown));
-  ++state_.trade_news;
-  if (options_.measure_errors && !options_.replayed)
-    errors_.measure(state_.shown);
-  else if (!options_.measure_errors)
-    note_error(state_.trade, {.run = state_.shown->id, .why = "not asked for"});
-  if (state_.trade.size() > most_trade_points) state_.trade.erase(state_.trade.begin());
+  if (!state_.shown->coarse) judge_run();
   if (state_.shown->document == state_.history.now())
     state_.picture = state_.shown->scene.render;
   else
@@ -110,6 +110,16 @@ void LiveSession::take_run(const SimulationOutcome& outcome) {
   const Trajectory& trajectory = state_.shown->simulation.trajectory;
   if (first) state_.playback.t = options_.at;
   state_.playback.t = std::clamp(state_.playback.t, trajectory.start_time(), trajectory.end_time());
+}
+
+void LiveSession::judge_run() {
+  state_.trade.push_back(trade_point(*state_.shown));
+  ++state_.trade_news;
+  if (options_.measure_errors && !options_.replayed)
+    errors_.measure(state_.shown);
+  else if (!options_.measure_errors)
+    note_error(state_.trade, {.run = state_.shown->id, .why = "not asked for"});
+  if (state_.trade.size() > most_trade_points) state_.trade.erase(state_.trade.begin());
 }
 
 // How things look needs no simulation.

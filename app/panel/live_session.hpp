@@ -23,7 +23,7 @@ struct SessionOptions {
 
 // What came from the work beside in one frame, and how that stands.
 struct Arrivals {
-  bool run = false;
+  bool run = false, coarse = false;
   double run_cpu_s = 0;
   std::vector<RunError> errors;
   bool study = false;
@@ -79,6 +79,7 @@ class LiveSession {
  private:
   void collect();
   void take_run(const SimulationOutcome& outcome);
+  void judge_run();  // a point of speed against accuracy
   void remember(const std::string& path);
   void show_hand();
   void build(const std::string& gesture, SceneDocument document);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <thread>
 #include <tuple>
 #include <utility>
 
@@ -49,6 +50,27 @@ Sums run_frames(ControlPanel& panel, const std::function<void()>& show, double s
   return sums;
 }
 
+// From a change to the first frame that shows what came of it, and to the one that is exact.
+void time_change(ControlPanel& panel) {
+  using Clock = std::chrono::steady_clock;
+  PanelState& state = panel.state();
+  if (!state.shown) return;
+  SceneDocument changed = state.history.now();
+  changed.edits["solver.step"] = 0.99 * state.shown->scene.solver.step;
+  state.history.replace(changed);
+  const auto start = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  double first = 0;
+  do {
+    panel.frame(1.0 / 60);
+    if (first == 0 && state.shown->document == changed) first = seconds();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  } while (seconds() < 600 && (first == 0 || state.simulation.running));
+  std::printf("a change is shown after %.0f ms, exactly after %.0f ms\n", 1e3 * first, 1e3 * seconds());
+  state.history.undo();
+  panel.settle();
+}
+
 }  // namespace
 
 void measure_panel(ControlPanel& panel, const std::function<void()>& show, double seconds) {
@@ -67,6 +89,7 @@ void measure_panel(ControlPanel& panel, const std::function<void()>& show, doubl
                 ms * s.times.widgets, ms * s.times.painting, ms * s.showing);
     std::fflush(stdout);
   }
+  time_change(panel);
 }
 
 }  // namespace unfurl

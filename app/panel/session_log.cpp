@@ -2,7 +2,9 @@
 #include "app/panel/session_log.hpp"
 
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/export/checksum.hpp"
@@ -169,6 +171,7 @@ void SessionRecorder::frame(double seconds, bool visible, const LiveSession& ses
   if (!visible) line["hidden"] = true;
   const Arrivals& now = session.arrived();
   if (now.run) line["run"] = now.run_cpu_s;
+  if (now.coarse) line["coarse"] = true;
   if (now.study) line["study"] = true;
   if (!now.report.empty()) line["report"] = now.report;
   for (const RunError& error : now.errors) line["errors"].push_back(json_of(error));
@@ -261,6 +264,7 @@ Arrivals arrivals_of(const json& line, const Arrivals& before) {
   read_job(line, "exporting", now.exporting);
   now.run = line.contains("run");
   if (now.run) now.run_cpu_s = number_of_json(line["run"]);
+  now.coarse = line.contains("coarse");
   now.study = line.contains("study");
   now.report = line.value("report", "");
   for (const json& e : line.value("errors", json::array()))

@@ -60,12 +60,22 @@ void draw_help(Ui& ui, PanelState& state) {
   const Box box(ui, "help", 0);
   box.heading("Keys");
   const auto row = [&](const std::string& name, const std::string& help) {
+    const float left = ImGui::GetCursorPosX();
     ImGui::TextColored(ui.theme.accent, "%s", name.c_str());
-    ImGui::SameLine(ui.px(150));
+    ImGui::SameLine(left + ui.px(92));
     ImGui::TextUnformatted(help.c_str());
   };
+  std::vector<const Action*> rows;
   for (const Action& action : actions())
-    if (!action.keys.empty()) row(std::string(action.keys), std::string(action.help));
+    if (!action.keys.empty()) rows.push_back(&action);
+  const bool narrow = ImGui::GetIO().DisplaySize.x < ui.px(860);
+  const std::size_t half = narrow ? rows.size() : (rows.size() + 1) / 2;
+  for (std::size_t i = 0; i < half; ++i) {
+    row(std::string(rows[i]->keys), std::string(rows[i]->help));
+    if (i + half >= rows.size()) continue;
+    ImGui::SameLine(ui.px(440));
+    row(std::string(rows[i + half]->keys), std::string(rows[i + half]->help));
+  }
   ImGui::Separator();
   row("Tab, arrows", "from widget to widget; Enter or typing changes, Esc leaves; F6 the next pane");
   row("drag", "turn the view; with Shift or the right button: move it");

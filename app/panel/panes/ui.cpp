@@ -26,13 +26,14 @@ Box::Box(Ui& ui, const char* name, float width, bool top) : ui_(ui), name_(name)
   if (width > 0) ImGui::SetNextWindowSize({std::min(ui.px(width), room), 0});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {room, screen.y - ui.px(60)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0f);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, ui.px(6));
   ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_PopupBg));
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    (width > 0 ? 0 : ImGuiWindowFlags_AlwaysAutoResize));
   ImGui::PopStyleColor();
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(2);
 }
 
 Box::~Box() {

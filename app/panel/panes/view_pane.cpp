@@ -225,7 +225,8 @@ void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 high(frame.low.x + frame.size.x, frame.low.y + frame.size.y);
   const double done = std::clamp(state.simulation.progress, 0.0, 1.0);
-  list.AddRectFilled(frame.low, high, ui.color(ui.theme.window, 0.45f));
+  const bool of_this = state.shown && state.shown->coarse && state.shown->document == state.history.now();
+  if (!of_this) list.AddRectFilled(frame.low, high, ui.color(ui.theme.window, 0.45f));
   const float width = static_cast<float>(std::max(done, 0.02)) * frame.size.x;
   list.AddRectFilled({frame.low.x, high.y - ui.px(4)}, {frame.low.x + width, high.y},
                      ui.color(ui.theme.accent));
@@ -235,7 +236,7 @@ void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
 }
 
 // On a ground of its own: the structure may be behind it.
-void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame) {
+void draw_state_line(const Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame) {
   const LiveRun& run = *state.shown;
   const std::string title = shortened(run.scene.title, frame.size.x - ui.px(40));
   char facts[160];
@@ -248,6 +249,8 @@ void draw_state_line(const Ui& ui, const PanelState& state, const Frame& frame) 
     std::snprintf(facts, sizeof facts, ", %.0f frames/s", state.frames_per_second);
     line += facts;
   }
+  if (run.coarse) line = "coarse: one sector with longer steps; the whole is being simulated";
+  if (const std::string note = view.scale_note(); !note.empty()) line += "\n" + note;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float pad = ui.px(7), room = frame.size.x - ui.px(40);
   const ImVec2 at(frame.low.x + ui.px(17), frame.low.y + ui.px(52));
@@ -279,6 +282,9 @@ void draw_comparison(Ui& ui, const PanelState& state, const Frame& frame) {
   for (const ComparisonRow& row : rows) widen(row);
   float width = 2 * pad;
   for (const float column : columns) width += column;
+  const float over = std::max(0.0f, width - (frame.size.x - ui.px(20)));  // names give way
+  columns[0] -= std::min(over, columns[0] - ui.px(40));
+  width -= over;
   const float height = 2 * pad + line * static_cast<float>(rows.size() + 1);
   const ImVec2 low(frame.low.x + ui.px(10), frame.low.y + ui.px(108));
   list.AddRectFilled(low, {low.x + width, low.y + height}, ui.color(ui.theme.window, 0.92f), ui.px(6));
@@ -290,10 +296,11 @@ void draw_comparison(Ui& ui, const PanelState& state, const Frame& frame) {
     float right = low.x + pad;
     for (int i = 0; i < 4; ++i) {
       right += columns[i];
-      const float wide = ImGui::CalcTextSize(cells[i].first->c_str()).x;
+      const std::string text = i == 0 ? shortened(*cells[i].first, columns[0] - ui.px(6)) : *cells[i].first;
+      const float wide = ImGui::CalcTextSize(text.c_str()).x;
       const float gap = i < 3 ? ui.px(16) : 0;
       list.AddText({i == 0 ? right - columns[0] : right - wide - gap, y}, ui.color(*cells[i].second),
-                   cells[i].first->c_str());
+                   text.c_str());
     }
     y += line;
   };
@@ -312,6 +319,8 @@ constexpr std::string_view quick_rows[] = {"render.look", "render.colour_by", "r
                                            "render.node_labels", "render.rod_labels"};
 
 void draw_view_options(Ui& ui, PanelState& state, const SceneView& view) {
+  const plot::Rect& above = ui.places.at("view options");
+  ImGui::SetNextWindowPos({static_cast<float>(above.x0), static_cast<float>(above.y1) + ui.px(4)});
   ImGui::SetNextWindowSizeConstraints({ui.px(320), 0}, {ui.px(320), FLT_MAX});
   if (!ImGui::BeginPopup("view options")) return;
   constexpr std::pair<const char*, ViewPreset> presets[] = {{"Front", ViewPreset::front},
@@ -392,7 +401,13 @@ void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const F
     ImGui::OpenPopup("view options");
   ImGui::SameLine(0, ui.px(4));
   if (button(ui, "frame", "Frame", "see the whole motion (F)")) state.orbit.reset();
+  // What a narrow view has no room for is reached by its key, or by the palette.
+  const auto has_room = [&](const char* label) {
+    const float wide = ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x + ui.px(14);
+    return ImGui::GetItemRectMax().x + wide < frame.low.x + frame.size.x;
+  };
   const auto tool = [&](const char* key, const char* label, const char* help, Tool which) {
+    if (!has_room(label)) return;
     ImGui::SameLine(0, ui.px(4));
     const bool is = state.tool == which;
     if (is) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
@@ -402,9 +417,11 @@ void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const F
   };
   tool("tool pull", "Pull", "take nodes by hand: what the mechanism allows (G)", Tool::pull);
   tool("tool build", "Build", "add, drag, connect, delete nodes and rods of a custom scene (B)", Tool::build);
-  ImGui::SameLine(0, ui.px(4));
-  if (button(ui, "wiggle", "Wiggle", "each free motion of this pose, one after the other (W)"))
-    state.intents.emplace_back(&LiveSession::wiggle);
+  if (has_room("Wiggle")) {
+    ImGui::SameLine(0, ui.px(4));
+    if (button(ui, "wiggle", "Wiggle", "each free motion of this pose, one after the other (W)"))
+      state.intents.emplace_back(&LiveSession::wiggle);
+  }
   draw_view_options(ui, state, view);
 }
 
@@ -433,7 +450,7 @@ void draw_view_pane(Ui& ui, PanelState& state, SceneView& view) {
     mark(ui, state, view, frame, state.hovered, ui.color(ui.theme.accent, 0.6f));
   name_hovered(ui, state);
   draw_readings(ui, state, view, frame);
-  draw_state_line(ui, state, frame);
+  draw_state_line(ui, state, view, frame);
   draw_comparison(ui, state, frame);
   draw_view_buttons(ui, state, view, frame);
   draw_tool(ui, state, frame);

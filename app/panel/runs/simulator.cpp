@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/panel/runs/simulator.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/singular_poses.hpp"
+#include "core/structures/family.hpp"
 #include "core/study/tolerance.hpp"
 
 namespace unfurl {
@@ -21,10 +24,11 @@ std::function<bool()> counted(const Simulator::Task& task, std::size_t states, c
   };
 }
 
-LiveRun live_run(const SceneDocument& document, const Simulator::Task& task) {
-  Scene scene = read_document(document);
+LiveRun live_run(const SceneDocument& document, Scene scene, const Simulator::Task& task, bool coarse) {
   SimulationHooks hooks;
-  hooks.progress = [&](double fraction) { task.progress(fraction, "simulating"); };
+  hooks.progress = [&](double fraction) {
+    task.progress(fraction, coarse ? "simulating coarsely" : "simulating");
+  };
   hooks.cancelled = [&] { return task.stale(); };
   Simulation simulation = simulate_as_asked(build_model(scene), scene.solver, hooks);
   const std::size_t states = simulation.trajectory.size();
@@ -40,13 +44,46 @@ LiveRun live_run(const SceneDocument& document, const Simulator::Task& task) {
           std::move(motion),
           std::move(simulation),
           std::move(diagnostics),
-          std::move(warnings)};
+          std::move(warnings),
+          coarse};
+}
+
+// What shows a large ring at once: one of its equal sectors, solved with longer steps. None where the family
+// has no such model, or is quick enough as it is.
+std::optional<Scene> coarse_scene(const SceneDocument& document, const Scene& scene) {
+  constexpr std::size_t large = 300;  // nodes
+  const Family* family = find_family(scene.kind);
+  if (!family || !scene.structure.has("model") || scene.structure.text("model") != "full")
+    return std::nullopt;
+  SceneDocument coarse = document;
+  coarse.edits["structure.model"] = std::string("sector");
+  coarse.edits["solver.step"] = 4 * scene.solver.step;
+  coarse.edits["solver.tolerance"] = 0.0;
+  try {
+    Scene sector = read_document(coarse);
+    if (build_structure(sector).node_copies.size() < large) return std::nullopt;
+    return sector;
+  } catch (const SceneError&) {  // what acts on single nodes has no place in a sector
+    return std::nullopt;
+  }
+}
+
+std::shared_ptr<const LiveRun> run_of_document(const SceneDocument& document, const Simulator::Task& task) {
+  Scene scene = read_document(document);
+  if (auto coarse = coarse_scene(document, scene)) try {
+      task.publish({task.id(),
+                    std::make_shared<const LiveRun>(live_run(document, std::move(*coarse), task, true)),
+                    {},
+                    ""});
+    } catch (const Error&) {  // the whole will say what is wrong
+    }
+  return std::make_shared<const LiveRun>(live_run(document, std::move(scene), task, false));
 }
 
 SimulationOutcome outcome_of(const SceneDocument& document, const Simulator::Task& task) {
   SimulationOutcome outcome{task.id(), nullptr, {}, ""};
   try {
-    outcome.run = std::make_shared<const LiveRun>(live_run(document, task));
+    outcome.run = run_of_document(document, task);
   } catch (const SceneError& error) {
     outcome.problems = error.problems();
   } catch (const std::bad_alloc&) {

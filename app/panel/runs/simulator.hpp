@@ -22,6 +22,7 @@ struct LiveRun {
   Simulation simulation;
   Diagnostics diagnostics;
   std::vector<std::string> warnings;
+  bool coarse = false;  // of a large structure something quick, until its own run is there
 };
 
 struct SimulationOutcome {

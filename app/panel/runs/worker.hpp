@@ -27,6 +27,8 @@ class Worker {
     bool stale() const { return worker_.newest_ != id_; }  // nobody wants the result any more
     // It is to end, stale or with what it has. Rests while the worker is held.
     bool stopped() const { return worker_.stopped(id_); }
+    // Something to take while the work goes on: better than nothing, worse than its result.
+    void publish(Result result) const { worker_.publish(id_, std::move(result)); }
     // `doing`: a literal, "simulating".
     void progress(double fraction, const char* doing = "") const { worker_.note(id_, fraction, doing); }
 
@@ -138,6 +140,14 @@ class Worker {
       changed_.wait(lock, [&] { return !held_ || newest_ != id; });
     }
     return newest_ != id || stop_;
+  }
+  void publish(long id, Result result) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (newest_ != id) return;
+      finished_ = std::move(result);
+    }
+    if (wake_) wake_();
   }
   void note(long id, double fraction, const char* doing) {
     if (newest_ != id) return;

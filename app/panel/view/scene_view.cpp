@@ -136,9 +136,23 @@ PickView SceneView::pick_view(const PanelState& state) const {
   return {camera(state), width_, height_, builder_->upright()};
 }
 
+namespace {
+
+bool is_scale_note(const TextLabel& label) {
+  return label.text.starts_with("rods drawn ");
+}
+
+}  // namespace
+
+std::string SceneView::scale_note() const {
+  const auto at = std::find_if(list_.labels.begin(), list_.labels.end(), is_scale_note);
+  return options_.labels || at == list_.labels.end() ? "" : at->text;
+}
+
 DrawList SceneView::decorated(const PanelState& state) const {
   DrawList list = list_;
   list.camera = camera(state);
+  if (!options_.labels) std::erase_if(list.labels, is_scale_note);
   if (list.transparent) {  // for paper, which is white
     list.transparent = false;
     list.background_top = list.background_bottom = {1, 1, 1, 1};

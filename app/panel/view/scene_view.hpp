@@ -29,6 +29,8 @@ class SceneView {
   Camera camera(const PanelState& state) const;
   OrbitCamera framed() const { return orbit_of(list_.camera); }  // the film's own camera
   PickView pick_view(const PanelState& state) const;
+  // What is not to scale in the picture, which the film writes where the panel has its buttons.
+  std::string scale_note() const;
   // The sphere around the whole motion.
   Vec3f center() const { return list_.center; }
   float radius() const { return list_.radius; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/panel/runs/simulator.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
 
@@ -67,6 +68,37 @@ TEST_CASE("a scene at fault comes back with the command line's message at its ke
   REQUIRE(outcome->problems.size() == 1);
   CHECK(outcome->problems[0].key == "structure.units");
   CHECK(outcome->problems[0].message.find("[3, 100000]") != std::string::npos);
+}
+
+TEST_CASE("a large ring is shown by one of its sectors first, and by itself then") {
+  std::vector<SimulationOutcome> seen;  // taken by the thread that says that they are there: none is missed
+  std::atomic<int> taken = 0;
+  Simulator* asked = nullptr;
+  Simulator simulator([&] {
+    auto outcome = asked->take();
+    if (!outcome) return;
+    seen.push_back(std::move(*outcome));
+    ++taken;
+  });
+  asked = &simulator;
+  SceneDocument document = hoop(0.02, 0.1);  // a beginning will do
+  document.edits["structure.units"] = 80L;
+  simulator.submit(document);
+  for (int i = 0; i < 60000 && taken < 2; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  REQUIRE(taken == 2);
+  REQUIRE(seen[0].run);
+  REQUIRE(seen[1].run);
+  const LiveRun &first = *seen[0].run, &second = *seen[1].run;
+  CHECK(first.coarse);
+  CHECK(first.scene.structure.text("model") == "sector");
+  CHECK(first.document == document);  // what was asked for
+  CHECK_FALSE(second.coarse);
+  CHECK(second.scene.structure.text("model") == "full");
+  // The same parts under the same names, near the same places: a selection and a picture fit both.
+  const Trajectory &a = first.simulation.trajectory, &b = second.simulation.trajectory;
+  REQUIRE(a.structure().node_copies.size() == b.structure().node_copies.size());
+  CHECK(a.structure().node_copies[7].name == b.structure().node_copies[7].name);
+  CHECK((a.positions_at(0.08) - b.positions_at(0.08)).cwiseAbs().maxCoeff() < 1e-3);
 }
 
 TEST_CASE("a cancelled simulation leaves nothing behind, and its end is not waited for") {
