@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -32,15 +31,23 @@ class CsvFile {
 
   void cell(double x) {
     x += 0.0;  // a zero has no sign worth printing
-    std::array<char, 32> buffer{};
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr;
-    append({buffer.data(), static_cast<std::size_t>(end - buffer.data())});
+    begin_cell();
+    if (x == 0) {
+      row_[used_++] = '0';
+      return;
+    }
+    const auto end = std::to_chars(row_.data() + used_, row_.data() + row_.size(), x).ptr;
+    used_ = static_cast<std::size_t>(end - row_.data());
+  }
+  void flag(bool yes) {
+    begin_cell();
+    row_[used_++] = yes ? '1' : '0';
   }
 
   void end_row() {
-    row_ += '\n';
-    if (std::fwrite(row_.data(), 1, row_.size(), file_) != row_.size()) throw FileError(path_, errno);
-    row_.clear();
+    row_[used_++] = '\n';  // room for it is always left
+    if (std::fwrite(row_.data(), 1, used_, file_) != used_) throw FileError(path_, errno);
+    used_ = 0;
   }
 
   void commit() {
@@ -51,15 +58,22 @@ class CsvFile {
   }
 
  private:
+  // Behind a comma, with room for a number.
+  void begin_cell() {
+    if (row_.size() - used_ < 64) row_.resize(2 * row_.size() + 64);
+    if (used_ > 0) row_[used_++] = ',';
+  }
   void append(std::string_view text) {
-    if (!row_.empty()) row_ += ',';
-    row_ += text;
+    begin_cell();
+    if (row_.size() - used_ < text.size() + 64) row_.resize(2 * row_.size() + text.size() + 64);
+    used_ += text.copy(row_.data() + used_, text.size());
   }
 
   std::filesystem::path path_;
   PendingFile pending_;
   std::FILE* file_;
-  std::string row_;
+  std::string row_ = std::string(4096, ' ');
+  std::size_t used_ = 0;  // of it
 };
 
 }  // namespace
@@ -116,7 +130,7 @@ void write_rod_forces_csv(const std::filesystem::path& path, const Trajectory& t
     const auto state = static_cast<Index>(i);
     file.cell(diagnostics.t[i]);
     for (const auto& rod : rods) file.cell(diagnostics.axial_force(state, rod.source));
-    for (const auto& rod : rods) file.cell(diagnostics.force_unique(state, rod.source) ? "1" : "0");
+    for (const auto& rod : rods) file.flag(diagnostics.force_unique(state, rod.source));
     file.end_row();
   }
   file.commit();
@@ -160,7 +174,7 @@ void write_long_rods(const std::filesystem::path& path, const Trajectory& trajec
       file.cell(structure.rods[static_cast<std::size_t>(rod.source)].group);
       file.cell((x.segment<3>(3 * rod.b) - x.segment<3>(3 * rod.a)).norm());
       file.cell(diagnostics.axial_force(static_cast<Index>(i), rod.source));
-      file.cell(diagnostics.force_unique(static_cast<Index>(i), rod.source) ? "1" : "0");
+      file.flag(diagnostics.force_unique(static_cast<Index>(i), rod.source));
       file.end_row();
     }
   }

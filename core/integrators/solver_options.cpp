@@ -19,9 +19,10 @@ const std::vector<ParamSpec>& solver_params() {
   static const SolverOptions fallback;
   static const std::vector<ParamSpec> params = {
       choice_param(
-          "model", fallback.model, {"auto", "full", "path"},
+          "model", fallback.model, {"auto", "full", "path", "sector"},
           "every node by the method (full), one number along the path of a structure that can move "
-          "in one way only (path), or that where it applies (auto; default of sweep, solve, margin)"),
+          "in one way only (path), one sector of a ring whose sectors are alike (sector), or the path, "
+          "else a sector, where they apply (auto; default of sweep, solve, margin)"),
       choice_param("method", fallback.method, method_names(), "integrator; `unfurl list methods`"),
       only_with("method", {"dvm"},
                 integer_param("stages", fallback.stages, 2, 8, "s, the interpolation nodes on a step (dvm)")),

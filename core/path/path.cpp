@@ -327,6 +327,11 @@ std::optional<double> Path::locate(const VectorXd& z, long most, int towards) co
     const bool ahead = (i % 2 == 0) == (towards > 0);
     const PathPiece* p = piece(ahead ? out : -out - 1);
     if (!p) continue;
+    // s is the length in the mass metric: the pose is no farther from the middle than half of the piece.
+    const double reach = 0.51 * (p->b - p->a);
+    chebyshev_value(p->z, 0.0, at);
+    at -= z;
+    if (at.dot(system_->mass() * at) > reach * reach) continue;
     // Newton's method for the foot of the perpendicular, from the nearest of a few points.
     double x = 0, nearest = std::numeric_limits<double>::infinity();
     for (const double start : {-1.0, -0.5, 0.0, 0.5, 1.0}) {

@@ -11,8 +11,8 @@
 namespace unfurl {
 namespace {
 
-constexpr std::array known_forces{"load",  "gravity",        "load_over_time", "follower", "spring",
-                                  "latch", "torsion_spring", "joint_damping",  "drag",     "offload"};
+constexpr std::array known_forces{"load",  "gravity",        "load_over_time", "follower", "spring", "latch",
+                                  "motor", "torsion_spring", "joint_damping",  "drag",     "offload"};
 constexpr std::array known_constraints{"plane",   "line",      "fixed",    "relation",
                                        "measure", "collinear", "coplanar", "rod"};
 constexpr std::array known_measures{MeasureKind::coordinate, MeasureKind::length, MeasureKind::angle,
@@ -37,6 +37,14 @@ Structure bare(const Structure& structure) {
   return out;
 }
 
+// A motor's effort is linear in its speed at full voltage, and only there.
+std::string unknown_motor(const Force& force) {
+  if (force.kind != "motor") return "";
+  if (force.motor.control != Motor::Control::none) return "a controller follows a motion";
+  if (std::isfinite(force.motor.limit)) return "the current of a motor is limited";
+  return force.motor.command.moves() ? "the voltage of a motor changes with time" : "";
+}
+
 bool is_cable(const Force& force) {
   return force.one_sided && (force.stiffness > 0 || force.damping > 0);
 }
@@ -50,6 +58,7 @@ std::string unknown_to_path(const Structure& structure) {
   for (const Force& force : structure.forces) {
     if (force.smoothing > 0) return "a cable begins to pull smoothly";
     if (!holds(known_forces, force.kind)) return kinds("a force", force.kind);
+    if (std::string motor = unknown_motor(force); !motor.empty()) return motor;
     if (!holds(known_measures, force.measure.kind))
       return "a force acts on a measure that the path does not know";
   }

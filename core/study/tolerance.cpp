@@ -10,6 +10,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/math/largest.hpp"
 #include "core/path/path_run.hpp"
+#include "core/path/sector.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/table.hpp"
 
@@ -219,13 +220,37 @@ bool order_depends_on_stages(const SolverOptions& options) {
   return method.claims(two).order != method.claims(four).order;
 }
 
+namespace {
+
+// The full model, or one of its sectors where it is a ring whose sectors are alike and that is allowed.
+Simulation without_path(const std::shared_ptr<const Model>& model, const SolverOptions& options,
+                        const SimulationHooks& hooks, const std::string& no_path) {
+  const auto solve = [&](const std::shared_ptr<const Model>& what, const SolverOptions& how) {
+    return how.tolerance > 0 ? Picker(what, how, hooks).pick() : simulate(what, how, hooks);
+  };
+  if (options.model == "full") return solve(model, options);
+  std::string why = no_path;
+  try {
+    Simulation run = simulate_sector(model, options, solve);
+    run.solved_as.why += (why.empty() ? "" : "; " + why);
+    return run;
+  } catch (const SectorRefused& refused) {
+    const bool sector = model->structure.node_copies.size() != model->structure.nodes.size();
+    if (options.model == "sector" && !sector)
+      throw SectorRefused("solver.model = \"sector\": " + std::string(refused.what()) +
+                          "; \"auto\" takes the full model where sectors are not alike");
+    if (!sector) why += (why.empty() ? "no sector: " : "; no sector: ") + std::string(refused.what());
+  }
+  Simulation run = solve(model, options);
+  run.solved_as.why = options.model == "sector" ? "" : why;
+  return run;
+}
+
+}  // namespace
+
 Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const SolverOptions& options,
                              const SimulationHooks& hooks) {
-  const auto full = [&] {
-    if (options.tolerance > 0) return Picker(model, options, hooks).pick();
-    return simulate(model, options, hooks);
-  };
-  if (options.model == "full") return full();
+  if (options.model == "full" || options.model == "sector") return without_path(model, options, hooks, "");
   try {
     Simulation run = simulate_on_path(model, options, hooks);
     run.solved_as = {"path", "one degree of freedom; solver.model = \"" + options.model + "\""};
@@ -235,9 +260,7 @@ Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const So
     if (options.model == "path")
       throw PathRefused("solver.model = \"path\": " + std::string(refused.what()) +
                         "; \"auto\" takes the full model where the path does not apply");
-    Simulation run = full();
-    run.solved_as.why = std::string("no path: ") + refused.what();
-    return run;
+    return without_path(model, options, hooks, std::string("no path: ") + refused.what());
   }
 }
 

@@ -87,6 +87,8 @@ const std::vector<std::string> four_bar_cases{
     R"(forces[0]={kind="joint_damping",nodes=["B","C"],damping=0.4})",
     R"(forces[0]={kind="drag",nodes=["B"],damping=0.2})",
     R"(forces[0]={kind="offload",nodes=["B"],length=7})",
+    R"(forces[0]={kind="motor",rods=["crank","coupler"],stall_torque=0.9,no_load_speed=310,gear_ratio=-7,)"
+    R"(axis=[0,1,0]})",
     "gravity.acceleration=[0.4,0,-3]"};
 
 }  // namespace

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rings whose sectors are alike, solved as one sector: the full model's answer; and what is unlike, by name.
+#include "core/path/sector.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "core/study/reference.hpp"
+#include "core/study/tolerance.hpp"
+
+using namespace unfurl;
+
+namespace sector_test {
+
+namespace {
+
+struct Ring {
+  std::string scene;
+  std::vector<std::string> changes;
+};
+
+Simulation solved(const Ring& ring, const std::string& model, double end) {
+  std::vector<std::string> changes = ring.changes;
+  changes.push_back("solver.model=" + model);
+  changes.push_back("solver.end_time=" + std::to_string(end));
+  const Scene scene = read_scene_file(find_scene(ring.scene), changes);
+  return simulate_as_asked(build_model(scene), scene.solver);
+}
+
+// One entry of a list for each unit of a ring; k and n stand for the unit and the next.
+std::vector<std::string> for_units(int units, const std::string& list, const std::string& entry) {
+  std::vector<std::string> out;
+  for (int k = 0; k < units; ++k) {
+    std::string text = entry;
+    for (const auto& [letter, unit] : {std::pair{'#', k}, std::pair{'@', (k + 1) % units}})
+      for (std::size_t at; (at = text.find(letter)) != std::string::npos;)
+        text.replace(at, 1, std::to_string(unit));
+    out.push_back(list + "[" + std::to_string(k) + "]=" + text);
+  }
+  return out;
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+const std::vector<std::string> joints{"structure.model=joints", "structure.fold_angle=63",
+                                      "structure.units=5"};
+const std::vector<std::string> hinge_springs = for_units(
+    5, "forces",
+    R"({name="hinge #",kind="torsion_spring",nodes=["B#","Mb#","B@"],stiffness=37,damping=5,free_angle=137})");
+
+// The method's equations of a symmetric state are those of its sector: what differs is rounding, some 1e-15
+// of the ring's 7 m, and what the motion makes of it, exp(4.3 t) in a ring of joints: tenfold in half a
+// second.
+constexpr double same_place = 1e-12;
+
+}  // namespace
+
+TEST_CASE("a ring whose sectors are alike is solved as one of them, and is where the full model is") {
+  const std::vector<std::tuple<Ring, std::string, double>> cases{
+      {{"hoop6", {"structure.fold_angle=70"}}, "one of 6", 1.0},
+      {{"hoop6", {"structure.units=11", "structure.mass=lumped", "gravity.acceleration=[0,0,-1.3]"}},
+       "one of 11",
+       1.0},
+      {{"hoop6", joined(joints, hinge_springs)}, "one of 5", 0.5},
+      {{"hoop6", joined(joints, {"loads[0]={nodes=[\"T*\"],force=[0,0,2.5]}",
+                                 "forces[0]={kind=\"joint_damping\",nodes=[\"Mb*\",\"Mt*\"],damping=21}",
+                                 "forces[1]={kind=\"drag\",nodes=[\"B*\"],damping=3.1}"})},
+       "one of 5",
+       0.5},
+      {{"hoop6", joined(joints, {"constraints[0]={kind=\"angle\",fold_angle=true,motion=\"smooth\",to=41,"
+                                 "duration=0.9}"})},
+       "one of 5",
+       0.5},
+      {{"hoop6",
+        joined(joints, {"forces[0]={kind=\"torsion_spring\",fold_angle=true,stiffness=800,free_angle=0,"
+                        "damping=11}"})},
+       "one of 5",
+       0.5},
+      {{"hoop6",
+        joined(joints, for_units(5, "constraints",
+                                 R"({name="actuator #",kind="length",nodes=["Mb#","Mt#"],motion="smooth",)"
+                                 R"(to=3.9,duration=0.7})"))},
+       "one of 5",
+       0.5},
+      {{"hoberman", {"structure.units=15"}}, "one of 15", 0.4}};
+  for (const auto& [ring, order, end] : cases) {
+    INFO(ring.scene << " " << (ring.changes.empty() ? "" : ring.changes.back()));
+    const Simulation full = solved(ring, "full", end), one = solved(ring, "sector", end);
+    CHECK(solved_as(one).name == "sector");
+    INFO(solved_as(one).why);
+    CHECK(solved_as(one).why.starts_with(order));
+    REQUIRE(one.status == full.status);
+    REQUIRE(one.trajectory.size() == full.trajectory.size());
+    double off = 0;
+    for (std::size_t i = 0; i < full.trajectory.size(); ++i)
+      off = std::max(off, node_distance(one.trajectory.positions(i), full.trajectory.positions(i)));
+    CHECK(off <= same_place);
+    REQUIRE(one.events.size() == full.events.size());
+    for (std::size_t e = 0; e < one.events.size(); ++e)
+      CHECK(std::abs(one.events[e].t - full.events[e].t) <= 1e-12);
+    // Forces and energies come from the whole's equations at these places; multipliers that are not unique
+    // are known to some 1e-7 of their size where rods are nearly in line.
+    const Diagnostics a = diagnose(one), b = diagnose(full);
+    REQUIRE(a.columns.size() == b.columns.size());
+    for (const std::string name : {"axial_force_max_N", "kinetic_energy_J"}) {
+      INFO(name);
+      const auto &x = a.at(name).values, &y = b.at(name).values;
+      double size = 0, apart = 0;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        size = std::max(size, std::abs(y[i])), apart = std::max(apart, std::abs(x[i] - y[i]));
+      CHECK(apart <= 1e-6 * size);
+    }
+  }
+}
+
+TEST_CASE("a ring is followed as a sector to its deployed pose, and has its forces there") {
+  const Ring ring{"hoop6", {}};
+  const Simulation full = solved(ring, "full", 6), one = solved(ring, "sector", 6);
+  REQUIRE(one.status == RunStatus::deployed);
+  CHECK(std::abs(one.events.back().t - full.events.back().t) <= 1e-12);
+  const std::size_t last = full.trajectory.size() - 1;
+  REQUIRE(one.trajectory.size() == last + 1);
+  // The event is extrapolated from states next to a singular pose in both (deployed_event.hpp).
+  CHECK(node_distance(one.trajectory.positions(last), full.trajectory.positions(last)) <= 2e-11);
+  CHECK(node_distance(one.trajectory.positions(last - 1), full.trajectory.positions(last - 1)) <= 1e-12);
+  const double a = diagnose(one).at("axial_force_max_N").values.back(),
+               b = diagnose(full).at("axial_force_max_N").values.back();
+  CHECK(std::abs(a - b) <= 1e-4 * std::abs(b));
+}
+
+TEST_CASE("what is unlike in a ring keeps the full model, and is named") {
+  const std::string base_spring =
+      R"(forces[3]={name="hinge 3",kind="torsion_spring",nodes=["B3","Mb3","B4"],stiffness=37,damping=)";
+  const std::vector<std::tuple<std::vector<std::string>, std::string>> cases{
+      {{"loads[0]={nodes=[\"Mb2\"],force=[0,0,-0.3]}"}, "the load on Mb2"},
+      {joined(hinge_springs, {base_spring + "5.01,free_angle=137}"}), "hinge 3"},
+      {{"forces[0]={kind=\"drag\",nodes=[\"T3\"],damping=0.01}"}, "T3"},
+      {{"gravity.acceleration=[0.01,0,-3]"}, "gravity"},
+      {{"structure.length_error=1e-4", "structure.rod_model=elastic", "structure.youngs_modulus=7e10"},
+       "turn"},
+      {{"constraints[0]={name=\"held\",kind=\"length\",nodes=[\"Mb1\",\"Mt1\"]}"}, "held"},
+      {{"constraints[0]={name=\"wall\",kind=\"plane\",nodes=[\"Mb4\"],normal=[0.3,0.1,0.9]}"}, "Mb4"},
+      {{"structure.perturbed_unit=3", "structure.perturbed_force=201"}, "the load on Mb3"}};
+  for (const auto& [changes, name] : cases) {
+    INFO(changes.back());
+    const Ring ring{"hoop6", joined(joints, changes)};
+    const Simulation run = solved(ring, "auto", 0.05);
+    CHECK(solved_as(run).name == "full");
+    INFO(solved_as(run).why);
+    CHECK(solved_as(run).why.find("no path: ") != std::string::npos);
+    const std::size_t reason = solved_as(run).why.find("no sector: ");
+    REQUIRE(reason != std::string::npos);
+    CHECK(solved_as(run).why.find(name, reason) != std::string::npos);
+    CHECK_THROWS_AS(solved(ring, "sector", 0.05), SectorRefused);
+  }
+}
+
+TEST_CASE("auto takes the path where there is one, a sector where sectors are alike") {
+  CHECK(solved_as(solved({"hoop6", {}}, "auto", 0.1)).name == "path");
+  const Simulation run = solved({"hoop6", joints}, "auto", 0.1);
+  CHECK(solved_as(run).name == "sector");
+  CHECK(solved_as(run).why.find("one of 5 equal sectors; no path: ") == 0);
+  CHECK(solved_as(solved({"hoop6", {}}, "full", 0.1)).name == "full");
+  CHECK(solved_as(solved({"hoop6_sector", {}}, "sector", 0.1)).why == "structure.model = \"sector\"");
+}
+
+}  // namespace sector_test
