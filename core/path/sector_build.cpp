@@ -135,7 +135,7 @@ class SectorBuilder {
         Force own = joint;
         own.kind = "torsion_spring";
         own.nodes.clear();
-        own.measure = {MeasureKind::angle, {node(at), ends[i], node(at), ends[j]}, Vec3::Zero(), 0};
+        own.measure = {MeasureKind::angle, {node(at), ends[i], node(at), ends[j]}, Vec3::Zero(), 0, {}};
         s().forces.push_back(std::move(own));
       }
   }
