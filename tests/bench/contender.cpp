@@ -78,7 +78,9 @@ void race(const std::vector<Contender*>& contenders, const Track& track, int rep
 
 void add(Report& report, const std::string& group, const Contender& c) {
   char h[40];
-  std::snprintf(h, sizeof h, c.make ? ", h = %.4g s" : ", rtol = %.0e", c.h);
+  const bool own_steps = c.relative_tolerance > 0;
+  std::snprintf(h, sizeof h, c.make && !own_steps ? ", h = %.4g s" : ", rtol = %.0e",
+                own_steps ? c.relative_tolerance : c.h);
   const std::string name = c.name + h;
   if (c.failure.empty())
     report.add({group, name, c.best, "s", "", c.error});

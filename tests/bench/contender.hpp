@@ -31,6 +31,7 @@ struct Contender {
   double error = 0;          // largest distance of a node from where it should be, at the track's times [m]
   std::string failure = {};  // why it did not finish
   double absolute_tolerance = 0;  // of IDA [m], [m/s]
+  double relative_tolerance = 0;  // of what takes steps of its own; 0: it takes steps of h
 };
 
 Contender dvm(int stages, double h);

@@ -9,12 +9,12 @@
 namespace unfurl::bench {
 
 struct Row {
-  std::string group;   // "ring", "scaling", ...
-  std::string what;    // what was run
-  double value = 0;    // the measurement
-  std::string unit;    // "s", "us", "ratio", "kB", ...
-  std::string target;  // "<= 0.125", empty: none
-  double error = 0;    // largest node position error [m]; 0: not measured
+  std::string group;        // "ring", "scaling", ...
+  std::string what;         // what was run
+  double value = 0;         // the measurement
+  std::string unit;         // "s", "us", "ratio", "kB", ...
+  std::string target = {};  // "<= 0.125", empty: none
+  double error = 0;         // largest node position error [m]; 0: not measured
 };
 
 class Report {
