@@ -31,6 +31,7 @@ class Sources final : public ScalarLaw {
 
   const std::vector<PathForces::Source>& list() const { return forces_.sources(); }
   std::vector<double> factors;
+  double sense = 0;                         // in which friction is overcome at rest; 0: it is left out there
   double low = -infinite, high = infinite;  // where it may be asked
 
   // Of source k along the path, at rest or at a speed.
@@ -63,10 +64,21 @@ class Sources final : public ScalarLaw {
       const double e = m.value - cable.rest;
       if (!(e > 0 && cable.stiffness * e + cable.damping * m.slope * v > 0)) return {};
     }
+    if (source.friction >= 0) return friction(here, k, s, v);
     const ValueAndSlope p = here.at(source.position, s), c = here.at(source.damping, s);
     const double f = factors[k], size = f * (source.timed ? source.size(t) : 1.0);
     return {size * p.value - f * c.value * v, size * p.slope - f * c.slope * v, -f * c.value,
             std::abs(size) * here.scale[source.position] + std::abs(f * c.value * v)};
+  }
+
+  // Against the motion; at rest, what holds it.
+  Value friction(const PathTable::Segment& here, std::size_t k, double s, double v) const {
+    const PathForces::Friction& law = forces_.frictions()[static_cast<std::size_t>(list()[k].friction)];
+    const ValueAndSlope p = here.at(list()[k].position, s);
+    const double against = v != 0 ? -std::copysign(1.0, v) : -sense;
+    const double size = factors[k] * against * (v != 0 ? law.kinetic : law.holding);
+    return {size * std::abs(p.value), size * std::copysign(p.slope, p.value * p.slope), 0.0,
+            std::abs(size) * here.scale[list()[k].position]};
   }
 
   PathForces forces_;
@@ -133,6 +145,7 @@ class MarginMaker {
     speed_ = tangent.dot(path_->system().mass() * path_->system().reduce_rate(v));
     const double push = speed_ != 0 ? speed_ : sources_.at(0.0, 0.0, 0.0).Q;
     sense_ = push < 0 ? -1.0 : 1.0;
+    sources_.sense = sense_;
     if (structure_.deployment.empty()) return;
     sense_ = 1.0;
     const Pose here = pose(0.0);
@@ -140,6 +153,7 @@ class MarginMaker {
     const auto zero = deployed_pose(*path_, structure_.deployment, sense_ > 0, far_enough);
     if (!zero) throw PathRefused("the path does not lead to a deployed pose");
     end_ = sense_ * *zero;
+    sources_.sense = sense_;
   }
 
   void reach(double s, double t, double v, double driven, double resisted) {

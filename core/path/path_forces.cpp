@@ -11,8 +11,9 @@
 namespace unfurl {
 namespace {
 
-constexpr std::array known_forces{"load",  "gravity",        "load_over_time", "follower", "spring", "latch",
-                                  "motor", "torsion_spring", "joint_damping",  "drag",     "offload"};
+constexpr std::array known_forces{"load",   "gravity", "load_over_time", "follower",
+                                  "spring", "latch",   "torsion_spring", "motor",
+                                  "drag",   "offload", "joint_damping",  "friction"};
 constexpr std::array known_constraints{"plane",   "line",      "fixed",    "relation",
                                        "measure", "collinear", "coplanar", "rod"};
 constexpr std::array known_measures{MeasureKind::coordinate, MeasureKind::length, MeasureKind::angle,
@@ -89,13 +90,20 @@ PathForces::PathForces(const Structure& structure, const System& system, bool se
     Source source{name, std::string(kind)};
     source.timed = size != nullptr;
     if (size) source.size = *size;
-    const bool own = separately || size || cable;
+    const bool own = separately || size || cable || kind == "friction";
     source.position = own ? columns_++ : 0;
     source.damping = own ? columns_++ : 1;
     if (cable) {
       const Force& f = one.forces.front();
       source.cable = static_cast<int>(cables_.size());
       cables_.push_back({f.name, add_measure(f.measure), f.rest, f.stiffness, f.damping});
+    }
+    if (kind == "friction") {
+      Force& f = one.forces.front();
+      source.friction = static_cast<int>(frictions_.size());
+      frictions_.push_back({f.name, f.kinetic, f.holding});
+      f.slip = 1;  // of a unit; the block gives its force against ds
+      f.kinetic = 1;
     }
     add_term(one, kind, source, system);
     sources_.push_back(std::move(source));
@@ -110,6 +118,7 @@ PathForces::PathForces(const Structure& structure, const System& system, bool se
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
     const Force& force = structure.forces[i];
     if (done[i] || (force.kind == "latch" && force.form.empty())) continue;
+    if (force.kind == "friction" && !(force.holding > 0)) continue;
     one.forces = {force};
     const bool timed = force.size.moves();
     if (timed) {
@@ -118,7 +127,7 @@ PathForces::PathForces(const Structure& structure, const System& system, bool se
       one.forces[0].size = unit;
     } else if (is_cable(force)) {
       one.forces[0].one_sided = false;  // as it is while it pulls
-    } else {
+    } else if (force.kind != "friction") {
       for (std::size_t k = i + 1; k < structure.forces.size(); ++k) {
         const Force& other = structure.forces[k];
         if (other.kind != force.kind || other.size.moves() || is_cable(other) ||

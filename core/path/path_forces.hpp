@@ -3,8 +3,9 @@
 //
 //     Q = size(t) p(s) - c(s) s',     p = F(q, 0) . dq/ds,   c = -(F(q, dq/ds) - F(q, 0)) . dq/ds
 //
-// which holds for loads, springs and dampers, whose forces are linear in the velocities; and the measures
-// that stops, cables and drives go by.
+// which holds for loads, springs, dampers and motors at full voltage, whose forces are linear in the
+// velocities; dry friction by the sense in which it slips; and the measures that stops, cables and drives go
+// by.
 #pragma once
 
 #include <string>
@@ -27,12 +28,17 @@ class PathForces final : public PathFunctions {
     Index position = 0, damping = -1;  // columns of the table; -1: it does not damp
     bool timed = false;                // then the position's column is for size 1
     TimeFunction size = {};
-    int cable = -1;  // index in `cables`
+    int cable = -1;     // index in `cables`
+    int friction = -1;  // index in `frictions`; the position's column is then -ds/dpath of its measure s
   };
   struct Cable {
     std::string name;
     Index measure = 0;  // column of its length
     double rest = 0.0, stiffness = 0.0, damping = 0.0;
+  };
+  struct Friction {
+    std::string name;
+    double kinetic = 0.0, holding = 0.0;
   };
   // separately: a column for every source, for their shares; otherwise those that always act the same way
   // have one in common.
@@ -43,6 +49,7 @@ class PathForces final : public PathFunctions {
 
   const std::vector<Source>& sources() const { return sources_; }
   const std::vector<Cable>& cables() const { return cables_; }
+  const std::vector<Friction>& frictions() const { return frictions_; }
 
   Index size() const override { return columns_; }
   VectorXd first_angles() const override;
@@ -68,6 +75,7 @@ class PathForces final : public PathFunctions {
   Index columns_ = 0, angle_count_ = 0;
   std::vector<Source> sources_;
   std::vector<Cable> cables_;
+  std::vector<Friction> frictions_;
   std::vector<Term> terms_;
   std::vector<Tracked> measures_;
   Index remaining_ = -1;

@@ -9,7 +9,10 @@
 namespace unfurl {
 
 PathLaw::PathLaw(const Path& path, const Structure& structure)
-    : path_(path), forces_(structure, path.system(), false), pulling_(forces_.cables().size(), 0) {}
+    : path_(path),
+      forces_(structure, path.system(), false),
+      pulling_(forces_.cables().size(), 0),
+      slips_(forces_.frictions().size(), 0) {}
 
 void PathLaw::tabulate() {
   table_.emplace(path_, forces_);
@@ -49,8 +52,20 @@ ScalarLaw::Value PathLaw::at(double s, double v, double t) const {
     if (source.timed) add(source.position, source.damping, source.size(t));
     if (source.cable >= 0 && pulling_[static_cast<std::size_t>(source.cable)])
       add(source.position, source.damping, 1.0);
+    if (source.friction < 0) continue;
+    const auto i = static_cast<std::size_t>(source.friction);
+    if (slips_[i] != 0) add(source.position, source.damping, slips_[i] * forces_.frictions()[i].kinetic);
   }
   return out;
+}
+
+double PathLaw::holding(double s) const {
+  double most = 0;
+  for (const PathForces::Source& source : forces_.sources())
+    if (source.friction >= 0)
+      most += forces_.frictions()[static_cast<std::size_t>(source.friction)].holding *
+              std::abs(table_->at(source.position, s).value);
+  return most;
 }
 
 void PathMotion::advance(PathLaw& law, double latest) {

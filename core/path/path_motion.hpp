@@ -21,6 +21,10 @@ class PathLaw final : public ScalarLaw {
   PathTable& table() const { return *table_; }
   void tabulate();  // once every measure has been added
   void set_pulling(std::size_t cable, bool pulls) { pulling_[cable] = pulls; }
+  // The sense in which friction slips, 0: it does not.
+  void set_slip(std::size_t friction, int slip) { slips_[friction] = slip; }
+  // The most that friction can hold, along the path.
+  double holding(double s) const;
   bool timed() const;  // a load changes with time
   // Trial steps from s see no further than the pieces next to that of s, so that none is traced in vain.
   void look_from(double s);
@@ -29,6 +33,7 @@ class PathLaw final : public ScalarLaw {
   const Path& path_;
   PathForces forces_;
   std::vector<char> pulling_;
+  std::vector<int> slips_;
   double low_ = 0, high_ = 0;  // where it may be asked
   mutable std::optional<PathTable> table_;
 };

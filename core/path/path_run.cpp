@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "core/integrators/index1.hpp"
+#include "core/path/path_deployed.hpp"
 #include "core/path/path_motion.hpp"
 #include "core/path/path_scope.hpp"
 #include "core/path/path_watch.hpp"
-#include "core/simulate/deployed_event.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/one_sided.hpp"
@@ -46,7 +46,9 @@ class PathRun {
         watch_(base_->structure, sides_, options.step),
         grid_(0.0, options, time_edges(base_->structure, options.step)),
         run_{.trajectory = Trajectory(base_, options), .options = options},
-        last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {}
+        last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {
+    refuse_friction();
+  }
 
   Simulation run() {
     begin();
@@ -74,6 +76,15 @@ class PathRun {
 
   // --- start ---
 
+  // Modes of friction beside others, or of several, are found by the time loop alone.
+  void refuse_friction() const {
+    if (!sides_.any_friction()) return;
+    if (sides_.size() > 1) throw PathRefused("friction beside stops, cables or other friction");
+    if (driven_row(structure())) throw PathRefused("a drive beside friction");
+    if (options_.at_deployed == "latch" && !structure().deployment.empty())
+      throw PathRefused("friction beside latches");
+  }
+
   void begin() {
     InitialState start = initial_state(structure(), base_->system);
     run_.warnings = structure().notes;
@@ -94,6 +105,7 @@ class PathRun {
     watch_.begin(last(), base_->system);
     if (sides_.empty()) return;
     sides_.find_cables(base_->system, last());
+    if (sides_.any_friction()) choose_slip();
     tell_law();
     if (sides_.any_active()) change_model(sides_.model(*base_), true);
   }
@@ -110,6 +122,8 @@ class PathRun {
   void tell_law() {
     for (std::size_t k = 0; k < law_->forces().cables().size(); ++k)
       law_->set_pulling(k, sides_.active(sides_.stops().size() + k));
+    for (std::size_t k = 0; k < law_->forces().frictions().size(); ++k)
+      law_->set_slip(k, sides_.slip(sides_.first_friction() + k));
   }
 
   // The path's equation and all the structure's must say the same of the start and of a pose on the way from
@@ -276,6 +290,7 @@ class PathRun {
       throw PathRefused("at t = " + seconds(motion_.t()) + ": stops or cables switch without end");
     append_here(true);
     if (sides_.is_stop(i)) return strike(i);
+    if (sides_.is_friction(i)) return slip_or_stick(i);
     sides_.set_active(i, !sides_.active(i));
     tell_law();
     const double taken = change_model(sides_.model(*base_));
@@ -316,12 +331,15 @@ class PathRun {
     append(state_at(motion_.t(), motion_.s(), motion_.v()));
   }
 
-  // Held by a stop, until what pushes against it pulls; or locked, until the end.
+  // Held by a stop, until what pushes against it pulls; by friction, until that gives way; or locked, until
+  // the end.
   void rest() {
     double until = grid_.end();
     const double now = motion_.t();
-    if (held_ && law_->timed()) {
-      const auto pull = [&](double t) { return held_slope_ * law_->at(motion_.s(), 0.0, t).Q; };
+    if ((held_ || stuck_) && law_->timed()) {
+      const auto pull = [&](double t) {
+        return stuck_ ? excess(t) : held_slope_ * law_->at(motion_.s(), 0.0, t).Q;
+      };
       const double h = std::min(options_.step, (until - now) / 8);
       for (double a = now; a < grid_.end();) {
         const double b = std::min(a + h, grid_.end());
@@ -336,13 +354,49 @@ class PathRun {
     }
     append_grid(until < grid_.end() ? before(until) : until);
     motion_.rest(until);
-    if (!held_ || until >= grid_.end()) return;
+    if ((!held_ && !stuck_) || until >= grid_.end()) return;
     append_here(true);
+    if (std::exchange(stuck_, false)) {
+      resting_ = false;
+      return slip_or_stick(sides_.first_friction());
+    }
     sides_.set_active(*held_, false);
     resting_ = false;
     change_model(sides_.model(*base_));
     add_event(sides_.event(*held_, until), 0.0);
     held_.reset();
+  }
+
+  // --- friction ---
+
+  // What pulls where nothing moves, less what friction can hold of it: it slips where that is positive.
+  double excess(double t) const {
+    return std::abs(law_->at(motion_.s(), 0.0, t).Q) - law_->holding(motion_.s());
+  }
+
+  // The mode of the only friction, now: it follows the motion; at rest it sticks, or slips where it is
+  // pulled.
+  void choose_slip() {
+    constexpr double still = 1e-6;  // of the speed that what acts makes in a step
+    const std::size_t i = sides_.first_friction();
+    const double slope = watch_.friction_slope(i, motion_.s()), v = motion_.v();
+    law_->set_slip(0, 0);
+    const double pull = law_->at(motion_.s(), 0.0, motion_.t()).Q, most = law_->holding(motion_.s());
+    if (std::abs(v) > still * options_.step * (std::abs(pull) + most)) {
+      const int slip = sides_.slip(i);  // what it acts on turns while the motion goes on
+      return sides_.set_slip(i, slip != 0 ? -slip : slope * v > 0 ? 1 : -1);
+    }
+    if (std::abs(pull) > most) return sides_.set_slip(i, slope * pull > 0 ? 1 : -1);
+    sides_.stick(i, model().system, last());
+    motion_.set_speed(0);
+    resting_ = stuck_ = true;
+  }
+
+  void slip_or_stick(std::size_t i) {
+    choose_slip();
+    tell_law();
+    change_model(sides_.model(*base_));
+    add_event(sides_.event(i, motion_.t()), 0.0);
   }
 
   // --- the deployed pose ---
@@ -356,7 +410,8 @@ class PathRun {
     while (run_.trajectory.size() > 1 && !watch_.clear(motion_, last().t))
       run_.trajectory.pop_back(), --run_.steps;
     State event = state_at(t, motion_.s(), motion_.v());
-    limit_multipliers(event);
+    const auto state = [this](double at, double s, double v) { return state_at(at, s, v); };
+    limit_multipliers(model().system.at(last()), watch_, motion_, options_.step, state, event);
     if (last().t >= t) run_.trajectory.pop_back();
     append(std::move(event), StepReport{.singular_event = true});
     ++run_.steps;
@@ -383,50 +438,6 @@ class PathRun {
     resting_ = true;
   }
 
-  // The deployed pose may be singular: multipliers are smooth functions of the sine of the fold angle, and
-  // extrapolated to it from poses before it, at the same sines as the time loop does it.
-  void limit_multipliers(State& event) {
-    constexpr double farthest = 3e-2, span = 12, from_start = 0.25;
-    constexpr int count = 9;
-    const double start = std::abs(watch_.remaining(0.0));
-    const double far = std::min(farthest, from_start * start);
-    System followed = model().system.at(last());
-    Index1 index1(followed, true);
-    std::vector<NearDeployed> samples;
-    VectorXd a(event.z.size());
-    for (int i = 0; i < count; ++i) {
-      const double u = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / count);
-      const auto t = time_at_sine(far + u * (far / span - far));
-      if (!t) continue;
-      double s = 0, v = 0;
-      motion_.at(*t, s, v);
-      State state = state_at(*t, s, v);
-      followed.follow(state);
-      if (index1.evaluate(*t, state.z, state.w, a, state.lambda))
-        samples.push_back({watch_.remaining(s), std::move(state)});
-    }
-    if (samples.size() < 3) return;
-    followed.follow(event);
-    event.lambda = multipliers_at_deployed(index1, samples, event);
-  }
-
-  // The last time before now at which the sine of the fold angle was that.
-  std::optional<double> time_at_sine(double wanted) const {
-    const auto sine = [&](double t) {
-      double s = 0, v = 0;
-      motion_.at(t, s, v);
-      return watch_.remaining(s);
-    };
-    double b = motion_.t(), a = b;
-    for (double h = options_.step; sine(a) < wanted; h *= 1.5) {
-      if (a <= 0) return std::nullopt;
-      b = a;
-      a = std::max(0.0, a - h);
-    }
-    for (int it = 0; it < 60; ++it) (sine(0.5 * (a + b)) < wanted ? b : a) = 0.5 * (a + b);
-    return b;
-  }
-
   std::shared_ptr<const Model> base_;  // without what is held or pulls
   const SolverOptions options_;
   const SimulationHooks& hooks_;
@@ -444,7 +455,7 @@ class PathRun {
   double held_slope_ = 0;  // of the gap along the path
   double crowd_time_ = -1;
   long crowd_ = 0;
-  bool resting_ = false, ended_ = false;
+  bool resting_ = false, stuck_ = false, ended_ = false;
 };
 
 }  // namespace

@@ -19,13 +19,19 @@ PathWatch::PathWatch(const Structure& structure, const OneSided& sides, double s
       deploys_(!structure.deployment.empty()),
       step_(step),
       shift_(sides.stops().size(), 0.0),
-      margin_(singular_margin) {}
+      margin_(singular_margin) {
+  for (const Force& force : structure.forces)
+    if (force.kind == "friction" && force.holding > 0) frictions_.push_back(force.measure);
+}
 
 void PathWatch::watch(PathLaw& law) {
   law_ = &law;
   stop_columns_.clear();
   for (std::size_t i = 0; i < sides_.stops().size(); ++i)
     stop_columns_.push_back(law.forces().add_measure(sides_.stops()[i].measure));
+  friction_columns_.clear();
+  for (std::size_t i = sides_.first_friction(); i < sides_.size(); ++i)
+    friction_columns_.push_back(law.forces().add_measure(frictions_[i - sides_.first_friction()]));
   if (deploys_) deployed_column_ = law.forces().add_remaining();
 }
 
@@ -48,7 +54,7 @@ double PathWatch::gap_slope(std::size_t stop, double s) const {
   return sides_.stops()[stop].sign * law_->table().at(stop_columns_[stop], s).slope;
 }
 
-// In units of what counts as touching, as OneSided has them; positive where nothing happens.
+// In units of what counts as zero, as OneSided has them; positive where nothing happens.
 void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out) const {
   double s = 0, v = 0;
   motion.at(t, s, v);
@@ -66,8 +72,11 @@ void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out) const
     const double stretch = cable.damping > 0 ? std::min(e, n / (cable.stiffness + cable.damping / step_)) : e;
     out[static_cast<Index>(stops + k)] = sides_.active(stops + k) ? stretch : -stretch;
   }
-  if (deployed_column_ >= 0 && !deployed_) out[out.size() - 1] = remaining(s);
   out.head(out.size() - 1) /= sides_.stops().touching();
+  for (std::size_t i = sides_.first_friction(); i < sides_.size(); ++i)
+    if (sides_.slip(i) != 0)
+      out[static_cast<Index>(i)] = sides_.slip(i) * friction_slope(i, s) * v / sides_.zero_rate();
+  if (deployed_column_ >= 0 && !deployed_) out[out.size() - 1] = remaining(s);
 }
 
 std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double from, double to) {

@@ -30,6 +30,10 @@ class PathWatch {
   bool clear(const PathMotion& motion, double t) const;
   double remaining(double s) const { return law_->table().at(deployed_column_, s).value; }  // sine
   double gap_slope(std::size_t stop, double s) const;                                       // by s
+  // Of what side i of friction acts on, by s.
+  double friction_slope(std::size_t i, double s) const {
+    return law_->table().at(friction_columns_[i - sides_.first_friction()], s).slope;
+  }
 
  private:
   void margins(const PathMotion& motion, double t, VectorXd& out) const;
@@ -41,6 +45,8 @@ class PathWatch {
   double step_;
   const PathLaw* law_ = nullptr;
   std::vector<Index> stop_columns_;
+  std::vector<Measure> frictions_;
+  std::vector<Index> friction_columns_;
   std::vector<double> shift_;
   Index deployed_column_ = -1;
   double margin_ = 0;

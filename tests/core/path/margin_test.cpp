@@ -142,6 +142,28 @@ TEST_CASE("a jammed hinge stalls the motion where its energy is used up") {
   CHECK(fold == Approx(52 * radians_per_degree).epsilon(1e-10));
 }
 
+TEST_CASE("dry friction resists in every pose, with what it holds at rest and what it takes on the way") {
+  const double most = 1100, kinetic = 700;
+  const Margin margin = margin_in(
+      ring(0, {R"(forces[0]={kind="friction",name="dry",fold_angle=true,kinetic=700,static=1100})"}));
+  REQUIRE(margin.sources.size() == 2);
+  CHECK(margin.sources[1].kind == "friction");
+  for (std::size_t i = 1; i < margin.points.size(); i += 7) {
+    const MarginPoint& p = margin.points[i];
+    CHECK(p.forces[1] == Approx(-most).epsilon(1e-9));  // as above
+    CHECK(p.margin == Approx(12 * f * l * std::cos(p.fold_angle) / most - 1).epsilon(1e-9));
+  }
+  // The drive is weakest folded.
+  CHECK(margin.worst.margin == Approx(12 * f * l * std::cos(start) / most - 1).epsilon(1e-9));
+  CHECK(margin.arrives);
+  CHECK(margin.motion.back().resisted == Approx(kinetic * start).epsilon(1e-8));
+  // What holds more than the drive gives holds for good.
+  const Scene held = ring(0, {R"(forces[0]={kind="friction",fold_angle=true,kinetic=1700,static=1720})"});
+  CHECK(12 * f * l * std::cos(start) < 1720);
+  CHECK(margin_in(held).worst.margin < 0);
+  CHECK_FALSE(margin_in(held).arrives);
+}
+
 TEST_CASE("no margin where there is no path, or a drive does what it is told") {
   const auto refusal = [](const char* name) {
     const Scene scene = read_scene_file(find_scene(name), {});

@@ -2,6 +2,7 @@
 // Motions along a path against the full model's and against the ring's exact one; what the path refuses.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
 
 #include "core/path/path_forces.hpp"
 #include "core/path/path_run.hpp"
@@ -122,6 +123,35 @@ TEST_CASE("forces, dampers, cables and stops act on the path as on the full mode
     if (change.find("offload") != std::string::npos) changes.emplace_back("gravity.acceleration=[0,0,-2]");
     check_same(both(scene_with("four_bar", changes), 3.0), 1e-11);
   }
+}
+
+TEST_CASE("friction slips, reverses, sticks and gives way on the path as in the full model") {
+  const std::string
+      weak = R"(forces[0]={kind="friction",rods=["crank","coupler"],axis=[0,1,0],kinetic=0.4,static=0.7})",
+      strong = R"(forces[0]={kind="friction",rods=["crank","coupler"],axis=[0,1,0],kinetic=14,static=19})";
+  const std::vector<std::vector<std::string>> cases{
+      {weak},
+      {weak, "gravity.acceleration=[0.4,0,-3]"},
+      {strong},
+      {strong, "gravity.acceleration=[0.4,0,-3]"},
+      // It comes to rest and is pulled loose again.
+      {strong,
+       R"(forces[1]={kind="load_over_time",nodes=["B"],force=[60,0,150],times=[0,1.9,2.6,4],values=[0,0,1,0.2]})"},
+      // Begins at rest, held.
+      {strong, "structure.nodes[1].velocity=[0,0,0]", "structure.nodes[2].velocity=[0,0,0]",
+       R"(forces[1]={kind="load_over_time",nodes=["B"],force=[90,0,10],times=[0,1,4],values=[0,1,0.3]})"},
+      // A length that grows and shrinks while the linkage turns on.
+      {R"(forces[0]={kind="friction",nodes=["B","D"],kinetic=0.8})"}};
+  std::set<std::string> kinds;
+  for (const auto& changes : cases) {
+    INFO(changes.front() << " " << changes.back());
+    const Both run = both(scene_with("four_bar", changes), 4.0);
+    check_same(run, 1e-10);
+    for (const Event& event : run.path.events) kinds.insert(event.kind);
+  }
+  CHECK(kinds == std::set<std::string>{"reversal", "slip", "stick"});
+  CHECK(refusal(scene_with("four_bar", {weak, R"(forces[1]={kind="friction",nodes=["B","D"],kinetic=1})"}))
+            .find("friction beside") != std::string::npos);
 }
 
 TEST_CASE("behind the deployed pose the path goes on as the full model does") {
