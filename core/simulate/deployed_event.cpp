@@ -20,8 +20,8 @@ constexpr double farthest = 3e-2, span = 12, even = 0.1, smallest_farthest = 1e-
 constexpr int points = 9;
 // What the structure carries may move on a shorter scale than it unfolds: nets that strike, rods that swing.
 // Where the rates that all samples give and those of one degree less differ by more than this share of the
-// fastest, the samples lie too far apart, and are taken nearer by.
-constexpr double smooth_enough = 1e-5;
+// fastest, the samples lie too far apart, and are taken nearer by. (Rings stay below it at their own error.)
+constexpr double smooth_enough = 1e-4;
 // Before that, in rings of many units, theta theta' is nearly constant and a step of the run may be too long
 // for the last of its way. A step is short enough where the trapezoidal rule of its end rates gives its
 // change of the sine to this share: (r - 1)^2 / 4 r for rates of the ratio r, 1.1 here, which leaves 1e-9 s

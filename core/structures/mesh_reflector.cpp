@@ -229,7 +229,7 @@ const std::vector<ParamSpec>& mesh_reflector_params() {
   static const std::vector<ParamSpec> params{
       choice_param("hoop", "cable_ring", {"cable_ring", "hoop"},
                    "the rim: bays deployed by a running cable, or re-entrant units driven at their hinges"),
-      integer_param("units", 12, 4, 10000, "number of bays around the rim"),
+      integer_param("units", 6, 4, 10000, "number of bays around the rim"),
       positive_param("longeron_length", "m", 1.6, "chord of a bay of the deployed rim"),
       positive_param("post_length", "m", 1.4, "height of the rim"),
       positive_param("density", "kg/m^3", 1600.0, "density of the rods"),
@@ -248,7 +248,7 @@ const std::vector<ParamSpec>& mesh_reflector_params() {
                            "-f along z on each bottom hinge, +f on each top hinge")),
       positive_param("focal_length", "m", 6.0, "of the paraboloid that the front net is to take"),
       boolean_param("nets", true, "front and rear net with their ties"),
-      integer_param("net_rings", 4, 1, 200, "rings of triangles from the centre of a net to its edge"),
+      integer_param("net_rings", 2, 1, 200, "rings of triangles from the centre of a net to its edge"),
       positive_param("force_density", "N/m", 0.5, "force of the nets' members per length, when deployed"),
       positive_param("edge_density", "", 10.0, "times as much in the members of the edge"),
       positive_param("net_stiffness", "N", 2e3, "E A of a member of a net or a tie"),
