@@ -156,8 +156,16 @@ void export_run(const Run& run, const std::string& format, const std::string& di
   const Scene& scene = run.scene();
   const std::string text = scene_text(scene);
   const ExportedLooks looks = exported_looks(scene, run.simulation().trajectory);
-  found->write({run.simulation(), run.diagnostics(), directory, scene.name,
-                scene.render.speed / scene.render.fps, scene.render.speed, scene.title, text, {}, &looks});
+  found->write({run.simulation(),
+                run.diagnostics(),
+                directory,
+                scene.name,
+                scene.render.speed / scene.render.fps,
+                scene.render.speed,
+                scene.title,
+                text,
+                {},
+                &looks});
 }
 
 void write_figure_of(const Run& run, const std::string& name, const std::string& file,

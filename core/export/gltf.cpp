@@ -275,7 +275,7 @@ class GltfWriter {
     }
   }
 
-  // From its node, as long as the force is large: the largest an eighth of the motion's size. A node that
+  // From its node, as long as the force is large: the largest a thirteenth of the motion's size. A node that
   // moves with the joint, turned to the force; in it a shaft and a head of 6.5 and 2.4 shaft radii.
   void add_arrow(const LoadCopy& load) {
     if (load.force.isZero() || !(largest_force_ > 0)) return;
@@ -284,7 +284,7 @@ class GltfWriter {
       const Vec3 p = point(pose, load.node);
       append(motion.translation, {p[0], p[1], p[2]});
     }
-    const double longest = motion_size() / 8, thick = longest / 30;
+    const double longest = motion_size() / 13, thick = longest / 25;
     const double length = longest * load.force.norm() / largest_force_,
                  head = std::min(6.5 * thick, 0.6 * length);
     const auto turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), load.force);
@@ -350,23 +350,31 @@ class GltfWriter {
   void add_camera() {
     const VectorXd& pose = poses_.back();
     if (pose.size() == 0) return;
+    const int count = static_cast<int>(structure_.node_copies.size());
     Vec3 low = point(pose, 0), high = low;
-    for (int n = 0; n < static_cast<int>(structure_.node_copies.size()); ++n)
-      low = low.cwiseMin(point(pose, n)), high = high.cwiseMax(point(pose, n));
-    const Vec3 middle = 0.5 * (low + high);
-    const double size = std::max(0.5 * (high - low).norm(), 1e-3);
+    for (int n = 0; n < count; ++n) low = low.cwiseMin(point(pose, n)), high = high.cwiseMax(point(pose, n));
     constexpr double azimuth = -62 * radians_per_degree, elevation = 24 * radians_per_degree,
-                     field = 28 * radians_per_degree;
+                     field = 28 * radians_per_degree, aspect = 16.0 / 9.0, filled = 0.85;
     const Vec3 back(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
                     std::sin(elevation));
-    const double distance = size / std::sin(0.5 * field);
-    const Vec3 eye = middle + distance * back, right = Vec3::UnitZ().cross(back).normalized();
+    const Vec3 middle = 0.5 * (low + high), right = Vec3::UnitZ().cross(back).normalized();
     Mat3 axes;
     axes << right, back.cross(right), back;  // it looks along its -z
+    // A point at (x, y, z) in these axes is seen where |y| and |x| / aspect <= (distance - z) tan(field / 2).
+    double distance = 8 * point_radius();  // of one point
+    for (int n = 0; n < count; ++n) {
+      const Vec3 at = axes.transpose() * (point(pose, n) - middle);
+      const double across = std::max(std::abs(at.y()), std::abs(at.x()) / aspect);
+      distance = std::max(distance, at.z() + across / (filled * std::tan(0.5 * field)));
+    }
+    const Vec3 eye = middle + distance * back;
     const Eigen::Quaterniond turn(axes);
-    glb_.json["cameras"] = Json::array(
-        {{{"type", "perspective"},
-          {"perspective", {{"yfov", field}, {"znear", 0.01 * distance}, {"zfar", 10 * distance}}}}});
+    glb_.json["cameras"] = Json::array({{{"type", "perspective"},
+                                         {"perspective",
+                                          {{"yfov", field},
+                                           {"aspectRatio", aspect},
+                                           {"znear", 0.01 * distance},
+                                           {"zfar", 10 * distance}}}}});
     glb_.json["nodes"][0]["children"].push_back(glb_.json["nodes"].size());
     glb_.json["nodes"].push_back({{"name", "camera"},
                                   {"camera", 0},

@@ -142,6 +142,26 @@ TEST_CASE("glTF: a surface is where its nodes are at every key") {
   }
 }
 
+TEST_CASE("glTF: the camera sees the last pose whole, and it fills the picture") {
+  const Shown shown;
+  const testing::Glb glb = shown.glb();
+  const auto& node = glb.json["nodes"].back();
+  const auto& lens = glb.json["cameras"][0]["perspective"];
+  const auto place = node["translation"].get<std::vector<double>>(),
+             q = node["rotation"].get<std::vector<double>>();
+  const Eigen::Quaterniond turn(q[3], q[0], q[1], q[2]);
+  const double high = std::tan(0.5 * lens["yfov"].get<double>()),
+               wide = high * lens["aspectRatio"].get<double>();
+  const VectorXd last = shown.run.trajectory.positions_at(0.14);
+  double most = 0;
+  for (int n = 0; n < static_cast<int>(shown.structure.node_copies.size()); ++n) {
+    const Vec3 at = turn.conjugate() * (point(last, n) - Vec3(place[0], place[1], place[2]));
+    REQUIRE(at.z() < -lens["znear"].get<double>());  // it looks along its -z
+    most = std::max({most, std::abs(at.x() / at.z()) / wide, std::abs(at.y() / at.z()) / high});
+  }
+  CHECK(most == Approx(0.85).epsilon(1e-6));
+}
+
 TEST_CASE("an exported cone has its normals across its side") {
   const ShapeMesh cone = unit_cone(16);
   for (std::size_t i = 0; i < 2 * 16; i += 2) {  // base and tip of each side
