@@ -32,6 +32,7 @@
 #include "render/gl/graphics_error.hpp"
 #include "render/image/png.hpp"
 #include "render/plot/figures.hpp"
+#include "render/scene/exported_looks.hpp"
 #include "render/scene/film_style.hpp"
 #include "render/scene/renderer.hpp"
 #include "render/ui/write_figure.hpp"
@@ -156,8 +157,17 @@ void export_run(const Run& run, const std::string& format, const std::string& di
   std::filesystem::create_directories(directory);
   const Scene& scene = run.scene();
   const std::string text = scene_text(scene);
-  found->write({run.simulation(), run.diagnostics(), directory, scene.name,
-                scene.render.speed / scene.render.fps, scene.render.speed, scene.title, text});
+  const ExportedLooks looks = exported_looks(scene, run.simulation().trajectory);
+  found->write({run.simulation(),
+                run.diagnostics(),
+                directory,
+                scene.name,
+                scene.render.speed / scene.render.fps,
+                scene.render.speed,
+                scene.title,
+                text,
+                {},
+                &looks});
 }
 
 void write_figure_of(const Run& run, const std::string& name, const std::string& file,

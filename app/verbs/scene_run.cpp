@@ -27,6 +27,7 @@
 #include "core/simulate/singular_poses.hpp"
 #include "core/study/tolerance.hpp"
 #include "core/text/nearest_name.hpp"
+#include "render/scene/exported_looks.hpp"
 
 namespace unfurl {
 
@@ -102,9 +103,10 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
   const std::string command =
       as_typed(command_of_result(arguments.words, arguments.names.front(), scene.name));
   const double interval = scene.render.speed / scene.render.fps;
+  const ExportedLooks looks = exported_looks(scene, run.trajectory);
   for (const ExportFormat* format : formats)
-    format->write(
-        {run, diagnostics, directory, scene.name, interval, scene.render.speed, scene.title, text, command});
+    format->write({run, diagnostics, directory, scene.name, interval, scene.render.speed, scene.title, text,
+                   command, &looks});
 }
 
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
@@ -179,12 +180,31 @@ double largest_in_motion(const Simulation& run, const std::vector<double>& at_st
   return best;
 }
 
+namespace {
+
+thread_local RememberedExtremes* remembered = nullptr;
+
+}  // namespace
+
+RememberedExtremes::RememberedExtremes() : before_(std::exchange(remembered, this)) {}
+RememberedExtremes::~RememberedExtremes() {
+  remembered = before_;
+}
+
+double extreme_of(const Simulation& run, const Diagnostics& d, std::string_view column, bool largest) {
+  const double sign = largest ? 1.0 : -1.0;
+  if (!remembered) return extreme_of_column(run, d, column, sign);
+  const auto [found, made] = remembered->found_.try_emplace({&d, std::string(column), largest}, 0.0);
+  if (made) found->second = extreme_of_column(run, d, column, sign);
+  return found->second;
+}
+
 double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {
-  return extreme_of_column(run, diagnostics, column, 1.0);
+  return extreme_of(run, diagnostics, column, true);
 }
 
 double smallest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {
-  return extreme_of_column(run, diagnostics, column, -1.0);
+  return extreme_of(run, diagnostics, column, false);
 }
 
 }  // namespace unfurl

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
@@ -25,5 +28,21 @@ double largest_in_motion(const Simulation& run, const std::vector<double>& at_st
 // steps (energies that went in or out, errors, counts) are taken at the states.
 double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
 double smallest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
+
+// While one of these lives, largest and smallest values that this thread has found are not looked for again:
+// several measures of a run, which stays as it is meanwhile, begin with the same ones.
+class RememberedExtremes {
+ public:
+  RememberedExtremes();
+  ~RememberedExtremes();
+  RememberedExtremes(const RememberedExtremes&) = delete;
+  RememberedExtremes& operator=(const RememberedExtremes&) = delete;
+
+ private:
+  RememberedExtremes* before_;
+  std::map<std::tuple<const Diagnostics*, std::string, bool>, double> found_;
+  friend double extreme_of(const Simulation& run, const Diagnostics& d, std::string_view column,
+                           bool largest);
+};
 
 }  // namespace unfurl

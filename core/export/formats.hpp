@@ -2,13 +2,39 @@
 // Formats that a run can be exported to, beside the files that every run writes: `--export NAME`.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
 
 namespace unfurl {
+
+// Of a group of rods in pictures: linear colour, red negative where the group keeps its own; 0..1.
+struct ExportedMaterial {
+  std::string group;
+  double red = -1, green = 0, blue = 0, metal = 0.35, roughness = 0.32;
+};
+
+// What is spanned between nodes at a moment; seen from both sides.
+struct ExportedSurface {
+  std::string name;
+  std::vector<float> positions, normals;  // three a vertex [m]
+  std::vector<std::uint32_t> triangles;
+  double red = 0, green = 0, blue = 0, opacity = 1, metal = 0, roughness = 0.5;  // linear colour
+};
+
+// What pictures show and a run does not know.
+struct ExportedLooks {
+  bool loads = true;  // arrows
+  std::vector<ExportedMaterial> materials;
+  // At a pose, the places of all copied nodes: as many surfaces with as many vertices at each.
+  std::function<std::vector<ExportedSurface>(const VectorXd& pose)> surfaces;
+};
 
 // What a writer is given.
 struct ExportJob {
@@ -19,6 +45,7 @@ struct ExportJob {
   double frame_interval = 1.0 / 30;  // between key frames of animations, in seconds of motion
   double speed = 1.0;                // seconds of motion per second of animation
   std::string_view title = {}, scene = {}, command = {};  // what made the run, for pages that say it
+  const ExportedLooks* looks = nullptr;                   // null: rods have their groups' colours
 };
 
 struct ExportFormat {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Binary glTF 2.0 (.glb): every rod an instance of one cylinder per group with a fitting at each end, every
-// joint of one sphere, moved by translation and rotation keys; at rest in the last pose, which a camera sees.
-// glTF's y axis points up: one parent node turns the structure's z axis to
-// it.
+// joint of one sphere, every load of one arrow, moved by translation and rotation keys; surfaces of the scene
+// morph from pose to pose. At rest in the last pose, which a camera sees. glTF's y axis points up: one parent
+// node turns the structure's z axis to it.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
@@ -19,7 +19,8 @@ namespace unfurl {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int float_type = 5126, ushort_type = 5123, vertex_target = 34962, index_target = 34963;
+constexpr int float_type = 5126, ushort_type = 5123, uint_type = 5125, vertex_target = 34962,
+              index_target = 34963;
 
 // The document and its one buffer.
 class Glb {
@@ -98,11 +99,14 @@ class GltfWriter {
   }
 
   std::string file() {
+    if (job_.looks && job_.looks->surfaces) find_surfaces();
     add_root();
     add_meshes();
     for (const RodCopy& rod : structure_.rod_copies) add_rod(rod);
     for (std::size_t n = 0; n < structure_.node_copies.size(); ++n) add_joint(n);
     for (std::size_t r = 0; r < structure_.rod_copies.size(); ++r) add_fittings(r);
+    for (const LoadCopy& load : structure_.load_copies) add_arrow(load);
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) add_surface(i);
     add_camera();
     if (times_.size() > 1) animate();
     return glb_.file();
@@ -123,10 +127,28 @@ class GltfWriter {
     for (const Rod& rod : structure_.rods) {
       if (group_index(rod.group) < groups_.size()) continue;
       groups_.push_back(rod.group);
-      add_mesh(rod.group, rod_shape, color(groups_.size() - 1));
+      const ExportedMaterial m = material(rod.group);
+      const bool own = m.red < 0;
+      add_mesh(rod.group, rod_shape,
+               own ? color(groups_.size() - 1) : std::vector<double>{m.red, m.green, m.blue, 1}, m.metal,
+               m.roughness);
     }
     add_mesh("fitting", rod_shape, {0.34, 0.37, 0.41, 1.0}, 0.85, 0.3);
     add_mesh("joint", joint_shape, {0.075, 0.09, 0.112, 1.0}, 0.85, 0.3);
+    for (const LoadCopy& load : structure_.load_copies)
+      if (!job_.looks || job_.looks->loads) largest_force_ = std::max(largest_force_, load.force.norm());
+    if (!(largest_force_ > 0)) return;
+    // Red as in pictures. A shaft and a head in a mesh each: their shares of an arrow vary.
+    arrow_mesh_ = glb_.json["meshes"].size();
+    add_mesh("load", rod_shape, {0.579, 0.004, 0.036, 1}, 0.0, 0.45);
+    add_mesh("load's head", primitive(unit_cone(16)), {0.579, 0.004, 0.036, 1}, 0.0, 0.45);
+  }
+
+  ExportedMaterial material(const std::string& group) const {
+    if (job_.looks)
+      for (const ExportedMaterial& m : job_.looks->materials)
+        if (m.group == group) return m;
+    return {};
   }
 
   Json primitive(const ShapeMesh& mesh) {
@@ -173,14 +195,18 @@ class GltfWriter {
       std::nth_element(known.begin(), middle, known.end());
       return *middle;
     }
+    const double size = motion_size();
+    return size > 0.0 ? 0.01 * size : 0.01;
+  }
+
+  double motion_size() const {
     Vec3 low = point(poses_.front(), 0), high = low;
     for (const VectorXd& pose : poses_)
       for (int n = 0; n < static_cast<int>(structure_.node_copies.size()); ++n) {
         low = low.cwiseMin(point(pose, n));
         high = high.cwiseMax(point(pose, n));
       }
-    const double size = (high - low).norm();
-    return size > 0.0 ? 0.01 * size : 0.01;
+    return (high - low).norm();
   }
 
   static Vec3 point(const VectorXd& pose, int node) { return pose.segment<3>(3 * node); }
@@ -249,27 +275,106 @@ class GltfWriter {
     }
   }
 
+  // From its node, as long as the force is large: the largest a thirteenth of the motion's size. A node that
+  // moves with the joint, turned to the force; in it a shaft and a head of 6.5 and 2.4 shaft radii.
+  void add_arrow(const LoadCopy& load) {
+    if (load.force.isZero() || !(largest_force_ > 0)) return;
+    Motion motion{glb_.json["nodes"].size(), {}, {}, {}};
+    for (const VectorXd& pose : poses_) {
+      const Vec3 p = point(pose, load.node);
+      append(motion.translation, {p[0], p[1], p[2]});
+    }
+    const double longest = motion_size() / 13, thick = longest / 25;
+    const double length = longest * load.force.norm() / largest_force_,
+                 head = std::min(6.5 * thick, 0.6 * length);
+    const auto turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), load.force);
+    const std::string name = "load at " + structure_.node_copies[static_cast<std::size_t>(load.node)].name;
+    glb_.json["nodes"][0]["children"].push_back(motion.node);
+    glb_.json["nodes"].push_back({{"name", name},
+                                  {"translation", last(motion.translation, 3)},
+                                  {"rotation", floats({turn.x(), turn.y(), turn.z(), turn.w()})},
+                                  {"children", {motion.node + 1, motion.node + 2}}});
+    glb_.json["nodes"].push_back({{"name", name + ", shaft"},
+                                  {"mesh", arrow_mesh_},
+                                  {"translation", {0.0, 0.5 * (length - head), 0.0}},
+                                  {"scale", {thick, length - head, thick}}});
+    glb_.json["nodes"].push_back({{"name", name + ", head"},
+                                  {"mesh", arrow_mesh_ + 1},
+                                  {"translation", {0.0, length - 0.5 * head, 0.0}},
+                                  {"scale", {2.4 * thick, head, 2.4 * thick}}});
+    motions_.push_back(std::move(motion));
+  }
+
+  // At the poses that surfaces have keys at, the last of all among them.
+  void find_surfaces() {
+    constexpr std::size_t most_keys = 25;
+    const std::size_t ends = times_.size() - 1, keys = std::min(most_keys, times_.size());
+    for (std::size_t k = 0; k < keys; ++k) {
+      const std::size_t at = keys > 1 ? ends * k / (keys - 1) : ends;
+      surface_times_.push_back(times_[at]);
+      const std::vector<ExportedSurface> shown = job_.looks->surfaces(poses_[at]);
+      surfaces_.resize(shown.size());
+      for (std::size_t i = 0; i < shown.size(); ++i) surfaces_[i].push_back(shown[i]);
+    }
+  }
+
+  // As it is in the last pose; every other key is a morph target, the way from there.
+  void add_surface(std::size_t i) {
+    const std::vector<ExportedSurface>& keys = surfaces_[i];
+    const ExportedSurface& rest = keys.back();
+    if (rest.triangles.empty()) return;
+    const auto vectors = [&](const std::vector<float>& values, bool bounds) {
+      return glb_.add(values, 3, float_type, vertex_target, bounds);
+    };
+    Json shape = {{"attributes",
+                   {{"POSITION", vectors(rest.positions, true)}, {"NORMAL", vectors(rest.normals, false)}}},
+                  {"indices", glb_.add(rest.triangles, 1, uint_type, index_target, false)}};
+    const auto way = [](std::vector<float> to, const std::vector<float>& from) {
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] -= from[k];
+      return to;
+    };
+    for (std::size_t k = 0; k + 1 < keys.size(); ++k)
+      shape["targets"].push_back({{"POSITION", vectors(way(keys[k].positions, rest.positions), true)},
+                                  {"NORMAL", vectors(way(keys[k].normals, rest.normals), false)}});
+    const std::size_t mesh = glb_.json["meshes"].size();
+    add_mesh(rest.name, shape, {rest.red, rest.green, rest.blue, rest.opacity}, rest.metal, rest.roughness);
+    Json& coat = glb_.json["materials"].back();
+    coat["doubleSided"] = true;
+    if (rest.opacity < 1) coat["alphaMode"] = "BLEND";
+    morphs_.push_back(glb_.json["nodes"].size());
+    if (keys.size() > 1) glb_.json["meshes"][mesh]["weights"] = std::vector<double>(keys.size() - 1, 0.0);
+    add_node(rest.name, mesh, Json::object());
+  }
+
   // As the pictures look by default, from where the last pose fills the view.
   void add_camera() {
     const VectorXd& pose = poses_.back();
     if (pose.size() == 0) return;
+    const int count = static_cast<int>(structure_.node_copies.size());
     Vec3 low = point(pose, 0), high = low;
-    for (int n = 0; n < static_cast<int>(structure_.node_copies.size()); ++n)
-      low = low.cwiseMin(point(pose, n)), high = high.cwiseMax(point(pose, n));
-    const Vec3 middle = 0.5 * (low + high);
-    const double size = std::max(0.5 * (high - low).norm(), 1e-3);
+    for (int n = 0; n < count; ++n) low = low.cwiseMin(point(pose, n)), high = high.cwiseMax(point(pose, n));
     constexpr double azimuth = -62 * radians_per_degree, elevation = 24 * radians_per_degree,
-                     field = 28 * radians_per_degree;
+                     field = 28 * radians_per_degree, aspect = 16.0 / 9.0, filled = 0.85;
     const Vec3 back(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
                     std::sin(elevation));
-    const double distance = size / std::sin(0.5 * field);
-    const Vec3 eye = middle + distance * back, right = Vec3::UnitZ().cross(back).normalized();
+    const Vec3 middle = 0.5 * (low + high), right = Vec3::UnitZ().cross(back).normalized();
     Mat3 axes;
     axes << right, back.cross(right), back;  // it looks along its -z
+    // A point at (x, y, z) in these axes is seen where |y| and |x| / aspect <= (distance - z) tan(field / 2).
+    double distance = 8 * point_radius();  // of one point
+    for (int n = 0; n < count; ++n) {
+      const Vec3 at = axes.transpose() * (point(pose, n) - middle);
+      const double across = std::max(std::abs(at.y()), std::abs(at.x()) / aspect);
+      distance = std::max(distance, at.z() + across / (filled * std::tan(0.5 * field)));
+    }
+    const Vec3 eye = middle + distance * back;
     const Eigen::Quaterniond turn(axes);
-    glb_.json["cameras"] = Json::array(
-        {{{"type", "perspective"},
-          {"perspective", {{"yfov", field}, {"znear", 0.01 * distance}, {"zfar", 10 * distance}}}}});
+    glb_.json["cameras"] = Json::array({{{"type", "perspective"},
+                                         {"perspective",
+                                          {{"yfov", field},
+                                           {"aspectRatio", aspect},
+                                           {"znear", 0.01 * distance},
+                                           {"zfar", 10 * distance}}}}});
     glb_.json["nodes"][0]["children"].push_back(glb_.json["nodes"].size());
     glb_.json["nodes"].push_back({{"name", "camera"},
                                   {"camera", 0},
@@ -294,6 +399,21 @@ class GltfWriter {
       channel(motion.node, "translation", motion.translation, 3);
       channel(motion.node, "rotation", motion.rotation, 4);
       channel(motion.node, "scale", motion.scale, 3);
+    }
+    if (!morphs_.empty() && surface_times_.size() > 1) {
+      // One target at a time, the next one coming as it goes; the last pose is none.
+      const std::size_t keys = surface_times_.size();
+      std::vector<float> when, weights(keys * (keys - 1), 0.0f);
+      for (const double t : surface_times_)
+        when.push_back(static_cast<float>((t - times_.front()) / job_.speed));
+      for (std::size_t k = 0; k + 1 < keys; ++k) weights[k * (keys - 1) + k] = 1;
+      const std::size_t at = glb_.add(when, 1, float_type, 0, true),
+                        values = glb_.add(weights, 1, float_type, 0, false);
+      for (const std::size_t node : morphs_) {
+        animation["channels"].push_back(
+            {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", "weights"}}}});
+        animation["samplers"].push_back({{"input", at}, {"output", values}, {"interpolation", "LINEAR"}});
+      }
     }
     glb_.json["animations"] = Json::array({std::move(animation)});
   }
@@ -320,6 +440,11 @@ class GltfWriter {
   std::vector<std::string> groups_;
   std::vector<double> joint_radius_;
   std::vector<Motion> motions_;
+  double largest_force_ = 0;    // [N]
+  std::size_t arrow_mesh_ = 0;  // the shaft's; the next one is the head's
+  std::vector<double> surface_times_;
+  std::vector<std::vector<ExportedSurface>> surfaces_;  // each at those times
+  std::vector<std::size_t> morphs_;                     // their nodes
 };
 
 }  // namespace

@@ -122,6 +122,7 @@ Json strength_json(const Structure& structure, const Diagnostics& diagnostics) {
 
 std::string summary_json(const std::string& scene_name, const Simulation& run, const Diagnostics& diagnostics,
                          const Mobility& mobility, const RunRecord& record) {
+  const RememberedExtremes once;
   const Model& model = run.trajectory.model();
   Json summary = {{"unfurl", version()}, {"scene", scene_name}, {"status", to_string(run.status)}};
   if (!record.command.empty()) summary["command"] = record.command;

@@ -60,6 +60,20 @@ ShapeMesh unit_cylinder(int sides) {
   return mesh;
 }
 
+ShapeMesh unit_cone(int sides) {
+  ShapeMesh mesh;
+  for (int i = 0; i < sides; ++i) {  // the tip once for each side, with the normal of its middle
+    const Vec3 out = on_circle(i, sides), middle = (out + on_circle(i + 1, sides)).normalized();
+    add_vertex(mesh, out - Vec3(0, 0.5, 0), (out + Vec3::UnitY()).normalized());
+    add_vertex(mesh, Vec3(0, 0.5, 0), (middle + Vec3::UnitY()).normalized());
+  }
+  for (int i = 0; i < sides; ++i)
+    for (const int v : {2 * i, 2 * i + 1, 2 * ((i + 1) % sides)})
+      mesh.triangles.push_back(static_cast<std::uint16_t>(v));
+  add_cap(mesh, sides, -1);
+  return mesh;
+}
+
 ShapeMesh unit_sphere(int sides) {
   ShapeMesh mesh;
   const int bands = sides / 2;

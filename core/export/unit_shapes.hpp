@@ -14,6 +14,7 @@ struct ShapeMesh {
 };
 
 ShapeMesh unit_cylinder(int sides);  // radius 1, along y from -1/2 to 1/2, with caps
+ShapeMesh unit_cone(int sides);      // radius 1 at y = -1/2, its tip at 1/2, with a cap
 ShapeMesh unit_sphere(int sides);    // radius 1; `sides` meridians, sides / 2 bands
 
 }  // namespace unfurl

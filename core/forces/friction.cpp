@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/forces/pin_loads.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/structure_error.hpp"
 
@@ -12,38 +13,41 @@ namespace {
 
 class DryFriction final : public ForceBlock {
  public:
-  explicit DryFriction(const Structure& structure) {
+  DryFriction(const Structure& structure, const SparseRows& node_mass) {
     const std::vector<int> followed = followed_angles(structure).of_force;
     for (std::size_t i = 0; i < structure.forces.size(); ++i) {
       const Force& f = structure.forces[i];
       if (f.kind != "friction") continue;
       any_ = true;
-      if (f.slip != 0)
-        slipping_.push_back(
-            {MeasureFunction(f.measure, structure.deployment), f.slip * f.kinetic, followed[i]});
+      if (f.slip == 0) continue;
+      slipping_.push_back({MeasureFunction(f.measure, structure.deployment), f.slip * f.kinetic, followed[i],
+                           f.slip * PinLoads::arm(f), i});
+      if (PinLoads::arm(f) > 0 && !loads_) loads_ = std::make_unique<PinLoads>(structure, node_mass);
     }
   }
   bool any() const { return any_; }
   bool constant() const override { return false; }
   bool has_power() const override { return true; }
   bool dissipative() const override { return true; }
-  bool takes_by_pose() const override { return true; }
+  bool takes_by_pose() const override { return !loads_; }
 
-  void add(const Moment& at, const double* q, const double*, double scale, double* f) const override {
+  void add(const Moment& at, const double* q, const double* v, double scale, double* f) const override {
+    const std::vector<double> loads = loads_at(at, q, v);
     VectorXd g;
     for (const Slipping& s : slipping_) {
       gradient(s, at, q, g);
       const auto& stencil = s.measure.stencil();
       for (std::size_t i = 0; i < stencil.size(); ++i)
-        f[stencil[i]] -= scale * s.force * g[static_cast<Index>(i)];
+        f[stencil[i]] -= scale * force(s, loads) * g[static_cast<Index>(i)];
     }
   }
   double power(const Moment& at, const double* q, const double* v) const override {
+    const std::vector<double> loads = loads_at(at, q, v);
     VectorXd g;
     double sum = 0;
     for (const Slipping& s : slipping_) {
       gradient(s, at, q, g);
-      sum -= s.force * s.measure.rate(g.data(), v);
+      sum -= force(s, loads) * s.measure.rate(g.data(), v);
     }
     return sum;
   }
@@ -52,8 +56,10 @@ class DryFriction final : public ForceBlock {
     for (const Slipping& s : slipping_) sum += s.force * s.measure.value(q, near(s, at));
     return sum;
   }
-  void derivatives(const Moment&, const double* q, const double*, ForceDerivative& by_q,
+  // Without that of the pins' loads, which is mu r over the size of the rods as much.
+  void derivatives(const Moment& at, const double* q, const double* v, ForceDerivative& by_q,
                    ForceDerivative&) const override {
+    const std::vector<double> loads = loads_at(at, q, v);
     for (const Slipping& s : slipping_) {
       const auto& stencil = s.measure.stencil();
       const auto size = static_cast<Index>(stencil.size());
@@ -63,7 +69,7 @@ class DryFriction final : public ForceBlock {
         for (Index i = 0; i < size; ++i)
           if (hess(i, j) != 0.0)
             by_q.emplace_back(stencil[static_cast<std::size_t>(i)], stencil[static_cast<std::size_t>(j)],
-                              -s.force * hess(i, j));
+                              -force(s, loads) * hess(i, j));
     }
   }
 
@@ -72,7 +78,15 @@ class DryFriction final : public ForceBlock {
     MeasureFunction measure;
     double force;  // slip tau_k [N] or [N m]
     int followed;  // index among the angles that count turns; -1: not one of them
+    double arm;    // slip mu r [m]
+    std::size_t index;
   };
+  std::vector<double> loads_at(const Moment& at, const double* q, const double* v) const {
+    return loads_ ? loads_->evaluate(at, q, v) : std::vector<double>();
+  }
+  static double force(const Slipping& s, const std::vector<double>& loads) {
+    return s.arm == 0.0 ? s.force : s.force + s.arm * loads[s.index];
+  }
   static double near(const Slipping& s, const Moment& at) {
     return at.near(s.followed, s.measure.reference());
   }
@@ -82,13 +96,14 @@ class DryFriction final : public ForceBlock {
   }
 
   std::vector<Slipping> slipping_;
+  std::unique_ptr<PinLoads> loads_;  // where some torque depends on them
   bool any_ = false;
 };
 
 }  // namespace
 
-std::unique_ptr<ForceBlock> friction_block(const Structure& structure, const SparseRows&) {
-  auto block = std::make_unique<DryFriction>(structure);
+std::unique_ptr<ForceBlock> friction_block(const Structure& structure, const SparseRows& node_mass) {
+  auto block = std::make_unique<DryFriction>(structure, node_mass);
   if (!block->any()) return nullptr;
   return block;
 }
@@ -104,6 +119,9 @@ const std::vector<ParamSpec>& friction_params() {
         kinetic,
         real_param("static", "", as_kinetic, 0.0, endless,
                    "up to which it sticks, at least kinetic; by default kinetic"),
+        real_param("pin_friction", "", 0.0, 0.0, endless,
+                   "of a hinge: besides, Coulomb's mu times pin_radius times the force of the pin"),
+        real_param("pin_radius", "m", 0.0, 0.0, endless, "of the hinge's pin"),
         vector_param("axis", "", {0, 0, 0},
                      "of the hinge: the angle then has a sign and counts any number of turns"),
         vector_param("direction", "", {0, 0, 0},
@@ -113,6 +131,11 @@ const std::vector<ParamSpec>& friction_params() {
 }
 
 void fill_friction(const ParamSet& values, Force& force) {
+  const double mu = values.real("pin_friction"), radius = values.real("pin_radius");
+  if (mu > 0 && !(radius > 0))
+    throw StructureError("pin_radius",
+                         "is missing: the torque is pin_friction times it times the pin's force");
+  force.size.offset = mu * radius;  // a length, constant: the arm of the pin's force
   force.kinetic = values.real("kinetic");
   const double most = values.real("static");
   force.holding = std::isnan(most) ? force.kinetic : most;

@@ -223,13 +223,13 @@ const std::vector<ParamSpec>& winch_params() {
     ParamSpec radius = positive_param("drum_radius", "m", 1.0, "of the drum that draws the cable in"),
               inertia = positive_param("inertia", "kg m^2", 1.0, "of rotor and drum, at the motor");
     radius.required = inertia.required = true;
-    all.insert(all.end(),
-               {radius, inertia,
-                real_param("axial_stiffness", "N", 0.0, 0.0, no_limit,
-                           "E A of an elastic cable; 0: it does not stretch"),
-                positive_param("length", "m", std::numeric_limits<double>::quiet_NaN(),
-                               "unstressed, at t = 0; by default the length of its path there"),
-                real_param("damping", "N s/m", 0.0, 0.0, no_limit, "of an elastic cable, per m/s")});
+    all.insert(all.end(), {radius, inertia,
+                           real_param("axial_stiffness", "N", 0.0, 0.0, no_limit,
+                                      "E A of an elastic cable; 0: it does not stretch"),
+                           positive_param("length", "m", std::numeric_limits<double>::quiet_NaN(),
+                                          "unstressed, at t = 0; by default the length of its path there"),
+                           real_param("damping", "N s/m", 0.0, 0.0, no_limit, "of an elastic cable, per m/s"),
+                           pulley_friction_param(), pulley_creep_param()});
     return all;
   }();
   return params;

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "core/forces/pulleys.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/motion_params.hpp"
 
@@ -15,7 +17,8 @@ namespace {
 struct Spring {
   Force law;
   MeasureFunction measure;
-  int followed;  // index among the angles that count turns; -1: not one of them
+  int followed;                         // index among the angles that count turns; -1: not one of them
+  std::optional<Pulleys> pulleys = {};  // where it rubs on what it runs over
 };
 
 // Of a stretch e: N_e = k elastic, the share of the spring that pulls, N_e' / k, with its slope, V = k
@@ -23,6 +26,11 @@ struct Spring {
 struct Pull {
   double elastic, share, bend, energy;
 };
+
+// Does it rub on what it runs over?
+bool rubs(const Force& law) {
+  return law.kind == "cable" && law.kinetic > 0;
+}
 
 Pull pull_of(const Force& law, double e) {
   const double w = law.one_sided ? law.smoothing : 0.0;
@@ -38,8 +46,9 @@ class Springs final : public ForceBlock {
     for (std::size_t i = 0; i < springs.size(); ++i) {
       const Force& f = springs[i];
       springs_.push_back({f, MeasureFunction(f.measure, deployment), followed.empty() ? -1 : followed[i]});
+      if (rubs(f)) springs_.back().pulleys.emplace(f, deployment);
       size_ = std::max(size_, springs_.back().measure.stencil().size());
-      damped_ = damped_ || f.damping > 0;
+      damped_ = damped_ || f.damping > 0 || rubs(f);
       reeled_ = reeled_ || f.unstressed.moves();
     }
   }
@@ -56,6 +65,7 @@ class Springs final : public ForceBlock {
       const double rate = spring.law.damping > 0 ? spring.measure.rate(g.data(), v) : 0.0;
       const double pull = scale * tension(spring, at.t, s, rate);
       if (pull == 0.0) continue;
+      if (spring.pulleys) spring.pulleys->weigh(v, g.data());
       const auto& stencil = spring.measure.stencil();
       for (std::size_t i = 0; i < stencil.size(); ++i) f[stencil[i]] -= pull * g.data()[i];
     }
@@ -80,12 +90,15 @@ class Springs final : public ForceBlock {
     Gradient g(size_);
     double sum = 0;
     for (const Spring& spring : springs_) {
-      if (!(spring.law.damping > 0)) continue;
+      if (!(spring.law.damping > 0) && !spring.pulleys) continue;
       const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
-      const double rate = spring.measure.rate(g.data(), v);
+      const double rate = spring.measure.rate(g.data(), v), n = tension(spring, at.t, s, rate);
       const SpringLaw law = spring_law(spring.law, at.t);
       const double elastic = law.stiffness * pull_of(spring.law, s - law.rest).elastic;
-      sum -= (tension(spring, at.t, s, rate) - elastic) * rate;
+      sum -= (n - elastic) * rate;
+      if (!spring.pulleys) continue;
+      spring.pulleys->weigh(v, g.data());
+      sum -= n * (spring.measure.rate(g.data(), v) - rate);
     }
     return sum;
   }
@@ -101,14 +114,19 @@ class Springs final : public ForceBlock {
       const SpringLaw law = spring_law(spring.law, at.t);
       const Pull pull = pull_of(spring.law, s - law.rest);
       if (spring.law.one_sided && n == 0.0) continue;
-      spring.measure.add_hessian(q, -n, by_q);
+      if (spring.pulleys)
+        spring.pulleys->derivatives(q, v, n, by_q, by_v);
+      else
+        spring.measure.add_hessian(q, -n, by_q);
       const double c = spring.law.damping;
       const double by_stretch = law.stiffness * pull.share + c * pull.bend * rate;
       bend = by_stretch * g;
       if (c > 0) spring.measure.add_hessian_times(q, v, c * pull.share, bend.data());
+      const VectorXd along = g;  // of the rate; what pulls is weighed by the pulleys
+      if (spring.pulleys) spring.pulleys->weigh(v, g.data());
       for (std::size_t j = 0; j < stencil.size(); ++j)
         for (std::size_t i = 0; i < stencil.size(); ++i) {
-          const double gi = g[static_cast<Index>(i)], gj = g[static_cast<Index>(j)];
+          const double gi = g[static_cast<Index>(i)], gj = along[static_cast<Index>(j)];
           by_q.emplace_back(stencil[i], stencil[j], -gi * bend[static_cast<Index>(j)]);
           if (c > 0) by_v.emplace_back(stencil[i], stencil[j], -c * pull.share * gi * gj);
         }
@@ -222,7 +240,9 @@ const std::vector<ParamSpec>& cable_params() {
         real_param("damping", "N s/m", 0.0, 0.0, infinity, "elastic: force per m/s of stretching"),
         real_param("smoothing", "m", 0.0, 0.0, infinity,
                    "elastic: it begins to pull over this much on both sides of its length, for nets of "
-                   "hundreds of cables; 0: at an event of its own")};
+                   "hundreds of cables; 0: at an event of its own"),
+        pulley_friction_param(),
+        pulley_creep_param()};
     for (ParamSpec& spec : motion_params("m")) all.push_back(std::move(spec));
     return all;
   }();
@@ -234,8 +254,26 @@ void fill_cable(const ParamSet& values, Force& force) {
   force.axial_stiffness = values.real("axial_stiffness");
   force.damping = values.real("damping");
   force.smoothing = values.real("smoothing");
+  fill_pulleys(values, force);
   if (const double length = values.real("length"); !std::isnan(length)) force.rest = length;
   force.unstressed = motion_function(values, force.rest, 1.0);
+}
+
+ParamSpec pulley_friction_param() {
+  return real_param("pulley_friction", "", 0.0, 0.0, infinity,
+                    "elastic: Coulomb's mu on all nodes between its ends; over a wrap angle beta tensions "
+                    "differ by exp(mu beta)");
+}
+
+ParamSpec pulley_creep_param() {
+  return positive_param("pulley_creep", "m/s", 0.01,
+                        "over a node it rubs fully where it runs at least so fast; slower it creeps");
+}
+
+// Force::kinetic of a cable is mu, Force::holding the speed from which on it has all of that.
+void fill_pulleys(const ParamSet& values, Force& cable) {
+  cable.kinetic = values.real("pulley_friction");
+  cable.holding = values.real("pulley_creep");
 }
 
 const std::vector<ParamSpec>& combination_params() {

@@ -42,6 +42,10 @@ std::unique_ptr<ForceBlock> cable_block(const Structure& structure, const Sparse
 std::unique_ptr<ForceBlock> combination_block(const Structure& structure, const SparseRows& node_mass);
 const std::vector<ParamSpec>& cable_params();
 const std::vector<ParamSpec>& combination_params();
+// Friction of a cable on what it runs over (core/forces/pulleys.hpp), of cables and winches alike.
+ParamSpec pulley_friction_param();
+ParamSpec pulley_creep_param();
+void fill_pulleys(const ParamSet& values, Force& cable);
 void fill_cable(const ParamSet& values, Force& force);
 void fill_combination(const ParamSet& values, Force& force);
 std::unique_ptr<ForceBlock> axial_spring_block(const Structure& structure, const SparseRows& node_mass);

@@ -57,6 +57,7 @@ std::string unknown_to_path(const Structure& structure) {
     return std::string(what) + " of the kind \"" + std::string(kind) + "\" is not known to the path";
   };
   for (const Force& force : structure.forces) {
+    if (force.kind == "friction" && force.size.offset > 0) return "friction depends on the force of a pin";
     if (force.smoothing > 0) return "a cable begins to pull smoothly";
     if (!holds(known_forces, force.kind)) return kinds("a force", force.kind);
     if (std::string motor = unknown_motor(force); !motor.empty()) return motor;

@@ -17,7 +17,7 @@ namespace {
 
 // Of positions, loads and linear constraints, as a share of the structure's size or the largest load.
 constexpr double turned_share = 2e-13;
-constexpr double nearly_share = 1e-3;  // only to say what is unlike
+constexpr double nearly_share = 1e-2;  // only to say what is unlike
 constexpr int fewest_sectors = 3;
 
 std::size_t slot(int i) {

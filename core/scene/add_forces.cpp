@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core/forces/motor.hpp"
+#include "core/forces/spring.hpp"
 #include "core/scene/element_members.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/structure_error.hpp"
@@ -115,6 +116,19 @@ void add_force(const SceneElement& e, ElementAdder& to) {
   }
 }
 
+// Friction on what a cable runs over needs its tension, and something to run over. False: a problem was
+// noted.
+bool check_pulleys(const SceneElement& e, ElementAdder& to, double axial_stiffness, std::size_t spans) {
+  if (!(e.values.real("pulley_friction") > 0)) return true;
+  if (spans < 2)
+    to.find.problem(e, "pulley_friction", "does nothing for a cable of two nodes: it runs over none");
+  else if (!(axial_stiffness > 0))
+    to.find.problem(e, "pulley_friction", "needs a cable that stretches; give axial_stiffness");
+  else
+    return true;
+  return false;
+}
+
 }  // namespace
 
 // A drum, a ghost whose coordinate x is what it has drawn in: the cable's measure is its path and x.
@@ -141,6 +155,7 @@ void add_winch(const SceneElement& e, ElementAdder& to) {
   if (!(ea > 0) && v.real("damping") > 0)
     return to.find.problem(e, "damping",
                            "does nothing for a cable that does not stretch; give axial_stiffness");
+  if (!check_pulleys(e, to, ea, measure->terms.size())) return;
   const double n = motor.motor.gear_ratio;
   const int drum =
       add_ghost(to.structure, "drum of " + e.name, n * n * v.real("inertia") / (radius * radius), 0.0);
@@ -158,6 +173,7 @@ void add_winch(const SceneElement& e, ElementAdder& to) {
     cable.measure = *measure;
     cable.axial_stiffness = ea;
     cable.damping = v.real("damping");
+    fill_pulleys(v, cable);
     cable.one_sided = true;
     cable.rest = length;
     cable.unstressed = limit;
@@ -181,6 +197,7 @@ void add_cable(const SceneElement& e, ElementAdder& to) {
   cable.rest = path;
   force_kind("cable").fill(e.values, cable);
   cable.unstressed = motion_of(e, to, *measure, cable.rest);
+  if (!check_pulleys(e, to, cable.axial_stiffness, measure->terms.size())) return;
   if (cable.axial_stiffness > 0) {
     to.structure.forces.push_back(std::move(cable));
     return;

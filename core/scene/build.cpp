@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include "core/forces/pin_loads.hpp"
+#include "core/math/determined_rows.hpp"
 #include "core/scene/element_members.hpp"
 #include "core/scene/size_limits.hpp"
 #include "core/structure/structure_error.hpp"
@@ -141,6 +143,45 @@ void fill_mass(const Scene& scene, System& system) {
   system.fill_mass();
 }
 
+// Friction by the force of a pin, where rigid rods leave that open or it is no pin: one clear error.
+std::string pin_problem(const Structure& structure, const System& system, const Force& force) {
+  const int r = PinLoads::rod_of(structure, force);
+  if (r < 0) return "needs the pin of a hinge: nodes = [A, HINGE, B] with a rod from A to HINGE";
+  const Rod& rod = structure.rods[static_cast<std::size_t>(r)];
+  const VectorXd mass = system.node_mass().diagonal();
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i) {
+    const bool held =
+        std::any_of(structure.constraints.begin(), structure.constraints.end(), [&](const Constraint& c) {
+          return c.kind == "fixed" && c.nodes == std::vector{static_cast<int>(i)};
+        });
+    if (!held && !(mass[3 * static_cast<Index>(i)] > 0))
+      return "needs nodes with mass, and " + in_quotes(structure.nodes[i].name) + " has none";
+  }
+  if (rod.gives) return "";
+  VectorXd q(system.coordinates());
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  system.jacobian(q, G, scratch);
+  const int row = system.rod_rows()[static_cast<std::size_t>(r)];
+  if (row < 0 || determined_rows(G)[static_cast<std::size_t>(row)]) return "";
+  return "needs the force of the pin, which rigid rods leave open here (" + in_quotes(rod.name) +
+         " is one of more rods than hold the structure): give a constant torque by kinetic, or rods that "
+         "give "
+         "(rod_model = \"elastic\")";
+}
+
+void check_pins(const Scene& scene, const Structure& structure, const System& system) {
+  for (const Force& force : structure.forces) {
+    if (!(PinLoads::arm(force) > 0)) continue;
+    const std::string problem = pin_problem(structure, system, force);
+    if (problem.empty()) continue;
+    for (const SceneElement& e : scene.forces)
+      if (e.enabled && e.name == force.name) throw SceneError({{e.where, e.key + ".pin_friction", problem}});
+  }
+}
+
 void refuse_endless_runs(const Scene& scene, const Model& model) {
   const std::string problem = too_many_states(scene, model, machine_memory());
   if (!problem.empty()) throw SceneError({{location_of(scene, "solver.step"), "solver.step", problem}});
@@ -172,6 +213,7 @@ std::shared_ptr<const Model> build_model(const Scene& scene) {
     assemble_elastic(structure, scene.solver.eliminate_linear);
     System system(structure, scene.solver.eliminate_linear);
     check_consistency(structure, system);
+    check_pins(scene, structure, system);
     if (!scene.solver.sparse) fill_mass(scene, system);
     auto model = std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
     refuse_endless_runs(scene, *model);

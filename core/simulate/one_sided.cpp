@@ -26,9 +26,9 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
     const Force& f = structure.forces[i];
     if (f.one_sided && f.smoothing == 0 && (f.stiffness > 0 || f.damping > 0 || f.axial_stiffness > 0))
       cables_.push_back({i, f.name, MeasureFunction(f.measure, structure.deployment), f});
-    if (f.kind == "friction" && f.holding > 0)
+    if (f.kind == "friction" && (f.holding > 0 || PinLoads::arm(f) > 0))
       frictions_.push_back({i, f.name, f.measure, MeasureFunction(f.measure, structure.deployment), f.kinetic,
-                            f.holding, followed[i]});
+                            f.holding, followed[i], PinLoads::arm(f)});
   }
   active_.assign(stops_.size() + cables_.size() + frictions_.size(), false);
   shift_.setZero(static_cast<Index>(stops_.size()));
@@ -41,6 +41,13 @@ bool OneSided::any_active() const {
 
 bool OneSided::any_held() const {
   return !held().empty();
+}
+
+bool OneSided::any_reeled() const {
+  for (std::size_t i = 0; i < stops_.size(); ++i)
+    if (stops_[i].reeled && stops_[i].reel.moves()) return true;
+  return std::any_of(cables_.begin(), cables_.end(),
+                     [](const Cable& cable) { return cable.law.unstressed.moves(); });
 }
 
 bool OneSided::relax_cables() {
@@ -82,6 +89,17 @@ void OneSided::stick(std::size_t i, const System& system, const State& state) {
   f.held_at = f.function.value(q.data(), near(i, state));
   f.slip = 0;
   active_[i] = true;
+}
+
+void OneSided::weigh(const Model& model, const State& state) {
+  if (!PinLoads::any(model.structure)) return;
+  if (!pin_loads_) pin_loads_ = std::make_unique<PinLoads>(model.structure, model.system.node_mass());
+  const System system = model.system.at(state);
+  VectorXd q(system.coordinates()), v(q.size());
+  system.expand(state.z, q);
+  system.expand_rate(state.w, v);
+  const std::vector<double> loads = pin_loads_->evaluate(system.moment(state.t), q.data(), v.data());
+  for (Friction& f : frictions_) f.by_load = f.arm * loads[f.force];
 }
 
 std::set<std::size_t> OneSided::held() const {
@@ -159,6 +177,7 @@ void OneSided::measure_held(const Model& model, const State& state, Probe& probe
   if (index1_->evaluate(state, acceleration_, lambda_)) with_forces.lambda = lambda_;
   const double zero =
       std::max(force_zero * with_forces.lambda.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
+  weigh(model, state);
   const std::set<std::size_t> held = this->held();
   for (const std::size_t i : held)
     probe.margins[static_cast<Index>(i)] = stops_.push(i, model, held, with_forces) / zero;
@@ -218,6 +237,13 @@ std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {
   std::erase_if(locked, [&](std::size_t i) { return stops_[i].reeled; });  // the winch stops
   stops_.hold(locked, structure);
   stops_.stop_reels(t);
+  const auto stop = [t](Force& force) {
+    TimeFunction length;
+    length.offset = force.unstressed(t);
+    if (force.unstressed.moves()) force.unstressed = length;
+  };
+  std::for_each(structure.forces.begin(), structure.forces.end(), stop);
+  for (Cable& cable : cables_) stop(cable.law);
   std::fill_n(active_.begin(), stops_.size(), false);
   System system(structure, eliminate_linear_);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});

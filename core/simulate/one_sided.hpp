@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/forces/pin_loads.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/integrators/solver_options.hpp"
 #include "core/simulate/crossing.hpp"
@@ -47,6 +48,7 @@ class OneSided {
   bool active(std::size_t i) const { return active_[i]; }  // a held stop, a cable that pulls, what sticks
   bool any_active() const;                                 // what is not as in the model without any of it
   bool any_held() const;                                   // stops
+  bool any_reeled() const;                                 // cables that are paid out or drawn in
   const Stops& stops() const { return stops_; }
   // "leaves stop NAME", "NAME pulls", ...: that the mode has begun.
   Event event(std::size_t i, double t) const;
@@ -67,8 +69,11 @@ class OneSided {
   double near(std::size_t i, const State& state) const;
   LimitMotion limit_motion(std::size_t i, double t) const;  // of a reeled cable; else it stays
   // Of friction: its forces, the sense in which it slips (0: it does not), and setting that.
-  double holding(std::size_t i) const { return friction(i).holding; }
-  double kinetic(std::size_t i) const { return friction(i).kinetic; }
+  double holding(std::size_t i) const { return friction(i).holding + friction(i).by_load; }
+  double kinetic(std::size_t i) const { return friction(i).kinetic + friction(i).by_load; }
+  // Friction that depends on the forces of pins, at a state of `model`, which must be that of the present
+  // modes.
+  void weigh(const Model& model, const State& state);
   int slip(std::size_t i) const { return friction(i).slip; }
   void set_slip(std::size_t i, int slip);
   void stand(std::size_t i) { active_[i] = false, frictions_[i - first_friction()].slip = 0; }
@@ -80,7 +85,7 @@ class OneSided {
   // Margins and their rates (NaN: not known) of a state of `model`, which must be that of the present modes.
   // Without `forces`, those of what is held are left NaN, which saves a factorisation.
   void measure(const Model& model, const State& state, bool forces, Probe& probe);
-  void forget_model() { index1_.reset(); }
+  void forget_model() { index1_.reset(), pin_loads_.reset(); }
 
   // `base` in the present modes.
   std::shared_ptr<const Model> model(const Model& base) const;
@@ -101,7 +106,9 @@ class OneSided {
     Measure measure;
     MeasureFunction function;
     double kinetic, holding;
-    int followed;  // index in State::angles; -1: it counts no turns
+    int followed;          // index in State::angles; -1: it counts no turns
+    double arm = 0.0;      // mu r of its pin [m]
+    double by_load = 0.0;  // arm times the force of the pin, of the state that was weighed [N m]
     int slip = 0;
     double held_at = 0.0;
     bool reversed = false;  // it slipped the other way before
@@ -121,8 +128,9 @@ class OneSided {
   double step_, length_;
   bool eliminate_linear_;
   VectorXd gradient_, acceleration_, lambda_;
-  std::optional<System> followed_;  // the present model's, near a state's angles
-  std::unique_ptr<Index1> index1_;  // of that
+  std::optional<System> followed_;       // the present model's, near a state's angles
+  std::unique_ptr<Index1> index1_;       // of that
+  std::unique_ptr<PinLoads> pin_loads_;  // the present model's
 };
 
 }  // namespace unfurl

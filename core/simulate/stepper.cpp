@@ -289,6 +289,7 @@ class Stepper::Loop {
   State in_base(const State& state) const { return in_coordinates(system(), state, base_->system); }
 
   ModeChange modes_after(const State& state, const std::vector<std::size_t>& which = {}) {
+    sides_.weigh(model(), now());
     return change_modes(sides_, *base_, state, which, [&](std::size_t i, double approach) {
       const StopSide& stop = sides_.stops()[i];
       const double flight = state.t - std::exchange(last_touch_[i], state.t);
@@ -419,7 +420,7 @@ class Stepper::Loop {
   // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
   // on a stop is locked there.
   bool latch() {
-    if (sides_.any_held()) base_ = sides_.lock_held(*base_, now().t);
+    if (sides_.any_held() || sides_.any_reeled()) base_ = sides_.lock_held(*base_, now().t);
     const bool gives = latch_gives(base_->structure);
     if (gives && singular_at_end(run_.trajectory))
       return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/structures/mesh_reflector.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -167,10 +168,13 @@ class NetBuilder {
     out_.forces.push_back(std::move(f));
   }
 
-  // No member longer than unstressed, less what the smoothed law begins with: one after the other is pulled
-  // together, its ends by halves, until all are.
+  // No member longer than unstressed, less what the smoothed law begins with: all that are longer are pulled
+  // together, their ends by halves, every node by the mean of what pulls it, until none is. All at once, so
+  // that the nets keep the symmetry of the rim: else they would turn it as they go taut.
   void slacken() {
     constexpr int most_rounds = 20000;
+    std::vector<Vec3> pulls(out_.nodes.size());
+    std::vector<int> pulled(out_.nodes.size());
     std::vector<bool> movable(out_.nodes.size(), false);
     for (const auto& own : nodes_)
       for (int i = 0; i < net_.count(); ++i)
@@ -181,6 +185,8 @@ class NetBuilder {
     double worst = 0;
     for (int round = 0; round < most_rounds; ++round) {
       worst = 0;
+      std::fill(pulls.begin(), pulls.end(), Vec3::Zero());
+      std::fill(pulled.begin(), pulled.end(), 0);
       for (std::size_t i = first_member_; i < out_.forces.size(); ++i) {
         const Force& f = out_.forces[i];
         const auto a = static_cast<std::size_t>(f.measure.nodes[0]),
@@ -192,9 +198,13 @@ class NetBuilder {
         const double parts = (movable[a] ? 1.0 : 0.0) + (movable[b] ? 1.0 : 0.0);
         if (parts == 0.0) continue;
         const Vec3 pull = over / (parts * d.norm()) * d;
-        if (movable[a]) out_.nodes[a].position += pull;
-        if (movable[b]) out_.nodes[b].position -= pull;
+        pulls[a] += pull;
+        pulls[b] -= pull;
+        ++pulled[a];
+        ++pulled[b];
       }
+      for (std::size_t i = 0; i < pulls.size(); ++i)
+        if (movable[i] && pulled[i] > 0) out_.nodes[i].position += pulls[i] / pulled[i];
       if (worst <= 0.01 * smoothing_) return;
     }
     std::ostringstream text;
@@ -219,7 +229,7 @@ const std::vector<ParamSpec>& mesh_reflector_params() {
   static const std::vector<ParamSpec> params{
       choice_param("hoop", "cable_ring", {"cable_ring", "hoop"},
                    "the rim: bays deployed by a running cable, or re-entrant units driven at their hinges"),
-      integer_param("units", 12, 4, 10000, "number of bays around the rim"),
+      integer_param("units", 6, 4, 10000, "number of bays around the rim"),
       positive_param("longeron_length", "m", 1.6, "chord of a bay of the deployed rim"),
       positive_param("post_length", "m", 1.4, "height of the rim"),
       positive_param("density", "kg/m^3", 1600.0, "density of the rods"),
@@ -238,13 +248,13 @@ const std::vector<ParamSpec>& mesh_reflector_params() {
                            "-f along z on each bottom hinge, +f on each top hinge")),
       positive_param("focal_length", "m", 6.0, "of the paraboloid that the front net is to take"),
       boolean_param("nets", true, "front and rear net with their ties"),
-      integer_param("net_rings", 4, 1, 200, "rings of triangles from the centre of a net to its edge"),
+      integer_param("net_rings", 2, 1, 200, "rings of triangles from the centre of a net to its edge"),
       positive_param("force_density", "N/m", 0.5, "force of the nets' members per length, when deployed"),
       positive_param("edge_density", "", 10.0, "times as much in the members of the edge"),
       positive_param("net_stiffness", "N", 2e3, "E A of a member of a net or a tie"),
       positive_param("net_mass", "kg/m", 1e-2, "mass of members and ties per length"),
-      real_param("net_damping", "N s/m", 20.0, 0.0, no_end, "force of a member per m/s of stretching"),
-      positive_param("smoothing", "m", 1e-4,
+      real_param("net_damping", "N s/m", 2.0, 0.0, no_end, "force of a member per m/s of stretching"),
+      positive_param("smoothing", "m", 1e-3,
                      "a member begins to pull over this much on both sides of its length"),
       choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"),
   };

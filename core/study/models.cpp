@@ -207,6 +207,12 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
     for (std::string& key : keys) key += "=0";
     out.push_back({"without damping", keys});
   }
+  std::vector<std::string> rubbing;
+  for (const auto* list : {&scene.constraints, &scene.forces})
+    for (const SceneElement& e : *list)
+      if (e.enabled && (e.kind == "cable" || e.kind == "winch") && e.values.real("pulley_friction") > 0)
+        rubbing.push_back(e.key + ".pulley_friction=0");
+  if (!rubbing.empty()) out.push_back({"without pulley friction", rubbing});
   add_without(scene, "friction", "without friction", {}, out);
   add_without(scene, "offload", "0 g flight: neither weight nor offload", {"gravity.acceleration=[0,0,0]"},
               out);

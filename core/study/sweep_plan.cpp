@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <iomanip>
 #include <map>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 
 #include "core/study/sweep.hpp"
@@ -82,7 +84,12 @@ std::string SweepAxis::title() const {
 }
 
 std::string SweepAxis::title(std::size_t value) const {
-  const std::string& text = values[value];
+  std::string text = values[value];
+  if (!numbers.empty() && text.size() > 8) {  // thirds have sixteen digits
+    std::ostringstream few;
+    few << std::setprecision(6) << numbers[value];
+    text = few.str();
+  }
   const std::string space = unit.empty() || unit == "deg" ? "" : " ";
   return words(key) + " = " + text + space + typeset(unit);
 }

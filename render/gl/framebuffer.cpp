@@ -91,6 +91,14 @@ void Framebuffer::resolve(const PixelRect& part) const {
   bind_resolved();
 }
 
+void Framebuffer::clear_depth(const PixelRect& part) const {
+  if (part.empty()) return;
+  gl::Enable(GL_SCISSOR_TEST);
+  gl::Scissor(part.x0, part.y0, part.x1 - part.x0, part.y1 - part.y0);
+  gl::Clear(GL_DEPTH_BUFFER_BIT);
+  gl::Disable(GL_SCISSOR_TEST);
+}
+
 void Framebuffer::fill(float r, float g, float b, int x, int y, int width, int height) const {
   bind_resolved();
   gl::Enable(GL_SCISSOR_TEST);

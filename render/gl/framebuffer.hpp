@@ -33,6 +33,7 @@ class Framebuffer {
   void spread(const PixelRect& part) const;
   void resolve(const PixelRect& part) const;
   void resolve() const { resolve(whole()); }
+  void clear_depth(const PixelRect& part) const;  // of what is bound
   PixelRect whole() const { return {0, 0, width_, height_}; }
   // Fill a rectangle [pixels from the top left] with one colour (0..1, no depth) and leave the picture bound
   // for drawing without multi-sampling.

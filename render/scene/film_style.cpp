@@ -41,6 +41,14 @@ std::vector<int> trail_nodes(const Scene& scene, const Structure& structure) {
 
 }  // namespace
 
+std::vector<ShownSurface> shown_surfaces(const Scene& scene, const Structure& structure) {
+  std::vector<ShownSurface> shown;
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
+    if (const SceneSurface& s = scene.surfaces[i]; s.enabled)
+      shown.push_back({s, surface_nodes(s, "surfaces[" + std::to_string(i) + "].nodes", structure)});
+  return shown;
+}
+
 FrameStyle film_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
   const RenderOptions& options = scene.render;
   FrameStyle style;
@@ -50,10 +58,7 @@ FrameStyle film_style(const Scene& scene, const Simulation& run, const Diagnosti
   check_inset(scene, diagnostics);
   style.options = options;
   style.trails = trail_nodes(scene, run.trajectory.structure());
-  for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
-    if (const SceneSurface& s = scene.surfaces[i]; s.enabled)
-      style.surfaces.push_back(
-          {s, surface_nodes(s, "surfaces[" + std::to_string(i) + "].nodes", run.trajectory.structure())});
+  style.surfaces = shown_surfaces(scene, run.trajectory.structure());
   style.run = &run;
   style.diagnostics = &diagnostics;
   return style;

@@ -12,4 +12,7 @@ namespace unfurl {
 // SceneError where a name in it is none of this run's.
 FrameStyle film_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics);
 
+// The scene's surfaces that are shown, with their nodes. Throws SceneError.
+std::vector<ShownSurface> shown_surfaces(const Scene& scene, const Structure& structure);
+
 }  // namespace unfurl

@@ -41,12 +41,20 @@ constexpr Material materials[] = {{"anodised", {0, 0, 0, 0}, Finish::anodised},
                                   {"steel", {0.52f, 0.54f, 0.57f, 1}, Finish::metal},
                                   {"gold", {0.95f, 0.72f, 0.26f, 1}, Finish::foil}};
 
-const Material& material_of(const std::string& name) {
+}  // namespace
+
+std::pair<Color, Finish> coat_of_material(const std::string& name) {
   const auto* found = std::ranges::find(materials, name, &Material::name);
-  return found == std::end(materials) ? materials[0] : *found;
+  const Material& material = found == std::end(materials) ? materials[0] : *found;
+  return {material.color, material.finish};
 }
 
-}  // namespace
+std::string material_for(const RenderOptions& options, const std::string& group) {
+  std::string material = options.material;
+  for (const GroupMaterial& entry : options.materials)
+    if (glob_match(entry.group, group)) material = entry.material;
+  return material;
+}
 
 Hardware::Hardware(const Structure& structure, const Appearance& looks, const Look& look,
                    const RenderOptions& options, std::unique_ptr<const Joints> joints, const Mat3& upright,
@@ -62,12 +70,7 @@ Hardware::Hardware(const Structure& structure, const Appearance& looks, const Lo
       copy_of_(structure.nodes.size(), -1) {
   for (const RodCopy& rod : structure_.rod_copies)
     cables_.push_back(is_cable(structure_.rods[static_cast<std::size_t>(rod.source)].group));
-  for (const std::string& group : looks_.groups) {
-    std::string material = options_.material;
-    for (const GroupMaterial& entry : options_.materials)
-      if (glob_match(entry.group, group)) material = entry.material;
-    materials_.push_back(material);
-  }
+  for (const std::string& group : looks_.groups) materials_.push_back(material_for(options_, group));
   for (std::size_t i = structure_.node_copies.size(); i-- > 0;)
     copy_of_[static_cast<std::size_t>(structure_.node_copies[i].source)] = static_cast<int>(i);
   if (!detailed_) return;
@@ -109,9 +112,9 @@ RodCoat Hardware::coat(int group, const Color* field) const {
   const Color own = look_.group(index);
   // What a colour stands for must not be tinted by metal's reflections, nor be left out of a line drawing.
   if (field) return {*field, look_.fitting, Finish::paint, Finish::metal};
-  const Material& material = material_of(materials_.empty() ? options_.material : materials_[index]);
-  if (material.color.a == 0) return {own, look_.fitting, material.finish, Finish::metal};
-  return {material.color, own, material.finish, Finish::anodised};  // the fittings tell the group
+  const auto [color, finish] = coat_of_material(materials_.empty() ? options_.material : materials_[index]);
+  if (color.a == 0) return {own, look_.fitting, finish, Finish::metal};
+  return {color, own, finish, Finish::anodised};  // the fittings tell the group
 }
 
 Vec3 Hardware::offset(std::size_t rod, double t) const {

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/scene/render_options.hpp"
@@ -20,6 +22,11 @@ struct RodCoat {
   Color rod, fitting;
   Finish rod_finish = Finish::anodised, fitting_finish = Finish::metal;
 };
+
+// By its name in scenes; transparent: the group's own colour.
+std::pair<Color, Finish> coat_of_material(const std::string& name);
+// The name of the material that a group of rods is of.
+std::string material_for(const RenderOptions& options, const std::string& group);
 
 class Hardware {
  public:

@@ -41,6 +41,10 @@ void divide_by_alpha(Image& image) {
   }
 }
 
+std::string shade_program(const char* pass) {
+  return std::string(shaders::version) + "#define " + pass + "\n" + shaders::shade_fragment;
+}
+
 std::string solid_vertex(bool hidden) {
   return std::string(hidden ? shaders::version_hidden : shaders::version) + shaders::solid_vertex;
 }
@@ -52,7 +56,9 @@ Renderer::Renderer(GlContext& context, int width, int height, int samples)
       backdrop_(width, height, 0),
       depth_("shadow", solid_vertex(false), shaders::depth_fragment),
       skin_depth_("shadow of a surface", shaders::skin_vertex, shaders::skin_depth_fragment),
-      shade_("shade", shaders::background_vertex, shaders::shade_fragment),
+      shade_from_depth_("shade of depths", shaders::background_vertex, shade_program("FROM_DEPTH")),
+      shade_narrow_("shade", shaders::background_vertex, shade_program("NARROW")),
+      shade_wide_("soft shade", shaders::background_vertex, shade_program("WIDE")),
       background_("background", shaders::background_vertex, shaders::background_fragment),
       grid_("grid", shaders::ground_vertex, shaders::grid_fragment),
       floor_shadow_("floor shadow", shaders::ground_vertex, shaders::floor_shadow_fragment),
@@ -84,15 +90,21 @@ const Program& Renderer::begin_solids(const char* name, const char* fragment, co
 }
 
 void Renderer::begin_solids(const Program& program, const DrawList& list, const View& view) const {
+  const Eigen::Vector4f eye = eye_of(list.camera);
   program.use();
   set_background(program, list);
   program.set("view_projection", view.camera);
   program.set("light_projection", view.light);
   program.set("shadow_map", 0);
-  program.set("eye", eye_of(list.camera));
-  program.set("to_light", Vec3f(list.light_direction.normalized()));
+  program.set("eye", eye);
+  const Vec3f light = list.light_direction.normalized();
+  program.set("to_light", light);
+  program.set("lamp", Vec3f((light + Vec3f(0, 0, 0.6f)).normalized()));
+  program.set("strip", Vec3f(Vec3f(-light.x(), -light.y(), 0.25f).normalized()));
   program.set("fade_center", list.center);
-  program.set("fade", Eigen::Vector2f(list.radius, list.depth_fade));
+  program.set("mist_way", Vec3f((list.center * eye.w() - eye.head<3>()).normalized() / list.radius));
+  program.set("mist", list.depth_fade);
+  program.set("texel", 2 / (view.light.row(0).head<3>().norm() * static_cast<float>(shadow_map_.side())));
   const float floor = list.ground.shown ? list.ground.z : -1e6f;
   program.set("floor_height_reach", Eigen::Vector2f(floor, 0.25f * list.radius));
   program.set("to_eye", Vec3f((list.camera.eye - list.camera.target).normalized()));
@@ -243,7 +255,7 @@ void Renderer::paint(const DrawList& list, bool coarse) {
   if (!coarse) frame_.spread(view.solid);
   gl::Enable(GL_DEPTH_TEST);
   gl::Enable(GL_CULL_FACE);
-  gl::Clear(GL_DEPTH_BUFFER_BIT);
+  frame_.clear_depth(view.solid);
   shadow_map_.use_as_texture(0);
   draw_solids(list, view);
   draw_skins(list, view);

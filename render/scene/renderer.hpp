@@ -65,7 +65,8 @@ class Renderer {
   void set_background(const Program& program, const DrawList& list) const;
 
   Framebuffer frame_, backdrop_;  // backdrop: what is behind the bodies, but for shadows
-  Program depth_, skin_depth_, shade_, background_, grid_, floor_shadow_;
+  Program depth_, skin_depth_, shade_from_depth_, shade_narrow_, shade_wide_, background_, grid_,
+      floor_shadow_;
   std::map<std::string, std::unique_ptr<Program>> solid_;  // by name
   RendererBodies capsules_{BodyKind::capsule}, balls_{BodyKind::ball}, cylinders_{BodyKind::cylinder},
       plates_{BodyKind::plate}, ghosts_{BodyKind::capsule};

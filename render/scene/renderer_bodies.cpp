@@ -33,17 +33,21 @@ bool same(const std::vector<SolidInstance>& a, const std::vector<SolidInstance>&
 }
 
 // The level of each body, by the size of its nearer end.
-std::vector<std::uint8_t> detail_of(const std::vector<SolidInstance>& bodies, const Camera& camera,
-                                    int height) {
+std::vector<std::uint8_t> detail_of(BodyKind kind, const std::vector<SolidInstance>& bodies,
+                                    const Camera& camera, int height) {
   const Vec3f forward = (camera.target - camera.eye).normalized();
   const float slope = 2 * std::tan(0.5f * camera.vertical_field_of_view);
+  const bool parallel = camera.parallel_height > 0;
   std::vector<std::uint8_t> levels;
   for (const SolidInstance& body : bodies) {
     const float depth = std::max(
         camera.near_plane, std::min(forward.dot(body.a - camera.eye), forward.dot(body.b - camera.eye)));
-    const float visible = camera.parallel_height > 0 ? camera.parallel_height : slope * depth;
+    const float visible = parallel ? camera.parallel_height : slope * depth;
     const float radius = std::max(body.radius_a, body.radius_b) / visible * static_cast<float>(height);
-    levels.push_back(static_cast<std::uint8_t>(detail_level(radius)));
+    const Vec3f sight = parallel ? forward : Vec3f((body.a - camera.eye).normalized());
+    const float cosine = std::abs((body.b - body.a).normalized().dot(sight));
+    const int level = is_ribbon(kind, radius, cosine) ? detail_levels : detail_level(radius);
+    levels.push_back(static_cast<std::uint8_t>(level));
   }
   return levels;
 }
@@ -59,6 +63,21 @@ int detail_level(float radius) {
          radius * (1 - std::cos(3.14159f / static_cast<float>(level_sides[level]))) > 0.34f)
     ++level;
   return level;
+}
+
+bool is_ribbon(BodyKind kind, float radius, float cosine) {
+  constexpr float widest_rod = 4.5f, widest_plate = 2.5f;
+  switch (kind) {
+    case BodyKind::capsule:
+      return radius <= widest_rod && cosine < 0.9f;
+    case BodyKind::cylinder:  // its end is seen as an ellipse of half that width
+      return radius <= widest_rod && cosine < std::min(0.9f, 1.1f / radius);
+    case BodyKind::plate:
+      return radius <= widest_plate && cosine < std::min(0.9f, 1.1f / radius);
+    case BodyKind::ball:
+      return false;
+  }
+  return false;
 }
 
 Mesh detailed_mesh(BodyKind kind, int level) {
@@ -99,13 +118,19 @@ RendererBodies::Shape RendererBodies::make_shape(const Mesh& mesh, unsigned inst
   return shape;
 }
 
-RendererBodies::RendererBodies(BodyKind kind) {
+RendererBodies::RendererBodies(BodyKind kind) : kind_(kind) {
   for (int i = 0; i < detail_levels; ++i) {
     Level& level = levels_[static_cast<std::size_t>(i)];
     gl::GenBuffers(1, &level.instances);
     level.picture = make_shape(detailed_mesh(kind, i), level.instances);
     level.shadow = make_shape(detailed_mesh(kind, std::max(0, i - 2)), level.instances);
   }
+  Level& ribbons = levels_.back();
+  const float before = kind == BodyKind::capsule ? 0.55f : kind == BodyKind::plate ? 0.8f : 0.0f;
+  gl::GenBuffers(1, &ribbons.instances);
+  ribbons.picture =
+      make_shape(ribbon_mesh(before, kind == BodyKind::plate ? 0.0f : before), ribbons.instances);
+  ribbons.shadow = make_shape(detailed_mesh(kind, 0), ribbons.instances);
 }
 
 RendererBodies::~RendererBodies() {
@@ -123,7 +148,7 @@ void RendererBodies::destroy_shape(const Shape& shape) {
 }
 
 bool RendererBodies::set(std::vector<SolidInstance> bodies, const Camera& camera, int height) {
-  std::vector<std::uint8_t> detail = detail_of(bodies, camera, height);
+  std::vector<std::uint8_t> detail = detail_of(kind_, bodies, camera, height);
   if (detail == detail_ && same(bodies, bodies_)) return false;
   bodies_ = std::move(bodies);
   detail_ = std::move(detail);
@@ -132,7 +157,7 @@ bool RendererBodies::set(std::vector<SolidInstance> bodies, const Camera& camera
 }
 
 void RendererBodies::upload() {
-  std::array<std::vector<SolidInstance>, detail_levels> sorted;
+  std::array<std::vector<SolidInstance>, detail_levels + 1> sorted;
   for (std::size_t i = 0; i < bodies_.size(); ++i) sorted[detail_[i]].push_back(bodies_[i]);
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     levels_[i].count = static_cast<int>(sorted[i].size());

@@ -17,6 +17,10 @@ enum class BodyKind { capsule, ball, cylinder, plate };
 // coarsest, to detail_levels - 1. radius: [pixels].
 inline constexpr int detail_levels = 4;
 int detail_level(float radius);
+// Whether a body that thin, its axis at that cosine to the line of sight, is drawn as a flat ribbon, shaded
+// as if it were round: one facet costs less than four or five of a pixel's width. Where its end would be seen
+// as more than a line it has facets.
+bool is_ribbon(BodyKind kind, float radius, float cosine);
 Mesh detailed_mesh(BodyKind kind, int level);
 
 // Needs a current context from construction to destruction.
@@ -49,7 +53,8 @@ class RendererBodies {
   static void draw_shape(const Shape& shape, int count);
   void upload();
 
-  std::array<Level, detail_levels> levels_;
+  BodyKind kind_;
+  std::array<Level, detail_levels + 1> levels_;  // the last one: ribbons
   std::vector<SolidInstance> bodies_;
   std::vector<std::uint8_t> detail_;  // level of each body
 };

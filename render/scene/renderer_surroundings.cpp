@@ -115,24 +115,33 @@ void Renderer::blur_shadows(const DrawList& list, const Matrix4f& light) const {
   gl::Disable(GL_DEPTH_TEST);
   gl::Disable(GL_CULL_FACE);
   gl::BindVertexArray(empty_array_);
-  shade_.use();
-  shade_.set("depth", 0);
-  shade_.set("shade", 1);
-  shade_.set("texels", shadow_map_.side() / shade_on_floor_.side());
-  shade_.set("floor_depth", floor_depth(light, list.ground.z));
   shadow_map_.use_as_texture(0);
   shadow_map_.compare_depths(false);
   gl::ClearColor(0, 0, 0, 0);
   const TextureTarget* targets[] = {&shade_across_, &shade_on_floor_, &soft_across_, &soft_on_floor_};
+  const Program* programs[] = {&shade_from_depth_, &shade_narrow_, &shade_wide_, &shade_wide_};
   for (int pass = 0; pass < 4; ++pass) {
-    const int part = shade_on_floor_.side() / targets[pass]->side();
-    if (pass > 0) targets[pass - 1]->use_as_texture(1);
-    targets[pass]->bind();
+    const TextureTarget& target = *targets[pass];
+    const int part = shade_on_floor_.side() / target.side();
+    const Program& program = *programs[pass];
+    program.use();
+    if (pass == 0) {
+      program.set("depth", 0);
+      program.set("texels", shadow_map_.side() / shade_on_floor_.side());
+      program.set("floor_depth", floor_depth(light, list.ground.z));
+    } else {
+      const TextureTarget& source = *targets[pass - 1];
+      const auto texel = 1 / static_cast<float>(target.side());
+      program.set("shade", 1);
+      program.set("way", pass == 2 ? Eigen::Vector2f(texel, 0) : Eigen::Vector2f(0, texel));
+      program.set("coarser", static_cast<float>(source.side()) / static_cast<float>(target.side()));
+      source.use_as_texture(1);
+    }
+    target.bind();
     gl::Clear(GL_COLOR_BUFFER_BIT);
     gl::Enable(GL_SCISSOR_TEST);
     gl::Scissor(shaded_.x0 / part, shaded_.y0 / part, (shaded_.x1 - shaded_.x0) / part,
                 (shaded_.y1 - shaded_.y0) / part);
-    shade_.set("pass", pass);
     if (!shaded_.empty()) gl::DrawArrays(GL_TRIANGLES, 0, 3);
     gl::Disable(GL_SCISSOR_TEST);
   }

@@ -26,30 +26,49 @@ centroid out vec3 world;  // not beyond the edge, where there is nothing to be l
 centroid out vec3 normal;
 flat out vec3 axis;  // unit; zero for a ball
 flat out vec3 albedo;
-flat out vec2 metal_roughness;
+flat out vec3 material;  // metal, roughness, and the radius [m]
 out float along_axis;  // from a, in radii there
 flat out float whole_axis;
 void main() {
   vec3 along = point_b - point_a;
   float span = length(along);
   vec3 z = span > 0.0 ? along / span : vec3(0.0, 0.0, 1.0);
-  bool plate = dot(side, side) > 0.0;
-  vec3 x = normalize(plate ? side : cross(abs(z.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0), z));
-  vec3 y = cross(z, x);
-  vec3 scale = plate ? radii.yxx : vec3(mix(radii.x, radii.y, end));
-  world = mix(point_a, point_b, end) + x * offset.x * scale.x + y * offset.y * scale.y + z * offset.z * scale.z;
+  bool plate = dot(side, side) > 0.0, ribbon = end > 1.5;
+  float e = ribbon ? end - 2.0 : end;
+  vec3 middle = mix(point_a, point_b, e), x, y;
+  if (ribbon) {  // between its two sides as they are seen
+    y = eye.xyz - eye.w * middle;
+    y = normalize(y - z * dot(y, z));
+    x = cross(y, z);
+  } else {
+    x = normalize(plate ? side : cross(abs(z.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0), z));
+    y = cross(z, x);
+  }
+  vec3 scale = plate ? radii.yxx : vec3(mix(radii.x, radii.y, e));
+  vec3 n = axis_normal;
+  if (plate && ribbon) {  // its face or its edge, whichever more is seen of
+    vec3 wide = cross(side, z);
+    float face = radii.x * abs(dot(wide, x)), edge = radii.y * abs(dot(side, x));
+    scale.x = face + edge;
+    n = face > edge ? side * sign(dot(side, y)) : wide * sign(dot(wide, y));
+  }
+  world = middle + x * offset.x * scale.x + y * offset.y * scale.y + z * offset.z * scale.z;
   float tilt = span > 0.0 && !plate ? (radii.x - radii.y) / span : 0.0;  // of a cone's side
-  normal = x * axis_normal.x + y * axis_normal.y + z * (axis_normal.z + tilt * length(axis_normal.xy));
+  normal = plate && ribbon ? n : x * n.x + y * n.y + z * (n.z + tilt * length(n.xy));
   albedo = pow(color, vec3(2.2));
-  metal_roughness = surface;
+  material = vec3(surface, plate ? 0.0 : scale.x);
   axis = span > 0.0 ? z : vec3(0.0);
   along_axis = dot(world - point_a, z) / radii.x;
   whole_axis = span / radii.x;
   gl_Position = view_projection * vec4(world, 1.0);
+  float lift = ribbon ? 0.6 * scale.x : 0.0;  // as near as the middle of what it stands for
 #ifdef HIDDEN
-  vec4 moved = view_projection * vec4(world + nearer * normalize(eye.xyz - eye.w * world), 1.0);
-  gl_Position.z = moved.z / moved.w * gl_Position.w;
+  lift += nearer;
 #endif
+  if (lift > 0.0) {
+    vec4 moved = view_projection * vec4(world + lift * normalize(eye.xyz - eye.w * world), 1.0);
+    gl_Position.z = moved.z / moved.w * gl_Position.w;
+  }
 })";
 
 inline constexpr const char* depth_fragment = R"(#version 330 core
@@ -62,7 +81,7 @@ centroid in vec3 world;
 centroid in vec3 normal;
 flat in vec3 axis;
 flat in vec3 albedo;
-flat in vec2 metal_roughness;
+flat in vec3 material;
 in float along_axis;
 flat in float whole_axis;
 uniform vec4 eye;
@@ -71,19 +90,42 @@ uniform vec2 floor_height_reach;  // darkens what is nearer to the floor than `r
 uniform vec4 background_top, background_bottom;
 uniform float picture_height;
 uniform vec3 fade_center;
-uniform vec2 fade;  // radius, share of the background at the far side
+uniform vec3 mist_way;  // away from the camera, over the motion's radius
+uniform float mist;     // share of the background at the far side
+uniform float texel;    // of the shadow map [m]
 uniform mat4 light_projection;
 uniform sampler2DShadow shadow_map;
 layout(location = 0) out vec4 color;
 
-vec3 misty(vec3 c) {
-  vec3 forward = normalize(fade_center * eye.w - eye.xyz);
-  float behind = dot(world - fade_center, forward) / fade.x;
-  vec3 mist = mix(background_bottom, background_top, gl_FragCoord.y / picture_height).rgb;
-  return mix(c, mist, fade.y * smoothstep(-1.0, 1.0, behind));
+// Facets stand for a round body: across the line of sight a point is where it seems to be, along it on the
+// circle.
+vec3 place;
+vec3 round_normal(vec3 v) {
+  vec3 toward = v - axis * dot(v, axis);
+  toward *= inversesqrt(max(dot(toward, toward), 1e-12));
+  float had = dot(normal, toward);
+  vec3 rest = normal - had * toward;
+  vec3 pixel = fwidth(normal);  // at its sides nothing is seen as slanted as the edge itself
+  float has = sqrt(max(1.0 - dot(rest, rest), min(0.8 * max(max(pixel.x, pixel.y), pixel.z), 0.4)));
+  if (had < -0.05) has = -has;
+  place = world + toward * (material.z * (has - had));
+  return normalize(rest + has * toward);
 }
 
-float lit(vec3 p, vec3 n, float texel) {
+vec3 misty(vec3 c) {
+  float behind = dot(place - fade_center, mist_way);
+  vec3 ground = mix(background_bottom, background_top, gl_FragCoord.y / picture_height).rgb;
+  return mix(c, ground, mist * smoothstep(-1.0, 1.0, behind));
+}
+
+// As pow(c, 1 / 2.2) to a quarter of a step of eight bits, at a third of its price in software.
+vec3 encoded(vec3 c) {
+  c = clamp(c, 0.0, 1.0);
+  vec3 root = sqrt(c);
+  return 1.08403 * root + 0.050876 * sqrt(root) + c * (0.0902063 * root - 0.2241657);
+}
+
+float lit(vec3 p, vec3 n) {
   vec3 at = (light_projection * vec4(p + n * 1.5 * texel, 1.0)).xyz * 0.5 + 0.5;
   if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
   float step = 0.6 / float(textureSize(shadow_map, 0).x);
@@ -91,16 +133,15 @@ float lit(vec3 p, vec3 n, float texel) {
 }
 
 float key_light(vec3 n) {  // what arrives of it: by the angle and past what is in its way
-  float texel = 2.0 / (length(light_projection[0].xyz) * float(textureSize(shadow_map, 0).x));
   float n_l = dot(n, to_light);
-  return n_l > 0.0 ? n_l * lit(world, n, texel) : 0.0;
+  return n_l > 0.0 ? n_l * lit(place, n) : 0.0;
 }
 
 // Rougher where the normal turns within a pixel: else what is thin glitters (Kaplanyan et al., Filtering
 // distributions of normals for shading antialiasing, 2016).
 float rough_alpha(vec3 n) {
   vec3 dx = dFdx(n), dy = dFdy(n);
-  float alpha = metal_roughness.y * metal_roughness.y;
+  float alpha = material.y * material.y;
   return sqrt(min(alpha * alpha + min(0.5 * (dot(dx, dx) + dot(dy, dy)), 0.35), 1.0));
 }
 
@@ -115,6 +156,7 @@ float highlight(vec3 n, vec3 v, float alpha) {  // of the key light, as a rough 
 // A key light with a soft shadow, the light of a bright room from everywhere and its reflection, less what is
 // kept off: by the floor from below, and where rods meet by one another, the more the fewer radii away.
 inline constexpr const char* studio_fragment = R"(
+uniform vec3 lamp, strip;  // directions
 uniform int meets;  // other bodies: 0 nowhere, 1 at a, 2 at both ends
 
 float open_to_room() {
@@ -126,7 +168,6 @@ float open_to_room() {
 // The studio as a small sky: a floor that throws light back, walls that grow brighter upwards, a wide lamp
 // overhead on the key light's side and a strip of light low on the other. `blur`: 0 a mirror's, 1 a matt one's.
 vec3 room(vec3 d, float blur) {
-  vec3 lamp = normalize(to_light + vec3(0.0, 0.0, 0.6)), strip = normalize(vec3(-to_light.xy, 0.25));
   float edge = 0.05 + 0.5 * blur;
   vec3 c = mix(vec3(0.36, 0.36, 0.37), vec3(0.74, 0.80, 0.88), smoothstep(-0.2 - edge, 0.1 + edge, d.z));
   c *= mix(1.0, 0.55, smoothstep(0.02, 0.10 + edge, d.z) * (1.0 - smoothstep(0.12, 0.45 + edge, d.z)));
@@ -136,8 +177,8 @@ vec3 room(vec3 d, float blur) {
 }
 
 void main() {
-  vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
-  float metal = metal_roughness.x, alpha = rough_alpha(n), roughness = sqrt(alpha);
+  vec3 v = normalize(eye.xyz - eye.w * world), n = round_normal(v);
+  float metal = material.x, alpha = rough_alpha(n), roughness = sqrt(alpha);
   float n_v = max(dot(n, v), 0.02), key = key_light(n);
   float occlusion = mix(0.45, 1.0, smoothstep(0.0, 1.0, (world.z - floor_height_reach.x) / floor_height_reach.y)) *
                     mix(0.72, 1.0, 0.5 + 0.5 * n.z) * open_to_room();
@@ -145,13 +186,14 @@ void main() {
   vec3 ambient = mix(vec3(0.27, 0.26, 0.25), vec3(0.52, 0.57, 0.65), 0.5 + 0.5 * n.z) * occlusion;
 
   vec3 f0 = mix(vec3(0.04), albedo, metal);
-  vec3 fresnel = f0 + (max(vec3(1.0 - roughness), f0) - f0) * pow(1.0 - n_v, 5.0);
+  float grazing = 1.0 - n_v, g2 = grazing*grazing;
+  vec3 fresnel = f0 + (max(vec3(1.0 - roughness), f0) - f0) * (g2 * g2 * grazing);
 
   vec3 light = albedo * (1.0 - 0.75 * metal) * (ambient + 1.45 * vec3(1.0, 0.96, 0.90) * key);
   light += fresnel * room(reflect(-v, n), roughness) * mix(0.35, 1.0, occlusion);
   light += f0 * min(highlight(n, v, alpha), 6.0) * key;
   light = light / (1.0 + 0.20 * light) * 1.13;  // rolls off what is brighter than paper
-  color = vec4(misty(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2))), 1.0);
+  color = vec4(misty(encoded(light)), 1.0);
 })";
 
 // Sunlight in the dark: a hard key light, hardly anything from elsewhere, and a bright rim against the night.
@@ -159,8 +201,8 @@ inline constexpr const char* space_fragment = R"(
 uniform vec4 planet;  // direction to its middle, cosine of half its width
 uniform vec3 to_eye;  // from the middle of the picture
 void main() {
-  vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
-  float metal = metal_roughness.x, alpha = rough_alpha(n);
+  vec3 v = normalize(eye.xyz - eye.w * world), n = round_normal(v);
+  float metal = material.x, alpha = rough_alpha(n);
   float n_v = max(dot(n, v), 0.02), key = key_light(n);
   vec3 f0 = mix(vec3(0.04), albedo, metal);
   float below = 0.5 + 0.5 * dot(n, planet.xyz);
@@ -173,7 +215,7 @@ void main() {
   float behind = max(dot(n, normalize(vec3(-to_light.xy, 0.4))), 0.0);  // sunlight that grazes the edge
   light += (0.12 + 0.6 * behind) * pow(1.0 - n_v, 3.0) * mix(vec3(0.55, 0.72, 1.0), albedo, 0.4);
   light = light / (1.0 + 0.18 * light) * 1.08;
-  color = vec4(misty(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2))), 1.0);
+  color = vec4(misty(encoded(light)), 1.0);
 })";
 
 // Surfaces: a pattern of lines with something thinner between them, lit from both sides.
@@ -187,13 +229,13 @@ centroid out vec3 world;  // not beyond the edge, where there is nothing to be l
 centroid out vec3 normal;
 flat out vec3 axis;
 flat out vec3 albedo;
-flat out vec2 metal_roughness;
+flat out vec3 material;
 out float along_axis;
 flat out float whole_axis;
 out vec2 cell;
 void main() {
   world = at, normal = up, cell = place;
-  axis = vec3(0.0), albedo = vec3(0.0), metal_roughness = vec2(0.9, 0.45), along_axis = 0.0, whole_axis = 0.0;
+  axis = vec3(0.0), albedo = vec3(0.0), material = vec3(0.9, 0.45, 0.0), along_axis = 0.0, whole_axis = 0.0;
   gl_Position = view_projection * vec4(at, 1.0);
   gl_Position.z += pushed * gl_Position.w;
 })";
@@ -218,7 +260,8 @@ float pattern(float width) {
 }
 
 void main() {
-  vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
+  vec3 v = normalize(eye.xyz - eye.w * world), n = normalize(normal);
+  place = world;
   bool is_front = dot(n, v) > 0.0;
   if (!is_front) n = -n;
   float n_v = max(dot(n, v), 0.05), cords = weave == 2 ? 0.0 : pattern(cord);
@@ -228,7 +271,7 @@ void main() {
   if (weave == 3 && is_front) hue = mix(hue, vec3(0.55, 0.58, 0.62), cords);
   if (weave < 2) a = max(a, cords * 0.95), hue = mix(hue, hue * vec3(0.80, 0.70, 0.55), cords);
   if (plain == 1) {
-    color = vec4(misty(pow(hue, vec3(1.0 / 2.2))), 0.25 * a + 0.6 * cords * a);
+    color = vec4(misty(encoded(hue)), 0.25 * a + 0.6 * cords * a);
     return;
   }
   float metal = weave == 3 ? 0.35 : 0.7;
@@ -241,7 +284,7 @@ void main() {
   light += mix(vec3(0.05), hue, metal) * lamp * (night == 1 ? lit_front * 1.2 : 0.45);
   light += (night == 1 ? 0.10 : 0.22) * pow(1.0 - n_v, 4.0);
   light = light / (1.0 + 0.22 * light) * 1.12;
-  color = vec4(misty(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2))), a);
+  color = vec4(misty(encoded(light)), a);
 })";
 
 // In the shadow map a surface is as many of sixteen texels as it keeps of the light.
@@ -256,9 +299,9 @@ void main() {
 // Flat colours in two tones, as if printed.
 inline constexpr const char* flat_fragment = R"(
 void main() {
-  vec3 n = normalize(normal);
+  vec3 n = round_normal(normalize(eye.xyz - eye.w * world));
   float tone = mix(0.62, 1.0, smoothstep(-0.05, 0.20, dot(n, to_light)));
-  color = vec4(misty(pow(albedo * tone, vec3(1.0 / 2.2))), 1.0);
+  color = vec4(misty(encoded(albedo * tone)), 1.0);
 })";
 
 // A line along both sides of what is round. Where `hidden`, only that line, pale; else also the paper inside.
@@ -266,19 +309,18 @@ inline constexpr const char* outline_fragment = R"(
 uniform int hidden;
 uniform float line_width;  // [pixels]
 void main() {
-  vec3 n = normalize(normal), v = normalize(eye.xyz - eye.w * world);
+  vec3 v = normalize(eye.xyz - eye.w * world), n = round_normal(v);
   vec3 across = normalize(v - axis * dot(axis, v) + 1e-6 * n);
-  float facing = clamp(dot(n, across), 0.0, 1.0);
-  float inside = 1.0 - sqrt(max(1.0 - facing * facing, 0.0));  // 0 at the side, 1 in the middle
-  if (abs(dot(n, axis)) > 0.3) inside = 1.0;                   // the flat end of a fitting
+  float inside = 1.0 - min(length(normal - across * dot(normal, across)), 1.0);  // 0 at the side, 1 in the middle
+  if (abs(dot(n, axis)) > 0.3) inside = 1.0;  // the flat end of a fitting
   float line = 1.0 - smoothstep(line_width - 0.5, line_width + 0.5, inside / max(fwidth(inside), 1e-6));
-  vec3 hue = pow(albedo, vec3(1.0 / 2.2));
+  vec3 hue = encoded(albedo);
   vec3 ink = hue * 0.62;
   if (hidden == 1) {
     if (line < 0.02) discard;
     color = vec4(misty(mix(ink, vec3(1.0), 0.55)), 0.75 * line);
   } else {
-    float filled = metal_roughness.x > 0.0 ? 0.10 : 1.0;  // what is painted is so here
+    float filled = material.x > 0.0 ? 0.10 : 1.0;  // what is painted is so here
     color = vec4(misty(mix(mix(vec3(1.0), hue, filled), ink, line)), 1.0);
   }
 })";
@@ -286,44 +328,44 @@ void main() {
 // What is seen through: ghosts of other poses.
 inline constexpr const char* ghost_fragment = R"(
 void main() {
-  vec3 n = normalize(normal);
-  float opacity = metal_roughness.x;
-  color = vec4(misty(pow(albedo, vec3(1.0 / 2.2)) * mix(0.85, 1.0, 0.5 + 0.5 * n.z)), opacity);
+  vec3 n = round_normal(normalize(eye.xyz - eye.w * world));
+  float opacity = material.x;
+  color = vec4(misty(encoded(albedo) * mix(0.85, 1.0, 0.5 + 0.5 * n.z)), opacity);
 })";
 
 // Passes of a blur. 0: of the depth map, along rows, whatever is nearer to the light than the floor, and how
 // much nearer; 1: of that, along columns; 2 and 3: the same again, four times as wide.
-inline constexpr const char* shade_fragment = R"(#version 330 core
-uniform int pass, texels;  // of the depth map for one of the shade
+// Each is a program of its own: software takes all branches of one.
+inline constexpr const char* shade_fragment = R"(
+uniform int texels;        // of the depth map for one of the shade
 uniform vec3 floor_depth;  // of the floor in the map: x, y and 1
+uniform vec2 way;          // a texel of what is blurred, along the blur
+uniform float coarser;     // texels of what is read for one that is drawn
 uniform sampler2D depth, shade;
 layout(location = 0) out vec2 color;  // share of the light that is missing; times how far its cause is away
 void main() {
-  if (pass == 0) {
-    ivec2 at = ivec2(gl_FragCoord.xy) * texels + ivec2(texels / 2);
-    ivec2 last = textureSize(depth, 0) - 1;
-    vec2 sum = vec2(0.0);
-    for (int i = 0; i < 8; ++i) {  // on different rows, or a shadow along the rows would be dashed
-      ivec2 p = clamp(at + ivec2(3 * i / 2 - 5, (3 * i & 3) - 2) * texels / 4, ivec2(0), last);
-      float d = texelFetch(depth, p, 0).r;
-      if (d < 1.0) sum += vec2(1.0, clamp(dot(floor_depth, vec3(vec2(p) / vec2(last), 1.0)) - d, 0.0, 0.5) * 2.0);
-    }
-    color = sum / 8.0;
-  } else {
-    vec2 texel = 1.0 / vec2(textureSize(shade, 0));
-    vec2 at = pass == 1 ? gl_FragCoord.xy * texel : gl_FragCoord.xy * texel * (pass == 2 ? 2.0 : 1.0);
-    vec2 way = pass == 2 ? vec2(texel.x, 0.0) : vec2(0.0, texel.y), sum = vec2(0.0);
-    if (pass == 1) {
-      for (int i = -3; i <= 3; i += 2) sum += texture(shade, at + 0.45 * float(i) * way).rg;
-      color = 0.25 * sum;
-    } else {
-      way *= pass == 2 ? 2.0 : 1.0;  // a Gauss curve of 2.4 texels, two of them with each read
-      sum = 0.171 * texture(shade, at).rg;
-      sum += 0.272 * (texture(shade, at + 1.46 * way).rg + texture(shade, at - 1.46 * way).rg);
-      sum += 0.1145 * (texture(shade, at + 3.4 * way).rg + texture(shade, at - 3.4 * way).rg);
-      color = sum + 0.028 * (texture(shade, at + 5.3 * way).rg + texture(shade, at - 5.3 * way).rg);
-    }
+#ifdef FROM_DEPTH
+  ivec2 at = ivec2(gl_FragCoord.xy) * texels + ivec2(texels / 2);
+  ivec2 last = textureSize(depth, 0) - 1;
+  vec2 sum = vec2(0.0);
+  for (int i = 0; i < 8; ++i) {  // on different rows, or a shadow along the rows would be dashed
+    ivec2 p = clamp(at + ivec2(3 * i / 2 - 5, (3 * i & 3) - 2) * texels / 4, ivec2(0), last);
+    float d = texelFetch(depth, p, 0).r;
+    if (d < 1.0) sum += vec2(1.0, clamp(dot(floor_depth, vec3(vec2(p) / vec2(last), 1.0)) - d, 0.0, 0.5) * 2.0);
   }
+  color = sum / 8.0;
+#else
+  vec2 at = gl_FragCoord.xy * coarser / vec2(textureSize(shade, 0));
+#ifdef NARROW  // four reads of two texels each, in three
+  vec2 sides = texture(shade, at + 1.241 * way).rg + texture(shade, at - 1.241 * way).rg;
+  color = 0.275 * texture(shade, at).rg + 0.3625 * sides;
+#else  // a Gauss curve of 2.4 texels, two of them with each read
+  vec2 sum = 0.171 * texture(shade, at).rg;
+  sum += 0.272 * (texture(shade, at + 1.46 * way).rg + texture(shade, at - 1.46 * way).rg);
+  sum += 0.1145 * (texture(shade, at + 3.4 * way).rg + texture(shade, at - 3.4 * way).rg);
+  color = sum + 0.028 * (texture(shade, at + 5.3 * way).rg + texture(shade, at - 5.3 * way).rg);
+#endif
+#endif
 })";
 
 inline constexpr const char* background_vertex = R"(#version 330 core

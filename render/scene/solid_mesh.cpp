@@ -6,6 +6,23 @@
 #include <numbers>
 
 namespace unfurl {
+
+Surface surface_of(Finish finish) {
+  switch (finish) {
+    case Finish::paint:
+      return {0.0f, 0.45f};
+    case Finish::anodised:
+      return {0.35f, 0.32f};
+    case Finish::metal:
+      return {0.85f, 0.30f};
+    case Finish::carbon:
+      return {0.0f, 0.22f};
+    case Finish::foil:
+      return {0.95f, 0.38f};
+  }
+  return {0.0f, 0.5f};
+}
+
 namespace {
 
 constexpr float pi_f = std::numbers::pi_v<float>;
@@ -37,26 +54,6 @@ Mesh revolve(const std::vector<Outline>& outline, int sides) {
     }
   }
   return mesh;
-}
-
-struct Surface {
-  float metal, roughness;
-};
-
-Surface surface_of(Finish finish) {
-  switch (finish) {
-    case Finish::paint:
-      return {0.0f, 0.45f};
-    case Finish::anodised:
-      return {0.35f, 0.32f};
-    case Finish::metal:
-      return {0.85f, 0.30f};
-    case Finish::carbon:
-      return {0.0f, 0.22f};
-    case Finish::foil:
-      return {0.95f, 0.38f};
-  }
-  return {0.0f, 0.5f};
 }
 
 SolidInstance solid(const Vec3f& a, const Vec3f& b, float radius_a, float radius_b, const Color& c,
@@ -114,6 +111,14 @@ Mesh plain_cylinder_mesh(int sides) {
                   {1, 0, 0, 1, 1},
                   {0, 0, 0, 1, 1}},
                  sides);
+}
+
+Mesh ribbon_mesh(float before, float beyond) {
+  return {{{{-1, 0, -before}, {-1, 0, 0}, 2},
+           {{1, 0, -before}, {1, 0, 0}, 2},
+           {{1, 0, beyond}, {1, 0, 0}, 3},
+           {{-1, 0, beyond}, {-1, 0, 0}, 3}},
+          {0, 3, 2, 0, 2, 1}};
 }
 
 // The outline in the plane of y and z, counter-clockwise seen from +x: round at a, then along to b.

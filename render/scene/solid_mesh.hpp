@@ -26,6 +26,9 @@ Mesh capsule_mesh(int sides, int cap_rings);  // round ends beyond a and b; a ba
 Mesh cylinder_mesh(int sides);                // flat ends at a and b with a bevel; a cone where a radius is 0
 Mesh plate_mesh(int parts);                   // round around a, flat at b; x is across it
 Mesh plain_cylinder_mesh(int sides);          // the same without the bevel
+// Flat, between the two sides of a body as they are seen: for what is a few pixels wide. Its ends are 2 and
+// 3, x is across the line of sight, y towards the eye; it goes on by so much before a and beyond b [radii].
+Mesh ribbon_mesh(float before, float beyond);
 
 // One body of a mesh: 16 floats, as the shader takes them.
 struct SolidInstance {
@@ -35,6 +38,11 @@ struct SolidInstance {
   float metal, roughness;      // 0..1
   Vec3f side = Vec3f::Zero();  // of a plate: across it; else zero
 };
+
+struct Surface {
+  float metal, roughness;  // 0..1
+};
+Surface surface_of(Finish finish);
 
 // The instances of a picture by the mesh that they use.
 struct Solids {

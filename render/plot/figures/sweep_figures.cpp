@@ -29,6 +29,17 @@ std::string count_sentence(const SweepPlan& plan, const Sweep& sweep) {
   return text + ".";
 }
 
+// What never comes, a time at which a run is not deployed say, has no place on an axis.
+std::string endless_sentence(const SweepPlan& plan, const Sweep& sweep, std::size_t measure) {
+  const auto endless = std::count_if(sweep.table.rows.begin(), sweep.table.rows.end(), [&](const auto& row) {
+    return std::isinf(number_of(row[plan.axes.size() + 1 + measure]));
+  });
+  return endless == 0
+             ? ""
+             : " Infinite in " + std::to_string(endless) +
+                   (endless == 1 ? " of them, which is not drawn." : " of them, which are not drawn.");
+}
+
 // Of a force: in how many of the runs the rigid model does not determine it.
 std::string uniqueness_sentence(const SweepPlan& plan, const Sweep& sweep, std::size_t measure) {
   const std::string name = uniqueness_of(plan.measures[measure].name);
@@ -249,7 +260,8 @@ std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, con
     }
     f.name = "sweep_" + file_name(plan.measures[m].name);
     f.title = heading(plan.measures[m].label) + ": " + scene;
-    f.caption += count_sentence(plan, sweep) + uniqueness_sentence(plan, sweep, m);
+    f.caption +=
+        count_sentence(plan, sweep) + endless_sentence(plan, sweep, m) + uniqueness_sentence(plan, sweep, m);
     if (f.panels[0].y.zeros_at_floor) {
       std::vector<double> drawn;
       for (const Curve& c : f.panels[0].curves) drawn.insert(drawn.end(), c.y.begin(), c.y.end());

@@ -236,8 +236,10 @@ TEST_CASE("glTF: every rod and joint of the whole is where it was") {
   const Exported e("gltf");
   const Glb glb(e.text("animation.glb"));
   const auto& nodes = glb.json["nodes"];
-  REQUIRE(nodes.size() == 1 + e.rods + e.nodes + 2 * e.rods + 1);  // two fittings each, and a camera
-  REQUIRE(nodes[0]["children"].size() == e.rods + e.nodes + 1);
+  // Two fittings each, arrows of a shaft and a head in a node, and a camera.
+  const std::size_t loads = e.structure.load_copies.size();
+  REQUIRE(nodes.size() == 1 + e.rods + e.nodes + 2 * e.rods + 3 * loads + 1);
+  REQUIRE(nodes[0]["children"].size() == e.rods + e.nodes + loads + 1);
   // z up becomes y up, x stays.
   const auto root = nodes[0]["rotation"].get<std::vector<double>>();
   const Eigen::Quaterniond up(root[3], root[0], root[1], root[2]);
@@ -290,16 +292,16 @@ TEST_CASE("glTF: rods and joints have names, places, sizes and the colours of th
   for (std::size_t n = 0; n < e.nodes; ++n) {
     const auto& node = json["nodes"][1 + e.rods + n];
     CHECK(node["name"] == e.structure.node_copies[n].name);
-    CHECK(node["mesh"] == json["meshes"].size() - 1);
+    CHECK(node["mesh"] == mesh_of.size() + 1);
     double thickest = 0;  // joints stand out by half of the thickest rod's radius
     for (const RodCopy& rod : e.structure.rod_copies)
       if (rod.a == static_cast<int>(n) || rod.b == static_cast<int>(n))
         thickest = std::max(thickest, e.structure.rods[static_cast<std::size_t>(rod.source)].radius);
     CHECK(node["scale"][1].get<double>() == Approx(1.5 * thickest).epsilon(1e-6));
   }
-  // A mesh with a colour of its own for each group, one for fittings and one for joints.
+  // A mesh with a colour of its own for each group, one for fittings, one for joints, two for arrows.
   REQUIRE(mesh_of.size() >= 2);
-  CHECK(json["meshes"].size() == mesh_of.size() + 2);
+  CHECK(json["meshes"].size() == mesh_of.size() + 4);
   std::set<std::vector<double>> colours;
   for (const auto& [group, mesh] : mesh_of) {
     CHECK(json["meshes"][mesh]["name"] == group);

@@ -22,6 +22,8 @@ ParamSet values_of(const ForceKind& kind) {
   for (const ParamSpec& spec : kind.params()) {
     if (spec.name == "static")
       values.set("static", 99.0);  // no less than kinetic
+    else if (spec.name.starts_with("pin_"))
+      continue;  // of hinges of a structure that moves (pin_friction_test)
     else if (spec.name == "times")
       values.set("times", std::vector<double>{0, 1, 2});
     else if (spec.name == "values")
@@ -58,6 +60,7 @@ Force force_of(const ForceKind& kind) {
   force.slip = -1;  // of friction: what sticks has no force
   if (kind.members == Members::path) {
     force.smoothing = 0.0;
+    force.kinetic = 0.3;  // on its pulleys, over which tensions grow by no more than e
     force.rest = force.unstressed.offset = 0.4;
     force.unstressed.kind = TimeFunction::Kind::rate;
     force.unstressed.rate = 0.3;
@@ -99,6 +102,11 @@ Structure sample() {
                                      [](const ForceKind& kind) { return kind.members == Members::path; }));
   net.smoothing = 5.0;  // wider than any stretch here: within its bend
   net.damping = 0.3;
+  s.forces.push_back(net);
+  // Over a node where it creeps, and back to it at once.
+  net.measure.terms.push_back({1.0, {MeasureKind::length, {3, 2}, Vec3::Zero(), 0, {}}});
+  net.kinetic = 0.4;
+  net.holding = 7.0;  // faster than anything here
   s.forces.push_back(net);
   add("torsion_spring", {}).measure = {MeasureKind::angle, {0, 1, 2, 3}, n, 0.5, {}};
   add("torsion_spring", {}).measure = {MeasureKind::fold, {}, Vec3::Zero(), 0, {}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rods that give: order, stiff limits, energy, and closed forms.
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -62,6 +63,29 @@ VectorXd end_at(const std::string& scene, int stages, double step) {
   REQUIRE(run.status == RunStatus::completed);
   return end_positions(run);
 }
+
+// Two bars of aluminium, A = 3e-5 m^2 and 5e-5 m^2, from the ground to a loaded node.
+const std::string truss = R"(
+[structure]
+kind = "custom"
+rod_model = "quasi-static"
+youngs_modulus = 7e10
+nodes = [
+  {name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [2.1, 0, 0], fixed = true},
+  {name = "C", position = [0.5, 0, -1.2], mass = 4}]
+rods = [{name = "a", nodes = ["A", "C"], mass = 0, area = 3e-5},
+        {name = "b", nodes = ["B", "C"], mass = 0, area = 5e-5}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["C"]
+normal = [0, 1, 0]
+[[loads]]
+nodes = ["C"]
+force = [700, 0, -1900]
+[solver]
+step = 0.1
+end_time = 0.3
+)";
 
 }  // namespace
 
@@ -325,6 +349,50 @@ TEST_CASE("elastic rods: what cannot be is refused, once and by its key") {
   CHECK_THAT(with("elastic = true", "free_length = 0.9"), Catch::Contains("is for elastic rods"));
   CHECK_THAT(error_of("[structure]\nkind = 'hoop'\nrod_model = 'elastic'\n"),
              Catch::Contains("structure.youngs_modulus") && Catch::Contains("rod_model = \"elastic\" needs"));
+}
+
+// n_a N_a + n_b N_b = f and n_i . u = N_i l_i / (E A_i), n_i from the support to C: two equations each.
+TEST_CASE("quasi-static rods: two bars under a load give by N l / EA") {
+  const Simulation run = run_scene(truss);
+  REQUIRE(run.status == RunStatus::completed);
+  const std::size_t last = run.trajectory.size() - 1;
+  const double la = 1.3, lb = 2.0;  // (0.5, 1.2) and (1.6, 1.2)
+  Eigen::Matrix2d n;                // columns n_a, n_b in x and z
+  n << 0.5 / la, -1.6 / lb, -1.2 / la, -1.2 / lb;
+  const Eigen::Vector2d force = n.inverse() * Eigen::Vector2d(700, -1900);
+  const Eigen::Vector2d stretch(force[0] * la / (7e10 * 3e-5), force[1] * lb / (7e10 * 5e-5));
+  const Eigen::Vector2d u = n.transpose().inverse() * stretch;
+  REQUIRE(u.norm() > 1e-3);
+  const VectorXd shown = run.trajectory.positions(last);
+  // Round-off of coordinates of a metre; the multipliers' is 1e-16 of 1e3 N.
+  CHECK(shown[6] - 0.5 == Approx(u[0]).margin(1e-14));
+  CHECK(shown[8] + 1.2 == Approx(u[1]).margin(1e-14));
+  CHECK(shown.head<6>() == run.trajectory.positions(0).head<6>());
+  CHECK(run.trajectory.node_positions(last)[6] == Approx(0.5).margin(1e-15));  // the motion stays rigid
+}
+
+TEST_CASE("quasi-static rods: a bar that is pushed shortens by F l / EA") {
+  const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+rod_model = "quasi-static"
+youngs_modulus = 2.1e11
+nodes = [{name = "O", position = [0.2, 0, 0], fixed = true}, {name = "A", position = [1.9, 0, 0], mass = 3}]
+rods = [{nodes = ["O", "A"], mass = 0.6, area = 2e-5}]
+[[structure.constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [1, 0, 0]
+[[loads]]
+nodes = ["A"]
+force = [-830, 0, 0]
+[solver]
+step = 0.1
+end_time = 0.2
+)");
+  REQUIRE(run.status == RunStatus::completed);
+  const double x = run.trajectory.positions(run.trajectory.size() - 1)[3];
+  CHECK(1.9 - x == Approx(830 * 1.7 / (2.1e11 * 2e-5)).margin(1e-14));
 }
 
 }  // namespace elastic_rods_test

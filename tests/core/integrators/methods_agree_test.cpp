@@ -155,6 +155,9 @@ std::vector<Case> force_cases() {
       f("cable", "elastic, taut, paid out",
         "nodes = ['B', 'A', 'C']\naxial_stiffness = 60\nlength = 0.3\nmotion = "
         "'rate'\nrate = 0.1\ndamping = 0.4"),
+      f("cable", "which rubs on the node that it runs over",
+        "nodes = ['B', 'A', 'C']\naxial_stiffness = 60\nlength = 0.3\npulley_friction = 0.3\n"
+        "pulley_creep = 50"),
       f("combination", "a length and an angle",
         "terms = ['1 length O C', '0.5 angle B A C']\nstiffness = 12\ndamping = 0.4\nfree_value = 0.9"),
       f("motor", "a torque-speed line and a rotor",
@@ -177,6 +180,8 @@ std::vector<Case> force_cases() {
       f("drag", "of two nodes", "nodes = ['B', 'C']\ndamping = 1.3"),
       f("friction", "of a joint, which goes on turning",
         "nodes = ['O', 'A', 'B']\nkinetic = 0.4\nstatic = 0.5"),
+      f("friction", "of a pin by its load, which goes on turning",
+        "nodes = ['O', 'A', 'B']\nkinetic = 0\npin_friction = 0.2\npin_radius = 0.05"),
       f("offload", "from trolleys that stay", "nodes = ['A', 'B', 'C']\nlength = 0.9"),
   };
 }

@@ -85,6 +85,47 @@ duration = 1.3
   CHECK(time_of(run, "deployed") == Approx(1.3).epsilon(1e-4));
 }
 
+// A mass of 2 kg that flies at 1 m/s past the end of its own cable, which is drawn in at 0.5 m/s but slack
+// when the mass latches after 1.2 s: 2.4 m of it for 1.8 m of way. From then on the winch stands still, so
+// that nothing ever pulls against the latch; drawn on, the cable would be taut at 2.4 s.
+TEST_CASE("a structure that latches while a cable is slack stops what draws it in") {
+  for (const char* cable : {"", "axial_stiffness = 700\n"}) {
+    const Simulation run = run_scene(std::string(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], velocity = [1, 0, 0], mass = 2},
+         {name = "E", position = [3, 0, 0], fixed = true}]
+[[structure.constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [1, 0, 0]
+[deployment]
+measure = "coordinate A along 1 0 0"
+deployed = 1.2
+[solver]
+step = 0.07
+end_time = 5
+at_deployed = "latch"
+[[constraints]]
+kind = "cable"
+name = "rope"
+nodes = ["A", "E"]
+motion = "rate"
+rate = -0.5
+)") + cable);
+    INFO(cable << run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    CHECK(run.trajectory.end_time() == Approx(5));
+    CHECK(time_of(run, "latched") == Approx(1.2).margin(1e-9));
+    CHECK(time_of(run, "rope pulls") < 0);
+    CHECK(testing::end_positions(run)[0] == Approx(1.2).margin(1e-9));
+    const Diagnostics d = diagnose(run);
+    CHECK(d.at("impact_loss_J").values.back() == Approx(1.0).epsilon(1e-9));
+    CHECK(testing::largest(d, "potential_energy_J") <= 1e-12);
+    CHECK(testing::largest(d, "energy_balance_J") <= 1e-9);
+  }
+}
+
 TEST_CASE("a deployment that cannot be says why") {
   CHECK(error_of(pushed, {"deployment.deployed=0.4"}).find("nothing deploys") != std::string::npos);
   CHECK(error_of(pushed, {"deployment.deployed=0.2", "deployment.stowed=1"}) == "");

@@ -135,6 +135,25 @@ TEST_CASE("a sweep over decades is drawn on a log axis, and its axes tell their 
   for (const Figure& figure : figures) CHECK(figure.panels[0].x.label == "solver step (s)");
 }
 
+TEST_CASE("a sweep's figure says how many runs never get there, and names thirds shortly", "[figures]") {
+  SweepPlan plan{{find_scene("hoop6_sector"), {}},
+                 {parse_axis("structure.post_length=1:2:5"), parse_axis("structure.chord_rod_length=2:3:4")},
+                 {},
+                 {}};
+  plan.measures = {find_measure("deploy_time")};
+  check_plan(plan);
+  Sweep sweep{{plan.columns(), {}}};
+  for (const std::string& post : plan.axes[0].values)
+    for (const std::string& chord : plan.axes[1].values)
+      sweep.table.rows.push_back({post, chord, "completed", chord == "3" ? "inf" : "4.9"});
+  const Figure figure = sweep_figures(plan, sweep, "Ring").front();
+  CHECK(figure.caption == "20 runs. Infinite in 5 of them, which are not drawn.");
+  const auto& curves = figure.panels[0].curves;
+  REQUIRE(curves.size() == 4);
+  CHECK(curves[0].label == "chord rod length = 2 m");
+  CHECK(curves[1].label == "chord rod length = 2.33333 m");
+}
+
 TEST_CASE("the table of a map has a row for every cell", "[figures]") {
   SweepPlan plan{{find_scene("hoop6_sector"), {"solver.step=0.05"}}, {}, {}, {}};
   for (const char* axis : {"structure.fold_angle=40:80:5", "structure.hinge_force=100:400:5"})

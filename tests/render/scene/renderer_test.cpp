@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/gl/functions.hpp"
+#include "render/image/image_scale.hpp"
 #include "render/scene/view.hpp"
 
 using namespace unfurl;
@@ -159,6 +160,39 @@ TEST_CASE("edges are anti-aliased") {
     }
   }
   CHECK(between >= 60);
+}
+
+// What is thin is drawn as one flat ribbon: it has to look as the round body does, which is drawn with facets
+// in a picture four times as large.
+TEST_CASE("thin bodies look as their enlargements do, scaled down") {
+  Studio studio;
+  Renderer large(*studio.context, 4 * width, 4 * height);
+  const Color red{0.8f, 0.2f, 0.1f, 1}, blue{0.2f, 0.4f, 0.8f, 1};
+  DrawList list = empty_room();
+  list.ground.shown = false;
+  const Image background = studio.renderer.draw(list);
+  const auto check = [&](const DrawList& seen) {
+    const Image thin = studio.renderer.draw(seen), round = scaled_down(large.draw(seen), width, height);
+    double sum = 0, there = 0;
+    for (std::size_t i = 0; i < thin.rgba.size(); ++i) {
+      if (std::abs(round.rgba[i] - background.rgba[i]) < 6) continue;
+      sum += std::abs(thin.rgba[i] - round.rgba[i]);
+      ++there;
+    }
+    CHECK(there > 300);
+    // With four samples a pixel at an edge has up to an eighth of a contrast of some 200 too much or too
+    // little, half of that in the mean, and about half of the pixels are at edges: 6. The rest is light.
+    CHECK(sum / there < 9);
+  };
+  for (const Vec3f& along : {Vec3f(2, 0.3f, 0.4f), Vec3f(0.9f, 0.1f, 1), Vec3f(0.3f, 2, 0.1f)}) {
+    const Vec3f middle(0, 0, 0.5f), side = along.cross(Vec3f(0.2f, 0.5f, 1)).normalized();
+    DrawList rod = list, plate = list;
+    rod.tubes.push_back({middle - along, middle + along, 0.055f, red, Finish::anodised});
+    rod.sleeves.push_back({middle, middle + 0.3f * along, 0.07f, blue, Finish::metal});
+    check(rod);
+    plate.plates.push_back({middle - along, middle + along, side, 0.07f, 0.03f, blue, Finish::metal});
+    check(plate);
+  }
 }
 
 TEST_CASE("labels are drawn over the picture") {

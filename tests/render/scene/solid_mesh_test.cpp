@@ -75,6 +75,18 @@ TEST_CASE("fine meshes have the volume of the body, from inside") {
   CHECK(volume(cylinder_mesh(64), 4) == Approx(cylinder).epsilon(0.003));
 }
 
+TEST_CASE("what is a few pixels wide is a ribbon, unless its end would be seen") {
+  CHECK(is_ribbon(BodyKind::capsule, 3, 0.5f));
+  CHECK_FALSE(is_ribbon(BodyKind::capsule, 3, 0.95f));
+  CHECK_FALSE(is_ribbon(BodyKind::capsule, 6, 0));
+  CHECK_FALSE(is_ribbon(BodyKind::ball, 1, 0));
+  // The flat end of a cylinder is an ellipse of radius times cosine: about a pixel at most is left out.
+  for (float radius = 0.3f; radius < 6; radius *= 1.2f)
+    for (float cosine = 0; cosine < 1; cosine += 0.05f)
+      for (const BodyKind kind : {BodyKind::cylinder, BodyKind::plate})
+        if (is_ribbon(kind, radius, cosine)) CHECK(radius * cosine < 1.11f);
+}
+
 TEST_CASE("facets are finer the larger a body is in the picture, and never far from round") {
   CHECK(detail_level(0.5f) == 0);
   CHECK(detail_level(500) == detail_levels - 1);

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/forces/pin_loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/forces/elastic_rods.hpp"
+#include "core/math/saddle_solver.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr int most_rounds = 200;
+constexpr double settled = 4 * std::numeric_limits<double>::epsilon();
+
+Structure without_pin_friction(const Structure& structure) {
+  Structure out = structure;
+  for (Force& force : out.forces)
+    if (PinLoads::arm(force) > 0) force.slip = 0, force.size.offset = 0;
+  return out;
+}
+
+// Nodes without mass that are held: any mass will do.
+SparseRows positive_mass(const SparseRows& mass) {
+  SparseRows out = mass;
+  for (Index i = 0; i < out.rows(); ++i)
+    if (!(out.coeff(i, i) > 0)) out.coeffRef(i, i) = 1.0;
+  out.makeCompressed();
+  return out;
+}
+
+}  // namespace
+
+bool PinLoads::any(const Structure& structure) {
+  return std::any_of(structure.forces.begin(), structure.forces.end(),
+                     [](const Force& force) { return arm(force) > 0; });
+}
+
+int PinLoads::rod_of(const Structure& structure, const Force& force) {
+  if (force.measure.kind != MeasureKind::angle || force.measure.nodes[0] != force.measure.nodes[2]) return -1;
+  const int hinge = force.measure.nodes[0], other = force.measure.nodes[1];
+  for (std::size_t i = 0; i < structure.rods.size(); ++i) {
+    const Rod& rod = structure.rods[i];
+    if ((rod.a == hinge && rod.b == other) || (rod.b == hinge && rod.a == other)) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+PinLoads::PinLoads(const Structure& structure, const SparseRows& node_mass)
+    : bare_(without_pin_friction(structure)), mass_(positive_mass(node_mass)) {
+  for (const ForceKind& kind : force_kinds())
+    if (auto block = kind.make(bare_, node_mass)) forces_.push_back(std::move(block));
+  for (const ConstraintKind& kind : constraint_kinds()) {
+    auto block = kind.make(bare_);
+    if (!block) continue;
+    if (kind.kind == "rod") rod_row_ = rows_;
+    rows_ += block->rows();
+    constraints_.push_back(std::move(block));
+  }
+  const std::vector<int> followed = followed_angles(structure).of_force;
+  for (std::size_t i = 0; i < structure.forces.size(); ++i) {
+    const int rod = rod_of(structure, structure.forces[i]);
+    if (arm(structure.forces[i]) > 0 && rod >= 0) add_pin(structure, i, rod, followed[i], node_mass);
+  }
+}
+
+void PinLoads::add_pin(const Structure& structure, std::size_t force, int rod, int followed,
+                       const SparseRows& node_mass) {
+  const Force& f = structure.forces[force];
+  const auto gives = [](const Rod& r) { return r.gives; };
+  const auto before = std::count_if(structure.rods.begin(), structure.rods.begin() + rod, gives);
+  const int row = gives(structure.rods[static_cast<std::size_t>(rod)]) ? -1 : rod - static_cast<int>(before);
+  Pin pin{force,
+          MeasureFunction(f.measure, structure.deployment),
+          followed,
+          f.kinetic,
+          arm(f),
+          f.slip,
+          rod,
+          f.measure.nodes[0],
+          f.measure.nodes[1],
+          row};
+  for (std::size_t i = 0; i < bare_.forces.size(); ++i) {
+    const Force& other = bare_.forces[i];
+    if (arm(structure.forces[i]) > 0) continue;
+    if (!acts_on(pin, other.measure) &&
+        !(other.kind == "joint_damping" && other.nodes == std::vector{pin.hinge}))
+      continue;
+    Structure alone = bare_;  // the others keep their places, but are of no kind
+    for (std::size_t k = 0; k < alone.forces.size(); ++k)
+      if (k != i) alone.forces[k].kind.clear();
+    for (const ForceKind& kind : force_kinds())
+      if (kind.kind == other.kind)
+        if (auto block = kind.make(alone, node_mass)) pin.couples.push_back(std::move(block));
+  }
+  Index r = 0;
+  for (const auto& block : constraints_)
+    for (int k = 0; k < block->rows(); ++k, ++r)
+      if (const int source = block->source(k);
+          source >= 0 && acts_on(pin, bare_.constraints[static_cast<std::size_t>(source)].measure) &&
+          bare_.constraints[static_cast<std::size_t>(source)].kind == "measure")
+        pin.couple_rows.push_back(r);
+  pins_.push_back(std::move(pin));
+}
+
+// Is it an angle of the rod at the hinge?
+bool PinLoads::acts_on(const Pin& pin, const Measure& measure) const {
+  if (measure.kind != MeasureKind::angle) return false;
+  const auto& n = measure.nodes;
+  return (n[0] == pin.hinge && n[1] == pin.other) || (n[2] == pin.hinge && n[3] == pin.other);
+}
+
+SparseRows PinLoads::jacobian(const double* q) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<double> values;
+  int row = 0;
+  for (const auto& block : constraints_) {
+    std::size_t count = 0, next = 0;
+    for (int r = 0; r < block->rows(); ++r) count += block->stencil(r).size();
+    values.resize(count);
+    block->jacobian(q, values.data());
+    for (int r = 0; r < block->rows(); ++r, ++row)
+      for (const int c : block->stencil(r)) entries.emplace_back(row, c, values[next++]);
+  }
+  SparseRows G(rows_, mass_.rows());
+  G.setFromTriplets(entries.begin(), entries.end());
+  return G;
+}
+
+Vec3 PinLoads::linear_load(const Pin& pin, const double* q, const SparseRows& G, const Response& r) const {
+  const Rod& rod = bare_.rods[static_cast<std::size_t>(pin.rod)];
+  const Vec3 here = r.a.segment<3>(3 * pin.hinge), there = r.a.segment<3>(3 * pin.other);
+  Vec3 load = bare_.lumped_mass ? Vec3(rod.mass / 2 * here) : Vec3(rod.mass / 6 * (2 * here + there));
+  if (pin.row >= 0)
+    load +=
+        r.lambda[rod_row_ + pin.row] / rod.length * (node_vector(q, pin.hinge) - node_vector(q, pin.other));
+  for (const Index row : pin.couple_rows)
+    for (int k = 0; k < 3; ++k) load[k] -= r.lambda[row] * G.coeff(row, 3 * pin.other + k);
+  return load + r.friction.segment<3>(3 * pin.other);
+}
+
+Vec3 PinLoads::given_load(const Pin& pin, const Moment& at, const double* q, const double* v) const {
+  const Rod& rod = bare_.rods[static_cast<std::size_t>(pin.rod)];
+  Vec3 load = -rod.mass / 2 * bare_.gravity;
+  VectorXd force = VectorXd::Zero(mass_.rows());
+  for (const auto& couple : pin.couples) couple->add(at, q, v, 1.0, force.data());
+  load += force.segment<3>(3 * pin.other);
+  if (pin.row >= 0) return load;
+  std::vector<double> pull(bare_.rods.size());
+  ElasticRods(bare_).forces(at.t, q, v, pull.data());
+  const auto before =
+      std::count_if(bare_.rods.begin(), bare_.rods.begin() + pin.rod, [](const Rod& r) { return r.gives; });
+  return load + pull[static_cast<std::size_t>(before)] *
+                    (node_vector(q, pin.hinge) - node_vector(q, pin.other)).normalized();
+}
+
+// To all other forces, and to a unit torque of each friction in the sense in which its hinge is held back.
+// Empty: the equations cannot be solved.
+std::vector<PinLoads::Response> PinLoads::responses(const Moment& at, const double* q, const double* v,
+                                                    const SparseRows& G) const {
+  const Index n = mass_.rows();
+  VectorXd force = VectorXd::Zero(n), bias = VectorXd::Zero(rows_), gradient;
+  for (const auto& block : forces_) block->add(at, q, v, 1.0, force.data());
+  double* row = bias.data();
+  for (const auto& block : constraints_) {
+    block->bias(q, v, row);
+    if (block->rheonomic()) block->add_target(2, at.t, -1.0, row);
+    row += block->rows();
+  }
+  SaddleSolver saddle(mass_, G);
+  if (!saddle.factorise(G)) return {};
+  std::vector<Response> out;
+  const auto respond = [&](const VectorXd& f, const VectorXd& g, const VectorXd& friction) {
+    out.push_back({VectorXd(n), VectorXd(rows_), friction});
+    saddle.solve(f, g, out.back().a, out.back().lambda);
+  };
+  respond(force, -bias, VectorXd::Zero(n));
+  for (const Pin& pin : pins_) {
+    force.setZero();
+    gradient.resize(std::ssize(pin.measure.stencil()));
+    pin.measure.value_and_gradient(q, gradient.data(), at.near(pin.followed, pin.measure.reference()));
+    for (Index i = 0; i < gradient.size(); ++i)
+      force[pin.measure.stencil()[static_cast<std::size_t>(i)]] -= pin.slip * gradient[i];
+    respond(force, VectorXd::Zero(rows_), force);
+  }
+  return out;
+}
+
+std::vector<double> PinLoads::evaluate(const Moment& at, const double* q, const double* v) const {
+  std::vector<double> out(bare_.forces.size(), 0.0);
+  const std::size_t count = pins_.size();
+  const SparseRows G = jacobian(q);
+  const std::vector<Response> all = responses(at, q, v, G);
+  std::vector<double> tau(count);
+  std::vector<std::vector<Vec3>> loads(count);  // of each pin, by each response
+  for (std::size_t k = 0; k < count && !all.empty(); ++k) {
+    const Pin& pin = pins_[k];
+    tau[k] = pin.slip ? pin.kinetic : 0.0;
+    loads[k].push_back(given_load(pin, at, q, v) + linear_load(pin, q, G, all[0]));
+    for (std::size_t i = 0; i < count; ++i) {
+      Response r = all[i + 1];
+      if (pins_[i].hinge != pin.hinge || pins_[i].other != pin.other) r.friction.setZero();
+      loads[k].push_back(linear_load(pin, q, G, r));
+    }
+  }
+  for (int round = 0; round < most_rounds && !all.empty(); ++round) {
+    double change = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Pin& pin = pins_[k];
+      Vec3 sum = loads[k][0];
+      for (std::size_t i = 0; i < count; ++i) sum += tau[i] * loads[k][i + 1];
+      out[pin.force] = sum.norm();
+      const double next = pin.slip ? pin.kinetic + pin.arm * sum.norm() : 0.0;
+      change = std::max(change, std::abs(next - tau[k]) / std::max(next, 1e-300));
+      tau[k] = next;
+    }
+    if (change <= settled) return out;
+    if (!std::isfinite(change)) break;
+  }
+  for (const Pin& pin : pins_) out[pin.force] = std::numeric_limits<double>::quiet_NaN();
+  return out;
+}
+
+}  // namespace unfurl

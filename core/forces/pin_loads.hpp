@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/constraints/constraint.hpp"
+#include "core/forces/force.hpp"
+#include "core/structure/measure.hpp"
+
+namespace unfurl {
+
+// The forces that load hinges whose dry friction is mu r |F| (friction.hpp). F is that with which the pin
+// pulls the rod R from the hinge h to the first node A of the angle: of R's share M_R of the mass matrix, its
+// length (its row of G, or what it pulls with where it gives), and the couples C that act on R at the hinge,
+// springs, motors, dampers, friction and rows of its angle, each a force at A and its opposite at h,
+//
+//     F = (M_R (a - g))_h + lambda_R dPhi_R/dx_h + C_A     or with N d|d|/dx_h in place of the second
+//
+// with the accelerations and multipliers of the pose and its velocities, in node coordinates,
+//
+//     [ M  G^T ] [a     ]   [ F_0 - sum_k slip_k tau_k ds_k/dq ]
+//     [ G   0  ] [lambda] = [ g'' - v^T Hess Phi v             ],   tau_k = tau_k0 + mu r |F_k|
+//
+// of all forces F_0 but this friction, whose torques load the pins, too: a fixed point, found by iteration
+// from tau_k0, which contracts where mu r is small beside the rods. So F is a function of time, pose and
+// velocities like any other force.
+class PinLoads {
+ public:
+  PinLoads(const Structure& structure, const SparseRows& node_mass);
+  // |F| of each entry of Structure::forces [N]; 0 of those without such friction, NaN where there is no
+  // fixed point or the equations cannot be solved.
+  std::vector<double> evaluate(const Moment& at, const double* q, const double* v) const;
+
+  // mu r of a friction [m]; 0: its torque does not depend on a force.
+  static double arm(const Force& force) { return force.kind == "friction" ? force.size.offset : 0.0; }
+  static bool any(const Structure& structure);
+  // The rod from the hinge to the first node of a friction's angle; -1: no rod.
+  static int rod_of(const Structure& structure, const Force& force);
+
+ private:
+  struct Pin {
+    std::size_t force;
+    MeasureFunction measure;
+    int followed;
+    double kinetic, arm;
+    int slip, rod, hinge, other, row;  // row: of the lengths of rods that do not give, -1: it gives
+    std::vector<std::unique_ptr<ForceBlock>> couples = {};  // of the forces on R at the hinge
+    std::vector<Index> couple_rows = {};
+  };
+  // Of accelerations, multipliers and node forces of the friction that go with each other.
+  struct Response {
+    VectorXd a, lambda, friction;
+  };
+  void add_pin(const Structure& structure, std::size_t force, int rod, int followed,
+               const SparseRows& node_mass);
+  bool acts_on(const Pin& pin, const Measure& measure) const;
+  // The part of F that is linear in them, and the rest.
+  Vec3 linear_load(const Pin& pin, const double* q, const SparseRows& G, const Response& r) const;
+  Vec3 given_load(const Pin& pin, const Moment& at, const double* q, const double* v) const;
+  SparseRows jacobian(const double* q) const;
+  std::vector<Response> responses(const Moment& at, const double* q, const double* v,
+                                  const SparseRows& G) const;
+
+  Structure bare_;  // without this friction
+  SparseRows mass_;
+  std::vector<std::unique_ptr<ForceBlock>> forces_;
+  std::vector<std::unique_ptr<ConstraintBlock>> constraints_;
+  Index rows_ = 0, rod_row_ = 0;  // all rows of constraints; the first of a rod
+  std::vector<Pin> pins_;
+};
+
+}  // namespace unfurl

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// glTF as pictures show it: loads as arrows, materials of groups, surfaces that morph.
+#include <unistd.h>
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "core/export/formats.hpp"
+#include "core/export/unit_shapes.hpp"
+#include "tests/support/glb.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace gltf_looks_test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Five bays of a ring with the hinges' forces, and another of half the size on one node.
+struct Shown {
+  Simulation run = testing::run_scene(
+      "[structure]\nkind = 'hoop'\nmodel = 'sector'\nunits = 5\nhinge_force = 37\n[solver]\nstep = "
+      "0.02\nend_time = 0.14\n");
+  const Structure& structure = run.trajectory.structure();
+  ExportedLooks looks;
+  fs::path folder = fs::temp_directory_path() / ("unfurl_looks_" + std::to_string(::getpid()));
+
+  testing::Glb glb() const {
+    fs::create_directories(folder);
+    const Diagnostics d = diagnose(run);
+    find_export_format("gltf")->write({run, d, folder, "ring", 0.04, 2.5, {}, {}, {}, &looks});
+    std::ostringstream text;
+    text << std::ifstream(folder / "animation.glb", std::ios::binary).rdbuf();
+    fs::remove_all(folder);
+    return testing::Glb(text.str());
+  }
+};
+
+Vec3 point(const VectorXd& pose, int node) {
+  return pose.segment<3>(3 * node);
+}
+
+}  // namespace
+
+TEST_CASE("glTF: every load is an arrow that goes with its node and points along its force") {
+  const Shown shown;
+  const testing::Glb glb = shown.glb();
+  const auto& nodes = glb.json["nodes"];
+  const VectorXd last = shown.run.trajectory.positions_at(0.14);
+  std::size_t arrows = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const std::string name = nodes[i]["name"];
+    if (!name.starts_with("load at ") || !nodes[i].contains("children")) continue;
+    ++arrows;
+    const auto load = std::find_if(
+        shown.structure.load_copies.begin(), shown.structure.load_copies.end(), [&](const LoadCopy& l) {
+          return "load at " + shown.structure.node_copies[static_cast<std::size_t>(l.node)].name == name;
+        });
+    REQUIRE(load != shown.structure.load_copies.end());
+    const auto place = nodes[i]["translation"].get<std::vector<double>>();
+    CHECK((Vec3(place[0], place[1], place[2]) - point(last, load->node)).norm() < 1e-6);
+    CHECK(glb.keys(i, "translation").size() == 3 * 5);
+    const auto q = nodes[i]["rotation"].get<std::vector<double>>();
+    const Vec3 along = Eigen::Quaterniond(q[3], q[0], q[1], q[2]) * Vec3::UnitY();
+    CHECK((along - load->force.normalized()).norm() < 1e-6);
+    // The shaft begins at the node, the head goes on where it ends: single numbers, exact but for rounding.
+    const auto part = [&](int k, const char* key) {
+      return nodes[nodes[i]["children"][static_cast<std::size_t>(k)].get<std::size_t>()][key][1]
+          .get<double>();
+    };
+    CHECK(part(0, "translation") - 0.5 * part(0, "scale") == Approx(0).margin(1e-12));
+    CHECK(part(1, "translation") - 0.5 * part(1, "scale") == Approx(part(0, "scale")));
+  }
+  CHECK(arrows == shown.structure.load_copies.size());
+  CHECK(arrows > 0);
+}
+
+TEST_CASE("glTF: a group has the material that pictures give it") {
+  Shown shown;
+  const std::string group = shown.structure.rods.front().group;
+  shown.looks.materials = {{group, 0.61, 0.62, 0.63, 0.85, 0.3}};
+  const testing::Glb glb = shown.glb();
+  for (const auto& material : glb.json["materials"]) {
+    const auto& pbr = material["pbrMetallicRoughness"];
+    if (material["name"] == group) {
+      CHECK(pbr["baseColorFactor"].get<std::vector<double>>() == std::vector<double>{0.61, 0.62, 0.63, 1});
+      CHECK(pbr["metallicFactor"] == 0.85);
+      CHECK(pbr["roughnessFactor"] == 0.3);
+    } else {
+      CHECK(pbr["baseColorFactor"][0] != 0.61);
+    }
+  }
+}
+
+TEST_CASE("glTF: a surface is where its nodes are at every key") {
+  Shown shown;
+  shown.looks.surfaces = [](const VectorXd& pose) {
+    ExportedSurface s;
+    s.name = "sail";
+    s.triangles = {0, 1, 2};
+    s.opacity = 0.4;
+    for (const int node : {1, 4, 7}) {
+      const Vec3 p = point(pose, node);
+      for (int k = 0; k < 3; ++k)
+        s.positions.push_back(static_cast<float>(p[k])), s.normals.push_back(k == 2 ? 1.0f : 0.0f);
+    }
+    return std::vector<ExportedSurface>{s};
+  };
+  const testing::Glb glb = shown.glb();
+  const auto& json = glb.json;
+  std::size_t at = 0;
+  while (at < json["nodes"].size() && json["nodes"][at]["name"] != "sail") ++at;
+  REQUIRE(at < json["nodes"].size());
+  const auto& mesh = json["meshes"][json["nodes"][at]["mesh"].get<std::size_t>()];
+  const auto& shape = mesh["primitives"][0];
+  const auto& coat = json["materials"][shape["material"].get<std::size_t>()];
+  CHECK(coat["doubleSided"] == true);
+  CHECK(coat["alphaMode"] == "BLEND");
+  CHECK(coat["pbrMetallicRoughness"]["baseColorFactor"][3] == 0.4);
+  const auto base = glb.floats(shape["attributes"]["POSITION"].get<std::size_t>());
+  const std::size_t targets = shape["targets"].size();
+  REQUIRE(targets == 4);  // five keys, one of them the rest
+  const auto weights = glb.keys(at, "weights");
+  REQUIRE(weights.size() == 5 * targets);
+  const std::vector<double> times = {0, 0.04, 0.08, 0.12, 0.14};
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const VectorXd pose = shown.run.trajectory.positions_at(times[k]);
+    const std::vector<int> nodes = {1, 4, 7};
+    for (std::size_t v = 0; v < nodes.size(); ++v)
+      for (std::size_t c = 0; c < 3; ++c) {
+        double x = base[3 * v + c];
+        for (std::size_t j = 0; j < targets; ++j)
+          x += weights[k * targets + j] *
+               glb.floats(shape["targets"][j]["POSITION"].get<std::size_t>())[3 * v + c];
+        CHECK(x == Approx(point(pose, nodes[v])[static_cast<Index>(c)]).margin(2e-6));  // single precision
+      }
+  }
+}
+
+TEST_CASE("glTF: the camera sees the last pose whole, and it fills the picture") {
+  const Shown shown;
+  const testing::Glb glb = shown.glb();
+  const auto& node = glb.json["nodes"].back();
+  const auto& lens = glb.json["cameras"][0]["perspective"];
+  const auto place = node["translation"].get<std::vector<double>>(),
+             q = node["rotation"].get<std::vector<double>>();
+  const Eigen::Quaterniond turn(q[3], q[0], q[1], q[2]);
+  const double high = std::tan(0.5 * lens["yfov"].get<double>()),
+               wide = high * lens["aspectRatio"].get<double>();
+  const VectorXd last = shown.run.trajectory.positions_at(0.14);
+  double most = 0;
+  for (int n = 0; n < static_cast<int>(shown.structure.node_copies.size()); ++n) {
+    const Vec3 at = turn.conjugate() * (point(last, n) - Vec3(place[0], place[1], place[2]));
+    REQUIRE(at.z() < -lens["znear"].get<double>());  // it looks along its -z
+    most = std::max({most, std::abs(at.x() / at.z()) / wide, std::abs(at.y() / at.z()) / high});
+  }
+  CHECK(most == Approx(0.85).epsilon(1e-6));
+}
+
+TEST_CASE("an exported cone has its normals across its side") {
+  const ShapeMesh cone = unit_cone(16);
+  for (std::size_t i = 0; i < 2 * 16; i += 2) {  // base and tip of each side
+    const Vec3 base(cone.positions[3 * i], cone.positions[3 * i + 1], cone.positions[3 * i + 2]);
+    const Vec3 normal(cone.normals[3 * i], cone.normals[3 * i + 1], cone.normals[3 * i + 2]);
+    CHECK(normal.norm() == Approx(1).epsilon(1e-6));
+    CHECK(normal.dot(Vec3(0, 0.5, 0) - base) == Approx(0).margin(1e-6));
+    CHECK(normal.dot(Vec3(base.x(), 0, base.z())) > 0);
+  }
+}
+
+}  // namespace gltf_looks_test

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Dry friction of hinges by the force of their pins, against the closed form of a pendulum.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/path/path.hpp"
+#include "core/study/tolerance.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace pin_friction_test {
+
+namespace {
+
+using testing::end_positions, testing::error_of, testing::run_scene;
+
+// 1.3 kg on a rod of 0.8 m without mass, hung at P; B makes the angle with the vertical. mu r = 0.024 m.
+const std::string pendulum = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "P", position = [0, 0, 0], fixed = true}, {name = "B", position = [0, 0, -1], fixed = true},
+  {name = "A", position = [0.8, 0, 0], velocity = [0, 0, -0.5], mass = 1.3}]
+rods = [{name = "arm", nodes = ["P", "A"], mass = 0}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["A"]
+normal = [0, 1, 0]
+[gravity]
+acceleration = [0, 0, -9.81]
+[[forces]]
+kind = "friction"
+name = "pin"
+nodes = ["A", "P", "B"]
+axis = [0, 1, 0]
+kinetic = 0
+pin_friction = 0.3
+pin_radius = 0.08
+[solver]
+stages = 4
+step = 0.005
+end_time = 0.3
+)";
+
+const double length = 0.8, weight = 9.81 / length, arm = 0.024 / length;
+
+// With th the angle from the vertical, N = m l (w^2 + (g / l) cos th) along the rod and tau / l across it,
+// |F| = N / sqrt(1 - (mu r / l)^2), so that for u = w^2 and b = (mu r / l) / sqrt(1 - (mu r / l)^2)
+//
+//     du/dth + 2 s b u = -2 (g / l) (sin th + s b cos th),   s = sgn w
+//
+// is linear: u = C e^(-2 s b th) + P cos th + Q sin th.
+double rate_squared(double th, double th_0, double u_0, double s) {
+  const double b = s * arm / std::sqrt(1 - arm * arm);
+  // -P sin + Q cos + 2 b (P cos + Q sin) = -2 (g/l) (sin + b cos)
+  const double Q = -6 * weight * b / (1 + 4 * b * b), P = 2 * weight + 2 * b * Q;
+  const auto particular = [&](double x) { return P * std::cos(x) + Q * std::sin(x); };
+  return (u_0 - particular(th_0)) * std::exp(-2 * b * (th - th_0)) + particular(th);
+}
+
+double angle_of(const VectorXd& q) {
+  return std::atan2(q[6], -q[8]);
+}
+
+}  // namespace
+
+TEST_CASE("a pendulum whose pin rubs by its load moves as its closed form") {
+  const Simulation run = run_scene(pendulum);
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  const std::size_t last = run.trajectory.size() - 1;
+  const VectorXd q = end_positions(run), v = run.trajectory.node_velocities(last);
+  const double th = angle_of(q), u = v.tail<3>().squaredNorm() / (length * length);
+  REQUIRE(th < 1.2);  // it has moved
+  // Order 6 of w h = 0.02, s = 4; without friction u differs by 2 b of it, some 5 %.
+  CHECK(u == Approx(rate_squared(th, pi / 2, 0.25 / (length * length), -1)).epsilon(1e-10));
+  const Diagnostics d = diagnose(run);
+  CHECK(d.at("dissipated_J").values.back() > 0.05);
+  CHECK(testing::largest(d, "energy_balance_J") <= 1e-9);  // a quadrature of order 6
+}
+
+// Turning points by the closed form, one after the other, until the pin holds the weight: at rest F = m g, so
+// within |sin th| <= mu r / l.
+TEST_CASE("a pin that rubs by its load turns a pendulum round and stops it where the closed form says") {
+  const Simulation run = run_scene(pendulum, {"solver.end_time=60", "structure.nodes[2].velocity=[0,0,0]"});
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  double th = pi / 2, s = -1;
+  std::size_t turns = 0;
+  for (const Event& event : run.events) {
+    if (event.kind == "slip") continue;
+    CHECK(event.element == "pin");
+    // The next zero of u: by bisection between the lowest pose and where it came from.
+    double inside = 0, outside = s * std::abs(th) * 1.001;
+    for (int i = 0; i < 100; ++i) {
+      const double middle = 0.5 * (inside + outside);
+      (rate_squared(middle, th, 0, s) > 0 ? inside : outside) = middle;
+    }
+    if (rate_squared(0, th, 0, s) <= 0) break;  // it does not come so far: the last half swing
+    th = inside;
+    CHECK(angle_of(run.trajectory.positions_at(event.t)) == Approx(th).margin(1e-7));
+    s = -s;
+    ++turns;
+  }
+  CHECK(turns > 10);
+  CHECK(run.events.back().kind == "stick");
+  const std::size_t last = run.trajectory.size() - 1;
+  CHECK(std::abs(std::sin(angle_of(run.trajectory.positions(last)))) <= arm);
+  CHECK(run.trajectory.node_velocities(last).norm() <= 1e-12);
+}
+
+TEST_CASE("friction by a pin's force where there is no such force is refused with one clear error") {
+  CHECK(error_of(pendulum, {"forces[0].pin_radius=0"}).find("forces[0].pin_radius: is missing") !=
+        std::string::npos);
+  CHECK(error_of(pendulum, {"forces[0].nodes=[\"B\",\"P\",\"A\"]"}).find("with a rod from A to HINGE") !=
+        std::string::npos);
+  const Scene path = read_scene_text(pendulum, "s.toml", {"solver.model=path"});
+  CHECK_THROWS_WITH(simulate_as_asked(build_model(path), path.solver),
+                    Catch::Contains("friction depends on the force of a pin"));
+  // A second rod beside the first: neither force is determined.
+  const std::string twin =
+      "structure.rods=[{name=\"arm\",nodes=[\"P\",\"A\"],mass=0},"
+      "{name=\"twin\",nodes=[\"A\",\"P\"],mass=0}]";
+  CHECK(error_of(pendulum, {twin}).find("which rigid rods leave open here ('arm'") != std::string::npos);
+}
+
+}  // namespace pin_friction_test
