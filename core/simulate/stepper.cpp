@@ -38,8 +38,7 @@ constexpr double accumulated = 1e-4;
 constexpr int most_switches = 20;
 constexpr double one_time = 1e-9;  // share of a step
 constexpr long most_in_step = 50;  // times as many in one step, at whatever times
-// Steps of the method are at least so long, as a share of solver.step: below, multipliers are noise divided
-// by the step.
+// Steps of the method are at least so long, as a share of solver.step: multipliers are noise over the step.
 constexpr double shortest = 1e-7;
 // So many steps before the deployed pose a failed step is put down to it.
 constexpr double near_deployed = 5;

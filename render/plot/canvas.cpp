@@ -38,8 +38,9 @@ void Canvas::marker(Marker kind, Point c, double r, FigureColor fill) {
 }
 
 std::span<const double> dash_pattern(Dash dash) {
-  static constexpr std::array dashed{5.0, 2.6}, dotted{1.2, 1.9};
+  static constexpr std::array dashed{5.0, 2.6}, dotted{1.2, 1.9}, long_dashed{10.0, 3.0};
   static constexpr std::array dash_dot{6.0, 2.2, 1.2, 2.2};
+  static constexpr std::array dash_dot_dot{6.0, 2.0, 1.2, 2.0, 1.2, 2.0};
   switch (dash) {
     case Dash::solid:
       return {};
@@ -49,6 +50,10 @@ std::span<const double> dash_pattern(Dash dash) {
       return dotted;
     case Dash::dash_dot:
       return dash_dot;
+    case Dash::long_dashed:
+      return long_dashed;
+    case Dash::dash_dot_dot:
+      return dash_dot_dot;
   }
   return {};
 }

@@ -11,7 +11,7 @@ struct FigureColor {
   float r = 0, g = 0, b = 0, a = 1;
 };
 
-enum class Dash { solid, dashed, dotted, dash_dot };
+enum class Dash { solid, dashed, dotted, dash_dot, long_dashed, dash_dot_dot };
 enum class Marker { none, circle, square, triangle, diamond };
 
 struct Curve {

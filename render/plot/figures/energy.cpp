@@ -22,8 +22,8 @@ constexpr Share shares[] = {
     {"kinetic_energy_J", "kinetic energy", 0, Dash::solid, "+"},
     {"potential_energy_J", "potential energy", 2, Dash::dash_dot, "+"},
     {"work_J", "work of the loads", 1, Dash::dashed, "\u2212"},
-    {"dissipated_J", "energy taken by dampers and friction", 5, Dash::dash_dot, "+"},
-    {"drive_work_J", "work of the drives and of rods that warm", 4, Dash::dashed, "\u2212"},
+    {"dissipated_J", "energy taken by dampers and friction", 5, Dash::dash_dot_dot, "+"},
+    {"drive_work_J", "work of the drives and of rods that warm", 4, Dash::long_dashed, "\u2212"},
     {"impact_loss_J", "energy lost in impacts", 6, Dash::dotted, "+"},
 };
 

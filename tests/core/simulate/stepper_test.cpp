@@ -58,7 +58,8 @@ TEST_CASE("a force that is set between steps acts from then on, and its work is 
   // plus gravity's; parabola after parabola.
   const Vec3 along = Vec3(2, 1, -2) / 3;
   const auto model = build_model(read_scene_text(
-      "gravity = [0, 0, -9.81]\n[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'P'\nposition = "
+      "gravity = {acceleration = [0, 0, -9.81]}\n[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = "
+      "'P'\nposition = "
       "[0.2, 0.3, "
       "-0.1]\nmass = 1.7\n[[constraints]]\nkind = 'line'\nnodes = ['P']\ndirection = [2, 1, -2]\n",
       "line.toml"));
