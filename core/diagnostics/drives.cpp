@@ -27,7 +27,9 @@ int held_row(const Model& model, const std::string& name) {
 DriveSample DriveChannel::of_row(const Model& model, const System& system, double t, const VectorXd& lambda,
                                  const std::vector<char>& unique) const {
   DriveSample s;
-  s.value = target_(t);
+  // A reel stands still once the structure is locked.
+  const TimeFunction& target = kind_ == Kind::reel ? model.structure.stops[index_].reel : target_;
+  s.value = target(t);
   int row = -1;
   if (kind_ == Kind::reel) {
     row = held_row(model, name_);
@@ -37,7 +39,7 @@ DriveSample DriveChannel::of_row(const Model& model, const System& system, doubl
       if (d.constraint == static_cast<int>(index_)) row = d.row;
   }
   s.effort = row >= 0 ? -scale_ * lambda[row] : unknown_effort;
-  s.power = s.effort * target_.derivative(1, t);
+  s.power = s.effort * target.derivative(1, t);
   s.unique = row >= 0 && (unique.empty() || unique[static_cast<std::size_t>(row)] != 0);
   return s;
 }
@@ -81,8 +83,7 @@ std::vector<DriveChannel> drive_channels(const Model& model) {
   }
   const Structure& structure = model.structure;
   for (std::size_t i = 0; i < structure.stops.size(); ++i)
-    if (structure.stops[i].reeled)
-      add(DriveChannel::Kind::reel, structure.stops[i].name, i).target_ = structure.stops[i].reel;
+    if (structure.stops[i].reeled) add(DriveChannel::Kind::reel, structure.stops[i].name, i);
   const FollowedAngles followed = followed_angles(structure);
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
     const Force& force = structure.forces[i];

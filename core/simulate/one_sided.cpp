@@ -237,10 +237,15 @@ std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {
   std::erase_if(locked, [&](std::size_t i) { return stops_[i].reeled; });  // the winch stops
   stops_.hold(locked, structure);
   stops_.stop_reels(t);
-  const auto stop = [t](Force& force) {
-    TimeFunction length;
-    length.offset = force.unstressed(t);
-    if (force.unstressed.moves()) force.unstressed = length;
+  const auto still = [t](const TimeFunction& law) {
+    TimeFunction constant;
+    constant.offset = law(t);
+    return constant;
+  };
+  for (Stop& stop : structure.stops)
+    if (stop.reeled) stop.reel = still(stop.reel);
+  const auto stop = [&](Force& force) {
+    if (force.unstressed.moves()) force.unstressed = still(force.unstressed);
   };
   std::for_each(structure.forces.begin(), structure.forces.end(), stop);
   for (Cable& cable : cables_) stop(cable.law);

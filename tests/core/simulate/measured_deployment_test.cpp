@@ -121,6 +121,8 @@ rate = -0.5
     CHECK(testing::end_positions(run)[0] == Approx(1.2).margin(1e-9));
     const Diagnostics d = diagnose(run);
     CHECK(d.at("impact_loss_J").values.back() == Approx(1.0).epsilon(1e-9));
+    CHECK(d.at("rope.value_m").values.back() ==
+          Approx(3 - 0.5 * 1.2).margin(1e-9));  // as it was drawn by then
     CHECK(testing::largest(d, "potential_energy_J") <= 1e-12);
     CHECK(testing::largest(d, "energy_balance_J") <= 1e-9);
   }
