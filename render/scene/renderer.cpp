@@ -104,6 +104,10 @@ void Renderer::begin_solids(const Program& program, const DrawList& list, const 
   program.set("fade_center", list.center);
   program.set("mist_way", Vec3f((list.center * eye.w() - eye.head<3>()).normalized() / list.radius));
   program.set("mist", list.depth_fade);
+  const Camera& camera = list.camera;
+  const float rise = camera.parallel_height > 0 ? camera.parallel_height
+                                                : 2 * std::tan(0.5f * camera.vertical_field_of_view);
+  program.set("pixel", rise / static_cast<float>(frame_.height()));
   program.set("texel", 2 / (view.light.row(0).head<3>().norm() * static_cast<float>(shadow_map_.side())));
   const float floor = list.ground.shown ? list.ground.z : -1e6f;
   program.set("floor_height_reach", Eigen::Vector2f(floor, 0.25f * list.radius));

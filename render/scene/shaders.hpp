@@ -22,6 +22,7 @@ layout(location = 8) in vec3 side;  // of a plate; else zero
 uniform mat4 view_projection;
 uniform vec4 eye;  // the camera, or (w = 0) the direction to it
 uniform float nearer;
+uniform float pixel;  // its height, where w = 1 [m]
 centroid out vec3 world;  // not beyond the edge, where there is nothing to be lit
 centroid out vec3 normal;
 flat out vec3 axis;  // unit; zero for a ball
@@ -45,6 +46,8 @@ void main() {
     y = cross(z, x);
   }
   vec3 scale = plate ? radii.yxx : vec3(mix(radii.x, radii.y, e));
+  // Samples would take turns in missing what is thinner than a pixel.
+  if (ribbon && !plate) scale.x = max(scale.x, 0.5 * pixel * (view_projection * vec4(middle, 1.0)).w);
   vec3 n = axis_normal;
   if (plate && ribbon) {  // its face or its edge, whichever more is seen of
     vec3 wide = cross(side, z);

@@ -195,6 +195,33 @@ TEST_CASE("thin bodies look as their enlargements do, scaled down") {
   }
 }
 
+TEST_CASE("what is thinner than a pixel is a line without gaps") {
+  Studio studio;
+  DrawList list = empty_room();
+  list.ground.shown = false;
+  const Image without = studio.renderer.draw(list);
+  const Vec3f middle(0, 0, 0.5f), along(0.05f, 0.02f, 1.1f);  // upright, slanted a little
+  list.tubes.push_back({middle - along, middle + along, 0.001f, {0.1f, 0.1f, 0.1f, 1}, Finish::anodised});
+  const Image with = studio.renderer.draw(list);
+  int first = height, last = 0;
+  std::vector<int> ink(height);  // of each row: how much darker it is
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
+      const auto change = static_cast<int>(at(without, fx, fy).sum() - at(with, fx, fy).sum());
+      if (change > 12) first = std::min(first, y), last = std::max(last, y);
+      ink[static_cast<std::size_t>(y)] += std::max(change, 0);
+    }
+  REQUIRE(last - first > height / 4);
+  int least = 1 << 30, most = 0;
+  for (int y = first + 1; y < last; ++y) {
+    least = std::min(least, ink[static_cast<std::size_t>(y)]);
+    most = std::max(most, ink[static_cast<std::size_t>(y)]);
+  }
+  // A line of one pixel covers two to six of the samples that it meets in a row.
+  CHECK(least * 4 > most);
+}
+
 TEST_CASE("labels are drawn over the picture") {
   Studio studio;
   DrawList list = empty_room();
