@@ -15,9 +15,9 @@ void RowNoise::start(const ConstVec& q) {
 }
 
 void RowNoise::add_forces(const ConstVec& f) {
-  VectorXd reduced(size_.size());
-  system_.reduce_sizes(f, reduced);
-  size_ += reduced;
+  reduced_.resize(size_.size());
+  system_.reduce_sizes(f, reduced_);
+  size_ += reduced_;
 }
 
 double RowNoise::reach(Index r) const {

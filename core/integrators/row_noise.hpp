@@ -14,11 +14,12 @@ inline constexpr double harmless_noise = 5;
 // The sizes of the terms that cancel in each row of the momentum equations, for residuals in units of what
 // round-off leaves of them. One size for all rows lets what is heavy or stiff hide the motion of what is
 // light: of a pendulum of 1e-6 kg beside 1e9 kg on a rod nothing is left.
-// Sizes are of one unit: whatever the caller adds, forces or impulses. Allocates.
+// Sizes are of one unit: whatever the caller adds, forces or impulses.
 class RowNoise {
  public:
   explicit RowNoise(const System& system);
-  void start(const ConstVec& q);  // at this pose (node coordinates): all sizes zero
+  void start(const ConstVec& q);                          // at this pose (node coordinates): all sizes zero
+  void restart(const VectorXd& sizes) { size_ = sizes; }  // at the same pose, with what was added then
   void add(const ConstVec& own) { size_ += own.cwiseAbs(); }  // of the rows themselves
   void add_forces(const ConstVec& f);                         // on the nodes
   // Of constraint forces `scale` lambda: rows have unit gradients, whose direction is known to what rounding
@@ -35,8 +36,8 @@ class RowNoise {
 
  private:
   const System& system_;
-  SparseRows pattern_;     // of G
-  VectorXd size_, reach_;  // reach_: of the nodes that follow a solved coordinate
+  SparseRows pattern_;               // of G
+  VectorXd size_, reach_, reduced_;  // reach_: of the nodes that follow a solved coordinate
 };
 
 // The largest sum over a row of |A_ij| / sqrt(M_ii M_jj): A = dF/dz' gives a bound of c / m [1/s], dF/dz of

@@ -39,6 +39,7 @@ double StageEquations::multiplier_weight(int k) const {
 void StageEquations::start(double time, const ConstVec& z, const ConstVec& w, double step) {
   t = time;
   h = step;
+  step_sizes_known_ = false;
   z0 = z;
   multiply<1>(system.mass(), w.data(), p0.data());
   system.expand(z0, q_0_);
@@ -251,13 +252,25 @@ void StageEquations::measure() {
 }
 
 void StageEquations::measure_rows() {
-  const auto largest = [](const Interleaved& x) { return VectorXd(x.cwiseAbs().rowwise().maxCoeff()); };
-  const VectorXd motion = largest(dX);
+  const auto largest = [this](const Interleaved& x) -> const VectorXd& {
+    largest_.resize(x.rows());
+    for (Index i = 0; i < x.rows(); ++i) largest_[i] = largest_magnitude(x.data() + i * x.cols(), x.cols());
+    return largest_;
+  };
   if (looked_ != t) look_at_forces();
-  rows_.start(q_0_);
-  rows_.add(p0);
-  rows_.add_forces(largest(applied_));
+  const bool constant = system.constant_forces();
+  if (step_sizes_known_) {
+    rows_.restart(step_sizes_);
+  } else {
+    rows_.start(q_0_);
+    rows_.add(p0);
+    if (constant) rows_.add_forces(largest(applied_));
+    step_sizes_ = rows_.size();
+    step_sizes_known_ = true;
+  }
+  if (!constant) rows_.add_forces(largest(applied_));
   rows_.add_multipliers(largest(lambda), scale_.lpNorm<Eigen::Infinity>());
+  const VectorXd& motion = largest(dX);
   rows_.add_inertia(motion, C_size_ / h);
   if (stiffness_ > 0) rows_.add_stiffness(by_z_, h);
   if (damping_ > 0) rows_.add_products(by_w_, motion, steepest_);

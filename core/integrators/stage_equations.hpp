@@ -104,6 +104,9 @@ class StageEquations {
   System::StageScratch scratch_;
   std::unique_ptr<ConstraintIncrement> increment_;  // made when first needed
   VectorXd dX_j_, phi_j_;
+  VectorXd step_sizes_,
+      largest_;  // of row_noise.hpp: what the step's start and constant forces give; scratch
+  bool step_sizes_known_ = false;
   double momentum_level_ = 0, constraint_level_ = 0;
   // Largest magnitudes: forces, coordinates, M dX, momentum; whether all residuals are finite.
   double force_scale_ = 0, reach_ = 0, inertia_size_ = 0, momentum_size_ = 0;
