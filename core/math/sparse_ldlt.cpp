@@ -87,7 +87,8 @@ bool SparseLdlt::factorise(const double* values) {
       const auto ue = static_cast<std::size_t>(e);
       y[entry_row_[ue]] += values[entry_source_[ue]];
     }
-    double d = y[k];
+    const double own = y[k];
+    double d = own;
     y[k] = 0.0;
     for (int r = reach_start_[uk]; r < reach_start_[uk + 1]; ++r) {
       const int i = reach_[static_cast<std::size_t>(r)];
@@ -100,6 +101,8 @@ bool SparseLdlt::factorise(const double* values) {
       l[end] = lki;
       ++fill[i];
     }
+    // The pivot of a row of -C is its Schur complement in C + G A^-1 G^T: no weaker than what C has there.
+    if (own < 0.0 && d > 0.5 * own) d = own;  // only round-off is left of a redundant row
     if (d == 0.0 || !std::isfinite(d)) {
       std::fill(work_.begin(), work_.end(), 0.0);
       return false;

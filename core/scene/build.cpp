@@ -8,6 +8,7 @@
 #include "core/math/determined_rows.hpp"
 #include "core/scene/element_members.hpp"
 #include "core/scene/size_limits.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/structures/family.hpp"
 #include "core/system/assemble_elastic.hpp"
@@ -158,9 +159,7 @@ std::string pin_problem(const Structure& structure, const System& system, const 
       return "needs nodes with mass, and " + in_quotes(structure.nodes[i].name) + " has none";
   }
   if (rod.gives) return "";
-  VectorXd q(system.coordinates());
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  const VectorXd q = node_positions(structure);
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   system.jacobian(q, G, scratch);
