@@ -35,7 +35,8 @@ struct WebpAnimation::Encoder {
     config.quality = 80.0f;
     config.method = 2;  // 0 fastest .. 6 smallest
     // Only what changed since the last frame is stored; a whole frame now and then makes seeking possible.
-    options.kmin = 60;
+    // (From kmin on every frame is tried both ways, at twice the price.)
+    options.kmin = 119;
     options.kmax = 120;
     handle = fits ? WebPAnimEncoderNew(width, height, &options) : nullptr;
     if (handle == nullptr) {
