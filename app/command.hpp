@@ -49,6 +49,8 @@ struct Arguments {
   int poses = 5;                       // --poses
   std::vector<std::string> exports;    // --export, split at commas
   bool force = false;
+  bool resume = false;       // --resume
+  double checkpoint = 60;    // --checkpoint SECONDS
   bool encode_only = false;  // --encode-only
   bool plan = false;         // --plan
   bool quiet = false;
