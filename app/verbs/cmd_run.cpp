@@ -57,13 +57,15 @@ int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, O
 
 int write_end(const Scene& scene, UnfinishedRun& unfinished, Simulation& rest, std::size_t first,
               const Arguments& arguments) {
-  const Digest whole = unfinished.finish(rest, first);
+  const bool stopped = rest.status == RunStatus::stopped;
+  const Digest whole = stopped ? unfinished.interrupt(rest, first) : unfinished.finish(rest, first);
   const Diagnostics& d = whole.diagnostics;
   receipt_errors({{"constraint_error_m", largest_magnitude(d.at("constraint_max_m").values)},
                   {"energy_balance_J", largest_magnitude(d.at("energy_balance_J").values)}});
   const std::string summary =
       write_data(arguments.output, scene, whole.run, d, as_typed(arguments.words), false);
   report_run(whole.run, d, arguments);
+  if (stopped && !arguments.quiet) std::cerr << "unfurl: the same command goes on with it\n";
   if (arguments.json) std::cout << summary;
   return exit_code_of(whole.run, d);
 }
@@ -87,11 +89,6 @@ int run_in_parts(const Scene& scene, const std::shared_ptr<const Model>& model, 
   hooks.cancelled = interrupted;
   std::size_t first = 0;
   Simulation run = simulate_in_parts(model, scene.solver, hooks, parts, first);
-  if (unfinished.any() && run.status == RunStatus::stopped) {
-    unfinished.keep();
-    std::cerr << "unfurl: interrupted; the same command goes on with it\n";
-    return exit_interrupted;
-  }
   if (unfinished.any()) return write_end(scene, unfinished, run, first, arguments);
   record_singular_poses(run, [] { return interrupted_for(0.5); });
   return write_run(scene, run, arguments, output, film);

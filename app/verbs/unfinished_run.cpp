@@ -142,17 +142,38 @@ void UnfinishedRun::keep() {
   watch_files(watcher);
 }
 
+Digest UnfinishedRun::whole(Simulation& rest) const {
+  Digest all = digest_.whole(rest);
+  all.run.cpu_s = rest.cpu_s + cpu_s_;
+  return all;
+}
+
 Digest UnfinishedRun::finish(Simulation& rest, std::size_t first) {
   add(rest, first, rest.trajectory.size());
   if (!digest_.all_trusted()) tables_->cut(good_);
-  rest.cpu_s += cpu_s_;
   tables_->flush_to_disk();
   tables_.reset();
   for (const char* name : tables) move_into_place(folder() / name, written_.directory() / name);
   forget();
-  Digest whole = digest_.whole(rest);
-  whole.run.cpu_s = rest.cpu_s;
-  return whole;
+  return whole(rest);
+}
+
+// The tables themselves grow beyond what the checkpoint knows of them: they are cut when it is found.
+Digest UnfinishedRun::interrupt(Simulation& rest, std::size_t first) {
+  keep();
+  add(rest, first, rest.trajectory.size());
+  const RunTables::Sizes sizes = digest_.all_trusted() ? tables_->sizes() : good_;
+  tables_->flush_to_disk();
+  const std::uint64_t size[] = {sizes.series, sizes.trajectory, sizes.rod_forces};
+  for (std::size_t k = 0; k < std::size(tables); ++k) {
+    PendingFile copy(written_.directory() / tables[k]);
+    std::error_code error;
+    fs::copy_file(folder() / tables[k], copy.name(), fs::copy_options::overwrite_existing, error);
+    if (!error) fs::resize_file(copy.name(), size[k], error);
+    if (error) throw FileError(written_.directory() / tables[k], error.value());
+    copy.commit();
+  }
+  return whole(rest);
 }
 
 }  // namespace unfurl

@@ -33,16 +33,18 @@ class UnfinishedRun {
 
   bool any() const { return tables_ != nullptr; }  // a part was taken or found
   void take(Stepper::Window window, Stepper& stepper);
-  void keep();  // as the last part left it, for another day
   // All of the run, its tables in their places and nothing left behind; `rest`: what no part had.
   Digest finish(Simulation& rest, std::size_t first);
+  // The same of a run that was interrupted, which can still go on from its last part.
+  Digest interrupt(Simulation& rest, std::size_t first);
   void forget();  // what was found
 
  private:
   std::filesystem::path folder() const { return written_.directory() / "unfinished"; }
   void begin();
   void add(Simulation& window, std::size_t first, std::size_t last);
-  void write(const std::string& checkpoint);
+  void keep();  // as the last part left it
+  Digest whole(Simulation& rest) const;
   std::string fingerprint() const;
 
   WrittenFiles& written_;
