@@ -50,6 +50,8 @@ struct Arguments {
   int mode = 0;                        // --mode K, of render; 0: not given
   std::vector<std::string> exports;    // --export, split at commas
   bool force = false;
+  bool resume = false;       // --resume
+  double checkpoint = 60;    // --checkpoint SECONDS
   bool encode_only = false;  // --encode-only
   bool plan = false;         // --plan
   bool quiet = false;

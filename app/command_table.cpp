@@ -7,12 +7,14 @@ namespace {
 
 constexpr Command table[] = {
     {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run,
-     "-o --set --tolerance --export --size --fps --look --supersample --transparent --plan --force --json "
-     "--quiet",
+     "-o --set --tolerance --export --checkpoint --resume --size --fps --look --supersample --transparent "
+     "--plan "
+     "--force --json --quiet",
      "unfurl run hoop6 -o data\n"
      "unfurl run hoop6 -o data --set structure.units=12 --set solver.step=0.005\n"
      "unfurl run my.toml -o data --tolerance 1e-8 --export vtk,npy\n"
-     "unfurl run hoop6 -o data --export html"},
+     "unfurl run hoop6 -o data --export html\n"
+     "unfurl run double_pendulum -o data --set solver.end_time=60 --checkpoint 10"},
     {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
      "-o --set --tolerance --export --frames --join --lease --encode-only --mode --at --style --font --dpi "
      "--size "

@@ -345,7 +345,10 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
   out.force_unique.bottomRows(static_cast<Index>(out.left_open)).setConstant(false);
 }
 
-Diagnostics diagnosed(const Simulation& run, bool books, const std::function<bool()>& cancelled) {
+enum class Look { books, states, all };
+
+Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool()>& cancelled) {
+  const bool books = look == Look::books;
   const Trajectory& trajectory = run.trajectory;
   Diagnostics out;
   std::vector<const Row*> used;
@@ -366,8 +369,9 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
   out.force_unique.resize(out.axial_force.rows(), rods);
   out.rod_unique.assign(static_cast<std::size_t>(rods), 1);
   std::vector<char> unique(out.rod_unique);
+  const std::vector<char> not_asked;
   std::optional<ForceUniqueness> uniqueness;
-  if (!books) uniqueness.emplace(run);
+  if (look == Look::all || (!books && any_elastic(trajectory.structure()))) uniqueness.emplace(run);
   VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
   std::vector<double> scratch;
   const Model* model = nullptr;
@@ -382,7 +386,7 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
       model = &trajectory.model(i);
       followed = std::make_unique<System>(model->system);
       if (!books) index1 = std::make_unique<Index1>(*followed, true);
-      if (!books) sharing.emplace(*model, uniqueness->all_by_rigid_rods(i));
+      if (!books) sharing.emplace(*model, !uniqueness || uniqueness->all_by_rigid_rods(i));
       lengths = model->system.all_lengths();
       phi.resize(lengths.size());
       velocity_phi.resize(lengths.size());
@@ -398,8 +402,8 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
       lambda = multipliers(*index1, *model, state, limit, acceleration);
       sharing->share(state.t, q, limit, lambda);
       axial_forces(*model, state, q, v, lambda, force);
-      const std::vector<char>& rows_unique = uniqueness->at(i);
-      for (std::size_t r = 0; r < unique.size(); ++r) {
+      for (std::size_t r = 0; uniqueness && r < unique.size(); ++r) {
+        const std::vector<char>& rows_unique = uniqueness->at(i);
         const int row = system.rod_rows()[r];
         unique[r] = row < 0 ? char{1} : rows_unique[static_cast<std::size_t>(row)];
         if (uniqueness->regular(i)) out.rod_unique[r] = static_cast<char>(out.rod_unique[r] & unique[r]);
@@ -428,7 +432,7 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
     if (!books) {
       add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
-      drives->append(*model, instant, lambda, uniqueness->at(i));
+      drives->append(*model, instant, lambda, uniqueness ? uniqueness->at(i) : not_asked);
     }
   }
   leave_open(trajectory, out);
@@ -441,11 +445,15 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
 }  // namespace
 
 Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
-  return diagnosed(run, false, cancelled);
+  return diagnosed(run, Look::all, cancelled);
 }
 
 Diagnostics diagnose_books(const Simulation& run) {
-  return diagnosed(run, true, {});
+  return diagnosed(run, Look::books, {});
+}
+
+Diagnostics diagnose_states(const Simulation& run) {
+  return diagnosed(run, Look::states, {});
 }
 
 }  // namespace unfurl

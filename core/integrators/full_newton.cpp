@@ -9,14 +9,38 @@ namespace unfurl {
 namespace {
 
 using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
-using Entries = std::vector<Eigen::Triplet<double>>;
+
+// The matrix, scaled: a small one entry by entry in its place, a larger one as a list of entries.
+class Entries {
+ public:
+  Entries(const VectorXd& scale, MatrixXd* dense) : scale_(scale), dense_(dense) {
+    if (dense_) dense_->setZero(scale.size(), scale.size());
+  }
+  void add(Index i, Index j, double value) { add_scaled(i, j, value * scale_[i] * scale_[j]); }
+  void add_scaled(Index i, Index j, double value) {
+    if (dense_)
+      (*dense_)(i, j) += value;
+    else
+      list_.emplace_back(static_cast<int>(i), static_cast<int>(j), value);
+  }
+  Columns sparse() const {
+    Columns A(scale_.size(), scale_.size());
+    A.setFromTriplets(list_.begin(), list_.end());
+    return A;
+  }
+
+ private:
+  const VectorXd& scale_;
+  MatrixXd* dense_;  // null: there is none
+  std::vector<Eigen::Triplet<double>> list_;
+};
 
 void add_block(Entries& entries, const SparseRows& A, Index row, Index column, double scale,
                bool transposed) {
   for (int r = 0; r < A.outerSize(); ++r)
     for (SparseRows::InnerIterator it(A, r); it; ++it) {
       const Index i = transposed ? it.col() : r, j = transposed ? r : it.col();
-      entries.emplace_back(static_cast<int>(row + i), static_cast<int>(column + j), scale * it.value());
+      entries.add(row + i, column + j, scale * it.value());
     }
 }
 
@@ -59,9 +83,8 @@ Index multipliers(const StageEquations& eq) {
   return eq.lambda.rows() * (eq.at_ends ? 1 : eq.c.s - 1);
 }
 
-Columns newton_matrix(StageEquations& eq, const VectorXd& scale) {
+void add_newton_matrix(StageEquations& eq, Entries& entries) {
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
-  Entries entries;
   SparseRows G = eq.system.jacobian_pattern();
   std::vector<double> scratch;
   for (Index k = 0; k < stages; ++k) {
@@ -85,12 +108,7 @@ Columns newton_matrix(StageEquations& eq, const VectorXd& scale) {
   }
   const Index size = stages * n + multipliers(eq);
   if (!eq.system.constant_forces()) add_force_blocks(entries, eq);
-  for (auto& e : entries) e = {e.row(), e.col(), e.value() * scale[e.row()] * scale[e.col()]};
-  for (Index i = stages * n; i < size; ++i)
-    entries.emplace_back(static_cast<int>(i), static_cast<int>(i), -SaddleSolver::standard_regularisation);
-  Columns A(size, size);
-  A.setFromTriplets(entries.begin(), entries.end());
-  return A;
+  for (Index i = stages * n; i < size; ++i) entries.add_scaled(i, i, -SaddleSolver::standard_regularisation);
 }
 
 VectorXd right_hand_side(const StageEquations& eq) {
@@ -116,11 +134,15 @@ void apply(StageEquations& eq, const VectorXd& x) {
 
 }  // namespace
 
-bool FullNewton::Factors::compute(const Columns& A) {
-  if (A.rows() <= largest_dense) {
-    dense_.compute(MatrixXd(A));
+bool FullNewton::Factors::compute(StageEquations& eq, const VectorXd& scale) {
+  const bool small = scale.size() <= largest_dense;
+  Entries entries(scale, small ? &matrix_ : nullptr);
+  add_newton_matrix(eq, entries);
+  if (small) {
+    dense_.compute(matrix_);
     return true;
   }
+  const Columns A = entries.sparse();
   if (A.nonZeros() != analysed_) sparse_.analyzePattern(A);
   analysed_ = A.nonZeros();
   sparse_.factorize(A);
@@ -173,7 +195,7 @@ StepStatus FullNewton::solve(StageEquations& eq, double wanted, double accepted,
     ++report.newton_iterations;
     if (!(level < quick * before)) {
       ++report.factorisations;
-      if (!factors_.compute(newton_matrix(eq, scale_))) return known_ = false, StepStatus::diverged;
+      if (!factors_.compute(eq, scale_)) return known_ = false, StepStatus::diverged;
     }
     before = level;
     const VectorXd x = factors_.solve(scale_.cwiseProduct(right_hand_side(eq)));

@@ -95,6 +95,7 @@ bool SparseLdlt::factorise(const double* values) {
       const double yi = y[i];
       y[i] = 0.0;
       const int end = fill[i];
+#pragma GCC unroll 4
       for (int p = column_start_[static_cast<std::size_t>(i)]; p < end; ++p) y[rows[p]] -= l[p] * yi;
       const double lki = yi * inverse_pivot_[static_cast<std::size_t>(i)];
       d -= lki * yi;
