@@ -11,6 +11,10 @@ namespace unfurl {
 // price.
 Diagnostics diagnose_books(const Simulation& run);
 
+// Columns that are functions of the state alone: as diagnose, but nothing goes in or out (columns in J are
+// then those of kinetic and potential energy only).
+Diagnostics diagnose_states(const Simulation& run);
+
 // What the energy balance may be off by rounding alone, at every state of the run [J]. Coordinates are known
 // to some `levels` = 64 units of round-off of their largest, x; a force F works |F| levels ulp x along that,
 // a mass m that moves so within a step h has the energy m (levels ulp x / h)^2 (h: the mean, since a step may

@@ -106,7 +106,7 @@ const std::array rows{
     Row{"kinetic_energy_J", "kinetic energy", "J", Needs::nothing,
         [](const Instant& s) { return s.kinetic(); }},
     Row{"potential_energy_J", "potential energy", "J", Needs::nothing,
-        [](const Instant& s) { return s.system().potential_energy(s.q); }},
+        [](const Instant& s) { return s.system().potential_energy(s.state, s.q); }},
     Row{"work_J", "work of the loads", "J", Needs::nothing, [](const Instant& s) { return s.work(); }},
     Row{"dissipated_J", "energy taken by dampers and friction", "J", Needs::dampers,
         [](const Instant& s) { return s.flow.dissipated[s.i]; }},
@@ -116,7 +116,7 @@ const std::array rows{
         [](const Instant& s) { return s.flow.impact_loss[s.i]; }},
     Row{"energy_balance_J", "energy balance", "J", Needs::nothing,
         [](const Instant& s) {
-          return s.kinetic() + s.system().potential_energy(s.q) - s.first_energy - s.work() +
+          return s.kinetic() + s.system().potential_energy(s.state, s.q) - s.first_energy - s.work() +
                  s.flow.dissipated[s.i] - s.flow.drive_work[s.i] + s.flow.impact_loss[s.i];
         }},
     Row{"constraint_max_m", "constraint error", "m", Needs::nothing,
@@ -345,8 +345,18 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
   out.force_unique.bottomRows(static_cast<Index>(out.left_open)).setConstant(false);
 }
 
-Diagnostics diagnosed(const Simulation& run, bool books, const std::function<bool()>& cancelled) {
+// What is asked for: all columns; those that books.hpp needs; what is a function of the state alone.
+enum class Asked { all, books, states };
+
+EnergyFlow no_flow(const Simulation& run) {
+  const std::vector<double> none(run.trajectory.size(), 0.0);
+  const std::size_t drives = drive_channels(run.trajectory.model()).size();
+  return {none, none, none, none, std::vector(drives, none)};
+}
+
+Diagnostics diagnosed(const Simulation& run, Asked asked, const std::function<bool()>& cancelled) {
   const Trajectory& trajectory = run.trajectory;
+  const bool books = asked == Asked::books;
   Diagnostics out;
   std::vector<const Row*> used;
   for (const Row& row : rows) {
@@ -360,7 +370,7 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
   if (!books) drives.emplace(trajectory.model(), out.columns);
   const std::size_t first_own = out.columns.size();
   if (!books) add_own_columns(trajectory.structure(), out);
-  const EnergyFlow flow = energy_flow(run);
+  const EnergyFlow flow = asked == Asked::states ? no_flow(run) : energy_flow(run);
   const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   out.force_unique.resize(out.axial_force.rows(), rods);
@@ -408,7 +418,7 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
       }
     }
     if (rods > 0) out.axial_force.row(static_cast<Index>(i)) = force.transpose();
-    if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
+    if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(state, q);
     const Instant instant{run,
                           i,
                           state,
@@ -441,11 +451,15 @@ Diagnostics diagnosed(const Simulation& run, bool books, const std::function<boo
 }  // namespace
 
 Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
-  return diagnosed(run, false, cancelled);
+  return diagnosed(run, Asked::all, cancelled);
 }
 
 Diagnostics diagnose_books(const Simulation& run) {
-  return diagnosed(run, true, {});
+  return diagnosed(run, Asked::books, {});
+}
+
+Diagnostics diagnose_states(const Simulation& run) {
+  return diagnosed(run, Asked::states, {});
 }
 
 }  // namespace unfurl

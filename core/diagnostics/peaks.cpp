@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/diagnostics/books.hpp"
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/structure/time_edges.hpp"
@@ -160,7 +161,9 @@ double extreme_of_column(const Simulation& run, const Diagnostics& d, std::strin
     for (double& x : out) x *= sign;
     return out;
   };
-  const StateValues values = [&](const Simulation& piece) { return signed_values(diagnose(piece).at(name)); };
+  const StateValues values = [&](const Simulation& piece) {
+    return signed_values(diagnose_states(piece).at(name));
+  };
   return sign *
          largest_in_motion(run, signed_values(*column), of_the_state(*column) ? values : StateValues());
 }

@@ -143,6 +143,13 @@ void fill_mass(const Scene& scene, System& system) {
   system.fill_mass();
 }
 
+VectorXd positions_of(const Structure& structure) {
+  VectorXd q(3 * std::ssize(structure.nodes));
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  return q;
+}
+
 // Friction by the force of a pin, where rigid rods leave that open or it is no pin: one clear error.
 std::string pin_problem(const Structure& structure, const System& system, const Force& force) {
   const int r = PinLoads::rod_of(structure, force);
@@ -158,9 +165,7 @@ std::string pin_problem(const Structure& structure, const System& system, const 
       return "needs nodes with mass, and " + in_quotes(structure.nodes[i].name) + " has none";
   }
   if (rod.gives) return "";
-  VectorXd q(system.coordinates());
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  const VectorXd q = positions_of(structure);
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   system.jacobian(q, G, scratch);
@@ -173,13 +178,16 @@ std::string pin_problem(const Structure& structure, const System& system, const 
 }
 
 void check_pins(const Scene& scene, const Structure& structure, const System& system) {
-  for (const Force& force : structure.forces) {
-    if (!(PinLoads::arm(force) > 0)) continue;
-    const std::string problem = pin_problem(structure, system, force);
-    if (problem.empty()) continue;
+  const auto refuse_friction = [&](const std::string& name, const std::string& problem) {
+    if (problem.empty()) return;
     for (const SceneElement& e : scene.forces)
-      if (e.enabled && e.name == force.name) throw SceneError({{e.where, e.key + ".pin_friction", problem}});
-  }
+      if (e.enabled && e.name == name) throw SceneError({{e.where, e.key + ".pin_friction", problem}});
+  };
+  for (const Force& force : structure.forces)
+    if (PinLoads::arm(force) > 0) refuse_friction(force.name, pin_problem(structure, system, force));
+  const auto locked =
+      PinLoads::self_locking(structure, system.node_mass(), 0.0, positions_of(structure).data());
+  refuse_friction(locked.friction, locked.problem);
 }
 
 void refuse_endless_runs(const Scene& scene, const Model& model) {
