@@ -47,8 +47,11 @@ struct Arguments {
   double lease = 60;                   // --lease SECONDS
   std::string frames;                  // --frames FIRST:END; empty: all
   int poses = 5;                       // --poses
+  int mode = 0;                        // --mode K, of render; 0: not given
   std::vector<std::string> exports;    // --export, split at commas
   bool force = false;
+  bool resume = false;       // --resume
+  double checkpoint = 60;    // --checkpoint SECONDS
   bool encode_only = false;  // --encode-only
   bool plan = false;         // --plan
   bool quiet = false;
@@ -60,6 +63,7 @@ struct Arguments {
   bool gpu = false;       // --gpu: draw on the graphics processor
   std::string at;         // --at SECONDS of the motion, of modes also a word; empty: where it begins
   std::string style;      // --style, of figures; empty: screen
+  std::string font;       // --font, of figures; empty: DejaVu Sans
   double dpi = 0;         // --dpi, of figures; 0: the style's
   StudyArguments study;
   ViewArguments view;

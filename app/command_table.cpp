@@ -7,36 +7,44 @@ namespace {
 
 constexpr Command table[] = {
     {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run,
-     "-o --set --tolerance --export --size --fps --look --supersample --transparent --plan --force --json "
-     "--quiet",
+     "-o --set --tolerance --export --checkpoint --resume --size --fps --look --supersample --transparent "
+     "--plan "
+     "--force --json --quiet",
      "unfurl run hoop6 -o data\n"
      "unfurl run hoop6 -o data --set structure.units=12 --set solver.step=0.005\n"
      "unfurl run my.toml -o data --tolerance 1e-8 --export vtk,npy\n"
-     "unfurl run hoop6 -o data --export html"},
+     "unfurl run hoop6 -o data --export html\n"
+     "unfurl run double_pendulum -o data --set solver.end_time=60 --checkpoint 10"},
     {"render", "SCENE -o DIR", "simulate; write data, frames, animation and figures", 1, 1, true, cmd_render,
-     "-o --set --tolerance --export --frames --join --lease --encode-only --style --dpi --size --fps --look "
+     "-o --set --tolerance --export --frames --join --lease --encode-only --mode --at --style --font --dpi "
+     "--size "
+     "--fps "
+     "--look "
      "--supersample --transparent --fit --plan "
      "--force --threads --gpu --json --quiet",
      "unfurl render hoop6 -o film\n"
      "unfurl render hoop6 -o film --size 640x360 --look space --frames 0:20\n"
      "unfurl render hoop6 -o film --size 640x360 --look space --encode-only\n"
-     "unfurl render scissor_mast_square -o mast --fit --plan"},
+     "unfurl render scissor_mast_square -o mast --fit --plan\n"
+     "unfurl render hoop6 -o mode --mode 2 --at 4.6 --set structure.youngs_modulus=7e10"},
     {"figure", "SCENE NAME... -o FILE",
      "one figure, PNG, SVG or PDF by extension; NAME all: every figure, into a directory", 2, 100, true,
-     cmd_figure, "-o --set --tolerance --style --dpi --gpu --quiet",
-     "unfurl figure hoop6 energy -o energy.pdf --style single-column\n"
+     cmd_figure, "-o --set --tolerance --style --font --dpi --gpu --quiet",
+     "unfurl figure hoop6 energy -o energy.pdf --style single-column --font helvetica\n"
      "unfurl figure hoop6 all -o figures"},
     {"study", "SCENE -o DIR", "speed against accuracy: every method over a ladder of steps", 1, 1, true,
      cmd_study,
-     "-o --set --steps --repeats --methods --models --join --lease --style --dpi --force --threads --quiet",
+     "-o --set --steps --repeats --methods --models --join --lease --style --font --dpi --force --threads "
+     "--quiet",
      "unfurl study hoop6 -o study\n"
      "unfurl study hoop6 -o two --methods dvm,rk4 --steps 0.04:0.005 --repeats 1"},
     {"stress", "SCENE -o DIR", "stability at the extremes: every method and step", 1, 1, true, cmd_stress,
-     "-o --set --extreme --join --lease --style --dpi --force --threads --quiet",
+     "-o --set --extreme --join --lease --style --font --dpi --force --threads --quiet",
      "unfurl stress hoop6 --extreme mass_ratio -o stress"},
     {"sweep", "SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR",
      "measures of the scene over a grid of parameters", 1, 1, true, cmd_sweep,
-     "-o --set --tolerance --vary --measure --shard --join --lease --merge --script --jobs --style --dpi "
+     "-o --set --tolerance --vary --measure --shard --join --lease --merge --script --jobs --style --font "
+     "--dpi "
      "--force --threads "
      "--quiet",
      "unfurl sweep hoop6_sector --vary structure.fold_angle=30:85:12 --measure deploy_time -o sweep"},
@@ -46,7 +54,7 @@ constexpr Command table[] = {
      "unfurl solve hoop6 --find structure.hinge_force --target deploy_time=4"},
     {"reproduce", "-o DIR, or FILE [-o DIR]",
      "the paper's tables and figures, beside ours; or a file again from the receipt in it", 0, 1, false,
-     cmd_reproduce, "-o --validation --style --dpi --force --threads --quiet",
+     cmd_reproduce, "-o --validation --style --font --dpi --force --threads --quiet",
      "unfurl reproduce -o paper\n"
      "unfurl reproduce --validation -o validation\n"
      "unfurl reproduce energy.pdf"},
@@ -58,13 +66,13 @@ constexpr Command table[] = {
      1, 1, false, cmd_check, "--set --json", "unfurl check bricard"},
     {"modes", "SCENE [-o DIR]",
      "free motions and natural frequencies at a pose; elastic where rods have a youngs_modulus", 1, 1, false,
-     cmd_modes, "-o --set --at --style --dpi --force --json --quiet",
+     cmd_modes, "-o --set --at --style --font --dpi --force --json --quiet",
      "unfurl modes hoop6 --set structure.youngs_modulus=7e10 --set structure.model=joints\n"
      "unfurl modes hoop6 --at deployed --set solver.at_deployed=latch --set structure.youngs_modulus=7e10 "
      "-o modes"},
     {"margin", "SCENE [-o DIR]",
      "what drives a deployment against what resists it, by source, in every pose and along the motion", 1, 1,
-     false, cmd_margin, "-o --set --factor --stuck --style --dpi --force --json --quiet",
+     false, cmd_margin, "-o --set --factor --stuck --style --font --dpi --force --json --quiet",
      "unfurl margin hoop6 --set gravity.acceleration=[0,0,-0.2] --stuck -o margin"},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
      "--set --tolerance --picture --record --replay --at --dark --bench --ui-scale --size --fps --look "

@@ -39,7 +39,7 @@ nlohmann::json record_of(const fs::path& directory) {
 
 }  // namespace
 
-std::string film_fingerprint(const Scene& scene, bool gpu) {
+std::string film_fingerprint(const Scene& scene, bool gpu, const std::string& part) {
   Scene bare = scene;
   bare.render = without_encoding(scene.render);
   Checksum hash;
@@ -47,12 +47,13 @@ std::string film_fingerprint(const Scene& scene, bool gpu) {
   hash.add(text_of("/proc/self/exe"));  // another build may draw otherwise
   hash.add(version());
   if (gpu) hash.add("drawn on the graphics processor");
+  hash.add(part);
   return hash.text();
 }
 
-FilmFolder::FilmFolder(fs::path directory, const Scene& scene, bool gpu)
+FilmFolder::FilmFolder(fs::path directory, const Scene& scene, bool gpu, const std::string& part)
     : directory_(std::move(directory)),
-      fingerprint_(film_fingerprint(scene, gpu)),
+      fingerprint_(film_fingerprint(scene, gpu, part)),
       size_(scene.render.width, scene.render.height) {
   Checksum hash;
   hash.add(fingerprint_);

@@ -14,11 +14,13 @@
 namespace unfurl {
 
 // Changes with everything that changes a frame: the scene, the settings of its pictures, the program.
-std::string film_fingerprint(const Scene& scene, bool gpu = false);
+// `part`: what else it shows ("mode 3 at 0.5"); empty: the scene's motion.
+std::string film_fingerprint(const Scene& scene, bool gpu = false, const std::string& part = {});
 
 class FilmFolder {
  public:
-  FilmFolder(std::filesystem::path directory, const Scene& scene, bool gpu = false);
+  FilmFolder(std::filesystem::path directory, const Scene& scene, bool gpu = false,
+             const std::string& part = {});
 
   // Are there frames of another film, or of one that is not known? Then nothing may be added to them.
   bool holds_another() const;

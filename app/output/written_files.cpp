@@ -256,6 +256,10 @@ void WrittenFiles::remove_all() {
   std::vector<std::string> names;
   for (const auto& [name, lines] : lines_) names.push_back(name);
   for (const std::string& name : names) remove(name);
+  forget_missing();
+}
+
+void WrittenFiles::forget_missing() {
   const std::lock_guard lock(mutex_);
   std::error_code error;
   std::erase_if(lines_, [&](const auto& entry) { return !fs::exists(directory_ / entry.first, error); });

@@ -44,6 +44,8 @@ class WrittenFiles final : public FileWatcher {
   // The same for this one.
   void remove(const std::string& name);
 
+  void forget_missing();  // files that are no longer there
+
   // DIR/name, a file, a folder or a link, gets the name name.kept-1, or the next that is free.
   void keep_aside(const std::string& name);
 

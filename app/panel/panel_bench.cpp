@@ -60,13 +60,16 @@ void time_change(ControlPanel& panel) {
   state.history.replace(changed);
   const auto start = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  double first = 0;
+  const std::clock_t cpu_start = std::clock();  // other work on the machine counts in the time alone
+  const auto cpu = [&] { return static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC; };
+  double first = 0, first_cpu = 0;
   do {
     panel.frame(1.0 / 60);
-    if (first == 0 && state.shown->document == changed) first = seconds();
+    if (first == 0 && state.shown->document == changed) first = seconds(), first_cpu = cpu();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   } while (seconds() < 600 && (first == 0 || state.simulation.running));
-  std::printf("a change is shown after %.0f ms, exactly after %.0f ms\n", 1e3 * first, 1e3 * seconds());
+  std::printf("a change is shown after %.0f ms (CPU: %.0f ms), exactly after %.0f ms\n", 1e3 * first,
+              1e3 * first_cpu, 1e3 * seconds());
   state.history.undo();
   panel.settle();
 }

@@ -12,6 +12,7 @@
 #include "core/text/nearest_name.hpp"
 #include "core/text/version.hpp"
 #include "render/plot/figure_style.hpp"
+#include "render/plot/typeface.hpp"
 
 namespace unfurl {
 
@@ -44,6 +45,7 @@ constexpr Completed completed[] = {
     {"--export", [] { return names_of(export_formats()); }},
     {"--extreme", [] { return names_of(extreme_kinds()); }},
     {"--style", [] { return names_of(figure_styles()); }},
+    {"--font", [] { return names_of(plot::typefaces()); }},
     {"completion", script_names},
     {"new", nullptr, "structures"},
     {"list", listed_names},

@@ -7,12 +7,10 @@
 
 #include "app/command.hpp"
 #include "app/output/interrupt.hpp"
+#include "app/verbs/modal_pose.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/study_session.hpp"
 #include "core/diagnostics/rod_strength.hpp"
-#include "core/diagnostics/vibration.hpp"
-#include "core/scene/build.hpp"
-#include "core/simulate/initial_state.hpp"
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
 #include "render/plot/figures/mode_shapes.hpp"
@@ -20,65 +18,6 @@
 namespace unfurl {
 
 namespace {
-
-// What the pose belongs to lives as long as the run.
-struct Pose {
-  std::shared_ptr<const Model> model;
-  Simulation run;
-  const Model* at = nullptr;
-  State state;
-};
-
-Pose at_start(const Scene& scene, const Arguments& arguments) {
-  auto model = model_of(scene, arguments);
-  Pose pose{model, Simulation{.trajectory = Trajectory(model, scene.solver)}, model.get(), {}};
-  pose.state = initial_state(model->structure, model->system).state;
-  return pose;
-}
-
-// Throws UsageError where the motion has no such time.
-double time_of(const std::string& at, const Simulation& run) {
-  const Trajectory& trajectory = run.trajectory;
-  if (at == "end") return trajectory.end_time();
-  if (at == "deployed") {
-    for (const Event& event : run.events)
-      if (event.name == "deployed") return event.t;
-    throw UsageError("--at deployed: the run does not reach the deployed pose");
-  }
-  const double t = number_of(at);
-  if (!(t >= trajectory.start_time() && t <= trajectory.end_time()))
-    throw UsageError("--at takes start, end, deployed or a time from " +
-                     short_number(trajectory.start_time(), 6) + " to " +
-                     short_number(trajectory.end_time(), 6) + " s; got " + in_quotes(at));
-  return t;
-}
-
-Pose in_motion(const Scene& scene, const Arguments& arguments) {
-  auto model = model_of(scene, arguments);
-  Pose pose{model, simulate_scene(scene, model, arguments), nullptr, {}};
-  const Trajectory& trajectory = pose.run.trajectory;
-  const double t = time_of(arguments.at, pose.run);
-  const std::size_t i = trajectory.state_before(t);
-  pose.at = &trajectory.model(i);
-  pose.state = trajectory.time(i) == t ? trajectory.state(i) : trajectory.state_at(t);
-  return pose;
-}
-
-std::string name_of(const VibrationMode& mode) {
-  if (mode.growth > 0) return "unstable";
-  if (!mode.mechanism) return "elastic";
-  return mode.frequency > 0 ? "mechanism, pulled back" : "mechanism, free";
-}
-
-Table modes_table(const Vibration& vibration) {
-  Table table{{"mode", "frequency_Hz", "growth_rate_1_s", "mechanism"}, {}};
-  for (std::size_t k = 0; k < vibration.modes.size(); ++k) {
-    const VibrationMode& mode = vibration.modes[k];
-    table.rows.push_back({std::to_string(k + 1), exact_number(mode.frequency), exact_number(mode.growth),
-                          mode.mechanism ? "1" : "0"});
-  }
-  return table;
-}
 
 Table shapes_table(const Vibration& vibration, const Structure& structure) {
   Table table{{"mode", "node", "x", "y", "z"}, {}};
@@ -131,15 +70,10 @@ void print_modes(const Scene& scene, const Vibration& vibration, bool elastic) {
 int cmd_modes(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   const InterruptGuard guard;
-  const bool start = arguments.at.empty() || arguments.at == "start";
-  const Pose pose = start ? at_start(scene, arguments) : in_motion(scene, arguments);
+  const ModalPose pose = modal_pose(scene, arguments);
   if (interrupted()) return exit_interrupted;
-  const Structure& structure = pose.at->structure;
-  if (pose.at->system.solved_coordinates() > max_vibration_coordinates)
-    throw UsageError("modes are for " + std::to_string(max_vibration_coordinates) +
-                     " solved coordinates at most; the structure has " +
-                     std::to_string(pose.at->system.solved_coordinates()));
-  const Vibration vibration = unfurl::vibration(*pose.at, pose.state);
+  const Structure& structure = pose.model->structure;
+  const Vibration vibration = vibration_of(pose);
   if (arguments.json)
     std::cout << modes_json(scene, vibration).dump(2) << "\n";
   else
@@ -149,8 +83,8 @@ int cmd_modes(const Arguments& arguments) {
                        study_identity("Modes at " + exact_number(vibration.t) + " s", scene), "modes.csv");
   session.write("modes.csv", csv_text(modes_table(vibration)));
   session.write("mode_shapes.csv", csv_text(shapes_table(vibration, structure)));
-  VectorXd q(pose.at->system.coordinates());
-  pose.at->system.expand(pose.state.z, q);
+  VectorXd q(pose.model->system.coordinates());
+  pose.model->system.expand(pose.state.z, q);
   if (!vibration.modes.empty() && !structure.rod_copies.empty())
     session.write(mode_shapes_figure(structure, whole_positions(structure, q), vibration, scene.title));
   return exit_ok;

@@ -9,6 +9,7 @@
 #include "app/output/output_directory.hpp"
 #include "app/verbs/film.hpp"
 #include "app/verbs/frame_range.hpp"
+#include "app/verbs/mode_film.hpp"
 #include "app/verbs/plan.hpp"
 #include "app/verbs/run_figures.hpp"
 #include "app/verbs/run_report.hpp"
@@ -19,6 +20,8 @@
 namespace unfurl {
 
 int cmd_render(const Arguments& arguments) {
+  if (arguments.mode > 0) return render_mode(arguments);
+  if (!arguments.at.empty()) throw UsageError("--at is the pose of --mode; leave it out, or add --mode K");
   const FigureOptions style = figure_options(arguments);
   const auto formats = export_formats_of(arguments);
   const Scene scene = scene_of(arguments);

@@ -7,8 +7,14 @@
 #include "app/output/film_folder.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/output_directory.hpp"
+#include "app/output/progress.hpp"
+#include "app/output/receipt.hpp"
 #include "app/verbs/plan.hpp"
 #include "app/verbs/scene_run.hpp"
+#include "app/verbs/unfinished_run.hpp"
+#include "core/math/largest.hpp"
+#include "core/simulate/parts.hpp"
+#include "core/simulate/singular_poses.hpp"
 
 namespace unfurl {
 
@@ -27,29 +33,94 @@ bool keeps_film(const std::filesystem::path& directory, const Scene& scene, bool
   return folder.holds_this();
 }
 
+// Only what is solved once and needs no look back at all states is written as it goes.
+bool in_parts(const Scene& scene, const Arguments& arguments) {
+  return !arguments.output.empty() && arguments.exports.empty() && scene.solver.model == "full" &&
+         scene.solver.tolerance == 0;
+}
+
+[[noreturn]] void refuse_to_resume(const std::filesystem::path& directory) {
+  throw FileError(directory, "holds no unfinished run of this scene to go on with; leave --resume out");
+}
+
+int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, OwnDirectory& output,
+              bool film) {
+  const std::filesystem::path& directory = output.path();
+  const Diagnostics diagnostics = judge_run(run);
+  if (!directory.empty() && !film) output.written().remove_all();
+  const std::string summary = write_data(directory, scene, run, diagnostics, as_typed(arguments.words));
+  write_exports(export_formats_of(arguments), directory, scene, run, diagnostics, arguments);
+  report_run(run, diagnostics, arguments);
+  if (arguments.json) std::cout << summary;
+  return exit_code_of(run, diagnostics);
+}
+
+int write_end(const Scene& scene, UnfinishedRun& unfinished, Simulation& rest, std::size_t first,
+              const Arguments& arguments) {
+  const bool stopped = rest.status == RunStatus::stopped;
+  const Digest whole = stopped ? unfinished.interrupt(rest, first) : unfinished.finish(rest, first);
+  const Diagnostics& d = whole.diagnostics;
+  receipt_errors({{"constraint_error_m", largest_magnitude(d.at("constraint_max_m").values)},
+                  {"energy_balance_J", largest_magnitude(d.at("energy_balance_J").values)}});
+  const std::string summary =
+      write_data(arguments.output, scene, whole.run, d, as_typed(arguments.words), false);
+  report_run(whole.run, d, arguments);
+  if (stopped && !arguments.quiet) std::cerr << "unfurl: the same command goes on with it\n";
+  if (arguments.json) std::cout << summary;
+  return exit_code_of(whole.run, d);
+}
+
+int run_in_parts(const Scene& scene, const std::shared_ptr<const Model>& model, const Arguments& arguments,
+                 OwnDirectory& output, bool film) {
+  UnfinishedRun unfinished(output.written(), scene, model, arguments.checkpoint, !film);
+  Parts parts = parts_for(*model);
+  if (arguments.force && !arguments.resume) unfinished.forget();
+  if (unfinished.find()) {
+    parts.archived = &unfinished.stepper();
+    if (!arguments.quiet)
+      std::cerr << "unfurl: goes on with the unfinished run from t = " << unfinished.begins_at() << " s\n";
+  } else if (arguments.resume) {
+    refuse_to_resume(output.path());
+  }
+  parts.take = [&](Stepper::Window window, Stepper& stepper) { unfinished.take(std::move(window), stepper); };
+  Progress progress("simulating", arguments.quiet);
+  SimulationHooks hooks;
+  hooks.progress = [&](double fraction) { progress.show(fraction); };
+  hooks.cancelled = interrupted;
+  std::size_t first = 0;
+  Simulation run = simulate_in_parts(model, scene.solver, hooks, parts, first);
+  if (unfinished.any()) return write_end(scene, unfinished, run, first, arguments);
+  record_singular_poses(run, [] { return interrupted_for(0.5); });
+  return write_run(scene, run, arguments, output, film);
+}
+
 }  // namespace
 
 int cmd_run(const Arguments& arguments) {
   if (arguments.output.empty() && !arguments.json)
     throw UsageError("-o DIR is missing (or --json, for the summary alone)");
-  const auto formats = export_formats_of(arguments);
+  export_formats_of(arguments);  // refuses unknown ones before any work
   const Scene scene = scene_of(arguments);
   if (arguments.plan) return show_plan(scene, arguments, false);
-  auto model = model_of(scene, arguments);
+  Scene built = scene;
+  if (in_parts(scene, arguments))
+    built.solver.adaptive = true;  // no number of states is too large to be kept
+  auto model = model_of(built, arguments);
   OwnDirectory output(arguments.output, arguments.force, "run");
   const std::filesystem::path& directory = output.path();
   const bool film = !directory.empty() && keeps_film(directory, scene, arguments.force);
 
   const InterruptGuard guard;
   const FinishedWork keeping;  // of a motion that is interrupted too
+  if (in_parts(scene, arguments)) return run_in_parts(scene, model, arguments, output, film);
+  if (UnfinishedRun::lies_in(directory) && !arguments.force)
+    throw FileError(
+        directory / "unfinished",
+        "holds an unfinished run, which a run with --export, a tolerance or another model cannot go "
+        "on with; use --force to begin anew, or another -o");
+  if (arguments.resume) refuse_to_resume(directory);
   Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = judge_run(run);
-  if (!directory.empty() && !film) output.written().remove_all();
-  const std::string summary = write_data(directory, scene, run, diagnostics, as_typed(arguments.words));
-  write_exports(formats, directory, scene, run, diagnostics, arguments);
-  report_run(run, diagnostics, arguments);
-  if (arguments.json) std::cout << summary;
-  return exit_code_of(run, diagnostics);
+  return write_run(scene, run, arguments, output, film);
 }
 
 }  // namespace unfurl

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <sstream>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,13 @@ std::string command_by_hand(const std::filesystem::path& directory, const std::s
   return text.str();
 }
 
+// Of segments of the WebP, beside the other films: each holds some frames.
+int webp_threads(const Arguments& arguments) {
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int threads = arguments.threads > 0 ? arguments.threads : cores;
+  return threads == 1 ? 0 : std::min(threads, 4);
+}
+
 // One animation: what fails is told at the end, and does not keep the others from being made.
 class FilmEncoder {
  public:
@@ -53,7 +61,7 @@ class FilmEncoder {
   void sample(const Image& frame) {
     tried([&] { sample_frame(frame); });
   }
-  void add(const Image& frame) {
+  void add(const std::shared_ptr<const Image>& frame) {
     tried([&] { add_frame(frame); });
   }
   void finish() {
@@ -67,7 +75,7 @@ class FilmEncoder {
 
  protected:
   virtual void sample_frame(const Image&) {}
-  virtual void add_frame(const Image& frame) = 0;
+  virtual void add_frame(const std::shared_ptr<const Image>& frame) = 0;
   virtual void finish_film() = 0;
   template <class Work>
   void tried(const Work& work) {
@@ -87,13 +95,13 @@ class FilmEncoder {
 
 class WebpFilm final : public FilmEncoder {
  public:
-  WebpFilm(const std::filesystem::path& directory, const RenderOptions& o)
+  WebpFilm(const std::filesystem::path& directory, const RenderOptions& o, int threads)
       : FilmEncoder(directory, "animation.webp") {
-    tried([&] { webp_.emplace(target(), o.width, o.height, o.fps, has_alpha(o)); });
+    tried([&] { webp_.emplace(target(), o.width, o.height, o.fps, has_alpha(o), threads); });
   }
 
  private:
-  void add_frame(const Image& frame) override { webp_->add(frame); }
+  void add_frame(const std::shared_ptr<const Image>& frame) override { webp_->add(frame); }
   void finish_film() override { webp_->finish(); }
   std::optional<WebpAnimation> webp_;
 };
@@ -109,7 +117,9 @@ class GifFilm final : public FilmEncoder {
 
  private:
   void sample_frame(const Image& frame) override { gif_.sample(scaled_down(frame, width_, height_)); }
-  void add_frame(const Image& frame) override { gif_.add(scaled_down(frame, width_, height_)); }
+  void add_frame(const std::shared_ptr<const Image>& frame) override {
+    gif_.add(scaled_down(*frame, width_, height_));
+  }
   void finish_film() override { gif_.finish(); }
   int width_, height_;
   GifAnimation gif_;
@@ -123,7 +133,9 @@ class Mp4Film final : public FilmEncoder {
         mp4_(target(), o.width, o.height, o.fps) {}
 
  private:
-  void add_frame(const Image& frame) override { mp4_.add(alpha_ ? on_white(frame) : frame); }
+  void add_frame(const std::shared_ptr<const Image>& frame) override {
+    mp4_.add(alpha_ ? on_white(*frame) : *frame);
+  }
   void finish_film() override {
     if (const std::string problem = mp4_.finish(); !problem.empty()) throw std::runtime_error(problem);
   }
@@ -146,7 +158,7 @@ class FilmEncoders {
   void add(const std::shared_ptr<const Image>& frame) {
     wait();
     for (const auto& film : films_)
-      busy_.push_back(std::async(policy_, [&film = *film, frame] { film.add(*frame); }));
+      busy_.push_back(std::async(policy_, [&film = *film, frame] { film.add(frame); }));
   }
   const std::vector<std::unique_ptr<FilmEncoder>>& finish() {
     wait();
@@ -231,7 +243,7 @@ bool encode_films(const std::filesystem::path& directory, const FilmFolder& fold
     return true;
   }
   FilmEncoders encoders(arguments.threads != 1);
-  if (webp) encoders.begin(std::make_unique<WebpFilm>(directory, options));
+  if (webp) encoders.begin(std::make_unique<WebpFilm>(directory, options, webp_threads(arguments)));
   if (gif) encoders.begin(std::make_unique<GifFilm>(directory, options));
   std::exception_ptr without;
   try {

@@ -19,6 +19,14 @@ const FigureKind& figure_named(const std::string& name) {
 
 FigureOptions figure_options(const Arguments& arguments) {
   FigureOptions options{.dpi = arguments.dpi};
+  if (!arguments.font.empty()) {
+    options.face = plot::find_typeface(arguments.font);
+    std::vector<std::string_view> names;
+    for (const plot::Typeface& face : plot::typefaces()) names.push_back(face.name);
+    if (!options.face)
+      throw UsageError("no font " + in_quotes(arguments.font) + did_you_mean(arguments.font, names));
+    require_installed(*options.face);
+  }
   if (arguments.style.empty()) return options;
   options.style = find_figure_style(arguments.style);
   if (options.style) return options;

@@ -16,7 +16,7 @@ namespace unfurl {
 // The figure of that name; throws UsageError with the nearest one.
 const FigureKind& figure_named(const std::string& name);
 
-// --style and --dpi; throws UsageError with the nearest name.
+// --style, --font and --dpi; throws UsageError with the nearest name, FileError where the font is missing.
 FigureOptions figure_options(const Arguments& arguments);
 
 // Writes these figures, those that the scene has data for, as NAME.png, NAME.svg and NAME.pdf into the

@@ -64,7 +64,7 @@ Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model
 }
 
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
-                       const Diagnostics& diagnostics, const std::string& command) {
+                       const Diagnostics& diagnostics, const std::string& command, bool tables) {
   const Model& model = run.trajectory.model();
   const Mobility mobility = analyse_mobility(model.system, run.trajectory.node_positions(0));
   const std::string text = scene_text(scene);
@@ -75,9 +75,11 @@ std::string write_data(const std::filesystem::path& directory, const Scene& scen
       summary_json(scene.name, run, diagnostics, mobility, {command, hash.text(), wall});
   if (directory.empty()) return summary;
   write_file_atomically(directory / "scene.toml", text);
-  write_series_csv(directory / "series.csv", diagnostics);
-  write_trajectory_csv(directory / "trajectory.csv", run.trajectory);
-  write_rod_forces_csv(directory / "rod_forces.csv", run.trajectory, diagnostics);
+  if (tables) {
+    write_series_csv(directory / "series.csv", diagnostics);
+    write_trajectory_csv(directory / "trajectory.csv", run.trajectory);
+    write_rod_forces_csv(directory / "rod_forces.csv", run.trajectory, diagnostics);
+  }
   write_file_atomically(directory / "summary.json", summary);
   return summary;
 }

@@ -23,9 +23,9 @@ std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& argum
 Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model, const Arguments& arguments);
 
 // scene.toml, series.csv, trajectory.csv, rod_forces.csv and summary.json; returns the text of the latter. An
-// empty directory name writes nothing. command: what was typed, for the summary.
+// empty directory name writes nothing. command: what was typed, for the summary; tables: those in CSV, too.
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
-                       const Diagnostics& diagnostics, const std::string& command);
+                       const Diagnostics& diagnostics, const std::string& command, bool tables = true);
 
 // The formats that --export names, in that order; throws UsageError with the nearest name of an unknown one.
 std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/diagnostics/books.hpp"
+#include "core/diagnostics/good_part.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/integrators/stage_equations.hpp"
 #include "core/math/largest.hpp"
@@ -69,16 +70,13 @@ double deployed_at(const Simulation& run) {
   return std::numeric_limits<double>::infinity();
 }
 
-// The longest beginning that can be trusted, and why it is not longer.
-struct GoodPart {
-  std::size_t states = 0;
-  std::string why = {};
-  std::string text(const Diagnostics& d) const {
-    std::ostringstream out;
-    if (states < d.t.size() - d.left_open) out << "from t = " << d.t[states] << " s on " << why;
-    return out.str();
-  }
-};
+}  // namespace
+
+std::string GoodPart::text(const Diagnostics& d) const {
+  std::ostringstream out;
+  if (states < d.t.size() - d.left_open) out << "from t = " << d.t[states] << " s on " << why;
+  return out.str();
+}
 
 GoodPart good_part(const Simulation& run, const Diagnostics& d) {
   const std::size_t judged = d.t.size() - d.left_open;
@@ -142,6 +140,8 @@ void keep_states(std::size_t states, Simulation& run, Diagnostics& d) {
   std::erase_if(run.events, [&](const Event& event) { return event.t > run.trajectory.end_time(); });
 }
 
+namespace {
+
 std::string percent_of(double part, double whole) {
   std::ostringstream text;
   text.precision(3);
@@ -176,14 +176,18 @@ double energy_turned_over(const Diagnostics& d) {
   return turned.value();
 }
 
+void fail_for(const std::string& why, Simulation& run) {
+  run.message =
+      (run.status == RunStatus::failed ? run.message + "; " : "") + why + ": what follows is left out";
+  run.status = RunStatus::failed;
+}
+
 Diagnostics judge(Simulation& run, const std::function<bool()>& cancelled) {
   Diagnostics d = diagnose(run, cancelled);
   const std::size_t judged = d.t.size() - d.left_open;
   GoodPart part = good_part(run, d);
   if (part.states == judged) return d;
-  run.message = (run.status == RunStatus::failed ? run.message + "; " : "") + part.text(d) +
-                ": what follows is left out";
-  run.status = RunStatus::failed;
+  fail_for(part.text(d), run);
   d.left_open = 0;
   keep_states(part.states, run, d);
   return d;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/diagnostics/books.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -21,7 +22,9 @@ std::vector<double> energy_round_off(const Simulation& run) {
     if (q.size()) grow(reach, q.lpNorm<Eigen::Infinity>());
     grow(work,
          force.lpNorm<1>() * reach + std::abs(system.potential_energy(q)) + std::abs(system.load_work(q)));
-    const auto steps = static_cast<double>(i);
+    // So far: a run that is not kept whole has made more than it has states.
+    const auto behind = static_cast<long>(trajectory.size() - 1 - i);
+    const auto steps = static_cast<double>(std::max(static_cast<long>(i), run.steps - behind));
     const double elapsed = trajectory.time(i) - trajectory.start_time();
     const double speed = elapsed > 0 ? noise * reach * steps / elapsed : 0.0;
     const double energy =

@@ -11,8 +11,7 @@ namespace unfurl {
 // price.
 Diagnostics diagnose_books(const Simulation& run);
 
-// Columns that are functions of the state alone: as diagnose, but nothing goes in or out (columns in J are
-// then those of kinetic and potential energy only).
+// All but what is unique and what goes in or out, of which energies are the sums: those columns mean nothing.
 Diagnostics diagnose_states(const Simulation& run);
 
 // What the energy balance may be off by rounding alone, at every state of the run [J]. Coordinates are known

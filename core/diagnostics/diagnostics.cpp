@@ -345,8 +345,7 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
   out.force_unique.bottomRows(static_cast<Index>(out.left_open)).setConstant(false);
 }
 
-// What is asked for: all columns; those that books.hpp needs; what is a function of the state alone.
-enum class Asked { all, books, states };
+enum class Look { books, states, all };
 
 EnergyFlow no_flow(const Simulation& run) {
   const std::vector<double> none(run.trajectory.size(), 0.0);
@@ -354,9 +353,9 @@ EnergyFlow no_flow(const Simulation& run) {
   return {none, none, none, none, std::vector(drives, none)};
 }
 
-Diagnostics diagnosed(const Simulation& run, Asked asked, const std::function<bool()>& cancelled) {
+Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool()>& cancelled) {
+  const bool books = look == Look::books;
   const Trajectory& trajectory = run.trajectory;
-  const bool books = asked == Asked::books;
   Diagnostics out;
   std::vector<const Row*> used;
   for (const Row& row : rows) {
@@ -370,14 +369,15 @@ Diagnostics diagnosed(const Simulation& run, Asked asked, const std::function<bo
   if (!books) drives.emplace(trajectory.model(), out.columns);
   const std::size_t first_own = out.columns.size();
   if (!books) add_own_columns(trajectory.structure(), out);
-  const EnergyFlow flow = asked == Asked::states ? no_flow(run) : energy_flow(run);
+  const EnergyFlow flow = look == Look::states ? no_flow(run) : energy_flow(run);
   const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   out.force_unique.resize(out.axial_force.rows(), rods);
   out.rod_unique.assign(static_cast<std::size_t>(rods), 1);
   std::vector<char> unique(out.rod_unique);
+  const std::vector<char> not_asked;
   std::optional<ForceUniqueness> uniqueness;
-  if (!books) uniqueness.emplace(run);
+  if (look == Look::all || (!books && any_elastic(trajectory.structure()))) uniqueness.emplace(run);
   VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
   std::vector<double> scratch;
   const Model* model = nullptr;
@@ -392,7 +392,7 @@ Diagnostics diagnosed(const Simulation& run, Asked asked, const std::function<bo
       model = &trajectory.model(i);
       followed = std::make_unique<System>(model->system);
       if (!books) index1 = std::make_unique<Index1>(*followed, true);
-      if (!books) sharing.emplace(*model, uniqueness->all_by_rigid_rods(i));
+      if (!books) sharing.emplace(*model, !uniqueness || uniqueness->all_by_rigid_rods(i));
       lengths = model->system.all_lengths();
       phi.resize(lengths.size());
       velocity_phi.resize(lengths.size());
@@ -408,8 +408,8 @@ Diagnostics diagnosed(const Simulation& run, Asked asked, const std::function<bo
       lambda = multipliers(*index1, *model, state, limit, acceleration);
       sharing->share(state.t, q, limit, lambda);
       axial_forces(*model, state, q, v, lambda, force);
-      const std::vector<char>& rows_unique = uniqueness->at(i);
-      for (std::size_t r = 0; r < unique.size(); ++r) {
+      for (std::size_t r = 0; uniqueness && r < unique.size(); ++r) {
+        const std::vector<char>& rows_unique = uniqueness->at(i);
         const int row = system.rod_rows()[r];
         unique[r] = row < 0 ? char{1} : rows_unique[static_cast<std::size_t>(row)];
         if (uniqueness->regular(i)) out.rod_unique[r] = static_cast<char>(out.rod_unique[r] & unique[r]);
@@ -438,7 +438,7 @@ Diagnostics diagnosed(const Simulation& run, Asked asked, const std::function<bo
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
     if (!books) {
       add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
-      drives->append(*model, instant, lambda, uniqueness->at(i));
+      drives->append(*model, instant, lambda, uniqueness ? uniqueness->at(i) : not_asked);
     }
   }
   leave_open(trajectory, out);
@@ -451,15 +451,15 @@ Diagnostics diagnosed(const Simulation& run, Asked asked, const std::function<bo
 }  // namespace
 
 Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
-  return diagnosed(run, Asked::all, cancelled);
+  return diagnosed(run, Look::all, cancelled);
 }
 
 Diagnostics diagnose_books(const Simulation& run) {
-  return diagnosed(run, Asked::books, {});
+  return diagnosed(run, Look::books, {});
 }
 
 Diagnostics diagnose_states(const Simulation& run) {
-  return diagnosed(run, Asked::states, {});
+  return diagnosed(run, Look::states, {});
 }
 
 }  // namespace unfurl

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/export/checksum.hpp"
+#include "core/export/run_tables.hpp"
 
 namespace unfurl {
 namespace {
@@ -171,6 +172,13 @@ void PendingFile::commit(Flush flush) {
     throw FileError(target_, error);
   }
   if (flush == Flush::at_once) flush_directory_of(target_);
+}
+
+void move_into_place(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (FileFinisher* finisher = file_finisher(); finisher) finisher->finish(from, to);
+  if (FileWatcher* watcher = file_watcher; watcher) watcher->before_file(to, checksum_of_file(from));
+  if (std::rename(from.c_str(), to.c_str()) != 0) throw FileError(to, errno);
+  flush_directory_of(to);
 }
 
 FileFinisher* finish_files(FileFinisher* finisher) {

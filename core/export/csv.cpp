@@ -1,31 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/export/csv.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <bit>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
+#include "core/export/run_tables.hpp"
 
 namespace unfurl {
 
-namespace {
+namespace csv_tables {
 
 // Writes row by row, so that a long run needs no second copy of itself in memory.
-class CsvFile {
+class CsvRows {
  public:
-  explicit CsvFile(const std::filesystem::path& path)
-      : path_(path), pending_(path), file_(::fdopen(::dup(pending_.file()), "wb")) {
+  // Into a file that is open, a copy of which is kept open here.
+  CsvRows(const std::filesystem::path& path, int file) : path_(path), file_(::fdopen(::dup(file), "wb")) {
     if (!file_) throw FileError(path_, errno);
   }
-  ~CsvFile() {
+  ~CsvRows() {
     if (file_) std::fclose(file_);
   }
-  CsvFile(const CsvFile&) = delete;
-  CsvFile& operator=(const CsvFile&) = delete;
+  CsvRows(const CsvRows&) = delete;
+  CsvRows& operator=(const CsvRows&) = delete;
 
   void cell(const std::string& text) { append(csv_cell(text)); }
 
@@ -36,8 +43,8 @@ class CsvFile {
       row_[used_++] = '0';
       return;
     }
-    const auto end = std::to_chars(row_.data() + used_, row_.data() + row_.size(), x).ptr;
-    used_ = static_cast<std::size_t>(end - row_.data());
+    if (x < 0) row_[used_++] = '-';
+    used_ += text_of(std::abs(x)).copy(row_.data() + used_, longest_number);
   }
   void flag(bool yes) {
     begin_cell();
@@ -50,14 +57,28 @@ class CsvFile {
     used_ = 0;
   }
 
-  void commit() {
-    std::FILE* file = file_;
-    file_ = nullptr;
-    if (std::fclose(file) != 0) throw FileError(path_, errno);
-    pending_.commit();
+  void close() {
+    if (std::fclose(std::exchange(file_, nullptr)) != 0) throw FileError(path_, errno);
   }
+  void flush() {
+    if (std::fflush(file_) != 0) throw FileError(path_, errno);
+  }
+  const std::filesystem::path& path() const { return path_; }
 
  private:
+  // Structures repeat themselves: a symmetric one writes the same number, or its negative, many times in a
+  // row, and finding the shortest text of one costs twenty times as much as finding it again.
+  std::string_view text_of(double x) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    Known& known = known_[(bits * 0x9e3779b97f4a7c15ULL) >> 55U];
+    if (known.bits != bits || known.size == 0) {
+      const char* const end = std::to_chars(known.text, known.text + longest_number, x).ptr;
+      known.bits = bits;
+      known.size = static_cast<unsigned char>(end - known.text);
+    }
+    return {known.text, known.size};
+  }
+
   // Behind a comma, with room for a number.
   void begin_cell() {
     if (row_.size() - used_ < 64) row_.resize(2 * row_.size() + 64);
@@ -69,14 +90,37 @@ class CsvFile {
     used_ += text.copy(row_.data() + used_, text.size());
   }
 
+  static constexpr std::size_t longest_number = 31;
+  struct Known {
+    std::uint64_t bits = 0;
+    unsigned char size = 0;  // 0: none
+    char text[longest_number];
+  };
+
   std::filesystem::path path_;
-  PendingFile pending_;
   std::FILE* file_;
+  std::vector<Known> known_ = std::vector<Known>(512);
   std::string row_ = std::string(4096, ' ');
   std::size_t used_ = 0;  // of it
 };
 
-}  // namespace
+class CsvFile {
+ public:
+  explicit CsvFile(const std::filesystem::path& path) : pending_(path), rows_(path, pending_.file()) {}
+  CsvRows& rows() { return rows_; }
+  void commit() {
+    rows_.close();
+    pending_.commit();
+  }
+
+ private:
+  PendingFile pending_;
+  CsvRows rows_;
+};
+
+}  // namespace csv_tables
+
+using csv_tables::CsvFile, csv_tables::CsvRows;
 
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -85,61 +129,164 @@ std::string csv_cell(const std::string& text) {
   return cell + '"';
 }
 
-void write_series_csv(const std::filesystem::path& path, const Diagnostics& diagnostics) {
-  CsvFile file(path);
+namespace {
+
+void series_header(CsvRows& file, const Diagnostics& diagnostics) {
   file.cell("t_s");
   for (const auto& column : diagnostics.columns) file.cell(column.name);
   file.end_row();
-  for (std::size_t i = 0; i < diagnostics.t.size(); ++i) {
-    file.cell(diagnostics.t[i]);
-    for (const auto& column : diagnostics.columns) file.cell(column.values[i]);
-    file.end_row();
+}
+
+void series_row(CsvRows& file, const Diagnostics& diagnostics, std::size_t i) {
+  file.cell(diagnostics.t[i]);
+  for (const auto& column : diagnostics.columns) file.cell(column.values[i]);
+  file.end_row();
+}
+
+void trajectory_header(CsvRows& file, const Structure& structure) {
+  file.cell("t_s");
+  for (const auto& node : structure.node_copies)
+    for (const char* suffix : {".x_m", ".y_m", ".z_m", ".vx_m_s", ".vy_m_s", ".vz_m_s"})
+      file.cell(node.name + suffix);
+  file.end_row();
+}
+
+void trajectory_row(CsvRows& file, const Trajectory& trajectory, std::size_t i) {
+  const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
+  file.cell(trajectory.time(i));
+  for (Index node = 0; node < x.size() / 3; ++node) {
+    for (Index k = 0; k < 3; ++k) file.cell(x[3 * node + k]);
+    for (Index k = 0; k < 3; ++k) file.cell(v[3 * node + k]);
   }
+  file.end_row();
+}
+
+void rod_forces_header(CsvRows& file, const Structure& structure) {
+  file.cell("t_s");
+  for (const auto& rod : structure.rod_copies) file.cell(rod.name + ".axial_force_N");
+  for (const auto& rod : structure.rod_copies) file.cell(rod.name + ".axial_force_unique");
+  file.end_row();
+}
+
+void rod_forces_row(CsvRows& file, const Structure& structure, const Diagnostics& diagnostics,
+                    std::size_t i) {
+  const auto state = static_cast<Index>(i);
+  file.cell(diagnostics.t[i]);
+  for (const auto& rod : structure.rod_copies) file.cell(diagnostics.axial_force(state, rod.source));
+  for (const auto& rod : structure.rod_copies) file.flag(diagnostics.force_unique(state, rod.source));
+  file.end_row();
+}
+
+}  // namespace
+
+void write_series_csv(const std::filesystem::path& path, const Diagnostics& diagnostics) {
+  CsvFile file(path);
+  series_header(file.rows(), diagnostics);
+  for (std::size_t i = 0; i < diagnostics.t.size(); ++i) series_row(file.rows(), diagnostics, i);
   file.commit();
 }
 
 void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& trajectory) {
   CsvFile file(path);
-  file.cell("t_s");
-  const auto& nodes = trajectory.structure().node_copies;
-  for (const auto& node : nodes)
-    for (const char* suffix : {".x_m", ".y_m", ".z_m", ".vx_m_s", ".vy_m_s", ".vz_m_s"})
-      file.cell(node.name + suffix);
-  file.end_row();
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
-    file.cell(trajectory.time(i));
-    for (Index node = 0; node < x.size() / 3; ++node) {
-      for (Index k = 0; k < 3; ++k) file.cell(x[3 * node + k]);
-      for (Index k = 0; k < 3; ++k) file.cell(v[3 * node + k]);
-    }
-    file.end_row();
-  }
+  trajectory_header(file.rows(), trajectory.structure());
+  for (std::size_t i = 0; i < trajectory.size(); ++i) trajectory_row(file.rows(), trajectory, i);
   file.commit();
 }
 
 void write_rod_forces_csv(const std::filesystem::path& path, const Trajectory& trajectory,
                           const Diagnostics& diagnostics) {
   CsvFile file(path);
-  file.cell("t_s");
-  const auto& rods = trajectory.structure().rod_copies;
-  for (const auto& rod : rods) file.cell(rod.name + ".axial_force_N");
-  for (const auto& rod : rods) file.cell(rod.name + ".axial_force_unique");
-  file.end_row();
-  for (std::size_t i = 0; i < diagnostics.t.size(); ++i) {
-    const auto state = static_cast<Index>(i);
-    file.cell(diagnostics.t[i]);
-    for (const auto& rod : rods) file.cell(diagnostics.axial_force(state, rod.source));
-    for (const auto& rod : rods) file.flag(diagnostics.force_unique(state, rod.source));
-    file.end_row();
-  }
+  rod_forces_header(file.rows(), trajectory.structure());
+  for (std::size_t i = 0; i < diagnostics.t.size(); ++i)
+    rod_forces_row(file.rows(), trajectory.structure(), diagnostics, i);
   file.commit();
+}
+
+// --- tables that grow ---
+
+namespace csv_tables {
+
+class GrowingFile {
+ public:
+  explicit GrowingFile(const std::filesystem::path& path)
+      : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666)),
+        rows_(path, file_ < 0 ? throw FileError(path, errno) : file_) {
+    ::lseek(file_, 0, SEEK_END);
+  }
+  ~GrowingFile() { ::close(file_); }
+  GrowingFile(const GrowingFile&) = delete;
+  GrowingFile& operator=(const GrowingFile&) = delete;
+
+  CsvRows& rows() { return rows_; }
+  std::uint64_t size() {
+    rows_.flush();
+    return static_cast<std::uint64_t>(::lseek(file_, 0, SEEK_CUR));
+  }
+  void cut(std::uint64_t size) {
+    rows_.flush();
+    if (::ftruncate(file_, static_cast<off_t>(size)) != 0) throw FileError(rows_.path(), errno);
+    ::lseek(file_, 0, SEEK_END);
+  }
+  void flush_to_disk() {
+    rows_.flush();
+    if (::fsync(file_) != 0 && errno != EINVAL && errno != EROFS) throw FileError(rows_.path(), errno);
+  }
+
+ private:
+  int file_;
+  CsvRows rows_;  // shares its place in the file
+};
+
+}  // namespace csv_tables
+
+using csv_tables::GrowingFile;
+
+struct RunTables::Files {
+  explicit Files(const std::filesystem::path& folder)
+      : series(folder / "series.csv"),
+        trajectory(folder / "trajectory.csv"),
+        rod_forces(folder / "rod_forces.csv") {}
+  GrowingFile series, trajectory, rod_forces;
+};
+
+RunTables::RunTables(const std::filesystem::path& folder) : files_(std::make_unique<Files>(folder)) {}
+RunTables::~RunTables() = default;
+
+void RunTables::add(const Trajectory& trajectory, const Diagnostics& diagnostics, std::size_t first,
+                    std::size_t last) {
+  Files& f = *files_;
+  const Structure& structure = trajectory.structure();
+  if (f.series.size() == 0) {
+    series_header(f.series.rows(), diagnostics);
+    trajectory_header(f.trajectory.rows(), structure);
+    rod_forces_header(f.rod_forces.rows(), structure);
+  }
+  for (std::size_t i = first; i < last; ++i) {
+    series_row(f.series.rows(), diagnostics, i);
+    trajectory_row(f.trajectory.rows(), trajectory, i);
+    rod_forces_row(f.rod_forces.rows(), structure, diagnostics, i);
+  }
+}
+
+RunTables::Sizes RunTables::sizes() {
+  return {files_->series.size(), files_->trajectory.size(), files_->rod_forces.size()};
+}
+
+void RunTables::cut(Sizes sizes) {
+  files_->series.cut(sizes.series);
+  files_->trajectory.cut(sizes.trajectory);
+  files_->rod_forces.cut(sizes.rod_forces);
+}
+
+void RunTables::flush_to_disk() {
+  for (GrowingFile* file : {&files_->series, &files_->trajectory, &files_->rod_forces}) file->flush_to_disk();
 }
 
 namespace {
 
 void write_long_nodes(const std::filesystem::path& path, const Trajectory& trajectory) {
-  CsvFile file(path);
+  CsvFile whole(path);
+  CsvRows& file = whole.rows();
   for (const char* name : {"t_s", "node", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s"}) file.cell(name);
   file.end_row();
   const auto& nodes = trajectory.structure().node_copies;
@@ -153,12 +300,13 @@ void write_long_nodes(const std::filesystem::path& path, const Trajectory& traje
       file.end_row();
     }
   }
-  file.commit();
+  whole.commit();
 }
 
 void write_long_rods(const std::filesystem::path& path, const Trajectory& trajectory,
                      const Diagnostics& diagnostics) {
-  CsvFile file(path);
+  CsvFile whole(path);
+  CsvRows& file = whole.rows();
   for (const char* name :
        {"t_s", "rod", "node_a", "node_b", "group", "length_m", "axial_force_N", "axial_force_unique"})
     file.cell(name);
@@ -178,7 +326,7 @@ void write_long_rods(const std::filesystem::path& path, const Trajectory& trajec
       file.end_row();
     }
   }
-  file.commit();
+  whole.commit();
 }
 
 }  // namespace

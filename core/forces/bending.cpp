@@ -113,11 +113,8 @@ std::unique_ptr<ForceBlock> bending_block(const Structure& structure, const Spar
 }
 
 const std::vector<ParamSpec>& bending_params() {
-  static const std::vector<ParamSpec> params = [] {
-    ParamSpec stiffness = positive_param("stiffness", "N m^2", 1.0, "E I of the rod");
-    stiffness.required = true;
-    return std::vector<ParamSpec>{stiffness};
-  }();
+  static const std::vector<ParamSpec> params = {
+      required(positive_param("stiffness", "N m^2", 1.0, "E I of the rod"))};
   return params;
 }
 

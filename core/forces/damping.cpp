@@ -38,9 +38,7 @@ class Drag final : public ForceBlock {
 };
 
 std::vector<ParamSpec> one_damping(const char* unit, const char* help) {
-  ParamSpec damping = positive_param("damping", unit, 1.0, help);
-  damping.required = true;
-  return {damping};
+  return {required(positive_param("damping", unit, 1.0, help))};
 }
 
 }  // namespace

@@ -112,11 +112,9 @@ const std::vector<ParamSpec>& friction_params() {
   constexpr double endless = std::numeric_limits<double>::infinity(),
                    as_kinetic = std::numeric_limits<double>::quiet_NaN();
   static const std::vector<ParamSpec> params = [] {
-    ParamSpec kinetic = real_param("kinetic", "", 0.0, 0.0, endless,
-                                   "while it slips: N m on an angle, N on a length or a coordinate");
-    kinetic.required = true;
     return std::vector<ParamSpec>{
-        kinetic,
+        required(real_param("kinetic", "", 0.0, 0.0, endless,
+                            "while it slips: N m on an angle, N on a length or a coordinate")),
         real_param("static", "", as_kinetic, 0.0, endless,
                    "up to which it sticks, at least kinetic; by default kinetic"),
         real_param("pin_friction", "", 0.0, 0.0, endless,

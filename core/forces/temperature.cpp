@@ -12,11 +12,9 @@ std::unique_ptr<ForceBlock> no_block(const Structure&, const SparseRows&) {
 const std::vector<ParamSpec>& temperature_params() {
   static const std::vector<ParamSpec> params = [] {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    ParamSpec expansion =
-        real_param("expansion", "1/K", 0.0, -1.0, 1.0, "coefficient of thermal expansion of the rods");
-    expansion.required = true;
     return std::vector<ParamSpec>{
-        expansion,
+        required(
+            real_param("expansion", "1/K", 0.0, -1.0, 1.0, "coefficient of thermal expansion of the rods")),
         real_param(
             "change", "K", 1.0, -infinity, infinity,
             "above the temperature at which the rods have their lengths, times the factor of the time"),

@@ -109,11 +109,9 @@ std::unique_ptr<ForceBlock> follower_block(const Structure& structure, const Spa
 }
 
 const std::vector<ParamSpec>& load_over_time_params() {
-  static const std::vector<ParamSpec> params = [] {
-    ParamSpec force = vector_param("force", "N", {0, 0, 0}, "on each node, times the factor of the time");
-    force.required = true;
-    return std::vector<ParamSpec>{force, times_param(), values_param(), table_param()};
-  }();
+  static const std::vector<ParamSpec> params = {
+      required(vector_param("force", "N", {0, 0, 0}, "on each node, times the factor of the time")),
+      times_param(), values_param(), table_param()};
   return params;
 }
 
@@ -130,10 +128,10 @@ void fill_follower(const ParamSet& values, Force& force) {
 const std::vector<ParamSpec>& follower_params() {
   static const std::vector<ParamSpec> params = [] {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    ParamSpec force = real_param("force", "N", 0.0, -infinity, infinity,
-                                 "on the second node of the rod, along the rod and away from the first");
-    force.required = true;
-    return std::vector<ParamSpec>{force, times_param(), values_param(), table_param()};
+    return std::vector<ParamSpec>{
+        required(real_param("force", "N", 0.0, -infinity, infinity,
+                            "on the second node of the rod, along the rod and away from the first")),
+        times_param(), values_param(), table_param()};
   }();
   return params;
 }

@@ -9,14 +9,38 @@ namespace unfurl {
 namespace {
 
 using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
-using Entries = std::vector<Eigen::Triplet<double>>;
+
+// The matrix, scaled: a small one entry by entry in its place, a larger one as a list of entries.
+class Entries {
+ public:
+  Entries(const VectorXd& scale, MatrixXd* dense) : scale_(scale), dense_(dense) {
+    if (dense_) dense_->setZero(scale.size(), scale.size());
+  }
+  void add(Index i, Index j, double value) { add_scaled(i, j, value * scale_[i] * scale_[j]); }
+  void add_scaled(Index i, Index j, double value) {
+    if (dense_)
+      (*dense_)(i, j) += value;
+    else
+      list_.emplace_back(static_cast<int>(i), static_cast<int>(j), value);
+  }
+  Columns sparse() const {
+    Columns A(scale_.size(), scale_.size());
+    A.setFromTriplets(list_.begin(), list_.end());
+    return A;
+  }
+
+ private:
+  const VectorXd& scale_;
+  MatrixXd* dense_;  // null: there is none
+  std::vector<Eigen::Triplet<double>> list_;
+};
 
 void add_block(Entries& entries, const SparseRows& A, Index row, Index column, double scale,
                bool transposed) {
   for (int r = 0; r < A.outerSize(); ++r)
     for (SparseRows::InnerIterator it(A, r); it; ++it) {
       const Index i = transposed ? it.col() : r, j = transposed ? r : it.col();
-      entries.emplace_back(static_cast<int>(row + i), static_cast<int>(column + j), scale * it.value());
+      entries.add(row + i, column + j, scale * it.value());
     }
 }
 
@@ -99,14 +123,13 @@ void add_compliances(Entries& entries, const StageEquations& eq, Index first, co
   for (Index j = 0; j < eq.c.tau.size(); ++j)
     for (Index i = 0; i < count; ++i) {
       const Index at = first + j * count + i;
-      const double diagonal = eq.rods.compliance(i) / (eq.h * eq.h * eq.c.weight[j]) * scale[at] * scale[at];
-      entries.emplace_back(static_cast<int>(at), static_cast<int>(at), std::max(diagonal, least));
+      const double diagonal = eq.rods.compliance(i) / (eq.h * eq.h * eq.c.weight[j]);
+      entries.add_scaled(at, at, std::max(diagonal * scale[at] * scale[at], least));
     }
 }
 
-Columns newton_matrix(StageEquations& eq, const VectorXd& scale) {
+void add_newton_matrix(StageEquations& eq, const VectorXd& scale, Entries& entries) {
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
-  Entries entries;
   SparseRows G = eq.system.jacobian_pattern();
   std::vector<double> scratch;
   for (Index k = 0; k < stages; ++k) {
@@ -128,16 +151,12 @@ Columns newton_matrix(StageEquations& eq, const VectorXd& scale) {
     eq.system.jacobian(eq.Q.col(stages), G, scratch);
     add_block(entries, G, stages * n, (stages - 1) * n, 1.0, false);
   }
-  const Index rods = stages * n + multipliers(eq), size = unknowns(eq);
+  const Index rods = stages * n + multipliers(eq);
   if (!eq.system.constant_forces()) add_force_blocks(entries, eq);
-  if (eq.rods.as_unknowns) add_rod_blocks(entries, eq, rods);
-  for (auto& e : entries) e = {e.row(), e.col(), e.value() * scale[e.row()] * scale[e.col()]};
-  for (Index i = stages * n; i < rods; ++i)
-    entries.emplace_back(static_cast<int>(i), static_cast<int>(i), -SaddleSolver::standard_regularisation);
-  if (eq.rods.as_unknowns) add_compliances(entries, eq, rods, scale);
-  Columns A(size, size);
-  A.setFromTriplets(entries.begin(), entries.end());
-  return A;
+  for (Index i = stages * n; i < rods; ++i) entries.add_scaled(i, i, -SaddleSolver::standard_regularisation);
+  if (!eq.rods.as_unknowns) return;
+  add_rod_blocks(entries, eq, rods);
+  add_compliances(entries, eq, rods, scale);
 }
 
 VectorXd right_hand_side(const StageEquations& eq) {
@@ -168,11 +187,15 @@ void apply(StageEquations& eq, const VectorXd& x) {
 
 }  // namespace
 
-bool FullNewton::Factors::compute(const Columns& A) {
-  if (A.rows() <= largest_dense) {
-    dense_.compute(MatrixXd(A));
+bool FullNewton::Factors::compute(StageEquations& eq, const VectorXd& scale) {
+  const bool small = scale.size() <= largest_dense;
+  Entries entries(scale, small ? &matrix_ : nullptr);
+  add_newton_matrix(eq, scale, entries);
+  if (small) {
+    dense_.compute(matrix_);
     return true;
   }
+  const Columns A = entries.sparse();
   if (A.nonZeros() != analysed_) sparse_.analyzePattern(A);
   analysed_ = A.nonZeros();
   sparse_.factorize(A);
@@ -229,7 +252,7 @@ StepStatus FullNewton::solve(StageEquations& eq, double wanted, double accepted,
     ++report.newton_iterations;
     if (!(level < quick * before)) {
       ++report.factorisations;
-      if (!factors_.compute(newton_matrix(eq, scale_))) return known_ = false, StepStatus::diverged;
+      if (!factors_.compute(eq, scale_)) return known_ = false, StepStatus::diverged;
     }
     before = level;
     const VectorXd x = factors_.solve(scale_.cwiseProduct(right_hand_side(eq)));

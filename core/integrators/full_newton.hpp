@@ -34,12 +34,13 @@ class FullNewton {
   class Factors {
    public:
     using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
-    bool compute(const Columns& A);
+    bool compute(StageEquations& equations, const VectorXd& scale);  // of their Newton matrix
     VectorXd solve(const VectorXd& b) const;
     void forget_pattern() { analysed_ = -1; }
 
    private:
     static constexpr Index largest_dense = 80;
+    MatrixXd matrix_;
     Eigen::PartialPivLU<MatrixXd> dense_;
     Eigen::SparseLU<Columns> sparse_;
     Index analysed_ = -1;

@@ -12,6 +12,9 @@ void RowNoise::start(const ConstVec& q) {
   size_.setZero(system_.solved_coordinates());
   reach_.resize(size_.size());
   system_.reduce_sizes(q, reach_);
+  const VectorXd& lengths = system_.constraint_lengths();
+  far_.resize(lengths.size());
+  for (Index r = 0; r < lengths.size(); ++r) far_[r] = std::max(1.0, reach(r) / lengths[r]);
 }
 
 void RowNoise::add_forces(const ConstVec& f) {
@@ -27,11 +30,7 @@ double RowNoise::reach(Index r) const {
 }
 
 void RowNoise::add_multipliers(const ConstVec& lambda, double scale) {
-  for (Index r = 0; r < lambda.size(); ++r) {
-    const double force =
-        std::abs(scale * lambda[r]) * std::max(1.0, reach(r) / system_.constraint_lengths()[r]);
-    for (SparseRows::InnerIterator it(pattern_, r); it; ++it) size_[it.col()] += force;
-  }
+  for (Index r = 0; r < lambda.size(); ++r) add_multiplier(r, std::abs(scale * lambda[r]));
 }
 
 void RowNoise::add_products(const SparseRows& A, const ConstVec& x, double scale) {

@@ -25,6 +25,10 @@ class RowNoise {
   // Of constraint forces `scale` lambda: rows have unit gradients, whose direction is known to what rounding
   // the coordinates leaves.
   void add_multipliers(const ConstVec& lambda, double scale);
+  void add_multiplier(Index r, double force) {  // of row r; force >= 0
+    force *= far_[r];
+    for (SparseRows::InnerIterator it(pattern_, r); it; ++it) size_[it.col()] += force;
+  }
   void add_inertia(const ConstVec& x, double scale) { add_products(system_.mass(), x, scale); }  // |M| |x|
   void add_products(const SparseRows& A, const ConstVec& x, double scale);                       // |A| |x|
   // What rounding the coordinates changes in forces of these derivatives, over round-off.
@@ -38,6 +42,7 @@ class RowNoise {
   const System& system_;
   SparseRows pattern_;               // of G
   VectorXd size_, reach_, reduced_;  // reach_: of the nodes that follow a solved coordinate
+  VectorXd far_;                     // of each row: its reach in its own length, at least 1
 };
 
 // The largest sum over a row of |A_ij| / sqrt(M_ii M_jj): A = dF/dz' gives a bound of c / m [1/s], dF/dz of

@@ -39,30 +39,34 @@ double StageEquations::multiplier_weight(int k) const {
 
 void StageEquations::start(double time, const ConstVec& z, const ConstVec& w, double step) {
   t = time;
+  const bool same_step = h == step;
   h = step;
   step_sizes_known_ = false;
   z0 = z;
   multiply<1>(system.mass(), w.data(), p0.data());
+  start_size_ = largest_magnitude(p0.data(), p0.size());
   system.expand(z0, q_0_);
   Q.col(0) = q_0_;
-  for (Index k = 0; k < scale_.size(); ++k) {
-    time_[k] = t + c.basis.nodes()[k + 1] * h;
-    scale_[k] = -h * multiplier_weight(static_cast<int>(k));
-  }
-  // D_k S = (1/h) sum_j C_kj M dX_j + ...
-  C_by_h_ = c.C / h;
-  if (system.constant_forces()) {
-    impulse_ = h * c.b;
-    force_.setZero();
-    system.add_applied_force(t, q_0_, v_tau_, 1.0, force_.col(0));
-    with_columns(c.s - 1, [this](auto k) { spread_forces<k()>(); });
-  } else {
-    impulse_ = h * (c.value * c.weight.asDiagonal());
-    w_0_ = w;
-  }
+  for (Index k = 0; k < time_.size(); ++k) time_[k] = t + c.basis.nodes()[k + 1] * h;
+  if (!same_step) use_step();
+  if (!system.constant_forces()) w_0_ = w;
   if (stiffness_ < 0) look_at_forces();
   if (reach_ == 0) reach_ = largest_magnitude(q_0_.data(), q_0_.size());
   find_reach();
+}
+
+// What goes by the size of the step alone.
+void StageEquations::use_step() {
+  for (Index k = 0; k < scale_.size(); ++k) scale_[k] = -h * multiplier_weight(static_cast<int>(k));
+  C_by_h_ = c.C / h;  // D_k S = (1/h) sum_j C_kj M dX_j + ...
+  if (!system.constant_forces()) {
+    impulse_ = h * (c.value * c.weight.asDiagonal());
+    return;
+  }
+  impulse_ = h * c.b;
+  force_.setZero();
+  system.add_applied_force(t, q_0_, v_tau_, 1.0, force_.col(0));
+  with_columns(c.s - 1, [this](auto k) { spread_forces<k()>(); });
 }
 
 void StageEquations::look_at_forces() {
@@ -269,31 +273,16 @@ void StageEquations::measure_constraints() {
   constraint_level_ = level;
 }
 
-// Momentum: compared with the sizes of the terms that cancel in it, and with what rounding the coordinates
-// leaves of spring forces, the increments of damping forces. Constraints: with the larger of a row's length
-// and the coordinates, whose rounding moves a row by that much.
-void StageEquations::measure() {
-  reach_ = largest_magnitude(Q.data(), Q.size());
-  if (rods.as_unknowns) force_scale_ = std::max(force_scale_, std::abs(h) * rods.largest_force());
-  double size = force_scale_ + largest_magnitude(p0.data(), p0.size());
-  size = std::max(size, std::abs(h) * stiffness_ * reach_);
-  size = std::max(size, inertia_size_ * C_size_ / std::abs(h));
-  if (damping_ > 0) size = std::max(size, damping_ * steepest_ * largest_magnitude(dX.data(), dX.size()));
-  momentum_level_ = size > 0 ? momentum_size_ / (momentum_noise * size) : 0.0;
-  if (far_ || std::abs(h) * size > harmless_noise * least_mass_ * reach_) measure_rows();
-  with_columns(c.s - 1, [this](auto k) { measure_constraints<k()>(); });
-  if (rods.as_unknowns) {
-    constraint_level_ = std::max(constraint_level_, rods.level());
-    finite_ = finite_ && std::isfinite(rods.level());
-  }
-  if (!finite_) momentum_level_ = constraint_level_ = std::numeric_limits<double>::infinity();
-}
-
+// Sizes go by the largest of the nodes, in one pass over each of the stages' arrays.
+template <int K>
 void StageEquations::measure_rows() {
-  const auto largest = [this](const Interleaved& x) -> const VectorXd& {
-    largest_.resize(x.rows());
-    for (Index i = 0; i < x.rows(); ++i) largest_[i] = largest_magnitude(x.data() + i * x.cols(), x.cols());
-    return largest_;
+  const auto largest = [](const Interleaved& x, Index i) {
+    return larger(Lanes<K>::all(0.0), Lanes<K>(x.data() + i * K)).largest();
+  };
+  const auto add_applied = [&] {
+    forces_.resize(applied_.rows());
+    for (Index i = 0; i < forces_.size(); ++i) forces_[i] = largest(applied_, i);
+    rows_.add_forces(forces_);
   };
   if (looked_ != t) look_at_forces();
   const bool constant = system.constant_forces();
@@ -302,26 +291,49 @@ void StageEquations::measure_rows() {
   } else {
     rows_.start(q_0_);
     rows_.add(p0);
-    if (constant) rows_.add_forces(largest(applied_));
+    if (constant) add_applied();
     step_sizes_ = rows_.size();
     step_sizes_known_ = true;
   }
-  if (!constant) rows_.add_forces(largest(applied_));
+  if (!constant) add_applied();
   if (rods.as_unknowns) {
     rod_sizes_.setZero(Q.rows());
     rods.add_sizes(h, rod_sizes_);
     rows_.add_forces(rod_sizes_);
   }
-  rows_.add_multipliers(largest(lambda), scale_.lpNorm<Eigen::Infinity>());
-  const VectorXd& motion = largest(dX);
-  rows_.add_inertia(motion, C_size_ / h);
+  const double weight = scale_.lpNorm<Eigen::Infinity>();
+  for (Index r = 0; r < lambda.rows(); ++r) rows_.add_multiplier(r, weight * largest(lambda, r));
+  motion_.resize(dX.rows());
+  for (Index i = 0; i < motion_.size(); ++i) motion_[i] = largest(dX, i);
+  rows_.add_inertia(motion_, C_size_ / h);
   if (stiffness_ > 0) rows_.add_stiffness(by_z_, h);
-  if (damping_ > 0) rows_.add_products(by_w_, motion, steepest_);
+  if (damping_ > 0) rows_.add_products(by_w_, motion_, steepest_);
   momentum_level_ = 0;
   for (Index i = 0; i < momentum.rows(); ++i) {
-    const double error = momentum.row(i).lpNorm<Eigen::Infinity>(), size = rows_.size()[i];
+    const double error = largest(momentum, i), size = rows_.size()[i];
     if (error > 0) momentum_level_ = std::max(momentum_level_, error / (momentum_noise * size));
   }
+}
+
+// Momentum: compared with the sizes of the terms that cancel in it, and with what rounding the coordinates
+// leaves of spring forces, the increments of damping forces. Constraints: with the larger of a row's length
+// and the coordinates, whose rounding moves a row by that much.
+void StageEquations::measure() {
+  reach_ = largest_magnitude(Q.data(), Q.size());
+  if (rods.as_unknowns) force_scale_ = std::max(force_scale_, std::abs(h) * rods.largest_force());
+  double size = force_scale_ + start_size_;
+  size = std::max(size, std::abs(h) * stiffness_ * reach_);
+  size = std::max(size, inertia_size_ * C_size_ / std::abs(h));
+  if (damping_ > 0) size = std::max(size, damping_ * steepest_ * largest_magnitude(dX.data(), dX.size()));
+  momentum_level_ = size > 0 ? momentum_size_ / (momentum_noise * size) : 0.0;
+  if (far_ || std::abs(h) * size > harmless_noise * least_mass_ * reach_)
+    with_columns(c.s - 1, [this](auto k) { measure_rows<k()>(); });
+  with_columns(c.s - 1, [this](auto k) { measure_constraints<k()>(); });
+  if (rods.as_unknowns) {
+    constraint_level_ = std::max(constraint_level_, rods.level());
+    finite_ = finite_ && std::isfinite(rods.level());
+  }
+  if (!finite_) momentum_level_ = constraint_level_ = std::numeric_limits<double>::infinity();
 }
 
 // p_1 = D_s S, taken as the sum over all nodes, of which the others' are zero (D_1 S = -p_0): because

@@ -97,10 +97,12 @@ class StageEquations {
   void evaluate_momentum();
   template <int K>
   void measure_constraints();
+  void use_step();
   void move_to(Index j);
   void applied_forces();
   void constraint_changes();
   void measure();
+  template <int K>
   void measure_rows();
   void find_reach();
 
@@ -112,12 +114,13 @@ class StageEquations {
   MatrixXd C_by_h_;
   VectorXd time_, scale_;  // of nodes 2..s [s]; -h b_k of nodes 1..s-1
   double C_size_ = 0;      // largest entry of C
+  double start_size_ = 0;  // of p0
   VectorXd f_end_, q_tau_, v_tau_, w_tau_, w_0_, rod_sizes_;
   System::StageScratch scratch_;
   std::unique_ptr<ConstraintIncrement> increment_;  // made when first needed
   VectorXd dX_j_, phi_j_;
-  VectorXd step_sizes_,
-      largest_;  // of row_noise.hpp: what the step's start and constant forces give; scratch
+  VectorXd step_sizes_;       // of row_noise.hpp: what the step's start and constant forces give
+  VectorXd forces_, motion_;  // largest magnitudes over the nodes
   bool step_sizes_known_ = false;
   double momentum_level_ = 0, constraint_level_ = 0;
   // Largest magnitudes: forces, coordinates, M dX, momentum; whether all residuals are finite.

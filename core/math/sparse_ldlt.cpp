@@ -87,19 +87,23 @@ bool SparseLdlt::factorise(const double* values) {
       const auto ue = static_cast<std::size_t>(e);
       y[entry_row_[ue]] += values[entry_source_[ue]];
     }
-    double d = y[k];
+    const double own = y[k];
+    double d = own;
     y[k] = 0.0;
     for (int r = reach_start_[uk]; r < reach_start_[uk + 1]; ++r) {
       const int i = reach_[static_cast<std::size_t>(r)];
       const double yi = y[i];
       y[i] = 0.0;
       const int end = fill[i];
+#pragma GCC unroll 4
       for (int p = column_start_[static_cast<std::size_t>(i)]; p < end; ++p) y[rows[p]] -= l[p] * yi;
       const double lki = yi * inverse_pivot_[static_cast<std::size_t>(i)];
       d -= lki * yi;
       l[end] = lki;
       ++fill[i];
     }
+    // The pivot of a row of -C is its Schur complement in C + G A^-1 G^T: no weaker than what C has there.
+    if (own < 0.0 && d > 0.5 * own) d = own;  // only round-off is left of a redundant row
     if (d == 0.0 || !std::isfinite(d)) {
       std::fill(work_.begin(), work_.end(), 0.0);
       return false;

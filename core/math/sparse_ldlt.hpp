@@ -18,7 +18,8 @@ class SparseLdlt {
   // column). order[k]: which row is eliminated k-th.
   void analyse(const SparseRows& upper, const std::vector<int>& order);
 
-  // values: as the nonzeros of `upper` in their storage order. False where a pivot is zero or not finite.
+  // values: as the nonzeros of `upper` in their storage order. A pivot that round-off brought nearer to zero
+  // than C allows is that of C. False where a pivot is zero or not finite.
   [[nodiscard]] bool factorise(const double* values);
 
   // Solve for `columns` right-hand sides held row by row: x[row * columns + c], in place, in the caller's row

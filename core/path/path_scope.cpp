@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/path/path_forces.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/system/mobility.hpp"
 
 namespace unfurl {
@@ -46,10 +47,7 @@ std::shared_ptr<const System> path_system(const std::shared_ptr<const Model>& mo
     system = std::make_shared<const System>(freed, true);
   }
   if (system->rheonomic()) throw PathRefused("constraints change with time");
-  VectorXd q(system->coordinates());
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
-  const Mobility mobility = analyse_mobility(*system, q);
+  const Mobility mobility = analyse_mobility(*system, node_positions(structure));
   if (mobility.degrees_of_freedom != 1)
     throw PathRefused("the structure has " + std::to_string(mobility.degrees_of_freedom) +
                       " degrees of freedom at its start, and a path needs 1" +
@@ -61,10 +59,7 @@ std::shared_ptr<const System> path_system(const std::shared_ptr<const Model>& mo
 
 std::shared_ptr<const Path> trace_path(const std::shared_ptr<const Model>& model) {
   auto system = path_system(model);
-  VectorXd q(system->coordinates());
-  for (std::size_t i = 0; i < model->structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = model->structure.nodes[i].position;
-  const VectorXd z = system->reduce(q);
+  const VectorXd z = system->reduce(node_positions(model->structure));
   return std::make_shared<const Path>(std::move(system), z);
 }
 

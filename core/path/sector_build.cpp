@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/math/linear_elimination.hpp"
+#include "core/structure/node_positions.hpp"
 
 namespace unfurl {
 namespace {
@@ -173,9 +174,7 @@ class SectorBuilder {
 
   // Rows of unit length for the sector's nodes, less those that follow from others.
   void take_linear_rows() {
-    VectorXd q(system_.coordinates());
-    for (std::size_t i = 0; i < whole_.nodes.size(); ++i)
-      q.segment<3>(3 * static_cast<Index>(i)) = whole_.nodes[i].position;
+    const VectorXd q = node_positions(whole_);
     const SparseRows all = system_.all_jacobian(q);
     VectorXd value(all.rows());
     system_.all_constraint_values(0.0, q, value);

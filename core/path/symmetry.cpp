@@ -11,6 +11,7 @@
 
 #include "core/math/linear_elimination.hpp"
 #include "core/path/entry_turns.hpp"
+#include "core/structure/node_positions.hpp"
 
 namespace unfurl {
 namespace {
@@ -267,9 +268,7 @@ class Trial {
   }
 
   void linear_constraints(const System& system) const {
-    VectorXd q(system.coordinates());
-    for (std::size_t i = 0; i < structure_.nodes.size(); ++i)
-      q.segment<3>(3 * static_cast<Index>(i)) = structure_.nodes[i].position;
+    const VectorXd q = node_positions(structure_);
     const SparseRows all = system.all_jacobian(q);
     VectorXd value(all.rows());
     system.all_constraint_values(0.0, q, value);

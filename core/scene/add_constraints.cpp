@@ -38,9 +38,7 @@ const std::vector<ParamSpec>& mirror_params() {
   });
 }
 ParamSpec coefficients_param() {
-  ParamSpec param = vector_param("coefficients", "", {}, "three for each node: sum of c . x = value");
-  param.required = true;
-  return param;
+  return required(vector_param("coefficients", "", {}, "three for each node: sum of c . x = value"));
 }
 const std::vector<ParamSpec>& relation_params() {
   return once([] {

@@ -8,6 +8,7 @@
 #include "core/math/determined_rows.hpp"
 #include "core/scene/element_members.hpp"
 #include "core/scene/size_limits.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/structures/family.hpp"
 #include "core/system/assemble_elastic.hpp"
@@ -143,13 +144,6 @@ void fill_mass(const Scene& scene, System& system) {
   system.fill_mass();
 }
 
-VectorXd positions_of(const Structure& structure) {
-  VectorXd q(3 * std::ssize(structure.nodes));
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
-  return q;
-}
-
 // Friction by the force of a pin, where rigid rods leave that open or it is no pin: one clear error.
 std::string pin_problem(const Structure& structure, const System& system, const Force& force) {
   const int r = PinLoads::rod_of(structure, force);
@@ -165,7 +159,7 @@ std::string pin_problem(const Structure& structure, const System& system, const 
       return "needs nodes with mass, and " + in_quotes(structure.nodes[i].name) + " has none";
   }
   if (rod.gives) return "";
-  const VectorXd q = positions_of(structure);
+  const VectorXd q = node_positions(structure);
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   system.jacobian(q, G, scratch);
@@ -186,7 +180,7 @@ void check_pins(const Scene& scene, const Structure& structure, const System& sy
   for (const Force& force : structure.forces)
     if (PinLoads::arm(force) > 0) refuse_friction(force.name, pin_problem(structure, system, force));
   const auto locked =
-      PinLoads::self_locking(structure, system.node_mass(), 0.0, positions_of(structure).data());
+      PinLoads::self_locking(structure, system.node_mass(), 0.0, node_positions(structure).data());
   refuse_friction(locked.friction, locked.problem);
 }
 

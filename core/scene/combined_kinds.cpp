@@ -34,10 +34,8 @@ ParamSpec axis_of(std::string_view name, std::string_view help) {
 
 const std::vector<ParamSpec>& gear_params() {
   static const std::vector<ParamSpec> params = [] {
-    ParamSpec radii = vector_param("radii", "m", {1, 1}, "of both wheels; one is negative in an inner gear");
-    radii.required = true;
     return std::vector<ParamSpec>{
-        radii,
+        required(vector_param("radii", "m", {1, 1}, "of both wheels; one is negative in an inner gear")),
         axis_of("axis", "of both shafts: their angles then have a sign and count turns; none: in [0, 180]"),
         axis_of("second_axis", "of the second shaft; none: as the first")};
   }();
@@ -46,11 +44,10 @@ const std::vector<ParamSpec>& gear_params() {
 
 const std::vector<ParamSpec>& rack_params() {
   static const std::vector<ParamSpec> params = [] {
-    ParamSpec radius = real_param("radius", "m", 0.0, -endless_value, endless_value,
-                                  "of the pinion; negative: it drives the rack the other way");
-    radius.required = true;
     return std::vector<ParamSpec>{
-        radius, direction_param("direction", "in which the rack moves"),
+        required(real_param("radius", "m", 0.0, -endless_value, endless_value,
+                            "of the pinion; negative: it drives the rack the other way")),
+        direction_param("direction", "in which the rack moves"),
         axis_of("axis", "of the pinion: its angle then has a sign and counts turns; none: in [0, 180]")};
   }();
   return params;

@@ -6,16 +6,15 @@
 #include <limits>
 
 #include "core/structure/measure.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 
 MemberFinder::MemberFinder(const Structure& structure)
-    : structure_(structure), start_(3 * static_cast<Index>(structure.nodes.size())) {
+    : structure_(structure), start_(node_positions(structure)) {
   for (const Node& node : structure.nodes) node_names_.add(node.name);
   for (const Rod& rod : structure.rods) rod_names_.add(rod.name);
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    start_.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
 }
 
 void MemberFinder::problem(const SceneElement& element, const std::string& key, std::string message) {
@@ -218,9 +217,7 @@ double start_value(const SceneElement& element, const Structure& structure) {
 }
 
 ParamSpec direction_param(std::string_view name, std::string_view help) {
-  ParamSpec param = vector_param(name, "", {0, 0, 0}, help);
-  param.required = true;
-  return param;
+  return required(vector_param(name, "", {0, 0, 0}, help));
 }
 
 Vec3 ElementAdder::direction(const SceneElement& element, const std::string& key) {

@@ -12,11 +12,6 @@ namespace unfurl {
 
 namespace {
 
-ParamSpec required(ParamSpec spec) {
-  spec.required = true;
-  return spec;
-}
-
 // Times and values of a CSV table, into the entry's parameters.
 void read_table(TableReader& entry, ParamSet& values, const std::string& folder, SceneNotes& notes) {
   static const std::vector<CsvColumn> columns = {{"t", "s", true, true}, {"value", "", true, true}};

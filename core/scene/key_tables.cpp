@@ -26,9 +26,7 @@ Keys together(Keys a, const Keys& b) {
 
 // The key that chooses the kind of a table; the value stands for all of its entries.
 ParamSpec kind_key(std::string_view kind) {
-  ParamSpec spec = choice_param("kind", kind, {kind}, "what the table describes");
-  spec.required = true;
-  return spec;
+  return required(choice_param("kind", kind, {kind}, "what the table describes"));
 }
 
 ParamSpec names_key(std::string_view name, std::size_t length, std::string_view help, bool required = true) {
@@ -112,11 +110,8 @@ const std::vector<ParamSpec>& gravity_params() {
 }
 
 const std::vector<ParamSpec>& load_params() {
-  static const Keys params = [] {
-    ParamSpec force = vector_param("force", "N", {0, 0, 0}, "constant force on each node");
-    force.required = true;
-    return Keys{force, enabled_param()};
-  }();
+  static const Keys params = {required(vector_param("force", "N", {0, 0, 0}, "constant force on each node")),
+                              enabled_param()};
   return params;
 }
 
@@ -124,11 +119,10 @@ const std::vector<ParamSpec>& deployment_params() {
   static const Keys params = [] {
     constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
     constexpr double endless = std::numeric_limits<double>::infinity();
-    ParamSpec deployed = real_param("deployed", "", 0.0, -endless, endless,
-                                    "its value when deployed; m, or deg where all terms are angles");
-    deployed.required = true;
-    return Keys{deployed, real_param("stowed", "", not_given, -endless, endless,
-                                     "its value when stowed; by default that at t = 0")};
+    return Keys{required(real_param("deployed", "", 0.0, -endless, endless,
+                                    "its value when deployed; m, or deg where all terms are angles")),
+                real_param("stowed", "", not_given, -endless, endless,
+                           "its value when stowed; by default that at t = 0")};
   }();
   return params;
 }

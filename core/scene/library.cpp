@@ -61,6 +61,8 @@ std::vector<LibraryScene> library_scenes() {
 std::string find_scene(const std::string& scene) {
   std::error_code error;
   if (fs::exists(scene, error) && !fs::is_directory(scene, error)) return scene;
+  const fs::path built_in = fs::path(asset_folder("scenes")) / (scene + ".toml");
+  if (scene.find('/') == std::string::npos && fs::is_regular_file(built_in, error)) return built_in.string();
   const auto scenes = library_scenes();
   std::vector<std::string_view> names;
   for (const auto& row : scenes) {

@@ -68,11 +68,9 @@ const std::vector<ParamSpec>& angle_stop_params() {
 
 const std::vector<ParamSpec>& clearance_params() {
   return measured_once([] {
-    ParamSpec clearance =
-        positive_param("clearance", "m", 1e-4, "of the pin in its hole: the distance of the nodes at most");
-    clearance.required = true;
     return std::vector{
-        clearance,
+        required(positive_param("clearance", "m", 1e-4,
+                                "of the pin in its hole: the distance of the nodes at most")),
         real_param("restitution", "", 0.0, 0.0, 1.0, "rebound speed over approach speed; 0: no rebound"),
         real_param("rest_speed", "m/s", 1e-3, 0.0, infinity, "rebounds slower than this rest on the rim")};
   });

@@ -33,9 +33,7 @@ ParamSpec kind_param() {
   std::vector<std::string_view> kinds;
   for (const auto& family : families()) kinds.push_back(family.kind);
   kinds.push_back("custom");
-  ParamSpec param = choice_param("kind", "", std::move(kinds), "");
-  param.required = true;
-  return param;
+  return required(choice_param("kind", "", std::move(kinds), ""));
 }
 
 void read_structure(TableReader& root, const TomlTree& tree, const std::string& folder, Scene& scene,
@@ -135,8 +133,7 @@ void read_camera_keys(const std::vector<const TomlTree*>& trees, RenderOptions& 
     TableReader entry(tree, name, tree->where, notes);
     const ParamSet values = entry.read(camera_key_params());
     entry.finish();
-    const CameraKey key{values.real("time"), values.real("azimuth"), values.real("elevation"),
-                        values.real("zoom")};
+    const CameraKey key = camera_key(values);
     if (!render.camera_keys.empty() && key.time <= render.camera_keys.back().time)
       entry.problem("time", "must be later than the key before it");
     render.camera_keys.push_back(key);

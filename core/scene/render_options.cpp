@@ -1,57 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/render_options.hpp"
 
-#include <utility>
-#include <variant>
+#include "core/text/param_binding.hpp"
 
 namespace unfurl {
 
 namespace {
 
-struct SizeMembers {};  // width and height
-template <class T>
-using Of = T RenderOptions::*;
-using Range = std::array<double, 2>;
-using Member = std::variant<SizeMembers, Of<bool>, Of<int>, Of<double>, Of<std::string>, Of<Range>>;
-
-struct Key {
-  ParamSpec spec;  // the default is filled in from RenderOptions
-  Member member;
-  bool changes_frames = true;
-};
-
-ParamValue value_of(const RenderOptions& options, const Member& member) {
-  struct Reader {
-    const RenderOptions& o;
-    ParamValue operator()(SizeMembers) const {
-      return std::vector<double>{static_cast<double>(o.width), static_cast<double>(o.height)};
-    }
-    ParamValue operator()(Of<int> m) const { return static_cast<long>(o.*m); }
-    ParamValue operator()(Of<bool> m) const { return o.*m; }
-    ParamValue operator()(Of<double> m) const { return o.*m; }
-    ParamValue operator()(Of<std::string> m) const { return o.*m; }
-    ParamValue operator()(Of<Range> m) const { return std::vector<double>{(o.*m)[0], (o.*m)[1]}; }
-  };
-  return std::visit(Reader{options}, member);
-}
-
-void assign(RenderOptions& options, const Key& key, const ParamSet& values) {
-  struct Writer {
-    RenderOptions& o;
-    std::string_view name;
-    const ParamSet& values;
-    void operator()(SizeMembers) const {
-      o.width = static_cast<int>(values.vector(name)[0]);
-      o.height = static_cast<int>(values.vector(name)[1]);
-    }
-    void operator()(Of<int> m) const { o.*m = static_cast<int>(values.integer(name)); }
-    void operator()(Of<bool> m) const { o.*m = values.boolean(name); }
-    void operator()(Of<double> m) const { o.*m = values.real(name); }
-    void operator()(Of<std::string> m) const { o.*m = values.text(name); }
-    void operator()(Of<Range> m) const { o.*m = {values.vector(name)[0], values.vector(name)[1]}; }
-  };
-  std::visit(Writer{options, key.spec.name, values}, key.member);
-}
+using Key = BoundParam<RenderOptions>;
 
 ParamSpec size_param() {
   ParamSpec size = vector_param("size", "pixels", {0, 0}, "width and height of the pictures");
@@ -68,7 +24,7 @@ std::vector<std::string_view> material_names() {
 
 std::vector<Key> picture_keys() {
   return {
-      {size_param(), SizeMembers{}},
+      {size_param(), Key::IntPair{&R::width, &R::height}},
       {real_param("fps", "frames/s", 0, 0.1, 1000, "frames per second of the film"), &R::fps},
       {real_param("speed", "", 0, 1e-6, 1e6, "seconds of motion per second of film"), &R::speed},
       {integer_param("supersample", 0, 1, 4, "every pixel is the mean of N x N"), &R::supersample},
@@ -151,76 +107,68 @@ std::vector<Key> pace_keys() {
 
 std::vector<Key> film_keys() {
   return {
-      {boolean_param("webp", false, "make animation.webp"), &R::webp, false},
-      {boolean_param("gif", false, "make animation.gif"), &R::gif, false},
-      {boolean_param("mp4", false, "make animation.mp4 where ffmpeg is"), &R::mp4, false},
-      {integer_param("gif_width", 0, 16, 8192, "the GIF is at most so many pixels wide"), &R::gif_width,
-       false},
+      {boolean_param("webp", false, "make animation.webp"), &R::webp},
+      {boolean_param("gif", false, "make animation.gif"), &R::gif},
+      {boolean_param("mp4", false, "make animation.mp4 where ffmpeg is"), &R::mp4},
+      {integer_param("gif_width", 0, 16, 8192, "the GIF is at most so many pixels wide"), &R::gif_width},
   };
 }
 
-const std::vector<Key>& keys() {
-  static const std::vector<Key> rows = [] {
+const ParamBinding<RenderOptions>& keys() {
+  static const ParamBinding<RenderOptions> rows([] {
     std::vector<Key> all = picture_keys();
     for (const auto& more : {overlay_keys(), camera_keys(), pace_keys(), film_keys()})
       all.insert(all.end(), more.begin(), more.end());
-    for (Key& key : all) key.spec.fallback = value_of(RenderOptions{}, key.member);
     return all;
-  }();
+  }());
+  return rows;
+}
+
+const ParamBinding<CameraKey>& keys_of_camera_key() {
+  using C = CameraKey;
+  static const ParamBinding<C> rows({
+      {required(real_param("time", "s", 0, 0, 1e9, "of the motion")), &C::time},
+      {real_param("azimuth", "deg", 0, -36000, 36000, "from the x axis towards y"), &C::azimuth},
+      {real_param("elevation", "deg", 0, -90, 90, "above the floor"), &C::elevation},
+      {real_param("zoom", "", 0, 0.05, 50, "1 shows the whole motion"), &C::zoom},
+  });
   return rows;
 }
 
 }  // namespace
 
 const std::vector<ParamSpec>& render_params() {
-  static const std::vector<ParamSpec> params = [] {
-    std::vector<ParamSpec> specs;
-    for (const Key& key : keys()) specs.push_back(key.spec);
-    return specs;
-  }();
-  return params;
+  return keys().specs();
 }
-
 const std::vector<ParamSpec>& camera_key_params() {
-  static const CameraKey fallback;
-  static const std::vector<ParamSpec> params = [] {
-    ParamSpec time = real_param("time", "s", 0, 0, 1e9, "of the motion");
-    time.required = true;
-    return std::vector<ParamSpec>{
-        time, real_param("azimuth", "deg", fallback.azimuth, -36000, 36000, "from the x axis towards y"),
-        real_param("elevation", "deg", fallback.elevation, -90, 90, "above the floor"),
-        real_param("zoom", "", fallback.zoom, 0.05, 50, "1 shows the whole motion")};
-  }();
-  return params;
+  return keys_of_camera_key().specs();
 }
 
 const std::vector<ParamSpec>& material_params() {
   static const std::vector<ParamSpec> params = [] {
-    ParamSpec group = text_param("group", "", "of rods: a name or a glob");
-    group.required = true;
-    ParamSpec material = choice_param("material", "anodised", material_names(), "what they are made of");
-    material.required = true;
-    return std::vector<ParamSpec>{group, material};
+    return std::vector<ParamSpec>{
+        required(text_param("group", "", "of rods: a name or a glob")),
+        required(choice_param("material", "anodised", material_names(), "what they are made of"))};
   }();
   return params;
 }
 
 RenderOptions render_options(const ParamSet& values) {
-  RenderOptions options;
-  for (const Key& key : keys()) assign(options, key, values);
-  return options;
+  return keys().read(values);
 }
-
 ParamSet render_values(const RenderOptions& options) {
-  ParamSet values;
-  for (const Key& key : keys()) values.set(key.spec.name, value_of(options, key.member));
-  return values;
+  return keys().values(options);
+}
+CameraKey camera_key(const ParamSet& values) {
+  return keys_of_camera_key().read(values);
+}
+ParamSet camera_key_values(const CameraKey& key) {
+  return keys_of_camera_key().values(key);
 }
 
 RenderOptions without_encoding(RenderOptions options) {
   const ParamSet defaults(render_params());
-  for (const Key& key : keys())
-    if (!key.changes_frames) assign(options, key, defaults);
+  for (const Key& key : film_keys()) key.assign(options, defaults);
   return options;
 }
 

@@ -75,6 +75,8 @@ struct RenderOptions {
 
 const std::vector<ParamSpec>& render_params();          // one row per key of [render]
 const std::vector<ParamSpec>& camera_key_params();      // of an entry of [[render.camera_keys]]
+CameraKey camera_key(const ParamSet& values);           // values: checked against them
+ParamSet camera_key_values(const CameraKey& key);       // and back
 const std::vector<ParamSpec>& material_params();        // of an entry of [[render.materials]]
 RenderOptions render_options(const ParamSet& values);   // values: checked against render_params()
 ParamSet render_values(const RenderOptions& options);   // the other way round

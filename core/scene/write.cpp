@@ -114,9 +114,7 @@ std::string solver_text(const Scene& scene) {
 std::string render_text(const RenderOptions& render) {
   std::string text = "\n[render]\n" + params_text(render_params(), render_values(render));
   for (const CameraKey& key : render.camera_keys)
-    text += "\n[[render.camera_keys]]\n" + line("time", real_text(key.time)) +
-            line("azimuth", real_text(key.azimuth)) + line("elevation", real_text(key.elevation)) +
-            line("zoom", real_text(key.zoom));
+    text += "\n[[render.camera_keys]]\n" + params_text(camera_key_params(), camera_key_values(key));
   for (const GroupMaterial& entry : render.materials)
     text += "\n[[render.materials]]\n" + line("group", toml_string(entry.group)) +
             line("material", toml_string(entry.material));

@@ -7,6 +7,7 @@
 
 #include "core/integrators/index1.hpp"
 #include "core/math/saddle_solver.hpp"
+#include "core/structure/node_positions.hpp"
 
 namespace unfurl {
 namespace {
@@ -52,11 +53,10 @@ VectorXd fitted_rates(const System& system, double t, const ConstVec& q, const C
 }
 
 InitialState initial_state(const Structure& structure, const System& system) {
-  VectorXd q(system.coordinates()), v(system.coordinates());
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i) {
-    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  const VectorXd q = node_positions(structure);
+  VectorXd v(q.size());
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
     v.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].velocity;
-  }
   InitialState out;
   State& s = out.state;
   s.z = system.reduce(q);

@@ -91,6 +91,17 @@ void OneSided::stick(std::size_t i, const System& system, const State& state) {
   active_[i] = true;
 }
 
+void OneSided::archive(Archive& archive) {
+  archive(active_);
+  archive(shift_);
+  for (Friction& f : frictions_) {
+    archive(f.by_load);
+    archive(f.slip);
+    archive(f.held_at);
+    archive(f.reversed);
+  }
+}
+
 void OneSided::weigh(const Model& model, const State& state) {
   if (!PinLoads::any(model.structure)) return;
   if (!pin_loads_) pin_loads_ = std::make_unique<PinLoads>(model.structure, model.system.node_mass());

@@ -15,6 +15,7 @@
 #include "core/simulate/crossing.hpp"
 #include "core/simulate/simulation.hpp"
 #include "core/simulate/stops.hpp"
+#include "core/text/archive.hpp"
 
 namespace unfurl {
 
@@ -86,6 +87,8 @@ class OneSided {
   // Without `forces`, those of what is held are left NaN, which saves a factorisation.
   void measure(const Model& model, const State& state, bool forces, Probe& probe);
   void forget_model() { index1_.reset(), pin_loads_.reset(); }
+  // All that changes in a run but for what follows from the model.
+  void archive(Archive& archive);
 
   // `base` in the present modes.
   std::shared_ptr<const Model> model(const Model& base) const;

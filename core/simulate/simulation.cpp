@@ -3,12 +3,14 @@
 
 #include <time.h>
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/simulate/parts.hpp"
 #include "core/simulate/stepper.hpp"
 #include "core/simulate/stretched.hpp"
 
@@ -67,8 +69,24 @@ SolvedAs solved_as(const Simulation& run) {
   return out;
 }
 
+Parts parts_for(const Model& model) {
+  const double numbers =
+      static_cast<double>(2 * model.system.solved_coordinates() + model.system.constraints()) +
+      2.0 * static_cast<double>(model.structure.rods.size()) + 60;
+  Parts parts;
+  parts.states = static_cast<std::size_t>(std::clamp(2e6 / (8 * numbers), 128.0, 4096.0));
+  parts.around = parts.states / 64 + 6;
+  return parts;
+}
+
 Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
                     const SimulationHooks& hooks) {
+  std::size_t first_new = 0;
+  return simulate_in_parts(std::move(model), options, hooks, {}, first_new);
+}
+
+Simulation simulate_in_parts(std::shared_ptr<const Model> model, const SolverOptions& options,
+                             const SimulationHooks& hooks, const Parts& parts, std::size_t& first_new) {
   if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);
   InitialState start = initial_state(model->structure, model->system);
   std::vector<std::string> warnings = model->structure.notes;
@@ -76,19 +94,30 @@ Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& opt
     warnings.push_back(std::move(warning));
   if (std::string warning = elastic_step_warning(*model, start.state, options); !warning.empty())
     warnings.push_back(std::move(warning));
-  const double begin = thread_cpu_seconds();
+  const bool stretches = model->structure.quasi_static;
+  double begin = thread_cpu_seconds();
   Progress progress(hooks, start.state.t, options.end_time);
-  Stepper stepper(std::move(model), options, std::move(start.state));
+  Stepper stepper = parts.archived ? Stepper(std::move(model), options, *parts.archived)
+                                   : Stepper(std::move(model), options, std::move(start.state));
   while (stepper.time() < options.end_time) {
     progress.at(stepper.time());
     if (hooks.cancelled && hooks.cancelled()) stepper.stop();
     if (!stepper.step()) break;
+    if (!parts.take || stepper.run().trajectory.size() - stepper.first_new() < parts.states + parts.around)
+      continue;
+    Stepper::Window window = stepper.take_window(parts.around);
+    if (stretches) add_stretch(window.run.trajectory);
+    const double pause = thread_cpu_seconds();
+    window.run.cpu_s = pause - begin;
+    parts.take(std::move(window), stepper);
+    begin += thread_cpu_seconds() - pause;
   }
+  first_new = stepper.first_new();
   Simulation run = stepper.take();
   if (run.status == RunStatus::completed || run.status == RunStatus::deployed) progress.report(1.0);
   run.warnings.insert(run.warnings.begin(), warnings.begin(), warnings.end());
   run.cpu_s = thread_cpu_seconds() - begin;
-  if (run.trajectory.structure().quasi_static) add_stretch(run.trajectory);
+  if (stretches) add_stretch(run.trajectory);
   return run;
 }
 

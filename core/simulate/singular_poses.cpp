@@ -12,7 +12,10 @@
 namespace unfurl {
 namespace {
 
+constexpr double no_limit = std::numeric_limits<double>::infinity();
 constexpr double dip = 1e-2;  // of the largest sigma of the run
+// Of the largest sigma: poses that are known to have more need no closer look.
+constexpr double far_from_dips = 0.1;
 // Of the largest singular value; what poses of real structures keep is far above (1e-7 in a ring of a
 // thousand units).
 constexpr double no_rank = 1e-11;
@@ -32,8 +35,15 @@ SparseRows identity(Index n) {
 }
 
 void scale_rows(SparseRows& G) {
-  for (Index r = 0; r < G.rows(); ++r)
-    if (const double norm = G.row(r).norm(); norm > 0) G.row(r) /= norm;
+  double* const value = G.valuePtr();
+  const int* const start = G.outerIndexPtr();
+  for (Index r = 0; r < G.rows(); ++r) {
+    double square = 0;
+    for (int p = start[r]; p < start[r + 1]; ++p) square += value[p] * value[p];
+    if (square == 0) continue;
+    const double norm = std::sqrt(square);
+    for (int p = start[r]; p < start[r + 1]; ++p) value[p] /= norm;
+  }
 }
 
 }  // namespace
@@ -56,11 +66,23 @@ void SmallestSingularValue::stir(Index column) {
     block_(i, column) = std::sin(1.0 + static_cast<double>((i + 1) * (7 * column + 3)) * 0.7548776662466927);
 }
 
-bool SmallestSingularValue::place(const ConstVec& z) {
+void SmallestSingularValue::jacobian(const ConstVec& z) {
   system_.expand(z, q_);
   system_.jacobian(q_, G_, scratch_);
   scale_rows(G_);
+}
+
+bool SmallestSingularValue::place(const ConstVec& z) {
+  jacobian(z);
   return saddle_.factorise(G_);
+}
+
+double SmallestSingularValue::moved(const ConstVec& z) {
+  jacobian(z);
+  const Eigen::Map<const VectorXd> now(G_.valuePtr(), G_.nonZeros());
+  const double way = seen_.size() == now.size() ? (now - seen_).norm() : no_limit;
+  seen_ = now;
+  return way;
 }
 
 double SmallestSingularValue::settle(double tolerance) {
@@ -158,12 +180,14 @@ class DipSearch {
 
   void run(std::vector<Event>& events, const std::function<bool()>& cancelled) {
     place_samples();
-    for (std::size_t k = 0; k < times_.size() && !(cancelled && cancelled()); ++k) {
-      values_.push_back(sigma_.estimate(pose(times_[k])));
-      if (!std::isfinite(values_.back())) return;
-    }
+    double largest = 0;
+    for (const std::size_t quarter : {1, 2, 3})
+      if (const double sigma = exact(quarter * (times_.size() - 1) / 4); sigma > largest) largest = sigma;
+    bool followed = false;  // the second time with the largest sigma of the first, the third without skipping
+    for (int pass = 0; pass < 3 && !followed; ++pass) followed = follow(pass < 2, largest, cancelled);
+    if (!followed) return;
     if (values_.size() < 3) return;
-    const double largest =
+    largest =
         exact(static_cast<std::size_t>(std::max_element(values_.begin(), values_.end()) - values_.begin()));
     for (std::size_t k = 1; k + 1 < values_.size() && !(cancelled && cancelled()); ++k) {
       if (!(values_[k] <= values_[k - 1] && values_[k] < values_[k + 1] && values_[k] < 0.7 * largest) ||
@@ -175,12 +199,47 @@ class DipSearch {
   }
 
  private:
+  // sigma at the samples; with `skip` not at those that are too near to the last one for a dip, which are
+  // samples no more. False where too much was passed over, as the largest sigma shows afterwards, or where
+  // sigma is not finite.
+  bool follow(bool skip, double& largest, const std::function<bool()>& cancelled) {
+    values_.clear();
+    std::vector<double> times;
+    double way = 0, least = no_limit;  // least: that a sigma passed over may have
+    for (std::size_t k = 0; k < times_.size() && !(cancelled && cancelled()); ++k) {
+      const VectorXd z = pose(times_[k]);
+      if (ways_.size() == k) ways_.push_back(sigma_.moved(z));
+      way += ways_[k];
+      const double sigma = values_.empty() ? 0.0 : values_.back();
+      if (skip && k + 1 < times_.size() && way < 0.5 * (sigma - far_from_dips * largest)) {
+        least = std::min(least, sigma - way);
+        continue;
+      }
+      way = 0;
+      const bool near = !times.empty() && k > 0 && times.back() == times_[k - 1];
+      values_.push_back(near || !skip ? sigma_.estimate(z) : sigma_.at(z));
+      times.push_back(times_[k]);
+      if (!std::isfinite(values_.back())) return false;
+      largest = std::max(largest, values_.back());
+    }
+    if (least <= 2 * dip * largest) return false;
+    times_ = std::move(times);
+    return true;
+  }
+
   // The states' own times, and times between them where rods turn far in a step; fewer where there are very
   // many.
   void place_samples() {
     const System& system = trajectory_.model(first_).system;
     const auto size = static_cast<double>(system.constraints() + system.solved_coordinates());
     const double most = std::max(3.0, most_work / (100 * size));  // sparse factors, some right sides
+    std::vector<double> spins;
+    for (std::size_t i = first_; i <= last_; ++i) spins.push_back(spin(i));
+    // How far a rod turns in the step that follows state i, by the faster of its ends [rad].
+    const auto turn = [&](std::size_t i) {
+      return (trajectory_.time(i + 1) - trajectory_.time(i)) *
+             std::max(spins[i - first_], spins[i + 1 - first_]);
+    };
     double turned = 0;
     for (std::size_t i = first_; i < last_; ++i) turned += turn(i);
     const double states = static_cast<double>(last_ - first_ + 1);
@@ -194,16 +253,13 @@ class DipSearch {
     times_.push_back(trajectory_.time(last_));
   }
 
-  // How far a rod turns in the step that follows state i, by the faster of its ends [rad].
-  double turn(std::size_t i) const {
-    const double h = trajectory_.time(i + 1) - trajectory_.time(i);
+  // Of the fastest rod [rad/s].
+  double spin(std::size_t i) const {
     double fastest = 0;
-    for (const std::size_t k : {i, i + 1}) {
-      const VectorXd v = trajectory_.node_velocities(k);
-      for (const Rod& rod : trajectory_.structure().rods)
-        fastest = std::max(fastest, (v.segment<3>(3 * rod.b) - v.segment<3>(3 * rod.a)).norm() / rod.length);
-    }
-    return h * fastest;
+    const VectorXd v = trajectory_.node_velocities(i);
+    for (const Rod& rod : trajectory_.structure().rods)
+      fastest = std::max(fastest, (v.segment<3>(3 * rod.b) - v.segment<3>(3 * rod.a)).norm() / rod.length);
+    return fastest;
   }
 
   // Half as low as the heights on both sides that part it from what is lower: what is not is rounding.
@@ -253,6 +309,7 @@ class DipSearch {
   std::size_t first_, last_;
   SmallestSingularValue sigma_;
   std::vector<double> times_, values_;  // of the samples
+  std::vector<double> ways_;            // that the Jacobian moves from one of all samples to the next
 };
 
 }  // namespace

@@ -20,8 +20,12 @@ class SmallestSingularValue {
   // From one iteration, which the last pose's vectors make good enough to follow sigma by; from as many as it
   // takes where sigma has changed much.
   double estimate(const ConstVec& z);
+  // How far the Jacobian has moved since this was asked last (infinite the first time), in the norm of all
+  // its entries: by Weyl's inequality no singular value has changed by more.
+  double moved(const ConstVec& z);
 
  private:
+  void jacobian(const ConstVec& z);
   bool place(const ConstVec& z);
   double settle(double tolerance);
   void stir(Index column);
@@ -33,7 +37,7 @@ class SmallestSingularValue {
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
-  VectorXd q_, sigma_;
+  VectorXd q_, sigma_, seen_;   // seen_: entries of G_ at the pose that moved() saw last
   Interleaved rows_, columns_;  // the two parts of some of the saddle-point system's unknowns
   MatrixXd block_;              // columns: singular vectors, by rising sigma
 };

@@ -28,6 +28,7 @@ class StepControl {
   double next(const State& state);
   // As if the last step had been h [s].
   void continue_from(double h) { previous_ = h; }
+  double last() const { return previous_; }
 
  private:
   double density(const State& state);  // Q

@@ -1,471 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/stepper.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "core/integrators/dvm.hpp"
 #include "core/integrators/integrator.hpp"
-#include "core/simulate/deployed_event.hpp"
-#include "core/simulate/drift.hpp"
 #include "core/simulate/initial_state.hpp"
-#include "core/simulate/latch.hpp"
-#include "core/simulate/measured_event.hpp"
-#include "core/simulate/mode_change.hpp"
-#include "core/simulate/one_sided.hpp"
-#include "core/simulate/pushed_model.hpp"
 #include "core/simulate/run_words.hpp"
-#include "core/simulate/singular_poses.hpp"
-#include "core/simulate/step_control.hpp"
-#include "core/simulate/time_grid.hpp"
+#include "core/simulate/stepper_loop.hpp"
 
 namespace unfurl {
-namespace {
-
-// A state whose sin(fold) is below this has lost digits to the singular deployed pose and counts as having
-// reached it.
-constexpr double singular_margin = 1e-4, deployed_already = 1e-12;
-// Impacts of one stop that follow each other within this share of a step have accumulated: the stop holds.
-// With restitution e the rest of their series takes e / (1 - e) times as long.
-constexpr double accumulated = 1e-4;
-// Where more than this many switches, and twice as many for each stop and cable, come at one time, no order
-// of them leads on: what touches is held. Where that is of no use either, the rest of the step is taken as it
-// is.
-constexpr int most_switches = 20;
-constexpr double one_time = 1e-9;  // share of a step
-constexpr long most_in_step = 50;  // times as many in one step, at whatever times
-// Steps of the method are at least so long, as a share of solver.step: multipliers are noise over the step.
-constexpr double shortest = 1e-7;
-// So many steps before the deployed pose a failed step is put down to it.
-constexpr double near_deployed = 5;
-// Friction that turns round within this share of a step before the deployed pose is at it, where rods in line
-// let angles without a sign turn round.
-constexpr double straight = 1e-3;
-// Parts of a step for the hints where margins dip between solved states.
-constexpr int parts = 8;
-
-constexpr const char* too_near =
-    "so near the deployed pose, where the constraints lose rank, the motion cannot be told from rounding";
-
-}  // namespace
-
-class Stepper::Loop {
- public:
-  Loop(Simulation& run, std::shared_ptr<const Model> model)
-      : run_(run),
-        base_(std::move(model)),
-        deployment_(run.trajectory.structure().deployment),
-        sides_(run.trajectory.structure(), run.options),
-        grid_(now().t, run.options, time_edges(run.trajectory.structure(), run.options.step)),
-        last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {
-    model_changed();
-    if (deployment_.measured) margin_ = deployed_already;
-    if (!deployment_.empty() && fold(now()) > deployed_already)
-      margin_ = std::min(margin_, 0.1 * fold(now()));
-    if (!sides_.empty()) find_first_modes();
-  }
-
-  bool step() { return !ended_ && now().t < grid_.end() && go(next_target()); }
-
-  bool advance_to(double t) {
-    const double until = std::min(t, grid_.end());
-    while (!ended_ && now().t < until) {
-      TimeGrid::Target target = next_target();
-      if (target.t > until) target = {until, until - now().t};
-      if (!go(target)) return false;
-    }
-    return !ended_;
-  }
-
-  void set_force(int node, const Vec3& force) {
-    const auto pushed = pushed_model(*base_, run_.trajectory.structure().loads.size(), node, force,
-                                     run_.options.eliminate_linear);
-    if (ended_ || !pushed) return;
-    base_ = pushed;
-    set_model(sides_.any_active() ? sides_.model(*base_) : base_, in_base(now()), run_.trajectory.size() > 1);
-  }
-
-  void end() { ended_ = true; }
-  std::function<void(const State&, const StepReport&)> on_step;
-
- private:
-  const Model& model() const { return run_.trajectory.last_model(); }
-  const System& system() const { return model().system; }
-  const State& now() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
-  std::unique_ptr<Integrator> fresh_integrator() const {
-    return find_method(run_.options.method)->make(system(), run_.options);
-  }
-
-  TimeGrid::Target next_target() {
-    if (!run_.options.adaptive) return grid_.next(now().t);
-    if (controlled_ != &system()) {  // the first step, or the model has changed
-      controlled_ = &system();
-      control_.emplace(run_.trajectory.structure(), *controlled_, run_.options);
-    }
-    return grid_.next(now().t, control_->next(now()));
-  }
-
-  bool go(const TimeGrid::Target& target) try {
-    target_ = target.t;
-    double h = target.h;
-    in_step_ = 0;
-    while (now().t < target_) {
-      const double short_of = integrator_->longest_step(now(), h);
-      part_end_ = short_of < h ? now().t + short_of : target_;
-      if (!part(short_of)) return ended_ = true, false;
-      h = target_ - now().t;
-    }
-    if (target.edge) integrator_->restart();
-    return !target.jumps || jump(target.jump) || (ended_ = true, false);
-  } catch (const CannotFactorise& error) {
-    return ended_ = true, fail(error.what());
-  }
-
-  // The rest of the step, of size h, or what comes before the first event on it. False where the run ends.
-  bool part(double h) {
-    const bool watched = !sides_.empty() && now().t >= unwatched_until_;
-    if (watched) {
-      begin();
-      std::vector<std::size_t> over;
-      for (Index i = 0; i < begin_.margins.size(); ++i)
-        if (begin_.margins[i] < -1) over.push_back(static_cast<std::size_t>(i));
-      if (!over.empty()) return act(over);
-    }
-    Probe to{.at = h, .state = now()};
-    to.report = take_step(*integrator_, to.state, h);
-    std::optional<State> event;
-    if (!find_deployed(to, h, event)) return false;
-    if (watched && to.report.ok())
-      if (auto crossing = find_crossing(to);
-          crossing && now().t + crossing->probe.at < latest(event, *crossing, h))
-        return go_to(std::move(*crossing));
-    if (event) return deployed(*event, to, h);
-    return accept(to, part_end_);
-  }
-
-  bool accept(Probe& to, double t) {
-    if (!to.report.ok()) return fail(may_cross(0) ? too_near : reason(to.report.status));
-    to.state.t = t;
-    have_begin_ = to.margins.size() > 0;
-    if (have_begin_) begin_ = to;
-    append(std::move(to.state), to.report);
-    ++run_.steps;
-    return true;
-  }
-
-  void append(State state, const StepReport& report) {
-    run_.trajectory.append(std::move(state), report);
-    if (on_step) on_step(now(), report);
-  }
-
-  // What follows is no continuation of the states before.
-  void append_after_impulse(State state) {
-    append(std::move(state), StepReport{});
-    integrator_->restart();
-    have_begin_ = false;
-  }
-
-  bool fail(const std::string& why) {
-    run_.status = RunStatus::failed;
-    run_.message = "at t = " + seconds(now().t) + ": " + why + what_locks(model(), now());
-    return false;
-  }
-
-  // A drive's velocity jumps: what it drives is taken along by an impulse of the constraints.
-  bool jump(double t) {
-    State before = now();
-    before.t = t;
-    if (sides_.empty()) return append_after_impulse(hand_over(model(), before, model()).state), true;
-    sides_.touch(system(), before);
-    ModeChange change = modes_after(hand_over(model(), before, *base_).state);
-    if (change.failure.empty() && !change.changed && change.impacts.empty())
-      return append_after_impulse(hand_over(*base_, change.state, model()).state), true;
-    return apply(std::move(change));
-  }
-
-  // --- steps ---
-
-  StepReport take_step(Integrator& integrator, State& state, double h) {
-    if (h < shortest * run_.options.step) return drift(system(), state, h);
-    const StepReport report = integrator.step(state, h);
-    run_.newton_iterations += report.newton_iterations;
-    run_.factorisations += report.factorisations;
-    return report;
-  }
-
-  // A failed step is tried again in 2, 4, ... 64 parts.
-  void retry(Integrator& integrator, Probe& to, double h) {
-    for (int count = 2; count <= 64 && !to.report.ok(); count *= 2) {
-      to.state = now();
-      integrator.restart();
-      to.report = StepReport{};
-      for (int i = 0; i < count && to.report.ok(); ++i)
-        to.report = take_step(integrator, to.state, h / count);
-    }
-    if (!to.report.ok()) to.state = now();
-  }
-
-  // --- stops and cables ---
-
-  // Margins of the present state, those of the last accepted one where they still hold.
-  void begin() {
-    if (have_begin_ && !(begin_.margins.minCoeff() < 0)) return;
-    sides_.touch(system(), now());
-    sides_.measure(model(), now(), true, begin_);
-    have_begin_ = true;
-  }
-
-  double latest(const std::optional<State>& event, const Crossing& crossing, double h) const {
-    if (!event) return std::numeric_limits<double>::infinity();
-    return sides_.only_friction(crossing.which) ? event->t - straight * h : event->t;
-  }
-
-  std::optional<Crossing> find_crossing(Probe& to) {
-    sides_.measure(model(), to.state, true, to);
-    begin_.at = 0;
-    const Solve solve = [this](double length, Probe& probe) {
-      if (!probing_) probing_ = fresh_integrator();
-      probing_->restart();
-      probe.at = length;
-      probe.state = now();
-      probe.report = take_step(*probing_, probe.state, length);
-      if (probe.report.ok()) sides_.measure(model(), probe.state, true, probe);
-      return probe.report.ok();
-    };
-    return first_crossing(begin_, to, between(to), solve);
-  }
-
-  // Margins on the cubic through the coordinates and rates of both ends of a step.
-  MatrixXd between(const Probe& to) {
-    MatrixXd margins(static_cast<Index>(sides_.size()), parts - 1);
-    Probe p;
-    for (int k = 1; k < parts; ++k) {
-      p.state = on_cubic(now(), to.state, now().t + to.at * k / parts);
-      sides_.measure(model(), p.state, 2 * k == parts, p);
-      margins.col(k - 1) = p.margins;
-    }
-    return margins;
-  }
-
-  bool go_to(Crossing crossing) {
-    if (const double t = now().t + crossing.probe.at; t > now().t) {
-      crossing.probe.state.t = t;
-      append(std::move(crossing.probe.state), crossing.probe.report);
-      ++run_.steps;
-      integrator_->restart();
-    }
-    have_begin_ = false;
-    return act(crossing.which);
-  }
-
-  // What comes of it that these have crossed, now. False where the run ends.
-  bool act(const std::vector<std::size_t>& which) {
-    if (now().t - crowd_time_ > one_time * run_.options.step) crowd_time_ = now().t, crowd_ = 0;
-    const long most = most_switches + 2 * static_cast<long>(sides_.size());
-    const bool crowded = ++crowd_ == most || ++in_step_ == most_in_step * most;
-    if (crowded) return hold_what_touches();
-    if (crowd_ > 2 * most || in_step_ > (most_in_step + 1) * most) return stop_watching();
-    return apply(modes_after(in_base(now()), which));
-  }
-
-  // Modes at the start of a run: nothing of that is an event but impacts. What cannot be ends it there.
-  void find_first_modes() try {
-    sides_.find_cables(system(), now());
-    sides_.touch(system(), now());
-    ModeChange change{.state = now()};  // the base is the model at the start
-    if (sides_.any_friction()) change = modes_after(now());
-    if (!change.failure.empty()) return ended_ = true, void(fail(change.failure));
-    record(change);
-    if (sides_.any_active()) set_model(sides_.model(*base_), change.state, false);
-  } catch (const CannotFactorise& error) {
-    ended_ = true, fail(error.what());
-  }
-
-  State in_base(const State& state) const { return in_coordinates(system(), state, base_->system); }
-
-  ModeChange modes_after(const State& state, const std::vector<std::size_t>& which = {}) {
-    sides_.weigh(model(), now());
-    return change_modes(sides_, *base_, state, which, [&](std::size_t i, double approach) {
-      const StopSide& stop = sides_.stops()[i];
-      const double flight = state.t - std::exchange(last_touch_[i], state.t);
-      const bool series = stop.restitution < 1 && flight > 0 && flight <= accumulated * run_.options.step;
-      return series || stop.restitution * approach <= stop.rest_speed;
-    });
-  }
-
-  // Goes on in the modes that were found. False where there are none.
-  bool apply(ModeChange change) {
-    if (!change.failure.empty()) return fail(change.failure);
-    record(change);
-    for (const std::size_t i : change.turned)
-      if (std::ranges::find(change.impacts, i, &ModeChange::Impact::stop) == change.impacts.end())
-        run_.events.push_back(sides_.event(i, change.state.t));
-    if (change.changed)
-      set_model(sides_.model(*base_), change.state, true);
-    else if (!change.impacts.empty())
-      append_after_impulse(hand_over(*base_, change.state, model()).state);
-    return true;
-  }
-
-  void record(const ModeChange& change) {
-    for (const auto& [stop, energy_lost] : change.impacts) {
-      Event event = sides_.event(stop, change.state.t);
-      if (!sides_.active(stop)) event.name = "stop " + event.element;
-      event.kind = "contact";
-      event.energy_lost = energy_lost * run_.trajectory.structure().sectors;
-      run_.events.push_back(std::move(event));
-    }
-  }
-
-  bool hold_what_touches() {
-    std::vector<std::size_t> touched;
-    for (std::size_t i = 0; i < sides_.stops().size(); ++i)
-      if (!sides_.active(i) && sides_.touches(i, system(), now())) touched.push_back(i);
-    if (!touched.empty())
-      run_.warnings.push_back("at t = " + seconds(now().t) +
-                              ": impacts without end; what touches a stop is held");
-    for (const std::size_t i : touched) last_touch_[i] = now().t;
-    return apply(
-        change_modes(sides_, *base_, in_base(now()), touched, [](std::size_t, double) { return true; }));
-  }
-
-  bool stop_watching() {
-    unwatched_until_ = target_;
-    if (!std::exchange(unwatched_said_, true))
-      run_.warnings.push_back(
-          "at t = " + seconds(now().t) +
-          ": stops, cables or friction switch without end; what they do in this step is not located");
-    if (sides_.relax_cables()) set_model(sides_.model(*base_), in_base(now()), true);
-    return true;
-  }
-
-  // Goes on from a state in the coordinates of the base with another model of the same structure.
-  void set_model(const std::shared_ptr<const Model>& next, const State& from, bool handed_over) {
-    Handover after = hand_over(*base_, from, *next);
-    if (!handed_over) run_.trajectory.pop_back();  // the first state of all
-    run_.trajectory.change_model(next);
-    append(std::move(after.state), StepReport{});
-    model_changed();
-  }
-
-  void model_changed() {
-    integrator_ = fresh_integrator();
-    probing_.reset();
-    sides_.forget_model();
-    have_begin_ = false;
-  }
-
-  // --- the deployed pose ---
-
-  double fold(const State& state) {
-    q_.resize(system().coordinates());
-    system().expand(state.z, q_);
-    return deployment_.remaining(q_);
-  }
-
-  bool crosses(const State& next) {
-    if (deployment_.empty() || deployed_) return false;
-    return fold(now()) > margin_ && fold(next) <= margin_;
-  }
-
-  // Could the fold angle reach zero within a time? Where sine * rate is constant, after sine / (2 rate).
-  bool may_cross(double within) {
-    if (deployment_.empty() || deployed_) return false;
-    const double sine = fold(now());
-    const double way = 2 * within * remaining_rate(model(), now());
-    return sine > 0 && (sine <= singular_margin || sine + way <= 0);
-  }
-
-  std::optional<State> locate(double h, double latest) {
-    std::optional<State> reached = step_to_deployed(model(), *fresh_integrator(), now(), h, margin_);
-    if (regular_ = reached.has_value(); regular_) return reached;
-    const bool dvm = run_.options.method == "dvm";
-    const auto fresh = (dvm ? careful_dvm() : *find_method(run_.options.method)).make(system(), run_.options);
-    std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
-    if (event && event->t > latest) event.reset();
-    return event;
-  }
-
-  // The deployed pose where this step reaches it; a step that failed without that is tried in parts. False
-  // where the run ends.
-  bool find_deployed(Probe& to, double h, std::optional<State>& event) {
-    if (!to.report.ok() && may_cross(1.5 * h)) event = locate(h, now().t + 1.05 * h);
-    if (!event && !to.report.ok()) retry(*integrator_, to, h);
-    if (!event && !to.report.ok() && may_cross(near_deployed * h))
-      event = locate(h, now().t + 2 * near_deployed * h);
-    if (event || !to.report.ok() || !crosses(to.state)) return true;
-    event = locate(h, std::numeric_limits<double>::infinity());
-    return event || fail("the deployed pose was passed but its time could not be located");
-  }
-
-  bool deployed(State& event, Probe& to, double h) {
-    deployed_ = true;
-    run_.events.push_back({.name = "deployed", .t = event.t, .kind = "deployed"});
-    if (run_.options.at_deployed == "pass")
-      return !to.report.ok() || std::abs(fold(to.state)) < margin_ ? step_over(h) : accept(to, part_end_);
-    project(system(), event);
-    while (run_.trajectory.size() > 1 && run_.trajectory.end_time() >= event.t) run_.trajectory.pop_back();
-    append(std::move(event), StepReport{.singular_event = !regular_});
-    ++run_.steps;
-    if (run_.options.at_deployed == "latch") return latch();
-    run_.status = RunStatus::deployed;
-    return false;
-  }
-
-  // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
-  // on a stop is locked there.
-  bool latch() {
-    if (sides_.any_held() || sides_.any_reeled()) base_ = sides_.lock_held(*base_, now().t);
-    const bool gives = latch_gives(base_->structure);
-    if (gives && singular_at_end(run_.trajectory))
-      return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
-    base_ = latched_model(*base_, run_.options.eliminate_linear);
-    const double before = system().kinetic_energy(now().w);
-    ModeChange change{.state = hand_over(model(), now(), *base_).state};
-    if (!sides_.empty()) change = modes_after(change.state);
-    if (!change.failure.empty()) return fail(change.failure);
-    record(change);
-    set_model(sides_.any_active() ? sides_.model(*base_) : base_, change.state, true);
-    const double taken = (before - system().kinetic_energy(now().w)) * run_.trajectory.structure().sectors;
-    run_.events.push_back(
-        {.name = "latched", .t = now().t, .energy_lost = gives ? 0.0 : taken, .kind = "latch"});
-    return true;
-  }
-
-  // The step would land on the singular pose: end it a little behind instead. The grid goes on after that.
-  bool step_over(double h) {
-    Probe to;
-    for (const double length : {1.41, 1.73, 1.19, 2.24}) {
-      to.state = now();
-      integrator_->restart();
-      to.report = take_step(*integrator_, to.state, length * h);
-      if (to.report.ok()) return accept(to, part_end_ + (length - 1) * h);
-    }
-    return accept(to, part_end_);
-  }
-
-  Simulation& run_;
-  std::shared_ptr<const Model> base_;  // the model without what is held or pulls
-  const Deployment& deployment_;
-  OneSided sides_;
-  TimeGrid grid_;
-  double target_ = 0, part_end_ = 0;  // of the present step, and of what is solved of it at once
-  std::unique_ptr<Integrator> integrator_, probing_;
-  std::optional<StepControl> control_;
-  const System* controlled_ = nullptr;
-  Probe begin_;  // the present state
-  bool have_begin_ = false;
-  std::vector<double> last_touch_;  // of each stop
-  double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
-  long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
-  bool unwatched_said_ = false, deployed_ = false, ended_ = false, regular_ = false;
-  double margin_ = singular_margin;  // a tenth of where the run began, if that is less
-  VectorXd q_;
-};
 
 Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& options)
     : Stepper(model, options, initial_state(model->structure, model->system).state) {}
@@ -474,7 +18,16 @@ Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& option
     : run_{.trajectory = Trajectory(model, options), .options = options} {
   if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);
   run_.trajectory.append(std::move(start), StepReport{});
-  loop_ = std::make_unique<Loop>(run_, std::move(model));
+  loop_ = std::make_unique<Loop>(run_, std::move(model), time());
+  loop_->begin_run();
+}
+
+Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& options, Archive& archived)
+    : run_{.trajectory = Trajectory(model, options), .options = options} {
+  double start = 0;
+  archived(start);
+  loop_ = std::make_unique<Loop>(run_, std::move(model), start);
+  loop_->archive(archived);
 }
 
 Stepper::~Stepper() = default;
@@ -487,6 +40,17 @@ bool Stepper::advance_to(double t) {
 }
 void Stepper::set_force(int node, const Vec3& force) {
   loop_->set_force(node, force);
+}
+Stepper::Window Stepper::take_window(std::size_t around) {
+  return loop_->take_window(around);
+}
+std::size_t Stepper::first_new() const {
+  return loop_->first_new();
+}
+void Stepper::archive(Archive& archive) {
+  double start = loop_->start();
+  archive(start);
+  loop_->archive(archive);
 }
 void Stepper::stop() {
   loop_->end();

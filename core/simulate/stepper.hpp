@@ -2,11 +2,13 @@
 // A run step by step: what `simulate` drives from the start to the end.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <utility>
 
 #include "core/simulate/simulation.hpp"
+#include "core/text/archive.hpp"
 
 namespace unfurl {
 
@@ -39,6 +41,23 @@ class Stepper {
   // as after any jump of a load; a force that stays the same costs nothing.
   void set_force(int node, const Vec3& force);
   void stop();  // ends the run as stopped by the user
+
+  // Hands over all of the run but its last states, which go on being known here: what was handed over is
+  // `window`, whose states [first, last) no window before had; those around them are in the windows before
+  // and after, too. At least 2 `around` states stay, of the present model only, so that what a long run keeps
+  // does not grow. The method begins anew behind it: a run that is handed over at the same states goes the
+  // same way to the bit whether it was archived there or not.
+  struct Window {
+    Simulation run;
+    std::size_t first, last;
+  };
+  Window take_window(std::size_t around);
+  // Those that no window had, of run().
+  std::size_t first_new() const;
+  // Right behind take_window(): all that the rest of the run depends on; for the constructor below.
+  void archive(Archive& archive);
+  // Goes on where a stepper of the same model and options was archived. Throws ArchiveError.
+  Stepper(std::shared_ptr<const Model> model, const SolverOptions& options, Archive& archived);
 
   // Called with every state that is appended to the run, in order, the report of its step beside it.
   void on_step(std::function<void(const State&, const StepReport&)> callback);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/structure/measure.hpp"
+#include "core/structure/node_positions.hpp"
 
 namespace unfurl {
 
@@ -104,6 +105,13 @@ double ReportedSurface::rms(const ConstVec& q) const {
   for (const int node : nodes) mean += off(node) / static_cast<double>(nodes.size());
   for (const int node : nodes) sum += (off(node) - mean) * (off(node) - mean);
   return std::sqrt(sum / static_cast<double>(nodes.size()));
+}
+
+VectorXd node_positions(const Structure& structure) {
+  VectorXd q(3 * static_cast<Index>(structure.nodes.size()));
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  return q;
 }
 
 VectorXd whole_positions(const Structure& structure, const ConstVec& q) {

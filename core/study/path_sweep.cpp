@@ -14,6 +14,7 @@
 #include "core/path/path_time.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/latch.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/structures/family.hpp"
 
 namespace unfurl {
@@ -61,13 +62,6 @@ bool plain(const Structure& structure) {
          !structure.deployment.measured && unknown_to_path(structure).empty() &&
          std::all_of(structure.nodes.begin(), structure.nodes.end(),
                      [](const Node& node) { return node.velocity.isZero(0.0); });
-}
-
-VectorXd positions(const Structure& structure) {
-  VectorXd q(3 * std::ssize(structure.nodes));
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
-  return q;
 }
 
 VectorXd forces_on_nodes(const Structure& structure, const System& system) {
@@ -169,7 +163,7 @@ struct PathSweep::Data {
   double time(const Structure& structure, const Traced& on) const {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const System& system = on.model->system;
-    const VectorXd q = positions(structure), force = forces_on_nodes(structure, system);
+    const VectorXd q = node_positions(structure), force = forces_on_nodes(structure, system);
     if (!(on.form(q) > least_sine)) return nan;
     const auto s = on.path->locate(on.path->system().reduce(q), most_path_pieces);
     if (!s) return nan;
@@ -208,7 +202,8 @@ bool read_alike(const SweepPlan& plan, const Scene& base, const std::vector<std:
       put.structure.set(names[a], plan.axes[a].numbers[i]);
       const Scene read = plan.source.read({plan.axes[a].key + "=" + plan.axes[a].values[i]});
       const Structure x = build_structure(put), y = build_structure(read);
-      if (positions(x) != positions(y) || x.loads.size() != y.loads.size() || !same_mechanism(x, y, 0.0))
+      if (node_positions(x) != node_positions(y) || x.loads.size() != y.loads.size() ||
+          !same_mechanism(x, y, 0.0))
         return false;
       for (std::size_t l = 0; l < x.loads.size(); ++l)
         if (x.loads[l].force != y.loads[l].force) return false;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/system/fit_lengths.hpp"
 #include "core/system/system.hpp"
@@ -151,9 +152,7 @@ void assemble_elastic(Structure& structure, bool eliminate_linear) {
                                   "; nodes are moved for differences up to 1 % only: give positions "
                                   "that fit, or free_length for a rod that starts stretched");
   const System system(unloaded(structure), eliminate_linear);
-  VectorXd given(system.coordinates());
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    given.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  const VectorXd given = node_positions(structure);
   VectorXd q = given;
   if (!Balance(system).find(q))
     throw StructureError(key, off.str() + ", and no pose near the given one has the rods in balance");

@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 
 namespace unfurl {
@@ -32,12 +33,9 @@ class Checker {
       : system_(system),
         names_(system.all_names()),
         sources_(system.all_sources()),
-        q_(system.coordinates()),
+        q_(node_positions(structure)),
         elastic_(std::any_of(structure.rods.begin(), structure.rods.end(),
-                             [](const Rod& rod) { return rod.elastic(); })) {
-    for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-      q_.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
-  }
+                             [](const Rod& rod) { return rod.elastic(); })) {}
 
   void run() {
     check_positions();

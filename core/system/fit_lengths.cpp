@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/math/saddle_solver.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/system/system.hpp"
 
@@ -49,13 +50,6 @@ std::string length_key(std::size_t rod) {
   return "rods[" + std::to_string(rod) + "].length";
 }
 
-VectorXd node_positions_of(const Structure& structure) {
-  VectorXd q(3 * static_cast<Index>(structure.nodes.size()));
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
-  return q;
-}
-
 // True where Phi = 0 is reached to round-off; q is what was reached.
 bool solve_for_pose(const System& system, VectorXd& q) {
   SparseRows G = system.jacobian_pattern();
@@ -92,7 +86,7 @@ void fit_lengths(Structure& structure, bool eliminate_linear) {
                              "; nodes are moved for differences up to 1 % only: give positions that fit, or "
                              "leave the length out");
   const System system(structure, eliminate_linear);
-  const VectorXd given = node_positions_of(structure);
+  const VectorXd given = node_positions(structure);
   VectorXd q = given;
   const bool solved = solve_for_pose(system, q);
   double most = 0;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/constraints/linear_rows.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/system/elimination_choice.hpp"
 #include "core/system/mass_matrix.hpp"
 #include "core/system/system_data.hpp"
@@ -213,9 +214,7 @@ void System::Data::build_stencils() {
 System::System(const Structure& structure, bool eliminate_linear) {
   auto data = std::make_unique<Data>();
   data->coordinates = 3 * static_cast<Index>(structure.nodes.size());
-  data->start.resize(data->coordinates);
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    data->start.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  data->start = node_positions(structure);
   data->node_mass = node_mass_matrix(structure);
   data->build_blocks(structure, eliminate_linear);
   data->build_coordinates();

@@ -175,10 +175,13 @@ ParamSpec only_with(std::string_view other, std::vector<std::string_view> values
   return spec;
 }
 
-ParamSpec names_param(std::string_view name, std::string_view help) {
-  ParamSpec spec = named(name, "", ParamKind::names, std::vector<std::string>{}, help);
+ParamSpec required(ParamSpec spec) {
   spec.required = true;
   return spec;
+}
+
+ParamSpec names_param(std::string_view name, std::string_view help) {
+  return required(named(name, "", ParamKind::names, std::vector<std::string>{}, help));
 }
 
 std::string range_text(const ParamSpec& spec) {

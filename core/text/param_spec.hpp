@@ -50,6 +50,7 @@ ParamSpec vector_param(std::string_view name, std::string_view unit, std::vector
 ParamSpec text_param(std::string_view name, std::string_view fallback, std::string_view help);
 // That parameter, but only while another has one of the values.
 ParamSpec only_with(std::string_view other, std::vector<std::string_view> values, ParamSpec spec);
+ParamSpec required(ParamSpec spec);  // that parameter, without a default: a scene must give it
 ParamSpec names_param(std::string_view name, std::string_view help);  // of nodes or rods; required
 
 // "[0.1, 8]", "> 0", "one of a, b": the allowed range in words, for help and error messages.

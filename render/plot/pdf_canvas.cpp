@@ -47,8 +47,18 @@ std::string reference(int object) {
 
 }  // namespace
 
-PdfCanvas::PdfCanvas(double width, double height, const TrueType& font)
-    : width_(width), height_(height), font_(font), out_("1 J 1 j\n") {}  // round ends and joints
+PdfCanvas::PdfCanvas(double width, double height, std::vector<Font> fonts)
+    : width_(width), height_(height), out_("1 J 1 j\n") {  // round ends and joints
+  for (const Font& font : fonts) fonts_.push_back({font});
+}
+
+std::size_t PdfCanvas::font_of(char32_t c) const {
+  for (std::size_t k = 0; k < fonts_.size(); ++k)
+    if (fonts_[k].font.face.advance(c) > 0 && fonts_[k].font.file.glyph(c) != 0) return k;
+  for (std::size_t k = 0; k < fonts_.size(); ++k)
+    if (fonts_[k].font.file.glyph(c) != 0) return k;
+  return 0;
+}
 
 void PdfCanvas::point(Point p, const char* what) {
   out_ += pdf_number(p.x) + ' ' + pdf_number(height_ - p.y) + what;
@@ -114,23 +124,30 @@ void PdfCanvas::circle(Point c, double r, FigureColor fill) {
 }
 
 void PdfCanvas::text(Point at, std::string_view text, const TextStyle& style) {
-  std::string codes;
+  std::string shown;
   double width = 0;
-  for (std::size_t i = 0; i < text.size();) {
+  for (std::size_t i = 0, last = fonts_.size(); i < text.size();) {
     const char32_t c = next_code_point(text, i);
-    const int glyph = font_.glyph(c);
-    used_.emplace(glyph, glyph == 0 ? U'\uFFFD' : c);
-    codes += hex4(static_cast<unsigned>(glyph));
-    width += font_.advance(glyph) * style.size;
+    const std::size_t k = font_of(c);
+    const TrueType& file = fonts_[k].font.file;
+    const int glyph = file.glyph(c);
+    fonts_[k].glyphs.emplace(glyph, glyph == 0 ? U'\uFFFD' : c);
+    if (k != last) {
+      shown += shown.empty() ? "" : "> Tj ";
+      shown += "/F" + std::to_string(k + 1) + ' ' + pdf_number(style.size) + " Tf <";
+      last = k;
+    }
+    shown += hex4(static_cast<unsigned>(glyph));
+    width += file.advance(glyph) * style.size;
   }
-  if (codes.empty()) return;
+  if (shown.empty()) return;
   const double before = style.anchor == Anchor::start    ? 0
                         : style.anchor == Anchor::middle ? width / 2
                                                          : width;
   color(style.color, false);
-  out_ += "BT /F1 " + pdf_number(style.size) + " Tf " + (style.upward ? "0 1 -1 0 " : "1 0 0 1 ");
+  out_ += std::string("BT ") + (style.upward ? "0 1 -1 0 " : "1 0 0 1 ");
   point(style.upward ? Point{at.x, at.y + before} : Point{at.x - before, at.y}, " Tm ");
-  out_ += "<" + codes + "> Tj ET\n";
+  out_ += shown + "> Tj ET\n";
 }
 
 void PdfCanvas::begin_clip(const Rect& r) {
@@ -144,27 +161,28 @@ void PdfCanvas::end_clip() {
   opacity_ = -1;  // that of before the clip, whatever it was: to be said again
 }
 
-int PdfCanvas::add_font(PdfDocument& document) const {
+int PdfCanvas::add_font(PdfDocument& document, const Used& used) {
+  const TrueType& font = used.font.file;
   std::set<int> glyphs;
   std::string widths;
-  for (const auto& [glyph, c] : used_) {
+  for (const auto& [glyph, c] : used.glyphs) {
     glyphs.insert(glyph);
-    widths += std::to_string(glyph) + " [" + thousandths(font_.advance(glyph)) + "] ";
+    widths += std::to_string(glyph) + " [" + thousandths(font.advance(glyph)) + "] ";
   }
-  const std::string name = "/" + subset_tag(used_) + "+DejaVuSans", file = font_.subset(glyphs);
+  const std::string name = "/" + subset_tag(used.glyphs) + "+" + std::string(used.font.face.pdf_name),
+                    file = font.subset(glyphs);
   const int program = document.add_stream(file, "/Length1 " + std::to_string(file.size()));
-  const TrueType::Box box = font_.bounds();
-  const int descriptor =
-      document.add("<< /Type /FontDescriptor /FontName " + name + " /Flags 4 /FontBBox [" +
-                   thousandths(box.x0) + ' ' + thousandths(box.y0) + ' ' + thousandths(box.x1) + ' ' +
-                   thousandths(box.y1) + "] /ItalicAngle 0 /Ascent " + thousandths(font_.ascent()) +
-                   " /Descent " + thousandths(font_.descent()) + " /CapHeight " + thousandths(cap_height) +
-                   " /StemV 80 /FontFile2 " + reference(program) + " >>");
+  const TrueType::Box box = font.bounds();
+  const int descriptor = document.add(
+      "<< /Type /FontDescriptor /FontName " + name + " /Flags 4 /FontBBox [" + thousandths(box.x0) + ' ' +
+      thousandths(box.y0) + ' ' + thousandths(box.x1) + ' ' + thousandths(box.y1) +
+      "] /ItalicAngle 0 /Ascent " + thousandths(font.ascent()) + " /Descent " + thousandths(font.descent()) +
+      " /CapHeight " + thousandths(cap_height) + " /StemV 80 /FontFile2 " + reference(program) + " >>");
   const int descendant = document.add(
       "<< /Type /Font /Subtype /CIDFontType2 /BaseFont " + name +
       " /CIDSystemInfo << /Registry (Adobe) /Ordering (Identity) /Supplement 0 >> /FontDescriptor " +
       reference(descriptor) + " /CIDToGIDMap /Identity /DW 600 /W [" + widths + "] >>");
-  const int map = document.add_stream(to_unicode(used_));
+  const int map = document.add_stream(to_unicode(used.glyphs));
   return document.add("<< /Type /Font /Subtype /Type0 /BaseFont " + name +
                       " /Encoding /Identity-H /DescendantFonts [" + reference(descendant) + "] /ToUnicode " +
                       reference(map) + " >>");
@@ -175,7 +193,11 @@ std::string PdfCanvas::finish(std::string_view title, std::string_view descripti
   const int catalog = document.reserve(), pages = document.reserve();
   const int contents = document.add_stream(out_);
   std::string resources;
-  if (!used_.empty()) resources += "/Font << /F1 " + reference(add_font(document)) + " >> ";
+  std::string fonts;
+  for (std::size_t k = 0; k < fonts_.size(); ++k)
+    if (!fonts_[k].glyphs.empty())
+      fonts += "/F" + std::to_string(k + 1) + ' ' + reference(add_font(document, fonts_[k])) + ' ';
+  if (!fonts.empty()) resources += "/Font << " + fonts + ">> ";
   resources += "/ExtGState <<";
   for (std::size_t i = 0; i < opacities_.size(); ++i)
     resources += " /G" + std::to_string(i) + " << /CA " + pdf_number(opacities_[i]) + " /ca " +

@@ -8,6 +8,7 @@
 #include "render/plot/canvas.hpp"
 #include "render/plot/pdf_document.hpp"
 #include "render/plot/true_type.hpp"
+#include "render/plot/typeface.hpp"
 
 namespace unfurl::plot {
 
@@ -15,8 +16,12 @@ namespace unfurl::plot {
 // which can be selected and searched.
 class PdfCanvas final : public Canvas {
  public:
-  // Size in points. The font must outlive the canvas.
-  PdfCanvas(double width, double height, const TrueType& font);
+  struct Font {
+    const Typeface& face;
+    const TrueType& file;
+  };
+  // Size in points. A character is written in the first font that has it; they must outlive the canvas.
+  PdfCanvas(double width, double height, std::vector<Font> fonts);
 
   void polyline(std::span<const Point> points, const Pen& pen) override;
   void band(std::span<const Point> lower, std::span<const Point> upper, FigureColor fill) override;
@@ -34,12 +39,17 @@ class PdfCanvas final : public Canvas {
   void path(std::span<const Point> points);
   void color(FigureColor c, bool stroke);
   void opacity(double alpha);
-  int add_font(PdfDocument& document) const;
+  // A font of the page with the glyphs that are used so far and what they mean.
+  struct Used {
+    Font font;
+    std::map<int, char32_t> glyphs = {};
+  };
+  std::size_t font_of(char32_t c) const;
+  static int add_font(PdfDocument& document, const Used& used);
 
   double width_, height_;
-  const TrueType& font_;
+  std::vector<Used> fonts_;
   std::string out_;                     // the page's contents
-  std::map<int, char32_t> used_;        // glyphs and what they mean
   std::vector<double> opacities_{1.0};  // states /G0, /G1, ...
   double opacity_ = 1;                  // the current one
 };

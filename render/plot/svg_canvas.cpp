@@ -6,10 +6,32 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/text/utf8.hpp"
 #include "core/text/xml_text.hpp"
 #include "render/plot/style.hpp"
+#include "render/plot/typeface.hpp"
 
 namespace unfurl::plot {
+namespace {
+
+// What the typeface has not is said to be of the one that lends it: digits of one exponent look alike.
+std::string marked_text(std::string_view text) {
+  const Typeface &own = typeface(), &lender = typefaces().front();
+  std::string out;
+  bool lent = false;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t begin = i;
+    const char32_t c = next_code_point(text, i);
+    const bool now = own.advance(c) == 0 && lender.advance(c) > 0;
+    if (now && !lent) out += "<tspan font-family=\"" + std::string(lender.families) + "\">";
+    if (lent && !now) out += "</tspan>";
+    lent = now;
+    out += xml_text(text.substr(begin, i - begin));
+  }
+  return lent ? out + "</tspan>" : out;
+}
+
+}  // namespace
 
 SvgCanvas::SvgCanvas(double width, double height, std::string_view title, std::string_view description) {
   out_ =
@@ -22,9 +44,8 @@ SvgCanvas::SvgCanvas(double width, double height, std::string_view title, std::s
   number(width);
   out_ += ' ';
   number(height);
-  out_ +=
-      "\" font-family=\"'DejaVu Sans', 'Bitstream Vera Sans', Verdana, sans-serif\" "
-      "stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
+  out_ += "\" font-family=\"" + std::string(typeface().families) +
+          "\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
   out_ += "<title>" + xml_text(title) + "</title>\n<desc>" + xml_text(description) + "</desc>\n";
 }
 
@@ -131,7 +152,7 @@ void SvgCanvas::text(Point at, std::string_view text, const TextStyle& style) {
     number(at.y);
     out_ += ")\"";
   }
-  out_ += ">" + xml_text(text) + "</text>\n";
+  out_ += ">" + marked_text(text) + "</text>\n";
 }
 
 void SvgCanvas::begin_clip(const Rect& r) {

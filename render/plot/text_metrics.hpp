@@ -13,7 +13,7 @@ namespace unfurl::plot {
 // Of digits and capitals above the baseline, and of descenders below it, relative to the size.
 inline constexpr double cap_height = 0.729, ascent = 0.76, descent = 0.22;
 
-// Advance of one line of UTF-8 text in DejaVu Sans, without kerning [points].
+// Advance of one line of UTF-8 text in typeface(), without kerning [points].
 double text_width(std::string_view text, double size);
 // Height of a line of DejaVu Sans, ascenders of any language included, relative to the size.
 inline constexpr double line_height = 2384.0 / 2048.0;

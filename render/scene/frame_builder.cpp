@@ -136,8 +136,8 @@ void FrameBuilder::prepare_hardware(const std::vector<std::vector<Vec3>>& poses,
   const bool lit = look_->shading == Shading::studio || look_->shading == Shading::space;
   auto joints = std::make_unique<const Joints>(s, std::move(sample_times), samples, radius, bounds_.center,
                                                bounds_.plane_normal);
-  hardware_ = std::make_unique<Hardware>(s, looks_, *look_, style_.options, std::move(joints), upright_,
-                                         lit && pixels > 0.8);
+  hardware_ = std::make_unique<Hardware>(s, looks_, *look_, style_.options, std::move(joints), samples,
+                                         upright_, lit && pixels > 0.8);
 }
 
 double FrameBuilder::still_radius(double thickest) const {

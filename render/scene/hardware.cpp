@@ -57,8 +57,8 @@ std::string material_for(const RenderOptions& options, const std::string& group)
 }
 
 Hardware::Hardware(const Structure& structure, const Appearance& looks, const Look& look,
-                   const RenderOptions& options, std::unique_ptr<const Joints> joints, const Mat3& upright,
-                   bool detailed)
+                   const RenderOptions& options, std::unique_ptr<const Joints> joints,
+                   const std::vector<std::vector<Vec3>>& poses, const Mat3& upright, bool detailed)
     : structure_(structure),
       looks_(looks),
       look_(look),
@@ -74,11 +74,45 @@ Hardware::Hardware(const Structure& structure, const Appearance& looks, const Lo
   for (std::size_t i = structure_.node_copies.size(); i-- > 0;)
     copy_of_[static_cast<std::size_t>(structure_.node_copies[i].source)] = static_cast<int>(i);
   if (!detailed_) return;
-  find_supports();
+  find_supports(poses);
 }
 
-// Below what is held, or above it where the structure begins to hang from there.
-void Hardware::find_supports() {
+// The side of a node towards which no rod ever points: the wanted one, or the other end of that line, or
+// along the axis that a rod turns around, first away from where cameras stand. Unit vectors.
+Vec3 Hardware::free_side(int node, const Vec3& wanted, const std::vector<std::vector<Vec3>>& poses) const {
+  constexpr double plate_half_angle = 0.69;  // cosine: as wide as the plate is seen from the node
+  const Vec3 away(-0.47, 0.88, 0);
+  const auto& ends = joints_->ends(node);
+  const auto along = [&](const RodEnd& end, const std::vector<Vec3>& pose) {
+    const RodCopy& rod = structure_.rod_copies[static_cast<std::size_t>(end.rod)];
+    const Vec3 d = pose[static_cast<std::size_t>(rod.b)] - pose[static_cast<std::size_t>(rod.a)];
+    return d.norm() > 0 ? Vec3((end.end == 0 ? 1.0 : -1.0) * d.normalized()) : Vec3(Vec3::Zero());
+  };
+  std::vector<Vec3> sides{wanted, -wanted};
+  Vec3 axis = Vec3::Zero();
+  for (std::size_t k = 1; !ends.empty() && k < poses.size(); ++k) {
+    const Vec3 turn = along(ends.front(), poses[k - 1]).cross(along(ends.front(), poses[k]));
+    axis += axis.dot(turn) < 0 ? Vec3(-turn) : turn;
+  }
+  if (axis.norm() > 1e-6) {
+    axis *= (axis.dot(away) < 0 ? -1.0 : 1.0) / axis.norm();
+    sides.insert(sides.end(), {axis, -axis});
+  }
+  Vec3 best = wanted;
+  double least = 2;
+  for (const Vec3& side : sides) {
+    double nearest = -1;  // largest cosine to a rod
+    for (const auto& pose : poses)
+      for (const RodEnd& end : ends) nearest = std::max(nearest, side.dot(along(end, pose)));
+    if (nearest < plate_half_angle) return side;
+    if (nearest < least) least = nearest, best = side;
+  }
+  return best;
+}
+
+// Below what is held, or above it where the structure begins to hang from there; where its rods pass both, on
+// a bracket beside it.
+void Hardware::find_supports(const std::vector<std::vector<Vec3>>& poses) {
   std::vector<double> height;
   for (const NodeCopy& copy : structure_.node_copies) {
     const Vec3& x = structure_.nodes[static_cast<std::size_t>(copy.source)].position;
@@ -93,8 +127,9 @@ void Hardware::find_supports() {
   for (std::size_t n = 0; n < support_.size(); ++n) {
     if (!looks_.fixed[n] || looks_.joint_radius[n] <= 0) continue;
     const double reach = support_height / 1.75 * looks_.joint_radius[n];
-    support_[n] = (height[n] >= hangs_above ? reach : -reach) * Vec3::UnitZ();
-    if (support_[n].z() < 0) support_depth_ = std::max(support_depth_, 1.2 * reach);
+    const Vec3 wanted = (height[n] >= hangs_above ? 1.0 : -1.0) * Vec3::UnitZ();
+    support_[n] = reach * free_side(static_cast<int>(n), wanted, poses);
+    if (support_[n].z() < 0.5 * reach) support_depth_ = std::max(support_depth_, 1.2 * reach);
   }
 }
 

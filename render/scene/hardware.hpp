@@ -30,11 +30,12 @@ std::string material_for(const RenderOptions& options, const std::string& group)
 
 class Hardware {
  public:
-  // Everything given must outlive this. upright: the scene's coordinates to the picture's. detailed: with
-  // lugs and pins, and rods side by side; else rods meet in balls.
+  // Everything given but the poses must outlive this. poses: of the copied nodes over the motion. upright:
+  // the scene's coordinates to the picture's. detailed: with lugs and pins, and rods side by side; else rods
+  // meet in balls.
   Hardware(const Structure& structure, const Appearance& looks, const Look& look,
-           const RenderOptions& options, std::unique_ptr<const Joints> joints, const Mat3& upright,
-           bool detailed);
+           const RenderOptions& options, std::unique_ptr<const Joints> joints,
+           const std::vector<std::vector<Vec3>>& poses, const Mat3& upright, bool detailed);
 
   // The bodies at a time; `at`: the copied nodes' places, z up. rod_colors: per copied rod; empty: by group.
   void add(double t, const std::vector<Vec3>& at, const std::vector<Color>& rod_colors, DrawList& list) const;
@@ -44,7 +45,8 @@ class Hardware {
   double support_depth() const { return support_depth_; }
 
  private:
-  void find_supports();
+  void find_supports(const std::vector<std::vector<Vec3>>& poses);
+  Vec3 free_side(int node, const Vec3& wanted, const std::vector<std::vector<Vec3>>& poses) const;
   RodCoat coat(int group, const Color* field) const;
   Vec3 offset(std::size_t rod, double t) const;
   void add_rod(std::size_t i, double t, const std::vector<Vec3>& at, const Color* field,

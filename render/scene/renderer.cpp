@@ -59,7 +59,6 @@ Renderer::Renderer(GlContext& context, int width, int height, int samples)
       shade_from_depth_("shade of depths", shaders::background_vertex, shade_program("FROM_DEPTH")),
       shade_narrow_("shade", shaders::background_vertex, shade_program("NARROW")),
       shade_wide_("soft shade", shaders::background_vertex, shade_program("WIDE")),
-      background_("background", shaders::background_vertex, shaders::background_fragment),
       grid_("grid", shaders::ground_vertex, shaders::grid_fragment),
       floor_shadow_("floor shadow", shaders::ground_vertex, shaders::floor_shadow_fragment),
       shadow_map_(TextureKind::depth, shadow_per_shade * shade_side_for(width, height)),
@@ -75,7 +74,7 @@ Renderer::~Renderer() {
 }
 
 const Program& Renderer::solid_program(const char* name, const char* fragment, bool hidden) {
-  std::unique_ptr<Program>& program = solid_[std::string(name) + (hidden ? ", hidden" : "")];
+  std::unique_ptr<Program>& program = programs_[std::string(name) + (hidden ? ", hidden" : "")];
   if (!program)
     program =
         std::make_unique<Program>(name, solid_vertex(hidden), std::string(shaders::solid_head) + fragment);
@@ -163,7 +162,7 @@ void Renderer::draw_ghosts(const DrawList& list, const View& view) {
 // What is solid first, then from far to near, blended over it.
 void Renderer::draw_skins(const DrawList& list, const View& view) {
   if (list.skins.empty()) return;
-  std::unique_ptr<Program>& program = solid_["skin"];
+  std::unique_ptr<Program>& program = programs_["skin"];
   if (!program)
     program = std::make_unique<Program>("skin", shaders::skin_vertex,
                                         std::string(shaders::solid_head) + shaders::skin_fragment);

@@ -50,6 +50,7 @@ class Renderer {
   void draw_floor_shadow(const DrawList& list, const View& view) const;
   const Program& begin_floor(const Program& program, const DrawList& list, const Matrix4f& camera) const;
   // A look's program is made at its first picture.
+  const Program& background_program(const DrawList& list);
   const Program& solid_program(const char* name, const char* fragment, bool hidden);
   const Program& begin_solids(const char* name, const char* fragment, const DrawList& list, const View& view,
                               bool hidden = false);
@@ -65,9 +66,8 @@ class Renderer {
   void set_background(const Program& program, const DrawList& list) const;
 
   Framebuffer frame_, backdrop_;  // backdrop: what is behind the bodies, but for shadows
-  Program depth_, skin_depth_, shade_from_depth_, shade_narrow_, shade_wide_, background_, grid_,
-      floor_shadow_;
-  std::map<std::string, std::unique_ptr<Program>> solid_;  // by name
+  Program depth_, skin_depth_, shade_from_depth_, shade_narrow_, shade_wide_, grid_, floor_shadow_;
+  std::map<std::string, std::unique_ptr<Program>> programs_;  // by name
   RendererBodies capsules_{BodyKind::capsule}, balls_{BodyKind::ball}, cylinders_{BodyKind::cylinder},
       plates_{BodyKind::plate}, ghosts_{BodyKind::capsule};
   RendererSkins skins_;

@@ -161,6 +161,19 @@ const Program& Renderer::begin_floor(const Program& program, const DrawList& lis
   return program;
 }
 
+const Program& Renderer::background_program(const DrawList& list) {
+  const bool stars = list.stars > 0, planet = list.planet_half_angle > 0;
+  const std::string name =
+      std::string("background") + (stars ? " with stars" : "") + (planet ? " with a planet" : "");
+  std::unique_ptr<Program>& program = programs_[name];
+  if (!program)
+    program =
+        std::make_unique<Program>(name, shaders::background_vertex,
+                                  std::string(shaders::version) + (stars ? "#define STARS\n" : "") +
+                                      (planet ? "#define PLANET\n" : "") + shaders::background_fragment);
+  return *program;
+}
+
 void Renderer::draw_backdrop(const DrawList& list, const Matrix4f& camera) {
   const Ground& g = list.ground;
   std::vector<float> shows(camera.data(), camera.data() + 16);
@@ -183,12 +196,13 @@ void Renderer::draw_backdrop(const DrawList& list, const Matrix4f& camera) {
   gl::Clear(GL_COLOR_BUFFER_BIT);
   gl::BindVertexArray(empty_array_);
   if (!list.transparent) {
-    background_.use();
-    background_.set("stars", list.stars);
-    set_background(background_, list);
-    set_planet(background_, list);
-    set_view_rays(background_, list.camera, frame_.width(), frame_.height());
-    background_.set("to_light", Vec3f(list.light_direction.normalized()));
+    const Program& background = background_program(list);
+    background.use();
+    background.set("stars", list.stars);
+    set_background(background, list);
+    set_planet(background, list);
+    set_view_rays(background, list.camera, frame_.width(), frame_.height());
+    background.set("to_light", Vec3f(list.light_direction.normalized()));
     gl::DrawArrays(GL_TRIANGLES, 0, 3);
   }
   if (!grid) return;

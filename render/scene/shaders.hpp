@@ -378,8 +378,9 @@ void main() {  // one triangle over the whole picture, behind everything
 })";
 
 // A gradient; before it stars, and the Earth as it is seen from a low orbit: day and night, clouds, and air
-// that glows at its limb.
-inline constexpr const char* background_fragment = R"(#version 330 core
+// that glows at its limb. Programs of their own with STARS and PLANET, which cost many times the gradient:
+// software takes all branches of one.
+inline constexpr const char* background_fragment = R"(
 uniform vec4 background_top, background_bottom;
 uniform float picture_height, stars;
 uniform vec4 planet;                       // direction to its middle, cosine of half its width; 2: none
@@ -403,10 +404,13 @@ float clouds(vec3 p) {
 }
 void main() {
   color = mix(background_bottom, background_top, gl_FragCoord.y / picture_height);
+#if defined(STARS) || defined(PLANET)
   vec2 screen = (gl_FragCoord.xy - picture_middle) / (0.5 * picture_height);
   vec3 d = normalize(view_forward + screen.x * view_right + screen.y * view_up);
   float toward = dot(d, planet.xyz), edge = planet.w;
-  if (stars > 0.0 && toward < edge) {  // at most one in each cell of a grid
+#endif
+#ifdef STARS
+  if (toward < edge) {  // at most one in each cell of a grid
     float unit = picture_height / 720.0;
     for (int layer = 0; layer < 2; ++layer) {
       float size = layer == 0 ? 26.0 : 61.0;
@@ -419,7 +423,8 @@ void main() {
       color.rgb += bright * mix(vec3(0.70, 0.82, 1.0), vec3(1.0, 0.90, 0.78), scatter(cell + 5.0));
     }
   }
-  if (edge > 1.0) return;
+#endif
+#ifdef PLANET
   float half_width = acos(edge), from = acos(clamp(toward, -1.0, 1.0));
   float above = (from - half_width) / half_width;  // of the limb
   // Where the ray meets a sphere of radius 1 whose middle is 1 / sin(half_width) away.
@@ -439,6 +444,7 @@ void main() {
     color.rgb = mix(color.rgb, c, smoothstep(0.0, -0.004, above));
   }
   color.rgb += air * exp(-max(above, 0.0) * 70.0) * smoothstep(-0.004, 0.0, above) * 0.9;
+#endif
 })";
 
 inline constexpr const char* ground_vertex = R"(#version 330 core

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "render/plot/typeface.hpp"
 #include "render/ui/font_file.hpp"
 
 namespace unfurl {
@@ -30,6 +31,27 @@ ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold) {
   ImFontConfig config;
   config.SizePixels = pixels;
   return atlas.AddFontDefault(&config);
+}
+
+ImFont* add_plot_font(ImFontAtlas& atlas, float pixels) {
+  const plot::Typeface &face = plot::typeface(), &lender = plot::typefaces().front();
+  if (&face == &lender) return add_font(atlas, pixels);
+  static ImVector<ImWchar> own, lent;  // as above: they outlive the atlas
+  if (own.empty()) {
+    ImFontGlyphRangesBuilder has, has_not;
+    for (const ImWchar* range = glyph_ranges; *range != 0; range += 2)
+      for (char32_t c = range[0]; c <= range[1]; ++c)
+        (face.advance(c) > 0 ? has : has_not).AddChar(static_cast<ImWchar>(c));
+    has.BuildRanges(&own);
+    has_not.BuildRanges(&lent);
+  }
+  // ImGui sizes a font by its ascender and descender; the letters shall be as large.
+  const double ratio = face.line_height / lender.line_height;
+  ImFont* font = atlas.AddFontFromFileTTF(face.file, static_cast<float>(ratio * pixels), nullptr, own.Data);
+  ImFontConfig config;
+  config.MergeMode = true;
+  atlas.AddFontFromFileTTF(lender.file, pixels, &config, lent.Data);
+  return font;
 }
 
 }  // namespace unfurl

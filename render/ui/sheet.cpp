@@ -24,11 +24,20 @@ Sheet::~Sheet() {
 }
 
 ImFont* Sheet::font(float pixels, bool bold) {
-  ImFont*& font = fonts_[{static_cast<int>(std::lround(pixels * 64.0f)), bold}];
+  return font_of(pixels, bold, plot::typefaces().front());
+}
+
+ImFont* Sheet::plot_font(float pixels) {
+  return font_of(pixels, false, plot::typeface());
+}
+
+ImFont* Sheet::font_of(float pixels, bool bold, const plot::Typeface& face) {
+  ImFont*& font = fonts_[{static_cast<int>(std::lround(pixels * 64.0f)), bold, &face}];
   if (font != nullptr) return font;
   outer_ = ImGui::GetCurrentContext();
   ImGui::SetCurrentContext(context_);
-  font = add_font(*ImGui::GetIO().Fonts, pixels, bold);
+  const bool own = &face == &plot::typefaces().front();
+  font = own ? add_font(*ImGui::GetIO().Fonts, pixels, bold) : add_plot_font(*ImGui::GetIO().Fonts, pixels);
   fonts_changed_ = true;
   ImGui::SetCurrentContext(outer_);
   return font;

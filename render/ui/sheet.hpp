@@ -6,8 +6,9 @@
 
 #include <map>
 #include <memory>
-#include <utility>
+#include <tuple>
 
+#include "render/plot/typeface.hpp"
 #include "render/ui/imgui_painter.hpp"
 
 namespace unfurl {
@@ -28,14 +29,18 @@ class Sheet {
 
   // The font for lines of `pixels` height, valid as long as the sheet. Only outside begin() and end().
   ImFont* font(float pixels, bool bold = false);
+  ImFont* plot_font(float pixels);  // of plot::typeface()
   ImDrawList& begin(int width, int height);
   void end();
 
  private:
+  ImFont* font_of(float pixels, bool bold, const plot::Typeface& face);
+
   ImguiPainter painter_;
   ImGuiContext* context_ = nullptr;
-  ImGuiContext* outer_ = nullptr;                  // what was current before begin()
-  std::map<std::pair<int, bool>, ImFont*> fonts_;  // by size in 1/64 pixels, and weight
+  ImGuiContext* outer_ = nullptr;  // what was current before begin()
+  // By size in 1/64 pixels, weight and typeface.
+  std::map<std::tuple<int, bool, const plot::Typeface*>, ImFont*> fonts_;
   bool fonts_changed_ = true;
 };
 

@@ -15,7 +15,6 @@
 #include "render/plot/scaled_canvas.hpp"
 #include "render/plot/style.hpp"
 #include "render/plot/svg_canvas.hpp"
-#include "render/ui/font_file.hpp"
 #include "render/ui/imgui_canvas.hpp"
 #include "render/ui/sheet.hpp"
 
@@ -34,11 +33,23 @@ struct FigureWriter::Painter {
   std::unique_ptr<Sheet> sheet;
 };
 
-FigureWriter::FigureWriter(FigureOptions options) : options_(options) {}
-FigureWriter::FigureWriter(GlContext& context, FigureOptions options) : options_(options), given_(&context) {}
+void require_installed(const plot::Typeface& face) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(face.file, error)) return;
+  throw FileError(face.file, "the font of figures is missing; install " + std::string(face.package));
+}
+
+FigureWriter::FigureWriter(FigureOptions options) : options_(options) {
+  if (options.face != &plot::typefaces().front())
+    for (const plot::Typeface* face : {options.face, &plot::typefaces().front()}) require_installed(*face);
+}
+FigureWriter::FigureWriter(GlContext& context, FigureOptions options) : FigureWriter(options) {
+  given_ = &context;
+}
 FigureWriter::~FigureWriter() = default;
 
 Image FigureWriter::paint(const Figure& figure) {
+  const plot::TypefaceScope scope(*options_.face);
   const plot::FigureLayout layout = plot::lay_out(figure, layout_options(figure, *options_.style));
   if (!painter_) painter_ = std::make_unique<Painter>(given_);
   painter_->context->make_current();
@@ -47,12 +58,12 @@ Image FigureWriter::paint(const Figure& figure) {
   const int height = std::max(1, static_cast<int>(std::lround(layout.height * scale)));
   const Framebuffer picture(width, height, 0);  // ImGui smooths its own edges
   Sheet& sheet = *painter_->sheet;
-  for (const double size : plot::text_sizes) sheet.font(plot::ImguiCanvas::font_pixels(size, scale));
+  for (const double size : plot::text_sizes) sheet.plot_font(plot::ImguiCanvas::font_pixels(size, scale));
   picture.bind();
   ImDrawList& list = sheet.begin(width, height);
   {
     plot::ImguiCanvas canvas(
-        list, [&](float pixels) { return sheet.font(pixels); }, scale);
+        list, [&](float pixels) { return sheet.plot_font(pixels); }, scale);
     plot::paint(figure, layout, canvas);
   }
   sheet.end();
@@ -66,6 +77,7 @@ double FigureWriter::dpi() const {
 }
 
 void FigureWriter::write(const Figure& figure, const std::filesystem::path& path) {
+  const plot::TypefaceScope scope(*options_.face);
   const std::string extension = path.extension().string();
   if (extension == ".svg") return write_file_atomically(path, figure_svg(figure, *options_.style));
   if (extension == ".pdf") return write_file_atomically(path, figure_pdf(figure, *options_.style));
@@ -93,12 +105,22 @@ std::string figure_svg(const Figure& figure, const FigureStyle& style) {
   return canvas.finish();
 }
 
+namespace {
+
+plot::TrueType font_of(const plot::Typeface& face) {
+  require_installed(face);
+  std::ifstream file(face.file, std::ios::binary);
+  return plot::TrueType(std::string(std::istreambuf_iterator<char>(file), {}));
+}
+
+}  // namespace
+
 std::string figure_pdf(const Figure& figure, const FigureStyle& style) {
-  std::ifstream file(font_file(), std::ios::binary);
-  if (!file) throw FileError(font_file(), "the font of figures is missing; install fonts-dejavu-core");
-  const plot::TrueType font(std::string(std::istreambuf_iterator<char>(file), {}));
+  const plot::Typeface &face = plot::typeface(), &lender = plot::typefaces().front();
+  const plot::TrueType own = font_of(face), lent = font_of(lender);
   const plot::FigureLayout layout = plot::lay_out(figure, layout_options(figure, style));
-  plot::PdfCanvas canvas(layout.scale * layout.width, layout.scale * layout.height, font);
+  plot::PdfCanvas canvas(layout.scale * layout.width, layout.scale * layout.height,
+                         {{face, own}, {lender, lent}});
   plot::ScaledCanvas page(canvas, layout.scale);
   plot::paint(figure, layout, page);
   return canvas.finish(figure.title, figure.caption);

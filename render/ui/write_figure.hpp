@@ -10,13 +10,19 @@
 #include "render/image/image.hpp"
 #include "render/plot/figure_style.hpp"
 #include "render/plot/layout.hpp"
+#include "render/plot/typeface.hpp"
 
 namespace unfurl {
 
 struct FigureOptions {
   double dpi = 0;  // pixels per inch of a PNG; 0: the style's
   const FigureStyle* style = &figure_styles().front();
+  const plot::Typeface* face = &plot::typefaces().front();
 };
+
+// Throws FileError, with the package to install, where a typeface that is asked for is not installed. (Where
+// the default is missing, PNG and SVG do without.)
+void require_installed(const plot::Typeface& face);
 
 // Paints figures; what that needs (a context, a font atlas) is made once, at the first PNG.
 class FigureWriter {

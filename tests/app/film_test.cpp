@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "render/image/png.hpp"
 #include "tests/app/run_program.hpp"
 
 using namespace unfurl;
@@ -222,6 +223,65 @@ TEST_CASE("a poster is its poses side by side") {
   CHECK(static_cast<unsigned char>(bytes[23]) == 48);
   CHECK(run_program({"poster", "hoop6_sector", "-o", dir / "p.jpg"}).err ==
         "unfurl: a poster is written as .png, not '.jpg'\n");
+}
+
+TEST_CASE("a mode's film is whole periods of it, and is mixed with no other film") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "mode";
+  const auto mode = [&](const std::string& k, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"render",  "hoop6_sector",
+                                      "--mode",  k,
+                                      "--at",    "4.1",
+                                      "--set",   "structure.youngs_modulus=7e10",
+                                      "--fps",   "4",
+                                      "--size",  "96x64",
+                                      "--quiet", "-o",
+                                      out};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  REQUIRE(mode("2").code == 0);
+  REQUIRE(frames_in(out) == 24);     // three periods of two seconds
+  const auto picture = [&](int k) {  // its pixels: each file has a receipt of its own
+    return read_png(out + "/frames/frame_000" + std::string(k < 10 ? "0" : "") + std::to_string(k) + ".png")
+        .rgba;
+  };
+  for (int k = 0; k < 8; ++k) {
+    CAPTURE(k);
+    CHECK(picture(k) == picture(k + 8));
+    CHECK(picture(k) == picture(k + 16));
+  }
+  CHECK(picture(0) == picture(4));  // through the pose, both ways
+  CHECK(picture(1) == picture(3));
+  CHECK_FALSE(picture(2) == picture(6));  // the two ends
+  CHECK_FALSE(picture(0) == picture(2));
+  for (const char* file : {"modes.csv", "scene.toml", "animation.gif", "figures/modes.svg"})
+    CHECK(fs::exists(out + "/" + file));
+  CHECK(run_program({"verify", out}).code == 0);
+
+  const ProgramResult other = mode("1");
+  CHECK(other.code == 5);
+  CHECK(other.err.find("--force") != std::string::npos);
+  CHECK(mode("1", {"--force"}).code == 0);  // of the mechanism: it moves as its constraints let it
+  CHECK_FALSE(picture(2) == picture(6));
+}
+
+TEST_CASE("modes that are not there, and what a mode's film has not, are refused in words") {
+  const ScratchDirectory dir;
+  const auto refused = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"render", "pendulum", "-o", dir / "out"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult r = run_program(words);
+    CHECK(r.code == 2);
+    CHECK_FALSE(fs::exists(dir / "out"));
+    return r.err;
+  };
+  CHECK(refused({"--mode", "9"}).find("--mode takes 1 to ") != std::string::npos);
+  CHECK(refused({"--mode", "0"}).find("--mode") != std::string::npos);
+  CHECK(refused({"--at", "0.5"}).find("--mode") != std::string::npos);
+  CHECK(refused({"--mode", "1", "--plan"}).find("--plan") != std::string::npos);
+  CHECK(refused({"--mode", "1", "--export", "vtk"}).find("--export") != std::string::npos);
+  CHECK(refused({"--mode", "1", "--at", "soon"}).find("soon") != std::string::npos);
 }
 
 }  // namespace film_test

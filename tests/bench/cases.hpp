@@ -10,6 +10,7 @@ void ring_cases(Report& report);     // the six-unit ring: cost of an accuracy, 
 void ladder_cases(Report& report);   // the ladder at 30 m/s beside IDA
 void factor_cases(Report& report);   // our factorisation beside others, on real patterns
 void rival_cases(Report& report);    // an adaptive DOP853 with KLU: ring, sector, ladder, chain
+void run_cases(Report& report);      // `unfurl run`: what it costs beside its stepping
 void study_cases(Report& report);    // the path, margins, sweeps, a sector that is found
 void scaling_cases(Report& report);  // rings of 6 to 10 000 units, a chain of 1000 rods: time and memory
 

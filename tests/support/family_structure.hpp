@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/structure/node_positions.hpp"
 #include "core/structures/family.hpp"
 
 namespace unfurl::testing {
@@ -23,13 +24,6 @@ inline ParamSet family_params(std::string_view kind, const Changes& changes = {}
 
 inline Structure family_structure(std::string_view kind, const Changes& changes = {}) {
   return find_family(kind)->build(family_params(kind, changes));
-}
-
-inline VectorXd start_positions(const Structure& s) {
-  VectorXd q(3 * static_cast<Index>(s.nodes.size()));
-  for (std::size_t i = 0; i < s.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = s.nodes[i].position;
-  return q;
 }
 
 // Empty where the family builds; else the key and the message of what it refuses.

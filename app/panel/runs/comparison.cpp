@@ -15,7 +15,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-double largest(const LiveRun& run, const char* column) {
+double largest(const LiveRun& run, std::string_view column) {
   const Series* series = run.diagnostics.find(column);
   if (series == nullptr) return none;
   double most = 0;
@@ -35,6 +35,22 @@ double peak_force(const LiveRun& run) {
   return peak.rod < 0 ? none : std::abs(peak.force_N);
 }
 
+double last(const LiveRun& run, std::string_view column) {
+  const Series* series = run.diagnostics.find(column);
+  return series == nullptr || series->values.empty() ? none : series->values.back();
+}
+
+// The columns of either run's drives, each once.
+std::vector<const Series*> drive_columns(const LiveRun& a, const LiveRun& b) {
+  std::vector<const Series*> found;
+  for (const LiveRun* run : {&a, &b})
+    for (const Series& column : run->diagnostics.columns)
+      for (const std::string_view end : {".torque_N_m", ".force_N", ".power_W", ".energy_J"})
+        if (column.name.ends_with(end) && (run == &a || a.diagnostics.find(column.name) == nullptr))
+          found.push_back(&column);
+  return found;
+}
+
 struct Quantity {
   const char *label, *unit;
   double (*of)(const LiveRun&);
@@ -49,9 +65,9 @@ constexpr Quantity quantities[] = {
     {"steps", "", [](const LiveRun& r) { return static_cast<double>(r.simulation.steps); }, true},
     {"CPU time", "s", [](const LiveRun& r) { return r.simulation.cpu_s; }, true}};
 
-std::string number(double x, const char* unit) {
+std::string number(double x, const std::string& unit) {
   if (std::isnan(x)) return "\u2013";
-  return plot::format_number(x, 4) + (*unit == '\0' ? "" : std::string(" ") + unit);
+  return plot::format_number(x, 4) + (unit.empty() ? "" : " " + unit);
 }
 
 std::string change(double a, double b, bool factor) {
@@ -67,7 +83,7 @@ std::string change(double a, double b, bool factor) {
 std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b, const TradePoint* point_a,
                                    const TradePoint* point_b) {
   std::vector<ComparisonRow> rows;
-  const auto add = [&](const char* label, const char* unit, double x, double y, bool factor) {
+  const auto add = [&](const std::string& label, const std::string& unit, double x, double y, bool factor) {
     if (std::isnan(x) && std::isnan(y)) return;
     rows.push_back({label, number(x, unit), number(y, unit), change(x, y, factor)});
   };
@@ -79,6 +95,11 @@ std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b, const Tra
       rows.back().change.clear();
     }
   for (const Quantity& q : quantities) add(q.label, q.unit, q.of(a), q.of(b), q.factor);
+  for (const Series* column : drive_columns(a, b)) {
+    const bool energy = column->unit == "J";
+    const auto of = [&](const LiveRun& run) { return (energy ? last : largest)(run, column->name); };
+    add(energy ? column->label : "peak " + column->label, column->unit, of(a), of(b), false);
+  }
   for (ComparisonRow& row : rows) {
     if (row.label != "peak rod force") continue;
     if (!peak_rod_force(a.diagnostics).unique) row.a += "*";

@@ -46,7 +46,11 @@ void darken(DrawList& list) {
     dark(label.backing);
   }
   for (OverlayLine& line : list.lines) light(line.color);
-  for (OverlayArea& area : list.areas) dark(area.color);
+  const auto is_sign = [](const Color& c) {  // of a legend: it is what it stands for
+    return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}) > 0.3f;
+  };
+  for (OverlayArea& area : list.areas)
+    if (!is_sign(area.color)) dark(area.color);
 }
 
 bool same(const Camera& a, const Camera& b) {

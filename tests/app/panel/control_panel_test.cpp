@@ -215,6 +215,29 @@ TEST_CASE("keys and buttons open and close what they say") {
   CHECK(driver.state().export_open);
 }
 
+TEST_CASE("the legend's colours are those of the rods in the dark too") {
+  PanelDriver driver;
+  const auto orange_in_legend = [&] {  // of the posts
+    const Image picture = driver.picture();
+    const plot::Rect view = driver.panel().place("view");
+    int count = 0;
+    for (int y = static_cast<int>(view.y1) - 30; y < static_cast<int>(view.y1); ++y)
+      for (int x = static_cast<int>(view.x0); x < static_cast<int>(view.x1); ++x) {
+        const std::size_t i = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                                   static_cast<std::size_t>(x));
+        count += picture.rgba[i] - picture.rgba[i + 2] > 100 && picture.rgba[i + 1] > 90;
+      }
+    return count;
+  };
+  driver.state().dark = false;
+  driver.settle();
+  const int light = orange_in_legend();
+  CHECK(light > 12);  // a square of some pixels
+  driver.state().dark = true;
+  driver.settle();
+  CHECK(2 * orange_in_legend() > light);
+}
+
 TEST_CASE("looks change the picture without a new simulation") {
   PanelDriver driver;
   driver.key(Key::end);

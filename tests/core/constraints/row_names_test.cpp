@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "core/structure/node_positions.hpp"
 #include "core/system/system.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -16,9 +17,7 @@ namespace {
 std::map<std::string, double> rows_off(const std::string& scene, Index coordinate, double change) {
   const auto model = testing::model_of(scene);
   const Structure& structure = model->structure;
-  VectorXd q(3 * static_cast<Index>(structure.nodes.size()));
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  VectorXd q = node_positions(structure);
   q[coordinate] += change;
   VectorXd phi(model->system.all_constraints());
   model->system.all_constraint_values(0, q, phi);

@@ -39,7 +39,7 @@ std::vector<std::pair<Index, VectorXd>> echelon(MatrixXd A) {
 std::string input_of(const Model& model, int count) {
   const Structure& s = model.structure;
   std::ostringstream text;
-  text.precision(14);
+  text.precision(12);  // a field is 20 characters wide
   text << std::scientific << "*NODE,NSET=NALL\n";
   VectorXd q(model.system.coordinates());
   for (std::size_t i = 0; i < s.nodes.size(); ++i) {
@@ -57,11 +57,12 @@ std::string input_of(const Model& model, int count) {
          << 100000 + i << "," << i + 1 << "\n*MASS,ELSET=M" << i << "\n"
          << model.system.node_mass().coeff(3 * static_cast<Index>(i), 3 * static_cast<Index>(i)) << "\n";
   const MatrixXd all(model.system.all_jacobian(q));
+  const std::vector<int> sources = model.system.all_sources();
   std::vector<Index> rigid;
-  for (Index r = 0; r < all.rows(); ++r) {
-    const Index rod = r - (all.rows() - static_cast<Index>(s.rods.size()));
-    if (rod < 0 || !s.rods[static_cast<std::size_t>(rod)].elastic()) rigid.push_back(r);
-  }
+  std::size_t rod = 0;
+  for (std::size_t r = 0; r < sources.size(); ++r)
+    if (sources[r] >= 0 || !s.rods[rod++].elastic()) rigid.push_back(static_cast<Index>(r));
+  REQUIRE(rod == s.rods.size());
   for (const auto& [pivot, row] : echelon(all(rigid, Eigen::all))) {
     std::vector<Index> others;
     for (Index c = 0; c < row.size(); ++c)
@@ -149,6 +150,16 @@ TEST_CASE("frequencies of a bar agree with CalculiX") {
 TEST_CASE("frequencies of a square frame agree with CalculiX") {
   if (!installed()) return;
   compare(*testing::model_of(grid(4, 4)), 6);
+}
+
+// Half open, held by an actuator across it: planes, mirrors and the sleeves of its hinges are rigid rows.
+TEST_CASE("frequencies of a hoop of six units agree with CalculiX") {
+  if (!installed()) return;
+  const std::string hoop =
+      "[structure]\nkind = 'hoop'\nunits = 6\nchord_rod_length = 2.7\npost_length = 1.3\ndensity = 1700\n"
+      "section_area = 4e-4\nfold_angle = 25\nhinge_force = 0\nmass = 'lumped'\nyoungs_modulus = 7e10\n"
+      "[[constraints]]\nkind = 'length'\nnodes = ['B0', 'B2']\n";
+  compare(*testing::model_of(hoop), 4);  // of 23: its solver wants several vectors for each
 }
 
 }  // namespace calculix_test

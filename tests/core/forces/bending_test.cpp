@@ -6,6 +6,7 @@
 
 #include "core/diagnostics/vibration.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/structure/node_positions.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -45,9 +46,7 @@ std::string cantilever(int k, double alpha) {
 VectorXd equilibrium(const Model& model, int steps) {
   const System& system = model.system;
   const Index n = system.solved_coordinates(), m = system.constraints();
-  VectorXd q(system.coordinates()), rest = VectorXd::Zero(system.coordinates()), lambda = VectorXd::Zero(m);
-  for (std::size_t i = 0; i < model.structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = model.structure.nodes[i].position;
+  VectorXd q = node_positions(model.structure), rest = VectorXd::Zero(q.size()), lambda = VectorXd::Zero(m);
   VectorXd z = system.reduce(q), load = VectorXd::Zero(q.size());
   for (const Load& l : model.structure.loads) load.segment<3>(3 * l.node) += l.force;
   SparseRows G = system.jacobian_pattern(), by_z, by_w;

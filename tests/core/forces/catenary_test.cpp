@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/structure/node_positions.hpp"
 #include "core/system/system.hpp"
 
 using namespace unfurl;
@@ -53,10 +54,7 @@ Structure heavy_cable(int n) {
 // The height at the middle of the first span, in equilibrium: Newton's method on F(z) = 0.
 double middle_height(int n) {
   const System system(heavy_cable(n), true);
-  VectorXd q(system.coordinates()), f(q.size()), r(system.solved_coordinates());
-  Structure s = heavy_cable(n);
-  for (std::size_t i = 0; i < s.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = s.nodes[i].position;
+  VectorXd q = node_positions(heavy_cable(n)), f(q.size()), r(system.solved_coordinates());
   VectorXd z = system.reduce(q);
   const VectorXd rest = VectorXd::Zero(q.size());
   for (int it = 0; it < 200; ++it) {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/structure/node_positions.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -34,9 +35,7 @@ double end_tension(const VectorXd& force, Index node) {
 // The last node goes away from its pulley at `speed`, so that the cable runs away from its first node.
 VectorXd forces_at(const Model& model, double speed) {
   const Index n = model.system.coordinates();
-  VectorXd q(n), v = VectorXd::Zero(n), f = VectorXd::Zero(n);
-  for (Index i = 0; i < n / 3; ++i)
-    q.segment<3>(3 * i) = model.structure.nodes[static_cast<std::size_t>(i)].position;
+  VectorXd q = node_positions(model.structure), v = VectorXd::Zero(n), f = VectorXd::Zero(n);
   v.tail<3>() = speed * (q.tail<3>() - q.segment<3>(n - 6)).normalized();
   model.system.add_applied_force(0.3, q, v, 1.0, f);
   return f;

@@ -131,4 +131,17 @@ TEST_CASE("doubles serve where no direction is weak, whatever is redundant") {
   CHECK(solver.weakest_pivot(0.9) == Approx(0.64).epsilon(1e-9));
 }
 
+// e far below the last digit of the other terms: of the second row nothing is left, not even e.
+TEST_CASE("a repeated row whose pivot round-off cancels is solved all the same") {
+  MatrixXd G(2, 2), M = MatrixXd::Identity(2, 2);
+  G << 1, 0, 1, 0;
+  SaddleSolver solver(sparse_rows(M), sparse_rows(G), 1, 1e-20);
+  REQUIRE(solver.factorise(sparse_rows(G)));
+  VectorXd x(2), y(2);
+  solver.solve(Eigen::Vector2d(3, 5), VectorXd::Zero(2), x, y);
+  CHECK(std::abs(x[0]) <= 1e-15);
+  CHECK(x[1] == Approx(5.0).epsilon(1e-15));
+  CHECK(y[0] + y[1] == Approx(3.0).epsilon(1e-15));
+}
+
 }  // namespace saddle_solver_test

@@ -95,7 +95,7 @@ TEST_CASE("every scene's mobility is counted, and its redundant members are name
   for (const LibraryScene& entry : library_scenes()) {
     INFO(entry.name);
     const auto model = build_model(read_scene_file(entry.path, {}));
-    const Mobility m = analyse_mobility(model->system, start_positions(model->structure));
+    const Mobility m = analyse_mobility(model->system, node_positions(model->structure));
     CHECK(m.degrees_of_freedom + static_cast<Index>(model->system.drives().size()) >= 1);
     CHECK(m.degrees_of_freedom >= m.rigid_motions);
     CHECK(m.degrees_of_freedom - static_cast<Index>(m.redundant.size()) == m.count);

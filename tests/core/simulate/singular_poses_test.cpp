@@ -107,4 +107,32 @@ TEST_CASE("inverse iteration finds the smallest singular value that is not zero 
   }
 }
 
+// Weyl: no singular value changes by more than the norm of what the matrix changes by, which is what lets a
+// search pass over poses. Against the singular values of dense matrices.
+TEST_CASE("no singular value changes by more than the Jacobian has moved") {
+  const auto model = make_model(hoop_structure());
+  const System& system = model->system;
+  const Simulation run = simulate(model, dvm_options(4, 0.01, 4.5));
+  SmallestSingularValue sigma(system, 7);
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  MatrixXd before;
+  VectorXd dense_before;
+  for (std::size_t i = 3; i < run.trajectory.size(); i += 37) {
+    system.jacobian(run.trajectory.node_positions(i), G, scratch);
+    for (Index r = 0; r < G.rows(); ++r) G.row(r) /= G.row(r).norm();
+    const MatrixXd now(G);
+    const VectorXd dense = singular_values(now);
+    const double moved = sigma.moved(run.trajectory.state(i).z);
+    if (before.size() > 0) {
+      CHECK(moved == Approx((now - before).norm()).epsilon(1e-12));
+      CHECK((dense - dense_before).lpNorm<Eigen::Infinity>() <= moved);
+    } else {
+      CHECK(std::isinf(moved));
+    }
+    before = now;
+    dense_before = dense;
+  }
+}
+
 }  // namespace singular_poses_test

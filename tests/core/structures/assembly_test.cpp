@@ -60,7 +60,7 @@ TEST_CASE("what an assembly constrains holds where its nodes are, and nowhere be
     c.add(a);
     for (const int i : {4, 5}) a.structure.nodes[static_cast<std::size_t>(i)].mass = 0.1;
     const System system(a.structure, false);
-    VectorXd q = testing::start_positions(a.structure), phi(system.all_constraints());
+    VectorXd q = node_positions(a.structure), phi(system.all_constraints());
     REQUIRE(phi.size() >= 1);
     system.all_constraint_values(0, q, phi);
     CHECK(phi.lpNorm<Eigen::Infinity>() <= 1e-15);  // sums of a few numbers of some metres
@@ -80,8 +80,7 @@ TEST_CASE("what is shown as solved is shown once, however often that is said") {
     REQUIRE(a.structure.node_copies.size() == 6);
     CHECK(a.structure.rod_copies.size() == 1);
     CHECK(a.structure.load_copies.size() == 1);
-    CHECK(whole_positions(a.structure, testing::start_positions(a.structure)) ==
-          testing::start_positions(a.structure));
+    CHECK(whole_positions(a.structure, node_positions(a.structure)) == node_positions(a.structure));
   }
 }
 

@@ -19,7 +19,7 @@ TEST_CASE("a Bricard loop moves although its 30 lengths leave no freedom by coun
         "bricard", {{"twist_angle", twist}, {"opening_angle", opening}, {"deployed_angle", 0.5}});
     INFO(twist << ", " << opening);
     const System system(s, true);
-    const Mobility m = analyse_mobility(system, start_positions(s));
+    const Mobility m = analyse_mobility(system, node_positions(s));
     CHECK(m.coordinates == 36);
     CHECK(m.constraints == 30);
     CHECK(m.rank == 29);  // six rigid-body freedoms and one of its own

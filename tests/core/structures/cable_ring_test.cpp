@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/structure/node_positions.hpp"
 #include "core/structures/force_density.hpp"
 #include "core/system/mobility.hpp"
 #include "tests/support/scene_run.hpp"
@@ -30,13 +31,6 @@ stages = 3
 step = 0.02
 )";
 
-VectorXd start_of(const Structure& s) {
-  VectorXd q(3 * static_cast<Index>(s.nodes.size()));
-  for (std::size_t i = 0; i < s.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = s.nodes[i].position;
-  return q;
-}
-
 double path(double fold_deg) {
   return 6 * std::sqrt(1.7 * 1.7 + 0.8 * 0.8 + 2 * 1.7 * 0.8 * std::sin(fold_deg * pi / 180));
 }
@@ -61,7 +55,7 @@ TEST_CASE("a ring drawn open by a cable is deployed when so much of it is drawn 
 TEST_CASE("gears leave a ring of bays one freedom, without them it has one for each bay but three more") {
   const auto freedom = [](const std::vector<std::string>& changes) {
     const auto model = model_of(ring, changes);
-    return analyse_mobility(model->system, start_of(model->structure)).degrees_of_freedom;
+    return analyse_mobility(model->system, node_positions(model->structure)).degrees_of_freedom;
   };
   CHECK(freedom({}) == 6 + 1);  // of them 6 as a whole
   CHECK(freedom({"structure.gears=false"}) == 6 + 6 - 3);
@@ -102,7 +96,7 @@ TEST_CASE("nets are slack when folded and on their paraboloid when deployed") {
       "[structure]\nkind = 'mesh_reflector'\nunits = 6\nnet_rings = 3\nfocal_length = 5\nfold_angle = 70\n";
   const auto folded = model_of(text);
   const Structure& s = folded->structure;
-  const VectorXd q = start_of(s);
+  const VectorXd q = node_positions(s);
   VectorXd f = VectorXd::Zero(q.size());
   folded->system.add_applied_force(0.0, q, VectorXd::Zero(q.size()), 1.0, f);
   CHECK(f.isZero(0.0));

@@ -19,7 +19,7 @@ TEST_CASE("every family: a deployment begins at fraction 0, at the fold angle th
     if (deployment.empty()) continue;
     ++found;
     INFO(family.kind);
-    const VectorXd q = start_positions(structure);
+    const VectorXd q = node_positions(structure);
     CHECK(deployment.fold_angle(q) == Approx(deployment.initial_fold_angle).epsilon(1e-12));
     CHECK(deployment.fraction(q) == Approx(0).margin(1e-12));
     CHECK(deployment.initial_fold_angle > deployment.deployed_fold_angle);

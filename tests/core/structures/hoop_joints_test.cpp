@@ -39,7 +39,7 @@ TEST_CASE("joints alone leave a hoop of p posts 3 p + 2 degrees of freedom") {
       const Structure s = family_structure(
           "hoop", {{"model", joints}, {"closed", closed}, {"units", n}, {"fold_angle", 50.0}});
       INFO(n << " units");
-      const Mobility m = analyse_mobility(System(s, true), start_positions(s));
+      const Mobility m = analyse_mobility(System(s, true), node_positions(s));
       const Index posts = closed ? n : n + 1;
       CHECK(m.coordinates == 6 * posts + 6 * n);
       CHECK(m.degrees_of_freedom == 3 * posts + 2);

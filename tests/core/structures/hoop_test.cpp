@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/structures/hoop.hpp"
+#include "core/structure/node_positions.hpp"
 
 #include <Eigen/SVD>
 #include <catch2/catch.hpp>
@@ -15,13 +16,6 @@ namespace {
 
 MatrixXd scaled_jacobian(const System& system, const VectorXd& q) {
   return MatrixXd(system.all_jacobian(q));
-}
-
-VectorXd start(const Structure& s) {
-  VectorXd q(3 * static_cast<Index>(s.nodes.size()));
-  for (std::size_t i = 0; i < s.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = s.nodes[i].position;
-  return q;
 }
 
 Index rank(const MatrixXd& G) {
@@ -40,13 +34,14 @@ TEST_CASE("a ring of n units has 12 n coordinates and 13 n constraints of rank 1
     CHECK(system.coordinates() == 12 * n);
     CHECK(system.all_constraints() == 13 * n);
     CHECK(system.solved_coordinates() == 4 * n);
-    CHECK(rank(scaled_jacobian(system, start(s))) == 12 * n - 1);
+    CHECK(rank(scaled_jacobian(system, node_positions(s))) == 12 * n - 1);
     VectorXd phi(system.all_constraints());
-    system.all_constraint_values(0.0, start(s), phi);
+    system.all_constraint_values(0.0, node_positions(s), phi);
     CHECK(phi.lpNorm<Eigen::Infinity>() <= 1e-14);  // coordinates of some 10 m: a few ulp
   }
   const Structure deployed = hoop_structure({{"fold_angle", 0.0}});
-  CHECK(rank(scaled_jacobian(System(deployed, true), start(deployed))) == 60);  // 10 n: a bifurcation
+  CHECK(rank(scaled_jacobian(System(deployed, true), node_positions(deployed))) ==
+        60);  // 10 n: a bifurcation
 }
 
 TEST_CASE("the sector shows the same ring as the full model") {
@@ -56,7 +51,8 @@ TEST_CASE("the sector shows the same ring as the full model") {
   REQUIRE(sector.nodes.size() == 4);
   REQUIRE(sector.node_copies.size() == full.node_copies.size());
   REQUIRE(sector.rod_copies.size() == full.rod_copies.size());
-  const VectorXd a = whole_positions(full, start(full)), b = whole_positions(sector, start(sector));
+  const VectorXd a = whole_positions(full, node_positions(full)),
+                 b = whole_positions(sector, node_positions(sector));
   CHECK((a - b).lpNorm<Eigen::Infinity>() <= 1e-14);  // rotations of coordinates of a few metres
   for (std::size_t i = 0; i < full.node_copies.size(); ++i)
     CHECK(full.node_copies[i].name == sector.node_copies[i].name);

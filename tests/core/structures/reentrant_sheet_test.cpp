@@ -50,7 +50,7 @@ TEST_CASE("a re-entrant sheet has one degree of freedom at every fold angle on i
           "reentrant_sheet",
           {{"rows", rows}, {"columns", columns}, {"fold_angle", angle}, {"deployed_angle", 1.0}});
       INFO(rows << " x " << columns << " at " << angle);
-      CHECK(analyse_mobility(System(s, true), start_positions(s)).degrees_of_freedom == 1);
+      CHECK(analyse_mobility(System(s, true), node_positions(s)).degrees_of_freedom == 1);
     }
 }
 

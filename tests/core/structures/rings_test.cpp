@@ -91,7 +91,7 @@ TEST_CASE("pantograph and Hoberman rings have one degree of freedom on their who
       const Structure s =
           family_structure(kind, {{"units", n}, {"fold_angle", angle}, {"deployed_angle", 2.0}});
       INFO(kind << " of " << n << " at " << angle);
-      const Mobility m = analyse_mobility(System(s, true), start_positions(s));
+      const Mobility m = analyse_mobility(System(s, true), node_positions(s));
       CHECK(m.degrees_of_freedom == 1);
       CHECK(m.constraints - m.rank == static_cast<Index>(m.redundant.size()));
     }

@@ -55,7 +55,7 @@ TEST_CASE("a scissor mast has one degree of freedom at every fold angle on its w
       const Structure s = family_structure(
           "scissor_mast", {{"cells", 3L}, {"sides", sides}, {"fold_angle", angle}, {"deployed_angle", 5.0}});
       INFO(sides << " sides at " << angle);
-      CHECK(analyse_mobility(System(s, true), start_positions(s)).degrees_of_freedom == 1);
+      CHECK(analyse_mobility(System(s, true), node_positions(s)).degrees_of_freedom == 1);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/scene/library.hpp"
+#include "core/structure/node_positions.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -77,9 +78,7 @@ TEST_CASE("assembly: a ring whose rods are off by seeded errors joins, and the s
                                          "structure.fold_angle=60",       "structure.hinge_force=0"};
   const auto model = build_model(read_scene_file(find_scene("hoop6"), changes));
   const System& system = model->system;
-  VectorXd q(system.coordinates());
-  for (std::size_t i = 0; i < model->structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = model->structure.nodes[i].position;
+  const VectorXd q = node_positions(model->structure);
   VectorXd force(static_cast<Index>(system.giving_rods().size()));
   system.giving_rod_forces(0, q, VectorXd::Zero(q.size()), force);
   // Errors of 1e-4 m in loops of rods of 3 m: strains of 1e-5, some hundred newtons of 2000.

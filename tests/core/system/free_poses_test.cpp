@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/system/free_poses.hpp"
+#include "core/structure/node_positions.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -17,13 +18,6 @@ Structure structure_of(const std::string& text) {
   return build_structure(read_scene_text(text, "test", {}, "."));
 }
 
-VectorXd start_of(const Structure& structure) {
-  VectorXd q(3 * static_cast<Index>(structure.nodes.size()));
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
-  return q;
-}
-
 // A bob on a rod of 1.3 m about a fixed point, and a second one on it of 0.8 m.
 const char* const double_pendulum =
     "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'O'\nposition = [0, 0, 0]\nfixed = true\n"
@@ -39,7 +33,7 @@ TEST_CASE("a bob that is pulled goes to the nearest point of its sphere") {
       "[[structure.nodes]]\nname = 'P'\nposition = [1.3, 0, 0]\n[[structure.rods]]\nnodes = ['O', 'P']\nmass "
       "= 1\n");
   const FreePoses poses(structure);
-  VectorXd q = start_of(structure);
+  VectorXd q = node_positions(structure);
   const Vec3 target(0.4, 1.1, -0.9);
   // A call goes a part of the way, as a frame of a drag does.
   for (int i = 0; i < 30; ++i) q = poses.pulled(q, 1, target);
@@ -51,7 +45,7 @@ TEST_CASE("a bob that is pulled goes to the nearest point of its sphere") {
 TEST_CASE("what can be reached is reached, what cannot as near as the rods let it") {
   const Structure structure = structure_of(double_pendulum);
   const FreePoses poses(structure);
-  VectorXd q = start_of(structure);
+  VectorXd q = node_positions(structure);
   const Vec3 near(0.7, 0.9, 0.6);  // 1.29 m from O, within 0.5 and 2.1 m
   for (int i = 0; i < 30; ++i) q = poses.pulled(q, 2, near);
   CHECK((q.segment<3>(6) - near).norm() < 1e-6);
@@ -67,7 +61,7 @@ TEST_CASE("free motions are as many as the degrees of freedom, keep the constrai
   // three turns about O, which are no shapes: one is left.
   const Structure two = structure_of(double_pendulum);
   const FreePoses poses(two);
-  const VectorXd q = start_of(two);
+  const VectorXd q = node_positions(two);
   const MatrixXd V = poses.motions(q);
   CHECK(V.cols() == 1);
   CHECK((V.transpose() * V - MatrixXd::Identity(V.cols(), V.cols())).norm() < 1e-9);
@@ -75,7 +69,7 @@ TEST_CASE("free motions are as many as the degrees of freedom, keep the constrai
     INFO(name);
     const Structure structure = build_structure(read_scene_file(find_scene(name)));
     const FreePoses linkage(structure);
-    const VectorXd start = start_of(structure);
+    const VectorXd start = node_positions(structure);
     const MatrixXd motions = linkage.motions(start);
     REQUIRE(motions.cols() == 1);
     const double way = 0.03 * linkage.size();
@@ -90,7 +84,7 @@ TEST_CASE("free motions are as many as the degrees of freedom, keep the constrai
 TEST_CASE("a drive lets go of what is led by hand") {
   const Structure structure = build_structure(read_scene_file(find_scene("hoop6_motor")));
   const FreePoses poses(structure);
-  CHECK(poses.motions(start_of(structure)).cols() >= 1);
+  CHECK(poses.motions(node_positions(structure)).cols() >= 1);
 }
 
 }  // namespace free_poses_test

@@ -13,7 +13,6 @@ using namespace unfurl;
 
 namespace self_stress_test {
 
-using testing::start_positions;
 
 namespace {
 
@@ -26,7 +25,7 @@ struct Judged {
 
 Judged judged(const Scene& scene) {
   Judged j{build_model(scene), {}, {}, {}};
-  j.q = start_positions(j.model->structure);
+  j.q = node_positions(j.model->structure);
   j.mobility = analyse_mobility(j.model->system, j.q);
   j.balance = force_balance(j.model->system, j.q, j.mobility);
   return j;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <unistd.h>
+#include <webp/demux.h>
 #include <webp/mux.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -59,13 +61,70 @@ struct PathVariable {  // put back at the end
   ~PathVariable() { setenv("PATH", old.c_str(), 1); }
 };
 
+std::shared_ptr<const Image> shared(Image image) {
+  return std::make_shared<const Image>(std::move(image));
+}
+
+// What a player shows at every change: the time at which it ends [ms] and the picture.
+struct Shown {
+  int until;
+  std::vector<std::uint8_t> rgba;
+};
+std::vector<Shown> shown_by(const std::string& bytes, int width, int height) {
+  const WebPData data{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+  const std::unique_ptr<WebPAnimDecoder, void (*)(WebPAnimDecoder*)> decoder(
+      WebPAnimDecoderNew(&data, nullptr), WebPAnimDecoderDelete);
+  std::vector<Shown> shown;
+  std::uint8_t* canvas = nullptr;
+  int until = 0;
+  while (decoder && WebPAnimDecoderGetNext(decoder.get(), &canvas, &until))
+    shown.push_back({until, {canvas, canvas + 4 * width * height}});
+  return shown;
+}
+
 }  // namespace
+
+TEST_CASE(
+    "a WebP of several segments is the same by any number of threads, and shows every frame in its place") {
+  const ScratchFolder scratch;
+  constexpr int width = 64, height = 48, count = 95;  // three segments of 30 and one of 5
+  const auto frame = [&](int k) {                     // the third segment rests: one frame of it is stored
+    return moving_square(width, height, k >= 60 && k < 90 ? 5 : k % 13);
+  };
+  std::vector<std::string> files;
+  for (const int threads : {0, 1, 3}) {
+    const fs::path file = scratch.path / (std::to_string(threads) + ".webp");
+    WebpAnimation film(file, width, height, 24.0, false, threads);
+    for (int k = 0; k < count; ++k) film.add(shared(frame(k)));
+    film.finish();
+    files.push_back(bytes_of(file));
+  }
+  CHECK(files[1] == files[0]);
+  CHECK(files[2] == files[0]);
+  const std::vector<Shown> shown = shown_by(files[0], width, height);
+  REQUIRE(shown.size() > 60);
+  CHECK(shown.back().until == 3958);  // 95 / 24 s in whole milliseconds
+  int worst = 0, rest = 0;
+  for (int k = 0; k < count; ++k) {
+    const double middle = 1000.0 * (k + 0.5) / 24;
+    const auto at = std::ranges::find_if(shown, [&](const Shown& s) { return s.until > middle; });
+    REQUIRE(at != shown.end());
+    const Image truth = frame(k);
+    int wrong = 0;
+    for (std::size_t i = 0; i < truth.rgba.size(); i += 4)
+      wrong += std::abs(truth.rgba[i] - at->rgba[i]) > 100;
+    worst = std::max(worst, wrong);
+    rest += k >= 60 && k < 90 && at->until == 3750;
+  }
+  CHECK(worst < 28);  // pixels: one step of the square beside its place has twice as many
+  CHECK(rest == 30);
+}
 
 TEST_CASE("an animated WebP holds every frame for its time and repeats forever") {
   const ScratchFolder scratch;
   const fs::path file = scratch.path / "a.webp";
   WebpAnimation film(file, 64, 48, 30.0);
-  for (int k = 0; k < 7; ++k) film.add(moving_square(64, 48, k));
+  for (int k = 0; k < 7; ++k) film.add(shared(moving_square(64, 48, k)));
   CHECK_FALSE(fs::exists(file));  // nothing appears before it is whole
   film.finish();
   const std::string bytes = bytes_of(file);
@@ -93,12 +152,12 @@ TEST_CASE("an animated WebP holds every frame for its time and repeats forever")
 TEST_CASE("an animation that cannot be written is a file error, one without frames is no file") {
   const ScratchFolder scratch;
   WebpAnimation lost(scratch.path / "nowhere" / "a.webp", 16, 16, 30.0);
-  lost.add(moving_square(16, 16, 0));
+  lost.add(shared(moving_square(16, 16, 0)));
   CHECK_THROWS_AS(lost.finish(), FileError);
   WebpAnimation(scratch.path / "empty.webp", 16, 16, 30.0).finish();
   CHECK(fs::is_empty(scratch.path));
   CHECK_THROWS_AS(WebpAnimation(scratch.path / "big.webp", 20000, 16, 30.0), FileError);
-  CHECK_THROWS_AS(lost.add(moving_square(8, 8, 0)), std::invalid_argument);
+  CHECK_THROWS_AS(lost.add(shared(moving_square(8, 8, 0))), std::invalid_argument);
 }
 
 TEST_CASE("an MP4 of odd size is made even and has every frame") {

@@ -118,6 +118,35 @@ TEST_CASE("what is held stands on a plate, what is carried is a body") {
   for (const Sleeve& sleeve : linkage.sleeves) CHECK(std::min(sleeve.a.z(), sleeve.b.z()) > linkage.ground.z);
 }
 
+TEST_CASE("no rod goes through the plate that it turns beside") {
+  for (const char* scene : {"ladder", "pendulum", "four_bar", "chain"}) {
+    const Run r = run(scene);
+    const FrameBuilder frames = builder(r);
+    const Trajectory& trajectory = r.simulation.trajectory;
+    std::size_t plates = 0;
+    for (int k = 0; k <= 40; ++k) {
+      const double t = trajectory.start_time() + k * (trajectory.end_time() - trajectory.start_time()) / 40;
+      const DrawList list = frames.build(t);
+      float thickest = 0;
+      for (const Tube& tube : list.tubes) thickest = std::max(thickest, tube.radius);
+      for (const Sleeve& plate : list.sleeves) {
+        if (plate.radius < 3.5f * thickest) continue;
+        ++plates;
+        const Vec3f n = (plate.b - plate.a).normalized(), middle = 0.5f * (plate.a + plate.b);
+        for (const Tube& tube : list.tubes) {
+          const float a = n.dot(tube.a - middle), b = n.dot(tube.b - middle);
+          const Vec3f begins = (tube.a - middle).norm() < (tube.b - middle).norm() ? tube.a : tube.b;
+          if (a * b >= 0 || (begins - middle).norm() > 3 * plate.radius) continue;  // of another joint
+          const Vec3f through = tube.a + a / (a - b) * (tube.b - tube.a);
+          CAPTURE(scene, t);
+          CHECK((through - middle).norm() > plate.radius);
+        }
+      }
+    }
+    CHECK(plates > 0);
+  }
+}
+
 TEST_CASE("a material is that of its groups, and the fittings then tell the group") {
   const Run r =
       run("hoop6", {"render.material=aluminium", "render.materials=[{group=\"ch*\",material=\"cfrp\"}]"});

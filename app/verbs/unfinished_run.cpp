@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/verbs/unfinished_run.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include "core/export/atomic_file.hpp"
+#include "core/export/checksum.hpp"
+#include "core/scene/text_file.hpp"
+#include "core/scene/write.hpp"
+#include "core/text/version.hpp"
+
+namespace unfurl {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* magic = "unfurl checkpoint 1\n";
+constexpr const char* tables[] = {"series.csv", "trajectory.csv", "rod_forces.csv"};
+
+std::string sum_of(const std::string& bytes) {
+  Checksum sum;
+  sum.add(bytes);
+  return sum.text();
+}
+
+}  // namespace
+
+UnfinishedRun::UnfinishedRun(WrittenFiles& written, const Scene& scene, std::shared_ptr<const Model> model,
+                             double seconds, bool alone)
+    : written_(written),
+      scene_(scene),
+      digest_(std::move(model), scene.solver),
+      seconds_(seconds),
+      alone_(alone) {}
+
+bool UnfinishedRun::lies_in(const fs::path& directory) {
+  std::error_code error;
+  return fs::exists(directory / "unfinished" / "checkpoint", error);
+}
+
+// Another build may step otherwise.
+std::string UnfinishedRun::fingerprint() const {
+  Checksum sum;
+  sum.add(scene_text(scene_));
+  sum.add(version());
+  sum.add(read_text_file("/proc/self/exe").text);
+  return sum.text();
+}
+
+bool UnfinishedRun::find() {
+  if (!lies_in(written_.directory())) return false;
+  const fs::path path = folder() / "checkpoint";
+  std::ifstream in(path, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (!in) throw FileError(path, "cannot be read");
+  const std::string head = magic + fingerprint() + "\n";
+  if (!text.starts_with(magic) || text.size() < head.size() + 17)
+    throw FileError(path, "is no checkpoint of a run; --force begins anew");
+  if (!text.starts_with(head))
+    throw FileError(folder(),
+                    "holds an unfinished run of another scene, of other settings or by another version of "
+                    "unfurl; use --force to begin anew, or another -o");
+  const std::string sum = text.substr(head.size(), 16), bytes = text.substr(head.size() + 17);
+  if (sum_of(bytes) != sum) throw FileError(path, "is damaged; --force begins anew");
+  Archive archive(bytes);
+  RunTables::Sizes sizes;
+  std::string stepper;
+  archive(t_);
+  archive(cpu_s_);
+  archive(sizes);
+  archive(good_);
+  digest_.archive(archive);
+  archive(stepper);
+  begin();
+  tables_->cut(sizes);
+  archived_.emplace(std::move(stepper));
+  return true;
+}
+
+void UnfinishedRun::begin() {
+  std::error_code error;
+  fs::create_directory(folder(), error);
+  if (error) throw FileError(folder(), error.value());
+  for (const char* name : tables) written_.grows(std::string("unfinished/") + name);
+  written_.grows("unfinished/checkpoint");
+  tables_ = std::make_unique<RunTables>(folder());
+}
+
+void UnfinishedRun::forget() {
+  for (const char* name : tables) written_.remove(std::string("unfinished/") + name);
+  written_.remove("unfinished/checkpoint");
+  std::error_code error;
+  fs::remove(folder(), error);
+  written_.forget_missing();
+}
+
+void UnfinishedRun::add(Simulation& window, std::size_t first, std::size_t last) {
+  const Diagnostics d = digest_.add(window, first, last);
+  const std::size_t good = first + digest_.trusted();
+  tables_->add(window.trajectory, d, first, good);
+  if (digest_.all_trusted() || digest_.trusted() > 0) good_ = tables_->sizes();
+  tables_->add(window.trajectory, d, good, last);
+}
+
+void UnfinishedRun::take(Stepper::Window window, Stepper& stepper) {
+  if (!any()) {
+    if (alone_) written_.remove_all();
+    begin();
+    tables_->cut({});
+  }
+  add(window.run, window.first, window.last);
+  digest_.settle();
+  t_ = stepper.time();
+  RunTables::Sizes sizes = tables_->sizes();
+  Archive archive, rest;
+  stepper.archive(rest);
+  std::string bytes = rest.bytes();
+  double cpu = cpu_s_ + window.run.cpu_s;
+  archive(t_);
+  archive(cpu);
+  archive(sizes);
+  archive(good_);
+  digest_.archive(archive);
+  archive(bytes);
+  last_ = archive.bytes();
+  const auto now = std::chrono::steady_clock::now();
+  if (now - written_at_ < std::chrono::duration<double>(seconds_)) return;
+  written_at_ = now;
+  keep();
+}
+
+void UnfinishedRun::keep() {
+  if (last_.empty()) return;
+  tables_->flush_to_disk();
+  if (fingerprint_.empty()) fingerprint_ = fingerprint();
+  FileWatcher* const watcher = watch_files(nullptr);  // listed by its name, not by its bytes
+  write_file_atomically(folder() / "checkpoint", magic + fingerprint_ + "\n" + sum_of(last_) + "\n" + last_);
+  watch_files(watcher);
+}
+
+Digest UnfinishedRun::whole(Simulation& rest) const {
+  Digest all = digest_.whole(rest);
+  all.run.cpu_s = rest.cpu_s + cpu_s_;
+  return all;
+}
+
+Digest UnfinishedRun::finish(Simulation& rest, std::size_t first) {
+  add(rest, first, rest.trajectory.size());
+  if (!digest_.all_trusted()) tables_->cut(good_);
+  tables_->flush_to_disk();
+  tables_.reset();
+  for (const char* name : tables) move_into_place(folder() / name, written_.directory() / name);
+  forget();
+  return whole(rest);
+}
+
+// The tables themselves grow beyond what the checkpoint knows of them: they are cut when it is found.
+Digest UnfinishedRun::interrupt(Simulation& rest, std::size_t first) {
+  keep();
+  add(rest, first, rest.trajectory.size());
+  const RunTables::Sizes sizes = digest_.all_trusted() ? tables_->sizes() : good_;
+  tables_->flush_to_disk();
+  const std::uint64_t size[] = {sizes.series, sizes.trajectory, sizes.rod_forces};
+  for (std::size_t k = 0; k < std::size(tables); ++k) {
+    PendingFile copy(written_.directory() / tables[k]);
+    std::error_code error;
+    fs::copy_file(folder() / tables[k], copy.name(), fs::copy_options::overwrite_existing, error);
+    if (!error) fs::resize_file(copy.name(), size[k], error);
+    if (error) throw FileError(written_.directory() / tables[k], error.value());
+    copy.commit();
+  }
+  return whole(rest);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A long run on disk while it goes on: its tables and a checkpoint from which it can go on after a kill.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/output/written_files.hpp"
+#include "core/diagnostics/run_digest.hpp"
+#include "core/export/run_tables.hpp"
+#include "core/scene/scene.hpp"
+
+namespace unfurl {
+
+// DIR/unfinished/ holds the tables so far and the file `checkpoint`: what the rest of the run depends on, to
+// the bit, with a fingerprint of scene, settings and program. It is made behind the first part of a run; a
+// run of one part leaves no trace of it.
+class UnfinishedRun {
+ public:
+  // seconds: between two checkpoints; alone: what else we wrote into the directory goes when the first part
+  // comes.
+  UnfinishedRun(WrittenFiles& written, const Scene& scene, std::shared_ptr<const Model> model, double seconds,
+                bool alone);
+
+  static bool lies_in(const std::filesystem::path& directory);
+  // Reads the checkpoint, if there is one. Throws FileError where it is of another run or damaged.
+  bool find();
+  Archive& stepper() { return *archived_; }  // that was found
+  double begins_at() const { return t_; }    // [s] of motion
+
+  bool any() const { return tables_ != nullptr; }  // a part was taken or found
+  void take(Stepper::Window window, Stepper& stepper);
+  // All of the run, its tables in their places and nothing left behind; `rest`: what no part had.
+  Digest finish(Simulation& rest, std::size_t first);
+  // The same of a run that was interrupted, which can still go on from its last part.
+  Digest interrupt(Simulation& rest, std::size_t first);
+  void forget();  // what was found
+
+ private:
+  std::filesystem::path folder() const { return written_.directory() / "unfinished"; }
+  void begin();
+  void add(Simulation& window, std::size_t first, std::size_t last);
+  void keep();  // as the last part left it
+  Digest whole(Simulation& rest) const;
+  std::string fingerprint() const;
+
+  WrittenFiles& written_;
+  const Scene& scene_;
+  RunDigest digest_;
+  double seconds_, t_ = 0;
+  double cpu_s_ = 0;  // of earlier processes
+  bool alone_;
+  std::unique_ptr<RunTables> tables_;
+  RunTables::Sizes good_;  // of what can be trusted
+  std::optional<Archive> archived_;
+  std::string fingerprint_;
+  std::string last_;  // checkpoint behind the last part
+  std::chrono::steady_clock::time_point written_at_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace unfurl

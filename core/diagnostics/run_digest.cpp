@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/run_digest.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "core/diagnostics/good_part.hpp"
+#include "core/diagnostics/measures.hpp"
+#include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/rod_strength.hpp"
+#include "core/simulate/latch.hpp"
+#include "core/simulate/singular_poses.hpp"
+
+namespace unfurl {
+namespace {
+
+// Columns whose largest and smallest values a summary looks for within steps.
+bool looked_for(std::string_view name) {
+  for (const std::string_view known : {"axial_force_max_N", "axial_force_min_N", "axial_stress_max_Pa",
+                                       "axial_stress_min_Pa", "stress_ratio_max", "buckling_ratio_max",
+                                       "latch_force_max_N", "latch_torque_max_N_m", "kinetic_energy_J"})
+    if (name == known) return true;
+  return name.ends_with(".torque_N_m") || name.ends_with(".force_N") || name.ends_with(".power_W");
+}
+
+// Columns that count what happened since the start.
+bool counts(std::string_view name) {
+  for (const std::string_view known :
+       {"work_J", "dissipated_J", "drive_work_J", "impact_loss_J", "energy_balance_J"})
+    if (name == known) return true;
+  return name.ends_with(".energy_J");
+}
+
+// Could there be an impact? The column of their losses is there before the first one.
+bool may_strike(const Structure& structure, const SolverOptions& options) {
+  return !structure.stops.empty() || options.at_deployed == "latch" ||
+         std::any_of(structure.forces.begin(), structure.forces.end(),
+                     [](const Force& f) { return f.kind == "friction" || f.one_sided; });
+}
+
+// The row of the largest sign * value; the first of equal ones. values.size() where there is none.
+std::size_t row_of_largest(const std::vector<double>& values, double sign) {
+  std::size_t best = values.size();
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isnan(values[i]) && (best == values.size() || sign * values[i] > sign * values[best])) best = i;
+  return best;
+}
+
+double fastest(const Trajectory& trajectory, std::size_t i) {
+  const VectorXd v = trajectory.node_velocities(i);
+  double most = 0;
+  for (Index k = 0; k + 2 < v.size(); k += 3) most = std::max(most, v.segment<3>(k).norm());
+  return most;
+}
+
+// Rows at which a rod bears most, of all rods and of those whose force is not unique.
+void add_rods(const Structure& structure, const Diagnostics& d, std::set<std::size_t>& rows) {
+  using Size = double (*)(const Rod&, double);
+  static constexpr std::array<Size, 6> sizes{
+      [](const Rod&, double f) { return std::abs(f); },
+      [](const Rod&, double f) { return f; },
+      [](const Rod&, double f) { return -f; },
+      [](const Rod& rod, double f) { return std::abs(axial_stress(rod, f)); },
+      [](const Rod& rod, double f) { return stress_ratio(rod, f); },
+      [](const Rod& rod, double f) { return buckling_ratio(rod, f); }};
+  for (const Size size : sizes)
+    for (const bool open_only : {false, true}) {
+      double most = -std::numeric_limits<double>::infinity();
+      Index row = -1;
+      for (Index i = 0; i < d.axial_force.rows(); ++i)
+        for (Index r = 0; r < d.axial_force.cols(); ++r) {
+          if (open_only && d.force_unique(i, r)) continue;
+          const double x = size(structure.rods[static_cast<std::size_t>(r)], d.axial_force(i, r));
+          if (x > most) most = x, row = i;
+        }
+      if (row >= 0) rows.insert(static_cast<std::size_t>(row));
+    }
+}
+
+// The lowest value before the largest rise, and where that ends.
+void add_rise(const std::vector<double>& values, std::set<std::size_t>& rows) {
+  std::size_t low = 0, from = 0, to = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] < values[low]) low = i;
+    if (values[i] - values[low] > values[to] - values[from]) from = low, to = i;
+  }
+  rows.insert({from, to});
+}
+
+}  // namespace
+
+RunDigest::RunDigest(std::shared_ptr<const Model> model, const SolverOptions& options)
+    : model_(std::move(model)), options_(options), kept_(empty()), good_(empty()), all_(empty()) {}
+
+Digest RunDigest::empty() const {
+  return {Simulation{.trajectory = Trajectory(model_, options_), .options = options_}, {}};
+}
+
+// Energies and turns go on from the state before the first new one, which the window before had, too.
+void RunDigest::count_on(Diagnostics& d, std::size_t first) {
+  for (std::size_t c = 0; first > 0 && c < d.columns.size(); ++c) {
+    Series& column = d.columns[c];
+    double off = ends_.at(c) - column.values[first - 1];
+    if (column.name == "fold_angle_rad")
+      off = 2 * pi * std::round(off / (2 * pi));
+    else if (!counts(column.name))
+      continue;
+    for (double& x : column.values) x += off;
+  }
+}
+
+void RunDigest::add_events(const Simulation& window, double until) {
+  for (const Event& event : window.events) {
+    const bool known = std::any_of(singular_.begin(), singular_.end(), [&](const Event& other) {
+      return std::abs(other.t - event.t) <= 0.5 * options_.step;
+    });
+    if (event.kind == "singular_pose" && !known && event.t <= until) singular_.push_back(event);
+  }
+}
+
+Diagnostics RunDigest::add(Simulation& window, std::size_t first, std::size_t last) {
+  record_singular_poses(window);
+  add_events(window, window.trajectory.end_time());
+  const bool strikes = may_strike(model_->structure, options_);
+  if (strikes) window.events.push_back({.name = "", .energy_lost = 1e-300});
+  Diagnostics d = diagnose(window);
+  if (strikes) window.events.pop_back();
+  count_on(d, first);
+  ends_.clear();
+  for (const Series& column : d.columns) ends_.push_back(column.values[last - 1]);
+  all_ = with_rows(kept_, window, d, first, last);
+  const GoodPart part = good_part(all_.run, all_.diagnostics);
+  const std::size_t before = kept_.run.trajectory.size(), size = all_.run.trajectory.size();
+  trusted_ = std::max(part.states, before) - before;
+  if (part.states == size) {
+    doubt_.clear();
+  } else if (part.states > before || doubt_.empty()) {
+    good_ = all_;
+    keep_states(std::max<std::size_t>(part.states, 1), good_.run, good_.diagnostics);
+    good_ = thinned(good_);
+    doubt_ = part.text(all_.diagnostics);
+  }
+  return d;
+}
+
+Digest RunDigest::with_rows(const Digest& before, const Simulation& window, const Diagnostics& d,
+                            std::size_t first, std::size_t last) const {
+  Digest out = before;
+  Simulation& run = out.run;
+  run.status = window.status;
+  run.message = window.message;
+  run.warnings = window.warnings;
+  run.steps = window.steps;
+  run.newton_iterations = window.newton_iterations;
+  run.factorisations = window.factorisations;
+  run.cpu_s = window.cpu_s;
+  const Model* model = &run.trajectory.last_model();
+  for (std::size_t i = first; i < last; ++i) {
+    if (const Model* now = &window.trajectory.model(i); now != model) {
+      model = now;
+      run.trajectory.change_model(std::shared_ptr<const Model>(std::shared_ptr<const Model>(), now));
+    }
+    run.trajectory.append(window.trajectory.state(i), window.trajectory.report(i));
+  }
+  Diagnostics& rows = out.diagnostics;
+  const auto count = static_cast<Index>(last - first), old = static_cast<Index>(rows.t.size());
+  if (rows.columns.empty()) {
+    rows.columns = d.columns;
+    for (Series& column : rows.columns) column.values.clear();
+    rows.rod_unique = d.rod_unique;
+    rows.axial_force.resize(0, d.axial_force.cols());
+    rows.force_unique.resize(0, d.force_unique.cols());
+  }
+  const auto from = static_cast<std::ptrdiff_t>(first), to = static_cast<std::ptrdiff_t>(last);
+  rows.t.insert(rows.t.end(), d.t.begin() + from, d.t.begin() + to);
+  for (std::size_t c = 0; c < rows.columns.size(); ++c) {
+    std::vector<double>& values = rows.columns[c].values;
+    values.insert(values.end(), d.columns.at(c).values.begin() + from, d.columns[c].values.begin() + to);
+  }
+  rows.axial_force.conservativeResize(old + count, Eigen::NoChange);
+  rows.force_unique.conservativeResize(old + count, Eigen::NoChange);
+  rows.axial_force.bottomRows(count) = d.axial_force.middleRows(static_cast<Index>(first), count);
+  rows.force_unique.bottomRows(count) = d.force_unique.middleRows(static_cast<Index>(first), count);
+  for (std::size_t r = 0; r < rows.rod_unique.size(); ++r)
+    rows.rod_unique[r] = static_cast<char>(rows.rod_unique[r] & d.rod_unique[r]);
+  run.events = window.events;
+  std::erase_if(run.events, [](const Event& event) { return event.kind == "singular_pose"; });
+  run.events.insert(run.events.end(), singular_.begin(), singular_.end());
+  std::stable_sort(run.events.begin(), run.events.end(),
+                   [](const Event& a, const Event& b) { return a.t < b.t; });
+  return out;
+}
+
+// In the coordinates of the model at the start; nothing is looked for around these states any more.
+Digest RunDigest::thinned(const Digest& all) const {
+  const Trajectory& trajectory = all.run.trajectory;
+  const Diagnostics& d = all.diagnostics;
+  std::set<std::size_t> rows{0, d.t.size() - 1};
+  std::vector<std::pair<std::size_t, double>>
+      found[2];  // row and value of every column, largest and smallest
+  for (const Series& column : d.columns)
+    for (const bool largest : {true, false}) {
+      const std::size_t row = row_of_largest(column.values, largest ? 1.0 : -1.0);
+      double value = row < column.values.size() ? column.values[row] : 0.0;
+      if (row < column.values.size()) rows.insert(row);
+      if (row < column.values.size() && looked_for(column.name)) {
+        const double x = largest ? largest_of_column(all.run, d, column.name)
+                                 : smallest_of_column(all.run, d, column.name);
+        if (std::isfinite(x)) value = x;
+      }
+      found[largest ? 0 : 1].emplace_back(row, value);
+    }
+  add_rods(trajectory.structure(), d, rows);
+  add_rise(d.at("energy_balance_J").values, rows);
+  std::size_t quickest = 0;
+  double speed = -1;
+  for (std::size_t i = 0; i < trajectory.size(); ++i)
+    if (const double v = fastest(trajectory, i); v > speed) speed = v, quickest = i;
+  const double top = find_measure("peak_speed").value(all.run, d);
+  rows.insert(quickest);
+  Digest out = empty();
+  out.run.events = all.run.events;
+  out.diagnostics.columns = d.columns;
+  for (Series& column : out.diagnostics.columns) column.values.clear();
+  out.diagnostics.rod_unique = d.rod_unique;
+  out.diagnostics.axial_force.resize(static_cast<Index>(rows.size()), d.axial_force.cols());
+  out.diagnostics.force_unique.resize(static_cast<Index>(rows.size()), d.force_unique.cols());
+  for (Index to = 0; const std::size_t i : rows) {
+    State state = in_coordinates(trajectory.model(i).system, trajectory.state(i), model_->system);
+    if (i == quickest && speed > 0 && std::isfinite(top)) state.w *= top / speed;
+    state.lambda.resize(0);
+    state.tension.resize(0);
+    out.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
+    out.diagnostics.t.push_back(d.t[i]);
+    for (std::size_t c = 0; c < d.columns.size(); ++c) {
+      double value = d.columns[c].values[i];
+      for (const auto& extremes : found)
+        if (extremes[c].first == i) value = extremes[c].second;
+      out.diagnostics.columns[c].values.push_back(value);
+    }
+    out.diagnostics.axial_force.row(to) = d.axial_force.row(static_cast<Index>(i));
+    out.diagnostics.force_unique.row(to++) = d.force_unique.row(static_cast<Index>(i));
+  }
+  return out;
+}
+
+Digest RunDigest::whole(const Simulation& last_window) const {
+  Digest out = all_;
+  if (doubt_.empty()) return out;
+  const std::size_t before = kept_.run.trajectory.size();
+  if (trusted_ > 0) {
+    keep_states(before + trusted_, out.run, out.diagnostics);
+  } else {
+    const Digest end = std::move(out);
+    out = good_;
+    out.run.steps = end.run.steps;
+    out.run.newton_iterations = end.run.newton_iterations;
+    out.run.cpu_s = end.run.cpu_s;
+    out.run.warnings = end.run.warnings;
+  }
+  out.run.status = last_window.status;
+  out.run.message = last_window.message;
+  fail_for(doubt_, out.run);
+  return out;
+}
+
+void RunDigest::settle() {
+  kept_ = thinned(all_);
+  all_ = empty();
+}
+
+void RunDigest::archive(Archive& archive) {
+  archive_digest(archive, kept_);
+  archive_digest(archive, good_);
+  archive(doubt_);
+  archive(ends_);
+  archive_events(archive, singular_);
+}
+
+void RunDigest::archive_digest(Archive& archive, Digest& digest) const {
+  Diagnostics& d = digest.diagnostics;
+  if (archive.reading()) digest = empty();
+  std::size_t states = digest.run.trajectory.size(), columns = d.columns.size();
+  archive(states);
+  for (std::size_t i = 0; i < states; ++i) {
+    State state;
+    if (!archive.reading()) state = digest.run.trajectory.state(i);
+    archive(state.t);
+    for (VectorXd* x : {&state.z, &state.w, &state.angles}) archive(*x);
+    if (archive.reading()) digest.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
+  }
+  archive(d.t);
+  archive(columns);
+  if (columns > archive.bytes().size()) throw ArchiveError("ends too early");
+  d.columns.resize(columns);
+  for (Series& column : d.columns) {
+    for (std::string* x : {&column.name, &column.label, &column.unit}) archive(*x);
+    archive(column.values);
+  }
+  archive(d.axial_force);
+  archive(d.force_unique);
+  archive(d.rod_unique);
+  archive_events(archive, digest.run.events);
+}
+
+}  // namespace unfurl

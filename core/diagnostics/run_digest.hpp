@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a summary asks of a run whose states are not kept.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/simulate/parts.hpp"
+#include "core/text/archive.hpp"
+
+namespace unfurl {
+
+// Some states of a run with their rows, as if they were all of it: its first state, those at which a column
+// or a rod's force is largest or smallest, the last ones. What was found larger within a step stands at the
+// nearest state in its place.
+struct Digest {
+  Simulation run;
+  Diagnostics diagnostics;
+};
+
+// Takes a run window by window.
+class RunDigest {
+ public:
+  RunDigest(std::shared_ptr<const Model> model, const SolverOptions& options);
+
+  // The rows of a window, counted from the start of the run. Its states [first, last) are added to the
+  // digest; singular poses become events of the window and are told once by events().
+  Diagnostics add(Simulation& window, std::size_t first, std::size_t last);
+  // Of the states [first, last) of the last window, the beginning that can be trusted (judge()); where that
+  // is not all, what comes after it may still make up for it.
+  std::size_t trusted() const { return trusted_; }
+  bool all_trusted() const { return doubt_.empty(); }
+
+  // All of the run, with the window that was added last, which must live as long: what can be trusted of it,
+  // failed where that is not all.
+  Digest whole(const Simulation& last_window) const;
+
+  // Behind add(), while the window lives, of every window but the last.
+  void settle();
+  void archive(Archive& archive);  // of what was settled
+
+ private:
+  Digest with_rows(const Digest& before, const Simulation& window, const Diagnostics& d, std::size_t first,
+                   std::size_t last) const;
+  Digest thinned(const Digest& all) const;
+  void count_on(Diagnostics& d, std::size_t first);
+  void add_events(const Simulation& window, double until);
+  void archive_digest(Archive& archive, Digest& digest) const;
+  Digest empty() const;
+
+  std::shared_ptr<const Model> model_;
+  SolverOptions options_;
+  Digest kept_, good_;  // of all before the last window; of what can be trusted, where that is less
+  Digest all_;          // with the last window
+  std::string doubt_;   // why not all of it can be trusted
+  std::size_t trusted_ = 0;
+  std::vector<double> ends_;  // of every column, at the last state
+  std::vector<Event> singular_;
+};
+
+}  // namespace unfurl

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `unfurl run` of long motions: killed at any moment it goes on to the same bytes, in memory that does not
+// grow.
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/run_program.hpp"
+
+namespace unfurl::unfinished_run_test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Words = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
+
+// A mass that bounces on a floor until it rests, one on a spring that rubs, and a hinge that a motor turns.
+const std::string everything = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "A", position = [0, 0, 0.7], mass = 2},
+  {name = "O", position = [3, 0, 0], fixed = true},
+  {name = "B", position = [5.495, 0, 0], mass = 1},
+  {name = "P", position = [0, 5, 0], fixed = true},
+  {name = "Q", position = [1, 5, 0], fixed = true},
+  {name = "C", position = [0, 6.3, 0]}]
+rods = [{name = "arm", nodes = ["P", "C"], mass = 3}]
+[[constraints]]
+kind = "coordinate_stop"
+name = "floor"
+nodes = ["A"]
+direction = [0, 0, 1]
+min = 0.1
+restitution = 0.7
+[[constraints]]
+kind = "plane"
+nodes = ["B", "C"]
+normal = [0, 0, 1]
+[[forces]]
+kind = "spring"
+nodes = ["O", "B"]
+stiffness = 100
+free_length = 2
+[[forces]]
+kind = "friction"
+name = "pad"
+nodes = ["B"]
+direction = [1, 0, 0]
+kinetic = 1
+[[forces]]
+kind = "friction"
+name = "hinge"
+nodes = ["Q", "P", "C"]
+axis = [0, 0, 1]
+kinetic = 0.2
+[[loads]]
+nodes = ["C"]
+force = [0.9, 0.3, 0]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+stages = 3
+step = 0.0013
+end_time = 30
+)";
+
+Words run_of(const std::string& scene, const std::string& out, const Words& changes) {
+  Words words{"run", scene, "-o", out, "--checkpoint", "0", "--quiet"};
+  for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
+  return words;
+}
+
+// But for what no two runs share.
+std::string summary_of(const std::string& folder) {
+  Json json = Json::parse(file_text(folder + "/summary.json"));
+  for (const char* key : {"command", "wall_s"}) json.erase(key);
+  json["solver"].erase("cpu_s");
+  return json.dump(1);
+}
+
+void check_same(const std::string& a, const std::string& b) {
+  for (const char* name : {"series.csv", "trajectory.csv", "rod_forces.csv", "scene.toml"}) {
+    CAPTURE(name);
+    CHECK((file_text(a + "/" + name) == file_text(b + "/" + name)));
+  }
+  CHECK(summary_of(a) == summary_of(b));
+}
+
+}  // namespace
+
+TEST_CASE("a run that is killed goes on from its checkpoint to the same bytes") {
+  const ScratchDirectory dir;
+  const std::string scene = dir.write("everything.toml", everything);
+  // The names of scenes; none: the one above.
+  const auto [given, changes] =
+      GENERATE(std::pair<std::string, Words>{"", {}},
+               std::pair<std::string, Words>{"", {"solver.adaptive=true", "solver.step=0.004"}},
+               std::pair<std::string, Words>{"hoop6", {"solver.step=0.0008", "solver.at_deployed=latch"}},
+               std::pair<std::string, Words>{"hoop6_motor", {"solver.step=0.0013"}});
+  const std::string name = given.empty() ? scene : given;
+  CAPTURE(name, changes);
+  const std::string whole = dir / "whole", killed = dir / "killed";
+  REQUIRE(run_program(run_of(name, whole, changes)).code == 0);
+  CHECK_FALSE(fs::exists(whole + "/unfinished"));
+  int kills = 0;
+  for (const double after : {0.0, 0.03, 0.11, 0.4, 0.7}) {
+    const auto result = run_program(run_of(name, killed, changes),
+                                    {.interrupt_after_s = after, .signal = after == 0.4 ? SIGINT : SIGKILL});
+    if (result.code == 0) break;
+    ++kills;
+  }
+  REQUIRE(kills > 1);
+  const auto last = run_program(run_of(name, killed, changes));
+  CHECK(last.err == "");
+  REQUIRE(last.code == 0);
+  check_same(whole, killed);
+  CHECK_FALSE(fs::exists(killed + "/unfinished"));
+  CHECK(run_program({"verify", killed}).code == 0);
+}
+
+TEST_CASE("a checkpoint of another run is refused with one sentence and left alone") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  const Words long_one{"solver.step=1e-5"};
+  run_program(
+      run_of("hoop6", out, long_one),
+      {.interrupt_after_s = 0.1, .signal = SIGKILL, .first_wait_for = out + "/unfinished/checkpoint"});
+  REQUIRE(fs::exists(out + "/unfinished/checkpoint"));
+  for (const Words& changes : {Words{"solver.step=2e-5"}, Words{"solver.step=1e-5", "structure.units=7"}}) {
+    const auto other = run_program(run_of("hoop6", out, changes));
+    CHECK(other.code == 5);
+    CHECK(other.err.find("another scene") != std::string::npos);
+    CHECK(fs::exists(out + "/unfinished/checkpoint"));
+  }
+  Words exported = run_of("hoop6", out, long_one);
+  exported.insert(exported.end(), {"--export", "npy"});
+  CHECK(run_program(exported).code == 5);
+  // Cut short, or a byte of it changed.
+  const std::string path = out + "/unfinished/checkpoint", text = file_text(path);
+  fs::resize_file(path, text.size() - 9);
+  CHECK(run_program(run_of("hoop6", out, long_one)).code == 5);
+  CHECK(run_program({"run", "hoop6", "-o", out, "--force", "--quiet"}).code == 0);
+  CHECK_FALSE(fs::exists(out + "/unfinished"));
+  CHECK(run_program({"run", "hoop6", "-o", out, "--resume", "--quiet"}).code == 5);
+}
+
+// The largest memory of the children so far [kB]: each run that is larger shows.
+TEST_CASE("ten times as many steps take the same memory") {
+  const ScratchDirectory dir;
+  const auto peak = [&](double end_time) {
+    const std::string out = dir / ("o" + std::to_string(end_time));
+    const std::string end = "solver.end_time=" + std::to_string(end_time);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::execl(UNFURL_PROGRAM, "unfurl", "run", "double_pendulum", "-o", out.c_str(), "--quiet", "--set",
+              end.c_str(), "--set", "solver.step=0.001", nullptr);
+      ::_exit(127);
+    }
+    int status = 0;
+    rusage used{};
+    REQUIRE(::wait4(child, &status, 0, &used) == child);
+    REQUIRE(WIFEXITED(status));
+    REQUIRE(WEXITSTATUS(status) == 0);
+    return static_cast<double>(used.ru_maxrss);
+  };
+  const double one = peak(12), ten = peak(120);
+  CHECK(ten <= 1.1 * one);
+}
+
+}  // namespace unfurl::unfinished_run_test
