@@ -11,7 +11,7 @@ namespace unfurl {
 // price.
 Diagnostics diagnose_books(const Simulation& run);
 
-// All but what is unique: those columns mean nothing.
+// All but what is unique and what goes in or out, of which energies are the sums: those columns mean nothing.
 Diagnostics diagnose_states(const Simulation& run);
 
 // What the energy balance may be off by rounding alone, at every state of the run [J]. Coordinates are known

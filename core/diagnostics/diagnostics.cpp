@@ -347,6 +347,12 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
 
 enum class Look { books, states, all };
 
+EnergyFlow no_flow(const Simulation& run) {
+  const std::vector<double> none(run.trajectory.size(), 0.0);
+  const std::size_t drives = drive_channels(run.trajectory.model()).size();
+  return {none, none, none, none, std::vector(drives, none)};
+}
+
 Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool()>& cancelled) {
   const bool books = look == Look::books;
   const Trajectory& trajectory = run.trajectory;
@@ -363,7 +369,7 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
   if (!books) drives.emplace(trajectory.model(), out.columns);
   const std::size_t first_own = out.columns.size();
   if (!books) add_own_columns(trajectory.structure(), out);
-  const EnergyFlow flow = energy_flow(run);
+  const EnergyFlow flow = look == Look::states ? no_flow(run) : energy_flow(run);
   const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   out.force_unique.resize(out.axial_force.rows(), rods);

@@ -27,11 +27,12 @@ EnergyMeter::EnergyMeter(const System& system)
   target_rate_.resize(system.constraints());
 }
 
-VectorXd EnergyMeter::acceleration(const State& state) {
-  VectorXd a(state.z.size());
+EnergyMeter::Point EnergyMeter::at_state(const State& state) {
+  Point p{VectorXd(state.z.size()), VectorXd(lambda_.size()), true};
   system_.follow(state);
-  if (!index1_->evaluate(state, a, lambda_)) a.setZero();
-  return a;
+  p.known = index1_->evaluate(state, p.acceleration, p.lambda);
+  if (!p.known) p.acceleration.setZero();
+  return p;
 }
 
 double EnergyMeter::taken(const State& state) {
@@ -65,32 +66,39 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
   const auto rate = [&](const State& s, const VectorXd& acceleration) {
     return (damping_power(s, acceleration, e) - damping_power(s, acceleration, -e)) / (2 * e);
   };
-  const double line = 0.5 * h * (damping_power(a, before_, 0) + damping_power(b, after_, 0));
-  const double bend = h * h / 12 * (rate(a, before_) - rate(b, after_));
+  const double line =
+      0.5 * h * (damping_power(a, before_.acceleration, 0) + damping_power(b, after_.acceleration, 0));
+  const double bend = h * h / 12 * (rate(a, before_.acceleration) - rate(b, after_.acceleration));
   return bend > 0 ? line + std::min(bend, line) : line / (1 - bend / std::max(line, 1e-300));
 }
 
 void EnergyMeter::add(const State& a, const State& b) {
   if (idle()) return;
-  before_ = after_.size() && last_ == a.t ? after_ : acceleration(a);
-  after_ = acceleration(b);
+  before_ = fresh_ && last_ == a.t ? after_ : at_state(a);
+  after_ = at_state(b);
+  fresh_ = true;
   last_ = b.t;
-  const Quintic ends{a, b, before_, after_, b.t - a.t};
+  const Quintic ends{a, b, before_.acceleration, after_.acceleration, b.t - a.t};
   dissipated += taken(b) - taken(a);
   system_.follow(a);
   const double fastest = dampers_ ? damping_bound(a) : 0.0;
   const bool stiff = ends.h * fastest > 2;
-  static const Quadrature gauss = gauss_legendre(3);
+  static const Quadrature gauss = gauss_legendre(3), lobatto = gauss_lobatto(4);
   if (stiff) dissipated += taken_by_stiff(a, b, fastest);
-  for (Index i = 0; i < gauss.nodes.size(); ++i) {
-    const double u = gauss.nodes[i], t = a.t + u * ends.h, weight = ends.h * gauss.weights[i];
+  // Both rules are of order 6; where all that is asked is the multipliers, the ends have them already.
+  const bool by_ends = !loads_ && !dampers_ && before_.known && after_.known;
+  const Quadrature& rule = by_ends ? lobatto : gauss;
+  for (Index i = 0; i < rule.nodes.size(); ++i) {
+    const double u = rule.nodes[i], t = a.t + u * ends.h, weight = ends.h * rule.weights[i];
+    const bool at_end = by_ends && (i == 0 || i + 1 == rule.nodes.size());
     const VectorXd z = stiff ? VectorXd(a.z + u * (b.z - a.z)) : ends.value(u),
                    w = stiff ? VectorXd((b.z - a.z) / ends.h) : ends.rate(u);
     system_.expand(z, q_);
     system_.expand_rate(w, v_);
     if (loads_) load_work += weight * system_.power(false, t, q_, v_);
     if (dampers_ && !stiff) dissipated -= weight * system_.power(true, t, q_, v_);
-    const bool known = drives_ && index1_->evaluate(t, z, w, unused_, lambda_);
+    if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
+    const bool known = drives_ && (at_end || index1_->evaluate(t, z, w, unused_, lambda_));
     if (at_point && (known || !drives_)) at_point(weight, t, q_, v_, lambda_);
     if (!known) continue;
     system_.target_rate(t, target_rate_);

@@ -22,7 +22,8 @@ struct EnergyFlow {
 // Gauss points (order 6) on the quintic that has the coordinates, rates and accelerations of the states at
 // both ends: an independent quadrature, whatever the method, of order 6 where the forces are smooth within
 // steps. The power -lambda g' of drives and of rods that warm takes its multipliers from the index-1
-// equations at those points. Where dampers are stiff (c / m beyond 2 / h), what they take comes from the
+// equations at those points, or at four Lobatto points, of which two are the states, where nothing but drives
+// puts in energy. Where dampers are stiff (c / m beyond 2 / h), what they take comes from the
 // difference of two motions that are nearly one, which no interpolant tells. Their power is then that of the
 // states and its rates there.
 EnergyFlow energy_flow(const Simulation& run);
@@ -34,14 +35,19 @@ class EnergyMeter {
   // Nothing goes in or out but by potentials and constant loads: no step needs to be added.
   bool idle() const { return !loads_ && !dampers_ && !drives_; }
   void add(const State& a, const State& b);  // the step from a to b, which follows on the last one
-  void jump() { after_.resize(0); }          // velocities have changed within no time
+  void jump() { fresh_ = false; }            // velocities have changed within no time
   double load_work = 0, dissipated = 0, drive_work = 0;  // so far [J]
   // Told every point of the quadrature: its weight [s], the time, node coordinates, velocities, multipliers.
   std::function<void(double, double, const VectorXd&, const VectorXd&, const VectorXd&)> at_point = {};
   const System& system() const { return system_; }
 
  private:
-  VectorXd acceleration(const State& state);
+  // What the index-1 equations say at a state.
+  struct Point {
+    VectorXd acceleration, lambda;
+    bool known = false;  // false: nothing, and the acceleration is set to zero
+  };
+  Point at_state(const State& state);
   double damping_power(const State& state, const VectorXd& acceleration, double after);
   double damping_bound(const State& state);
   double taken(const State& state);
@@ -50,7 +56,9 @@ class EnergyMeter {
   System system_;  // follows the states
   bool loads_, dampers_, drives_;
   std::unique_ptr<Index1> index1_;
-  VectorXd before_, after_, q_, v_, unused_, lambda_, target_rate_;
+  Point before_, after_;
+  bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since
+  VectorXd q_, v_, unused_, lambda_, target_rate_;
   double last_ = 0;  // time of the state that after_ is of
 };
 

@@ -46,12 +46,21 @@ void add_block_of(const Rod& rod, const Mat3& K, ForceDerivative& out) {
     }
 }
 
+// x on b's coordinates of row r, -x on a's.
+void add_row_of(const Rod& rod, int r, const Vec3& x, ForceDerivative& out) {
+  for (int i = 0; i < 3; ++i) {
+    out.emplace_back(r, 3 * rod.a + i, -x[i]);
+    out.emplace_back(r, 3 * rod.b + i, x[i]);
+  }
+}
+
 // With c = damping_time / C, N = c n . (v_b - v_a):
 //     dN/dd = c P u / |d|  with u the relative velocity and P = 1 - n n^T
 class RodDampers final : public ForceBlock {
  public:
   explicit RodDampers(std::vector<Rod> rods) : rods_(std::move(rods)) {}
   bool constant() const override { return false; }
+  bool of_giving_rods() const override { return true; }
   bool has_power() const override { return true; }
   bool dissipative() const override { return true; }
 
@@ -130,12 +139,51 @@ void ElasticRods::derivatives(const Moment& at, const double* q, const double*, 
   }
 }
 
-void ElasticRods::forces(double t, const double* q, const double* v, double* force) const {
+double ElasticRods::stored(const double* force) const {
+  double sum = 0;
+  for (const Rod& rod : rods_) {
+    sum += 0.5 * rod.compliance() * *force * *force;
+    ++force;
+  }
+  return sum;
+}
+
+void ElasticRods::stretches(double t, const double* q, const double* v, double* e) const {
   for (const Rod& rod : rods_) {
     const Span span = span_of(rod, q);
-    *force++ =
-        (span.length - rod.rest_length(t) + rod.damping_time * stretch_rate(rod, span, v)) / rod.compliance();
+    *e++ = span.length - rod.rest_length(t) + rod.damping_time * stretch_rate(rod, span, v);
   }
+}
+
+void ElasticRods::directions(const double* q, ForceDerivative& by_q) const {
+  int row = 0;
+  for (const Rod& rod : rods_) add_row_of(rod, row++, span_of(rod, q).along, by_q);
+}
+
+void ElasticRods::row_derivatives(const double* q, const double* v, ForceDerivative& by_q,
+                                  ForceDerivative& by_v) const {
+  int row = 0;
+  for (const Rod& rod : rods_) {
+    const Span span = span_of(rod, q);
+    const Vec3 u = node_vector(v, rod.b) - node_vector(v, rod.a);
+    const Vec3 across = (u - span.along.dot(u) * span.along) / span.length;
+    add_row_of(rod, row, span.along + rod.damping_time * across, by_q);
+    if (rod.damping_time > 0) add_row_of(rod, row, rod.damping_time * span.along, by_v);
+    ++row;
+  }
+}
+
+void ElasticRods::turning(const double* q, const double* force, ForceDerivative& by_q) const {
+  for (const Rod& rod : rods_) {
+    const Span span = span_of(rod, q);
+    const Mat3 across = Mat3::Identity() - span.along * span.along.transpose();
+    add_block_of(rod, *force++ / span.length * across, by_q);
+  }
+}
+
+void ElasticRods::forces(double t, const double* q, const double* v, double* force) const {
+  stretches(t, q, v, force);
+  for (const Rod& rod : rods_) *force++ /= rod.compliance();
 }
 
 void ElasticRods::add_forces(const double* q, const double* force, double scale, double* f) const {

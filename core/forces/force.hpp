@@ -43,6 +43,8 @@ class ForceBlock {
   // quadrature: what has been taken [J], dtaken/dt = -power.
   virtual bool takes_by_pose() const { return false; }
   virtual double taken(const Moment&, const double*) const { return 0.0; }
+  // Of rods that give: methods may take these forces as unknowns instead (ElasticRods).
+  virtual bool of_giving_rods() const { return false; }
   // dF/dq and dF/dv, for Newton matrices; what is left out costs iterations, not accuracy.
   virtual void derivatives(const Moment&, const double*, const double*, ForceDerivative&,
                            ForceDerivative&) const {}

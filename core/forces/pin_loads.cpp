@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "core/forces/elastic_rods.hpp"
 #include "core/math/saddle_solver.hpp"
@@ -160,7 +161,7 @@ Vec3 PinLoads::given_load(const Pin& pin, const Moment& at, const double* q, con
 std::vector<PinLoads::Response> PinLoads::responses(const Moment& at, const double* q, const double* v,
                                                     const SparseRows& G) const {
   const Index n = mass_.rows();
-  VectorXd force = VectorXd::Zero(n), bias = VectorXd::Zero(rows_), gradient;
+  VectorXd force = VectorXd::Zero(n), bias = VectorXd::Zero(rows_);
   for (const auto& block : forces_) block->add(at, q, v, 1.0, force.data());
   double* row = bias.data();
   for (const auto& block : constraints_) {
@@ -177,14 +178,51 @@ std::vector<PinLoads::Response> PinLoads::responses(const Moment& at, const doub
   };
   respond(force, -bias, VectorXd::Zero(n));
   for (const Pin& pin : pins_) {
-    force.setZero();
-    gradient.resize(std::ssize(pin.measure.stencil()));
-    pin.measure.value_and_gradient(q, gradient.data(), at.near(pin.followed, pin.measure.reference()));
-    for (Index i = 0; i < gradient.size(); ++i)
-      force[pin.measure.stencil()[static_cast<std::size_t>(i)]] -= pin.slip * gradient[i];
+    force = unit_torque(pin, at, q, pin.slip);
     respond(force, VectorXd::Zero(rows_), force);
   }
   return out;
+}
+
+VectorXd PinLoads::unit_torque(const Pin& pin, const Moment& at, const double* q, double slip) const {
+  VectorXd force = VectorXd::Zero(mass_.rows()), gradient(std::ssize(pin.measure.stencil()));
+  pin.measure.value_and_gradient(q, gradient.data(), at.near(pin.followed, pin.measure.reference()));
+  for (Index i = 0; i < gradient.size(); ++i)
+    force[pin.measure.stencil()[static_cast<std::size_t>(i)]] -= slip * gradient[i];
+  return force;
+}
+
+// F = F_0 + tau dF/dtau with tau = mu r |F| has an answer for every F_0 while mu r |dF/dtau| < 1.
+std::vector<double> PinLoads::longest_arms(double t, const double* q) const {
+  std::vector<double> out(bare_.forces.size(), std::numeric_limits<double>::infinity());
+  const SparseRows G = jacobian(q);
+  SaddleSolver saddle(mass_, G);
+  if (!saddle.factorise(G)) return out;
+  for (const Pin& pin : pins_) {
+    Response r{VectorXd(mass_.rows()), VectorXd(rows_), unit_torque(pin, t, q, 1.0)};
+    saddle.solve(r.friction, VectorXd::Zero(rows_), r.a, r.lambda);
+    out[pin.force] = 1 / linear_load(pin, q, G, r).norm();
+  }
+  return out;
+}
+
+PinLoads::SelfLocking PinLoads::self_locking(const Structure& structure, const SparseRows& node_mass,
+                                             double t, const double* q) {
+  if (!any(structure)) return {};
+  const std::vector<double> most = PinLoads(structure, node_mass).longest_arms(t, q);
+  for (std::size_t i = 0; i < most.size(); ++i) {
+    const Force& force = structure.forces[i];
+    if (!(arm(force) >= most[i])) continue;
+    const Rod& rod = structure.rods[static_cast<std::size_t>(rod_of(structure, force))];
+    std::ostringstream text;
+    text.precision(3);
+    text << "times pin_radius is " << arm(force) << " m, and must be below " << most[i]
+         << " m in this pose: rod " << rod.name << " of " << rod.length
+         << " m locks itself on the pin, whose friction raises the pin's force by more than it takes to make "
+            "it; give a smaller pin_friction or pin_radius, or a constant torque by kinetic";
+    return {force.name, text.str()};
+  }
+  return {};
 }
 
 std::vector<double> PinLoads::evaluate(const Moment& at, const double* q, const double* v) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/constraints/constraint.hpp"
@@ -32,6 +33,18 @@ class PinLoads {
   // fixed point or the equations cannot be solved.
   std::vector<double> evaluate(const Moment& at, const double* q, const double* v) const;
 
+  // The most that mu r may be at this pose [m], of each entry of Structure::forces; infinite of those without
+  // such friction. From there on the torque raises the pin's force by more than it takes to make it: the
+  // hinge locks itself, and there is no fixed point. Of a rod of length l without mass it is l.
+  std::vector<double> longest_arms(double t, const double* q) const;
+  // A hinge that is so at this pose; of none, empty strings.
+  struct SelfLocking {
+    std::string friction,
+        problem;  // the name of its friction; what is wrong with its pin_friction, and a cure
+  };
+  static SelfLocking self_locking(const Structure& structure, const SparseRows& node_mass, double t,
+                                  const double* q);
+
   // mu r of a friction [m]; 0: its torque does not depend on a force.
   static double arm(const Force& force) { return force.kind == "friction" ? force.size.offset : 0.0; }
   static bool any(const Structure& structure);
@@ -61,6 +74,8 @@ class PinLoads {
   SparseRows jacobian(const double* q) const;
   std::vector<Response> responses(const Moment& at, const double* q, const double* v,
                                   const SparseRows& G) const;
+  // Of each pin the force that a unit torque of its friction, against `slip`, puts on its nodes.
+  VectorXd unit_torque(const Pin& pin, const Moment& at, const double* q, double slip) const;
 
   Structure bare_;  // without this friction
   SparseRows mass_;

@@ -26,6 +26,7 @@ constexpr int slow_iterations = 8;
 constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double most_prolonged = 4;  // steps of the last one's length
+constexpr double unheld = 100;        // h omega of a rod, from above, whose velocity at ends is held
 constexpr double resolved = 1.5;      // h omega, from above, per stage but one: the ends tell forces of waves
 
 bool is_small(const System& system, int stages) {
@@ -84,7 +85,7 @@ class Dvm final : public Integrator {
     slow_ = stiff_ = settled_ = false;
     settling_ = 0;
     newton_.forget();
-    eq_.forget_forces();
+    eq_.restart();
   }
 
  private:
@@ -217,6 +218,7 @@ bool Dvm::needs_care() {
 // longer get smaller: residuals do not tell, because a small one may be a large error of a weak mode.
 bool Dvm::tight_iterations(const State& state, StepReport& report) {
   constexpr int most = 40;
+  eq_.take_rods_as_unknowns(false);
   eq_.in_increments = true;
   careful_ = !saddle_.fine();  // fine factors leave out by themselves what the rows cannot reach
   feed_ = true;
@@ -259,6 +261,7 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
   if ((stiff_ || is_stiff()) && stiff_iterations(state, report)) return;
   if (!small_ || eq_.at_ends) return;
   predict(state, h);
+  eq_.take_rods_as_unknowns(true);
   report.status = newton_.solve(eq_, wanted, accepted, false, report);
   frozen_ = false;
 }
@@ -295,6 +298,7 @@ bool Dvm::stiff_iterations(const State& state, StepReport& report) {
   stiff_ = true;
   predict(state, eq_.h);
   eq_.dX.setZero();
+  eq_.take_rods_as_unknowns(true);
   report.status = newton_.solve(eq_, wanted, accepted, true, report);
   frozen_ = false;
   return report.ok();
@@ -302,6 +306,7 @@ bool Dvm::stiff_iterations(const State& state, StepReport& report) {
 
 // Residuals are computed from the equations themselves every time; the frozen matrix only steers.
 bool Dvm::frozen_iterations(StepReport& report) {
+  eq_.take_rods_as_unknowns(false);
   careful_ = false;
   feed_ = true;
   double best_momentum = std::numeric_limits<double>::infinity(), best_constraint = best_momentum;
@@ -430,7 +435,8 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   freeze(pose_, report);
   if (tight_ && frozen_) saddle_.weakest_pivot(needed_pivot_);
   if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
-  saddle_.solve(p1_, rate_, w1_, mu_);
+  if (!eq_.rods.still(unheld, state.t + h, h, pose_, {G_, p1_, rate_}, w1_, mu_))
+    saddle_.solve(p1_, rate_, w1_, mu_);
   report.right_hand_sides += 1;
   if (!frozen_ || !w1_.allFinite()) {
     report.status = StepStatus::not_finite;
@@ -447,8 +453,9 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   arrive(state);
   state.w = w1_;
   state.tension.resize(0);
-  const bool elastic = !system_.giving_rods().empty();
-  if (elastic && eq_.h_omega() > resolved * (c_.s - 1) && !eq_.held()) eq_.end_tension(state.tension);
+  const bool elastic = system_.elastic_rods() != nullptr;
+  if (elastic && eq_.h_omega() > resolved * (c_.s - 1) && !eq_.held())
+    eq_.end_tension(w1_, resolved * (c_.s - 1), state.tension);
   state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
 }
 
@@ -463,25 +470,6 @@ void Dvm::arrive(State& state) {
 }
 
 }  // namespace
-
-Claims dvm_claims(const SolverOptions& options) {
-  Claims claims{.symplectic = true,
-                .symmetric = true,
-                .implicit = true,
-                .holds_positions = true,
-                .holds_velocities = true,
-                .conserves_momentum_maps = true};
-  const int s = options.stages;
-  if (options.constraints_at == "ends")
-    claims.order = 2;
-  else if (options.nodes == "lobatto")
-    claims.order = 2 * s - 2;
-  else
-    claims.order =
-        2 *
-        ((s + 1) / 2);  // that of a symmetric interpolatory quadrature: exact to degree s - 1, s for odd s
-  return claims;
-}
 
 std::unique_ptr<Integrator> make_dvm(const System& system, const SolverOptions& options) {
   return std::make_unique<Dvm>(system, options);

@@ -50,16 +50,23 @@ struct Scales {
   VectorXd coordinate, multiplier;
 };
 
-Scales scales_of(const StageEquations& eq, const SparseRows& G) {
-  Scales s{VectorXd(eq.dX.rows()), VectorXd(eq.lambda.rows())};
-  for (Index i = 0; i < s.coordinate.size(); ++i)
-    s.coordinate[i] = 1.0 / std::sqrt(eq.system.mass().coeff(i, i));
+// 1 / |G_r D|
+VectorXd row_scales(const SparseRows& G, const VectorXd& coordinate) {
+  VectorXd scale(G.rows());
   for (int r = 0; r < G.outerSize(); ++r) {
     double square = 0;
     for (SparseRows::InnerIterator it(G, r); it; ++it)
-      square += std::pow(it.value() * s.coordinate[it.col()], 2);
-    s.multiplier[r] = square > 0 ? 1.0 / std::sqrt(square) : 1.0;
+      square += std::pow(it.value() * coordinate[it.col()], 2);
+    scale[r] = square > 0 ? 1.0 / std::sqrt(square) : 1.0;
   }
+  return scale;
+}
+
+Scales scales_of(const StageEquations& eq, const SparseRows& G) {
+  Scales s{VectorXd(eq.dX.rows()), {}};
+  for (Index i = 0; i < s.coordinate.size(); ++i)
+    s.coordinate[i] = 1.0 / std::sqrt(eq.system.mass().coeff(i, i));
+  s.multiplier = row_scales(G, s.coordinate);
   return s;
 }
 
@@ -83,7 +90,45 @@ Index multipliers(const StageEquations& eq) {
   return eq.lambda.rows() * (eq.at_ends ? 1 : eq.c.s - 1);
 }
 
-void add_newton_matrix(StageEquations& eq, Entries& entries) {
+Index rod_unknowns(const StageEquations& eq) {
+  return eq.rods.as_unknowns ? eq.rods.tension.size() : 0;
+}
+
+Index unknowns(const StageEquations& eq) {
+  return (eq.c.s - 1) * eq.dX.rows() + multipliers(eq) + rod_unknowns(eq);
+}
+
+// In Y_j = -h^2 w_j dN_j: l_k(tau_j) D_j^T Y_j of row k, and of the rows at tau_j
+//     sum_i [l_i(tau_j) dR/dz + l_i'(tau_j)/h dR/dz'] dX_i + C / (h^2 w_j) Y_j = -R_j.
+void add_rod_blocks(Entries& entries, StageEquations& eq, Index first) {
+  const Index n = eq.dX.rows(), count = eq.rods.tension.rows();
+  SparseRows directions, by_z, by_w;
+  for (Index j = 0; j < eq.c.tau.size(); ++j) {
+    const Index rows = first + j * count;
+    eq.rod_derivatives(j, directions, by_z, by_w);
+    for (Index k = 0; k + 1 < eq.c.s; ++k)
+      add_block(entries, directions, k * n, rows, eq.c.value(k, j), true);
+    for (Index i = 1; i < eq.c.s; ++i) {
+      add_block(entries, by_z, rows, (i - 1) * n, eq.c.value(i, j), false);
+      add_block(entries, by_w, rows, (i - 1) * n, eq.c.slope(i, j) / eq.h, false);
+    }
+  }
+}
+
+// The diagonal C / (h^2 w_j) of the rods' rows, after scaling. Rods so stiff that they are redundant for the
+// matrix count as a little less stiff there.
+void add_compliances(Entries& entries, const StageEquations& eq, Index first, const VectorXd& scale) {
+  constexpr double least = 1e-15;
+  const Index count = eq.rods.tension.rows();
+  for (Index j = 0; j < eq.c.tau.size(); ++j)
+    for (Index i = 0; i < count; ++i) {
+      const Index at = first + j * count + i;
+      const double diagonal = eq.rods.compliance(i) / (eq.h * eq.h * eq.c.weight[j]);
+      entries.add_scaled(at, at, std::max(diagonal * scale[at] * scale[at], least));
+    }
+}
+
+void add_newton_matrix(StageEquations& eq, const VectorXd& scale, Entries& entries) {
   const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
   SparseRows G = eq.system.jacobian_pattern();
   std::vector<double> scratch;
@@ -106,30 +151,38 @@ void add_newton_matrix(StageEquations& eq, Entries& entries) {
     eq.system.jacobian(eq.Q.col(stages), G, scratch);
     add_block(entries, G, stages * n, (stages - 1) * n, 1.0, false);
   }
-  const Index size = stages * n + multipliers(eq);
+  const Index rods = stages * n + multipliers(eq);
   if (!eq.system.constant_forces()) add_force_blocks(entries, eq);
-  for (Index i = stages * n; i < size; ++i) entries.add_scaled(i, i, -SaddleSolver::standard_regularisation);
+  for (Index i = stages * n; i < rods; ++i) entries.add_scaled(i, i, -SaddleSolver::standard_regularisation);
+  if (!eq.rods.as_unknowns) return;
+  add_rod_blocks(entries, eq, rods);
+  add_compliances(entries, eq, rods, scale);
 }
 
 VectorXd right_hand_side(const StageEquations& eq) {
-  const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
-  VectorXd b(stages * n + multipliers(eq));
+  const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1,
+              rods = stages * n + multipliers(eq);
+  VectorXd b(unknowns(eq));
   for (Index k = 0; k < stages; ++k) {
     b.segment(k * n, n) = -eq.h * eq.momentum.col(k);
     if (!eq.at_ends) b.segment(stages * n + k * m, m) = -eq.phi.col(k);
   }
-  if (eq.at_ends) b.tail(m) = -eq.phi.col(stages - 1);
+  if (eq.at_ends) b.segment(stages * n, m) = -eq.phi.col(stages - 1);
+  if (eq.rods.as_unknowns) b.tail(b.size() - rods) = -eq.rods.residual.reshaped();
   return b;
 }
 
 void apply(StageEquations& eq, const VectorXd& x) {
-  const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
+  const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1,
+              rods = stages * n + multipliers(eq), count = eq.rods.tension.rows();
   for (Index j = 0; j < stages; ++j) {
     eq.dX.col(j) += x.segment(j * n, n);
     for (Index k = 0; k < stages && !eq.at_ends; ++k)
       eq.lambda.col(k) -= (eq.c.C(k, j) / (eq.h * eq.h * eq.c.b[k])) * x.segment(stages * n + j * m, m);
+    if (eq.rods.as_unknowns)
+      eq.rods.tension.col(j) -= x.segment(rods + j * count, count) / (eq.h * eq.h * eq.c.weight[j]);
   }
-  if (eq.at_ends) eq.lambda.col(0) -= x.tail(m) / (eq.h * eq.h * eq.multiplier_weight(0));
+  if (eq.at_ends) eq.lambda.col(0) -= x.segment(stages * n, m) / (eq.h * eq.h * eq.multiplier_weight(0));
 }
 
 }  // namespace
@@ -137,7 +190,7 @@ void apply(StageEquations& eq, const VectorXd& x) {
 bool FullNewton::Factors::compute(StageEquations& eq, const VectorXd& scale) {
   const bool small = scale.size() <= largest_dense;
   Entries entries(scale, small ? &matrix_ : nullptr);
-  add_newton_matrix(eq, entries);
+  add_newton_matrix(eq, scale, entries);
   if (small) {
     dense_.compute(matrix_);
     return true;
@@ -154,14 +207,18 @@ VectorXd FullNewton::Factors::solve(const VectorXd& b) const {
 }
 
 void FullNewton::set_scale(const StageEquations& eq) {
-  const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1;
+  const Index n = eq.dX.rows(), m = eq.lambda.rows(), stages = eq.c.s - 1,
+              rods = stages * n + multipliers(eq), count = eq.rods.tension.rows();
   SparseRows G = eq.system.jacobian_pattern();
   std::vector<double> scratch;
   eq.system.jacobian(eq.Q.col(0), G, scratch);
   const Scales s = scales_of(eq, G);
-  scale_.resize(stages * n + multipliers(eq));
+  scale_.resize(unknowns(eq));
   for (Index k = 0; k < stages; ++k) scale_.segment(k * n, n) = s.coordinate;
-  for (Index at = stages * n; m > 0 && at < scale_.size(); at += m) scale_.segment(at, m) = s.multiplier;
+  for (Index at = stages * n; m > 0 && at < rods; at += m) scale_.segment(at, m) = s.multiplier;
+  if (!eq.rods.as_unknowns) return;
+  const VectorXd of_rods = row_scales(eq.system.giving_rod_directions(eq.Q.col(0)), s.coordinate);
+  for (Index at = rods; at < scale_.size(); at += count) scale_.segment(at, count) = of_rods;
 }
 
 StepStatus FullNewton::solve(StageEquations& eq, double wanted, double accepted, bool keep,

@@ -17,10 +17,11 @@ namespace unfurl {
 //
 // (with constraints at the ends only, one Y = -h^2/2 dlambda beside G(Q_1)^T in the first row, and only the
 // last of the second), with the derivatives of the forces that vary added to the first row, and a small e for
-// redundant rows. One matrix serves as long as every iteration gains a digit. It is slow (a sparse LU of all
-// stages at once, with allocation) and meant for the few steps near singular poses at which the simplified
-// iteration does not contract, and for forces that are stiff at the step, of which that iteration knows
-// nothing.
+// redundant rows. Axial forces of rods that give, where they are unknowns (elastic_stages.hpp), have columns
+// and rows behind these, with their compliances on the diagonal. One matrix serves as long as every iteration
+// gains a digit. It is slow (a sparse LU of all stages at once, with allocation) and meant for the few steps
+// near singular poses at which the simplified iteration does not contract, and for forces that are stiff at
+// the step, of which that iteration knows nothing.
 class FullNewton {
  public:
   // keep: begin with the matrix of the last step, where that is known.

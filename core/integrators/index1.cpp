@@ -30,11 +30,11 @@ bool Index1::assemble(double t, const ConstVec& z, const ConstVec& w, const Vect
   system_.jacobian(q_, G_, scratch_);
   if (!saddle_.factorise(G_)) return false;
   f_.setZero();
-  system_.add_applied_force(t, q_, v_, 1.0, f_);
   if (tension.size() > 0) {
-    VectorXd by_lengths(tension.size());
-    system_.giving_rod_forces(t, q_, v_, by_lengths);
-    system_.add_giving_rod_forces(q_, tension - by_lengths, 1.0, f_);
+    system_.add_other_force(t, q_, v_, 1.0, f_);
+    system_.add_giving_rod_forces(q_, tension, 1.0, f_);
+  } else {
+    system_.add_applied_force(t, q_, v_, 1.0, f_);
   }
   system_.reduce_force(f_, force_);
   system_.constraint_bias(t, q_, v_, bias_);

@@ -11,6 +11,25 @@
 
 namespace unfurl {
 
+Claims dvm_claims(const SolverOptions& options) {
+  Claims claims{.symplectic = true,
+                .symmetric = true,
+                .implicit = true,
+                .holds_positions = true,
+                .holds_velocities = true,
+                .conserves_momentum_maps = true};
+  const int s = options.stages;
+  if (options.constraints_at == "ends")
+    claims.order = 2;
+  else if (options.nodes == "lobatto")
+    claims.order = 2 * s - 2;
+  else
+    claims.order =
+        2 *
+        ((s + 1) / 2);  // that of a symmetric interpolatory quadrature: exact to degree s - 1, s for odd s
+  return claims;
+}
+
 std::span<const Method> methods() {
   static const std::array rows{
       Method{"dvm", "discrete variational (Galerkin) method, constraints held to round-off", dvm_claims,

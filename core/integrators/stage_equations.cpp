@@ -9,6 +9,7 @@ StageEquations::StageEquations(const System& sys, const GalerkinCoefficients& co
     : system(sys),
       c(coefficients),
       at_ends(ends),
+      rods(sys, coefficients),
       C_size_(coefficients.C.lpNorm<Eigen::Infinity>()),
       rows_(sys) {
   const Index n = system.solved_coordinates(), m = system.constraints(), k = c.s - 1,
@@ -69,11 +70,15 @@ void StageEquations::use_step() {
 }
 
 void StageEquations::look_at_forces() {
-  stiffness_ = damping_ = 0;
+  stiffness_ = damping_ = omega_ = rate_ = 0;
   looked_ = t;
   if (system.constant_forces()) return;
   system.expand_rate(w_0_, v_tau_);
   system.force_derivatives(t, q_0_, v_tau_, by_z_, by_w_);
+  omega_ = std::sqrt(rate_bound(by_z_, system.mass()));
+  rate_ = rate_bound(by_w_, system.mass());
+  // Forces that are unknowns are not known by rounded coordinates.
+  if (rods.as_unknowns) system.force_derivatives(t, q_0_, v_tau_, rods.tension.col(0), by_z_, by_w_);
   const auto largest_entry = [](const SparseRows& A) {
     return A.nonZeros() > 0 ? largest_magnitude(A.valuePtr(), A.nonZeros()) : 0.0;
   };
@@ -82,11 +87,18 @@ void StageEquations::look_at_forces() {
 }
 
 double StageEquations::h_omega() const {
-  return std::abs(h) * std::sqrt(rate_bound(by_z_, system.mass()));
+  return std::abs(h) * omega_;
 }
 
 double StageEquations::h_rate() const {
-  return std::abs(h) * rate_bound(by_w_, system.mass());
+  return std::abs(h) * rate_;
+}
+
+void StageEquations::take_rods_as_unknowns(bool unknowns) {
+  if (!rods.tension.allFinite()) rods.tension.setZero();
+  if (!rods.any() || unknowns == rods.as_unknowns) return;
+  rods.as_unknowns = unknowns;
+  look_at_forces();
 }
 
 // Rows go by the reach of their own nodes where that of all is far beyond the shortest length.
@@ -142,20 +154,31 @@ void StageEquations::move_to(Index j) {
 
 void StageEquations::applied_forces() {
   force_.setZero();
+  rods.start_measuring();
   for (Index j = 0; j < c.tau.size(); ++j) {
     move_to(j);
-    system.add_applied_force(t + c.tau[j] * h, q_tau_, v_tau_, 1.0, force_.col(j));
+    const double at = t + c.tau[j] * h;
+    if (rods.as_unknowns) {
+      system.add_other_force(at, q_tau_, v_tau_, 1.0, force_.col(j));
+      rods.evaluate(j, at, q_tau_, v_tau_, force_.col(j));
+    } else {
+      system.add_applied_force(at, q_tau_, v_tau_, 1.0, force_.col(j));
+    }
   }
 }
 
-void StageEquations::end_tension(VectorXd& tension) {
-  tension.setZero(static_cast<Index>(system.giving_rods().size()));
-  VectorXd at_point(tension.size());
-  for (Index j = 0; j < c.tau.size(); ++j) {
+void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd& tension) {
+  for (Index j = 0; j < c.tau.size() && !rods.as_unknowns; ++j) {
     move_to(j);
-    system.giving_rod_forces(t + c.tau[j] * h, q_tau_, v_tau_, at_point);
-    tension += c.tau_to_end[j] * at_point;
+    rods.take_from_lengths(j, t + c.tau[j] * h, q_tau_, v_tau_);
   }
+  q_tau_ = Q.col(c.s - 1);
+  system.expand_rate(w_1, v_tau_);
+  tension.resize(rods.tension.rows());
+  system.giving_rod_forces(t + h, q_tau_, v_tau_, tension);
+  const SparseRows directions = system.giving_rod_directions(q_tau_);
+  for (Index i = 0; i < tension.size(); ++i)
+    if (rods.h_omega(i, h, directions) > resolved) tension[i] = rods.tension.row(i).dot(c.tau_to_end);
 }
 
 bool StageEquations::held() {
@@ -174,7 +197,17 @@ bool StageEquations::held() {
 
 void StageEquations::force_derivatives(Index j, SparseRows& by_z, SparseRows& by_w) {
   move_to(j);
-  system.force_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, by_z, by_w);
+  const double at = t + c.tau[j] * h;
+  if (rods.as_unknowns)
+    system.force_derivatives(at, q_tau_, v_tau_, rods.tension.col(j), by_z, by_w);
+  else
+    system.force_derivatives(at, q_tau_, v_tau_, by_z, by_w);
+}
+
+void StageEquations::rod_derivatives(Index j, SparseRows& directions, SparseRows& by_z, SparseRows& by_w) {
+  move_to(j);
+  directions = system.giving_rod_directions(q_tau_);
+  system.giving_rod_rows(q_tau_, v_tau_, by_z, by_w);
 }
 
 // h sum_j w_j l_k(tau_j) F(tau_j)
@@ -263,6 +296,11 @@ void StageEquations::measure_rows() {
     step_sizes_known_ = true;
   }
   if (!constant) add_applied();
+  if (rods.as_unknowns) {
+    rod_sizes_.setZero(Q.rows());
+    rods.add_sizes(h, rod_sizes_);
+    rows_.add_forces(rod_sizes_);
+  }
   const double weight = scale_.lpNorm<Eigen::Infinity>();
   for (Index r = 0; r < lambda.rows(); ++r) rows_.add_multiplier(r, weight * largest(lambda, r));
   motion_.resize(dX.rows());
@@ -282,6 +320,7 @@ void StageEquations::measure_rows() {
 // and the coordinates, whose rounding moves a row by that much.
 void StageEquations::measure() {
   reach_ = largest_magnitude(Q.data(), Q.size());
+  if (rods.as_unknowns) force_scale_ = std::max(force_scale_, std::abs(h) * rods.largest_force());
   double size = force_scale_ + start_size_;
   size = std::max(size, std::abs(h) * stiffness_ * reach_);
   size = std::max(size, inertia_size_ * C_size_ / std::abs(h));
@@ -290,6 +329,10 @@ void StageEquations::measure() {
   if (far_ || std::abs(h) * size > harmless_noise * least_mass_ * reach_)
     with_columns(c.s - 1, [this](auto k) { measure_rows<k()>(); });
   with_columns(c.s - 1, [this](auto k) { measure_constraints<k()>(); });
+  if (rods.as_unknowns) {
+    constraint_level_ = std::max(constraint_level_, rods.level());
+    finite_ = finite_ && std::isfinite(rods.level());
+  }
   if (!finite_) momentum_level_ = constraint_level_ = std::numeric_limits<double>::infinity();
 }
 

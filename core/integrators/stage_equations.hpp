@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/integrators/constraint_increment.hpp"
+#include "core/integrators/elastic_stages.hpp"
 #include "core/integrators/galerkin.hpp"
 #include "core/integrators/row_noise.hpp"
 #include "core/system/system.hpp"
@@ -38,17 +39,27 @@ class StageEquations {
   // true: phi is what the step changes, Phi(Q_j) - Phi(Q_1), whose round-off is relative to that change and
   // not to the coordinates; the start's own residual is left alone. Slower; for nearly singular poses.
   bool in_increments = false;
-  // dF/dz, dF/dz' at point j of the quadrature (allocates).
+  // dF/dz, dF/dz' at point j of the quadrature, at given forces of the rods that give where these are
+  // unknowns (allocates).
   void force_derivatives(Index j, SparseRows& by_z, SparseRows& by_w);
+  // d|d|/dz of these rods there, and the derivatives of their rows by z and z' (allocates).
+  void rod_derivatives(Index j, SparseRows& directions, SparseRows& by_z, SparseRows& by_w);
+  // Whether the forces of rods that give are unknowns, which starts them as they were last.
+  void take_rods_as_unknowns(bool unknowns);
   // Looks at the derivatives of the forces at the step's start: what they make of round-off, and how stiff
   // they are for the step (allocates).
   void look_at_forces();
-  void forget_forces() { stiffness_ = -1; }  // look at them again before the next step
-  double h_omega() const;                    // h sqrt(k / m) of the stiffest spring, from above
-  double h_rate() const;                     // h c / m of the strongest damper, from above
-  // Axial forces of the rods that give at the step's end, by the polynomial through those at the points of
-  // the quadrature: where waves are not resolved, the end's coordinates do not tell them.
-  void end_tension(VectorXd& tension);
+  // Forgets the forces: they are looked at before the next step.
+  void restart() {
+    stiffness_ = -1;
+    rods.tension.setZero();
+  }
+  double h_omega() const;  // h sqrt(k / m) of the stiffest spring, from above
+  double h_rate() const;   // h c / m of the strongest damper, from above
+  // Axial forces of the rods that give at the step's end, with velocity w_1: by the polynomial through those
+  // at the points of the quadrature for rods of h omega > `resolved`, whose waves are not resolved, so that
+  // the end's coordinates do not tell them; else by their lengths.
+  void end_tension(const VectorXd& w_1, double resolved, VectorXd& tension);
   // Whether the constraints leave no motion free (looked for once, at the present start, and not in
   // structures of many coordinates): lengths are what drives make them, and tell forces whatever the step.
   bool held();
@@ -76,6 +87,7 @@ class StageEquations {
   VectorXd z0, p0;
   Interleaved dX, lambda, momentum, phi;
   Interleaved Q;  // [3 nodes x s]
+  ElasticStages rods;
 
  private:
   static constexpr double momentum_noise = 4 * std::numeric_limits<double>::epsilon();
@@ -103,7 +115,7 @@ class StageEquations {
   VectorXd time_, scale_;  // of nodes 2..s [s]; -h b_k of nodes 1..s-1
   double C_size_ = 0;      // largest entry of C
   double start_size_ = 0;  // of p0
-  VectorXd f_end_, q_tau_, v_tau_, w_tau_, w_0_;
+  VectorXd f_end_, q_tau_, v_tau_, w_tau_, w_0_, rod_sizes_;
   System::StageScratch scratch_;
   std::unique_ptr<ConstraintIncrement> increment_;  // made when first needed
   VectorXd dX_j_, phi_j_;
@@ -114,10 +126,11 @@ class StageEquations {
   // Largest magnitudes: forces, coordinates, M dX, momentum; whether all residuals are finite.
   double force_scale_ = 0, reach_ = 0, inertia_size_ = 0, momentum_size_ = 0;
   bool finite_ = true;
-  SparseRows by_z_, by_w_;  // dF/dz [N/m], dF/dz' [N s/m] where they were looked at last
-  double stiffness_ = -1;   // largest entry of by_z_; negative: not looked at yet
-  double damping_ = 0;      // and of by_w_
-  double looked_ = 0;       // when [s]
+  SparseRows by_z_, by_w_;       // dF/dz [N/m], dF/dz' [N s/m] where they were looked at last
+  double stiffness_ = -1;        // largest entry of by_z_; negative: not looked at yet
+  double damping_ = 0;           // and of by_w_
+  double omega_ = 0, rate_ = 0;  // bounds of sqrt(k / m) and of c / m [1/s], rods that give included
+  double looked_ = 0;            // when [s]
   std::optional<bool> held_;
   double least_mass_ = 0, steepest_ = 0;  // smallest M_ii; largest sum over k of |l_k'(tau_j)|
   RowNoise rows_;                         // the same row by row, where that makes a difference

@@ -172,13 +172,16 @@ std::string pin_problem(const Structure& structure, const System& system, const 
 }
 
 void check_pins(const Scene& scene, const Structure& structure, const System& system) {
-  for (const Force& force : structure.forces) {
-    if (!(PinLoads::arm(force) > 0)) continue;
-    const std::string problem = pin_problem(structure, system, force);
-    if (problem.empty()) continue;
+  const auto refuse_friction = [&](const std::string& name, const std::string& problem) {
+    if (problem.empty()) return;
     for (const SceneElement& e : scene.forces)
-      if (e.enabled && e.name == force.name) throw SceneError({{e.where, e.key + ".pin_friction", problem}});
-  }
+      if (e.enabled && e.name == name) throw SceneError({{e.where, e.key + ".pin_friction", problem}});
+  };
+  for (const Force& force : structure.forces)
+    if (PinLoads::arm(force) > 0) refuse_friction(force.name, pin_problem(structure, system, force));
+  const auto locked =
+      PinLoads::self_locking(structure, system.node_mass(), 0.0, node_positions(structure).data());
+  refuse_friction(locked.friction, locked.problem);
 }
 
 void refuse_endless_runs(const Scene& scene, const Model& model) {

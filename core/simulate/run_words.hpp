@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/integrators/integrator.hpp"
+#include "core/simulate/trajectory.hpp"
 
 namespace unfurl {
 
@@ -23,6 +24,9 @@ inline const char* reason(StepStatus status) {
   }
   return "";
 }
+
+// "; ..." of a hinge that its dry friction locks at a state, with what to do; empty: there is none.
+std::string what_locks(const Model& model, const State& state);
 
 // "0.125 s"
 inline std::string seconds(double t) {

@@ -431,13 +431,8 @@ void System::force_derivatives(double t, const ConstVec& q, const ConstVec& v, S
                                SparseRows& by_w) const {
   ForceDerivative by_q, by_v;
   for (const auto& block : data_->forces) block->derivatives(moment(t), q.data(), v.data(), by_q, by_v);
-  const auto reduced = [&](const ForceDerivative& entries) {
-    SparseRows A(coordinates(), coordinates());
-    A.setFromTriplets(entries.begin(), entries.end());
-    return SparseRows(SparseRows(data_->B.transpose() * A) * data_->B);
-  };
-  by_z = reduced(by_q);
-  by_w = reduced(by_v);
+  by_z = data_->reduced_forces(by_q);
+  by_w = data_->reduced_forces(by_v);
 }
 
 Index System::all_constraints() const {

@@ -29,6 +29,8 @@
 
 namespace unfurl {
 
+class ElasticRods;
+
 class System {
  public:
   System(const Structure& structure, bool eliminate_linear);
@@ -98,7 +100,9 @@ class System {
 
   double kinetic_energy(const ConstVec& w) const;    // [J]
   double potential_energy(const ConstVec& q) const;  // gravity and springs [J]
-  double load_work(const ConstVec& q) const;         // of the constant loads since q = 0 [J]
+  // The same at a state in this pose: rods whose forces its coordinates do not tell have stored C N^2 / 2.
+  double potential_energy(const State& state, const ConstVec& q) const;
+  double load_work(const ConstVec& q) const;  // of the constant loads since q = 0 [J]
 
   // Power of the forces that have no potential [W]: loads that vary, or dampers (negative).
   bool has_power(bool dissipative) const;
@@ -113,6 +117,16 @@ class System {
   // Rods that give (indices of Structure::rods) and their axial forces, of all that each stands for [N].
   const std::vector<int>& giving_rods() const;
   void giving_rod_forces(double t, const ConstVec& q, const ConstVec& v, MutVec force) const;
+  // What methods that take these forces as unknowns ask for; nullptr: no rod gives.
+  const ElasticRods* elastic_rods() const;
+  void add_other_force(double t, const ConstVec& q, const ConstVec& v, double scale,
+                       MutVec f) const;  // F without that of rods that give
+  // d|d|/dz of these rods, and the derivatives of their rows (elastic_rods.hpp) by z and z' (allocate).
+  SparseRows giving_rod_directions(const ConstVec& q) const;
+  void giving_rod_rows(const ConstVec& q, const ConstVec& v, SparseRows& by_z, SparseRows& by_w) const;
+  // dF/dz and dF/dz' where these forces are given (allocates).
+  void force_derivatives(double t, const ConstVec& q, const ConstVec& v, const ConstVec& tension,
+                         SparseRows& by_z, SparseRows& by_w) const;
   // f += scale * what rods with these axial forces pull their nodes with.
   void add_giving_rod_forces(const ConstVec& q, const ConstVec& force, double scale, MutVec f) const;
 

@@ -39,6 +39,9 @@ struct System::Data {
   std::vector<int> all_columns;
   std::vector<std::size_t> all_row_ends, all_block_entries;
 
+  // A derivative by node coordinates as one by the solved ones, of forces and of other rows.
+  SparseRows reduced_forces(const ForceDerivative& entries) const;
+  SparseRows reduced_rows(const ForceDerivative& entries, Index count) const;
   void build_blocks(const Structure& structure, bool eliminate_linear);
   void add_blocks(const Structure& structure, bool eliminate_linear);
   void build_coordinates();

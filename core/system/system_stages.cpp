@@ -15,6 +15,57 @@ void System::add_giving_rod_forces(const ConstVec& q, const ConstVec& force, dou
   if (data_->elastic_rods) data_->elastic_rods->add_forces(q.data(), force.data(), scale, f.data());
 }
 
+const ElasticRods* System::elastic_rods() const {
+  return data_->elastic_rods;
+}
+
+void System::add_other_force(double t, const ConstVec& q, const ConstVec& v, double scale, MutVec f) const {
+  f += scale * data_->constant_force;
+  for (const auto& block : data_->forces)
+    if (!block->of_giving_rods()) block->add(moment(t), q.data(), v.data(), scale, f.data());
+}
+
+double System::potential_energy(const State& state, const ConstVec& q) const {
+  if (state.tension.size() == 0) return potential_energy(q);
+  double sum = -data_->gravity_force.dot(q) + data_->elastic_rods->stored(state.tension.data());
+  for (const auto& block : data_->forces)
+    if (!block->of_giving_rods()) sum += block->potential(moment(since_), q.data());
+  return sum;
+}
+
+SparseRows System::Data::reduced_forces(const ForceDerivative& entries) const {
+  return SparseRows(B_transposed * reduced_rows(entries, coordinates));
+}
+
+SparseRows System::Data::reduced_rows(const ForceDerivative& entries, Index count) const {
+  SparseRows A(count, coordinates);
+  A.setFromTriplets(entries.begin(), entries.end());
+  return SparseRows(A * B);
+}
+
+SparseRows System::giving_rod_directions(const ConstVec& q) const {
+  ForceDerivative by_q;
+  if (data_->elastic_rods) data_->elastic_rods->directions(q.data(), by_q);
+  return data_->reduced_rows(by_q, std::ssize(data_->giving));
+}
+
+void System::giving_rod_rows(const ConstVec& q, const ConstVec& v, SparseRows& by_z, SparseRows& by_w) const {
+  ForceDerivative by_q, by_v;
+  if (data_->elastic_rods) data_->elastic_rods->row_derivatives(q.data(), v.data(), by_q, by_v);
+  by_z = data_->reduced_rows(by_q, std::ssize(data_->giving));
+  by_w = data_->reduced_rows(by_v, std::ssize(data_->giving));
+}
+
+void System::force_derivatives(double t, const ConstVec& q, const ConstVec& v, const ConstVec& tension,
+                               SparseRows& by_z, SparseRows& by_w) const {
+  ForceDerivative by_q, by_v;
+  for (const auto& block : data_->forces)
+    if (!block->of_giving_rods()) block->derivatives(moment(t), q.data(), v.data(), by_q, by_v);
+  if (data_->elastic_rods) data_->elastic_rods->turning(q.data(), tension.data(), by_q);
+  by_z = data_->reduced_forces(by_q);
+  by_w = data_->reduced_forces(by_v);
+}
+
 void System::reduce_sizes(const ConstVec& f, MutVec r) const {
   r.setZero();
   for (int i = 0; i < data_->B.outerSize(); ++i)

@@ -125,4 +125,20 @@ TEST_CASE("friction by a pin's force where there is no such force is refused wit
   CHECK(error_of(pendulum, {twin}).find("which rigid rods leave open here ('arm'") != std::string::npos);
 }
 
+// A torque tau turns the rod of mass m with M at its end by I = m l^2 / 3 + M l^2 about P, which bears
+// (m / 2 + M) l tau / I of it: mu r must be below l (m / 3 + M) / (m / 2 + M), without mass below l.
+TEST_CASE("a pin whose friction locks it is refused before the run, with the rod and what is allowed") {
+  const auto with = [&](double mu, const std::string& more = "") {
+    return error_of(pendulum,
+                    {"forces[0].pin_friction=" + std::to_string(mu), more.empty() ? "title=''" : more});
+  };
+  CHECK(with(9.9) == "");  // mu r = 0.792 m
+  const std::string said = with(10.1);
+  for (const char* part : {"forces[0].pin_friction", "0.808 m", "below 0.8 m", "rod arm of 0.8 m", "kinetic"})
+    CHECK_THAT(said, Catch::Contains(part));
+  // 0.8 m (0.2 + 1.3) / (0.3 + 1.3) = 0.75 m
+  CHECK(with(9.3, "structure.rods[0].mass=0.6") == "");
+  CHECK_THAT(with(9.4, "structure.rods[0].mass=0.6"), Catch::Contains("below 0.75 m"));
+}
+
 }  // namespace pin_friction_test

@@ -132,7 +132,7 @@ TEST_CASE("elastic rods: the stiffer, the nearer to rigid ones, by 1 / EA") {
 TEST_CASE("elastic rods: forces of a rod that no step resolves are those of a rigid one") {
   const Simulation rigid = run_scene(arms(1e9, "false"), {"solver.stages=5", "solver.step=0.0025"});
   const Diagnostics d = diagnose(rigid);
-  for (const double stiff : {1e7, 1e9, 1e11}) {
+  for (const double stiff : {1e7, 1e9, 1e11, 1e13, 1e15}) {
     // Damped, so that the wave of the sudden load dies out.
     const Simulation run =
         run_scene(arms(stiff, "true", "damping_time = 1e-4\n"), {"solver.stages=5", "solver.step=0.0025"});
@@ -325,6 +325,11 @@ TEST_CASE("elastic rods: the fastest period, and what is said of a step beyond i
   const std::string said = elastic_step_warning(*model, start, options);
   for (const char* part : {"the step of 0.1", "period, 0.56", "solver.step", "damping_ratio", "quasi-static"})
     CHECK_THAT(said, Catch::Contains(part));
+  CHECK(said.find("four stages") == std::string::npos);  // nothing is spoiled yet
+  options.step = 1.3 * period;
+  CHECK_THAT(elastic_step_warning(*model, start, options), Catch::Contains("solver.stages = 4"));
+  options.stages = 4;
+  CHECK(elastic_step_warning(*model, start, options).find("stages") == std::string::npos);
   const Simulation run = run_scene(oscillator(), {"solver.step=" + number(0.3 * period)});
   CHECK(std::count(run.warnings.begin(), run.warnings.end(), said) == 1);
 }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "core/forces/elastic_rods.hpp"
+#include "core/integrators/galerkin.hpp"
+#include "core/system/system.hpp"
+
+namespace unfurl {
+
+// Rods that give, with their axial forces N as unknowns of a step, at the points tau_j of its quadrature:
+//
+//     R_j = e(tau_j) + damping_time e'(tau_j) - C N_j = 0
+//
+// (forces/elastic_rods.hpp). The motion is the one that N = (e + damping_time e') / C has; but Newton's
+// matrix has C where that one has 1 / C, and what is left of R moves N by noise / (C + h^2 / m).
+class ElasticStages {
+ public:
+  ElasticStages(const System& system, const GalerkinCoefficients& coefficients);
+  bool any() const { return rods_ != nullptr; }
+
+  void start_measuring() { level_ = 0; }
+  // f += the forces of the rods at point j, where the nodes have this pose and velocity; finds R_j.
+  void evaluate(Index j, double t, const VectorXd& q, const VectorXd& v, MutVec f);
+  // The forces at point j that the lengths tell.
+  void take_from_lengths(Index j, double t, const VectorXd& q, const VectorXd& v);
+  double level() const { return level_; }  // the largest |R| in units of its noise
+  double largest_force() const { return largest_magnitude(tension.data(), tension.size()); }
+  // Impulses whose directions are known to what rounding the coordinates leaves, at their nodes [N s].
+  void add_sizes(double h, VectorXd& f) const;
+  // h sqrt(k / m) of rod i moving alone, from above.
+  double h_omega(Index i, double h, const SparseRows& directions) const;
+  // Rods whose waves turn many times in a step, h omega > `fast`, become constraints of index 3, whose
+  // velocities the Gauss points alone do not hold: what is left of D w at a step's end, D = d|d|/dz, would
+  // grow from step to step. Here it is taken out, in the metric of the mass and with the rigid rows' own: M w
+  // + G^T mu + D^T nu = p, G w = rate, D w = the rods' warming. False: there is no such rod.
+  struct Rigid {
+    const SparseRows& G;
+    const VectorXd &p, &rate;
+  };
+  bool still(double fast, double t, double h, const VectorXd& q, const Rigid& rigid, VectorXd& w,
+             VectorXd& mu) const;
+  double compliance(Index i) const { return compliance_[i]; }
+
+  MatrixXd tension, residual;  // N [N], R [m]: rods x points
+  bool as_unknowns = false;    // false: forces are what lengths tell, as those of any spring
+
+ private:
+  const System& system_;
+  const GalerkinCoefficients& c_;
+  const ElasticRods* rods_;
+  VectorXd compliance_, stretch_;
+  double level_ = 0;
+};
+
+}  // namespace unfurl
