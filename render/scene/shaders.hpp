@@ -377,9 +377,8 @@ void main() {  // one triangle over the whole picture, behind everything
   gl_Position = vec4(corner, 1.0, 1.0);
 })";
 
-// A gradient; before it stars, and the Earth as it is seen from a low orbit: day and night, clouds, and air
-// that glows at its limb. Programs of their own with STARS and PLANET, which cost many times the gradient:
-// software takes all branches of one.
+// A gradient; with STARS and PLANET, programs of their own as above, stars and the Earth seen from a low
+// orbit: day and night, clouds, and air that glows at its limb.
 inline constexpr const char* background_fragment = R"(
 uniform vec4 background_top, background_bottom;
 uniform float picture_height, stars;
