@@ -13,7 +13,6 @@ using namespace unfurl;
 
 namespace self_stress_test {
 
-
 namespace {
 
 struct Judged {
