@@ -97,7 +97,9 @@ bool LiveSession::take_results() {
 
 void LiveSession::take_run(const SimulationOutcome& outcome) {
   state_.problems = outcome.problems;
-  state_.message = outcome.message;
+  // What was said of the same document ("saved ...") stays when its run comes.
+  const bool another = !outcome.run || (state_.shown && state_.shown->document != outcome.run->document);
+  if (another || !outcome.message.empty()) state_.message = outcome.message;
   if (!outcome.run || outcome.run->simulation.trajectory.empty()) return;
   const bool first = !state_.shown;
   let_go();  // of the run before

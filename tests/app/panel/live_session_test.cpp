@@ -60,6 +60,17 @@ TEST_CASE("a session follows its document: runs, errors, pictures that need no r
   CHECK(state.shown->scene.structure.real("post_length") == 1.5);  // the older run stays
 }
 
+TEST_CASE("what is said of a document stays when its run comes, and goes with the run of another") {
+  LiveSession session(quick(), {.at = 0, .measure_errors = false, .wake = {}, .picture = {}});
+  session.state().message = "saved";
+  settle(session);
+  REQUIRE(session.state().shown);
+  CHECK(session.state().message == "saved");
+  session.state().history.edit("structure.post_length", 1.3);
+  settle(session);
+  CHECK(session.state().message.empty());
+}
+
 TEST_CASE("an intent that fails says why, and those behind it are done all the same") {
   LiveSession session(quick(), {.at = 0, .measure_errors = false, .wake = {}, .picture = {}});
   session.state().intents.emplace_back([](LiveSession&) { throw std::runtime_error("no such thing"); });
