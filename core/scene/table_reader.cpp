@@ -100,7 +100,7 @@ void TableReader::problem(std::string_view name, std::string message) {
 }
 
 const TomlTree* TableReader::member(std::string_view name) {
-  known_.push_back(name);
+  known_.emplace_back(name);
   const TomlTree* value = table_ ? table_->find(name) : nullptr;
   if (value) notes_.locations[key(name)] = value->where;
   return value;
@@ -202,7 +202,7 @@ void TableReader::finish() {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const auto& where =
         value.key_where.line > 0 || value.key_where.file == override_source ? value.key_where : value.where;
-    std::string message = "unknown key" + did_you_mean(name, known_);
+    std::string message = "unknown key" + did_you_mean(name, {known_.begin(), known_.end()});
     if (message.ends_with("...")) message += "; all of them: unfurl list keys";
     notes_.add(where, key(name), std::move(message));
   }

@@ -59,7 +59,7 @@ class TableReader {
   std::string path_;
   SourceLocation where_;
   SceneNotes& notes_;
-  std::vector<std::string_view> known_;
+  std::vector<std::string> known_;  // own copies: a name may be a temporary
 };
 
 }  // namespace unfurl
