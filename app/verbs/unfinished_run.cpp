@@ -75,10 +75,24 @@ bool UnfinishedRun::find() {
   archive(good_);
   digest_.archive(archive);
   archive(stepper);
+  take_back(sizes);
   begin();
   tables_->cut(sizes);
   archived_.emplace(std::move(stepper));
   return true;
+}
+
+// A run that was killed while its tables took their places left some of them there.
+void UnfinishedRun::take_back(const RunTables::Sizes& sizes) const {
+  const std::uint64_t size[] = {sizes.series, sizes.trajectory, sizes.rod_forces};
+  for (std::size_t k = 0; k < std::size(tables); ++k) {
+    const fs::path path = folder() / tables[k], place = written_.directory() / tables[k];
+    std::error_code error;
+    if (!fs::exists(path, error) && fs::exists(place, error)) fs::rename(place, path, error);
+    const auto bytes = fs::file_size(path, error);
+    if (error || bytes < size[k])
+      throw FileError(path, "is shorter than the checkpoint beside it says; --force begins anew");
+  }
 }
 
 void UnfinishedRun::begin() {

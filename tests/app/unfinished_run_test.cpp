@@ -126,6 +126,32 @@ TEST_CASE("a run that is killed goes on from its checkpoint to the same bytes") 
   CHECK(run_program({"verify", killed}).code == 0);
 }
 
+// Its tables take their places one after the other, then the checkpoint goes.
+TEST_CASE("a run that is killed while its tables take their places goes on to the same bytes") {
+  const ScratchDirectory dir;
+  const std::string scene = dir.write("everything.toml", everything), whole = dir / "whole";
+  REQUIRE(run_program(run_of(scene, whole, {})).code == 0);
+  const std::vector<std::string> tables{"series.csv", "trajectory.csv", "rod_forces.csv"};
+  for (std::size_t moved = 1; moved <= tables.size(); ++moved) {
+    const std::string killed = dir / ("killed" + std::to_string(moved));
+    run_program(
+        run_of(scene, killed, {}),
+        {.interrupt_after_s = 0, .signal = SIGKILL, .first_wait_for = killed + "/unfinished/checkpoint"});
+    REQUIRE(fs::exists(killed + "/unfinished/checkpoint"));
+    for (std::size_t k = 0; k < moved; ++k)
+      fs::rename(killed + "/unfinished/" + tables[k], killed + "/" + tables[k]);
+    REQUIRE(run_program(run_of(scene, killed, {})).code == 0);
+    check_same(whole, killed);
+    CHECK(run_program({"verify", killed}).code == 0);
+  }
+  // And with a table that is lost it does not go on.
+  const std::string lost = dir / "lost";
+  run_program(run_of(scene, lost, {}),
+              {.interrupt_after_s = 0, .signal = SIGKILL, .first_wait_for = lost + "/unfinished/checkpoint"});
+  fs::remove(lost + "/unfinished/series.csv");
+  CHECK(run_program(run_of(scene, lost, {})).code == 5);
+}
+
 TEST_CASE("a checkpoint of another run is refused with one sentence and left alone") {
   const ScratchDirectory dir;
   const std::string out = dir / "out";
