@@ -61,8 +61,8 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
   std::ostringstream text;
   text.precision(3);
   text << "the step of " << options.step << " s does not resolve the fastest elastic period, " << period
-       << " s: such waves are kept but not followed, and forces at single states are theirs. To follow them, "
-          "solver.step = "
+       << " s: such waves are not followed, and forces at single states are theirs; dvm stops those whose "
+          "period is less than a sixteenth of the step. To follow them, solver.step = "
        << followed_share * period
        << (options.step > period && options.stages < 4
                ? "; with fewer than four stages they spoil velocities and forces: solver.stages = 4"
