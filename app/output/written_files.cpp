@@ -208,7 +208,9 @@ void WrittenFiles::before_file(const fs::path& target, const std::string& checks
 
 void WrittenFiles::keep_aside(const std::string& name) {
   const std::lock_guard lock(mutex_);
-  put_aside(directory_ / name);
+  const fs::path target = directory_ / name;
+  put_aside(target);
+  ::unlink(target.c_str());  // the other of two names; a folder has moved
 }
 
 void WrittenFiles::put_aside(const fs::path& target) {

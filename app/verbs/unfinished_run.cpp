@@ -52,6 +52,7 @@ std::string UnfinishedRun::fingerprint() const {
 }
 
 bool UnfinishedRun::find() {
+  if (lies_in(written_.directory())) keep_foreign_aside();
   if (!lies_in(written_.directory())) return false;
   const fs::path path = folder() / "checkpoint";
   std::ifstream in(path, std::ios::binary);
@@ -82,6 +83,16 @@ bool UnfinishedRun::find() {
   return true;
 }
 
+// What a person has under these names, or leads elsewhere, is neither cut nor written through.
+void UnfinishedRun::keep_foreign_aside() {
+  std::error_code error;
+  const auto there = [&](const fs::path& path) { return fs::exists(fs::symlink_status(path, error)); };
+  bool foreign = there(folder()) && !fs::is_directory(fs::symlink_status(folder(), error));
+  for (const char* name : {tables[0], tables[1], tables[2], "checkpoint"})
+    foreign = foreign || (there(folder() / name) && !written_.ours(std::string("unfinished/") + name));
+  if (foreign) written_.keep_aside("unfinished");
+}
+
 // A run that was killed while its tables took their places left some of them there.
 void UnfinishedRun::take_back(const RunTables::Sizes& sizes) const {
   const std::uint64_t size[] = {sizes.series, sizes.trajectory, sizes.rod_forces};
@@ -96,6 +107,7 @@ void UnfinishedRun::take_back(const RunTables::Sizes& sizes) const {
 }
 
 void UnfinishedRun::begin() {
+  keep_foreign_aside();
   std::error_code error;
   fs::create_directory(folder(), error);
   if (error) throw FileError(folder(), error.value());
@@ -108,7 +120,7 @@ void UnfinishedRun::forget() {
   for (const char* name : tables) written_.remove(std::string("unfinished/") + name);
   written_.remove("unfinished/checkpoint");
   std::error_code error;
-  fs::remove(folder(), error);
+  if (!fs::is_symlink(fs::symlink_status(folder(), error))) fs::remove(folder(), error);
   written_.forget_missing();
 }
 

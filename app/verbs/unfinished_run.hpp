@@ -41,6 +41,7 @@ class UnfinishedRun {
 
  private:
   std::filesystem::path folder() const { return written_.directory() / "unfinished"; }
+  void keep_foreign_aside();
   void take_back(const RunTables::Sizes& sizes) const;
   void begin();
   void add(Simulation& window, std::size_t first, std::size_t last);

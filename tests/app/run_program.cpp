@@ -40,7 +40,9 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
   const pid_t child = ::fork();
   if (child == 0) become(arguments, options.environment, out, err);
   for (int i = 0; i < 6000 && !options.first_wait_for.empty(); ++i) {
-    if (std::filesystem::exists(options.first_wait_for)) break;
+    siginfo_t ended{};
+    ::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT);
+    if (ended.si_pid == child || std::filesystem::exists(options.first_wait_for)) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   if (options.interrupt_after_s >= 0) {

@@ -131,13 +131,18 @@ TEST_CASE("a run that is killed while its tables take their places goes on to th
   const ScratchDirectory dir;
   const std::string scene = dir.write("everything.toml", everything), whole = dir / "whole";
   REQUIRE(run_program(run_of(scene, whole, {})).code == 0);
+  // Killed behind its first checkpoint; a run that was done before is made again.
+  const auto killed_into = [&](const std::string& folder) {
+    const std::string checkpoint = folder + "/unfinished/checkpoint";
+    for (int i = 0; i < 50 && !fs::exists(checkpoint); ++i)
+      run_program(run_of(scene, folder, {}),
+                  {.interrupt_after_s = 0, .signal = SIGKILL, .first_wait_for = checkpoint});
+    REQUIRE(fs::exists(checkpoint));
+  };
   const std::vector<std::string> tables{"series.csv", "trajectory.csv", "rod_forces.csv"};
   for (std::size_t moved = 1; moved <= tables.size(); ++moved) {
     const std::string killed = dir / ("killed" + std::to_string(moved));
-    run_program(
-        run_of(scene, killed, {}),
-        {.interrupt_after_s = 0, .signal = SIGKILL, .first_wait_for = killed + "/unfinished/checkpoint"});
-    REQUIRE(fs::exists(killed + "/unfinished/checkpoint"));
+    killed_into(killed);
     for (std::size_t k = 0; k < moved; ++k)
       fs::rename(killed + "/unfinished/" + tables[k], killed + "/" + tables[k]);
     REQUIRE(run_program(run_of(scene, killed, {})).code == 0);
@@ -146,10 +151,31 @@ TEST_CASE("a run that is killed while its tables take their places goes on to th
   }
   // And with a table that is lost it does not go on.
   const std::string lost = dir / "lost";
-  run_program(run_of(scene, lost, {}),
-              {.interrupt_after_s = 0, .signal = SIGKILL, .first_wait_for = lost + "/unfinished/checkpoint"});
+  killed_into(lost);
   fs::remove(lost + "/unfinished/series.csv");
   CHECK(run_program(run_of(scene, lost, {})).code == 5);
+}
+
+TEST_CASE("what a person has in a folder called unfinished, or behind a link of that name, is left alone") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out", linked = dir / "linked", other = dir / "other";
+  const Words long_one{"solver.step=0.0005"};
+  for (const std::string& folder : {out + "/unfinished", other}) {
+    fs::create_directories(folder);
+    std::ofstream(folder + "/series.csv") << "mine";
+  }
+  fs::create_directory(linked);
+  fs::create_directory_symlink(other, linked + "/unfinished");
+  for (const std::string& into : {out, linked}) {
+    Words words = run_of("hoop6", into, long_one);
+    words.emplace_back("--force");
+    const auto result = run_program(words);
+    CHECK(result.code == 0);
+    CHECK(result.err.find("unfinished.kept-1") != std::string::npos);
+    CHECK_FALSE(fs::exists(into + "/unfinished"));
+    CHECK(file_text(into + "/unfinished.kept-1/series.csv") == "mine");
+  }
+  CHECK(std::distance(fs::directory_iterator(other), fs::directory_iterator()) == 1);
 }
 
 TEST_CASE("a checkpoint of another run is refused with one sentence and left alone") {
