@@ -6,6 +6,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/stepper.hpp"
 #include "core/study/tolerance.hpp"
+#include "tests/support/coulomb_oscillator.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -16,29 +17,8 @@ namespace {
 
 using testing::end_positions, testing::error_of, testing::run_scene;
 
-// 1 kg on a spring of 100 N/m along x, free at O + 2 m, with a friction of 1 N, let go 0.495 m aside.
-const std::string oscillator = R"(
-[structure]
-kind = "custom"
-nodes = [
-  {name = "O", position = [0, 0, 0], fixed = true},
-  {name = "A", position = [2.495, 0, 0], mass = 1}]
-[[forces]]
-kind = "spring"
-nodes = ["O", "A"]
-stiffness = 100
-free_length = 2
-[[forces]]
-kind = "friction"
-name = "pad"
-nodes = ["A"]
-direction = [1, 0, 0]
-kinetic = 1
-[solver]
-stages = 5
-step = 0.01
-end_time = 9
-)";
+const std::string oscillator =
+    testing::coulomb_oscillator + "[solver]\nstages = 5\nstep = 0.01\nend_time = 9\n";
 
 std::vector<Event> events_of(const Simulation& run, const std::string& kind) {
   std::vector<Event> out;

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/scene/library.hpp"
+#include "tests/support/coulomb_oscillator.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -14,29 +15,8 @@ namespace parts_test {
 
 namespace {
 
-// 1 kg on a spring with dry friction, which turns round and comes to rest.
-const std::string rubbing = R"(
-[structure]
-kind = "custom"
-nodes = [
-  {name = "O", position = [0, 0, 0], fixed = true},
-  {name = "A", position = [2.495, 0, 0], mass = 1}]
-[[forces]]
-kind = "spring"
-nodes = ["O", "A"]
-stiffness = 100
-free_length = 2
-[[forces]]
-kind = "friction"
-name = "pad"
-nodes = ["A"]
-direction = [1, 0, 0]
-kinetic = 1
-[solver]
-stages = 4
-step = 0.01
-end_time = 9
-)";
+// Turns round and comes to rest.
+const std::string rubbing = testing::coulomb_oscillator + "[solver]\nstages = 4\nstep = 0.01\nend_time = 9\n";
 
 // Bounces until it rests on its stop, beside a cable that goes taut and slack.
 const std::string bouncing = R"(
