@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One self-contained page: the structure turning in a browser (WebGL 2, core/export/viewer.html), its curves,
-// its scene. Positions and forces are single precision at uniform times.
+// its scene. Positions and forces are single precision at uniform times, curves double.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +27,7 @@ using Page = nlohmann::ordered_json;
 
 constexpr std::size_t most_frames = 1500, most_numbers = 12'000'000;  // 48 MB, of one array
 
-std::string packed(const std::vector<float>& values) {
+std::string packed(const auto& values) {
   return base64(std::as_bytes(std::span(values)));
 }
 
@@ -101,8 +101,8 @@ void add_curves(const ExportJob& job, Page& page) {
   for (std::size_t i = 0; i < d.t.size(); i += std::max<std::size_t>(stride, 1)) chosen.push_back(i);
   if (!chosen.empty() && chosen.back() + 1 < d.t.size()) chosen.push_back(d.t.size() - 1);
   const auto thinned = [&](const std::vector<double>& values) {
-    std::vector<float> out;
-    for (const std::size_t i : chosen) out.push_back(static_cast<float>(values[i]));
+    std::vector<double> out;  // single precision would show its steps on a curve that hardly changes
+    for (const std::size_t i : chosen) out.push_back(values[i]);
     return packed(out);
   };
   page["times"] = thinned(d.t);
