@@ -51,7 +51,8 @@ class EnergyMeter {
   double damping_power(const State& state, const VectorXd& acceleration, double after);
   double damping_bound(const State& state);
   double taken(const State& state);
-  double taken_by_stiff(const State& a, const State& b, double fastest);
+  double energy(const State& state);
+  double taken_by_stiff(const State& a, const State& b, double fastest, double others);
 
   System system_;  // follows the states
   bool loads_, dampers_, drives_;

@@ -82,7 +82,7 @@ class Dvm final : public Integrator {
   void restart() override {
     have_history_ = false;
     frozen_ = false;
-    slow_ = stiff_ = settled_ = false;
+    slow_ = stiff_ = settled_ = unresolved_ = false;
     settling_ = 0;
     newton_.forget();
     eq_.restart();
@@ -106,6 +106,7 @@ class Dvm final : public Integrator {
   void correct_stages();
   void correct_at_ends(StepReport& report);
   void settle_end();
+  void let_go(double h);
   void finish(State& state, double h, StepReport& report);
 
   const System& system_;
@@ -127,12 +128,13 @@ class Dvm final : public Integrator {
   bool careful_ = false;
   bool feed_ = true;
   bool small_ = true;
-  bool slow_ = false;     // the last step took many iterations
-  double settling_ = 0;   // the present step of those that strong dampers ask for [s]
-  int small_steps_ = 0;   // so many more are as short as the first
-  bool settled_ = false;  // no rates are left that dampers take within a step
-  bool stiff_ = false;    // forces are too stiff at this step for an iteration that knows nothing of them
-  bool frozen_ = false;   // saddle_ holds a factorisation near the present pose
+  bool slow_ = false;        // the last step took many iterations
+  double settling_ = 0;      // the present step of those that strong dampers ask for [s]
+  int small_steps_ = 0;      // so many more are as short as the first
+  bool unresolved_ = false;  // that step is still too long for the strongest of them
+  bool settled_ = false;     // no rates are left that dampers take within a step
+  bool stiff_ = false;       // forces are too stiff at this step for an iteration that knows nothing of them
+  bool frozen_ = false;      // saddle_ holds a factorisation near the present pose
 
   double harmless_ = harmless;
   double needed_pivot_ = 0;  // of the weakest mode, for this step to do without care
@@ -275,7 +277,8 @@ bool Dvm::is_stiff() {
 
 // Rates that dampers of h c / m > 1.5 take at once are resolved: by steps of h c / m = s / 5 until nothing is
 // left of them, then by steps each half as long again, for weaker dampers, up to the step that was asked for.
-// A long step would keep such rates, of changing sign. What follows is slow.
+// A long step would keep such rates, of changing sign. What follows is slow. Where such steps would be
+// shorter than the noise of positions, those that are taken let go of these rates (let_go).
 double Dvm::longest_step(const State& state, double h) {
   constexpr double least_share = 2e-7;  // of a step; shorter ones are little more than noise
   if (settled_ || system_.constant_forces()) return h;
@@ -283,9 +286,11 @@ double Dvm::longest_step(const State& state, double h) {
     eq_.start(state.t, state.z, state.w, h);
     const double z = eq_.h_rate();
     settled_ = !(z > 1.5) || !std::isfinite(z);
-    settling_ = settled_ ? 0.0 : std::max(h * 0.2 * c_.s / z, least_share * h);
-    small_steps_ = 50 / c_.s;
+    unresolved_ = !settled_ && !eq_.at_ends && 0.2 * c_.s < least_share * z;
+    settling_ = settled_ ? 0.0 : h * std::max((unresolved_ ? 200 : 0.2 * c_.s) / z, least_share);
+    small_steps_ = unresolved_ ? 25 : 50 / c_.s;
   } else if (--small_steps_ < 0) {
+    unresolved_ = false;
     settling_ *= 1.5;
     settled_ = settling_ > h;
   }
@@ -448,25 +453,33 @@ void Dvm::finish(State& state, double h, StepReport& report) {
     settle_end();
   const auto norm = [](const auto& phi) { return phi.size() ? phi.template lpNorm<Eigen::Infinity>() : 0.0; };
   report.constraint_norm = tight_ ? norm(rate_) : norm(eq_.phi.col(c_.s - 2));
+  if (tight_ && !system_.rheonomic()) rate_.setZero();
   previous_ = eq_.dX, previous_h_ = h, have_history_ = true;
   state.t += h;
   arrive(state);
+  state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
+  if (unresolved_) let_go(h);
   state.w = w1_;
   state.tension.resize(0);
   const bool elastic = system_.elastic_rods() != nullptr;
   if (elastic && eq_.h_omega() > resolved * (c_.s - 1) && !eq_.held())
     eq_.end_tension(w1_, resolved * (c_.s - 1), state.tension);
-  state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
+}
+
+// Rates at the Gauss points are those that the damper leaves, the rate at the end is not: w_1 becomes what
+// their polynomial says there. What the step resolves changes by an error of order s - 1, of a step without
+// length.
+void Dvm::let_go(double h) {
+  w1_ = eq_.dX * (c_.slope.bottomRows(c_.s - 1) * c_.tau_to_end) / h;
+  p1_.noalias() = system_.mass() * w1_;
+  saddle_.solve(p1_, rate_, w1_, mu_);
 }
 
 // z_1 = z_0 + dX. In steps with care what rounding takes from the sum is added to the next one: near a dead
 // centre the motion so far may be a thousand ulp of the coordinates.
 void Dvm::arrive(State& state) {
   end_z_ = eq_.dX.col(c_.s - 2);
-  if (tight_)
-    carried_.add(end_z_, state.z);
-  else
-    state.z += end_z_;
+  tight_ ? carried_.add(end_z_, state.z) : void(state.z += end_z_);
 }
 
 }  // namespace

@@ -196,9 +196,8 @@ TEST_CASE("what generalized_alpha loses is said, what it gains ends a run") {
 
 TEST_CASE("drag of any size stops a mass where the exponential does, with its books in order") {
   const Vec3 x0(1.13, 0.2, -0.4), v0(7, -3, 2);
-  for (const double c : {0.3, 30.0, 310.0, 450.0, 1e3, 3.1e3, 1e4, 1e6, 1e9})
+  for (const double c : {0.3, 30.0, 310.0, 450.0, 1e3, 3.1e3, 1e4, 1e6, 1e9, 3e10, 1e12, 1e15})
     for (const int stages : {2, 3, 4, 5}) {
-      if (stages == 2 && c > 1e8) continue;  // the shortest steps that a run takes are too long: it fails
       const auto j = judged(
           "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'A'\n"
           "position = [1.13, 0.2, -0.4]\nvelocity = [7, -3, 2]\nmass = 1.3\n"
@@ -214,10 +213,44 @@ TEST_CASE("drag of any size stops a mass where the exponential does, with its bo
       const double pade =
           std::pow(std::tgamma(stages), 2) / std::tgamma(2 * stages - 1) / std::tgamma(2 * stages);
       const double error = 50 * pade * std::pow(z < 1.5 ? z : 0.2 * stages, 2 * stages - 1);
-      CHECK((q - x0 - v0 * (-std::expm1(-rate * 0.3) / rate)).norm() <= v0.norm() / rate * error + 1e-13);
+      // From 1e9 on rates are gone within the shortest step, and the way with it.
+      CHECK((q - x0 - v0 * (-std::expm1(-rate * 0.3) / rate)).norm() <=
+            v0.norm() / rate * (c < 1e8 ? error : 3) + 1e-13);
       CHECK((v - v0 * std::exp(-rate * 0.3)).norm() <= v0.norm() * (z < 1.5 ? error : 1e-6) + 1e-12);
-      if (stages > 2 && c < 1e8 && (z > 1.5 || z < 0.5)) CHECK(j.warnings == std::vector<std::string>{});
+      if (stages > 2 && (z > 1.5 || z < 0.5)) CHECK(j.warnings == std::vector<std::string>{});
     }
+}
+
+// From rest and from a blow, a mass on a rod that drag of any size holds back: it creeps with m g / c, what
+// it had is taken, and the books say so. h c / m to 1e13; what creeps moves by less than the rounding of
+// coordinates.
+TEST_CASE("a weight on a rod creeps through drag of any size, and its books close") {
+  for (const double c : {1e6, 1e8, 1e9, 1e10, 1e11, 1e12, 1e15})
+    for (const int stages : {3, 4, 5})
+      for (const double speed : {0.0, 0.4}) {
+        const auto j = judged(
+            "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'O'\nposition = [0, 0, 0]\nfixed = "
+            "true\n"
+            "[[structure.nodes]]\nname = 'A'\nposition = [0.9, 0, 0]\nmass = 1.3\nvelocity = [0, " +
+                number(0.7 * speed) + ", " + number(speed) +
+                "]\n[[structure.rods]]\nnodes = ['O', 'A']\nmass = 0\n[gravity]\nacceleration = [0, 0, "
+                "-9.8]\n"
+                "[[forces]]\nkind = 'drag'\nnodes = ['A']\ndamping = " +
+                number(c) + "\n[solver]\nend_time = 0.3\n",
+            {"solver.stages=" + std::to_string(stages)});
+        INFO("c = " << c << " N s/m, " << stages << " stages, from " << speed << " m/s: " << j.run.message);
+        REQUIRE(j.run.status == RunStatus::completed);
+        CHECK(j.warnings == std::vector<std::string>{});
+        // Falls by g m / c t; the arc bends that by its square. Coordinates round at 1e-16, a step's
+        // increment at 1e-4 of the smallest.
+        // Falls by g m / c t; the arc bends that by its square. Coordinates round at 1e-16 m, rates at a
+        // tenth of that over a step.
+        const double creep = 1.3 * 9.8 / c;
+        const VectorXd q = end_of(j.run), v = j.run.trajectory.node_velocities(j.run.trajectory.size() - 1);
+        CHECK(q[5] == Approx(-creep * 0.3).epsilon(1e-4).margin(2e-16 + 3 * speed * 1.3 / c));
+        CHECK(v[5] == Approx(-creep).epsilon(1e-4).margin(1e-15));
+        CHECK(v.norm() == Approx(creep).epsilon(1e-4).margin(1e-15));
+      }
 }
 
 TEST_CASE("dampers of very different strength, each with its own layer") {
