@@ -81,8 +81,7 @@ TEST_CASE("windows of a long run have the columns of a short one, and no event t
     const std::vector<std::string> expected = names(diagnose(simulate(build_model(scene), scene.solver)));
     Windows w = windows_of(scene, 30);
     REQUIRE(w.parts.size() >= 2);
-    RunDigest digest(w.rest.trajectory.model().structure.nodes.empty() ? nullptr : build_model(scene),
-                     scene.solver);
+    RunDigest digest(build_model(scene), scene.solver);
     for (Stepper::Window& part : w.parts) {
       const std::size_t events = part.run.events.size();
       CHECK(names(digest.add(part.run, part.first, part.last)) == expected);
