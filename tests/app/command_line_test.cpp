@@ -101,7 +101,8 @@ TEST_CASE("check counts the six-unit ring and names its redundant constraints") 
   CHECK(json["unique_rods"] == 6);
   CHECK(json["not_unique"].size() == 78 - 6 - 12);  // all but the posts and the twelve face rows
   CHECK(json["degrees_of_freedom"] == 1);
-  // The rods of a face cross in the middle of an X, in one plane: tubes of 9 cm^2 are inside each other there.
+  // The rods of a face cross in the middle of an X, in one plane: tubes of 9 cm^2 are inside each other
+  // there.
   const auto& near = json["clearance"];
   CHECK(near["axes_m"].get<double>() < 1e-9);
   CHECK(near["distance_m"].get<double>() == Approx(-2 * std::sqrt(9e-4 / 3.14159265358979)).epsilon(1e-6));
