@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/forces/pulleys.hpp"
+#include "core/forces/straight_springs.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/motion_params.hpp"
 
@@ -21,23 +22,13 @@ struct Spring {
   std::optional<Pulleys> pulleys = {};  // where it rubs on what it runs over
 };
 
-// Of a stretch e: N_e = k elastic, the share of the spring that pulls, N_e' / k, with its slope, V = k
-// energy.
-struct Pull {
-  double elastic, share, bend, energy;
-};
-
 // Does it rub on what it runs over?
 bool rubs(const Force& law) {
   return law.kind == "cable" && law.kinetic > 0;
 }
 
 Pull pull_of(const Force& law, double e) {
-  const double w = law.one_sided ? law.smoothing : 0.0;
-  if (!law.one_sided || (e >= w && e > 0)) return {e, 1.0, 0.0, 0.5 * e * e + w * w / 6};
-  if (e <= -w) return {0, 0, 0, 0};
-  const double u = e + w;
-  return {u * u / (4 * w), u / (2 * w), 1 / (2 * w), u * u * u / (12 * w)};
+  return unfurl::pull_of(law.one_sided, law.smoothing, e);
 }
 
 class Springs final : public ForceBlock {
@@ -45,11 +36,15 @@ class Springs final : public ForceBlock {
   Springs(const std::vector<Force>& springs, const Deployment& deployment, const std::vector<int>& followed) {
     for (std::size_t i = 0; i < springs.size(); ++i) {
       const Force& f = springs[i];
+      damped_ = damped_ || f.damping > 0 || rubs(f);
+      reeled_ = reeled_ || f.unstressed.moves();
+      if (StraightSprings::fits(f)) {
+        straight_.push_back(f);
+        continue;
+      }
       springs_.push_back({f, MeasureFunction(f.measure, deployment), followed.empty() ? -1 : followed[i]});
       if (rubs(f)) springs_.back().pulleys.emplace(f, deployment);
       size_ = std::max(size_, springs_.back().measure.stencil().size());
-      damped_ = damped_ || f.damping > 0 || rubs(f);
-      reeled_ = reeled_ || f.unstressed.moves();
     }
   }
   bool constant() const override { return false; }
@@ -59,6 +54,7 @@ class Springs final : public ForceBlock {
   bool supplies() const override { return reeled_; }
 
   void add(const Moment& at, const double* q, const double* v, double scale, double* f) const override {
+    straight_.add(q, v, scale, f);
     Gradient g(size_);
     for (const Spring& spring : springs_) {
       const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
@@ -72,7 +68,7 @@ class Springs final : public ForceBlock {
   }
 
   double potential(const Moment& at, const double* q) const override {
-    double sum = 0;
+    double sum = straight_.potential(q);
     for (const Spring& spring : springs_) {
       const SpringLaw law = spring_law(spring.law, at.t);
       const double s = spring.measure.value(q, at, spring.followed);
@@ -88,7 +84,7 @@ class Springs final : public ForceBlock {
   double dissipation(const Moment& at, const double* q, const double* v) const override {
     if (!damped_) return 0.0;
     Gradient g(size_);
-    double sum = 0;
+    double sum = straight_.dissipation(q, v);
     for (const Spring& spring : springs_) {
       if (!(spring.law.damping > 0) && !spring.pulleys) continue;
       const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
@@ -105,6 +101,7 @@ class Springs final : public ForceBlock {
 
   void derivatives(const Moment& at, const double* q, const double* v, ForceDerivative& by_q,
                    ForceDerivative& by_v) const override {
+    straight_.derivatives(q, v, by_q, by_v);
     VectorXd g, bend;
     for (const Spring& spring : springs_) {
       const auto& stencil = spring.measure.stencil();
@@ -159,7 +156,8 @@ class Springs final : public ForceBlock {
     std::vector<double> far_;
   };
 
-  std::vector<Spring> springs_;
+  StraightSprings straight_;
+  std::vector<Spring> springs_;  // the others
   std::size_t size_ = 0;
   bool damped_ = false, reeled_ = false;
 };

@@ -1,144 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/integrators/dvm.hpp"
-
 #include <stdexcept>
 
-#include "core/integrators/carried_sum.hpp"
-#include "core/integrators/full_newton.hpp"
-#include "core/integrators/stage_equations.hpp"
-#include "core/math/saddle_solver.hpp"
+#include "core/integrators/dvm_method.hpp"
 
 namespace unfurl {
-namespace {
-
-// Levels: 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
-constexpr double wanted = 1.5, wanted_constraint = constraint_level_wanted, accepted = 30.0;
-// A system with more unknowns than this is not given the full Newton matrix, whose factors grow too fast;
-// instead its weak modes may keep a larger constraint error. Its regularisation is below the
-// sigma^2 of those, 1e-14 in a folded ring of a thousand units, and near round-off in what is redundant.
-constexpr Index full_newton_unknowns = 2500;
-constexpr int max_frozen_iterations = 30;
-constexpr int slow_iterations = 8;
-// Weak modes: what the level accepts of a constraint's error, divided by the smallest singular value, may
-// move the structure by this share of the motion of the step; else the step is solved with care: errors grow
-// where a motion is unstable, in a ring of joints a thousandfold while it opens. Singular values above
-// `strong` are never looked at.
-constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double most_prolonged = 4;  // steps of the last one's length
-constexpr double unheld = 100;        // h omega of a rod, from above, whose velocity at ends is held
-constexpr double resolved = 1.5;      // h omega, from above, per stage but one: the ends tell forces of waves
-
-bool is_small(const System& system, int stages) {
-  return (system.solved_coordinates() + system.constraints()) * (stages - 1) <= full_newton_unknowns;
-}
-
-class Dvm final : public Integrator {
- public:
-  Dvm(const System& system, const SolverOptions& options, bool careful = false)
-      : system_(system),
-        c_(options.nodes, options.stages),
-        eq_(system, c_, options.constraints_at == "ends"),
-        G_(system.jacobian_pattern()),
-        saddle_(system.mass(), G_, c_.s - 1,
-                is_small(system, c_.s) ? SaddleSolver::standard_regularisation
-                                       : 0.02 * SaddleSolver::standard_regularisation) {
-    const Index n = system.solved_coordinates(), m = system.constraints();
-    rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
-    rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
-    previous_.setZero(n, c_.s - 1);
-    consistent_f_.setZero(n, c_.s - 1);
-    y_to_lambda_.setZero(c_.s - 1, c_.s - 1);
-    for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_}) v->setZero(n);
-    end_q_.setZero(system.coordinates());
-    for (VectorXd* v : {&mu_, &rate_}) v->setZero(m);
-    pose_.setZero(system.coordinates());
-    halfway_ = c_.basis.values(0.5);
-    if (eq_.at_ends) analyse_mass();
-    small_ = is_small(system, c_.s);
-    if (!small_) left_constraint_ = 1000.0;
-    harmless_ = careful ? 0 : small_ ? harmless : harmless_in_large;
-    restart();
-  }
-
-  StepReport step(State& state, double h) override {
-    StepReport report;
-    eq_.start(state.t, state.z, state.w, h);
-    if (h != matrices_h_) set_matrices(h);
-    predict(state, h);
-    if (!frozen_) freeze(eq_.start_pose(), report);
-    if (stiff_) stiff_ = is_stiff();
-    tight_ = !stiff_ && !eq_.at_ends && needs_care();
-    if (slow_ && !tight_ && !stiff_) freeze_in_the_middle(report);
-    if (!(tight_ && tight_iterations(state, report))) iterate(state, h, report);
-    slow_ = !tight_ && !stiff_ && report.newton_iterations > slow_iterations;
-    if (report.ok()) finish(state, h, report);
-    if (!report.ok()) restart();
-    return report;
-  }
-
-  double longest_step(const State& state, double h) override;
-
-  void restart() override {
-    have_history_ = false;
-    frozen_ = false;
-    slow_ = stiff_ = settled_ = false;
-    settling_ = 0;
-    newton_.forget();
-    eq_.restart();
-  }
-
- private:
-  void analyse_mass();
-  void set_matrices(double h);
-  void predict(const State& state, double h);
-  void freeze(const ConstVec& q, StepReport& report);
-  void freeze_in_the_middle(StepReport& report);
-  void iterate(const State& state, double h, StepReport& report);
-  bool frozen_iterations(StepReport& report);
-  bool is_stiff();
-  bool stiff_iterations(const State& state, StepReport& report);
-  bool needs_care();
-  bool tight_iterations(const State& state, StepReport& report);
-  void arrive(State& state);
-  void correct(StepReport& report);
-  template <int K>
-  void correct_stages();
-  void correct_at_ends(StepReport& report);
-  void settle_end();
-  void finish(State& state, double h, StepReport& report);
-
-  const System& system_;
-  GalerkinCoefficients c_;
-  StageEquations eq_;
-  SparseRows G_;
-  std::vector<double> scratch_;
-  SaddleSolver saddle_;
-  SparseLdlt mass_factor_;  // ends variant only
-  FullNewton newton_;
-  std::vector<double> rhs_f_, rhs_g_;
-  VectorXd p1_, w1_, end_z_, end_q_, pull_, mu_, rate_, pose_, halfway_;
-  Interleaved previous_, consistent_f_;
-  MatrixXd prolong_, momentum_to_f_, y_to_lambda_;  // -h C^-1; -C_kj / (h^2 b_k)
-  double matrices_h_ = 0;                           // the step that they are for
-  double previous_h_ = 0;
-  bool have_history_ = false;
-  double left_constraint_ = 8.0;  // level of constraint error that weak modes may keep
-  bool careful_ = false;
-  bool feed_ = true;
-  bool small_ = true;
-  bool slow_ = false;     // the last step took many iterations
-  double settling_ = 0;   // the present step of those that strong dampers ask for [s]
-  int small_steps_ = 0;   // so many more are as short as the first
-  bool settled_ = false;  // no rates are left that dampers take within a step
-  bool stiff_ = false;    // forces are too stiff at this step for an iteration that knows nothing of them
-  bool frozen_ = false;   // saddle_ holds a factorisation near the present pose
-
-  double harmless_ = harmless;
-  double needed_pivot_ = 0;  // of the weakest mode, for this step to do without care
-  bool tight_ = false;       // this step is solved with care for weak modes
-  CarriedSum carried_;
-};
 
 void Dvm::analyse_mass() {
   const SparseRows& M = system_.mass();
@@ -258,7 +123,10 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
       if (frozen_iterations(report)) return;
     }
   }
-  if ((stiff_ || is_stiff()) && stiff_iterations(state, report)) return;
+  if (!system_.constant_forces()) {
+    if (steered_iterations(state, report)) return;
+    if ((stiff_ || is_stiff()) && stiff_iterations(state, report)) return;
+  }
   if (!small_ || eq_.at_ends) return;
   predict(state, h);
   eq_.take_rods_as_unknowns(true);
@@ -270,26 +138,39 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
 bool Dvm::is_stiff() {
   if (system_.constant_forces()) return false;
   eq_.look_at_forces();
-  return eq_.h_rate() > 1 || eq_.h_omega() > 1;
+  return forces_are_stiff();
 }
 
-// Rates that dampers of h c / m > 1.5 take at once are resolved: by steps of h c / m = s / 5 until nothing is
-// left of them, then by steps each half as long again, for weaker dampers, up to the step that was asked for.
-// A long step would keep such rates, of changing sign. What follows is slow.
 double Dvm::longest_step(const State& state, double h) {
-  constexpr double least_share = 2e-7;  // of a step; shorter ones are little more than noise
-  if (settled_ || system_.constant_forces()) return h;
-  if (settling_ == 0) {
+  if (settling_.over() || system_.constant_forces()) return h;
+  return settling_.longest_step(h, c_.s, [&] {
     eq_.start(state.t, state.z, state.w, h);
-    const double z = eq_.h_rate();
-    settled_ = !(z > 1.5) || !std::isfinite(z);
-    settling_ = settled_ ? 0.0 : std::max(h * 0.2 * c_.s / z, least_share * h);
-    small_steps_ = 50 / c_.s;
-  } else if (--small_steps_ < 0) {
-    settling_ *= 1.5;
-    settled_ = settling_ > h;
+    return eq_.h_rate();
+  });
+}
+
+// Corrections with the forces' derivatives at the middle of the predicted step; where they do not converge,
+// at the middle of the step as they left it.
+bool Dvm::steered_iterations(const State& state, StepReport& report) {
+  constexpr int most_looks = 6;
+  if (!steerable_) return false;
+  if (!steering_) steering_.emplace(c_, eq_.dX.rows(), eq_.lambda.rows());
+  if (eq_.h_omega() > 1) have_history_ = false;
+  predict(state, eq_.h);
+  if (!frozen_) freeze(eq_.start_pose(), report);
+  steered_ = true;
+  bool done = false;
+  for (int look = 0; look < most_looks && !done; ++look) {
+    eq_.place_nodes();
+    eq_.look_at_forces(eq_.Q * halfway_);
+    if (!(eq_.h_omega() < most_steered && eq_.h_rate() < most_steered)) break;
+    stiff_ = forces_are_stiff();
+    steering_->take(eq_.h, system_.mass(), eq_.force_by_z(), eq_.force_by_w());
+    ++report.factorisations;
+    done = frozen_iterations(report);
   }
-  return settled_ || h < 1.5 * settling_ ? h : std::min(settling_, 0.5 * h);
+  steered_ = false;
+  return done;
 }
 
 // From a step without motion: prolonging oscillations that the step does not resolve leads anywhere, through
@@ -307,7 +188,7 @@ bool Dvm::stiff_iterations(const State& state, StepReport& report) {
 // Residuals are computed from the equations themselves every time; the frozen matrix only steers.
 bool Dvm::frozen_iterations(StepReport& report) {
   eq_.take_rods_as_unknowns(false);
-  careful_ = false;
+  careful_ = !system_.constant_forces();  // what is carried asks for more iterations than rods do
   feed_ = true;
   double best_momentum = std::numeric_limits<double>::infinity(), best_constraint = best_momentum;
   int without_gain = 0;
@@ -365,12 +246,15 @@ void Dvm::correct_stages() {
     for (Index i = r * K; i < (r + 1) * K; ++i) g[i] = std::abs(phi[i]) > noise ? -phi[i] : 0.0;
   }
   if (careful_) std::copy(rhs_f_.begin(), rhs_f_.end(), consistent_f_.data());
-  saddle_.apply(f, g, K);
   if (careful_) {
+    saddle_.apply(f, g, K);
     multiply<K>(G_, f, g);
     std::copy_n(consistent_f_.data(), rhs_f_.size(), f);
-    saddle_.apply(f, g, K);
   }
+  if (steered_)
+    steering_->solve(saddle_, f, g);
+  else
+    saddle_.apply(f, g, K);
   double* const dX = eq_.dX.data();
   for (Index i = 0; i < n * K; ++i) dX[i] += f[i];
   double* const lambda = eq_.lambda.data();
@@ -468,8 +352,6 @@ void Dvm::arrive(State& state) {
   else
     state.z += end_z_;
 }
-
-}  // namespace
 
 std::unique_ptr<Integrator> make_dvm(const System& system, const SolverOptions& options) {
   return std::make_unique<Dvm>(system, options);

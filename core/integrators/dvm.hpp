@@ -22,7 +22,12 @@ namespace unfurl {
 // Stage equations are solved by a simplified Newton iteration: with G frozen at one pose, multiplying by C^-1
 // leaves s - 1 right-hand sides of one saddle-point system of the size of one pose. Where that does not
 // contract, G is frozen afresh, then a full Newton iteration is tried. Forces too stiff for it go to the full
-// Newton iteration at once.
+// Newton iteration at once, or, of structures with many coordinates, to corrections that know their
+// derivatives (stiff_correction.hpp).
+//
+// The claims are those of rigid rods and of forces that vary. Of elastic rods that turn through many of their
+// periods in a step (h omega > 100) the velocities of stretching are taken out at its end
+// (elastic_stages.hpp): such waves lose their energy, and a run back does not bring them back.
 Claims dvm_claims(const SolverOptions& options);
 std::unique_ptr<Integrator> make_dvm(const System& system, const SolverOptions& options);
 // The same with every step solved as next to a dead centre, where no digit of the constraints may be lost:

@@ -69,16 +69,16 @@ void StageEquations::use_step() {
   with_columns(c.s - 1, [this](auto k) { spread_forces<k()>(); });
 }
 
-void StageEquations::look_at_forces() {
+void StageEquations::look_at_forces(const VectorXd& q) {
   stiffness_ = damping_ = omega_ = rate_ = 0;
   looked_ = t;
   if (system.constant_forces()) return;
   system.expand_rate(w_0_, v_tau_);
-  system.force_derivatives(t, q_0_, v_tau_, by_z_, by_w_);
+  system.force_derivatives(t, q, v_tau_, by_z_, by_w_);
   omega_ = std::sqrt(rate_bound(by_z_, system.mass()));
   rate_ = rate_bound(by_w_, system.mass());
   // Forces that are unknowns are not known by rounded coordinates.
-  if (rods.as_unknowns) system.force_derivatives(t, q_0_, v_tau_, rods.tension.col(0), by_z_, by_w_);
+  if (rods.as_unknowns) system.force_derivatives(t, q, v_tau_, rods.tension.col(0), by_z_, by_w_);
   const auto largest_entry = [](const SparseRows& A) {
     return A.nonZeros() > 0 ? largest_magnitude(A.valuePtr(), A.nonZeros()) : 0.0;
   };
@@ -305,6 +305,7 @@ void StageEquations::measure_rows() {
   for (Index r = 0; r < lambda.rows(); ++r) rows_.add_multiplier(r, weight * largest(lambda, r));
   motion_.resize(dX.rows());
   for (Index i = 0; i < motion_.size(); ++i) motion_[i] = largest(dX, i);
+  if (!constant) motion_ = motion_.cwiseMax(beside_motion * motion_.lpNorm<Eigen::Infinity>());
   rows_.add_inertia(motion_, C_size_ / h);
   if (stiffness_ > 0) rows_.add_stiffness(by_z_, h);
   if (damping_ > 0) rows_.add_products(by_w_, motion_, steepest_);

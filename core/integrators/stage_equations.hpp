@@ -48,7 +48,10 @@ class StageEquations {
   void take_rods_as_unknowns(bool unknowns);
   // Looks at the derivatives of the forces at the step's start: what they make of round-off, and how stiff
   // they are for the step (allocates).
-  void look_at_forces();
+  void look_at_forces() { look_at_forces(q_0_); }
+  void look_at_forces(const VectorXd& q);                 // the same in this pose, at the start's velocity
+  const SparseRows& force_by_z() const { return by_z_; }  // dF/dz where they were looked at last
+  const SparseRows& force_by_w() const { return by_w_; }  // dF/dz'
   // Forgets the forces: they are looked at before the next step.
   void restart() {
     stiffness_ = -1;
@@ -91,6 +94,9 @@ class StageEquations {
 
  private:
   static constexpr double momentum_noise = 4 * std::numeric_limits<double>::epsilon();
+  // What is at rest beside other nodes in motion counts as moving by this share of theirs: its forces come
+  // from theirs, members of nets just going taut among them, whose stiffness is not yet known.
+  static constexpr double beside_motion = 1e-3;
   template <int K>
   void spread_forces();
   template <int K>

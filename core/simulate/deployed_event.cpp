@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/integrators/index1.hpp"
+#include "core/simulate/initial_state.hpp"
 
 namespace unfurl {
 namespace {
@@ -33,6 +34,9 @@ constexpr int most_stations = 200;
 // A share of the multipliers that poses next to the deployed one must agree to.
 constexpr double most_open = 1e-5;
 constexpr double near_dead_centre = 0.95;  // sine of the fold angle
+// Shares of a constraint's length: errors of the extrapolated pose above the first are taken away, by motions
+// of up to the second times as much.
+constexpr double extrapolated = 1e-13, fitting = 100;
 // Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
 constexpr int most_lengths = 40;
 
@@ -250,10 +254,34 @@ class Locator {
     });
     out.tension = all_tell ? at_zero(samples_, shares, &State::tension) : VectorXd();
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
+    fit(out);
     followed_.follow(samples_.front().state);
     followed_.count_on(out);
     out.lambda = multipliers_at_deployed(index1_, samples_, out);
     return out;
+  }
+
+  // Where what is carried shakes the structure, the extrapolation leaves something of the constraints, which
+  // takes a motion of about that size away.
+  void fit(State& state) {
+    if (!(error(state) > extrapolated)) return;
+    State fitted = state;
+    project(system(), fitted);
+    if (error(fitted) < error(state) &&
+        (fitted.z - state.z).lpNorm<Eigen::Infinity>() < fitting * largest_length() * error(state))
+      state = std::move(fitted);
+  }
+  double largest_length() const {
+    const VectorXd& lengths = system().constraint_lengths();
+    return lengths.size() > 0 ? lengths.maxCoeff() : 0.0;
+  }
+  double error(const State& state) {  // the largest of a constraint, as a share of its length
+    if (system().constraints() == 0) return 0.0;
+    VectorXd phi(system().constraints());
+    q_.resize(system().coordinates());
+    system().expand(state.z, q_);
+    system().constraint(state.t, q_, phi);
+    return phi.cwiseQuotient(system().constraint_lengths()).lpNorm<Eigen::Infinity>();
   }
 
   const Trajectory& trajectory_;

@@ -11,6 +11,19 @@
 namespace unfurl {
 namespace {
 
+// A share of the coordinates. Latches hold heights in space: a rim that what it carries has tilted is
+// turned back as they close, by the least motion; without that, the rods would take its errors.
+constexpr double settled = 1e-13;
+constexpr int most_projections = 30;  // each leaves 1e-6 / (sigma^2 + 1e-6) of a mode, twice
+
+double constraint_error(const System& system, const State& state) {
+  if (system.constraints() == 0) return 0.0;
+  VectorXd q(system.coordinates()), phi(system.constraints());
+  system.expand(state.z, q);
+  system.constraint(state.t, q, phi);
+  return phi.cwiseQuotient(system.constraint_lengths()).lpNorm<Eigen::Infinity>();
+}
+
 bool waits(const Force& force) {
   return force.kind == "latch" && force.form.empty();
 }
@@ -87,6 +100,14 @@ Handover hand_over(const Model& from, const State& state, const Model& to) {
   State& s = out.state;
   s.t = state.t;
   s.z = to.system.reduce(q);
+  VectorXd held(q.size());  // q but for what linear constraints that are new make them differ by
+  to.system.expand(s.z, held);
+  if ((held - q).lpNorm<Eigen::Infinity>() > settled * q.lpNorm<Eigen::Infinity>()) {
+    s.w = to.system.reduce_rate(v);
+    for (int it = 0; it < most_projections && constraint_error(to.system, s) > settled; ++it)
+      project(to.system, s);
+    to.system.expand(s.z, q);
+  }
   s.w = fitted_rates(to.system, s.t, q, v);
   s.lambda.setZero(to.system.constraints());
   VectorXd acceleration(s.z.size());

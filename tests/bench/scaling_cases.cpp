@@ -9,6 +9,7 @@
 
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/structures/mesh_reflector.hpp"
 #include "tests/bench/cases.hpp"
 #include "tests/support/models.hpp"
 
@@ -65,6 +66,36 @@ Measured measure(const std::function<Structure()>& build, int steps, double h) {
   return m;
 }
 
+// A reflector on a ring that its hinges open, radius and focal length growing with the number of its units.
+// Folded by 15 degrees its nets are slack, and go taut in the steps that are measured.
+Structure reflector(int units, int rings) {
+  ParamSet values(mesh_reflector_params());
+  values.set("hoop", std::string("hoop"));
+  values.set("units", std::int64_t{units});
+  values.set("net_rings", std::int64_t{rings});
+  values.set("focal_length", 1.0 * units);
+  values.set("post_length", 2.2);
+  values.set("fold_angle", 15.0);
+  return build_mesh_reflector(values);
+}
+
+void nets(Report& report) {
+  double lowest = 1e300, highest = 0;
+  for (const auto& [units, rings] : {std::pair{6, 2}, {12, 4}, {18, 6}, {30, 10}}) {
+    const int members = static_cast<int>(std::ssize(reflector(units, rings).forces)), steps = 60000 / members;
+    const Measured m =
+        measure([u = units, r = rings] { return reflector(u, r); }, std::clamp(steps, 20, 100), 0.002);
+    const double cost = 1e6 * m.seconds / std::clamp(steps, 20, 100) / members;
+    lowest = std::min(lowest, cost);
+    highest = std::max(highest, cost);
+    report.add({"scaling",
+                "reflector of " + std::to_string(units) + " units, " + std::to_string(members) +
+                    " net members" + (m.ok ? "" : " (FAILED)") + ": step and member",
+                cost, "us", ""});
+  }
+  report.add({"scaling", "reflectors, dearest / cheapest", highest / lowest, "ratio", "<= 1.5"});
+}
+
 }  // namespace
 
 void scaling_cases(Report& report) {
@@ -95,6 +126,7 @@ void scaling_cases(Report& report) {
   row(
       "chain of 1000 rods", [] { return chain_of_rods(1000); }, 1000, 100, 0.001);
   report.add({"scaling", "dearest / cheapest", highest / lowest, "ratio", "<= 1.5"});
+  nets(report);
 }
 
 }  // namespace unfurl::bench

@@ -2,6 +2,7 @@
 // Dry friction of hinges by the force of their pins, against the closed form of a pendulum.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <sstream>
 
 #include "core/path/path.hpp"
 #include "core/study/tolerance.hpp"
@@ -78,6 +79,24 @@ TEST_CASE("a pendulum whose pin rubs by its load moves as its closed form") {
   const Diagnostics d = diagnose(run);
   CHECK(d.at("dissipated_J").values.back() > 0.05);
   CHECK(testing::largest(d, "energy_balance_J") <= 1e-9);  // a quadrature of order 6
+}
+
+// F is then the rod's own, E A times its strain: the closed form but for strains of some N / EA, N up to
+// m l (w^2 + g / l) = 29 newtons, in the length and in the wave that letting it go makes.
+TEST_CASE("a pin on an elastic rod rubs by the rod's force, up to its strain") {
+  for (const double EA : {1e5, 1e6}) {
+    std::ostringstream rod;
+    rod << "structure.rods=[{name='arm', nodes=['P', 'A'], mass=0, area=1e-4, elastic=true, youngs_modulus="
+        << EA / 1e-4 << "}]";
+    const Simulation run = run_scene(pendulum, {rod.str(), "solver.step=0.001"});
+    INFO(run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    const double th = angle_of(end_positions(run));
+    const double u =
+        run.trajectory.node_velocities(run.trajectory.size() - 1).tail<3>().squaredNorm() / (length * length);
+    CHECK(u == Approx(rate_squared(th, pi / 2, 0.25 / (length * length), -1)).epsilon(3 * 29 / EA));
+    CHECK(diagnose(run).at("dissipated_J").values.back() > 0.05);
+  }
 }
 
 // Turning points by the closed form, one after the other, until the pin holds the weight: at rest F = m g, so

@@ -129,6 +129,24 @@ TEST_CASE("elastic rods: the stiffer, the nearer to rigid ones, by 1 / EA") {
   CHECK(off[1] < 1e-5);
 }
 
+// Loops, redundant guides and all, far from the deployed pose: positions differ by strains, which are
+// 1 / EA, down to the round-off of lengths and of 120 steps.
+TEST_CASE("elastic rods: a ring of units moves as the rigid one up to 1 / EA, to 1e13 newtons") {
+  const auto end_of_ring = [](double EA) {
+    std::string scene = "[structure]\nkind = 'hoop'\nfold_angle = 60\n";
+    if (EA > 0)
+      scene += "rod_model = 'elastic'\ndamping_time = 1e-3\nyoungs_modulus = " + number(EA / 9e-4) + "\n";
+    return end_at(scene + "[solver]\nend_time = 0.6\n", 4, 0.005);
+  };
+  const VectorXd rigid = end_of_ring(0);
+  const double at_9 = (end_of_ring(1e9) - rigid).norm(), at_11 = (end_of_ring(1e11) - rigid).norm(),
+               at_13 = (end_of_ring(1e13) - rigid).norm();
+  INFO(at_9 << " " << at_11 << " " << at_13);
+  CHECK(at_9 > 1e-7);
+  CHECK(at_9 / at_11 == Approx(100).epsilon(0.02));
+  CHECK(at_13 <= 1.5e-4 * at_9 + 1e-11);
+}
+
 TEST_CASE("elastic rods: forces of a rod that no step resolves are those of a rigid one") {
   const Simulation rigid = run_scene(arms(1e9, "false"), {"solver.stages=5", "solver.step=0.0025"});
   const Diagnostics d = diagnose(rigid);

@@ -130,11 +130,37 @@ end_time = 3.9
   // Strikes last some 1 mm / 0.3 m/s, two steps of order 4; 2 J are turned over.
   CHECK(d.at("drive_work_J").values.back() > 2);
   CHECK(testing::largest(d, "energy_balance_J") <= 2e-4);
-  // Latches hold heights in space, and nets that lose their symmetry in some thousand strikes tilt the rim.
-  CHECK(testing::largest(d, "constraint_max_m") <= 1e-8);
+  // Round-off of 2 m, in the deployed pose too, which is extrapolated from shaken ones.
+  CHECK(testing::largest(d, "constraint_max_m") <= 1e-12);
   // 100 mm and more when folded; then nets in motion of 0.1 J against E A = 2000 N.
   CHECK(d.at("surface_rms_m").values.front() > 0.1);
   CHECK(d.at("surface_rms_m").values.back() < 0.02);
+}
+
+// Members of a large net are short, and its members go taut at h omega = 1 to 3. Pulled open within a few
+// steps: the iteration converges in every one, the energy of the drive is found again.
+TEST_CASE("a net of two thousand members on a ring of eighteen bays goes taut without a step that fails") {
+  const Simulation run = run_scene(R"(
+[structure]
+kind = "mesh_reflector"
+units = 18
+net_rings = 6
+focal_length = 18
+fold_angle = 15
+cable_rate = 3.9
+cable_ramp = 0.3
+[solver]
+stages = 3
+step = 0.002
+end_time = 0.13
+)");
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.trajectory.size() <= 70);  // 65 steps, the start and what events add
+  const Diagnostics d = diagnose(run);
+  CHECK(testing::largest(d, "constraint_max_m") <= 1e-12);
+  // Order 4 in steps that members take three of to begin to pull.
+  CHECK(testing::largest(d, "energy_balance_J") <= 1e-4 * d.at("drive_work_J").values.back());
 }
 
 }  // namespace cable_ring_test

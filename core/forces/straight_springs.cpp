@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/forces/straight_springs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/forces/spring.hpp"
+
+namespace unfurl {
+
+Pull pull_of(bool one_sided, double smoothing, double e) {
+  const double w = one_sided ? smoothing : 0.0;
+  if (!one_sided || (e >= w && e > 0)) return {e, 1.0, 0.0, 0.5 * e * e + w * w / 6};
+  if (e <= -w) return {0, 0, 0, 0};
+  const double u = e + w;
+  return {u * u / (4 * w), u / (2 * w), 1 / (2 * w), u * u * u / (12 * w)};
+}
+
+bool StraightSprings::fits(const Force& force) {
+  const bool rubs = force.kind == "cable" && force.kinetic > 0;
+  return force.measure.kind == MeasureKind::length && force.measure.nodes.size() == 2 && !rubs &&
+         !force.unstressed.moves();
+}
+
+void StraightSprings::push_back(const Force& force) {
+  const SpringLaw law = spring_law(force, 0.0);
+  members_.push_back({force.measure.nodes[0], force.measure.nodes[1], law.rest, law.stiffness, force.damping,
+                      force.smoothing, force.one_sided});
+}
+
+struct StraightSprings::Tension {
+  Vec3 u;
+  double s, rate, N, elastic;  // elastic: N without its damper's part
+  Pull pull;
+};
+
+// Whether there is a force at all.
+bool StraightSprings::pulls(const Member& m, const double* q, const double* v, Tension& at) {
+  const Vec3 d = node_vector(q, m.b) - node_vector(q, m.a);
+  at.s = d.norm();
+  if (m.one_sided && at.s - m.rest <= -m.smoothing) return false;
+  at.u = at.s > 0 ? Vec3(d / at.s) : Vec3::Zero();
+  at.rate = m.damping > 0 ? at.u.dot(node_vector(v, m.b) - node_vector(v, m.a)) : 0.0;
+  at.pull = pull_of(m.one_sided, m.smoothing, at.s - m.rest);
+  at.elastic = m.stiffness * at.pull.elastic;
+  at.N = at.elastic + m.damping * at.pull.share * at.rate;
+  if (m.one_sided) at.N = std::max(at.N, 0.0);
+  return true;
+}
+
+void StraightSprings::add(const double* q, const double* v, double scale, double* f) const {
+  Tension at;
+  for (const Member& m : members_) {
+    if (!pulls(m, q, v, at)) continue;
+    const Vec3 pull = (scale * at.N) * at.u;
+    Eigen::Map<Vec3>(f + 3 * static_cast<Index>(m.a)) += pull;
+    Eigen::Map<Vec3>(f + 3 * static_cast<Index>(m.b)) -= pull;
+  }
+}
+
+double StraightSprings::potential(const double* q) const {
+  double sum = 0;
+  for (const Member& m : members_) {
+    const double s = (node_vector(q, m.b) - node_vector(q, m.a)).norm();
+    sum += m.stiffness * pull_of(m.one_sided, m.smoothing, s - m.rest).energy;
+  }
+  return sum;
+}
+
+double StraightSprings::dissipation(const double* q, const double* v) const {
+  double sum = 0;
+  Tension at;
+  for (const Member& m : members_)
+    if (m.damping > 0 && pulls(m, q, v, at)) sum -= (at.N - at.elastic) * at.rate;
+  return sum;
+}
+
+// By x_b - x_a, of what pulls b: -N Hess s - u (k share u + c bend s' u + c share Hess s (v_b - v_a))^T; by
+// v_b - v_a: -c share u u^T.
+void StraightSprings::derivatives(const double* q, const double* v, ForceDerivative& by_q,
+                                  ForceDerivative& by_v) const {
+  const auto add = [](const Member& m, const Mat3& block, ForceDerivative& entries) {
+    for (const auto& [row, column, sign] :
+         {std::tuple{m.a, m.a, 1.0}, {m.a, m.b, -1.0}, {m.b, m.a, -1.0}, {m.b, m.b, 1.0}})
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) entries.emplace_back(3 * row + i, 3 * column + j, sign * block(i, j));
+  };
+  Tension at;
+  for (const Member& m : members_) {
+    if (!pulls(m, q, v, at) || (m.one_sided && at.N == 0.0)) continue;
+    const double c = m.damping;
+    const Mat3 along = at.u * at.u.transpose();
+    const Mat3 hessian = at.s > 0 ? Mat3((Mat3::Identity() - along) / at.s) : Mat3(Mat3::Zero());
+    Mat3 block = -at.N * hessian - (m.stiffness * at.pull.share + c * at.pull.bend * at.rate) * along;
+    if (c > 0) {
+      const Vec3 turned = hessian * (node_vector(v, m.b) - node_vector(v, m.a));
+      block -= c * at.pull.share * at.u * turned.transpose();
+      add(m, -c * at.pull.share * along, by_v);
+    }
+    add(m, block, by_q);
+  }
+}
+
+}  // namespace unfurl

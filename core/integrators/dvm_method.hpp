@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "core/integrators/carried_sum.hpp"
+#include "core/integrators/dvm.hpp"
+#include "core/integrators/full_newton.hpp"
+#include "core/integrators/settling.hpp"
+#include "core/integrators/stage_equations.hpp"
+#include "core/integrators/stiff_correction.hpp"
+#include "core/math/saddle_solver.hpp"
+
+namespace unfurl {
+
+// The step of core/integrators/dvm.hpp, for its own sources only.
+class Dvm final : public Integrator {
+ public:
+  Dvm(const System& system, const SolverOptions& options, bool careful = false)
+      : system_(system),
+        c_(options.nodes, options.stages),
+        eq_(system, c_, options.constraints_at == "ends"),
+        G_(system.jacobian_pattern()),
+        saddle_(system.mass(), G_, std::max(c_.s - 1, 2),
+                is_small(system, c_.s) ? SaddleSolver::standard_regularisation
+                                       : 0.02 * SaddleSolver::standard_regularisation) {
+    const Index n = system.solved_coordinates(), m = system.constraints();
+    rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
+    rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
+    previous_.setZero(n, c_.s - 1);
+    consistent_f_.setZero(n, c_.s - 1);
+    y_to_lambda_.setZero(c_.s - 1, c_.s - 1);
+    for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_}) v->setZero(n);
+    end_q_.setZero(system.coordinates());
+    for (VectorXd* v : {&mu_, &rate_}) v->setZero(m);
+    pose_.setZero(system.coordinates());
+    halfway_ = c_.basis.values(0.5);
+    if (eq_.at_ends) analyse_mass();
+    small_ = is_small(system, c_.s);
+    steerable_ = !eq_.at_ends && !system.constant_forces() && !system.elastic_rods() &&
+                 system.solved_coordinates() * (c_.s - 1) > few_unknowns;
+    if (!small_) left_constraint_ = 1000.0;
+    harmless_ = careful ? 0 : small_ ? harmless : harmless_in_large;
+    restart();
+  }
+
+  StepReport step(State& state, double h) override {
+    StepReport report;
+    eq_.start(state.t, state.z, state.w, h);
+    if (h != matrices_h_) set_matrices(h);
+    predict(state, h);
+    if (!frozen_) freeze(eq_.start_pose(), report);
+    if (stiff_) stiff_ = forces_are_stiff();
+    tight_ = !stiff_ && !eq_.at_ends && needs_care();
+    if (slow_ && !tight_ && !stiff_) freeze_in_the_middle(report);
+    if (!(tight_ && tight_iterations(state, report))) iterate(state, h, report);
+    slow_ = !tight_ && !stiff_ && report.newton_iterations > slow_iterations;
+    if (slow_ && steerable_) stiff_ = is_stiff(), slow_ = !stiff_;
+    if (report.ok()) finish(state, h, report);
+    if (!report.ok()) restart();
+    return report;
+  }
+
+  double longest_step(const State& state, double h) override;
+
+  void restart() override {
+    have_history_ = false;
+    frozen_ = false;
+    slow_ = stiff_ = false;
+    settling_.restart();
+    newton_.forget();
+    eq_.restart();
+  }
+
+ private:
+  // Levels: 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
+  static constexpr double wanted = 1.5, wanted_constraint = constraint_level_wanted, accepted = 30.0;
+  // A system with more unknowns than this is not given the full Newton matrix, whose factors grow too fast;
+  // instead its weak modes may keep a larger constraint error. Its regularisation is below the
+  // sigma^2 of those, 1e-14 in a folded ring of a thousand units, and near round-off in what is redundant.
+  static constexpr Index full_newton_unknowns = 2500;
+  // With no more than these the full Newton matrix is cheaper than a correction that knows of forces, and
+  // with more stiffness, h omega or h c / m, the one that converges.
+  static constexpr Index few_unknowns = 80;
+  static constexpr double most_steered = 30;
+  static constexpr int max_frozen_iterations = 30;
+  static constexpr int slow_iterations = 8;
+  // Weak modes: what the level accepts of a constraint's error, divided by the smallest singular value, may
+  // move the structure by this share of the motion of the step; else the step is solved with care: errors
+  // grow where a motion is unstable, in a ring of joints a thousandfold while it opens. Singular values above
+  // `strong` are never looked at.
+  static constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  static constexpr double most_prolonged = 4;  // steps of the last one's length
+  static constexpr double unheld = 100;        // h omega of a rod, from above, whose velocity at ends is held
+  static constexpr double resolved =
+      1.5;  // h omega, from above, per stage but one: the ends tell forces of waves
+
+  // Counted are coordinates that constraints may hold: a net on a ring of few units makes none of its modes
+  // weaker.
+  static bool is_small(const System& system, int stages) {
+    const Index m = system.constraints();
+    return (std::min(system.solved_coordinates(), 2 * m) + m) * (stages - 1) <= full_newton_unknowns;
+  }
+
+  void analyse_mass();
+  void set_matrices(double h);
+  void predict(const State& state, double h);
+  void freeze(const ConstVec& q, StepReport& report);
+  void freeze_in_the_middle(StepReport& report);
+  void iterate(const State& state, double h, StepReport& report);
+  bool frozen_iterations(StepReport& report);
+  bool is_stiff();
+  bool forces_are_stiff() const {  // where they were looked at last
+    const double limit = steerable_ ? 0.3 : 1.0;
+    return eq_.h_rate() > limit || eq_.h_omega() > limit;
+  }
+  bool stiff_iterations(const State& state, StepReport& report);
+  bool steered_iterations(const State& state, StepReport& report);
+  bool needs_care();
+  bool tight_iterations(const State& state, StepReport& report);
+  void arrive(State& state);
+  void correct(StepReport& report);
+  template <int K>
+  void correct_stages();
+  void correct_at_ends(StepReport& report);
+  void settle_end();
+  void finish(State& state, double h, StepReport& report);
+
+  const System& system_;
+  GalerkinCoefficients c_;
+  StageEquations eq_;
+  SparseRows G_;
+  std::vector<double> scratch_;
+  SaddleSolver saddle_;
+  SparseLdlt mass_factor_;  // ends variant only
+  FullNewton newton_;
+  std::optional<StiffCorrection> steering_;  // made when first needed
+  std::vector<double> rhs_f_, rhs_g_;
+  VectorXd p1_, w1_, end_z_, end_q_, pull_, mu_, rate_, pose_, halfway_;
+  Interleaved previous_, consistent_f_;
+  MatrixXd prolong_, momentum_to_f_, y_to_lambda_;  // -h C^-1; -C_kj / (h^2 b_k)
+  double matrices_h_ = 0;                           // the step that they are for
+  double previous_h_ = 0;
+  bool have_history_ = false;
+  double left_constraint_ = 8.0;  // level of constraint error that weak modes may keep
+  bool careful_ = false;
+  bool feed_ = true;
+  bool small_ = true;
+  bool slow_ = false;  // the last step took many iterations
+  Settling settling_;
+  bool stiff_ = false;  // forces are too stiff at this step for an iteration that knows nothing of them
+  bool steerable_ = false;
+  bool steered_ = false;  // corrections know of the forces, by steering_
+  bool frozen_ = false;   // saddle_ holds a factorisation near the present pose
+
+  double harmless_ = harmless;
+  double needed_pivot_ = 0;  // of the weakest mode, for this step to do without care
+  bool tight_ = false;       // this step is solved with care for weak modes
+  CarriedSum carried_;
+};
+
+}  // namespace unfurl
