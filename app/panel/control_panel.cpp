@@ -25,8 +25,9 @@ constexpr float bar_height = 46, timeline_height = 58;  // [points]
 ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOptions options)
     : context_(context),
       options_(std::move(options)),
-      session_(std::move(document), {options_.at, options_.measure_errors, options_.wake,
-                                     [this] { return picture_->read(); }, options_.replayed}),
+      session_(std::move(document),
+               {options_.at, options_.measure_errors, options_.wake, [this] { return picture_->read(); },
+                options_.moment, options_.replayed}),
       view_(context) {
   PanelState& now = state();
   now.dark = options_.settings.dark;
@@ -251,8 +252,9 @@ void ControlPanel::paint(bool coarse) {
   const auto below = [&](const plot::Rect& part) { return part.overlaps(v); };
   if (copied || std::any_of(parts.begin(), parts.end(), below)) parts.push_back(v);
   const ImVec4& ground = host_->ui().theme.window;
-  for (const plot::Rect& part : merged(std::move(parts))) {
+  for (const plot::Rect& part : apart(std::move(parts))) {
     const int x = static_cast<int>(part.x0), y = static_cast<int>(part.y0);
+    painted_ += part.width() * part.height();
     timed(times_.scene, [&] {
       picture_->fill(ground.x, ground.y, ground.z, x, y, static_cast<int>(part.width()),
                      static_cast<int>(part.height()));

@@ -24,13 +24,14 @@ struct FrameTimes {
 };
 
 struct PanelOptions {
-  int width = 1280, height = 720;  // [pixels]
-  float scale = 1;                 // pixels per point of a screen with 96 dpi
-  PanelSettings settings;          // window size aside
-  double at = 0;                   // of the motion, at first [s]
-  bool measure_errors = true;      // of positions, against references
-  bool measured = false;           // wait for the graphics after every part, so that frame_times() is true
-  std::function<void()> wake;      // called by the simulating thread when there is news
+  int width = 1280, height = 720;     // [pixels]
+  float scale = 1;                    // pixels per point of a screen with 96 dpi
+  PanelSettings settings;             // window size aside
+  double at = 0;                      // of the motion, at first [s]
+  bool measure_errors = true;         // of positions, against references
+  double moment = Simulator::moment;  // a run that takes longer is told of while it lasts [s]
+  bool measured = false;              // wait for the graphics after every part, so that frame_times() is true
+  std::function<void()> wake;         // called by the simulating thread when there is news
   Clipboard clipboard;
   std::string record;     // a file for what is done (session_log.hpp); empty: none
   bool replayed = false;  // what arrives from the work beside is told by such a file
@@ -65,6 +66,7 @@ class ControlPanel {
   const plot::Rect& place(const std::string& key) const { return host_->ui().places.at(key); }
   bool has_place(const std::string& key) const { return host_->ui().places.contains(key); }
   const LiveSession& session() const { return session_; }
+  double painted() const { return painted_; }  // so far, parts that were painted again again counted [pixels]
   long view_paints() const { return view_.paints(); }
   OrbitCamera framed() const { return view_.framed(); }  // the film's own camera
 
@@ -87,6 +89,7 @@ class ControlPanel {
   LiveSession session_;
   std::unique_ptr<ImguiHost> host_;
   DrawDamage damage_;
+  double painted_ = 0;
   int slow_frames_ = 0;  // in a row, while something moves
   std::unique_ptr<Framebuffer> picture_;
   SceneView view_;

@@ -53,6 +53,7 @@ void LiveSession::collect() {
     if (study) state_.studied = std::move(*study);
     arrived_.report = export_.take().value_or("");
     arrived_.simulation = state_of(simulator_);
+    arrived_.simulation.late = simulator_.late(options_.moment);
     arrived_.studying = state_of(study_);
     arrived_.exporting = state_of(export_);
     return;
@@ -77,7 +78,8 @@ void LiveSession::collect() {
 
 bool LiveSession::take_results() {
   collect();
-  const bool other = state_.studying.running != arrived_.studying.running ||
+  const bool other = state_.simulation.late != arrived_.simulation.late ||
+                     state_.studying.running != arrived_.studying.running ||
                      state_.exporting.running != arrived_.exporting.running;
   if (outcome_) take_run(*outcome_);
   for (const RunError& error : arrived_.errors) {
@@ -87,7 +89,7 @@ bool LiveSession::take_results() {
   state_.simulation = arrived_.simulation;
   state_.studying = arrived_.studying;
   state_.exporting = arrived_.exporting;
-  errors_.hold(state_.simulation.running);  // the next run comes first
+  errors_.hold(state_.simulation.running || outcome_);  // the next run, and showing it, come first
   if (!arrived_.report.empty()) {
     state_.message = arrived_.report;
     state_.exported = exporting_to_;

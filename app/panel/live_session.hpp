@@ -18,6 +18,7 @@ struct SessionOptions {
   bool measure_errors = true;           // of positions, against references
   std::function<void()> wake;           // called by threads beside when there is news
   std::function<Image()> picture = {};  // as it is on the screen
+  double moment = Simulator::moment;    // a run that takes longer is told of while it lasts [s]
   bool replayed = false;                // what arrives is told (tell()), and nothing is written or opened
 };
 
@@ -48,6 +49,7 @@ class LiveSession {
   void advance(double seconds);  // the motion plays, a hand wiggles
 
   bool busy() const { return state_.simulation.running || simulator_.busy() || errors_.busy(); }
+  bool has_results() const { return simulator_.ready() || errors_.ready(); }  // take_results() has some
   const Simulator& simulator() const { return simulator_; }
   const ErrorMeter& errors() const { return errors_; }
 

@@ -39,6 +39,7 @@ struct JobState {
   bool running = false;
   double progress = 0;  // 0..1
   std::string doing = {};
+  bool late = false;  // it takes long enough for a person to be told
 
   bool operator==(const JobState&) const = default;
 };

@@ -50,7 +50,7 @@ json json_of(const RunError& e) {  // a number that is not there becomes null
 }
 
 json json_of(const JobState& job) {
-  return {job.running, job.progress, job.doing};
+  return {job.running, job.progress, job.doing, job.late};
 }
 
 std::string dumped(const json& line) {
@@ -231,7 +231,8 @@ double number_of_json(const json& value) {
 
 void read_job(const json& line, const char* key, JobState& job) {
   if (const auto it = line.find(key); it != line.end())
-    job = {it->at(0).get<bool>(), it->at(1).get<double>(), it->at(2).get<std::string>()};
+    job = {it->at(0).get<bool>(), it->at(1).get<double>(), it->at(2).get<std::string>(),
+           it->size() > 3 && it->at(3).get<bool>()};
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl check SCENE: validate; print coordinates, constraints, rank, redundant ones by name, degrees of
-// freedom, and which forces the rigid model does not determine.
+// freedom, how near rods come to each other, and which forces the rigid model does not determine.
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -10,8 +10,10 @@
 #include "app/command.hpp"
 #include "app/output/progress.hpp"
 #include "app/verbs/scene_run.hpp"
+#include "core/diagnostics/clearance.hpp"
 #include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/study/tolerance.hpp"
 #include "core/system/mobility.hpp"
 #include "core/system/rigid_twin.hpp"
 #include "core/system/self_stress.hpp"
@@ -58,7 +60,70 @@ nlohmann::ordered_json self_stress_json(const Judged& judged) {
   return states;
 }
 
-void print_json(const Scene& scene, const Judged& judged) {
+// How near rods come to each other, over the motion where that is quick to have, else as it starts.
+struct NearRods {
+  std::optional<Clearance> least;
+  double until = 0;  // what was looked at [s]
+  std::string why;   // it is not the whole motion; empty: it is
+  std::vector<std::string> names;
+
+  std::string name(int rod) const { return names[static_cast<std::size_t>(rod)]; }
+};
+
+NearRods near_rods(const std::shared_ptr<const Model>& model, const Scene& scene,
+                   const Arguments& arguments) {
+  constexpr double most_work = 3e6;  // rods times steps: about as many microseconds
+  NearRods near;
+  for (const RodCopy& rod : model->structure.rod_copies) near.names.push_back(rod.name);
+  if (near.names.size() < 2) return near;
+  SolverOptions solver = scene.solver;
+  const double steps = solver.end_time / solver.step;
+  if (steps * static_cast<double>(near.names.size()) > most_work) {
+    near.why = "the motion is long: it was not looked at";
+    solver.end_time = solver.step;
+  }
+  const Waiting waiting("distances of " + std::to_string(near.names.size()) + " rods over the motion",
+                        arguments.quiet);
+  try {
+    const Simulation run = simulate_as_asked(model, solver);
+    const std::size_t states = near.why.empty() ? run.trajectory.size() : 1;
+    near.least = least_clearance(run.trajectory, states);
+    near.until = run.trajectory.time(states - 1);
+    if (run.status == RunStatus::failed) near.why = "the solver fails there";
+  } catch (const Error& error) {
+    near.why = error.what();
+  }
+  return near;
+}
+
+nlohmann::ordered_json clearance_json(const NearRods& near) {
+  nlohmann::ordered_json json = nullptr;
+  if (near.least)
+    json = {{"distance_m", near.least->distance},
+            {"axes_m", near.least->axes},
+            {"rods", {near.name(near.least->rod_a), near.name(near.least->rod_b)}},
+            {"t_s", near.least->t},
+            {"overlapping_pairs", near.least->overlapping},
+            {"states", near.least->states},
+            {"until_s", near.until},
+            {"whole_motion", near.why.empty()}};
+  return json;
+}
+
+void print_clearance(const NearRods& near) {
+  if (near.least) {
+    const Clearance& c = *near.least;
+    std::cout << std::left << std::setw(24) << "smallest clearance" << std::right << std::setw(8)
+              << std::setprecision(3) << c.distance << " m (axes " << c.axes << " m): " << near.name(c.rod_a)
+              << " and " << near.name(c.rod_b) << " at " << c.t << " s of " << near.until << " s\n";
+    if (c.overlapping > 0)
+      std::cout << "  " << c.overlapping << (c.overlapping == 1 ? " pair" : " pairs")
+                << " of rods that do not meet in a node pass through each other\n";
+  }
+  if (!near.why.empty()) std::cout << "  (" << near.why << ")\n";
+}
+
+void print_json(const Scene& scene, const Judged& judged, const NearRods& near) {
   const Model& model = judged.model;
   const Mobility& mobility = judged.mobility;
   nlohmann::ordered_json json = {{"scene", scene.name},
@@ -75,6 +140,7 @@ void print_json(const Scene& scene, const Judged& judged) {
                                  {"rigid_motions", mobility.rigid_motions},
                                  {"maxwell_count", mobility.count}};
   json["smallest_singular_value"] = mobility.smallest_singular_value;
+  json["clearance"] = clearance_json(near);
   json["unique_rods"] = judged.unique_rods();
   json["not_unique"] = nlohmann::ordered_json::array();
   for (std::size_t r = 0; r < judged.names.size(); ++r)
@@ -121,7 +187,7 @@ void print_forces(const Judged& judged) {
     print_state(judged, judged.balance.states[k], judged.mobility.redundant_rows[k]);
 }
 
-void print_table(const Scene& scene, const Judged& judged) {
+void print_table(const Scene& scene, const Judged& judged, const NearRods& near) {
   const Model& model = judged.model;
   const Mobility& mobility = judged.mobility;
   std::cout << scene.name << ": " << scene.title << "\n";
@@ -139,6 +205,7 @@ void print_table(const Scene& scene, const Judged& judged) {
   if (!std::isnan(mobility.smallest_singular_value))
     std::cout << std::left << std::setw(24) << "smallest singular value" << std::right << std::setw(8)
               << std::setprecision(3) << mobility.smallest_singular_value << "\n";
+  print_clearance(near);
   print_forces(judged);
 }
 
@@ -166,10 +233,11 @@ int cmd_check(const Arguments& arguments) {
   for (const std::string& warning : {velocity_warning(at_start, model->structure),
                                      elastic_step_warning(*model, at_start.state, scene.solver)})
     if (!warning.empty()) std::cerr << "unfurl: warning: " << warning << "\n";
+  const NearRods near = near_rods(model, scene, arguments);
   if (arguments.json)
-    print_json(scene, judged);
+    print_json(scene, judged, near);
   else
-    print_table(scene, judged);
+    print_table(scene, judged, near);
   return exit_ok;
 }
 

@@ -255,7 +255,10 @@ class Host {
   void wait(bool more) {
     SDL_Event event;
     while (!more && !interrupted()) {
-      if (sdl().WaitEventTimeout(&event, 500) == 0) continue;  // Ctrl-C is looked for twice a second
+      if (sdl().WaitEventTimeout(&event, 500) == 0) {  // Ctrl-C is looked for twice a second, and
+        more = panel_->state().simulation.running;     // what works without a word as well
+        continue;
+      }
       more = true;
       take(event);
     }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
+#include "core/diagnostics/force_uniqueness.hpp"
 
 namespace unfurl {
 
@@ -11,8 +12,17 @@ namespace unfurl {
 // price.
 Diagnostics diagnose_books(const Simulation& run);
 
+// The same without what goes in or out, of which the other energies are the sums: of kinetic and potential
+// energies only.
+Diagnostics diagnose_energies(const Simulation& run);
+
 // All but what is unique and what goes in or out, of which energies are the sums: those columns mean nothing.
 Diagnostics diagnose_states(const Simulation& run);
+
+// diagnose() of one window of a long run (simulate/parts.hpp). `known`: what the window before it found,
+// whose last states are of the model that this one begins with; then what this one found. goes_on: it is not
+// the last window.
+Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniqueness& known);
 
 // What the energy balance may be off by rounding alone, at every state of the run [J]. Coordinates are known
 // to some `levels` = 64 units of round-off of their largest, x; a force F works |F| levels ulp x along that,

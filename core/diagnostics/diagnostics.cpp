@@ -15,9 +15,10 @@
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/rod_strength.hpp"
+#include "core/diagnostics/state_forces.hpp"
 #include "core/forces/latch_spring.hpp"
-#include "core/integrators/index1.hpp"
 #include "core/simulate/elastic_sharing.hpp"
+#include "core/simulate/latch.hpp"
 
 namespace unfurl {
 namespace {
@@ -183,6 +184,12 @@ void add_own_values(const Structure& structure, const Instant& s, Series* column
   if (structure.strain_along >= 0) column->values.push_back(poisson_ratio(s));
 }
 
+// Whether impacts may happen, not whether they do: stops, whatever they limit, and rigid latches.
+bool can_strike(const Structure& structure, const SolverOptions& options) {
+  return !structure.stops.empty() ||
+         (options.at_deployed == "latch" && !structure.deployment.empty() && !latch_gives(structure));
+}
+
 bool present(Needs needs, const Simulation& run) {
   const Model& model = run.trajectory.model();
   const auto latches = [&](double damping) {
@@ -204,8 +211,7 @@ bool present(Needs needs, const Simulation& run) {
              std::any_of(model.structure.stops.begin(), model.structure.stops.end(),
                          [](const Stop& stop) { return stop.reeled; });
     case Needs::impacts:
-      return std::any_of(run.events.begin(), run.events.end(),
-                         [](const Event& e) { return e.energy_lost != 0; });
+      return can_strike(model.structure, run.options);
     case Needs::moduli:
       return any_elastic(model.structure);
     case Needs::strengths:
@@ -219,18 +225,6 @@ bool present(Needs needs, const Simulation& run) {
 }
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-// Multipliers from the index-1 equations at the state: least-norm where rows are redundant. At an event in a
-// singular pose they are the extrapolated ones that the state holds. Accelerations are those of the nodes.
-VectorXd multipliers(Index1& index1, const Model& model, const State& state, bool singular_event,
-                     VectorXd& node_acceleration) {
-  VectorXd acceleration(model.system.solved_coordinates()), lambda = state.lambda;
-  acceleration.setConstant(nan);
-  const bool ok = singular_event || index1.evaluate(state, acceleration, lambda);
-  node_acceleration.resize(model.system.coordinates());
-  model.system.expand_rate(acceleration, node_acceleration);
-  return ok ? lambda : VectorXd::Constant(lambda.size(), nan);
-}
 
 // The fold angle, which counts on where it passes half a turn.
 class FoldAngle {
@@ -345,7 +339,7 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
   out.force_unique.bottomRows(static_cast<Index>(out.left_open)).setConstant(false);
 }
 
-enum class Look { books, states, all };
+enum class Look { energies, books, states, all };
 
 EnergyFlow no_flow(const Simulation& run) {
   const std::vector<double> none(run.trajectory.size(), 0.0);
@@ -353,8 +347,9 @@ EnergyFlow no_flow(const Simulation& run) {
   return {none, none, none, none, std::vector(drives, none)};
 }
 
-Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool()>& cancelled) {
-  const bool books = look == Look::books;
+Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool()>& cancelled,
+                      const ForceUniqueness* uniqueness) {
+  const bool books = look == Look::books || look == Look::energies;
   const Trajectory& trajectory = run.trajectory;
   Diagnostics out;
   std::vector<const Row*> used;
@@ -369,20 +364,19 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
   if (!books) drives.emplace(trajectory.model(), out.columns);
   const std::size_t first_own = out.columns.size();
   if (!books) add_own_columns(trajectory.structure(), out);
-  const EnergyFlow flow = look == Look::states ? no_flow(run) : energy_flow(run);
+  const bool flows = look == Look::books || look == Look::all;
+  const EnergyFlow flow = flows ? energy_flow(run) : no_flow(run);
   const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   out.force_unique.resize(out.axial_force.rows(), rods);
   out.rod_unique.assign(static_cast<std::size_t>(rods), 1);
   std::vector<char> unique(out.rod_unique);
   const std::vector<char> not_asked;
-  std::optional<ForceUniqueness> uniqueness;
-  if (look == Look::all || (!books && any_elastic(trajectory.structure()))) uniqueness.emplace(run);
   VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
   std::vector<double> scratch;
   const Model* model = nullptr;
   std::unique_ptr<System> followed;
-  std::unique_ptr<Index1> index1;
+  StateForces forces(trajectory);
   std::optional<ElasticSharing> sharing;
   FoldAngle fold(trajectory.structure().deployment);
   double first_energy = 0;
@@ -391,7 +385,6 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
     if (model != &trajectory.model(i)) {
       model = &trajectory.model(i);
       followed = std::make_unique<System>(model->system);
-      if (!books) index1 = std::make_unique<Index1>(*followed, true);
       if (!books) sharing.emplace(*model, !uniqueness || uniqueness->all_by_rigid_rods(i));
       lengths = model->system.all_lengths();
       phi.resize(lengths.size());
@@ -405,7 +398,7 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
     VectorXd lambda;
     if (!books) {
       const bool limit = trajectory.report(i).singular_event;
-      lambda = multipliers(*index1, *model, state, limit, acceleration);
+      lambda = forces.multipliers(i, acceleration);
       sharing->share(state.t, q, limit, lambda);
       axial_forces(*model, state, q, v, lambda, force);
       for (std::size_t r = 0; uniqueness && r < unique.size(); ++r) {
@@ -451,15 +444,28 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
 }  // namespace
 
 Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
-  return diagnosed(run, Look::all, cancelled);
+  const ForceUniqueness uniqueness(run);
+  return diagnosed(run, Look::all, cancelled, &uniqueness);
+}
+
+Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniqueness& known) {
+  const ForceUniqueness uniqueness(window, known, goes_on);
+  known = uniqueness.known();
+  return diagnosed(window, Look::all, {}, &uniqueness);
 }
 
 Diagnostics diagnose_books(const Simulation& run) {
-  return diagnosed(run, Look::books, {});
+  return diagnosed(run, Look::books, {}, nullptr);
+}
+
+Diagnostics diagnose_energies(const Simulation& run) {
+  return diagnosed(run, Look::energies, {}, nullptr);
 }
 
 Diagnostics diagnose_states(const Simulation& run) {
-  return diagnosed(run, Look::states, {});
+  std::optional<ForceUniqueness> uniqueness;
+  if (any_elastic(run.trajectory.structure())) uniqueness.emplace(run);
+  return diagnosed(run, Look::states, {}, uniqueness ? &*uniqueness : nullptr);
 }
 
 }  // namespace unfurl

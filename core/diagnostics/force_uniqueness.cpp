@@ -11,14 +11,17 @@
 namespace unfurl {
 namespace {
 
-// States of [first, last] that are looked at.
-std::set<std::size_t> looked_at(const Simulation& run, std::size_t first, std::size_t last) {
+// States of [first, last] that are looked at; of a model that is known, those that may be singular.
+std::set<std::size_t> looked_at(const Simulation& run, std::size_t first, std::size_t last, bool known,
+                                bool ends) {
   constexpr std::size_t parts = 4;
   const Trajectory& trajectory = run.trajectory;
   std::set<std::size_t> states;
-  for (std::size_t k = 0; k <= parts; ++k) states.insert(first + (last - first) * k / parts);
+  for (std::size_t k = 0; k <= parts && !known; ++k) states.insert(first + (last - first) * k / parts);
+  if (ends) states.insert(last);
   for (const Event& event : run.events) {
     if (std::isnan(event.singular_value)) continue;
+    if (known && (event.t < trajectory.time(first) || event.t > trajectory.time(last))) continue;
     std::size_t after = first;
     while (after < last && trajectory.time(after) < event.t) ++after;
     states.insert(after);
@@ -37,33 +40,40 @@ SparseRows jacobian_at(const Trajectory& trajectory, std::size_t i) {
 
 }  // namespace
 
-ForceUniqueness::ForceUniqueness(const Simulation& run) {
+ForceUniqueness::ForceUniqueness(const Simulation& run, const KnownUniqueness& before, bool goes_on)
+    : known_(before) {
   const Trajectory& trajectory = run.trajectory;
   for (std::size_t first = 0, last = 0; first < trajectory.size(); first = last + 1) {
     last = first;
     while (last + 1 < trajectory.size() && &trajectory.model(last + 1) == &trajectory.model(first)) ++last;
-    examine(run, first, last);
+    if (first > 0) known_ = {};
+    examine(run, first, last, !goes_on || last + 1 < trajectory.size());
   }
 }
 
-void ForceUniqueness::examine(const Simulation& run, std::size_t first, std::size_t last) {
+void ForceUniqueness::examine(const Simulation& run, std::size_t first, std::size_t last, bool ends) {
+  const auto rows = static_cast<std::size_t>(run.trajectory.model(first).system.constraints());
+  const auto any_of_both = [](std::vector<char>& usual, const std::vector<char>& determined) {
+    for (std::size_t r = 0; r < usual.size(); ++r) usual[r] = static_cast<char>(usual[r] | determined[r]);
+  };
+  const bool is_known = rows > 0 && known_.rigidly.size() == rows;
+  if (!is_known) known_ = {std::vector<char>(rows, 0), std::vector<char>(rows, 0)};
   std::map<std::size_t, std::vector<char>> seen;
-  for (const std::size_t i : looked_at(run, first, last))
+  for (const std::size_t i : looked_at(run, first, last, is_known, ends))
     seen[i] = determined_rows(jacobian_at(run.trajectory, i));
-  std::vector<char>& usual = usual_[first];
-  usual.assign(seen.begin()->second.size(), 0);
-  for (const auto& [i, determined] : seen)
-    for (std::size_t r = 0; r < usual.size(); ++r) usual[r] = static_cast<char>(usual[r] | determined[r]);
+  examined_ += seen.size();
+  std::vector<char>& rigid = known_.rigidly;
+  for (const auto& [i, determined] : seen) any_of_both(rigid, determined);
   for (auto& [i, determined] : seen)
-    if (determined != usual && !run.trajectory.report(i).singular_event) singular_[i] = std::move(determined);
-  rigidly_[first] = std::find(usual.begin(), usual.end(), 0) == usual.end();
+    if (determined != rigid && !run.trajectory.report(i).singular_event) singular_[i] = std::move(determined);
+  rigidly_[first] = std::find(rigid.begin(), rigid.end(), 0) == rigid.end();
   const VectorXd compliance = row_compliance(run.trajectory.model(first));
-  if (rigidly_[first] || compliance.size() == 0) return;
-  usual.assign(usual.size(), 0);
-  for (const auto& [i, unused] : seen) {
-    const std::vector<char> determined = determined_rows(jacobian_at(run.trajectory, i), compliance);
-    for (std::size_t r = 0; r < usual.size(); ++r) usual[r] = static_cast<char>(usual[r] | determined[r]);
-  }
+  if (rigidly_[first] || compliance.size() == 0)
+    known_.usual = rigid;
+  else
+    for (const auto& [i, unused] : seen)
+      any_of_both(known_.usual, determined_rows(jacobian_at(run.trajectory, i), compliance));
+  usual_[first] = known_.usual;
 }
 
 bool ForceUniqueness::all_by_rigid_rods(std::size_t state) const {

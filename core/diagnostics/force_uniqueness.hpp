@@ -16,14 +16,24 @@
 #include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
+#include "core/text/archive.hpp"
 
 namespace unfurl {
+
+// Per kept row of a model, at poses that are not singular, 1: determined. Empty: nothing is known yet.
+struct KnownUniqueness {
+  std::vector<char> rigidly, usual;  // by rigid rods alone; where rods share by their moduli
+  void archive(Archive& archive) { archive(rigidly), archive(usual); }
+};
 
 // Per kept row of a run's constraints, at every state. A few states of each model are examined: its ends,
 // three between them and those beside the singular poses that the run names.
 class ForceUniqueness {
  public:
-  explicit ForceUniqueness(const Simulation& run);
+  explicit ForceUniqueness(const Simulation& run) : ForceUniqueness(run, {}, false) {}
+  // `before`: of the model of the first state. It is examined at its end and at singular poses then; not at
+  // its end where that is the end of a window only and the run goes on.
+  ForceUniqueness(const Simulation& run, const KnownUniqueness& before, bool goes_on);
 
   // 1: unique, per kept row of the model that the state belongs to. At a singular pose without redundancy the
   // forces that are carried over as the limit along the motion (StepReport::singular_event) stay unique.
@@ -32,10 +42,14 @@ class ForceUniqueness {
   bool regular(std::size_t state) const { return singular_.count(state) == 0; }
   // True: rigid rods determine every force of the state's model, whatever moduli they have.
   bool all_by_rigid_rods(std::size_t state) const;
+  const KnownUniqueness& known() const { return known_; }  // of the model of the last state
+  std::size_t examined() const { return examined_; }       // states
 
  private:
-  void examine(const Simulation& run, std::size_t first, std::size_t last);
+  void examine(const Simulation& run, std::size_t first, std::size_t last, bool ends);
 
+  KnownUniqueness known_;
+  std::size_t examined_ = 0;
   std::map<std::size_t, std::vector<char>> usual_;  // by the first state of a model
   std::map<std::size_t, bool> rigidly_;             // the same
   std::map<std::size_t, std::vector<char>> singular_;

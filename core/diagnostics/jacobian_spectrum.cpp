@@ -40,21 +40,27 @@ JacobianSpectrum jacobian_spectrum(const Simulation& run, int count) {
   JacobianSpectrum out;
   out.constraints = system.all_constraints();
   out.coordinates = system.coordinates();
-  std::vector<VectorXd> values;
+  std::vector<VectorXd> bidiagonals;  // of the states: four of their values are wanted
+  std::vector<Index> ranks;
   for (const std::size_t i : chosen_states(run)) {
     const MatrixXd G(unit_rows(system, run.trajectory.node_positions(i)));
     if (!G.allFinite()) continue;
-    values.push_back(singular_values(G));
+    bidiagonals.push_back(bidiagonal_of(G));
+    const Index first[] = {0};
     out.t.push_back(run.trajectory.time(i));
-    out.largest.push_back(values.back()[0]);
-    out.rank = std::max(out.rank, Index((values.back().array() > round_off * values.back()[0]).count()));
+    out.largest.push_back(singular_values_at(bidiagonals.back(), first)[0]);
+    const double least = round_off * out.largest.back();
+    ranks.push_back(least > 0 ? singular_values_above(bidiagonals.back(), least) : 0);
+    out.rank = std::max(out.rank, ranks.back());
   }
   out.smallest.resize(static_cast<std::size_t>(std::min<Index>(count, out.rank)));
-  for (std::size_t k = 0; k < out.smallest.size(); ++k)
-    for (const VectorXd& v : values) {
-      const double sigma = v[out.rank - 1 - static_cast<Index>(k)];
-      out.smallest[k].push_back(sigma > round_off * v[0] ? sigma : 0.0);
-    }
+  std::vector<Index> which;
+  for (std::size_t k = 0; k < out.smallest.size(); ++k) which.push_back(out.rank - 1 - static_cast<Index>(k));
+  for (std::size_t i = 0; i < bidiagonals.size(); ++i) {
+    const VectorXd values = singular_values_at(bidiagonals[i], which);
+    for (std::size_t k = 0; k < which.size(); ++k)
+      out.smallest[k].push_back(which[k] < ranks[i] ? values[static_cast<Index>(k)] : 0.0);
+  }
   return out;
 }
 

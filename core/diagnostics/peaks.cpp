@@ -162,7 +162,7 @@ double extreme_of_column(const Simulation& run, const Diagnostics& d, std::strin
     return out;
   };
   const StateValues values = [&](const Simulation& piece) {
-    return signed_values(diagnose_states(piece).at(name));
+    return signed_values((column->unit == "J" ? diagnose_energies(piece) : diagnose_states(piece)).at(name));
   };
   return sign *
          largest_in_motion(run, signed_values(*column), of_the_state(*column) ? values : StateValues());

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "core/diagnostics/books.hpp"
 #include "core/diagnostics/good_part.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/peaks.hpp"
@@ -32,13 +33,6 @@ bool counts(std::string_view name) {
        {"work_J", "dissipated_J", "drive_work_J", "impact_loss_J", "energy_balance_J"})
     if (name == known) return true;
   return name.ends_with(".energy_J");
-}
-
-// Could there be an impact? The column of their losses is there before the first one.
-bool may_strike(const Structure& structure, const SolverOptions& options) {
-  return !structure.stops.empty() || options.at_deployed == "latch" ||
-         std::any_of(structure.forces.begin(), structure.forces.end(),
-                     [](const Force& f) { return f.kind == "friction" || f.one_sided; });
 }
 
 // The row of the largest sign * value; the first of equal ones. values.size() where there is none.
@@ -124,10 +118,7 @@ void RunDigest::add_events(const Simulation& window, double until) {
 Diagnostics RunDigest::add(Simulation& window, std::size_t first, std::size_t last) {
   record_singular_poses(window);
   add_events(window, window.trajectory.end_time());
-  const bool strikes = may_strike(model_->structure, options_);
-  if (strikes) window.events.push_back({.name = "", .energy_lost = 1e-300});
-  Diagnostics d = diagnose(window);
-  if (strikes) window.events.pop_back();
+  Diagnostics d = diagnose_window(window, last < window.trajectory.size(), known_);
   count_on(d, first);
   ends_.clear();
   for (const Series& column : d.columns) ends_.push_back(column.values[last - 1]);
@@ -277,6 +268,7 @@ void RunDigest::archive(Archive& archive) {
   archive_digest(archive, good_);
   archive(doubt_);
   archive(ends_);
+  archive(known_);
   archive_events(archive, singular_);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
+#include "core/diagnostics/force_uniqueness.hpp"
 #include "core/simulate/parts.hpp"
 #include "core/text/archive.hpp"
 
@@ -56,6 +57,7 @@ class RunDigest {
   std::string doubt_;   // why not all of it can be trusted
   std::size_t trusted_ = 0;
   std::vector<double> ends_;  // of every column, at the last state
+  KnownUniqueness known_;     // of the present model's forces
   std::vector<Event> singular_;
 };
 

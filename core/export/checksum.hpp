@@ -16,9 +16,14 @@ namespace unfurl {
 class Checksum {
  public:
   void add(std::span<const std::byte> bytes) {
-    for (const std::byte b : bytes) value_ = (value_ ^ std::to_integer<std::uint64_t>(b)) * 1099511628211ULL;
+    std::uint64_t value = value_;
+#pragma GCC unroll 8
+    for (const std::byte b : bytes) value = (value ^ std::to_integer<std::uint64_t>(b)) * 1099511628211ULL;
+    value_ = value;
   }
-  void add(std::string_view text) { add(std::as_bytes(std::span(text.data(), text.size()))); }
+  void add(std::string_view text) {
+    add(std::as_bytes(std::span(text.data(), text.size())));
+  }
 
   std::string text() const {  // 16 hexadecimal digits
     std::array<char, 17> digits{};

@@ -6,7 +6,6 @@
 
 #include <bit>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -16,6 +15,7 @@
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
 #include "core/export/run_tables.hpp"
+#include "core/text/shortest_number.hpp"
 
 namespace unfurl {
 
@@ -72,7 +72,7 @@ class CsvRows {
     const auto bits = std::bit_cast<std::uint64_t>(x);
     Known& known = known_[(bits * 0x9e3779b97f4a7c15ULL) >> 55U];
     if (known.bits != bits || known.size == 0) {
-      const char* const end = std::to_chars(known.text, known.text + longest_number, x).ptr;
+      const char* const end = write_shortest(known.text, x);
       known.bits = bits;
       known.size = static_cast<unsigned char>(end - known.text);
     }

@@ -38,13 +38,27 @@ std::string reals(const std::string& name, int components, const VectorXd& value
                             {values.data(), static_cast<std::size_t>(values.size())});
 }
 
+// Names as rows of bytes in UTF-8, as many as the longest has, with zeros behind: VTK's own arrays of strings
+// are unknown to other readers of these files.
+std::string name_array(const std::string& array, const std::vector<std::string>& names) {
+  std::size_t width = 1;
+  for (const std::string& name : names) width = std::max(width, name.size());
+  std::vector<std::uint8_t> bytes(width * names.size(), 0);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    std::copy(names[i].begin(), names[i].end(), bytes.begin() + static_cast<std::ptrdiff_t>(i * width));
+  return data_array<std::uint8_t>("UInt8", array, static_cast<int>(width), bytes);
+}
+
 // Rods as VTK_LINE cells; their group by number, in the order in which groups first appear.
 struct Cells {
   std::vector<std::int64_t> connectivity, offsets, group;
   std::vector<std::uint8_t> types;
+  VectorXd radius;                    // of rods; 0: not known [m]
+  std::string node_names, rod_names;  // arrays, of rods with the names of their groups
 
-  explicit Cells(const Structure& structure) {
-    std::vector<std::string> groups;
+  explicit Cells(const Structure& structure) : radius(static_cast<Index>(structure.rod_copies.size())) {
+    std::vector<std::string> groups, nodes, rods, group_of;
+    for (const NodeCopy& node : structure.node_copies) nodes.push_back(node.name);
     for (const RodCopy& rod : structure.rod_copies) {
       connectivity.insert(connectivity.end(), {rod.a, rod.b});
       offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
@@ -53,7 +67,12 @@ struct Cells {
       const auto index = std::find(groups.begin(), groups.end(), name) - groups.begin();
       if (index == std::ssize(groups)) groups.push_back(name);
       group.push_back(index);
+      radius[std::ssize(rods)] = structure.rods[static_cast<std::size_t>(rod.source)].radius;
+      rods.push_back(rod.name);
+      group_of.push_back(name);
     }
+    node_names = name_array("name", nodes);
+    rod_names = name_array("name", rods) + name_array("group_name", group_of);
   }
 };
 
@@ -77,10 +96,11 @@ std::string grid(const ExportJob& job, const Cells& cells, std::size_t i) {
       number(time[0]) + "</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"" +
       std::to_string(structure.node_copies.size()) + "\" NumberOfCells=\"" + std::to_string(rods) + "\">\n";
   text += "<PointData Vectors=\"velocity_m_s\">\n" + reals("velocity_m_s", 3, trajectory.velocities(i)) +
-          "</PointData>\n";
+          cells.node_names + "</PointData>\n";
   text += "<CellData Scalars=\"axial_force_N\">\n" + reals("axial_force_N", 1, force) +
           data_array<std::uint8_t>("UInt8", "axial_force_unique", 1, unique) +
-          data_array<std::int64_t>("Int64", "group", 1, cells.group) + "</CellData>\n";
+          data_array<std::int64_t>("Int64", "group", 1, cells.group) + reals("radius_m", 1, cells.radius) +
+          cells.rod_names + "</CellData>\n";
   text += "<Points>\n" + reals("Points", 3, trajectory.positions(i)) + "</Points>\n<Cells>\n" +
           data_array<std::int64_t>("Int64", "connectivity", 1, cells.connectivity) +
           data_array<std::int64_t>("Int64", "offsets", 1, cells.offsets) +

@@ -24,11 +24,11 @@ Index1::Index1(const System& system, bool clean_multipliers)
       bias_(system.constraints()),
       phi_(system.constraints()) {}
 
-bool Index1::assemble(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension) {
+// The matrix and its right-hand sides.
+void Index1::place(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension) {
   system_.expand(z, q_);
   system_.expand_rate(w, v_);
   system_.jacobian(q_, G_, scratch_);
-  if (!saddle_.factorise(G_)) return false;
   f_.setZero();
   if (tension.size() > 0) {
     system_.add_other_force(t, q_, v_, 1.0, f_);
@@ -39,7 +39,11 @@ bool Index1::assemble(double t, const ConstVec& z, const ConstVec& w, const Vect
   system_.reduce_force(f_, force_);
   system_.constraint_bias(t, q_, v_, bias_);
   bias_ = -bias_;
-  return true;
+}
+
+bool Index1::assemble(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension) {
+  place(t, z, w, tension);
+  return saddle_.factorise(G_);
 }
 
 bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda) {
@@ -76,6 +80,39 @@ bool Index1::correct(const State& state, std::span<VectorXd> lambdas) {
     lambda += change;
   }
   return true;
+}
+
+Index1Lanes::Index1Lanes(const System& system) : system_(system), one_(system_, true), lanes_(one_.saddle_) {}
+
+void Index1Lanes::evaluate(std::span<const State* const> states) {
+  for (std::size_t k = 0; k < ok_.size(); ++k) {
+    force_[k].resize(0);
+    if (k >= states.size()) continue;
+    const State& s = *states[k];
+    system_.follow(s);
+    one_.place(s.t, s.z, s.w, s.tension);
+    lanes_.set(static_cast<int>(k), one_.G_);
+    force_[k] = one_.force_;
+    bias_[k] = one_.bias_;
+  }
+  lanes_.factorise();
+  std::array<bool, SaddleLanes::lanes> fine{};
+  SaddleLanes::Vectors finely_acceleration, finely_lambda;
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    if (!lanes_.ok(static_cast<int>(k))) continue;
+    lanes_.hand_over(static_cast<int>(k), one_.saddle_);
+    one_.saddle_.weakest_pivot(one_.weak_);
+    if (!(fine[k] = one_.saddle_.fine())) continue;
+    finely_acceleration[k].resize(force_[k].size());
+    finely_lambda[k].resize(bias_[k].size());
+    one_.saddle_.solve(force_[k], bias_[k], finely_acceleration[k], finely_lambda[k]);
+    force_[k].resize(0);  // nothing is left to do
+  }
+  lanes_.solve(force_, bias_, acceleration_, lambda_, one_.refinements_);
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    if (fine[k]) acceleration_[k] = finely_acceleration[k], lambda_[k] = finely_lambda[k];
+    ok_[k] = lanes_.ok(static_cast<int>(k)) && acceleration_[k].allFinite() && lambda_[k].allFinite();
+  }
 }
 
 }  // namespace unfurl

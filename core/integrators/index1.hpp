@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <span>
 
-#include "core/math/saddle_solver.hpp"
+#include "core/math/saddle_lanes.hpp"
 #include "core/system/system.hpp"
 
 namespace unfurl {
@@ -33,6 +34,8 @@ class Index1 {
   bool correct(const State& state, std::span<VectorXd> lambdas);
 
  private:
+  friend class Index1Lanes;
+  void place(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension);
   bool assemble(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension = {});
   bool solve(double t, const ConstVec& w, MutVec acceleration, MutVec lambda);
   const System& system_;
@@ -43,6 +46,25 @@ class Index1 {
   double weak_;  // pivots below this are solved for in twice the digits
   double alpha_ = 0;
   VectorXd q_, v_, f_, force_, bias_, phi_;
+};
+
+// Index1 with clean multipliers at a few states of one system at once, to the same bits: half the price of
+// one after the other. What the weakest directions need is done for each state in turn.
+class Index1Lanes {
+ public:
+  explicit Index1Lanes(const System& system);
+  void evaluate(std::span<const State* const> states);  // at most SaddleLanes::lanes
+  // Of the k-th of them; false where Index1::evaluate would say so.
+  bool ok(std::size_t k) const { return ok_[k]; }
+  const VectorXd& acceleration(std::size_t k) const { return acceleration_[k]; }
+  const VectorXd& lambda(std::size_t k) const { return lambda_[k]; }
+
+ private:
+  System system_;  // follows each state in turn
+  Index1 one_;
+  SaddleLanes lanes_;
+  std::array<bool, SaddleLanes::lanes> ok_{};
+  SaddleLanes::Vectors force_, bias_, acceleration_, lambda_;
 };
 
 }  // namespace unfurl

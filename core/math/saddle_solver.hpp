@@ -63,6 +63,7 @@ class SaddleSolver {
   static constexpr double standard_regularisation = 1e-13;  // e, in the scaled unknowns
 
  private:
+  friend class SaddleLanes;
   double residual_norm(const double* r) const;
   double pivot_of_row(Index r) const {
     return std::abs(ldlt_.pivot(place_[static_cast<std::size_t>(n_ + r)]));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
+
 #include "core/math/types.hpp"
 
 namespace unfurl {
@@ -14,5 +16,16 @@ VectorXd singular_values(const MatrixXd& matrix);
 /// The same of a square bidiagonal matrix, upper: its first entry, the one beside it, the next of the
 /// diagonal and so on. by_bisection: not by the quicker iteration that is tried first and may not converge.
 VectorXd singular_values_of_bidiagonal(const VectorXd& entries, bool by_bisection = false);
+
+/// That bidiagonal matrix of a matrix whose entries are finite: n on the diagonal and n - 1 beside it, in
+/// turn, n the smaller of its sizes.
+VectorXd bidiagonal_of(const MatrixXd& matrix);
+
+/// A few singular values of a bidiagonal matrix, for a fraction of the price of all: the k-th largest for
+/// each k of `which` (0: the largest), by bisection. The error of each is some 1e-16 of the largest.
+VectorXd singular_values_at(const VectorXd& entries, std::span<const Index> which);
+
+/// How many singular values of a bidiagonal matrix are at least x > 0.
+Index singular_values_above(const VectorXd& entries, double x);
 
 }  // namespace unfurl

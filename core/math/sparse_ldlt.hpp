@@ -39,6 +39,7 @@ class SparseLdlt {
 
  private:
   friend class TwofoldLdlt;
+  friend class SaddleLanes;
   template <int R>
   void solve_fixed(double* b) const;
 

@@ -5,54 +5,71 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 namespace unfurl {
 
-struct Twofold {
-  double hi = 0, lo = 0;
+// T: double, or a vector of doubles for several such numbers at once.
+template <class T>
+struct TwofoldOf {
+  T hi{}, lo{};
 
-  Twofold() = default;
-  Twofold(double x) : hi(x) {}  // implicit: every double is one
-  explicit operator double() const { return hi + lo; }
+  TwofoldOf() = default;
+  TwofoldOf(T x) : hi(x) {}  // implicit: every double is one
+  static TwofoldOf of(T high, T low) {
+    TwofoldOf out(high);
+    out.lo = low;
+    return out;
+  }
+  explicit operator double() const requires std::is_same_v<T, double> { return hi + lo; }
 
   // a + b without rounding.
-  static Twofold sum(double a, double b) {
-    const double s = a + b, c = s - a;
-    return {s, (a - (s - c)) + (b - c)};
+  static TwofoldOf sum(T a, T b) {
+    const T s = a + b, c = s - a;
+    return of(s, (a - (s - c)) + (b - c));
   }
   // The same for |a| >= |b|.
-  static Twofold quick_sum(double a, double b) {
-    const double s = a + b;
-    return {s, b - (s - a)};
+  static TwofoldOf quick_sum(T a, T b) {
+    const T s = a + b;
+    return of(s, b - (s - a));
   }
   // a b without rounding; |a|, |b| below 1e300.
-  static Twofold product(double a, double b) {
+  static TwofoldOf product(T a, T b) {
     constexpr double split = 134217729.0;  // 2^27 + 1
-    const double a1 = split * a - (split * a - a), a2 = a - a1;
-    const double b1 = split * b - (split * b - b), b2 = b - b1;
-    const double p = a * b;
-    return {p, ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2};
+    const T a1 = split * a - (split * a - a), a2 = a - a1;
+    const T b1 = split * b - (split * b - b), b2 = b - b1;
+    const T p = a * b;
+    return of(p, ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2);
   }
 
-  friend Twofold operator+(const Twofold& a, const Twofold& b) {
-    const Twofold s = sum(a.hi, b.hi), t = sum(a.lo, b.lo);
-    const Twofold u = quick_sum(s.hi, s.lo + t.hi);
+  friend TwofoldOf operator+(const TwofoldOf& a, const TwofoldOf& b) {
+    const TwofoldOf s = sum(a.hi, b.hi), t = sum(a.lo, b.lo);
+    const TwofoldOf u = quick_sum(s.hi, s.lo + t.hi);
     return quick_sum(u.hi, u.lo + t.lo);
   }
-  friend Twofold operator-(const Twofold& a) { return {-a.hi, -a.lo}; }
-  friend Twofold operator-(const Twofold& a, const Twofold& b) { return a + -b; }
-  friend Twofold operator*(const Twofold& a, const Twofold& b) {
-    const Twofold p = product(a.hi, b.hi);
+  friend TwofoldOf operator-(const TwofoldOf& a) { return of(-a.hi, -a.lo); }
+  friend TwofoldOf operator-(const TwofoldOf& a, const TwofoldOf& b) { return a + -b; }
+  friend TwofoldOf operator*(const TwofoldOf& a, const TwofoldOf& b) {
+    const TwofoldOf p = product(a.hi, b.hi);
     return quick_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
   }
   // Of one Newton step on 1 / a.
-  friend Twofold inverse(const Twofold& a) {
-    const Twofold x = 1.0 / a.hi;
+  friend TwofoldOf inverse(const TwofoldOf& a) {
+    const TwofoldOf x = 1.0 / a.hi;
     return x + x * (1.0 - a * x);
   }
-
- private:
-  Twofold(double high, double low) : hi(high), lo(low) {}
 };
+using Twofold = TwofoldOf<double>;
+
+// Two at once, in the width that every 64-bit processor computes with: the same operations on each, so the
+// same bits.
+typedef double DoublePair __attribute__((vector_size(16)));
+using TwofoldPair = TwofoldOf<DoublePair>;
+inline TwofoldPair both(const Twofold& a, const Twofold& b) {
+  return TwofoldPair::of(DoublePair{a.hi, b.hi}, DoublePair{a.lo, b.lo});
+}
+inline Twofold one_of(const TwofoldPair& two, int k) {
+  return Twofold::of(two.hi[k], two.lo[k]);
+}
 
 }  // namespace unfurl

@@ -21,28 +21,47 @@ plot::Rect common(const plot::Rect& a, const plot::Rect& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
+double area(const plot::Rect& r) {
+  return r.width() * r.height();
+}
+
 bool empty(const plot::Rect& r) {
   return !(r.x1 > r.x0) || !(r.y1 > r.y0);
 }
 
 }  // namespace
 
-std::vector<plot::Rect> merged(std::vector<plot::Rect> rects) {
+std::vector<plot::Rect> apart(std::vector<plot::Rect> rects) {
+  constexpr double hardly = 1.1;  // times what they cover
   std::erase_if(rects, empty);
-  std::vector<plot::Rect> apart;
+  const plot::Rect last = rects.empty() ? plot::Rect() : rects.back();
+  std::vector<plot::Rect> out;
   while (!rects.empty()) {
-    plot::Rect one = rects.back();
+    const plot::Rect one = rects.back();
     rects.pop_back();
     const auto touched =
-        std::find_if(apart.begin(), apart.end(), [&](const plot::Rect& r) { return r.overlaps(one); });
-    if (touched == apart.end()) {
-      apart.push_back(one);
-    } else {  // the larger one may overlap others
-      rects.push_back(joined(one, *touched));
-      apart.erase(touched);
+        std::find_if(out.begin(), out.end(), [&](const plot::Rect& r) { return r.overlaps(one); });
+    if (touched == out.end()) {
+      out.push_back(one);
+      continue;
     }
+    const plot::Rect both = joined(one, *touched), shared = common(one, *touched);
+    if (area(both) <= hardly * (area(one) + area(*touched) - area(shared))) {
+      out.erase(touched);  // the larger one may overlap others
+      rects.push_back(both);
+      continue;
+    }
+    const bool stays = one.contains(last);
+    const plot::Rect cut = stays ? *touched : one;
+    if (stays) out.erase(touched);
+    for (const plot::Rect& rest : {plot::Rect{cut.x0, cut.y0, cut.x1, shared.y0},  // above
+                                   plot::Rect{cut.x0, shared.y1, cut.x1, cut.y1},  // below
+                                   plot::Rect{cut.x0, shared.y0, shared.x0, shared.y1},
+                                   plot::Rect{shared.x1, shared.y0, cut.x1, shared.y1}})
+      if (!empty(rest)) rects.push_back(rest);
+    if (stays) rects.push_back(one);
   }
-  return apart;
+  return out;
 }
 
 DrawDamage::Seen DrawDamage::seen(const ImDrawList& list, const ImDrawData& data) {
@@ -94,7 +113,7 @@ std::vector<plot::Rect> DrawDamage::update(const ImDrawData& data) {
   lists_ = std::move(now);
   width_ = data.DisplaySize.x;
   height_ = data.DisplaySize.y;
-  return merged(std::move(damage));
+  return apart(std::move(damage));
 }
 
 }  // namespace unfurl

@@ -32,7 +32,8 @@ class DrawDamage {
   float width_ = 0, height_ = 0;
 };
 
-// Those that overlap become one that holds both, until none do.
-std::vector<plot::Rect> merged(std::vector<plot::Rect> rects);
+// Rectangles that cover the same and do not overlap: of two that do, one that holds both where it is hardly
+// larger, else the other's rest. The last one is not cut: it is whole in one of them.
+std::vector<plot::Rect> apart(std::vector<plot::Rect> rects);
 
 }  // namespace unfurl

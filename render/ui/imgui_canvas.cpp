@@ -42,8 +42,49 @@ std::vector<ImVec2> distinct(std::vector<ImVec2> points) {
 
 }  // namespace
 
-ImguiCanvas::ImguiCanvas(ImDrawList& list, Fonts fonts, double pixels_per_point, Point origin)
-    : list_(list), fonts_(std::move(fonts)), scale_(pixels_per_point), origin_(origin), flags_(list.Flags) {
+// From the last corner every point in between leaves a wedge of directions that pass it within the tolerance
+// t: half its angle is asin(t / d) at a distance d. A point in the common wedge may be the next corner; the
+// last such becomes it. A line that comes back towards its corner would be cut short: it ends there.
+std::vector<ImVec2> straightened(std::span<const ImVec2> points, float tolerance) {
+  if (points.size() < 3 || tolerance <= 0) return {points.begin(), points.end()};
+  const auto cross = [](ImVec2 a, ImVec2 b) { return a.x * b.y - a.y * b.x; };
+  const auto turned = [](ImVec2 v, float cosine, float sine) {
+    return ImVec2(v.x * cosine - v.y * sine, v.x * sine + v.y * cosine);
+  };
+  std::vector<ImVec2> corners{points.front()};
+  ImVec2 low, high;  // sides of the wedge
+  bool open = true;  // on all sides
+  float farthest = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    ImVec2 d(points[i].x - corners.back().x, points[i].y - corners.back().y);
+    float away = std::hypot(d.x, d.y);
+    const bool inside = open || (cross(low, d) >= 0 && cross(d, high) >= 0);
+    if (i > 1 && (!inside || away < farthest)) {
+      corners.push_back(points[i - 1]);
+      open = true;
+      d = {points[i].x - points[i - 1].x, points[i].y - points[i - 1].y};
+      away = std::hypot(d.x, d.y);
+    }
+    farthest = away;
+    if (away <= tolerance) continue;
+    const float sine = tolerance / away, cosine = std::sqrt(1 - sine * sine);
+    const ImVec2 below = turned(d, cosine, -sine), above = turned(d, cosine, sine);
+    if (open || cross(low, below) > 0) low = below;
+    if (open || cross(above, high) > 0) high = above;
+    open = false;
+  }
+  corners.push_back(points.back());
+  return corners;
+}
+
+ImguiCanvas::ImguiCanvas(ImDrawList& list, Fonts fonts, double pixels_per_point, Point origin,
+                         double tolerance)
+    : list_(list),
+      fonts_(std::move(fonts)),
+      scale_(pixels_per_point),
+      origin_(origin),
+      tolerance_(static_cast<float>(tolerance)),
+      flags_(list.Flags) {
   list_.Flags |= ImDrawListFlags_AntiAliasedLines | ImDrawListFlags_AntiAliasedFill;
   list_.Flags &= ~ImDrawListFlags_AntiAliasedLinesUseTex;  // knows whole widths only
 }
@@ -64,7 +105,7 @@ void ImguiCanvas::polyline(std::span<const Point> points, const Pen& pen) {
   std::vector<ImVec2> line;
   line.reserve(points.size());
   for (const Point& p : points) line.push_back(pixel(p));
-  line = distinct(std::move(line));
+  line = straightened(distinct(std::move(line)), tolerance_);
   if (line.size() < 2) return;
   const auto width = static_cast<float>(pen.width * scale_);
   const auto pattern = dash_pattern(pen.dash);

@@ -4,6 +4,8 @@
 #include <imgui.h>
 
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "render/plot/canvas.hpp"
 
@@ -15,7 +17,10 @@ class ImguiCanvas final : public Canvas {
   // `fonts`: the font whose lines are so many pixels high. `origin`: the figure's upper left corner in
   // pixels.
   using Fonts = std::function<ImFont*(float pixels)>;
-  ImguiCanvas(ImDrawList& list, Fonts fonts, double pixels_per_point, Point origin = {});
+  // `tolerance`: how far a curve may be from its points [pixels]; what costs is corners, which a smooth curve
+  // on a screen has far more of than anyone sees.
+  ImguiCanvas(ImDrawList& list, Fonts fonts, double pixels_per_point, Point origin = {},
+              double tolerance = 0);
   ~ImguiCanvas() override;
   ImguiCanvas(const ImguiCanvas&) = delete;
   ImguiCanvas& operator=(const ImguiCanvas&) = delete;
@@ -42,7 +47,12 @@ class ImguiCanvas final : public Canvas {
   Fonts fonts_;
   double scale_;
   Point origin_;
+  float tolerance_;
   ImDrawListFlags flags_;  // of the list before
 };
+
+// Some of the points, among them the first and the last, such that the line through them passes no point that
+// was left out by more than `tolerance`, and takes no short cut where it turns back.
+std::vector<ImVec2> straightened(std::span<const ImVec2> points, float tolerance);
 
 }  // namespace unfurl::plot

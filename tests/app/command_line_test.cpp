@@ -101,7 +101,16 @@ TEST_CASE("check counts the six-unit ring and names its redundant constraints") 
   CHECK(json["unique_rods"] == 6);
   CHECK(json["not_unique"].size() == 78 - 6 - 12);  // all but the posts and the twelve face rows
   CHECK(json["degrees_of_freedom"] == 1);
+  // The rods of a face cross in the middle of an X, in one plane: tubes of 9 cm^2 are inside each other there.
+  const auto& near = json["clearance"];
+  CHECK(near["axes_m"].get<double>() < 1e-9);
+  CHECK(near["distance_m"].get<double>() == Approx(-2 * std::sqrt(9e-4 / 3.14159265358979)).epsilon(1e-6));
+  CHECK(near["overlapping_pairs"].get<int>() >= 12);  // both faces of each sector
+  CHECK(near["rods"].size() == 2);
+  CHECK(near["whole_motion"] == true);
+  CHECK(near["until_s"].get<double>() > 4.9);
   const std::string text = run_program({"check", "hoop6"}).out;
+  CHECK(contains(text, "\nsmallest clearance"));
   CHECK(contains(text, "rank                          71\n"));
   for (const auto& name : json["redundant"]) CHECK(contains(text, "  " + name.get<std::string>() + "\n"));
 }

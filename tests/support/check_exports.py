@@ -59,7 +59,13 @@ for i in range(0, len(t), 10):
     for r in range(grid.GetNumberOfCells()):
         cell = grid.GetCell(r)
         assert [cell.GetPointId(0), cell.GetPointId(1)] == list(ends[r]) and cell.GetCellType() == 3
+    text = lambda row: bytes(row).rstrip(b"\0").decode()
+    names = [text(row) for row in vtk_to_numpy(grid.GetPointData().GetArray("name"))]
+    rods = [text(row) for row in vtk_to_numpy(grid.GetCellData().GetArray("name"))]
+    assert "B0" in names and len(set(names)) == len(names) and len(set(rods)) == len(rods)
     mesh = meshio.read(files[i])
+    assert [text(row) for row in mesh.point_data["name"]] == names
+    assert [text(row) for row in mesh.cell_data["name"][0]] == rods
     assert np.array_equal(mesh.points, states[i, :, :3])
     assert np.array_equal(mesh.cells_dict["line"], ends)
 import xml.etree.ElementTree as xml

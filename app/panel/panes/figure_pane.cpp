@@ -12,6 +12,8 @@ namespace unfurl {
 
 namespace {
 
+constexpr double figure_tolerance = 0.1;  // of curves [pixels]
+
 bool over_time(const Panel& panel) {
   return panel.x.label.starts_with("time") || (!panel.x.shown && panel.x.label.empty());
 }
@@ -48,10 +50,11 @@ PlacedFigure draw_figure(Ui& ui, PanelState& state, const FigureCard& card) {
   if (ImGui::IsRectVisible(place.origin, high)) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddRectFilled(place.origin, high, ui.color(figure_paper(ui.theme.dark)), ui.px(4));
-    plot::ImguiCanvas canvas(list, ui.figure_font, place.scale, {place.origin.x, place.origin.y});
+    plot::ImguiCanvas canvas(list, ui.figure_font, place.scale, {place.origin.x, place.origin.y},
+                             figure_tolerance);
     ThemedCanvas themed(canvas, ui.theme.dark);
     plot::paint(*card.figure, card.layout, themed);
-    if (state.simulation.running) list.AddRectFilled(place.origin, high, ui.color(ui.theme.window, 0.45f));
+    if (state.simulation.late) list.AddRectFilled(place.origin, high, ui.color(ui.theme.window, 0.45f));
   }
   const std::string name = card.figure->name;
   for (std::size_t i = 0; i < card.layout.panels.size(); ++i)

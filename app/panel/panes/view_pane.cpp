@@ -219,9 +219,9 @@ void draw_readings(const Ui& ui, const PanelState& state, const SceneView& view,
   draw_box(ui, kind + selection.name, rows, frame, part);
 }
 
-// The older run stays in sight, dimmed, while the newer one is made.
+// The older run stays in sight, dimmed where the newer one takes its time: until then nothing is drawn twice.
 void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
-  if (!state.simulation.running) return;
+  if (!state.simulation.late) return;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 high(frame.low.x + frame.size.x, frame.low.y + frame.size.y);
   const double done = std::clamp(state.simulation.progress, 0.0, 1.0);

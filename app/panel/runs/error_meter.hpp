@@ -32,6 +32,7 @@ class ErrorMeter {
   void hold(bool on) { worker_.hold(on); }
   std::vector<RunError> take();  // what was measured since the last call; begins with what came meanwhile
   bool busy() const { return worker_.busy() || has_work(); }
+  bool ready() const { return worker_.ready(); }
   long begun() const { return begun_; }    // references
   long solved() const { return solved_; }  // of those, to the end
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <list>
@@ -15,7 +16,8 @@
 namespace unfurl {
 
 // A request replaces one that waits and makes stale one that runs. What is stale is asked to end, and not
-// waited for: the newest request begins beside it. Results of stale requests are dropped.
+// waited for: the newest request begins beside it. Results of stale requests are dropped. What is done within
+// a moment is nobody's to watch: its progress wakes no one, and late() says when that moment is over.
 template <class Request, class Result>
 class Worker {
  public:
@@ -38,6 +40,8 @@ class Worker {
   };
   using Work = std::function<Result(const Request&, const Task&)>;
 
+  static constexpr double moment = 0.2;  // [s]: who waits so long begins to wonder
+
   // `work` may run in two threads at once, one of them stale. `wake` is called from them, outside of any
   // lock, whenever there is something new to look at.
   explicit Worker(Work work, std::function<void()> wake = {})
@@ -58,6 +62,7 @@ class Worker {
     stop_ = false;
     progress_ = 0;
     doing_ = "preparing";
+    begun_ = woken_ = now();
     ++newest_;
     changed_.notify_all();
     for (auto each = threads_.begin(); each != threads_.end();) {
@@ -104,6 +109,12 @@ class Worker {
     const std::lock_guard lock(mutex_);
     return running_ || finished_;
   }
+  bool ready() const {  // something is there to take
+    const std::lock_guard lock(mutex_);
+    return finished_.has_value();
+  }
+  // The newest request runs for longer than `moment` [s].
+  bool late(double longest = moment) const { return running() && now() - begun_ > longest; }
   double progress() const { return progress_; }        // 0..1 of what runs
   std::string doing() const { return doing_.load(); }  // at present
   long started() const { return started_; }            // how many requests began to run
@@ -153,7 +164,14 @@ class Worker {
     if (newest_ != id) return;
     progress_ = fraction;
     doing_ = doing;
-    if (wake_) wake_();
+    constexpr double pause = 0.05;  // [s]: nobody reads faster
+    const double t = now();
+    if (!wake_ || t - begun_ < moment || t - woken_ < pause) return;
+    woken_ = t;
+    wake_();
+  }
+  static double now() {  // [s]
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   }
 
   Work work_;
@@ -163,7 +181,7 @@ class Worker {
   std::optional<Request> waiting_;
   std::optional<Result> finished_;
   std::atomic<long> newest_{0}, started_{0};
-  std::atomic<double> progress_{0};
+  std::atomic<double> progress_{0}, begun_{0}, woken_{0};  // when, in seconds of now()
   std::atomic<const char*> doing_{""};
   std::atomic<bool> held_{false}, stop_{false};
   bool running_ = false;

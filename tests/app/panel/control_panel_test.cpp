@@ -3,6 +3,8 @@
 #include "app/panel/control_panel.hpp"
 
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <thread>
 
 #include "tests/app/panel/panel_driver.hpp"
 
@@ -320,6 +322,36 @@ TEST_CASE("nothing is painted again where nothing changed") {
   for (int i = 0; i < 5; ++i) driver.frame(0);
   CHECK(driver.panel().view_paints() == before);
   CHECK_FALSE(driver.panel().frame(0));  // and no further frame is asked for
+}
+
+// Counts, not times: of a run that is there within a moment nothing is painted before it, and the view and
+// the figures once with it. The bound: the fields, buttons and figures that a change touches are less than
+// the picture, and so is what its run changes.
+TEST_CASE("a change is shown with its run, once, and is told of before only where it takes its time") {
+  for (const bool patient : {true, false}) {
+    CAPTURE(patient);
+    PanelOptions options = PanelDriver::small();
+    options.moment = patient ? 1e9 : 0.0;
+    options.measure_errors = false;
+    PanelDriver driver(options);
+    const ControlPanel& panel = driver.panel();
+    const double whole = static_cast<double>(options.width) * options.height, painted = panel.painted();
+    const long views = panel.view_paints(), runs = panel.session().simulator().started();
+    SceneDocument changed = driver.state().history.now();
+    changed.edits["solver.step"] = 0.97 * driver.state().shown->scene.solver.step;
+    driver.state().history.replace(changed);
+    bool told = false;
+    for (int frames = 0; !(driver.state().shown->document == changed); ++frames) {
+      REQUIRE(frames < 60000);
+      driver.frame(0);
+      told = told || driver.state().simulation.late;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    CHECK(panel.session().simulator().started() == runs + 1);
+    CHECK(panel.view_paints() == views + 1);
+    CHECK(told == !patient);
+    if (patient) CHECK(panel.painted() - painted < 2 * whole);
+  }
 }
 
 TEST_CASE("what is painted in parts is what would be painted at once") {

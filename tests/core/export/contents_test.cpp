@@ -131,6 +131,18 @@ TEST_CASE("a VTU holds the whole structure, bit for bit") {
                types = vtk_array<std::uint8_t>(file, "types");
     REQUIRE(force.size() == e.rods);
     REQUIRE(ends.size() == 2 * e.rods);
+    const std::size_t nodes = e.structure.node_copies.size();
+    const auto node_names = vtk_array<std::uint8_t>(file, "name"),
+               rod_names = vtk_array<std::uint8_t>(file.substr(file.find("<CellData")), "name"),
+               group_names = vtk_array<std::uint8_t>(file, "group_name");
+    const auto row = [](const std::vector<std::uint8_t>& all, std::size_t rows, std::size_t r) {
+      const auto width = static_cast<std::ptrdiff_t>(all.size() / rows);
+      const auto from = all.begin() + static_cast<std::ptrdiff_t>(r) * width;
+      const std::string name(from, from + width);
+      return name.substr(0, name.find('\0'));
+    };
+    for (std::size_t n = 0; n < nodes; ++n)
+      CHECK(row(node_names, nodes, n) == e.structure.node_copies[n].name);
     std::map<std::string, std::int64_t> numbers;  // in the order in which they appear
     for (std::size_t r = 0; r < e.rods; ++r) {
       const RodCopy& rod = e.structure.rod_copies[r];
@@ -140,6 +152,8 @@ TEST_CASE("a VTU holds the whole structure, bit for bit") {
       CHECK(ends[2 * r + 1] == rod.b);
       CHECK(stops[r] == static_cast<std::int64_t>(2 * r + 2));
       CHECK(types[r] == 3);  // VTK_LINE
+      CHECK(row(rod_names, e.rods, r) == e.structure.rod_copies[r].name);
+      CHECK(row(group_names, e.rods, r) == e.group(r));
       CHECK(groups[r] == numbers.emplace(e.group(r), std::ssize(numbers)).first->second);
     }
   }

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 #include "core/math/types.hpp"
 
@@ -23,6 +24,18 @@ TEST_CASE("singular values of a bidiagonal matrix by iteration and by bisection 
               Approx(2 * c * std::cos(static_cast<double>(k + 1) * pi / static_cast<double>(2 * n + 1)))
                   .margin(1e-15 * static_cast<double>(n)));
     }
+    // A few of them, in any order, and between which ones a number lies.
+    std::vector<Index> which;
+    for (Index k = 0; k < n; ++k) which.push_back((3 * k + 1) % n);
+    const VectorXd some = singular_values_at(entries, which);
+    const VectorXd all = singular_values_of_bidiagonal(entries, true);
+    REQUIRE(some.size() == n);
+    for (Index k = 0; k < n; ++k) {
+      const Index i = which[static_cast<std::size_t>(k)];
+      CHECK(some[k] == Approx(all[i]).margin(1e-15 * static_cast<double>(n)));
+      CHECK(singular_values_above(entries, 0.999 * all[i]) == i + 1);
+      CHECK(singular_values_above(entries, 1.001 * all[i]) == i);
+    }
   }
 }
 
@@ -33,6 +46,12 @@ TEST_CASE("singular values by bisection find zeros and clusters") {
   for (Index k = 0; k < 4; ++k) CHECK(values[k] == Approx(0.73).epsilon(1e-15));
   CHECK(values[4] == 0.0);
   CHECK(values[5] == 0.0);
+  const Index which[] = {5, 0, 4, 3, 1};
+  const VectorXd some = singular_values_at(entries, which);
+  for (const Index k : {1, 3, 4}) CHECK(some[k] == Approx(0.73).epsilon(1e-15));
+  CHECK(some[0] == 0.0);
+  CHECK(some[2] == 0.0);
+  CHECK(singular_values_above(entries, 1e-12) == 4);
 }
 
 TEST_CASE("singular values of a matrix that is not finite are not numbers") {

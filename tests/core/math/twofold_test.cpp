@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <random>
 
 using namespace unfurl;
 
@@ -18,4 +19,28 @@ TEST_CASE("twofold numbers keep what doubles round away") {
     // A Newton step squares the error of the double, 1e-16; products add some 2^-104 = 5e-32.
     CHECK(std::abs(static_cast<double>(number * inverse(number) - Twofold(1.0))) <= 1e-30);
   }
+}
+
+TEST_CASE("two twofold numbers at once have the bits of one after the other") {
+  typedef double Pair __attribute__((vector_size(16)));
+  using Two = TwofoldOf<Pair>;
+  std::mt19937 random(20261122);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto number = [&] {
+    return Twofold(std::ldexp(uniform(random), static_cast<int>(random() % 60) - 30)) +
+           Twofold(std::ldexp(uniform(random), -70));
+  };
+  int wrong = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Twofold a[2] = {number(), number()}, b[2] = {number(), number()}, c[2] = {number(), number()};
+    const auto both = [](const Twofold* x) {
+      return Two::of(Pair{x[0].hi, x[1].hi}, Pair{x[0].lo, x[1].lo});
+    };
+    const Two left = both(a) - both(b) * both(c);
+    for (int k = 0; k < 2; ++k) {
+      const Twofold alone = a[k] - b[k] * c[k];
+      wrong += left.hi[k] == alone.hi && left.lo[k] == alone.lo ? 0 : 1;
+    }
+  }
+  CHECK(wrong == 0);
 }

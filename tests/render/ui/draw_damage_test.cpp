@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <random>
 
 using namespace unfurl;
 
@@ -70,12 +71,43 @@ TEST_CASE("only where a window's contents moved is there something to paint") {
   CHECK(covers(screen.draw(50, 80), {120, 120, 140, 130}));  // what a closed window covered
 }
 
-TEST_CASE("rectangles that overlap become one, however they hang together") {
-  CHECK(merged({{0, 0, 1, 1}, {2, 2, 3, 3}, {5, 5, 5, 9}}).size() == 2);  // one of them is empty
-  const auto one = merged({{0, 0, 4, 1}, {6, 0, 9, 1}, {3, 0, 7, 1}});
+TEST_CASE("rectangles that overlap become one where that is hardly larger, however they hang together") {
+  CHECK(apart({{0, 0, 1, 1}, {2, 2, 3, 3}, {5, 5, 5, 9}}).size() == 2);  // one of them is empty
+  const auto one = apart({{0, 0, 4, 1}, {6, 0, 9, 1}, {3, 0, 7, 1}});
   REQUIRE(one.size() == 1);
   CHECK(one[0].x0 == 0);
   CHECK(one[0].x1 == 9);
+}
+
+// A bar along the top and one along the side meet in a corner: what neither covers is not painted.
+TEST_CASE("rectangles apart cover the pixels of those that overlapped, each once, and the last is whole") {
+  std::mt19937 random(7);
+  for (int round = 0; round < 300; ++round) {
+    constexpr int side = 24;
+    std::vector<plot::Rect> rects;
+    for (int i = 0; i < 5; ++i) {
+      const auto at = [&] { return static_cast<double>(random() % side); };
+      const double x = at(), y = at();
+      rects.push_back({x, y, std::min<double>(side, x + at()), std::min<double>(side, y + at())});
+    }
+    const plot::Rect last{5, 6, 14, 13};
+    rects.push_back(last);
+    const std::vector<plot::Rect> parts = apart(rects);
+    double wanted = 0, covered = 0;
+    for (int x = 0; x < side; ++x)
+      for (int y = 0; y < side; ++y) {
+        const plot::Rect pixel{x + 0.0, y + 0.0, x + 1.0, y + 1.0};
+        const auto over = [&](const plot::Rect& r) { return r.overlaps(pixel); };
+        const auto times = std::count_if(parts.begin(), parts.end(), over);
+        const bool asked = std::any_of(rects.begin(), rects.end(), over);
+        wanted += asked;
+        covered += static_cast<double>(times);
+        CHECK(times <= 1);
+        if (asked) CHECK(times == 1);
+      }
+    CHECK(covered <= 1.6 * wanted);  // joined at most a few times, each at most a tenth larger
+    CHECK(std::any_of(parts.begin(), parts.end(), [&](const plot::Rect& r) { return r.contains(last); }));
+  }
 }
 
 }  // namespace draw_damage_test

@@ -2,11 +2,13 @@
 #include "render/ui/sheet.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "render/gl/context.hpp"
 #include "render/gl/framebuffer.hpp"
 #include "render/gl/functions.hpp"
 #include "render/scene/text_overlay.hpp"
+#include "render/ui/imgui_canvas.hpp"
 
 using namespace unfurl;
 
@@ -79,6 +81,31 @@ TEST_CASE("more vertices than 16 bits can count are drawn in the right place") {
   CHECK(inked(image) == std::array{5, 5, 159, 79});
   CHECK(channel(image, 155, 75, 1) == 0);
   CHECK(channel(image, 100, 50, 1) == 255);
+}
+
+// Corners of a curve of curvature k may be sqrt(8 t / k) apart where it may be t away from it: 400 pixels of
+// a wave of 30 pixels' height and 200 pixels' length (k up to 0.03) need some 60 at most.
+TEST_CASE("a smooth curve on the screen has few corners, and is nowhere farther from its points than told") {
+  constexpr float tolerance = 0.1f;
+  std::vector<ImVec2> wave;
+  for (int i = 0; i <= 2000; ++i)
+    wave.emplace_back(0.2f * static_cast<float>(i), 30 * std::sin(0.0314f * 0.2f * static_cast<float>(i)));
+  wave.insert(wave.begin() + 700, {ImVec2(139.9f, 70), ImVec2(139.95f, -80)});  // and two needles
+  const std::vector<ImVec2> kept = plot::straightened(wave, tolerance);
+  CHECK(kept.size() < 100);
+  std::size_t next = 0;
+  for (std::size_t k = 1; k < kept.size(); ++k) {
+    const ImVec2 a = kept[k - 1], b = kept[k], d(b.x - a.x, b.y - a.y);
+    const float length = std::hypot(d.x, d.y);
+    for (; wave[next].x != b.x || wave[next].y != b.y; ++next) {
+      REQUIRE(next + 1 < wave.size());
+      const ImVec2 p(wave[next].x - a.x, wave[next].y - a.y);
+      CHECK(std::abs(p.x * d.y - p.y * d.x) <= 1.001f * tolerance * length);  // 1e-3: single precision
+      CHECK(p.x * d.x + p.y * d.y <= length * (length + tolerance));
+    }
+  }
+  CHECK(next + 1 == wave.size());
+  CHECK(plot::straightened(wave, 0).size() == wave.size());
 }
 
 TEST_CASE("text has its size, and fonts may be added between pictures") {

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/clearance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace unfurl {
+
+// |p + s u - r t|^2 with p = a0 - b0, u = a1 - a0, r = b1 - b0 is least over the unit square of s and t where
+// both derivatives vanish, or on its border: for a given t the best s is (t u.r - u.p) / u.u held to 0..1,
+// and the same for t. Parallel segments have a whole line of such points, any of which will do.
+double segment_distance(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
+  const Vec3 p = a0 - b0, u = a1 - a0, r = b1 - b0;
+  const double uu = u.squaredNorm(), rr = r.squaredNorm(), ur = u.dot(r), up = u.dot(p), rp = r.dot(p);
+  const auto share = [](double above, double below) {
+    return below > 0 ? std::clamp(above / below, 0.0, 1.0) : 0.0;
+  };
+  const double area = uu * rr - ur * ur;  // of what they span, squared
+  const double s = area > 1e-14 * uu * rr ? std::clamp((ur * rp - rr * up) / area, 0.0, 1.0) : 0.0;
+  const double t = share(s * ur + rp, rr), best = share(t * ur - up, uu);
+  return (p + best * u - t * r).norm();
+}
+
+namespace {
+
+class ClearanceScan {
+ public:
+  explicit ClearanceScan(const Trajectory& trajectory)
+      : trajectory_(trajectory), rods_(trajectory.structure().rod_copies) {
+    for (const RodCopy& rod : rods_)
+      radius_.push_back(trajectory.structure().rods[static_cast<std::size_t>(rod.source)].radius);
+    const std::size_t last = trajectory.size() - 1;
+    for (const std::size_t i : {std::size_t{0}, last / 2, last}) poses_.push_back(trajectory.positions(i));
+  }
+
+  void look(std::size_t i) {
+    q_ = trajectory_.positions(i);
+    if (!q_.allFinite()) return;
+    sort_by_place();
+    for (std::size_t k = 0; k < order_.size(); ++k)
+      for (std::size_t l = k + 1; l < order_.size(); ++l) {
+        // What begins farther on can be no nearer than this, nor can what comes behind it.
+        if (low_[order_[l]] - high_[order_[k]] > std::max(best_.distance, 0.0)) break;
+        compare(std::min(order_[k], order_[l]), std::max(order_[k], order_[l]), trajectory_.time(i));
+      }
+    ++best_.states;
+  }
+
+  // A parabola's way of finding the least between two times, without derivatives: by golden sections.
+  std::optional<Clearance> refined(std::size_t states) {
+    if (!found_) return std::nullopt;
+    best_.overlapping = overlapping_.size();
+    const auto a = static_cast<std::size_t>(best_.rod_a), b = static_cast<std::size_t>(best_.rod_b);
+    const std::size_t i = trajectory_.state_before(best_.t);
+    double lo = trajectory_.time(i > 0 ? i - 1 : i), hi = trajectory_.time(std::min(i + 1, states - 1));
+    const auto axes = [&](double t) {
+      q_ = trajectory_.positions_at(t);
+      return axis_distance(a, b);
+    };
+    const double golden = 0.5 * (std::sqrt(5.0) - 1);
+    for (int k = 0; k < 60 && hi - lo > 1e-12 * std::max(1.0, std::abs(hi)); ++k) {
+      const double left = hi - golden * (hi - lo), right = lo + golden * (hi - lo);
+      (axes(left) <= axes(right) ? hi : lo) = axes(left) <= axes(right) ? right : left;
+    }
+    const double t = 0.5 * (lo + hi), least = axes(t);
+    if (least < best_.axes - round_off_of(a, b)) {
+      best_.t = t;
+      best_.distance += least - best_.axes;
+      best_.axes = least;
+    }
+    return best_;
+  }
+
+ private:
+  Vec3 node(const VectorXd& q, int n) const { return q.segment<3>(3 * Index(n)); }
+  double axis_distance(std::size_t a, std::size_t b) const {
+    return segment_distance(node(q_, rods_[a].a), node(q_, rods_[a].b), node(q_, rods_[b].a),
+                            node(q_, rods_[b].b));
+  }
+
+  double round_off_of(std::size_t a, std::size_t b) const {
+    return 1e-12 * (axis_distance(a, b) + (node(q_, rods_[a].b) - node(q_, rods_[a].a)).norm());
+  }
+
+  // Along x, each with its radius.
+  void sort_by_place() {
+    low_.resize(rods_.size());
+    high_.resize(rods_.size());
+    order_.resize(rods_.size());
+    for (std::size_t r = 0; r < rods_.size(); ++r) {
+      const double a = q_[3 * Index(rods_[r].a)], b = q_[3 * Index(rods_[r].b)];
+      low_[r] = std::min(a, b) - radius_[r];
+      high_[r] = std::max(a, b) + radius_[r];
+      order_[r] = r;
+    }
+    std::sort(order_.begin(), order_.end(), [&](std::size_t k, std::size_t l) { return low_[k] < low_[l]; });
+  }
+
+  // In an end of each, or on a pin through both: a node that lies on either in every pose.
+  bool meet(std::size_t a, std::size_t b) {
+    const auto [at, is_new] = meeting_.try_emplace({a, b}, false);
+    if (!is_new) return at->second;
+    const auto near = [&](std::size_t rod, int n, const VectorXd& q) {
+      const Vec3 low = node(q, rods_[rod].a), high = node(q, rods_[rod].b), p = node(q, n);
+      return segment_distance(p, p, low, high) <= 1e-6 * (high - low).norm();
+    };
+    const auto nodes = static_cast<int>(poses_.front().size() / 3);
+    for (int n = 0; n < nodes && !at->second; ++n)
+      at->second = std::all_of(poses_.begin(), poses_.end(),
+                               [&](const VectorXd& q) { return near(a, n, q) && near(b, n, q); });
+    return at->second;
+  }
+
+  void compare(std::size_t a, std::size_t b, double t) {
+    const double axes = axis_distance(a, b), distance = axes - radius_[a] - radius_[b];
+    if (!(distance < best_.distance) && !(distance < 0)) return;
+    if (meet(a, b)) return;
+    if (distance < 0) overlapping_.emplace(a, b);
+    // Round-off shall not say when or which: of those that are as near, the first.
+    const auto pair = std::pair(static_cast<int>(a), static_cast<int>(b));
+    const bool earlier = t == best_.t && pair < std::pair(best_.rod_a, best_.rod_b);
+    const double round_off = round_off_of(a, b);
+    if (found_ && distance >= best_.distance - (earlier ? -round_off : round_off)) return;
+    found_ = true;
+    best_.distance = distance;
+    best_.axes = axes;
+    std::tie(best_.rod_a, best_.rod_b) = pair;
+    best_.t = t;
+  }
+
+  const Trajectory& trajectory_;
+  const std::vector<RodCopy>& rods_;
+  std::vector<double> radius_, low_, high_;
+  std::vector<std::size_t> order_;
+  std::vector<VectorXd> poses_;  // the first, one in the middle, the last
+  VectorXd q_;
+  std::map<std::pair<std::size_t, std::size_t>, bool> meeting_;
+  bool found_ = false;
+  Clearance best_{.distance = std::numeric_limits<double>::infinity()};
+  std::set<std::pair<std::size_t, std::size_t>> overlapping_;
+};
+
+}  // namespace
+
+std::optional<Clearance> least_clearance(const Trajectory& trajectory, std::size_t states) {
+  states = std::min(states, trajectory.size());
+  if (states == 0) return std::nullopt;
+  ClearanceScan scan(trajectory);
+  for (std::size_t i = 0; i < states; ++i) scan.look(i);
+  return scan.refined(states);
+}
+
+}  // namespace unfurl

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/clearance.hpp"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "tests/support/models.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace clearance_test {
+
+namespace {
+
+// Two parallel rods along z that fly past each other, nothing acting on them: `away` apart at first, with the
+// velocity `by` against each other, so that they are nearest at t = -away . by / by^2, |away x by| / |by|
+// apart.
+Structure passing(const Vec3& away, const Vec3& by, double radius_a, double radius_b) {
+  const Vec3 up(0, 0, 0.8), drift(0.31, -0.12, 0);
+  CustomSpec spec;
+  spec.nodes = {{"A0", Vec3::Zero(), drift, 0.0, false},
+                {"A1", up, drift, 0.0, false},
+                {"B0", away, drift + by, 0.0, false},
+                {"B1", away + up, drift + by, 0.0, false}};
+  spec.rods = {{"A", {"A0", "A1"}, 1.3}, {"B", {"B0", "B1"}, 0.7}};
+  Structure s = build_custom(spec);
+  s.rods[0].radius = radius_a;
+  s.rods[1].radius = radius_b;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("segments are as far apart as a search over both finds them") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> some(-1, 1);
+  const auto point = [&] { return Vec3(some(random), some(random), some(random)); };
+  for (int round = 0; round < 40; ++round) {
+    const Vec3 a0 = point(), a1 = point(), b0 = point();
+    const Vec3 b1 = round % 4 == 0 ? Vec3(b0 + 0.7 * (a1 - a0)) : point();  // parallel now and then
+    double least = 1e9;
+    constexpr int n = 400;
+    for (int i = 0; i <= n; ++i)
+      for (int k = 0; k <= n; ++k)
+        least = std::min(least, (a0 + (a1 - a0) * i / n - b0 - (b1 - b0) * k / n).norm());
+    const double distance = segment_distance(a0, a1, b0, b1);
+    CHECK(distance <= least + 1e-15);
+    CHECK(distance >= least - 3.5 / n);  // half a cell of each, segments up to 2 sqrt(3) long
+  }
+}
+
+TEST_CASE("two rods that pass each other are nearest where straight lines say, between two steps") {
+  const Vec3 away(0.53, 0.21, 0.11), by(-0.74, -0.06, 0);
+  const Vec3 across(away.x(), away.y(), 0);
+  const double when = -across.dot(by) / by.squaredNorm(), axes = across.cross(by).norm() / by.norm();
+  const Simulation run = simulate(make_model(passing(away, by, 0.012, 0.019)), dvm_options(3, 0.13, 1.5));
+  const auto c = least_clearance(run.trajectory, run.trajectory.size());
+  REQUIRE(c);
+  // A golden section finds where a parabola is least to the root of round-off, and its value to round-off.
+  CHECK(c->t == Approx(when).margin(1e-7));
+  CHECK(c->axes == Approx(axes).epsilon(1e-12));
+  CHECK(c->distance == Approx(axes - 0.031).epsilon(1e-12));
+  CHECK((c->rod_a == 0 && c->rod_b == 1));
+  CHECK(c->overlapping == 0);
+  CHECK(c->states == run.trajectory.size());
+}
+
+TEST_CASE("rods that pass through each other are said to, those that meet in a node are not") {
+  const Simulation run =
+      simulate(make_model(passing({0.5, 0.004, 0.1}, {-0.8, 0, 0}, 0.012, 0.019)), dvm_options(3, 0.01, 1.0));
+  const auto c = least_clearance(run.trajectory, run.trajectory.size());
+  REQUIRE(c);
+  CHECK(c->distance == Approx(0.004 - 0.031).epsilon(1e-10));
+  CHECK(c->overlapping == 1);
+  const Simulation hinged = simulate(make_model(double_pendulum()), dvm_options(3, 0.02, 1.0));
+  CHECK_FALSE(least_clearance(hinged.trajectory, hinged.trajectory.size()));
+}
+
+// Arms of a scissor lie side by side on their pin; what crosses without one is in each other's way.
+TEST_CASE("rods on a common pin meet there") {
+  const auto crossing = [](bool pinned) {
+    CustomSpec spec;
+    spec.nodes = {{"A0", {0.1, 0, 0}, {0, 0, 0}, 0.0, false},
+                  {"A1", {1.3, 0.9, 0}, {0, 0, 0}, 0.0, false},
+                  {"B0", {0.1, 0.9, 0}, {0, 0, 0}, 0.0, false},
+                  {"B1", {1.3, 0, 0}, {0, 0, 0}, 0.0, false}};
+    if (pinned) spec.nodes.push_back({"P", {0.7, 0.45, 0}, {0, 0, 0}, 0.4, false});
+    spec.rods = {{"A", {"A0", "A1"}, 1.3}, {"B", {"B0", "B1"}, 0.7}};
+    Structure s = build_custom(spec);
+    for (Rod& rod : s.rods) rod.radius = 0.015;
+    const Simulation still = simulate(make_model(s), dvm_options(3, 0.1, 0.2));
+    return least_clearance(still.trajectory, still.trajectory.size());
+  };
+  CHECK_FALSE(crossing(true));
+  REQUIRE(crossing(false));
+  CHECK(crossing(false)->distance == Approx(-0.03).epsilon(1e-12));
+}
+
+}  // namespace clearance_test
