@@ -8,18 +8,16 @@
 #include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
-#include "core/integrators/integrator.hpp"
 #include "core/integrators/row_noise.hpp"
 #include "core/math/quadrature.hpp"
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
-EnergyMeter::EnergyMeter(const System& system, int method_order)
+EnergyMeter::EnergyMeter(const System& system)
     : system_(system),
       loads_(system.has_power(false)),
       dampers_(system.has_power(true)),
-      drives_(system.rheonomic()),
-      ends_rule_(method_order > 4 ? 4 : 3) {
+      drives_(system.rheonomic()) {
   if (idle()) return;
   index1_ = std::make_unique<Index1>(system_);
   q_.resize(system.coordinates());
@@ -108,12 +106,11 @@ void EnergyMeter::add(const State& a, const State& b) {
   system_.follow(a);
   const double fastest = dampers_ ? damping_bound(a) : 0.0;
   const bool stiff = ends.h * fastest > 2;
-  static const Quadrature gauss = gauss_legendre(3), lobatto[] = {gauss_lobatto(3), gauss_lobatto(4)};
+  static const Quadrature gauss = gauss_legendre(3), lobatto = gauss_lobatto(4);
   const double others = load_work + drive_work;
-  // Gauss's rule is of order 6, as that of four Lobatto points; where all that is asked is the multipliers,
-  // the ends have them already.
+  // Both rules are of order 6; where all that is asked is the multipliers, the ends have them already.
   const bool by_ends = !loads_ && !dampers_ && before_.known && after_.known;
-  const Quadrature& rule = by_ends ? lobatto[ends_rule_ - 3] : gauss;
+  const Quadrature& rule = by_ends ? lobatto : gauss;
   for (Index i = 0; i < rule.nodes.size(); ++i) {
     const double u = rule.nodes[i], t = a.t + u * ends.h, weight = ends.h * rule.weights[i];
     const bool at_end = by_ends && (i == 0 || i + 1 == rule.nodes.size());
@@ -153,8 +150,6 @@ EnergyFlow energy_flow(const Simulation& run) {
   flow.of_drives.assign(drives.size(), {0.0});
   std::unique_ptr<EnergyMeter> meter;
   const Model* model = nullptr;
-  const Method* method = find_method(run.options.method);
-  const int order = method && run.solved_as.name != "path" ? method->claims(run.options).order : 6;
   for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
     for (auto* list : {&flow.load_work, &flow.dissipated, &flow.drive_work, &flow.impact_loss})
       list->push_back(list->back());
@@ -170,7 +165,7 @@ EnergyFlow energy_flow(const Simulation& run) {
     }
     if (model != &trajectory.model(i + 1)) {
       model = &trajectory.model(i + 1);
-      meter = std::make_unique<EnergyMeter>(model->system, order);
+      meter = std::make_unique<EnergyMeter>(model->system);
       meter->at_point = [&, m = meter.get()](double weight, double t, const VectorXd& q, const VectorXd& v,
                                              const VectorXd& lambda) {
         for (std::size_t d = 0; d < drives.size(); ++d)

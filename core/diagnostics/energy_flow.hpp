@@ -23,16 +23,15 @@ struct EnergyFlow {
 // both ends: an independent quadrature, whatever the method, of order 6 where the forces are smooth within
 // steps. The power -lambda g' of drives and of rods that warm takes its multipliers from the index-1
 // equations at those points, or at four Lobatto points, of which two are the states, where nothing but drives
-// puts in energy; at three of them, order 4, where the method is of no higher order. Where dampers are stiff
-// (c / m beyond 2 / h), what they take comes from the difference of two motions that are nearly one, which no
-// interpolant tells. Their power is then that of the states and its rates there.
+// puts in energy. Where dampers are stiff (c / m beyond 2 / h), what they take comes from the
+// difference of two motions that are nearly one, which no interpolant tells. Their power is then that of the
+// states and its rates there.
 EnergyFlow energy_flow(const Simulation& run);
 
 // The same step after step, for motions that are not kept.
 class EnergyMeter {
  public:
-  // method_order: of the positions of the states.
-  explicit EnergyMeter(const System& system, int method_order = 6);
+  explicit EnergyMeter(const System& system);
   // Nothing goes in or out but by potentials and constant loads: no step needs to be added.
   bool idle() const { return !loads_ && !dampers_ && !drives_; }
   void add(const State& a, const State& b);  // the step from a to b, which follows on the last one
@@ -57,7 +56,6 @@ class EnergyMeter {
 
   System system_;  // follows the states
   bool loads_, dampers_, drives_;
-  int ends_rule_;  // points of the quadrature with states among them
   std::unique_ptr<Index1> index1_;
   Point before_, after_;
   bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since

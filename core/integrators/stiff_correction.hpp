@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/integrators/galerkin.hpp"
+#include "core/math/interleaved.hpp"
 #include "core/math/saddle_solver.hpp"
 
 namespace unfurl {

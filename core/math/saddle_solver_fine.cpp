@@ -2,6 +2,7 @@
 // The parts of SaddleSolver that work in twice the digits.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/math/saddle_solver.hpp"
 #include "core/math/twofold_ldlt.hpp"
@@ -16,6 +17,28 @@ constexpr double fine_regularisation = 1e-23, redundant_pivot = 1e-20;
 // Pivots in doubles say something of a row where they are this many times e.
 constexpr double clear_of_regularisation = 1000;
 
+// Columns of right-hand sides: one, or two side by side.
+void load(const double* from, Twofold& to) {
+  to = *from;
+}
+void load(const double* from, TwofoldPair& to) {
+  to = DoublePair{from[0], from[1]};
+}
+void store(const Twofold& from, double* to) {
+  *to = static_cast<double>(from);
+}
+void store(const TwofoldPair& from, double* to) {
+  const DoublePair sum = from.hi + from.lo;
+  to[0] = sum[0];
+  to[1] = sum[1];
+}
+Twofold scaled(const Twofold& x, double scale) {
+  return x * scale;
+}
+TwofoldPair scaled(const TwofoldPair& x, double scale) {
+  return x * TwofoldPair(DoublePair{scale, scale});
+}
+
 }  // namespace
 
 // Vectors are in the order of elimination.
@@ -25,6 +48,12 @@ struct SaddleSolver::Fine {
   TwofoldLdlt factors;
   std::vector<double> shift;  // of the diagonal, from -e in doubles
   std::vector<Twofold> right, x, r;
+  std::vector<TwofoldPair> rights, xs, rs;  // of two right-hand sides at once
+  auto vectors(Twofold) { return std::tie(right, x, r); }
+  auto vectors(TwofoldPair) {
+    for (auto* v : {&rights, &xs, &rs}) v->resize(right.size());
+    return std::tie(rights, xs, rs);
+  }
 };
 
 SaddleSolver::~SaddleSolver() = default;
@@ -77,21 +106,34 @@ void SaddleSolver::apply_finely(double* f, double* g, int columns) const {
   const auto place = [this](Index i) {
     return static_cast<std::size_t>(place_[static_cast<std::size_t>(i)]);
   };
-  for (int c = 0; c < columns; ++c) {
-    for (Index i = 0; i < n_; ++i) fine.right[place(i)] = Twofold(f[i * columns + c]) * column_scale_[i];
-    for (Index i = 0; i < m_; ++i) fine.right[place(n_ + i)] = Twofold(g[i * columns + c]) * row_scale_[i];
-    fine.x = fine.right;
-    fine.factors.solve_ordered(fine.x.data());
-    for (Index i = 0; i < m_; ++i) fine.x[place(n_ + i)] = 0.0;
-    std::fill(fine.r.begin(), fine.r.end(), Twofold());
-    fine.factors.subtract_product(values_.data(), fine.x.data(), fine.r.data());
-    for (Index i = 0; i < m_; ++i) fine.right[place(n_ + i)] = -fine.r[place(n_ + i)];
-    fine.factors.solve_ordered(fine.right.data());
-    for (Index i = 0; i < n_; ++i)
-      f[i * columns + c] = static_cast<double>(fine.right[place(i)] * column_scale_[i]);
-    for (Index i = 0; i < m_; ++i)
-      g[i * columns + c] = static_cast<double>(fine.right[place(n_ + i)] * row_scale_[i]);
-  }
+  const auto apply = [&](int c, auto number) {
+    auto [right, x, r] = fine.vectors(number);
+    const auto take = [&, &to = right](const double* from, const VectorXd& scale, Index first) {
+      for (Index i = 0; i < scale.size(); ++i) {
+        load(from + i * columns + c, number);
+        to[place(first + i)] = scaled(number, scale[i]);
+      }
+    };
+    take(f, column_scale_, 0);
+    take(g, row_scale_, n_);
+    x = right;
+    fine.factors.solve_ordered(x.data());
+    number = {};
+    for (Index i = 0; i < m_; ++i) x[place(n_ + i)] = number;
+    std::fill(r.begin(), r.end(), number);
+    fine.factors.subtract_product(values_.data(), x.data(), r.data());
+    for (Index i = 0; i < m_; ++i) right[place(n_ + i)] = -r[place(n_ + i)];
+    fine.factors.solve_ordered(right.data());
+    const auto give = [&, &from = right](double* to, const VectorXd& scale, Index first) {
+      for (Index i = 0; i < scale.size(); ++i)
+        store(scaled(from[place(first + i)], scale[i]), to + i * columns + c);
+    };
+    give(f, column_scale_, 0);
+    give(g, row_scale_, n_);
+  };
+  int c = 0;
+  for (; c + 2 <= columns; c += 2) apply(c, TwofoldPair());
+  if (c < columns) apply(c, Twofold());
 }
 
 // What e leaves of a weak direction, e / sigma^2 <= 1e-3, two refinements take below 1e-9; then the

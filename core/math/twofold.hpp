@@ -61,4 +61,15 @@ struct TwofoldOf {
 };
 using Twofold = TwofoldOf<double>;
 
+// Two at once, in the width that every 64-bit processor computes with: the same operations on each, so the
+// same bits.
+typedef double DoublePair __attribute__((vector_size(16)));
+using TwofoldPair = TwofoldOf<DoublePair>;
+inline TwofoldPair both(const Twofold& a, const Twofold& b) {
+  return TwofoldPair::of(DoublePair{a.hi, b.hi}, DoublePair{a.lo, b.lo});
+}
+inline Twofold one_of(const TwofoldPair& two, int k) {
+  return Twofold::of(two.hi[k], two.lo[k]);
+}
+
 }  // namespace unfurl

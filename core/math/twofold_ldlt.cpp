@@ -7,26 +7,14 @@
 namespace unfurl {
 namespace {
 
-// Two numbers at once, in the width that every 64-bit processor computes with: the same operations on each,
-// so the same bits.
-typedef double Pair __attribute__((vector_size(16)));
-using Two = TwofoldOf<Pair>;
-
-Two both(const Twofold& a, const Twofold& b) {
-  return Two::of(Pair{a.hi, b.hi}, Pair{a.lo, b.lo});
-}
-Twofold one_of(const Two& two, int k) {
-  return Twofold::of(two.hi[k], two.lo[k]);
-}
-
 // b[rows[p]] -= l[p] y for p of [first, last), whose rows differ.
 void subtract_column(const Twofold* l, const int* rows, std::size_t first, std::size_t last, const Twofold& y,
                      Twofold* b) {
-  const Two twice = both(y, y);
+  const TwofoldPair twice = both(y, y);
   std::size_t p = first;
   for (; p + 2 <= last; p += 2) {
     Twofold &u = b[rows[p]], &v = b[rows[p + 1]];
-    const Two left = both(u, v) - both(l[p], l[p + 1]) * twice;
+    const TwofoldPair left = both(u, v) - both(l[p], l[p + 1]) * twice;
     u = one_of(left, 0);
     v = one_of(left, 1);
   }
@@ -38,11 +26,28 @@ Twofold subtract_row(Twofold sum, const Twofold* l, const int* rows, std::size_t
                      const Twofold* b) {
   std::size_t p = first;
   for (; p + 2 <= last; p += 2) {
-    const Two product = both(l[p], l[p + 1]) * both(b[rows[p]], b[rows[p + 1]]);
+    const TwofoldPair product = both(l[p], l[p + 1]) * both(b[rows[p]], b[rows[p + 1]]);
     sum = sum - one_of(product, 0);
     sum = sum - one_of(product, 1);
   }
   return p < last ? sum - l[p] * b[rows[p]] : sum;
+}
+
+// Of two right-hand sides each entry is a pair already.
+void subtract_column(const Twofold* l, const int* rows, std::size_t first, std::size_t last,
+                     const TwofoldPair& y, TwofoldPair* b) {
+  for (std::size_t p = first; p < last; ++p) b[rows[p]] = b[rows[p]] - both(l[p], l[p]) * y;
+}
+TwofoldPair subtract_row(TwofoldPair sum, const Twofold* l, const int* rows, std::size_t first,
+                         std::size_t last, const TwofoldPair* b) {
+  for (std::size_t p = first; p < last; ++p) sum = sum - both(l[p], l[p]) * b[rows[p]];
+  return sum;
+}
+Twofold times(const Twofold& a, const Twofold& x) {
+  return a * x;
+}
+TwofoldPair times(const Twofold& a, const TwofoldPair& x) {
+  return both(a, a) * x;
 }
 
 }  // namespace
@@ -87,14 +92,35 @@ bool TwofoldLdlt::factorise(const double* values, const double* diagonal_shift) 
   return true;
 }
 
-void TwofoldLdlt::solve_ordered(Twofold* b) const {
+template <class Number>
+void TwofoldLdlt::solve_in_place(Number* b) const {
   const SparseLdlt& a = pattern_;
   const std::size_t n = pivot_.size();
   const auto start = [&](std::size_t j) { return static_cast<std::size_t>(a.column_start_[j]); };
   const int* const rows = a.row_index_.data();
   for (std::size_t j = 0; j < n; ++j) subtract_column(l_.data(), rows, start(j), start(j + 1), b[j], b);
   for (std::size_t j = n; j-- > 0;)
-    b[j] = subtract_row(inverse_pivot_[j] * b[j], l_.data(), rows, start(j), start(j + 1), b);
+    b[j] = subtract_row(times(inverse_pivot_[j], b[j]), l_.data(), rows, start(j), start(j + 1), b);
+}
+
+void TwofoldLdlt::solve_ordered(Twofold* b) const {
+  solve_in_place(b);
+}
+void TwofoldLdlt::solve_ordered(TwofoldPair* b) const {
+  solve_in_place(b);
+}
+
+void TwofoldLdlt::subtract_product(const double* values, const TwofoldPair* x, TwofoldPair* r) const {
+  const SparseLdlt& a = pattern_;
+  for (std::size_t k = 0; k < pivot_.size(); ++k)
+    for (auto e = static_cast<std::size_t>(a.entry_start_[k]);
+         e < static_cast<std::size_t>(a.entry_start_[k + 1]); ++e) {
+      const double number = values[a.entry_source_[e]];
+      const TwofoldPair value(DoublePair{number, number});
+      const auto row = static_cast<std::size_t>(a.entry_row_[e]);
+      r[k] = r[k] - value * x[row];
+      if (row != k) r[row] = r[row] - value * x[k];
+    }
 }
 
 void TwofoldLdlt::subtract_product(const double* values, const Twofold* x, Twofold* r) const {
@@ -108,7 +134,7 @@ void TwofoldLdlt::subtract_product(const double* values, const Twofold* x, Twofo
         r[k] = r[k] - value * x[k];
         continue;
       }
-      const Two left = both(r[k], r[row]) - both(value, value) * both(x[row], x[k]);
+      const TwofoldPair left = both(r[k], r[row]) - both(value, value) * both(x[row], x[k]);
       r[k] = one_of(left, 0);
       r[row] = one_of(left, 1);
     }

@@ -18,11 +18,16 @@ class TwofoldLdlt {
   // As SparseLdlt; entries of the diagonal at which `diagonal_shift` is not zero get it added.
   [[nodiscard]] bool factorise(const double* values, const double* diagonal_shift);
   void solve_ordered(Twofold* b) const;
+  void solve_ordered(TwofoldPair* b) const;  // two right-hand sides
   // r -= A x for the matrix with these values, without the shift.
   void subtract_product(const double* values, const Twofold* x, Twofold* r) const;
+  void subtract_product(const double* values, const TwofoldPair* x, TwofoldPair* r) const;
   double pivot(Index k) const { return pivot_[static_cast<std::size_t>(k)].hi; }  // k-th eliminated
 
  private:
+  template <class Number>
+  void solve_in_place(Number* b) const;
+
   const SparseLdlt& pattern_;
   std::vector<Twofold> l_, pivot_, inverse_pivot_, work_;
   std::vector<int> fill_;

@@ -246,7 +246,7 @@ TEST_CASE(
   std::uniform_real_distribution<double> any(-1, 1);
   const Index n = 40, m = 7;
   MatrixXd M = MatrixXd::Zero(n, n), stretch(3 * n, n), G(m, n);
-  for (Index i = 0; i < n; ++i) M(i, i) = 0.3 + any(random) * any(random);
+  for (Index i = 0; i < n; ++i) M(i, i) = 1.3 + any(random);
   for (Index i = 0; i < stretch.size(); ++i) stretch.data()[i] = any(random) > 0.9 ? any(random) : 0.0;
   for (Index i = 0; i < G.size(); ++i) G.data()[i] = any(random) > 0.5 ? any(random) : 0.0;
   G.row(m - 1) = G.row(1);
