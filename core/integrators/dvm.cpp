@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/integrators/dvm.hpp"
+
 #include <stdexcept>
 
 #include "core/integrators/dvm_method.hpp"
