@@ -18,7 +18,8 @@ class Settling {
   // The step to take in place of h, the first of them where h c / m is `z`, which is asked for then only.
   template <class Rate>
   double longest_step(double h, int stages, bool may_let_go, const Rate& z_at_start) {
-    constexpr double least_share = 2e-7;  // of a step; shorter ones are little more than noise
+    // Of a step; shorter ones are little more than noise. Beyond the second, slow rates would notice.
+    constexpr double least_share = 2e-7, let_go_share = 1e-3;
     if (step_ == 0) {
       const double z = z_at_start();
       over_ = !(z > 1.5) || !std::isfinite(z);
@@ -26,7 +27,7 @@ class Settling {
       step_ = over_ ? 0.0 : h * std::max((lets_go_ ? 200 : 0.2 * stages) / z, least_share);
       left_ = lets_go_ ? 25 : 50 / stages;
     } else if (--left_ < 0) {
-      lets_go_ = false;
+      lets_go_ = lets_go_ && step_ < let_go_share * h;  // what rounding leaves in rates falls with the step
       step_ *= 1.5;
       over_ = step_ > h;
     }
