@@ -52,7 +52,7 @@ class ClearanceScan {
     ++best_.states;
   }
 
-  // A parabola's way of finding the least between two times, without derivatives: by golden sections.
+  // The nearest pair between the states beside the one where it was nearest, by golden sections.
   std::optional<Clearance> refined(std::size_t states) {
     if (!found_) return std::nullopt;
     best_.overlapping = overlapping_.size();
@@ -66,7 +66,10 @@ class ClearanceScan {
     const double golden = 0.5 * (std::sqrt(5.0) - 1);
     for (int k = 0; k < 60 && hi - lo > 1e-12 * std::max(1.0, std::abs(hi)); ++k) {
       const double left = hi - golden * (hi - lo), right = lo + golden * (hi - lo);
-      (axes(left) <= axes(right) ? hi : lo) = axes(left) <= axes(right) ? right : left;
+      if (axes(left) <= axes(right))
+        hi = right;
+      else
+        lo = left;
     }
     const double t = 0.5 * (lo + hi), least = axes(t);
     if (least < best_.axes - round_off_of(a, b)) {
