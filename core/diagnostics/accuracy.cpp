@@ -64,6 +64,20 @@ class BalanceError {
   double lowest_ = 0, off_ = 0;
 };
 
+// By more than a millionth of the structure and than rounding of its coordinates could look like.
+bool moves(const Simulation& run) {
+  constexpr double noise = 16 * std::numeric_limits<double>::epsilon();
+  const Trajectory& trajectory = run.trajectory;
+  const VectorXd start = trajectory.node_positions(0);
+  if (start.size() == 0) return false;
+  const Eigen::Map<const Eigen::Matrix3Xd> nodes(start.data(), 3, start.size() / 3);
+  const double extent = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).maxCoeff();
+  const double least = std::max(1e-6 * extent, noise * start.lpNorm<Eigen::Infinity>());
+  for (std::size_t i = 1; i < trajectory.size(); ++i)
+    if ((trajectory.node_positions(i) - start).lpNorm<Eigen::Infinity>() > least) return true;
+  return false;
+}
+
 double deployed_at(const Simulation& run) {
   for (const Event& event : run.events)
     if (event.name == "deployed") return event.t;
@@ -209,7 +223,8 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
   const double off = largest_magnitude(d.at("energy_balance_J").values), turned = energy_turned_over(d);
   std::ostringstream text;
   text.precision(3);
-  if (!(off <= energy_share * turned) && !(off <= energy_share * turned + energy_round_off(run).back())) {
+  const double round_off = off <= energy_share * turned ? 0.0 : energy_round_off(run).back();
+  if (!(off <= energy_share * turned + round_off)) {
     BalanceError rise(damps(run));
     for (const double balance : d.at("energy_balance_J").values) rise.add(balance);
     if (rise.value() < 0.5 * off)
@@ -219,6 +234,12 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
       text << "the energy balance is off by " << off << " J, " << percent_of(off, turned)
            << " of the energy turned over: take a smaller solver.step"
            << (dvm ? " or more solver.stages" : "");
+    warnings.push_back(text.str());
+  } else if (off > energy_share * turned && moves(run)) {
+    text << "the energy balance is off by " << off << " J, " << percent_of(off, turned)
+         << " of the energy turned over, which rounding alone can do here: forces or coordinates are too "
+            "large "
+            "beside this motion for the balance to check it";
     warnings.push_back(text.str());
   }
   const double stretch = largest_magnitude(d.at("constraint_relative_max").values);

@@ -155,6 +155,28 @@ TEST_CASE("what does not move is not warned of") {
   }
 }
 
+// Two masses and their rod fall freely for 3 s, at a height that doubles tell apart by 3e-14 or by 0.5 m:
+// at 3e15 m each state's potential energy, m g z, is rounded by some 8 J of the 1170 J that the fall turns over.
+TEST_CASE("a balance that rounding alone can put off is said to check nothing, and only there") {
+  const auto warnings = [](const std::string& height) {
+    const std::string at = ", 0.0, " + height + "]\nmass = 1.3\n";
+    const Scene scene =
+        read_scene_text("[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'a'\nposition = [3.0" +
+                            at + "[[structure.nodes]]\nname = 'b'\nposition = [5.0" + at +
+                            "[[structure.rods]]\nnodes = ['a', 'b']\nmass = 0.1\n"
+                            "[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nstep = 0.1\nend_time = 3.0\n",
+                        "far.toml", {});
+    const Judged fall = judged(scene);
+    REQUIRE(fall.run.status == RunStatus::completed);
+    return accuracy_warnings(fall.run, fall.d);
+  };
+  CHECK(warnings("200.0").empty());
+  CHECK(warnings("1e9").empty());
+  const auto far = warnings("3e15");
+  REQUIRE(far.size() == 1);
+  CHECK(far[0].find("rounding alone") != std::string::npos);
+}
+
 TEST_CASE("constraints that are lost end a run") {
   // Runge-Kutta on the index-1 equations in steps of 0.1 s, as the pendulum's lower rod whirls: lengths drift
   // off.
