@@ -21,6 +21,7 @@
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/simulate/step_control.hpp"
+#include "core/simulate/step_in_parts.hpp"
 #include "core/simulate/stepper.hpp"
 #include "core/simulate/time_grid.hpp"
 
@@ -152,6 +153,7 @@ class Stepper::Loop {
     to.report = take_step(*integrator_, to.state, h);
     std::optional<State> event;
     if (!find_deployed(to, h, event)) return false;
+    if (!event && !to.report.ok()) step_over(to, h);
     if (watched && to.report.ok())
       if (auto crossing = find_crossing(to);
           crossing && now().t + crossing->probe.at < latest(event, *crossing, h))
@@ -208,18 +210,6 @@ class Stepper::Loop {
     run_.newton_iterations += report.newton_iterations;
     run_.factorisations += report.factorisations;
     return report;
-  }
-
-  // A failed step is tried again in 2, 4, ... 64 parts.
-  void retry(Integrator& integrator, Probe& to, double h) {
-    for (int count = 2; count <= 64 && !to.report.ok(); count *= 2) {
-      to.state = now();
-      integrator.restart();
-      to.report = StepReport{};
-      for (int i = 0; i < count && to.report.ok(); ++i)
-        to.report = take_step(integrator, to.state, h / count);
-    }
-    if (!to.report.ok()) to.state = now();
   }
 
   // --- stops and cables ---
@@ -414,7 +404,12 @@ class Stepper::Loop {
   // where the run ends.
   bool find_deployed(Probe& to, double h, std::optional<State>& event) {
     if (!to.report.ok() && may_cross(1.5 * h)) event = locate(h, now().t + 1.05 * h);
-    if (!event && !to.report.ok()) retry(*integrator_, to, h);
+    if (!event && !to.report.ok()) {
+      to.state = now();
+      to.report = step_in_parts(*integrator_, to.state, h, [this](State& state, double length) {
+        return take_step(*integrator_, state, length);
+      });
+    }
     if (!event && !to.report.ok() && may_cross(stepping::near_deployed * h))
       event = locate(h, now().t + 2 * stepping::near_deployed * h);
     if (event || !to.report.ok() || !crosses(to.state)) return true;
@@ -425,8 +420,10 @@ class Stepper::Loop {
   bool deployed(State& event, Probe& to, double h) {
     deployed_ = true;
     run_.events.push_back({.name = "deployed", .t = event.t, .kind = "deployed"});
-    if (run_.options.at_deployed == "pass")
-      return !to.report.ok() || std::abs(fold(to.state)) < margin_ ? step_over(h) : accept(to, part_end_);
+    if (run_.options.at_deployed == "pass") {
+      if (!to.report.ok() || std::abs(fold(to.state)) < margin_) step_over(to, h);
+      return accept(to, part_end_);
+    }
     project(system(), event);
     while (run_.trajectory.size() > std::max<std::size_t>(1, new_) && run_.trajectory.end_time() >= event.t)
       run_.trajectory.pop_back();
@@ -458,16 +455,19 @@ class Stepper::Loop {
     return true;
   }
 
-  // The step would land on the singular pose: end it a little behind instead. The grid goes on after that.
-  bool step_over(double h) {
-    Probe to;
-    for (const double length : {1.41, 1.73, 1.19, 2.24}) {
-      to.state = now();
+  // A longer step, as far as time has no edge, where this one begins or ends too close to a singular pose.
+  // The grid goes on after that.
+  void step_over(Probe& to, double& h) {
+    for (const double length : {1.41, 1.73, 1.19, 2.24, 1.09, 2.77, 1.57, 3.37}) {
+      if (now().t + length * h > grid_.next_edge(now().t)) continue;
+      Probe longer{.at = length * h, .state = now()};
       integrator_->restart();
-      to.report = take_step(*integrator_, to.state, length * h);
-      if (to.report.ok()) return accept(to, part_end_ + (length - 1) * h);
+      longer.report = take_step(*integrator_, longer.state, length * h);
+      if (!longer.report.ok()) continue;
+      part_end_ += (length - 1) * h;
+      to = std::move(longer), h *= length;
+      return;
     }
-    return accept(to, part_end_);
   }
 
   Simulation& run_;

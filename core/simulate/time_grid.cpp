@@ -50,4 +50,10 @@ TimeGrid::Target TimeGrid::cut(double now, Target target) const {
   return target;
 }
 
+double TimeGrid::next_edge(double now) const {
+  for (const TimeEdge& edge : edges_)
+    if (edge.t > now) return std::min(edge.t, end_);
+  return end_;
+}
+
 }  // namespace unfurl

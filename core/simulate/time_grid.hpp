@@ -26,6 +26,7 @@ class TimeGrid {
   Target next(double now) const;                 // the regular grid
   Target next(double now, double wanted) const;  // a step of the size wanted, somewhat longer before the end
   double end() const { return end_; }
+  double next_edge(double now) const;  // or the end
 
  private:
   Target cut(double now, Target target) const;
