@@ -296,9 +296,12 @@ class DipSearch {
   Event refined(std::size_t k) {
     const double low = times_[k - 1], high = times_[k + 1];
     double t = vertex({low, times_[k], high}, {exact(k - 1), exact(k), exact(k + 1)});
-    for (double reach = 0.05 * (high - low); reach > 1e-4 * (high - low); reach *= 0.05) {
+    // Closer and closer, but where the bottom lies outside: another singular value was the smaller one there.
+    int moves = 40;
+    for (double reach = 0.05 * (high - low); reach > 1e-4 * (high - low) && moves > 0; --moves) {
       const double times[3] = {std::max(low, t - reach), t, std::min(high, t + reach)};
       t = vertex(times, {between(times[0]), between(times[1]), between(times[2])});
+      if (times[0] < t && t < times[2]) reach *= 0.05;
     }
     Event event{.name = "singular pose", .t = t, .kind = "singular_pose"};
     event.singular_value = between(t);

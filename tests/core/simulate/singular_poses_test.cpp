@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "core/math/singular_values.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
 #include "tests/support/four_bar_exact.hpp"
 #include "tests/support/models.hpp"
 
@@ -84,6 +86,26 @@ TEST_CASE("singular poses are found inside steps that turn far, and none in the 
         simulate(make_model(hoop_structure({{"fold_angle", 89.999}})), dvm_options(4, step, 0.3));
     CHECK(singular_events(ring).empty());
   }
+}
+
+// A Hoberman ring that goes on opening: its dip is half a step wide, between two other singular values that
+// are the smallest on both sides of it.
+TEST_CASE("a dip that is narrower than the steps is followed to its bottom") {
+  std::vector<Event> found;
+  for (const double step : {0.002, 0.005}) {
+    const Scene scene =
+        read_scene_text("[structure]\nkind = 'hoberman'\n[solver]\nend_time = 1.0\n", "s", {});
+    SolverOptions options = dvm_options(5, step, 1.0);
+    options.at_deployed = "pass";
+    Simulation run = simulate(build_model(scene), options);
+    REQUIRE(run.status == RunStatus::completed);
+    const std::vector<Event> events = singular_events(run);
+    REQUIRE(events.size() == 1);
+    CHECK(events[0].singular_value <= 1e-6);
+    found.push_back(events[0]);
+  }
+  // Both motions are right to 1e-8 m at 5 m/s, at the longer step by order 8.
+  CHECK(std::abs(found[0].t - found[1].t) <= 1e-8);
 }
 
 TEST_CASE("a swing without singular poses has no such event") {
