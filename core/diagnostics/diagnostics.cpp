@@ -157,6 +157,11 @@ const std::array rows{
         [](const Instant& s) { return s.most_of_rods(1.0, stress_ratio); }},
     Row{"buckling_ratio_max", "largest share of a rod's Euler load", "", Needs::moduli,
         [](const Instant& s) { return s.most_of_rods(1.0, buckling_ratio); }},
+    // As scenes have it.
+    Row{"fold_angle_deg", "fold angle", "deg", Needs::fold,
+        [](const Instant& s) { return s.fold_angle / radians_per_degree; }},
+    Row{"fold_rate_deg_s", "fold rate", "deg/s", Needs::fold,
+        [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v) / radians_per_degree; }},
 };
 
 // -(across'/across) / (along'/along): the ratio of the strain increments of the motion that goes on, which at
@@ -262,8 +267,8 @@ void axial_forces(const Model& model, const State& state, const VectorXd& q, con
   }
 }
 
-// Five columns for each drive: what it prescribes or turns, what it gives for it, the power, the energy so
-// far, and whether the effort is unique.
+// Columns of each drive: what it prescribes or turns, what it gives for it, the power, the energy so far,
+// whether the effort is unique, and an angle in degrees.
 class DriveColumns {
  public:
   DriveColumns(const Model& model, std::vector<Series>& columns)
@@ -283,6 +288,7 @@ class DriveColumns {
                          name + effort + " is unique",
                          "",
                          {}});
+      if (drive.angle()) columns.push_back({name + ".angle_deg", name, "deg", {}});
     }
   }
   // `model`: that of the state, whose rows may be others than at the start.
@@ -293,6 +299,7 @@ class DriveColumns {
       for (const double x :
            {now.value, now.effort, now.power, s.flow.of_drives[d][s.i], now.unique ? 1.0 : 0.0})
         columns_[column++].values.push_back(x);
+      if (drives_[d].angle()) columns_[column++].values.push_back(now.value / radians_per_degree);
     }
   }
 

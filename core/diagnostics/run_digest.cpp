@@ -100,6 +100,8 @@ void RunDigest::count_on(Diagnostics& d, std::size_t first) {
     double off = ends_.at(c) - column.values[first - 1];
     if (column.name == "fold_angle_rad")
       off = 2 * pi * std::round(off / (2 * pi));
+    else if (column.name == "fold_angle_deg")
+      off = 360 * std::round(off / 360);
     else if (!counts(column.name))
       continue;
     for (double& x : column.values) x += off;

@@ -2,10 +2,14 @@
 // What is left of the diagnostics of a run where nobody wants to wait for them.
 #include "core/diagnostics/diagnostics.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "tests/support/models.hpp"
 
@@ -37,6 +41,26 @@ TEST_CASE("diagnostics that are cancelled keep what they have and leave the rest
   const auto warnings = accuracy_warnings(run, part);
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].find("judged up to t = 0.19 s only") != std::string::npos);
+}
+
+TEST_CASE("angles are in degrees as well, as scenes have them") {
+  const Scene scene =
+      read_scene_file(find_scene("hoop6_motor"), {"structure.fold_angle=71.3", "solver.end_time=0.3"});
+  const Diagnostics d = diagnose(simulate(build_model(scene), scene.solver));
+  const std::pair<const char*, const char*> pairs[] = {{"fold_angle_rad", "fold_angle_deg"},
+                                                       {"fold_rate_rad_s", "fold_rate_deg_s"},
+                                                       {"motor.angle_rad", "motor.angle_deg"}};
+  for (const auto& [radians, degrees] : pairs) {
+    CAPTURE(degrees);
+    const Series &in_radians = d.at(radians), &in_degrees = d.at(degrees);
+    CHECK(in_degrees.unit.starts_with("deg"));
+    REQUIRE(in_degrees.values.size() == d.t.size());
+    for (std::size_t i = 0; i < d.t.size(); ++i)  // two roundings
+      CHECK(in_degrees.values[i] == Approx(in_radians.values[i] * 57.29577951308232).epsilon(1e-15));
+  }
+  CHECK(d.at("fold_angle_deg").values.front() == Approx(71.3).epsilon(1e-13));
+  const auto names = diagnostic_names();
+  CHECK(std::ranges::count(names, "fold_angle_deg") == 1);
 }
 
 TEST_CASE("a search for singular poses that is cancelled ends at once") {
