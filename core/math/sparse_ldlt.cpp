@@ -118,6 +118,10 @@ int SparseLdlt::negative_pivots() const {
   return static_cast<int>(std::count_if(pivot_.begin(), pivot_.end(), [](double d) { return d < 0; }));
 }
 
+double SparseLdlt::largest_pivot() const {
+  return pivot_.empty() ? 0.0 : *std::max_element(pivot_.begin(), pivot_.end());
+}
+
 template <int R>
 void SparseLdlt::solve_fixed(double* const b) const {
   const int n = static_cast<int>(n_);
