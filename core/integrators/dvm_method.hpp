@@ -126,7 +126,7 @@ class Dvm final : public Integrator {
   bool tight_iterations(const State& state, StepReport& report);
   void arrive(State& state);
   void correct(StepReport& report);
-  template <int K>
+  template <LaneCount K>
   void correct_stages();
   void correct_at_ends(StepReport& report);
   void settle_end();

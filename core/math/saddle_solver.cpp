@@ -98,24 +98,26 @@ bool SaddleSolver::shows_none_below(double bound) const {
 
 void SaddleSolver::apply(double* f, double* g, int columns) const {
   if (fine_ready_) return apply_finely(f, g, columns);
-  with_columns(columns, [&](auto k) {
-    constexpr int K = k();
-    double* const b = packed_.data();
-    const int* const place = in_use_->place.data();
-    const auto gather = [&](const double* x, const VectorXd& scale, const int* to) {
-      for (Index i = 0, size = scale.size(); i < size; ++i)
-        (scale[i] * Lanes<K>(x + i * K)).store(b + static_cast<Index>(to[i]) * K);
-    };
-    const auto scatter = [&](double* x, const VectorXd& scale, const int* from) {
-      for (Index i = 0, size = scale.size(); i < size; ++i)
-        (scale[i] * Lanes<K>(b + static_cast<Index>(from[i]) * K)).store(x + i * K);
-    };
-    gather(f, column_scale_, place);
-    gather(g, row_scale_, place + n_);
-    in_use_->ldlt.solve_ordered(b, K);
-    scatter(f, column_scale_, place);
-    scatter(g, row_scale_, place + n_);
-  });
+  double* const b = packed_.data();
+  const int* const place = in_use_->place.data();
+  const auto gather = [columns, b](const double* x, const VectorXd& scale, const int* to) {
+    with_wide_columns(columns, [=, s = scale.data(), size = scale.size()](auto k) {
+      constexpr LaneCount K = k();
+      for (Index i = 0; i < size; ++i) (s[i] * Lanes<K>(x + i * K)).store(b + static_cast<Index>(to[i]) * K);
+    });
+  };
+  const auto scatter = [columns, b](double* x, const VectorXd& scale, const int* from) {
+    with_wide_columns(columns, [=, s = scale.data(), size = scale.size()](auto k) {
+      constexpr LaneCount K = k();
+      for (Index i = 0; i < size; ++i)
+        (s[i] * Lanes<K>(b + static_cast<Index>(from[i]) * K)).store(x + i * K);
+    });
+  };
+  gather(f, column_scale_, place);
+  gather(g, row_scale_, place + n_);
+  in_use_->ldlt.solve_ordered(b, columns);
+  scatter(f, column_scale_, place);
+  scatter(g, row_scale_, place + n_);
 }
 
 double SaddleSolver::residual_norm(const double* r) const {
