@@ -348,12 +348,6 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
 
 enum class Look { energies, books, states, all };
 
-EnergyFlow no_flow(const Simulation& run) {
-  const std::vector<double> none(run.trajectory.size(), 0.0);
-  const std::size_t drives = drive_channels(run.trajectory.model()).size();
-  return {none, none, none, none, std::vector(drives, none)};
-}
-
 Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool()>& cancelled,
                       const ForceUniqueness* uniqueness) {
   const bool books = look == Look::books || look == Look::energies;
@@ -371,8 +365,7 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
   if (!books) drives.emplace(trajectory.model(), out.columns);
   const std::size_t first_own = out.columns.size();
   if (!books) add_own_columns(trajectory.structure(), out);
-  const bool flows = look == Look::books || look == Look::all;
-  const EnergyFlow flow = flows ? energy_flow(run) : no_flow(run);
+  RunEnergyFlow flow(run, look == Look::books || look == Look::all);
   const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   out.force_unique.resize(out.axial_force.rows(), rods);
@@ -400,6 +393,7 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
     followed->follow(state);
     const System& system = *followed;
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
+    if (i > 0) flow.step_to(i, books ? nullptr : &forces);
     system.all_constraint_values(state.t, q, phi);
     system.all_constraint_rates(state.t, q, v, velocity_phi, scratch);
     VectorXd lambda;
@@ -432,7 +426,7 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
                           acceleration,
                           system,
                           fold.at(state.t, q, v),
-                          flow,
+                          flow.so_far(),
                           first_energy};
     out.t.push_back(state.t);
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));

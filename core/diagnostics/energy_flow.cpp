@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
-#include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/quintic.hpp"
-#include "core/integrators/index1.hpp"
 #include "core/integrators/row_noise.hpp"
 #include "core/math/quadrature.hpp"
 #include "core/structure/time_edges.hpp"
@@ -27,8 +26,8 @@ EnergyMeter::EnergyMeter(const System& system)
   target_rate_.resize(system.constraints());
 }
 
-EnergyMeter::Point EnergyMeter::at_state(const State& state) {
-  Point p{VectorXd(state.z.size()), VectorXd(lambda_.size()), true};
+SolvedPoint EnergyMeter::at_state(const State& state) {
+  SolvedPoint p{VectorXd(state.z.size()), VectorXd(lambda_.size()), true};
   system_.follow(state);
   p.known = index1_->evaluate(state, p.acceleration, p.lambda);
   if (!p.known) p.acceleration.setZero();
@@ -95,10 +94,10 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
   return bend > 0 ? line + std::min(bend, line) : line / (1 - bend / std::max(line, 1e-300));
 }
 
-void EnergyMeter::add(const State& a, const State& b) {
+void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   if (idle()) return;
-  before_ = fresh_ && last_ == a.t ? after_ : at_state(a);
-  after_ = at_state(b);
+  before_ = fresh_ && last_ == a.t ? std::move(after_) : at_state(a);
+  after_ = at_b.known ? std::move(at_b) : at_state(b);
   fresh_ = true;
   last_ = b.t;
   const Quintic ends{a, b, before_.acceleration, after_.acceleration, b.t - a.t};
@@ -143,43 +142,46 @@ double other_loads(const System& from, const System& to, const VectorXd& z) {
 
 }  // namespace
 
-EnergyFlow energy_flow(const Simulation& run) {
-  const Trajectory& trajectory = run.trajectory;
-  EnergyFlow flow{{0.0}, {0.0}, {0.0}, {0.0}};
-  const std::vector<DriveChannel> drives = drive_channels(trajectory.model());
-  flow.of_drives.assign(drives.size(), {0.0});
-  std::unique_ptr<EnergyMeter> meter;
-  const Model* model = nullptr;
-  for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
-    for (auto* list : {&flow.load_work, &flow.dissipated, &flow.drive_work, &flow.impact_loss})
-      list->push_back(list->back());
-    for (auto& energy : flow.of_drives) energy.push_back(energy.back());
-    const State &a = trajectory.state(i), &b = trajectory.state(i + 1);
-    if (same_instant(a.t, b.t)) {  // an impulse; where time goes on a little, of a drive
-      const double gain =
-          trajectory.model(i + 1).system.kinetic_energy(b.w) - trajectory.model(i).system.kinetic_energy(a.w);
-      (b.t > a.t ? flow.drive_work : flow.impact_loss).back() += b.t > a.t ? gain : -gain;
-      flow.load_work.back() -= other_loads(trajectory.model(i).system, trajectory.model(i + 1).system, b.z);
-      if (meter) meter->jump();
-      continue;
-    }
-    if (model != &trajectory.model(i + 1)) {
-      model = &trajectory.model(i + 1);
-      meter = std::make_unique<EnergyMeter>(model->system);
-      meter->at_point = [&, m = meter.get()](double weight, double t, const VectorXd& q, const VectorXd& v,
-                                             const VectorXd& lambda) {
-        for (std::size_t d = 0; d < drives.size(); ++d)
-          flow.of_drives[d].back() +=
-              weight * drives[d].sample(*model, m->system(), t, q, v, lambda, {}).power;
-      };
-    }
-    const double load_work = meter->load_work, dissipated = meter->dissipated, drive_work = meter->drive_work;
-    meter->add(a, b);
-    flow.load_work.back() += meter->load_work - load_work;
-    flow.dissipated.back() += meter->dissipated - dissipated;
-    flow.drive_work.back() += meter->drive_work - drive_work;
+RunEnergyFlow::RunEnergyFlow(const Simulation& run, bool booked)
+    : trajectory_(run.trajectory),
+      booked_(booked),
+      drives_(drive_channels(run.trajectory.model())),
+      flow_{{0.0}, {0.0}, {0.0}, {0.0}, std::vector(drives_.size(), std::vector{0.0})} {}
+
+void RunEnergyFlow::meter_of(const Model& model) {
+  if (model_ == &model) return;
+  model_ = &model;
+  meter_ = std::make_unique<EnergyMeter>(model.system);
+  meter_->at_point = [this](double weight, double t, const VectorXd& q, const VectorXd& v,
+                            const VectorXd& lambda) {
+    for (std::size_t d = 0; d < drives_.size(); ++d)
+      flow_.of_drives[d].back() +=
+          weight * drives_[d].sample(*model_, meter_->system(), t, q, v, lambda, {}).power;
+  };
+}
+
+void RunEnergyFlow::step_to(std::size_t i, StateForces* forces) {
+  for (auto* list : {&flow_.load_work, &flow_.dissipated, &flow_.drive_work, &flow_.impact_loss})
+    list->push_back(list->back());
+  for (auto& energy : flow_.of_drives) energy.push_back(energy.back());
+  if (!booked_) return;
+  const State &a = trajectory_.state(i - 1), &b = trajectory_.state(i);
+  const Model& model = trajectory_.model(i);
+  if (same_instant(a.t, b.t)) {  // an impulse; where time goes on a little, of a drive
+    const System& before = trajectory_.model(i - 1).system;
+    const double gain = model.system.kinetic_energy(b.w) - before.kinetic_energy(a.w);
+    (b.t > a.t ? flow_.drive_work : flow_.impact_loss).back() += b.t > a.t ? gain : -gain;
+    flow_.load_work.back() -= other_loads(before, model.system, b.z);
+    if (meter_) meter_->jump();
+    return;
   }
-  return flow;
+  meter_of(model);
+  const double load_work = meter_->load_work, dissipated = meter_->dissipated,
+               drive_work = meter_->drive_work;
+  meter_->add(a, b, forces && !meter_->idle() ? forces->at(i) : SolvedPoint{});
+  flow_.load_work.back() += meter_->load_work - load_work;
+  flow_.dissipated.back() += meter_->dissipated - dissipated;
+  flow_.drive_work.back() += meter_->drive_work - drive_work;
 }
 
 }  // namespace unfurl
