@@ -98,18 +98,19 @@ class StageEquations {
   // What is at rest beside other nodes in motion counts as moving by this share of theirs: its forces come
   // from theirs, members of nets just going taut among them, whose stiffness is not yet known.
   static constexpr double beside_motion = 1e-3;
-  template <int K>
+  template <LaneCount K>
   void spread_forces();
-  template <int K>
   void evaluate_momentum();
-  template <int K>
+  template <LaneCount K>
+  void add_inertia();
+  template <LaneCount K>
   void measure_constraints();
   void use_step();
   void move_to(Index j);
   void applied_forces();
   void constraint_changes();
   void measure();
-  template <int K>
+  template <LaneCount K>
   void measure_rows();
   void find_reach();
 

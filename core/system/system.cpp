@@ -233,6 +233,8 @@ System::System(const Structure& structure, bool eliminate_linear) {
   for (std::size_t i = 0; i < structure.rods.size(); ++i)
     if (structure.rods[i].gives) data->giving.push_back(static_cast<int>(i));
   data_ = std::move(data);
+  std::vector<double> scratch;
+  jacobian(data_->start, data_->pattern, scratch);  // tells which entries are large
 }
 
 System::~System() = default;

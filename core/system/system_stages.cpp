@@ -108,17 +108,18 @@ void System::reduce_sizes(const ConstVec& f, MutVec r) const {
 void System::expand_stages(const Interleaved& z, Index first, Interleaved& Q) const {
   const SparseRows& B = data_->B;
   const Index stride = Q.cols();
-  with_columns(static_cast<int>(z.cols()), [&](auto k) {
-    constexpr int K = k();
-    double* to = Q.data() + first;
-    for (Index i = 0; i < B.rows(); ++i, to += stride)
-      (Lanes<K>::all(data_->q0[i]) + row_times<K>(B, i, z.data())).store(to);
+  with_wide_columns(static_cast<int>(z.cols()), [&B, stride, from = z.data(), q0 = data_->q0.data(),
+                                                 first_row = Q.data() + first](auto k) {
+    constexpr LaneCount K = k();
+    double* to = first_row;
+    for (Index i = 0, rows = B.rows(); i < rows; ++i, to += stride)
+      (Lanes<K>::all(q0[i]) + row_times<K>(B, i, from)).store(to);
   });
 }
 
 void System::reduce_force_stages(const Interleaved& f, Interleaved& r) const {
-  with_columns(static_cast<int>(f.cols()),
-               [&](auto k) { multiply<k()>(data_->B_transposed, f.data(), r.data()); });
+  with_wide_columns(static_cast<int>(f.cols()), [&B = data_->B_transposed, from = f.data(),
+                                                 to = r.data()](auto k) { multiply<k()>(B, from, to); });
 }
 
 void System::constraint_stages(const double* t, const Interleaved& Q, Index first, Interleaved& phi,
