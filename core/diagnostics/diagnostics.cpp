@@ -107,7 +107,7 @@ const std::array rows{
     Row{"kinetic_energy_J", "kinetic energy", "J", Needs::nothing,
         [](const Instant& s) { return s.kinetic(); }},
     Row{"potential_energy_J", "potential energy", "J", Needs::nothing,
-        [](const Instant& s) { return s.system().potential_energy(s.q); }},
+        [](const Instant& s) { return s.system().potential_energy(s.state, s.q); }},
     Row{"work_J", "work of the loads", "J", Needs::nothing, [](const Instant& s) { return s.work(); }},
     Row{"dissipated_J", "energy taken by dampers and friction", "J", Needs::dampers,
         [](const Instant& s) { return s.flow.dissipated[s.i]; }},
@@ -117,7 +117,7 @@ const std::array rows{
         [](const Instant& s) { return s.flow.impact_loss[s.i]; }},
     Row{"energy_balance_J", "energy balance", "J", Needs::nothing,
         [](const Instant& s) {
-          return s.kinetic() + s.system().potential_energy(s.q) - s.first_energy - s.work() +
+          return s.kinetic() + s.system().potential_energy(s.state, s.q) - s.first_energy - s.work() +
                  s.flow.dissipated[s.i] - s.flow.drive_work[s.i] + s.flow.impact_loss[s.i];
         }},
     Row{"constraint_max_m", "constraint error", "m", Needs::nothing,
@@ -412,7 +412,7 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
       }
     }
     if (rods > 0) out.axial_force.row(static_cast<Index>(i)) = force.transpose();
-    if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
+    if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(state, q);
     const Instant instant{run,
                           i,
                           state,

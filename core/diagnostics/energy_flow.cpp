@@ -8,7 +8,6 @@
 
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/row_noise.hpp"
-#include "core/math/quadrature.hpp"
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
@@ -60,7 +59,7 @@ double EnergyMeter::energy(const State& state) {
 double EnergyMeter::damping_power(const State& state, const VectorXd& acceleration, double after) {
   system_.expand(state.z + after * state.w, q_);
   system_.expand_rate(state.w + after * acceleration, v_);
-  return -system_.power(true, state.t, q_, v_);
+  return -system_.power(true, state.t, q_, v_, state.tension.size() > 0 ? state.tension.data() : nullptr);
 }
 
 // (P_0 + P_1) h / 2 + (P_0' - P_1') h^2 / 12, of order 4 where the power is smooth at the step; the second
@@ -106,10 +105,13 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   const double fastest = dampers_ ? damping_bound(a) : 0.0;
   const bool stiff = ends.h * fastest > 2;
   static const Quadrature gauss = gauss_legendre(3), lobatto = gauss_lobatto(4);
+  const Index points = b.stage_tension.cols();
+  if (points > 0 && points != own_.nodes.size()) own_ = gauss_legendre(static_cast<int>(points));
   const double others = load_work + drive_work;
   // Both rules are of order 6; where all that is asked is the multipliers, the ends have them already.
-  const bool by_ends = !loads_ && !dampers_ && before_.known && after_.known;
-  const Quadrature& rule = by_ends ? lobatto : gauss;
+  const bool by_ends = points == 0 && !loads_ && !dampers_ && before_.known && after_.known;
+  const Quadrature& rule = points > 0 ? own_ : by_ends ? lobatto : gauss;
+  VectorXd tension;
   for (Index i = 0; i < rule.nodes.size(); ++i) {
     const double u = rule.nodes[i], t = a.t + u * ends.h, weight = ends.h * rule.weights[i];
     const bool at_end = by_ends && (i == 0 || i + 1 == rule.nodes.size());
@@ -117,10 +119,12 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
                    w = stiff ? VectorXd((b.z - a.z) / ends.h) : ends.rate(u);
     system_.expand(z, q_);
     system_.expand_rate(w, v_);
-    if (loads_) load_work += weight * system_.power(false, t, q_, v_);
-    if (dampers_ && !stiff) dissipated -= weight * system_.power(true, t, q_, v_);
+    if (points > 0) tension = b.stage_tension.col(i);
+    const double* const pulls = points > 0 ? tension.data() : nullptr;
+    if (loads_) load_work += weight * system_.power(false, t, q_, v_, pulls);
+    if (dampers_ && !stiff) dissipated -= weight * system_.power(true, t, q_, v_, pulls);
     if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
-    const bool known = drives_ && (at_end || index1_->evaluate(t, z, w, unused_, lambda_));
+    const bool known = drives_ && (at_end || index1_->evaluate(t, z, w, unused_, lambda_, tension));
     if (at_point && (known || !drives_)) at_point(weight, t, q_, v_, lambda_);
     if (!known) continue;
     system_.target_rate(t, target_rate_);

@@ -10,6 +10,7 @@
 #include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/state_forces.hpp"
 #include "core/integrators/index1.hpp"
+#include "core/math/quadrature.hpp"
 #include "core/simulate/simulation.hpp"
 
 namespace unfurl {
@@ -25,9 +26,10 @@ struct EnergyFlow {
 // both ends: an independent quadrature, whatever the method, of order 6 where the forces are smooth within
 // steps. The power -lambda g' of drives and of rods that warm takes its multipliers from the index-1
 // equations at those points, or at four Lobatto points, of which two are the states, where nothing but drives
-// puts in energy. Where dampers are stiff (c / m beyond 2 / h), what they take comes from the
-// difference of two motions that are nearly one, which no interpolant tells. Their power is then that of the
-// states and its rates there.
+// puts in energy. Where rods give and a step does not resolve their waves, lengths between states do not tell
+// forces: the Gauss points are then the step's own, with the axial forces that it has found there. Where
+// dampers are stiff (c / m beyond 2 / h), what they take comes from the difference of two motions that are
+// nearly one, which no interpolant tells. Their power is then that of the states and its rates there.
 class EnergyMeter {
  public:
   explicit EnergyMeter(const System& system);
@@ -56,6 +58,7 @@ class EnergyMeter {
   bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since
   VectorXd q_, v_, unused_, lambda_, target_rate_;
   double last_ = 0;  // time of the state that after_ is of
+  Quadrature own_;   // Gauss points of steps that tell the forces of rods there
 };
 
 // The same along the states of a run, each in its turn; zeros unless it is `booked`.

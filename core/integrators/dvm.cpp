@@ -344,6 +344,9 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   if (settling_.lets_go()) let_go(h);
   state.w = w1_;
   state.tension.resize(0);
+  state.stage_tension.resize(0, 0);
+  if (eq_.rods.as_unknowns && (system_.rheonomic() || system_.by_tension()))
+    state.stage_tension = eq_.rods.tension;
   const bool elastic = system_.elastic_rods() != nullptr;
   if (elastic && eq_.h_omega() > resolved * (c_.s - 1) && !eq_.held())
     eq_.end_tension(w1_, resolved * (c_.s - 1), state.tension);

@@ -32,7 +32,7 @@ void Index1::place(double t, const ConstVec& z, const ConstVec& w, const VectorX
   system_.jacobian(q_, G_, scratch_);
   f_.setZero();
   if (tension.size() > 0) {
-    system_.add_other_force(t, q_, v_, 1.0, f_);
+    system_.add_other_force(t, q_, v_, tension, 1.0, f_);
     system_.add_giving_rod_forces(q_, tension, 1.0, f_);
   } else {
     system_.add_applied_force(t, q_, v_, 1.0, f_);
@@ -47,8 +47,9 @@ bool Index1::assemble(double t, const ConstVec& z, const ConstVec& w, const Vect
   return saddle_.factorise(G_);
 }
 
-bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda) {
-  return assemble(t, z, w) && solve(t, w, acceleration, lambda);
+bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda,
+                      const VectorXd& tension) {
+  return assemble(t, z, w, tension) && solve(t, w, acceleration, lambda);
 }
 
 bool Index1::evaluate(const State& state, MutVec acceleration, MutVec lambda) {

@@ -158,7 +158,7 @@ void StageEquations::applied_forces() {
     move_to(j);
     const double at = t + c.tau[j] * h;
     if (rods.as_unknowns) {
-      system.add_other_force(at, q_tau_, v_tau_, 1.0, force_.col(j));
+      system.add_other_force(at, q_tau_, v_tau_, rods.tension.col(j), 1.0, force_.col(j));
       rods.evaluate(j, at, q_tau_, v_tau_, force_.col(j));
     } else {
       system.add_applied_force(at, q_tau_, v_tau_, 1.0, force_.col(j));
@@ -178,6 +178,7 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
   const SparseRows directions = system.giving_rod_directions(q_tau_);
   for (Index i = 0; i < tension.size(); ++i)
     if (rods.h_omega(i, h, directions) > resolved) tension[i] = rods.tension.row(i).dot(c.tau_to_end);
+  if (!rods.held().empty()) rods.find_still_forces(t + h, q_tau_, v_tau_, tension);
 }
 
 bool StageEquations::held() {
@@ -201,6 +202,11 @@ void StageEquations::force_derivatives(Index j, SparseRows& by_z, SparseRows& by
     system.force_derivatives(at, q_tau_, v_tau_, rods.tension.col(j), by_z, by_w);
   else
     system.force_derivatives(at, q_tau_, v_tau_, by_z, by_w);
+}
+
+SparseRows StageEquations::tension_derivatives(Index j) {
+  move_to(j);
+  return system.tension_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, rods.tension.col(j));
 }
 
 void StageEquations::rod_derivatives(Index j, SparseRows& directions, SparseRows& by_z, SparseRows& by_w) {

@@ -412,12 +412,14 @@ bool System::has_power(bool dissipative) const {
   });
 }
 
-double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const {
+double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v,
+                     const double* tension) const {
+  const Moment at = moment(t, tension);
   double sum = 0;
   for (const auto& block : data_->forces)
     if ((dissipative ? block->dissipates() : block->supplies()) && !block->takes_by_pose()) {
-      const double taken = block->dissipation(moment(t), q.data(), v.data());
-      sum += dissipative ? taken : block->power(moment(t), q.data(), v.data()) - taken;
+      const double taken = block->dissipation(at, q.data(), v.data());
+      sum += dissipative ? taken : block->power(at, q.data(), v.data()) - taken;
     }
   return sum;
 }
