@@ -117,8 +117,9 @@ constexpr std::string_view entry_note =
     "there.";
 
 constexpr std::string_view column_note =
-    "A drive NAME adds NAME.angle_rad, NAME.torque_N_m and NAME.power_W (of a length NAME.value_m and "
-    "NAME.force_N), a structure its own lengths. Energies of dampers, drives and impacts and what belongs to "
+    "A drive NAME adds NAME.angle_rad, NAME.angle_deg, NAME.torque_N_m and NAME.power_W (of a length "
+    "NAME.value_m and NAME.force_N), a structure its own lengths. Energies of dampers, drives and impacts "
+    "and what belongs to "
     "a fold angle are there where the scene has them.";
 
 constexpr std::string_view surface_note =

@@ -47,12 +47,12 @@ class LinearRows final : public ConstraintBlock {
         f[rows_[r].coordinates[i]] += scale * lambda[r] * rows_[r].coefficients[i];
   }
   bool values(int poses, const double* q, Index stride, double* phi) const override {
-    with_columns(poses, [&](auto k) { values_of<k()>(q, stride, phi); });
+    with_wide_columns(poses, [=, this](auto k) { values_of<k()>(q, stride, phi); });
     return true;
   }
   bool add_forces(int poses, const double*, Index, const double* lambda, const double* scale,
                   double* f) const override {
-    with_columns(poses, [&](auto k) { add_forces_of<k()>(lambda, scale, f); });
+    with_wide_columns(poses, [=, this](auto k) { add_forces_of<k()>(lambda, scale, f); });
     return true;
   }
   void bias(const double*, const double*, double* phi_dd) const override {
@@ -64,7 +64,7 @@ class LinearRows final : public ConstraintBlock {
   }
 
  private:
-  template <int K>
+  template <LaneCount K>
   void values_of(const double* q, Index stride, double* phi) const {
     for (const Row& row : rows_) {
       Lanes<K> sum = Lanes<K>::all(-row.value);
@@ -74,7 +74,7 @@ class LinearRows final : public ConstraintBlock {
       phi += K;
     }
   }
-  template <int K>
+  template <LaneCount K>
   void add_forces_of(const double* lambda, const double* scale, double* f) const {
     for (const Row& row : rows_) {
       const Lanes<K> pull = Lanes<K>(scale) * Lanes<K>(lambda);

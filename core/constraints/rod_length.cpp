@@ -76,13 +76,13 @@ class RodLength final : public ConstraintBlock {
 
   bool values(int poses, const double* q, Index stride, double* phi) const override {
     if (!warmed_.empty()) return false;
-    with_columns(poses, [&](auto k) { values_of<k()>(q, stride, phi); });
+    with_wide_columns(poses, [=, this](auto k) { values_of<k()>(q, stride, phi); });
     return true;
   }
 
   bool add_forces(int poses, const double* q, Index stride, const double* lambda, const double* scale,
                   double* f) const override {
-    with_columns(poses, [&](auto k) { add_forces_of<k()>(q, stride, lambda, scale, f); });
+    with_wide_columns(poses, [=, this](auto k) { add_forces_of<k()>(q, stride, lambda, scale, f); });
     return true;
   }
 
@@ -109,7 +109,7 @@ class RodLength final : public ConstraintBlock {
   }
 
  private:
-  template <int K>
+  template <LaneCount K>
   void values_of(const double* q, Index stride, double* phi) const {
     for (std::size_t r = 0; r < a_.size(); ++r, phi += K) {
       const double* const xa = q + a_[r] * stride;
@@ -121,7 +121,7 @@ class RodLength final : public ConstraintBlock {
     }
   }
 
-  template <int K>
+  template <LaneCount K>
   void add_forces_of(const double* q, Index stride, const double* lambda, const double* scale,
                      double* f) const {
     const Lanes<K> scales(scale);

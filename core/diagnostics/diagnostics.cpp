@@ -107,7 +107,7 @@ const std::array rows{
     Row{"kinetic_energy_J", "kinetic energy", "J", Needs::nothing,
         [](const Instant& s) { return s.kinetic(); }},
     Row{"potential_energy_J", "potential energy", "J", Needs::nothing,
-        [](const Instant& s) { return s.system().potential_energy(s.q); }},
+        [](const Instant& s) { return s.system().potential_energy(s.state, s.q); }},
     Row{"work_J", "work of the loads", "J", Needs::nothing, [](const Instant& s) { return s.work(); }},
     Row{"dissipated_J", "energy taken by dampers and friction", "J", Needs::dampers,
         [](const Instant& s) { return s.flow.dissipated[s.i]; }},
@@ -117,7 +117,7 @@ const std::array rows{
         [](const Instant& s) { return s.flow.impact_loss[s.i]; }},
     Row{"energy_balance_J", "energy balance", "J", Needs::nothing,
         [](const Instant& s) {
-          return s.kinetic() + s.system().potential_energy(s.q) - s.first_energy - s.work() +
+          return s.kinetic() + s.system().potential_energy(s.state, s.q) - s.first_energy - s.work() +
                  s.flow.dissipated[s.i] - s.flow.drive_work[s.i] + s.flow.impact_loss[s.i];
         }},
     Row{"constraint_max_m", "constraint error", "m", Needs::nothing,
@@ -157,6 +157,11 @@ const std::array rows{
         [](const Instant& s) { return s.most_of_rods(1.0, stress_ratio); }},
     Row{"buckling_ratio_max", "largest share of a rod's Euler load", "", Needs::moduli,
         [](const Instant& s) { return s.most_of_rods(1.0, buckling_ratio); }},
+    // As scenes have it.
+    Row{"fold_angle_deg", "fold angle", "deg", Needs::fold,
+        [](const Instant& s) { return s.fold_angle / radians_per_degree; }},
+    Row{"fold_rate_deg_s", "fold rate", "deg/s", Needs::fold,
+        [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v) / radians_per_degree; }},
 };
 
 // -(across'/across) / (along'/along): the ratio of the strain increments of the motion that goes on, which at
@@ -262,8 +267,8 @@ void axial_forces(const Model& model, const State& state, const VectorXd& q, con
   }
 }
 
-// Five columns for each drive: what it prescribes or turns, what it gives for it, the power, the energy so
-// far, and whether the effort is unique.
+// Columns of each drive: what it prescribes or turns, what it gives for it, the power, the energy so far,
+// whether the effort is unique, and an angle in degrees.
 class DriveColumns {
  public:
   DriveColumns(const Model& model, std::vector<Series>& columns)
@@ -283,6 +288,7 @@ class DriveColumns {
                          name + effort + " is unique",
                          "",
                          {}});
+      if (drive.angle()) columns.push_back({name + ".angle_deg", name, "deg", {}});
     }
   }
   // `model`: that of the state, whose rows may be others than at the start.
@@ -293,6 +299,7 @@ class DriveColumns {
       for (const double x :
            {now.value, now.effort, now.power, s.flow.of_drives[d][s.i], now.unique ? 1.0 : 0.0})
         columns_[column++].values.push_back(x);
+      if (drives_[d].angle()) columns_[column++].values.push_back(now.value / radians_per_degree);
     }
   }
 
@@ -341,12 +348,6 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
 
 enum class Look { energies, books, states, all };
 
-EnergyFlow no_flow(const Simulation& run) {
-  const std::vector<double> none(run.trajectory.size(), 0.0);
-  const std::size_t drives = drive_channels(run.trajectory.model()).size();
-  return {none, none, none, none, std::vector(drives, none)};
-}
-
 Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool()>& cancelled,
                       const ForceUniqueness* uniqueness) {
   const bool books = look == Look::books || look == Look::energies;
@@ -364,8 +365,7 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
   if (!books) drives.emplace(trajectory.model(), out.columns);
   const std::size_t first_own = out.columns.size();
   if (!books) add_own_columns(trajectory.structure(), out);
-  const bool flows = look == Look::books || look == Look::all;
-  const EnergyFlow flow = flows ? energy_flow(run) : no_flow(run);
+  RunEnergyFlow flow(run, look == Look::books || look == Look::all);
   const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
   out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
   out.force_unique.resize(out.axial_force.rows(), rods);
@@ -393,6 +393,7 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
     followed->follow(state);
     const System& system = *followed;
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
+    if (i > 0) flow.step_to(i, books ? nullptr : &forces);
     system.all_constraint_values(state.t, q, phi);
     system.all_constraint_rates(state.t, q, v, velocity_phi, scratch);
     VectorXd lambda;
@@ -411,7 +412,7 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
       }
     }
     if (rods > 0) out.axial_force.row(static_cast<Index>(i)) = force.transpose();
-    if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(q);
+    if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(state, q);
     const Instant instant{run,
                           i,
                           state,
@@ -425,7 +426,7 @@ Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool
                           acceleration,
                           system,
                           fold.at(state.t, q, v),
-                          flow,
+                          flow.so_far(),
                           first_energy};
     out.t.push_back(state.t);
     for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
-#include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/quintic.hpp"
-#include "core/integrators/index1.hpp"
 #include "core/integrators/row_noise.hpp"
-#include "core/math/quadrature.hpp"
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
@@ -27,8 +25,8 @@ EnergyMeter::EnergyMeter(const System& system)
   target_rate_.resize(system.constraints());
 }
 
-EnergyMeter::Point EnergyMeter::at_state(const State& state) {
-  Point p{VectorXd(state.z.size()), VectorXd(lambda_.size()), true};
+SolvedPoint EnergyMeter::at_state(const State& state) {
+  SolvedPoint p{VectorXd(state.z.size()), VectorXd(lambda_.size()), true};
   system_.follow(state);
   p.known = index1_->evaluate(state, p.acceleration, p.lambda);
   if (!p.known) p.acceleration.setZero();
@@ -61,7 +59,7 @@ double EnergyMeter::energy(const State& state) {
 double EnergyMeter::damping_power(const State& state, const VectorXd& acceleration, double after) {
   system_.expand(state.z + after * state.w, q_);
   system_.expand_rate(state.w + after * acceleration, v_);
-  return -system_.power(true, state.t, q_, v_);
+  return -system_.power(true, state.t, q_, v_, state.tension.size() > 0 ? state.tension.data() : nullptr);
 }
 
 // (P_0 + P_1) h / 2 + (P_0' - P_1') h^2 / 12, of order 4 where the power is smooth at the step; the second
@@ -95,10 +93,10 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
   return bend > 0 ? line + std::min(bend, line) : line / (1 - bend / std::max(line, 1e-300));
 }
 
-void EnergyMeter::add(const State& a, const State& b) {
+void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   if (idle()) return;
-  before_ = fresh_ && last_ == a.t ? after_ : at_state(a);
-  after_ = at_state(b);
+  before_ = fresh_ && last_ == a.t ? std::move(after_) : at_state(a);
+  after_ = at_b.known ? std::move(at_b) : at_state(b);
   fresh_ = true;
   last_ = b.t;
   const Quintic ends{a, b, before_.acceleration, after_.acceleration, b.t - a.t};
@@ -107,10 +105,13 @@ void EnergyMeter::add(const State& a, const State& b) {
   const double fastest = dampers_ ? damping_bound(a) : 0.0;
   const bool stiff = ends.h * fastest > 2;
   static const Quadrature gauss = gauss_legendre(3), lobatto = gauss_lobatto(4);
+  const Index points = b.stage_tension.cols();
+  if (points > 0 && points != own_.nodes.size()) own_ = gauss_legendre(static_cast<int>(points));
   const double others = load_work + drive_work;
   // Both rules are of order 6; where all that is asked is the multipliers, the ends have them already.
-  const bool by_ends = !loads_ && !dampers_ && before_.known && after_.known;
-  const Quadrature& rule = by_ends ? lobatto : gauss;
+  const bool by_ends = points == 0 && !loads_ && !dampers_ && before_.known && after_.known;
+  const Quadrature& rule = points > 0 ? own_ : by_ends ? lobatto : gauss;
+  VectorXd tension;
   for (Index i = 0; i < rule.nodes.size(); ++i) {
     const double u = rule.nodes[i], t = a.t + u * ends.h, weight = ends.h * rule.weights[i];
     const bool at_end = by_ends && (i == 0 || i + 1 == rule.nodes.size());
@@ -118,10 +119,12 @@ void EnergyMeter::add(const State& a, const State& b) {
                    w = stiff ? VectorXd((b.z - a.z) / ends.h) : ends.rate(u);
     system_.expand(z, q_);
     system_.expand_rate(w, v_);
-    if (loads_) load_work += weight * system_.power(false, t, q_, v_);
-    if (dampers_ && !stiff) dissipated -= weight * system_.power(true, t, q_, v_);
+    if (points > 0) tension = b.stage_tension.col(i);
+    const double* const pulls = points > 0 ? tension.data() : nullptr;
+    if (loads_) load_work += weight * system_.power(false, t, q_, v_, pulls);
+    if (dampers_ && !stiff) dissipated -= weight * system_.power(true, t, q_, v_, pulls);
     if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
-    const bool known = drives_ && (at_end || index1_->evaluate(t, z, w, unused_, lambda_));
+    const bool known = drives_ && (at_end || index1_->evaluate(t, z, w, unused_, lambda_, tension));
     if (at_point && (known || !drives_)) at_point(weight, t, q_, v_, lambda_);
     if (!known) continue;
     system_.target_rate(t, target_rate_);
@@ -143,43 +146,46 @@ double other_loads(const System& from, const System& to, const VectorXd& z) {
 
 }  // namespace
 
-EnergyFlow energy_flow(const Simulation& run) {
-  const Trajectory& trajectory = run.trajectory;
-  EnergyFlow flow{{0.0}, {0.0}, {0.0}, {0.0}};
-  const std::vector<DriveChannel> drives = drive_channels(trajectory.model());
-  flow.of_drives.assign(drives.size(), {0.0});
-  std::unique_ptr<EnergyMeter> meter;
-  const Model* model = nullptr;
-  for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
-    for (auto* list : {&flow.load_work, &flow.dissipated, &flow.drive_work, &flow.impact_loss})
-      list->push_back(list->back());
-    for (auto& energy : flow.of_drives) energy.push_back(energy.back());
-    const State &a = trajectory.state(i), &b = trajectory.state(i + 1);
-    if (same_instant(a.t, b.t)) {  // an impulse; where time goes on a little, of a drive
-      const double gain =
-          trajectory.model(i + 1).system.kinetic_energy(b.w) - trajectory.model(i).system.kinetic_energy(a.w);
-      (b.t > a.t ? flow.drive_work : flow.impact_loss).back() += b.t > a.t ? gain : -gain;
-      flow.load_work.back() -= other_loads(trajectory.model(i).system, trajectory.model(i + 1).system, b.z);
-      if (meter) meter->jump();
-      continue;
-    }
-    if (model != &trajectory.model(i + 1)) {
-      model = &trajectory.model(i + 1);
-      meter = std::make_unique<EnergyMeter>(model->system);
-      meter->at_point = [&, m = meter.get()](double weight, double t, const VectorXd& q, const VectorXd& v,
-                                             const VectorXd& lambda) {
-        for (std::size_t d = 0; d < drives.size(); ++d)
-          flow.of_drives[d].back() +=
-              weight * drives[d].sample(*model, m->system(), t, q, v, lambda, {}).power;
-      };
-    }
-    const double load_work = meter->load_work, dissipated = meter->dissipated, drive_work = meter->drive_work;
-    meter->add(a, b);
-    flow.load_work.back() += meter->load_work - load_work;
-    flow.dissipated.back() += meter->dissipated - dissipated;
-    flow.drive_work.back() += meter->drive_work - drive_work;
+RunEnergyFlow::RunEnergyFlow(const Simulation& run, bool booked)
+    : trajectory_(run.trajectory),
+      booked_(booked),
+      drives_(drive_channels(run.trajectory.model())),
+      flow_{{0.0}, {0.0}, {0.0}, {0.0}, std::vector(drives_.size(), std::vector{0.0})} {}
+
+void RunEnergyFlow::meter_of(const Model& model) {
+  if (model_ == &model) return;
+  model_ = &model;
+  meter_ = std::make_unique<EnergyMeter>(model.system);
+  meter_->at_point = [this](double weight, double t, const VectorXd& q, const VectorXd& v,
+                            const VectorXd& lambda) {
+    for (std::size_t d = 0; d < drives_.size(); ++d)
+      flow_.of_drives[d].back() +=
+          weight * drives_[d].sample(*model_, meter_->system(), t, q, v, lambda, {}).power;
+  };
+}
+
+void RunEnergyFlow::step_to(std::size_t i, StateForces* forces) {
+  for (auto* list : {&flow_.load_work, &flow_.dissipated, &flow_.drive_work, &flow_.impact_loss})
+    list->push_back(list->back());
+  for (auto& energy : flow_.of_drives) energy.push_back(energy.back());
+  if (!booked_) return;
+  const State &a = trajectory_.state(i - 1), &b = trajectory_.state(i);
+  const Model& model = trajectory_.model(i);
+  if (same_instant(a.t, b.t)) {  // an impulse; where time goes on a little, of a drive
+    const System& before = trajectory_.model(i - 1).system;
+    const double gain = model.system.kinetic_energy(b.w) - before.kinetic_energy(a.w);
+    (b.t > a.t ? flow_.drive_work : flow_.impact_loss).back() += b.t > a.t ? gain : -gain;
+    flow_.load_work.back() -= other_loads(before, model.system, b.z);
+    if (meter_) meter_->jump();
+    return;
   }
-  return flow;
+  meter_of(model);
+  const double load_work = meter_->load_work, dissipated = meter_->dissipated,
+               drive_work = meter_->drive_work;
+  meter_->add(a, b, forces && !meter_->idle() ? forces->at(i) : SolvedPoint{});
+  flow_.load_work.back() += meter_->load_work - load_work;
+  flow_.dissipated.back() += meter_->dissipated - dissipated;
+  flow_.drive_work.back() += meter_->drive_work - drive_work;
 }
 
 }  // namespace unfurl

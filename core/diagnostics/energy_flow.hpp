@@ -7,7 +7,10 @@
 #include <memory>
 #include <vector>
 
+#include "core/diagnostics/drives.hpp"
+#include "core/diagnostics/state_forces.hpp"
 #include "core/integrators/index1.hpp"
+#include "core/math/quadrature.hpp"
 #include "core/simulate/simulation.hpp"
 
 namespace unfurl {
@@ -23,31 +26,25 @@ struct EnergyFlow {
 // both ends: an independent quadrature, whatever the method, of order 6 where the forces are smooth within
 // steps. The power -lambda g' of drives and of rods that warm takes its multipliers from the index-1
 // equations at those points, or at four Lobatto points, of which two are the states, where nothing but drives
-// puts in energy. Where dampers are stiff (c / m beyond 2 / h), what they take comes from the
-// difference of two motions that are nearly one, which no interpolant tells. Their power is then that of the
-// states and its rates there.
-EnergyFlow energy_flow(const Simulation& run);
-
-// The same step after step, for motions that are not kept.
+// puts in energy. Where rods give and a step does not resolve their waves, lengths between states do not tell
+// forces: the Gauss points are then the step's own, with the axial forces that it has found there. Where
+// dampers are stiff (c / m beyond 2 / h), what they take comes from the difference of two motions that are
+// nearly one, which no interpolant tells. Their power is then that of the states and its rates there.
 class EnergyMeter {
  public:
   explicit EnergyMeter(const System& system);
   // Nothing goes in or out but by potentials and constant loads: no step needs to be added.
   bool idle() const { return !loads_ && !dampers_ && !drives_; }
-  void add(const State& a, const State& b);  // the step from a to b, which follows on the last one
-  void jump() { fresh_ = false; }            // velocities have changed within no time
+  // The step from a to b, which follows on the last one; `at_b` where that is known of b already.
+  void add(const State& a, const State& b, SolvedPoint at_b = {});
+  void jump() { fresh_ = false; }                        // velocities have changed within no time
   double load_work = 0, dissipated = 0, drive_work = 0;  // so far [J]
   // Told every point of the quadrature: its weight [s], the time, node coordinates, velocities, multipliers.
   std::function<void(double, double, const VectorXd&, const VectorXd&, const VectorXd&)> at_point = {};
   const System& system() const { return system_; }
 
  private:
-  // What the index-1 equations say at a state.
-  struct Point {
-    VectorXd acceleration, lambda;
-    bool known = false;  // false: nothing, and the acceleration is set to zero
-  };
-  Point at_state(const State& state);
+  SolvedPoint at_state(const State& state);  // where nothing is known the acceleration is zero
   double damping_power(const State& state, const VectorXd& acceleration, double after);
   double damping_bound(const State& state);
   double taken(const State& state);
@@ -57,10 +54,31 @@ class EnergyMeter {
   System system_;  // follows the states
   bool loads_, dampers_, drives_;
   std::unique_ptr<Index1> index1_;
-  Point before_, after_;
+  SolvedPoint before_, after_;
   bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since
   VectorXd q_, v_, unused_, lambda_, target_rate_;
   double last_ = 0;  // time of the state that after_ is of
+  Quadrature own_;   // Gauss points of steps that tell the forces of rods there
+};
+
+// The same along the states of a run, each in its turn; zeros unless it is `booked`.
+class RunEnergyFlow {
+ public:
+  RunEnergyFlow(const Simulation& run, bool booked);
+  // The step that ends in state i > 0; `forces` of the run, where they are asked for anyway: one
+  // factorisation a state serves both.
+  void step_to(std::size_t i, StateForces* forces);
+  const EnergyFlow& so_far() const { return flow_; }
+
+ private:
+  void meter_of(const Model& model);
+
+  const Trajectory& trajectory_;
+  bool booked_;
+  std::vector<DriveChannel> drives_;
+  EnergyFlow flow_;
+  std::unique_ptr<EnergyMeter> meter_;
+  const Model* model_ = nullptr;  // of the meter
 };
 
 }  // namespace unfurl

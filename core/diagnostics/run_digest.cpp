@@ -100,6 +100,8 @@ void RunDigest::count_on(Diagnostics& d, std::size_t first) {
     double off = ends_.at(c) - column.values[first - 1];
     if (column.name == "fold_angle_rad")
       off = 2 * pi * std::round(off / (2 * pi));
+    else if (column.name == "fold_angle_deg")
+      off = 360 * std::round(off / 360);
     else if (!counts(column.name))
       continue;
     for (double& x : column.values) x += off;
@@ -224,6 +226,7 @@ Digest RunDigest::thinned(const Digest& all) const {
     if (i == quickest && speed > 0 && std::isfinite(top)) state.w *= top / speed;
     state.lambda.resize(0);
     state.tension.resize(0);
+    state.stage_tension.resize(0, 0);
     out.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
     out.diagnostics.t.push_back(d.t[i]);
     for (std::size_t c = 0; c < d.columns.size(); ++c) {

@@ -2,23 +2,28 @@
 #include "core/diagnostics/state_forces.hpp"
 
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace unfurl {
 
+SolvedPoint StateForces::at(std::size_t i) {
+  if (trajectory_.report(i).singular_event) return {};
+  if (i < first_ || i >= behind_last_) solve_from(i);
+  const std::size_t k = i - first_;
+  if (!lanes_->ok(k)) return {};
+  return {lanes_->acceleration(k), lanes_->lambda(k), true};
+}
+
 VectorXd StateForces::multipliers(std::size_t i, VectorXd& node_acceleration) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const System& system = trajectory_.model(i).system;
-  const bool limit = trajectory_.report(i).singular_event;
-  if (!limit && (i < first_ || i >= behind_last_)) solve_from(i);
-  const bool known = !limit && lanes_->ok(i - first_);
+  SolvedPoint here = at(i);
   node_acceleration.resize(system.coordinates());
-  system.expand_rate(
-      known ? lanes_->acceleration(i - first_) : VectorXd::Constant(system.solved_coordinates(), nan),
-      node_acceleration);
-  const VectorXd& held = trajectory_.state(i).lambda;
-  if (limit) return held;
-  return known ? lanes_->lambda(i - first_) : VectorXd::Constant(system.constraints(), nan);
+  system.expand_rate(here.known ? here.acceleration : VectorXd::Constant(system.solved_coordinates(), nan),
+                     node_acceleration);
+  if (trajectory_.report(i).singular_event) return trajectory_.state(i).lambda;
+  return here.known ? std::move(here.lambda) : VectorXd::Constant(system.constraints(), nan);
 }
 
 void StateForces::solve_from(std::size_t i) {

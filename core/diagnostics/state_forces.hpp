@@ -8,6 +8,12 @@
 
 namespace unfurl {
 
+// What the index-1 equations say at a state, in solved coordinates.
+struct SolvedPoint {
+  VectorXd acceleration, lambda;
+  bool known = false;  // false: nothing
+};
+
 // What the index-1 equations say at the states of a run, which are best asked for in their order: those that
 // follow are solved along.
 class StateForces {
@@ -18,6 +24,8 @@ class StateForces {
   // an event in a singular pose they are the extrapolated ones that the state holds. Accelerations are those
   // of the nodes, NaN where they are not known [m/s^2].
   VectorXd multipliers(std::size_t i, VectorXd& node_acceleration);
+  // The same as the equations give it: not known at an event in a singular pose.
+  SolvedPoint at(std::size_t i);
 
  private:
   void solve_from(std::size_t i);

@@ -139,15 +139,6 @@ void ElasticRods::derivatives(const Moment& at, const double* q, const double*, 
   }
 }
 
-double ElasticRods::stored(const double* force) const {
-  double sum = 0;
-  for (const Rod& rod : rods_) {
-    sum += 0.5 * rod.compliance() * *force * *force;
-    ++force;
-  }
-  return sum;
-}
-
 void ElasticRods::stretches(double t, const double* q, const double* v, double* e) const {
   for (const Rod& rod : rods_) {
     const Span span = span_of(rod, q);

@@ -35,7 +35,6 @@ class ElasticRods final : public ForceBlock {
                    ForceDerivative& by_v) const override;
 
   const std::vector<Rod>& rods() const { return rods_; }
-  double stored(const double* force) const;  // C N^2 / 2 of all [J]
   // e + damping_time e' [m].
   void stretches(double t, const double* q, const double* v, double* e) const;
   // d|d|/dq, and of the rows R, by q and by v.

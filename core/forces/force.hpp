@@ -45,7 +45,12 @@ class ForceBlock {
   virtual double taken(const Moment&, const double*) const { return 0.0; }
   // Of rods that give: methods may take these forces as unknowns instead (ElasticRods).
   virtual bool of_giving_rods() const { return false; }
-  // dF/dq and dF/dv, for Newton matrices; what is left out costs iterations, not accuracy.
+  // Whether F depends on the axial forces of rods that give beyond their own pull, and dF/dN then: entries by
+  // coordinate and rod.
+  virtual bool by_tension() const { return false; }
+  virtual void tension_derivatives(const Moment&, const double*, const double*, ForceDerivative&) const {}
+  // dF/dq and dF/dv, for Newton matrices; what is left out costs iterations, not accuracy. Where the moment
+  // has axial forces, at these.
   virtual void derivatives(const Moment&, const double*, const double*, ForceDerivative&,
                            ForceDerivative&) const {}
 };

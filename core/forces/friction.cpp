@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/forces/friction.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -22,7 +23,11 @@ class DryFriction final : public ForceBlock {
       if (f.slip == 0) continue;
       slipping_.push_back({MeasureFunction(f.measure, structure.deployment), f.slip * f.kinetic, followed[i],
                            f.slip * PinLoads::arm(f), i});
-      if (PinLoads::arm(f) > 0 && !loads_) loads_ = std::make_unique<PinLoads>(structure, node_mass);
+      if (!(PinLoads::arm(f) > 0)) continue;
+      if (!loads_) loads_ = std::make_unique<PinLoads>(structure, node_mass);
+      if (const int giving = loads_->giving_rod(i); giving >= 0)
+        by_rods_.push_back({slipping_.size() - 1, giving,
+                            structure.rods[static_cast<std::size_t>(PinLoads::rod_of(structure, f))]});
     }
   }
   bool any() const { return any_; }
@@ -32,7 +37,7 @@ class DryFriction final : public ForceBlock {
   bool takes_by_pose() const override { return !loads_; }
 
   void add(const Moment& at, const double* q, const double* v, double scale, double* f) const override {
-    const std::vector<double> loads = loads_at(at, q, v);
+    const PinLoads::Loads loads = loads_at(at, q, v);
     VectorXd g;
     for (const Slipping& s : slipping_) {
       gradient(s, at, q, g);
@@ -42,7 +47,7 @@ class DryFriction final : public ForceBlock {
     }
   }
   double power(const Moment& at, const double* q, const double* v) const override {
-    const std::vector<double> loads = loads_at(at, q, v);
+    const PinLoads::Loads loads = loads_at(at, q, v);
     VectorXd g;
     double sum = 0;
     for (const Slipping& s : slipping_) {
@@ -56,10 +61,26 @@ class DryFriction final : public ForceBlock {
     for (const Slipping& s : slipping_) sum += s.force * s.measure.value(q, near(s, at));
     return sum;
   }
-  // Without that of the pins' loads, which is mu r over the size of the rods as much.
+  bool by_tension() const override { return !by_rods_.empty(); }
+  void tension_derivatives(const Moment& at, const double* q, const double* v,
+                           ForceDerivative& by_n) const override {
+    if (!by_tension()) return;
+    const PinLoads::Loads loads = loads_at(at, q, v);
+    VectorXd g;
+    for (const ByRod& b : by_rods_) {
+      const Slipping& s = slipping_[b.slipping];
+      gradient(s, at, q, g);
+      for (Index i = 0; i < g.size(); ++i)
+        by_n.emplace_back(s.measure.stencil()[static_cast<std::size_t>(i)], b.giving,
+                          -s.arm * loads.by_tension[s.index] * g[i]);
+    }
+  }
+  // Of the pins' loads that by the length of a rod that gives alone, N = (e + damping_time e') / C: what is
+  // left out is mu r over the size of the rods as much.
   void derivatives(const Moment& at, const double* q, const double* v, ForceDerivative& by_q,
-                   ForceDerivative&) const override {
-    const std::vector<double> loads = loads_at(at, q, v);
+                   ForceDerivative& by_v) const override {
+    const PinLoads::Loads loads = loads_at(at, q, v);
+    if (!at.tension) add_by_lengths(at, q, v, by_q, by_v);
     for (const Slipping& s : slipping_) {
       const auto& stencil = s.measure.stencil();
       const auto size = static_cast<Index>(stencil.size());
@@ -81,11 +102,35 @@ class DryFriction final : public ForceBlock {
     double arm;    // slip mu r [m]
     std::size_t index;
   };
-  std::vector<double> loads_at(const Moment& at, const double* q, const double* v) const {
-    return loads_ ? loads_->evaluate(at, q, v) : std::vector<double>();
+  // Whose pin's load is that of a rod which gives.
+  struct ByRod {
+    std::size_t slipping;
+    int giving;  // among these rods
+    Rod rod;
+  };
+  PinLoads::Loads loads_at(const Moment& at, const double* q, const double* v) const {
+    return loads_ ? loads_->evaluate(at, q, v) : PinLoads::Loads();
   }
-  static double force(const Slipping& s, const std::vector<double>& loads) {
-    return s.arm == 0.0 ? s.force : s.force + s.arm * loads[s.index];
+  static double force(const Slipping& s, const PinLoads::Loads& loads) {
+    return s.arm == 0.0 ? s.force : s.force + s.arm * loads.size[s.index];
+  }
+  void add_by_lengths(const Moment& at, const double* q, const double* v, ForceDerivative& by_q,
+                      ForceDerivative& by_v) const {
+    ForceDerivative by_n;
+    tension_derivatives(at, q, v, by_n);
+    for (const auto& entry : by_n) {
+      const Rod& rod = std::find_if(by_rods_.begin(), by_rods_.end(), [&](const ByRod& b) {
+                         return b.giving == entry.col();
+                       })->rod;
+      const Vec3 n =
+          entry.value() / rod.compliance() * (node_vector(q, rod.b) - node_vector(q, rod.a)).normalized();
+      for (int k = 0; k < 3; ++k)
+        for (const int end : {-1, 1}) {
+          const int column = 3 * (end < 0 ? rod.a : rod.b) + k;
+          by_q.emplace_back(entry.row(), column, end * n[k]);
+          if (rod.damping_time > 0) by_v.emplace_back(entry.row(), column, end * rod.damping_time * n[k]);
+        }
+    }
   }
   static double near(const Slipping& s, const Moment& at) {
     return at.near(s.followed, s.measure.reference());
@@ -96,6 +141,7 @@ class DryFriction final : public ForceBlock {
   }
 
   std::vector<Slipping> slipping_;
+  std::vector<ByRod> by_rods_;
   std::unique_ptr<PinLoads> loads_;  // where some torque depends on them
   bool any_ = false;
 };

@@ -6,7 +6,6 @@
 #include <limits>
 #include <sstream>
 
-#include "core/forces/elastic_rods.hpp"
 #include "core/math/saddle_solver.hpp"
 
 namespace unfurl {
@@ -52,6 +51,8 @@ PinLoads::PinLoads(const Structure& structure, const SparseRows& node_mass)
     : bare_(without_pin_friction(structure)), mass_(positive_mass(node_mass)) {
   for (const ForceKind& kind : force_kinds())
     if (auto block = kind.make(bare_, node_mass)) forces_.push_back(std::move(block));
+  if (std::any_of(bare_.rods.begin(), bare_.rods.end(), [](const Rod& r) { return r.gives; }))
+    rods_ = std::make_unique<ElasticRods>(bare_);
   for (const ConstraintKind& kind : constraint_kinds()) {
     auto block = kind.make(bare_);
     if (!block) continue;
@@ -69,9 +70,9 @@ PinLoads::PinLoads(const Structure& structure, const SparseRows& node_mass)
 void PinLoads::add_pin(const Structure& structure, std::size_t force, int rod, int followed,
                        const SparseRows& node_mass) {
   const Force& f = structure.forces[force];
-  const auto gives = [](const Rod& r) { return r.gives; };
-  const auto before = std::count_if(structure.rods.begin(), structure.rods.begin() + rod, gives);
-  const int row = gives(structure.rods[static_cast<std::size_t>(rod)]) ? -1 : rod - static_cast<int>(before);
+  const auto before = static_cast<int>(std::count_if(structure.rods.begin(), structure.rods.begin() + rod,
+                                                     [](const Rod& r) { return r.gives; }));
+  const bool gives = structure.rods[static_cast<std::size_t>(rod)].gives;
   Pin pin{force,
           MeasureFunction(f.measure, structure.deployment),
           followed,
@@ -81,7 +82,8 @@ void PinLoads::add_pin(const Structure& structure, std::size_t force, int rod, i
           rod,
           f.measure.nodes[0],
           f.measure.nodes[1],
-          row};
+          gives ? -1 : rod - before,
+          gives ? before : -1};
   for (std::size_t i = 0; i < bare_.forces.size(); ++i) {
     const Force& other = bare_.forces[i];
     if (arm(structure.forces[i]) > 0) continue;
@@ -147,13 +149,13 @@ Vec3 PinLoads::given_load(const Pin& pin, const Moment& at, const double* q, con
   VectorXd force = VectorXd::Zero(mass_.rows());
   for (const auto& couple : pin.couples) couple->add(at, q, v, 1.0, force.data());
   load += force.segment<3>(3 * pin.other);
-  if (pin.row >= 0) return load;
-  std::vector<double> pull(bare_.rods.size());
-  ElasticRods(bare_).forces(at.t, q, v, pull.data());
-  const auto before =
-      std::count_if(bare_.rods.begin(), bare_.rods.begin() + pin.rod, [](const Rod& r) { return r.gives; });
-  return load + pull[static_cast<std::size_t>(before)] *
-                    (node_vector(q, pin.hinge) - node_vector(q, pin.other)).normalized();
+  if (pin.giving < 0) return load;
+  std::vector<double> pull;
+  if (!at.tension) {
+    pull.resize(rods_->rods().size());
+    rods_->forces(at.t, q, v, pull.data());
+  }
+  return load + (at.tension ? at.tension : pull.data())[pin.giving] * along(pin, q);
 }
 
 // To all other forces, and to a unit torque of each friction in the sense in which its hinge is held back.
@@ -162,7 +164,9 @@ std::vector<PinLoads::Response> PinLoads::responses(const Moment& at, const doub
                                                     const SparseRows& G) const {
   const Index n = mass_.rows();
   VectorXd force = VectorXd::Zero(n), bias = VectorXd::Zero(rows_);
-  for (const auto& block : forces_) block->add(at, q, v, 1.0, force.data());
+  for (const auto& block : forces_)
+    if (!at.tension || !block->of_giving_rods()) block->add(at, q, v, 1.0, force.data());
+  if (at.tension) rods_->add_forces(q, at.tension, 1.0, force.data());
   double* row = bias.data();
   for (const auto& block : constraints_) {
     block->bias(q, v, row);
@@ -225,8 +229,15 @@ PinLoads::SelfLocking PinLoads::self_locking(const Structure& structure, const S
   return {};
 }
 
-std::vector<double> PinLoads::evaluate(const Moment& at, const double* q, const double* v) const {
-  std::vector<double> out(bare_.forces.size(), 0.0);
+int PinLoads::giving_rod(std::size_t force) const {
+  for (const Pin& pin : pins_)
+    if (pin.force == force) return pin.giving;
+  return -1;
+}
+
+PinLoads::Loads PinLoads::evaluate(const Moment& at, const double* q, const double* v) const {
+  const std::vector<double> none(bare_.forces.size(), 0.0);
+  Loads out{none, none};
   const std::size_t count = pins_.size();
   const SparseRows G = jacobian(q);
   const std::vector<Response> all = responses(at, q, v, G);
@@ -248,7 +259,8 @@ std::vector<double> PinLoads::evaluate(const Moment& at, const double* q, const 
       const Pin& pin = pins_[k];
       Vec3 sum = loads[k][0];
       for (std::size_t i = 0; i < count; ++i) sum += tau[i] * loads[k][i + 1];
-      out[pin.force] = sum.norm();
+      out.size[pin.force] = sum.norm();
+      if (pin.giving >= 0 && sum.norm() > 0) out.by_tension[pin.force] = along(pin, q).dot(sum) / sum.norm();
       const double next = pin.slip ? pin.kinetic + pin.arm * sum.norm() : 0.0;
       change = std::max(change, std::abs(next - tau[k]) / std::max(next, 1e-300));
       tau[k] = next;
@@ -256,7 +268,7 @@ std::vector<double> PinLoads::evaluate(const Moment& at, const double* q, const 
     if (change <= settled) return out;
     if (!std::isfinite(change)) break;
   }
-  for (const Pin& pin : pins_) out[pin.force] = std::numeric_limits<double>::quiet_NaN();
+  for (const Pin& pin : pins_) out.size[pin.force] = std::numeric_limits<double>::quiet_NaN();
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/constraints/constraint.hpp"
+#include "core/forces/elastic_rods.hpp"
 #include "core/forces/force.hpp"
 #include "core/structure/measure.hpp"
 
@@ -16,7 +17,9 @@ namespace unfurl {
 // length (its row of G, or what it pulls with where it gives), and the couples C that act on R at the hinge,
 // springs, motors, dampers, friction and rows of its angle, each a force at A and its opposite at h,
 //
-//     F = (M_R (a - g))_h + lambda_R dPhi_R/dx_h + C_A     or with N d|d|/dx_h in place of the second
+//     F = (M_R (a - g))_h + lambda_R dPhi_R/dx_h + C_A     or with N d|d|/dx_h in place of the second,
+//
+// N as the step has it where lengths do not tell (Moment::tension),
 //
 // with the accelerations and multipliers of the pose and its velocities, in node coordinates,
 //
@@ -30,8 +33,14 @@ class PinLoads {
  public:
   PinLoads(const Structure& structure, const SparseRows& node_mass);
   // |F| of each entry of Structure::forces [N]; 0 of those without such friction, NaN where there is no
-  // fixed point or the equations cannot be solved.
-  std::vector<double> evaluate(const Moment& at, const double* q, const double* v) const;
+  // fixed point or the equations cannot be solved. d|F|/dN where R gives, but for what follows through the
+  // accelerations.
+  struct Loads {
+    std::vector<double> size, by_tension;
+  };
+  Loads evaluate(const Moment& at, const double* q, const double* v) const;
+  // The rod R of an entry where that gives: its place among those; -1: it does not.
+  int giving_rod(std::size_t force) const;
 
   // The most that mu r may be at this pose [m], of each entry of Structure::forces; infinite of those without
   // such friction. From there on the torque raises the pin's force by more than it takes to make it: the
@@ -57,7 +66,8 @@ class PinLoads {
     MeasureFunction measure;
     int followed;
     double kinetic, arm;
-    int slip, rod, hinge, other, row;  // row: of the lengths of rods that do not give, -1: it gives
+    int slip, rod, hinge, other;
+    int row, giving;  // its place among the rods that do not give, and among those that do; one of them is -1
     std::vector<std::unique_ptr<ForceBlock>> couples = {};  // of the forces on R at the hinge
     std::vector<Index> couple_rows = {};
   };
@@ -71,6 +81,10 @@ class PinLoads {
   // The part of F that is linear in them, and the rest.
   Vec3 linear_load(const Pin& pin, const double* q, const SparseRows& G, const Response& r) const;
   Vec3 given_load(const Pin& pin, const Moment& at, const double* q, const double* v) const;
+  // From the other node to the hinge, of length one.
+  static Vec3 along(const Pin& pin, const double* q) {
+    return (node_vector(q, pin.hinge) - node_vector(q, pin.other)).normalized();
+  }
   SparseRows jacobian(const double* q) const;
   std::vector<Response> responses(const Moment& at, const double* q, const double* v,
                                   const SparseRows& G) const;
@@ -79,6 +93,7 @@ class PinLoads {
 
   Structure bare_;  // without this friction
   SparseRows mass_;
+  std::unique_ptr<ElasticRods> rods_;  // that give; null: there are none
   std::vector<std::unique_ptr<ForceBlock>> forces_;
   std::vector<std::unique_ptr<ConstraintBlock>> constraints_;
   Index rows_ = 0, rod_row_ = 0;  // all rows of constraints; the first of a rod

@@ -26,6 +26,7 @@ namespace unfurl {
 //     / u_c
 class Pulleys {
  public:
+  static bool rubs(const Force& force) { return force.kind == "cable" && force.kinetic > 0; }
   // cable: its measure is a path, of which terms that are no lengths (a drum) go with the first span.
   Pulleys(const Force& cable, const Deployment& deployment);
 

@@ -22,28 +22,19 @@ struct Spring {
   std::optional<Pulleys> pulleys = {};  // where it rubs on what it runs over
 };
 
-// Does it rub on what it runs over?
-bool rubs(const Force& law) {
-  return law.kind == "cable" && law.kinetic > 0;
-}
-
-Pull pull_of(const Force& law, double e) {
-  return unfurl::pull_of(law.one_sided, law.smoothing, e);
-}
-
 class Springs final : public ForceBlock {
  public:
   Springs(const std::vector<Force>& springs, const Deployment& deployment, const std::vector<int>& followed) {
     for (std::size_t i = 0; i < springs.size(); ++i) {
       const Force& f = springs[i];
-      damped_ = damped_ || f.damping > 0 || rubs(f);
+      damped_ = damped_ || f.damping > 0 || Pulleys::rubs(f);
       reeled_ = reeled_ || f.unstressed.moves();
       if (StraightSprings::fits(f)) {
         straight_.push_back(f);
         continue;
       }
       springs_.push_back({f, MeasureFunction(f.measure, deployment), followed.empty() ? -1 : followed[i]});
-      if (rubs(f)) springs_.back().pulleys.emplace(f, deployment);
+      if (Pulleys::rubs(f)) springs_.back().pulleys.emplace(f, deployment);
       size_ = std::max(size_, springs_.back().measure.stencil().size());
     }
   }

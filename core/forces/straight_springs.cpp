@@ -5,22 +5,14 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/forces/pulleys.hpp"
 #include "core/forces/spring.hpp"
 
 namespace unfurl {
 
-Pull pull_of(bool one_sided, double smoothing, double e) {
-  const double w = one_sided ? smoothing : 0.0;
-  if (!one_sided || (e >= w && e > 0)) return {e, 1.0, 0.0, 0.5 * e * e + w * w / 6};
-  if (e <= -w) return {0, 0, 0, 0};
-  const double u = e + w;
-  return {u * u / (4 * w), u / (2 * w), 1 / (2 * w), u * u * u / (12 * w)};
-}
-
 bool StraightSprings::fits(const Force& force) {
-  const bool rubs = force.kind == "cable" && force.kinetic > 0;
-  return force.measure.kind == MeasureKind::length && force.measure.nodes.size() == 2 && !rubs &&
-         !force.unstressed.moves();
+  return force.measure.kind == MeasureKind::length && force.measure.nodes.size() == 2 &&
+         !Pulleys::rubs(force) && !force.unstressed.moves();
 }
 
 void StraightSprings::push_back(const Force& force) {
@@ -42,7 +34,7 @@ bool StraightSprings::pulls(const Member& m, const double* q, const double* v, T
   if (m.one_sided && at.s - m.rest <= -m.smoothing) return false;
   at.u = at.s > 0 ? Vec3(d / at.s) : Vec3::Zero();
   at.rate = m.damping > 0 ? at.u.dot(node_vector(v, m.b) - node_vector(v, m.a)) : 0.0;
-  at.pull = pull_of(m.one_sided, m.smoothing, at.s - m.rest);
+  at.pull = pull_of(m, at.s - m.rest);
   at.elastic = m.stiffness * at.pull.elastic;
   at.N = at.elastic + m.damping * at.pull.share * at.rate;
   if (m.one_sided) at.N = std::max(at.N, 0.0);
@@ -63,7 +55,7 @@ double StraightSprings::potential(const double* q) const {
   double sum = 0;
   for (const Member& m : members_) {
     const double s = (node_vector(q, m.b) - node_vector(q, m.a)).norm();
-    sum += m.stiffness * pull_of(m.one_sided, m.smoothing, s - m.rest).energy;
+    sum += m.stiffness * pull_of(m, s - m.rest).energy;
   }
   return sum;
 }

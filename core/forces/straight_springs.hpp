@@ -13,7 +13,14 @@ namespace unfurl {
 struct Pull {
   double elastic, share, bend, energy;
 };
-Pull pull_of(bool one_sided, double smoothing, double e);
+template <class Law>  // has one_sided, smoothing
+Pull pull_of(const Law& law, double e) {
+  const double w = law.one_sided ? law.smoothing : 0.0;
+  if (!law.one_sided || (e >= w && e > 0)) return {e, 1.0, 0.0, 0.5 * e * e + w * w / 6};
+  if (e <= -w) return {0, 0, 0, 0};
+  const double u = e + w;
+  return {u * u / (4 * w), u / (2 * w), 1 / (2 * w), u * u * u / (12 * w)};
+}
 
 // Springs and cables that run straight from one node to another and whose unstressed length stays as it is:
 // nets have them by thousands. With d = x_b - x_a, s = |d|, u = d / s, s' = u . (v_b - v_a):

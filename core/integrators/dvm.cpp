@@ -39,9 +39,8 @@ void Dvm::predict(const State& state, double h) {
       prolong_ = c_.extrapolation;
     else
       c_.extrapolate(ratio, prolong_);
-    with_columns(c_.s - 1, [this](auto k) {
-      mix<k()>(previous_.data(), previous_.rows(), prolong_.data(), eq_.dX.data());
-    });
+    with_wide_columns(c_.s - 1, [from = previous_.data(), rows = previous_.rows(), T = prolong_.data(),
+                                 to = eq_.dX.data()](auto k) { mix<k()>(from, rows, T, to); });
   } else {
     for (int j = 0; j + 1 < c_.s; ++j) eq_.dX.col(j) = (h * c_.basis.nodes()[j + 1]) * state.w;
   }
@@ -236,12 +235,14 @@ void Dvm::correct(StepReport& report) {
   report.right_hand_sides += (careful_ ? 2 : 1) * (c_.s - 1);
 }
 
-template <int K>
+template <LaneCount K>
 void Dvm::correct_stages() {
   const Index n = eq_.dX.rows(), m = eq_.lambda.rows();
   double* const f = rhs_f_.data();
   double* const g = rhs_g_.data();
-  mix<K>(eq_.momentum.data(), n, momentum_to_f_.data(), f);
+  with_widest([n, f, r = eq_.momentum.data(), T = momentum_to_f_.data()](auto wide) {
+    mix<LaneCount(K, wide())>(r, n, T, f);
+  });
   const double* const phi = eq_.phi.data();
   for (Index r = 0; r < m; ++r) {
     const double noise = tight_ ? 0.0 : feed_ ? wanted_constraint * eq_.constraint_noise(r) : infinity;
@@ -259,9 +260,10 @@ void Dvm::correct_stages() {
     saddle_.apply(f, g, K);
   double* const dX = eq_.dX.data();
   for (Index i = 0; i < n * K; ++i) dX[i] += f[i];
-  double* const lambda = eq_.lambda.data();
-  for (Index r = 0; r < m * K; r += K)
-    mixed<K>(Lanes<K>(lambda + r), g + r, y_to_lambda_.data()).store(lambda + r);
+  with_widest([m, g, lambda = eq_.lambda.data(), T = y_to_lambda_.data()](auto wide) {
+    constexpr LaneCount all(K, wide());
+    for (Index r = 0; r < m * K; r += K) mixed<all>(Lanes<all>(lambda + r), g + r, T).store(lambda + r);
+  });
 }
 
 // One multiplier: Y_j = (C^-1)_j1 / (C^-1)_s1 y with y that of the last node; the other nodes follow from M
@@ -342,6 +344,9 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   if (settling_.lets_go()) let_go(h);
   state.w = w1_;
   state.tension.resize(0);
+  state.stage_tension.resize(0, 0);
+  if (eq_.rods.as_unknowns && (system_.rheonomic() || system_.by_tension()))
+    state.stage_tension = eq_.rods.tension;
   const bool elastic = system_.elastic_rods() != nullptr;
   if (elastic && eq_.h_omega() > resolved * (c_.s - 1) && !eq_.held())
     eq_.end_tension(w1_, resolved * (c_.s - 1), state.tension);

@@ -27,7 +27,8 @@ class Dvm final : public Integrator {
         G_(system.jacobian_pattern()),
         saddle_(system.mass(), G_, std::max(c_.s - 1, 2),
                 is_small(system, c_.s) ? SaddleSolver::standard_regularisation
-                                       : 0.02 * SaddleSolver::standard_regularisation) {
+                                       : 0.02 * SaddleSolver::standard_regularisation,
+                SaddleSolver::Order::sparse_first) {
     const Index n = system.solved_coordinates(), m = system.constraints();
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
@@ -125,7 +126,7 @@ class Dvm final : public Integrator {
   bool tight_iterations(const State& state, StepReport& report);
   void arrive(State& state);
   void correct(StepReport& report);
-  template <int K>
+  template <LaneCount K>
   void correct_stages();
   void correct_at_ends(StepReport& report);
   void settle_end();

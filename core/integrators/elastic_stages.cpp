@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/math/saddle_solver.hpp"
+#include "core/math/determined_rows.hpp"
 
 namespace unfurl {
 namespace {
@@ -13,6 +13,14 @@ namespace {
 double reach_of(const Rod& rod, const VectorXd& x) {
   return std::max(x.segment<3>(3 * rod.a).lpNorm<Eigen::Infinity>(),
                   x.segment<3>(3 * rod.b).lpNorm<Eigen::Infinity>());
+}
+
+// l'' - |u_across|^2 / |d|: n . (a_b - a_a) of a rod whose length is that without force [m/s^2].
+double length_acceleration(const Rod& rod, double t, const VectorXd& q, const VectorXd& v) {
+  const Vec3 d = node_vector(q.data(), rod.b) - node_vector(q.data(), rod.a),
+             u = node_vector(v.data(), rod.b) - node_vector(v.data(), rod.a);
+  const double length = d.norm(), along = d.dot(u) / length;
+  return rod.natural_length() * rod.warmed(t, 2) - (u.squaredNorm() - along * along) / length;
 }
 
 }  // namespace
@@ -64,33 +72,77 @@ double ElasticStages::h_omega(Index i, double h, const SparseRows& directions) c
   return std::abs(h) * sum / std::sqrt(compliance_[i]);
 }
 
-bool ElasticStages::still(double fast, double t, double h, const VectorXd& q, const Rigid& rigid, VectorXd& w,
-                          VectorXd& mu) const {
-  if (!as_unknowns) return false;
-  const SparseRows D = system_.giving_rod_directions(q);
-  const Index m = rigid.G.rows();
+// Factors are analysed anew where other rods are held than before.
+void ElasticStages::stack(const SparseRows& G, const SparseRows& D) {
+  const Index m = G.rows();
   std::vector<Eigen::Triplet<double>> entries;
-  std::vector<double> rates(rigid.rate.begin(), rigid.rate.end());
   const auto add_row = [&](const SparseRows& A, Index from, Index to) {
     for (SparseRows::InnerIterator it(A, from); it; ++it)
       entries.emplace_back(static_cast<int>(to), static_cast<int>(it.col()), it.value());
   };
-  for (Index r = 0; r < m; ++r) add_row(rigid.G, r, r);
-  for (Index i = 0; i < D.rows(); ++i) {
-    if (!(h_omega(i, h, D) > fast)) continue;
-    const Rod& rod = rods_->rods()[static_cast<std::size_t>(i)];
-    add_row(D, i, std::ssize(rates));
-    rates.push_back(rod.natural_length() * rod.warmed(t, 1));
-  }
-  if (std::ssize(rates) == m) return false;
-  SparseRows rows(std::ssize(rates), D.cols());
+  for (Index r = 0; r < m; ++r) add_row(G, r, r);
+  for (std::size_t k = 0; k < held_.size(); ++k) add_row(D, held_[k], m + static_cast<Index>(k));
+  SparseRows rows(m + std::ssize(held_), G.cols());
   rows.setFromTriplets(entries.begin(), entries.end());
-  SaddleSolver saddle(system_.mass(), rows);
-  if (!saddle.factorise(rows)) return false;
-  VectorXd impulse(rows.rows());
-  saddle.solve(rigid.p, Eigen::Map<const VectorXd>(rates.data(), std::ssize(rates)), w, impulse);
+  const auto same_places = [&] {
+    return rows.rows() == rows_.rows() && rows.nonZeros() == rows_.nonZeros() &&
+           std::equal(rows.outerIndexPtr(), rows.outerIndexPtr() + rows.rows(), rows_.outerIndexPtr()) &&
+           std::equal(rows.innerIndexPtr(), rows.innerIndexPtr() + rows.nonZeros(), rows_.innerIndexPtr());
+  };
+  if (!saddle_ || !same_places()) saddle_ = std::make_unique<SaddleSolver>(system_.mass(), rows);
+  rows_ = std::move(rows);
+}
+
+bool ElasticStages::still(double fast, double t, double h, const VectorXd& q, const Rigid& rigid, VectorXd& w,
+                          VectorXd& mu) {
+  std::vector<Index> fastest;
+  if (as_unknowns) {
+    const SparseRows D = system_.giving_rod_directions(q);
+    for (Index i = 0; i < D.rows(); ++i)
+      if (h_omega(i, h, D) > fast) fastest.push_back(i);
+    if (fastest != held_) shared_.reset(), saddle_.reset();
+    held_ = std::move(fastest);
+    if (!held_.empty()) stack(rigid.G, D);
+  } else {
+    held_.clear();
+  }
+  if (held_.empty() || !saddle_->factorise(rows_)) return held_.clear(), false;
+  const Index m = rigid.G.rows();
+  VectorXd rates(rows_.rows()), impulse(rows_.rows());
+  rates.head(m) = rigid.rate;
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    const Rod& rod = rods_->rods()[static_cast<std::size_t>(held_[k])];
+    rates[m + static_cast<Index>(k)] = rod.natural_length() * rod.warmed(t, 1);
+  }
+  saddle_->solve(rigid.p, rates, w, impulse);
   mu = impulse.head(m);
   return true;
+}
+
+void ElasticStages::find_still_forces(double t, const VectorXd& q, const VectorXd& v, VectorXd& force) {
+  const Index m = rows_.rows() - std::ssize(held_);
+  VectorXd f = VectorXd::Zero(q.size()), reduced(rows_.cols()), bias(rows_.rows()), a(rows_.cols()),
+           change(rows_.rows()), G_bias(m);
+  system_.add_other_force(t, q, v, force, 1.0, f);
+  rods_->add_forces(q.data(), force.data(), 1.0, f.data());
+  system_.reduce_force(f, reduced);
+  system_.constraint_bias(t, q, v, G_bias);
+  bias.head(m) = -G_bias;
+  for (std::size_t k = 0; k < held_.size(); ++k)
+    bias[m + static_cast<Index>(k)] =
+        length_acceleration(rods_->rods()[static_cast<std::size_t>(held_[k])], t, q, v);
+  saddle_->solve(reduced, bias, a, change);
+  if (!change.allFinite()) return;
+  if (!shared_) {
+    const std::vector<char> determined = determined_rows(rows_);
+    shared_ = std::find(determined.begin(), determined.end(), 0) != determined.end();
+    VectorXd compliance = VectorXd::Zero(rows_.rows());
+    for (std::size_t k = 0; k < held_.size(); ++k)
+      compliance[m + static_cast<Index>(k)] = compliance_[held_[k]];
+    if (*shared_) least_ = std::make_unique<LeastEnergy>(rows_, compliance);
+  }
+  if (*shared_) least_->share(rows_, change);
+  for (std::size_t k = 0; k < held_.size(); ++k) force[held_[k]] += change[m + static_cast<Index>(k)];
 }
 
 }  // namespace unfurl

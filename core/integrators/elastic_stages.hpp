@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/forces/elastic_rods.hpp"
 #include "core/integrators/galerkin.hpp"
+#include "core/math/least_energy.hpp"
 #include "core/system/system.hpp"
 
 namespace unfurl {
@@ -40,8 +43,18 @@ class ElasticStages {
     const VectorXd &p, &rate;
   };
   bool still(double fast, double t, double h, const VectorXd& q, const Rigid& rigid, VectorXd& w,
-             VectorXd& mu) const;
+             VectorXd& mu);
+  // The axial forces of these rods that go with that pose and velocity: with two or three stages their
+  // polynomial does not tell them, the motion does, for which they are rigid,
+  //
+  //     M a + G^T lambda + D^T N = F,   G a = -bias,   D a = l'' - |u_across|^2 / |d|
+  //
+  // but for C N''. What rigid rods leave open stays as their lengths at the Gauss points have it: `force`,
+  // which has all rods', changes by forces of least complementary energy. Only after still().
+  void find_still_forces(double t, const VectorXd& q, const VectorXd& v, VectorXd& force);
   double compliance(Index i) const { return compliance_[i]; }
+  // The rods that the last call of still() has held.
+  const std::vector<Index>& held() const { return held_; }
 
   MatrixXd tension, residual;  // N [N], R [m]: rods x points
   bool as_unknowns = false;    // false: forces are what lengths tell, as those of any spring
@@ -50,8 +63,16 @@ class ElasticStages {
   const System& system_;
   const GalerkinCoefficients& c_;
   const ElasticRods* rods_;
+  // G with D of the held rods below, and its factors.
+  void stack(const SparseRows& G, const SparseRows& D);
+
   VectorXd compliance_, stretch_;
   double level_ = 0;
+  std::vector<Index> held_;
+  SparseRows rows_;
+  std::unique_ptr<SaddleSolver> saddle_;
+  std::optional<bool> shared_;  // whether these rows leave forces open
+  std::unique_ptr<LeastEnergy> least_;
 };
 
 }  // namespace unfurl

@@ -100,12 +100,16 @@ Index unknowns(const StageEquations& eq) {
 
 // In Y_j = -h^2 w_j dN_j: l_k(tau_j) D_j^T Y_j of row k, and of the rows at tau_j
 //     sum_i [l_i(tau_j) dR/dz + l_i'(tau_j)/h dR/dz'] dX_i + C / (h^2 w_j) Y_j = -R_j.
+//
+// Forces F(N) that depend on N besides add -l_k(tau_j) dF/dN Y_j to row k.
 void add_rod_blocks(Entries& entries, StageEquations& eq, Index first) {
   const Index n = eq.dX.rows(), count = eq.rods.tension.rows();
+  const bool by_tension = eq.system.by_tension();
   SparseRows directions, by_z, by_w;
   for (Index j = 0; j < eq.c.tau.size(); ++j) {
     const Index rows = first + j * count;
     eq.rod_derivatives(j, directions, by_z, by_w);
+    if (by_tension) directions -= SparseRows(eq.tension_derivatives(j).transpose());
     for (Index k = 0; k + 1 < eq.c.s; ++k)
       add_block(entries, directions, k * n, rows, eq.c.value(k, j), true);
     for (Index i = 1; i < eq.c.s; ++i) {

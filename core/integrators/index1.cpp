@@ -14,7 +14,8 @@ Index1::Index1(const System& system, bool clean_multipliers)
     : system_(system),
       G_(system.jacobian_pattern()),
       saddle_(system.mass(), G_, 1,
-              clean_multipliers ? clean_regularisation : SaddleSolver::standard_regularisation),
+              clean_multipliers ? clean_regularisation : SaddleSolver::standard_regularisation,
+              SaddleSolver::Order::sparse_first),
       refinements_(clean_multipliers ? 40 : 8),
       weak_(clean_multipliers ? 3 * clean_regularisation : 100 * SaddleSolver::standard_regularisation),
       q_(system.coordinates()),
@@ -31,7 +32,7 @@ void Index1::place(double t, const ConstVec& z, const ConstVec& w, const VectorX
   system_.jacobian(q_, G_, scratch_);
   f_.setZero();
   if (tension.size() > 0) {
-    system_.add_other_force(t, q_, v_, 1.0, f_);
+    system_.add_other_force(t, q_, v_, tension, 1.0, f_);
     system_.add_giving_rod_forces(q_, tension, 1.0, f_);
   } else {
     system_.add_applied_force(t, q_, v_, 1.0, f_);
@@ -46,8 +47,9 @@ bool Index1::assemble(double t, const ConstVec& z, const ConstVec& w, const Vect
   return saddle_.factorise(G_);
 }
 
-bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda) {
-  return assemble(t, z, w) && solve(t, w, acceleration, lambda);
+bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda,
+                      const VectorXd& tension) {
+  return assemble(t, z, w, tension) && solve(t, w, acceleration, lambda);
 }
 
 bool Index1::evaluate(const State& state, MutVec acceleration, MutVec lambda) {
@@ -96,22 +98,22 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
     bias_[k] = one_.bias_;
   }
   lanes_.factorise();
-  std::array<bool, SaddleLanes::lanes> fine{};
-  SaddleLanes::Vectors finely_acceleration, finely_lambda;
+  std::array<bool, SaddleLanes::lanes> alone{};
+  SaddleLanes::Vectors own_acceleration, own_lambda;
   for (std::size_t k = 0; k < states.size(); ++k) {
-    if (!lanes_.ok(static_cast<int>(k))) continue;
-    lanes_.hand_over(static_cast<int>(k), one_.saddle_);
+    ok_[k] = lanes_.hand_over(static_cast<int>(k), one_.saddle_);
+    if (!ok_[k]) continue;
     one_.saddle_.weakest_pivot(one_.weak_);
-    if (!(fine[k] = one_.saddle_.fine())) continue;
-    finely_acceleration[k].resize(force_[k].size());
-    finely_lambda[k].resize(bias_[k].size());
-    one_.saddle_.solve(force_[k], bias_[k], finely_acceleration[k], finely_lambda[k]);
+    if (!(alone[k] = !one_.saddle_.in_first_order())) continue;
+    own_acceleration[k].resize(force_[k].size());
+    own_lambda[k].resize(bias_[k].size());
+    one_.saddle_.solve(force_[k], bias_[k], own_acceleration[k], own_lambda[k], one_.refinements_);
     force_[k].resize(0);  // nothing is left to do
   }
   lanes_.solve(force_, bias_, acceleration_, lambda_, one_.refinements_);
   for (std::size_t k = 0; k < states.size(); ++k) {
-    if (fine[k]) acceleration_[k] = finely_acceleration[k], lambda_[k] = finely_lambda[k];
-    ok_[k] = lanes_.ok(static_cast<int>(k)) && acceleration_[k].allFinite() && lambda_[k].allFinite();
+    if (alone[k]) acceleration_[k] = own_acceleration[k], lambda_[k] = own_lambda[k];
+    ok_[k] = ok_[k] && acceleration_[k].allFinite() && lambda_[k].allFinite();
   }
 }
 

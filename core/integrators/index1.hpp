@@ -25,7 +25,9 @@ class Index1 {
   // Let constraint errors decay at the rate alpha [1/s] (Baumgarte 1972).
   void stabilise(double alpha) { alpha_ = alpha; }
   // False where the factorisation broke down or the result is not finite.
-  bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda);
+  // `tension`: what rods that give pull with, where their lengths do not tell.
+  bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda,
+                const VectorXd& tension = {});
   // The same at a state. What rods that give pull with is what the state says, where its step did not resolve
   // them and their lengths do not tell.
   bool evaluate(const State& state, MutVec acceleration, MutVec lambda);

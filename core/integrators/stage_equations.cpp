@@ -66,7 +66,7 @@ void StageEquations::use_step() {
   impulse_ = h * c.b;
   force_.setZero();
   system.add_applied_force(t, q_0_, v_tau_, 1.0, force_.col(0));
-  with_columns(c.s - 1, [this](auto k) { spread_forces<k()>(); });
+  with_wide_columns(c.s - 1, [this](auto k) { spread_forces<k()>(); });
 }
 
 void StageEquations::look_at_forces(const VectorXd& q) {
@@ -112,10 +112,9 @@ void StageEquations::find_reach() {
 }
 
 void StageEquations::place_nodes() {
-  with_columns(c.s - 1, [this](auto k) {
-    constexpr int K = k();
-    for (Index i = 0, n = dX.rows(); i < n; ++i)
-      (Lanes<K>::all(z0[i]) + Lanes<K>(dX.data() + i * K)).store(Z_.data() + i * K);
+  with_wide_columns(c.s - 1, [n = dX.rows(), z = z0.data(), d = dX.data(), to = Z_.data()](auto k) {
+    constexpr LaneCount K = k();
+    for (Index i = 0; i < n; ++i) (Lanes<K>::all(z[i]) + Lanes<K>(d + i * K)).store(to + i * K);
   });
   system.expand_stages(Z_, 1, Q);
 }
@@ -128,7 +127,7 @@ void StageEquations::evaluate() {
     system.constraint_stages(time_.data(), Q, 1, phi, scratch_);
   if (at_ends) phi.leftCols(c.s - 2).setZero();
   if (!system.constant_forces()) applied_forces();
-  with_columns(c.s - 1, [this](auto k) { evaluate_momentum<k()>(); });
+  evaluate_momentum();
   measure();
 }
 
@@ -159,7 +158,7 @@ void StageEquations::applied_forces() {
     move_to(j);
     const double at = t + c.tau[j] * h;
     if (rods.as_unknowns) {
-      system.add_other_force(at, q_tau_, v_tau_, 1.0, force_.col(j));
+      system.add_other_force(at, q_tau_, v_tau_, rods.tension.col(j), 1.0, force_.col(j));
       rods.evaluate(j, at, q_tau_, v_tau_, force_.col(j));
     } else {
       system.add_applied_force(at, q_tau_, v_tau_, 1.0, force_.col(j));
@@ -179,6 +178,7 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
   const SparseRows directions = system.giving_rod_directions(q_tau_);
   for (Index i = 0; i < tension.size(); ++i)
     if (rods.h_omega(i, h, directions) > resolved) tension[i] = rods.tension.row(i).dot(c.tau_to_end);
+  if (!rods.held().empty()) rods.find_still_forces(t + h, q_tau_, v_tau_, tension);
 }
 
 bool StageEquations::held() {
@@ -204,6 +204,11 @@ void StageEquations::force_derivatives(Index j, SparseRows& by_z, SparseRows& by
     system.force_derivatives(at, q_tau_, v_tau_, by_z, by_w);
 }
 
+SparseRows StageEquations::tension_derivatives(Index j) {
+  move_to(j);
+  return system.tension_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, rods.tension.col(j));
+}
+
 void StageEquations::rod_derivatives(Index j, SparseRows& directions, SparseRows& by_z, SparseRows& by_w) {
   move_to(j);
   directions = system.giving_rod_directions(q_tau_);
@@ -211,7 +216,7 @@ void StageEquations::rod_derivatives(Index j, SparseRows& directions, SparseRows
 }
 
 // h sum_j w_j l_k(tau_j) F(tau_j)
-template <int K>
+template <LaneCount K>
 void StageEquations::spread_forces() {
   for (Index i = 0, nodes = applied_.rows(); i < nodes; ++i) {
     Lanes<K> sum = Lanes<K>::all(0.0);
@@ -222,31 +227,38 @@ void StageEquations::spread_forces() {
 }
 
 // B^T f_k + (1/h) sum_j C_kj M dX_j with f_k = h sum_j w_j l_k(tau_j) F(tau_j) - h b_k G(Q_k)^T lambda_k
-template <int K>
 void StageEquations::evaluate_momentum() {
-  const Index n = dX.rows(), m = lambda.rows();
-  const SparseRows& M = system.mass();
-  if (!system.constant_forces()) spread_forces<K>();
+  if (!system.constant_forces()) with_wide_columns(c.s - 1, [this](auto k) { spread_forces<k()>(); });
   f_ = applied_;
   system.add_constraint_force_stages(Q, 0, lambda, scale_.data(), f_, scratch_);
+  system.reduce_force_stages(f_, momentum);
+  with_wide_columns(c.s - 1, [this](auto k) { add_inertia<k()>(); });
+  force_scale_ = std::max(force_scale_, largest_magnitude(f_.data(), f_.size()));
+}
+
+template <LaneCount K>
+void StageEquations::add_inertia() {
+  const Index n = dX.rows(), m = lambda.rows();
+  const SparseRows& M = system.mass();
   // Rows have unit gradients: single rod forces may far exceed their sum.
   Lanes<K> most = Lanes<K>::all(0.0);
-  for (Index i = 0; i < m; ++i) most = larger(most, Lanes<K>(lambda.data() + i * K));
+  const double* const multiplier = lambda.data();
+  for (Index i = 0; i < m; ++i) most = larger(most, Lanes<K>(multiplier + i * K));
   force_scale_ = larger(Lanes<K>::all(0.0), most * Lanes<K>(scale_.data())).largest();
-  force_scale_ = std::max(force_scale_, largest_magnitude(f_.data(), f_.size()));
 
-  system.reduce_force_stages(f_, momentum);
   Lanes<K> inertia = Lanes<K>::all(0.0), rest = inertia;
   most = inertia;
+  const double *const x = dX.data(), *const C = C_by_h_.data(), *const p = p0.data();
+  double *const out = momentum.data(), *const out_MdX = MdX_.data();
   for (Index i = 0; i < n; ++i) {
     double Mx[K];
-    const Lanes<K> MdX = row_times<K>(M, i, dX.data());
+    const Lanes<K> MdX = row_times<K>(M, i, x);
     MdX.store(Mx);
-    MdX.store(MdX_.data() + i * K);
+    MdX.store(out_MdX + i * K);
     inertia = larger(inertia, MdX);
-    double* const r = momentum.data() + i * K;
-    mixed<K>(Lanes<K>(r), Mx, C_by_h_.data()).store(r);
-    r[0] += p0[i];
+    double* const r = out + i * K;
+    mixed<K>(Lanes<K>(r), Mx, C).store(r);
+    r[0] += p[i];
     most = larger(most, Lanes<K>(r));
     rest = rest + 0.0 * Lanes<K>(r);
   }
@@ -256,7 +268,7 @@ void StageEquations::evaluate_momentum() {
 }
 
 // The largest |Phi_r| / constraint_noise(r).
-template <int K>
+template <LaneCount K>
 void StageEquations::measure_constraints() {
   Lanes<K> rest = Lanes<K>::all(0.0);
   double level = 0;
@@ -274,7 +286,7 @@ void StageEquations::measure_constraints() {
 }
 
 // Sizes go by the largest of the nodes, in one pass over each of the stages' arrays.
-template <int K>
+template <LaneCount K>
 void StageEquations::measure_rows() {
   const auto largest = [](const Interleaved& x, Index i) {
     return larger(Lanes<K>::all(0.0), Lanes<K>(x.data() + i * K)).largest();
@@ -329,7 +341,7 @@ void StageEquations::measure() {
   momentum_level_ = size > 0 ? momentum_size_ / (momentum_noise * size) : 0.0;
   if (far_ || std::abs(h) * size > harmless_noise * least_mass_ * reach_)
     with_columns(c.s - 1, [this](auto k) { measure_rows<k()>(); });
-  with_columns(c.s - 1, [this](auto k) { measure_constraints<k()>(); });
+  with_wide_columns(c.s - 1, [this](auto k) { measure_constraints<k()>(); });
   if (rods.as_unknowns) {
     constraint_level_ = std::max(constraint_level_, rods.level());
     finite_ = finite_ && std::isfinite(rods.level());

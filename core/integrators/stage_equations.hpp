@@ -44,6 +44,7 @@ class StageEquations {
   void force_derivatives(Index j, SparseRows& by_z, SparseRows& by_w);
   // d|d|/dz of these rods there, and the derivatives of their rows by z and z' (allocates).
   void rod_derivatives(Index j, SparseRows& directions, SparseRows& by_z, SparseRows& by_w);
+  SparseRows tension_derivatives(Index j);  // of other forces, by these rods' (allocates)
   // Whether the forces of rods that give are unknowns, which starts them as they were last.
   void take_rods_as_unknowns(bool unknowns);
   // Looks at the derivatives of the forces at the step's start: what they make of round-off, and how stiff
@@ -61,7 +62,7 @@ class StageEquations {
   double h_rate() const;   // h c / m of the strongest damper, from above
   // Axial forces of the rods that give at the step's end, with velocity w_1: by the polynomial through those
   // at the points of the quadrature for rods of h omega > `resolved`, whose waves are not resolved, so that
-  // the end's coordinates do not tell them; else by their lengths.
+  // the end's coordinates do not tell them; else by their lengths. Of rods that are held still by the motion.
   void end_tension(const VectorXd& w_1, double resolved, VectorXd& tension);
   // Whether the constraints leave no motion free (looked for once, at the present start, and not in
   // structures of many coordinates): lengths are what drives make them, and tell forces whatever the step.
@@ -97,18 +98,19 @@ class StageEquations {
   // What is at rest beside other nodes in motion counts as moving by this share of theirs: its forces come
   // from theirs, members of nets just going taut among them, whose stiffness is not yet known.
   static constexpr double beside_motion = 1e-3;
-  template <int K>
+  template <LaneCount K>
   void spread_forces();
-  template <int K>
   void evaluate_momentum();
-  template <int K>
+  template <LaneCount K>
+  void add_inertia();
+  template <LaneCount K>
   void measure_constraints();
   void use_step();
   void move_to(Index j);
   void applied_forces();
   void constraint_changes();
   void measure();
-  template <int K>
+  template <LaneCount K>
   void measure_rows();
   void find_reach();
 

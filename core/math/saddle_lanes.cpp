@@ -11,7 +11,8 @@ namespace unfurl {
 namespace {
 
 constexpr int lane_count = SaddleLanes::lanes;
-using Lane = Lanes<lane_count>;
+template <bool wide>
+using LaneOf = Lanes<LaneCount(lane_count, wide)>;
 
 std::size_t at(std::size_t entry) {
   return entry * static_cast<std::size_t>(lane_count);
@@ -19,15 +20,15 @@ std::size_t at(std::size_t entry) {
 
 }  // namespace
 
-SaddleLanes::SaddleLanes(const SaddleSolver& alone) : alone_(alone) {
-  const SparseLdlt& ldlt = alone.ldlt_;
-  const auto n = static_cast<std::size_t>(ldlt.size());
+SaddleLanes::SaddleLanes(const SaddleSolver& alone)
+    : alone_(alone), ldlt_(alone.first().ldlt), place_(alone.first().place.data()) {
+  const auto n = static_cast<std::size_t>(ldlt_.size());
   row_scale_.assign(at(static_cast<std::size_t>(alone.m_)), 1.0);
   for (const double value : alone.values_) values_.insert(values_.end(), lane_count, value);
   for (const int place : alone.jacobian_place_)
     std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(at(static_cast<std::size_t>(place))),
                 lane_count, 0.0);
-  l_.assign(at(ldlt.row_index_.size()), 0.0);
+  l_.assign(at(ldlt_.row_index_.size()), 0.0);
   for (auto* x : {&pivot_, &inverse_pivot_, &work_, &packed_, &right_, &best_, &try_}) x->assign(at(n), 0.0);
   fill_.assign(n, 0);
 }
@@ -51,12 +52,18 @@ void SaddleLanes::set(int lane, const SparseRows& G) {
   }
 }
 
-// SparseLdlt::factorise.
 void SaddleLanes::factorise() {
-  const SparseLdlt& a = alone_.ldlt_;
-  const auto n = static_cast<std::size_t>(a.size());
   ok_.fill(true);
-  std::copy(a.column_start_.begin(), a.column_start_.end() - 1, fill_.begin());
+  std::copy(ldlt_.column_start_.begin(), ldlt_.column_start_.end() - 1, fill_.begin());
+  with_widest([this](auto wide) { eliminate<wide()>(); });
+}
+
+// SparseLdlt::factorise.
+template <bool wide>
+void SaddleLanes::eliminate() {
+  using Lane = LaneOf<wide>;
+  const SparseLdlt& a = ldlt_;
+  const auto n = static_cast<std::size_t>(a.size());
   double* const y = work_.data();
   double* const l = l_.data();
   const int* const rows = a.row_index_.data();
@@ -98,13 +105,13 @@ void SaddleLanes::factorise() {
 void SaddleLanes::settle_pivot(std::size_t k, const double* own, double* d) {
   for (std::size_t c = 0; c < lane_count; ++c) {
     if (own[c] < 0.0 && d[c] > 0.5 * own[c]) d[c] = own[c];  // only round-off is left of a redundant row
-    if (d[c] == 0.0 || !std::isfinite(d[c])) ok_[c] = false;
+    if (d[c] == 0.0 || !std::isfinite(d[c]) || (alone_.sparse_ && SaddleSolver::grown(d[c]))) ok_[c] = false;
     pivot_[at(k) + c] = d[c];
     inverse_pivot_[at(k) + c] = 1.0 / d[c];
   }
 }
 
-void SaddleLanes::hand_over(int lane, SaddleSolver& alone) const {
+bool SaddleLanes::hand_over(int lane, SaddleSolver& alone) const {
   const auto take = [lane](const std::vector<double>& from, auto& to) {
     for (std::size_t i = 0, size = from.size() / lane_count; i < size; ++i)
       to.data()[i] = from[at(i) + static_cast<std::size_t>(lane)];
@@ -112,13 +119,17 @@ void SaddleLanes::hand_over(int lane, SaddleSolver& alone) const {
   alone.fine_ready_ = false;
   take(row_scale_, alone.row_scale_);
   take(values_, alone.values_);
-  take(l_, alone.ldlt_.l_);
-  take(pivot_, alone.ldlt_.pivot_);
-  take(inverse_pivot_, alone.ldlt_.inverse_pivot_);
+  SparseLdlt& to = alone.sparse_ ? alone.sparse_->ldlt : alone.safe_.ldlt;
+  take(l_, to.l_);
+  take(pivot_, to.pivot_);
+  take(inverse_pivot_, to.inverse_pivot_);
+  return alone.sparse_ ? alone.first_serves(ok(lane)) : ok(lane);
 }
 
+template <bool wide>
 void SaddleLanes::solve_ordered(double* const b) const {
-  const SparseLdlt& a = alone_.ldlt_;
+  using Lane = LaneOf<wide>;
+  const SparseLdlt& a = ldlt_;
   const int n = static_cast<int>(a.size());
   const double* const l = l_.data();
   const int* const rows = a.row_index_.data();
@@ -140,8 +151,10 @@ void SaddleLanes::solve_ordered(double* const b) const {
 }
 
 // r -= K_0 x, in the order of SparseLdlt::subtract_product and SaddleSolver::solve.
+template <bool wide>
 void SaddleLanes::subtract_product(const double* x, double* r) const {
-  const SparseLdlt& a = alone_.ldlt_;
+  using Lane = LaneOf<wide>;
+  const SparseLdlt& a = ldlt_;
   for (int k = 0, n = static_cast<int>(a.size()); k < n; ++k) {
     const Lane xk(x + static_cast<Index>(k) * lane_count);
     Lane sum = Lane::all(0.0);
@@ -157,7 +170,7 @@ void SaddleLanes::subtract_product(const double* x, double* r) const {
     double* const to = r + static_cast<Index>(k) * lane_count;
     (Lane(to) - sum).store(to);
   }
-  const int* const row = alone_.place_.data() + alone_.n_;
+  const int* const row = place_ + alone_.n_;
   for (Index i = 0; i < alone_.m_; ++i) {
     double* const to = r + static_cast<Index>(row[i]) * lane_count;
     (Lane(to) - alone_.regularisation_ * Lane(x + static_cast<Index>(row[i]) * lane_count)).store(to);
@@ -165,8 +178,9 @@ void SaddleLanes::subtract_product(const double* x, double* r) const {
 }
 
 SaddleLanes::Norms SaddleLanes::residual_norms(const double* r) const {
+  using Lane = LaneOf<false>;
   Lane f = Lane::all(0.0), g = f;
-  const int* place = alone_.place_.data();
+  const int* place = place_;
   const auto add = [&](Lane& sum, Index count) {
     for (Index i = 0; i < count; ++i, ++place) {
       const Lane x(r + static_cast<Index>(*place) * lane_count);
@@ -185,7 +199,7 @@ SaddleLanes::Norms SaddleLanes::residual_norms(const double* r) const {
 void SaddleLanes::solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors& y,
                         int max_refinements) const {
   const Index n = alone_.n_, m = alone_.m_;
-  const int* const coordinate = alone_.place_.data();
+  const int* const coordinate = place_;
   const int* const row = coordinate + n;
   const auto entry = [](std::vector<double>& v, int i, std::size_t c) -> double& {
     return v[at(static_cast<std::size_t>(i)) + c];
@@ -206,7 +220,7 @@ void SaddleLanes::solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors&
   for (auto* v : {&best_, &try_}) std::fill(v->begin(), v->end(), 0.0);
   for (int it = 0; it <= max_refinements + 1; ++it) {
     std::copy(right_.begin(), right_.end(), packed_.begin());
-    if (it > 0) subtract_product(try_.data(), packed_.data());
+    if (it > 0) with_widest([this](auto wide) { subtract_product<wide()>(try_.data(), packed_.data()); });
     const Norms residual = residual_norms(packed_.data());
     std::array<bool, lanes> better{};
     for (std::size_t c = 0; c < lane_count; ++c) {
@@ -220,7 +234,7 @@ void SaddleLanes::solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors&
       for (std::size_t c = 0; c < lane_count; ++c)
         if (better[c]) best_[i + c] = try_[i + c];
     if (std::none_of(active.begin(), active.end(), [](bool a) { return a; })) break;
-    solve_ordered(packed_.data());
+    with_widest([this](auto wide) { solve_ordered<wide()>(packed_.data()); });
     for (std::size_t i = 0; i < try_.size(); ++i) try_[i] += packed_[i];
   }
   for (std::size_t c = 0; c < lane_count; ++c) {

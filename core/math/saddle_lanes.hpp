@@ -21,20 +21,27 @@ class SaddleLanes {
 
   void set(int lane, const SparseRows& G);  // same pattern; a lane that was never set has zero rows
   void factorise();
-  bool ok(int lane) const { return ok_[static_cast<std::size_t>(lane)]; }  // its factorisation held
-  // `alone` becomes what it would be had it factorised the lane's matrix.
-  void hand_over(int lane, SaddleSolver& alone) const;
+  // Its factorisation held, and in the first order of `alone`: else solve() has nothing for it.
+  bool ok(int lane) const { return ok_[static_cast<std::size_t>(lane)]; }
+  // `alone` becomes what it would be had it factorised the lane's matrix. False where that broke down.
+  [[nodiscard]] bool hand_over(int lane, SaddleSolver& alone) const;
   // SaddleSolver::solve in every lane, whose refinements end when its own are done.
   void solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors& y, int max_refinements) const;
 
  private:
   using Norms = std::array<double, lanes>;
   Norms residual_norms(const double* r) const;
+  template <bool wide>
+  void eliminate();
   void settle_pivot(std::size_t k, const double* own, double* d);
+  template <bool wide>
   void solve_ordered(double* b) const;
+  template <bool wide>
   void subtract_product(const double* x, double* r) const;
 
   const SaddleSolver& alone_;
+  const SparseLdlt& ldlt_;  // of its first order, with the places there
+  const int* place_;
   std::array<bool, lanes> ok_{};
   // As in SaddleSolver and SparseLdlt, entry by entry: entry i of lane c is x[i * lanes + c].
   std::vector<double> row_scale_, values_, l_, pivot_, inverse_pivot_, work_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/math/saddle_solver.hpp"
 
-#include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,50 +9,15 @@
 
 namespace unfurl {
 
-std::vector<int> minimum_degree_order(const SparseRows& upper) {
-  Eigen::SparseMatrix<double, Eigen::ColMajor, int> full = upper.selfadjointView<Eigen::Upper>();
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> inverse;
-  Eigen::AMDOrdering<int>()(full, inverse);  // inverse.indices()[k]: the row eliminated k-th
-  return {inverse.indices().data(), inverse.indices().data() + inverse.indices().size()};
+void SaddleSolver::Factors::analyse(const SparseRows& upper, const std::vector<int>& order) {
+  ldlt.analyse(upper, order);
+  place.resize(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    place[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
 }
 
-namespace {
-
-// Approximate minimum degree, then every constraint is moved behind the coordinates that it acts on. A
-// constraint eliminated before them would bring the pivot -e, and with it growth by 1/e; behind them its
-// pivot is of order one unless the constraint is truly redundant.
-std::vector<int> elimination_order(const SparseRows& upper, const SparseRows& G) {
-  const int n = static_cast<int>(G.cols()), size = static_cast<int>(upper.rows());
-  std::vector<int> open(static_cast<std::size_t>(size - n), 0);
-  std::vector<std::vector<int>> acting(static_cast<std::size_t>(n));
-  for (int r = 0; r < G.outerSize(); ++r)
-    for (SparseRows::InnerIterator it(G, r); it; ++it) {
-      ++open[static_cast<std::size_t>(r)];
-      acting[static_cast<std::size_t>(it.col())].push_back(r);
-    }
-  std::vector<char> waiting(open.size(), 0);
-  std::vector<int> order;
-  order.reserve(static_cast<std::size_t>(size));
-  for (const int row : minimum_degree_order(upper)) {
-    if (row >= n) {
-      const auto c = static_cast<std::size_t>(row - n);
-      if (open[c] == 0)
-        order.push_back(row);
-      else
-        waiting[c] = 1;
-      continue;
-    }
-    order.push_back(row);
-    for (int c : acting[static_cast<std::size_t>(row)])
-      if (--open[static_cast<std::size_t>(c)] == 0 && waiting[static_cast<std::size_t>(c)])
-        order.push_back(n + c);
-  }
-  return order;
-}
-
-}  // namespace
-
-SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns, double regularisation)
+SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns, double regularisation,
+                           Order order)
     : n_(M.rows()),
       m_(G.rows()),
       column_scale_(M.rows()),
@@ -71,7 +35,13 @@ SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_col
   }
   SparseRows upper(n_ + m_, n_ + m_);
   upper.setFromTriplets(entries.begin(), entries.end());
-  ldlt_.analyse(upper, elimination_order(upper, G));
+  const SaddleOrders orders = saddle_orders(upper, G * column_scale_.asDiagonal());
+  safe_.analyse(upper, orders.safe);
+  if (order == Order::sparse_first && orders.sparse != orders.safe) {
+    sparse_ = std::make_unique<Factors>();
+    sparse_->analyse(upper, orders.sparse);
+    if (sparse_->ldlt.factor_nonzeros() >= safe_.ldlt.factor_nonzeros()) sparse_.reset();
+  }
   values_.assign(upper.valuePtr(), upper.valuePtr() + upper.nonZeros());
   for (int r = 0; r < G.outerSize(); ++r)
     for (SparseRows::InnerIterator it(G, r); it; ++it) {
@@ -80,9 +50,6 @@ SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_col
       jacobian_place_.push_back(
           static_cast<int>(std::lower_bound(begin, end, static_cast<int>(n_ + r)) - upper.innerIndexPtr()));
     }
-  place_.resize(static_cast<std::size_t>(n_ + m_));
-  for (std::size_t k = 0; k < place_.size(); ++k)
-    place_[static_cast<std::size_t>(ldlt_.order()[k])] = static_cast<int>(k);
   packed_.assign(static_cast<std::size_t>((n_ + m_) * max_columns), 0.0);
   for (VectorXd* v : {&rhs_, &best_, &try_}) v->setZero(n_ + m_);
 }
@@ -104,34 +71,58 @@ bool SaddleSolver::factorise(const SparseRows& G) {
     for (int p = start[r]; p < start[r + 1]; ++p)
       values_[static_cast<std::size_t>(place[p])] *= row_scale_[r];
   }
-  return ldlt_.factorise(values_.data());
+  return sparse_ ? first_serves(sparse_->ldlt.factorise(values_.data())) : factorise_safely();
+}
+
+bool SaddleSolver::factorise_safely() {
+  in_use_ = &safe_;
+  return safe_.ldlt.factorise(values_.data());
+}
+
+// Whether there are factors: those of the sparse order, if they held and did not grow.
+bool SaddleSolver::first_serves(bool held) {
+  in_use_ = sparse_.get();
+  growth_ = held ? sparse_->ldlt.largest_pivot() : most_growth;
+  return !grown(growth_) || factorise_safely();
+}
+
+// Of what shows a weak direction in the safe order, the pivots of rows, the sparse order shows smaller ones:
+// their squares have fewer coordinates to add up over. Where a row has its own coordinate by a small entry
+// only, it shows growth by the inverse.
+bool SaddleSolver::shows_none_below(double bound) const {
+  constexpr double margin = 2;
+  Index below = 0;
+  for (Index r = 0; r < m_; ++r) below += pivot_of_row(r) < margin * bound + 2 * regularisation_ ? 1 : 0;
+  return below <= redundant_ && growth_ * margin * bound < 1;
 }
 
 void SaddleSolver::apply(double* f, double* g, int columns) const {
   if (fine_ready_) return apply_finely(f, g, columns);
-  with_columns(columns, [&](auto k) {
-    constexpr int K = k();
-    double* const b = packed_.data();
-    const int* const place = place_.data();
-    const auto gather = [&](const double* x, const VectorXd& scale, const int* to) {
-      for (Index i = 0, size = scale.size(); i < size; ++i)
-        (scale[i] * Lanes<K>(x + i * K)).store(b + static_cast<Index>(to[i]) * K);
-    };
-    const auto scatter = [&](double* x, const VectorXd& scale, const int* from) {
-      for (Index i = 0, size = scale.size(); i < size; ++i)
-        (scale[i] * Lanes<K>(b + static_cast<Index>(from[i]) * K)).store(x + i * K);
-    };
-    gather(f, column_scale_, place);
-    gather(g, row_scale_, place + n_);
-    ldlt_.solve_ordered(b, K);
-    scatter(f, column_scale_, place);
-    scatter(g, row_scale_, place + n_);
-  });
+  double* const b = packed_.data();
+  const int* const place = in_use_->place.data();
+  const auto gather = [columns, b](const double* x, const VectorXd& scale, const int* to) {
+    with_wide_columns(columns, [=, s = scale.data(), size = scale.size()](auto k) {
+      constexpr LaneCount K = k();
+      for (Index i = 0; i < size; ++i) (s[i] * Lanes<K>(x + i * K)).store(b + static_cast<Index>(to[i]) * K);
+    });
+  };
+  const auto scatter = [columns, b](double* x, const VectorXd& scale, const int* from) {
+    with_wide_columns(columns, [=, s = scale.data(), size = scale.size()](auto k) {
+      constexpr LaneCount K = k();
+      for (Index i = 0; i < size; ++i)
+        (s[i] * Lanes<K>(b + static_cast<Index>(from[i]) * K)).store(x + i * K);
+    });
+  };
+  gather(f, column_scale_, place);
+  gather(g, row_scale_, place + n_);
+  in_use_->ldlt.solve_ordered(b, columns);
+  scatter(f, column_scale_, place);
+  scatter(g, row_scale_, place + n_);
 }
 
 double SaddleSolver::residual_norm(const double* r) const {
   double f = 0, g = 0;
-  const int* place = place_.data();
+  const int* place = in_use_->place.data();
   for (Index i = 0; i < n_; ++i, ++place) f += r[*place] * r[*place];
   for (Index i = 0; i < m_; ++i, ++place) g += r[*place] * r[*place];
   return std::sqrt(f) + std::sqrt(g);
@@ -146,8 +137,8 @@ double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVe
     return 0.0;
   }
   double* const r = packed_.data();
-  const int* const coordinate = place_.data();
-  const int* const row = place_.data() + n_;
+  const int* const coordinate = in_use_->place.data();
+  const int* const row = coordinate + n_;
   for (Index i = 0; i < n_; ++i) rhs_[coordinate[i]] = f[i] * column_scale_[i];
   for (Index i = 0; i < m_; ++i) rhs_[row[i]] = g[i] * row_scale_[i];
   const double size = std::max(residual_norm(rhs_.data()), 1e-300);
@@ -162,7 +153,7 @@ double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVe
   for (int it = 0; it <= max_refinements + 1; ++it) {
     std::copy(rhs_.begin(), rhs_.end(), r);
     if (it > 0) {
-      ldlt_.subtract_product(values_.data(), try_.data(), r);
+      in_use_->ldlt.subtract_product(values_.data(), try_.data(), r);
       for (Index i = 0; i < m_; ++i) r[row[i]] -= regularisation_ * try_[row[i]];  // K_0 = K_e + e I there
     }
     const double residual = residual_norm(r);
@@ -171,7 +162,7 @@ double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVe
     best = residual;
     best_ = try_;
     if (it > 0 && (slow || residual <= 2e-16 * size)) break;
-    ldlt_.solve_ordered(r, 1);
+    in_use_->ldlt.solve_ordered(r, 1);
     for (Index i = 0; i < n_ + m_; ++i) try_[i] += r[i];
   }
   for (Index i = 0; i < n_; ++i) x[i] = best_[coordinate[i]] * column_scale_[i];

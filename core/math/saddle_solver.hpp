@@ -15,29 +15,35 @@
 #include <memory>
 #include <vector>
 
+#include "core/math/saddle_order.hpp"
 #include "core/math/sparse_ldlt.hpp"
 #include "core/math/types.hpp"
 
 namespace unfurl {
 
-// Approximate minimum degree order of a symmetric pattern given by its upper triangle.
-std::vector<int> minimum_degree_order(const SparseRows& upper);
-
 class SaddleSolver {
  public:
-  // M: constant, symmetric, positive diagonal. G: its pattern (values are not used). max_columns: right-hand
-  // sides that one call to solve may bring. A larger regularisation suppresses round-off in multipliers that
-  // are not unique (it is 1e-16 / e) and needs more refinements for directions of small singular values.
+  // In which order unknowns are eliminated (core/math/saddle_order.hpp): the safe one, or the sparse one as
+  // long as no pivot grows much and the safe one where it does.
+  enum class Order { safe, sparse_first };
+
+  // M: constant, symmetric, positive diagonal. G: its pattern; the sparse order goes by its values, too.
+  // max_columns: right-hand sides that one call to solve may bring. A larger regularisation suppresses
+  // round-off in multipliers that are not unique (it is 1e-16 / e) and needs more refinements for directions
+  // of small singular values.
   SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns = 1,
-               double regularisation = standard_regularisation);
+               double regularisation = standard_regularisation, Order order = Order::safe);
   ~SaddleSolver();
+  SaddleSolver(const SaddleSolver&) = delete;
+  SaddleSolver& operator=(const SaddleSolver&) = delete;
 
   // Numeric factorisation with the values of G (same pattern). False where it broke down.
   [[nodiscard]] bool factorise(const SparseRows& G);
 
   // The smallest pivot of a row of G that no redundant row explains, about the square of the smallest
   // singular value of G^; looked for below `bound` only, which is returned where there is none. Pivots that
-  // regularisation or round-off hide are found by factorise_finely, whose factors are then in use.
+  // regularisation or round-off hide are found by factorise_finely, whose factors are then in use. The sparse
+  // order is left where it cannot tell.
   double weakest_pivot(double bound);
 
   // The same matrix again in twice the digits and with e = 1e-23, which apply and solve use from then on
@@ -46,6 +52,8 @@ class SaddleSolver {
   // norm. Slow. False where it broke down.
   [[nodiscard]] bool factorise_finely();
   bool fine() const { return fine_ready_; }
+  // Neither growth nor a weak direction has called for other factors than the first ones.
+  bool in_first_order() const { return in_use_ == &first() && !fine_ready_; }
 
   // The largest motion [m] that answers a row's error [m], but for the singular values of G^.
   double motion_of_error() const;
@@ -59,25 +67,38 @@ class SaddleSolver {
   // is not finite, or whose norm overflows, gives NaN everywhere.
   double solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y, int max_refinements = 8) const;
 
-  Index factor_nonzeros() const { return ldlt_.factor_nonzeros(); }
+  Index factor_nonzeros() const { return first().ldlt.factor_nonzeros(); }
   static constexpr double standard_regularisation = 1e-13;  // e, in the scaled unknowns
 
  private:
   friend class SaddleLanes;
+  struct Factors {
+    SparseLdlt ldlt;
+    std::vector<int> place;  // of each row in the order of elimination
+    void analyse(const SparseRows& upper, const std::vector<int>& order);
+  };
+  const Factors& first() const { return sparse_ ? *sparse_ : safe_; }
+  bool factorise_safely();
+  bool first_serves(bool held);
+  bool shows_none_below(double bound) const;
   double residual_norm(const double* r) const;
   double pivot_of_row(Index r) const {
-    return std::abs(ldlt_.pivot(place_[static_cast<std::size_t>(n_ + r)]));
+    return std::abs(in_use_->ldlt.pivot(in_use_->place[static_cast<std::size_t>(n_ + r)]));
   }
+  static constexpr double most_growth = 1e7;
+  static bool grown(double largest_pivot) { return !(largest_pivot < most_growth); }
   void apply_finely(double* f, double* g, int columns) const;
   void solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) const;
 
   Index n_ = 0, m_ = 0;
   VectorXd column_scale_, row_scale_;  // D, R
-  SparseLdlt ldlt_;
+  Factors safe_;
+  std::unique_ptr<Factors> sparse_;  // null: not asked for, or of no use
+  const Factors* in_use_ = &safe_;
+  double growth_ = 1;                // the largest pivot of a coordinate, in the sparse order
   double regularisation_;            // e
   std::vector<double> values_;       // upper triangle of K_e
   std::vector<int> jacobian_place_;  // where each entry of G goes in values_
-  std::vector<int> place_;           // of each row in the order of elimination
   // Unknowns and right-hand sides, in the order of elimination.
   mutable std::vector<double> packed_;
   mutable VectorXd rhs_, best_, try_;

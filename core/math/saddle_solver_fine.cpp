@@ -41,7 +41,7 @@ TwofoldPair scaled(const TwofoldPair& x, double scale) {
 
 }  // namespace
 
-// Vectors are in the order of elimination.
+// Vectors are in the safe order of elimination.
 struct SaddleSolver::Fine {
   Fine(const SparseLdlt& pattern, std::size_t size)
       : factors(pattern), shift(size, 0.0), right(size), x(size), r(size) {}
@@ -59,6 +59,10 @@ struct SaddleSolver::Fine {
 SaddleSolver::~SaddleSolver() = default;
 
 double SaddleSolver::weakest_pivot(double bound) {
+  if (in_use_ == sparse_.get() && !fine_ready_) {
+    if (shows_none_below(bound)) return bound;
+    if (!factorise_safely()) return 0.0;
+  }
   Index below = 0;
   for (Index r = 0; r < m_; ++r) below += pivot_of_row(r) < bound + 2 * regularisation_ ? 1 : 0;
   if (below <= redundant_) return bound;
@@ -76,10 +80,10 @@ double SaddleSolver::weakest_pivot(double bound) {
 
 bool SaddleSolver::factorise_finely() {
   const auto row_place = [this](Index r) {
-    return static_cast<std::size_t>(place_[static_cast<std::size_t>(n_ + r)]);
+    return static_cast<std::size_t>(safe_.place[static_cast<std::size_t>(n_ + r)]);
   };
   if (!fine_) {
-    fine_ = std::make_unique<Fine>(ldlt_, static_cast<std::size_t>(n_ + m_));
+    fine_ = std::make_unique<Fine>(safe_.ldlt, static_cast<std::size_t>(n_ + m_));
     for (Index r = 0; r < m_; ++r) fine_->shift[row_place(r)] = regularisation_ - fine_regularisation;
   }
   fine_ready_ = fine_->factors.factorise(values_.data(), fine_->shift.data());
@@ -104,7 +108,7 @@ double SaddleSolver::motion_of_error() const {
 void SaddleSolver::apply_finely(double* f, double* g, int columns) const {
   Fine& fine = *fine_;
   const auto place = [this](Index i) {
-    return static_cast<std::size_t>(place_[static_cast<std::size_t>(i)]);
+    return static_cast<std::size_t>(safe_.place[static_cast<std::size_t>(i)]);
   };
   const auto apply = [&](int c, auto number) {
     auto [right, x, r] = fine.vectors(number);
@@ -141,7 +145,7 @@ void SaddleSolver::apply_finely(double* f, double* g, int columns) const {
 void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) const {
   Fine& fine = *fine_;
   const auto place = [this](Index i) {
-    return static_cast<std::size_t>(place_[static_cast<std::size_t>(i)]);
+    return static_cast<std::size_t>(safe_.place[static_cast<std::size_t>(i)]);
   };
   for (Index i = 0; i < n_; ++i) fine.right[place(i)] = Twofold(f[i]) * column_scale_[i];
   for (Index i = 0; i < m_; ++i) fine.right[place(n_ + i)] = Twofold(g[i]) * row_scale_[i];

@@ -118,25 +118,29 @@ int SparseLdlt::negative_pivots() const {
   return static_cast<int>(std::count_if(pivot_.begin(), pivot_.end(), [](double d) { return d < 0; }));
 }
 
+double SparseLdlt::largest_pivot() const {
+  return pivot_.empty() ? 0.0 : *std::max_element(pivot_.begin(), pivot_.end());
+}
+
 template <int R>
 void SparseLdlt::solve_fixed(double* const b) const {
-  const int n = static_cast<int>(n_);
-  const double* const l = l_.data();
-  const int* const rows = row_index_.data();
-  const int* const start = column_start_.data();
-  for (int j = 0; j < n; ++j) {
-    const Lanes<R> bj(b + j * R);
-    for (int p = start[j], end = start[j + 1]; p < end; ++p) {
-      double* const to = b + static_cast<Index>(rows[p]) * R;
-      (Lanes<R>(to) - l[p] * bj).store(to);
+  with_widest([b, n = static_cast<int>(n_), l = l_.data(), rows = row_index_.data(),
+               start = column_start_.data(), inverse_pivot = inverse_pivot_.data()](auto wide) {
+    using Row = Lanes<LaneCount(R, wide())>;
+    for (int j = 0; j < n; ++j) {
+      const Row bj(b + j * R);
+      for (int p = start[j], end = start[j + 1]; p < end; ++p) {
+        double* const to = b + static_cast<Index>(rows[p]) * R;
+        (Row(to) - l[p] * bj).store(to);
+      }
     }
-  }
-  for (int j = n - 1; j >= 0; --j) {
-    Lanes<R> bj = inverse_pivot_[static_cast<std::size_t>(j)] * Lanes<R>(b + j * R);
-    for (int p = start[j], end = start[j + 1]; p < end; ++p)
-      bj = bj - l[p] * Lanes<R>(b + static_cast<Index>(rows[p]) * R);
-    bj.store(b + j * R);
-  }
+    for (int j = n - 1; j >= 0; --j) {
+      Row bj = inverse_pivot[j] * Row(b + j * R);
+      for (int p = start[j], end = start[j + 1]; p < end; ++p)
+        bj = bj - l[p] * Row(b + static_cast<Index>(rows[p]) * R);
+      bj.store(b + j * R);
+    }
+  });
 }
 
 void SparseLdlt::solve_ordered(double* b, int columns) const {

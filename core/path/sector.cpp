@@ -82,13 +82,16 @@ State Sector::whole_state(const State& state, bool multipliers) const {
   out.w = to.reduce_rate(expand(q, false));
   out.lambda.setZero(to.constraints());
   if (multipliers) lift_multipliers(state.lambda, out.lambda);
-  if (state.tension.size() == 0) return out;
   const std::vector<int>&giving = to.giving_rods(), own = from.giving_rods();
-  out.tension.resize(std::ssize(giving));
+  if (state.tension.size() > 0) out.tension.resize(std::ssize(giving));
+  if (state.stage_tension.size() > 0)
+    out.stage_tension.resize(std::ssize(giving), state.stage_tension.cols());
   for (std::size_t k = 0; k < giving.size(); ++k) {
     const int source = symmetry_.rods[static_cast<std::size_t>(giving[k])].source;
     const auto at = std::find(own.begin(), own.end(), rod_at_[static_cast<std::size_t>(source)]);
-    out.tension[static_cast<Index>(k)] = state.tension[at - own.begin()];
+    if (out.tension.size() > 0) out.tension[static_cast<Index>(k)] = state.tension[at - own.begin()];
+    if (out.stage_tension.size() > 0)
+      out.stage_tension.row(static_cast<Index>(k)) = state.stage_tension.row(at - own.begin());
   }
   return out;
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/build.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "core/forces/pin_loads.hpp"
@@ -144,21 +147,39 @@ void fill_mass(const Scene& scene, System& system) {
   system.fill_mass();
 }
 
+bool is_fixed(const Structure& structure, int node) {
+  return std::any_of(structure.constraints.begin(), structure.constraints.end(),
+                     [&](const Constraint& c) { return c.kind == "fixed" && c.nodes == std::vector{node}; });
+}
+
+// Of two and three stages the forces of rods at points within a step are not those of the motion, of which
+// the friction would then be wrong.
+std::string too_few_stages(const Structure& structure, const VectorXd& mass, const Rod& rod,
+                           const SolverOptions& solver) {
+  if (solver.method != "dvm" || solver.stages >= 4 || solver.tolerance > 0) return "";
+  double square = 0;  // of the frequency of the rod alone
+  for (const int node : {rod.a, rod.b})
+    if (!is_fixed(structure, node)) square += 1 / (rod.compliance() * mass[3 * static_cast<Index>(node)]);
+  const double period = 2 * pi / std::sqrt(square);
+  if (!(solver.step > period)) return "";
+  std::ostringstream text;
+  text.precision(3);
+  text << "takes the force of rod " << rod.name << ", whose waves of " << period
+       << " s the steps of solver.step do not follow: solver.stages must be at least 4 then";
+  return text.str();
+}
+
 // Friction by the force of a pin, where rigid rods leave that open or it is no pin: one clear error.
-std::string pin_problem(const Structure& structure, const System& system, const Force& force) {
+std::string pin_problem(const Structure& structure, const System& system, const SolverOptions& solver,
+                        const Force& force) {
   const int r = PinLoads::rod_of(structure, force);
   if (r < 0) return "needs the pin of a hinge: nodes = [A, HINGE, B] with a rod from A to HINGE";
   const Rod& rod = structure.rods[static_cast<std::size_t>(r)];
   const VectorXd mass = system.node_mass().diagonal();
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i) {
-    const bool held =
-        std::any_of(structure.constraints.begin(), structure.constraints.end(), [&](const Constraint& c) {
-          return c.kind == "fixed" && c.nodes == std::vector{static_cast<int>(i)};
-        });
-    if (!held && !(mass[3 * static_cast<Index>(i)] > 0))
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    if (!is_fixed(structure, static_cast<int>(i)) && !(mass[3 * static_cast<Index>(i)] > 0))
       return "needs nodes with mass, and " + in_quotes(structure.nodes[i].name) + " has none";
-  }
-  if (rod.gives) return "";
+  if (rod.gives) return too_few_stages(structure, mass, rod, solver);
   const VectorXd q = node_positions(structure);
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
@@ -178,7 +199,8 @@ void check_pins(const Scene& scene, const Structure& structure, const System& sy
       if (e.enabled && e.name == name) throw SceneError({{e.where, e.key + ".pin_friction", problem}});
   };
   for (const Force& force : structure.forces)
-    if (PinLoads::arm(force) > 0) refuse_friction(force.name, pin_problem(structure, system, force));
+    if (PinLoads::arm(force) > 0)
+      refuse_friction(force.name, pin_problem(structure, system, scene.solver, force));
   const auto locked =
       PinLoads::self_locking(structure, system.node_mass(), 0.0, node_positions(structure).data());
   refuse_friction(locked.friction, locked.problem);

@@ -109,8 +109,9 @@ void OneSided::weigh(const Model& model, const State& state) {
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
-  const std::vector<double> loads = pin_loads_->evaluate(system.moment(state.t), q.data(), v.data());
-  for (Friction& f : frictions_) f.by_load = f.arm * loads[f.force];
+  const double* const tension = state.tension.size() > 0 ? state.tension.data() : nullptr;
+  const PinLoads::Loads loads = pin_loads_->evaluate(system.moment(state.t, tension), q.data(), v.data());
+  for (Friction& f : frictions_) f.by_load = f.arm * loads.size[f.force];
 }
 
 std::set<std::size_t> OneSided::held() const {

@@ -53,7 +53,8 @@ SmallestSingularValue::SmallestSingularValue(const System& system, Index redunda
       by_rows_(system.constraints() <= system.solved_coordinates()),
       zeros_(by_rows_ ? redundant : redundant + system.solved_coordinates() - system.constraints()),
       G_(system.jacobian_pattern()),
-      saddle_(identity(system.solved_coordinates()), G_, most_columns, shift),
+      saddle_(identity(system.solved_coordinates()), G_, most_columns, shift,
+              SaddleSolver::Order::sparse_first),
       q_(system.coordinates()) {
   const Index size = std::min(system.constraints(), system.solved_coordinates());
   block_.resize(size, std::min(size, zeros_ + 2));
@@ -136,6 +137,7 @@ void SmallestSingularValue::improve() {
 
 Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last) {
   const System& system = trajectory.model(first).system;
+  if (system.constraints() == 0) return 0;  // all rods give
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   VectorXd q(system.coordinates());

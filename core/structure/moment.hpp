@@ -3,7 +3,8 @@
 
 namespace unfurl {
 
-// When forces and constraints are asked for, and near which values angles that count their turns are taken:
+// When forces and constraints are asked for, with what is known of that time beside pose and velocities; near
+// which values angles that count their turns are taken:
 // those of a state, carried on with its rates, so that a step may turn by any angle that its acceleration
 // does not change by half a turn.
 struct Moment {
@@ -13,6 +14,8 @@ struct Moment {
   // Of each followed angle (measure.hpp) [rad], [rad/s]; nullptr: as at t = 0.
   const double* angles = nullptr;
   const double* rates = nullptr;
+  // What rods that give pull with, in their order; nullptr: their lengths tell [N].
+  const double* tension = nullptr;
 
   double near(int followed, double otherwise) const {
     if (followed < 0 || !angles) return otherwise;

@@ -16,6 +16,9 @@ struct State {
   VectorXd tension = {};
   VectorXd angles =
       {};  // FollowedAngles (measure.hpp), counted on from turn to turn [rad]; none: those at t = 0
+  // The axial forces at the Gauss points of the step that ended here [rods that give x points], where the
+  // step had them as unknowns and powers depend on them; empty: lengths tell [N].
+  MatrixXd stage_tension = {};
 };
 
 enum class StepStatus { converged, stalled, diverged, not_finite };

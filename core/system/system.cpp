@@ -233,6 +233,8 @@ System::System(const Structure& structure, bool eliminate_linear) {
   for (std::size_t i = 0; i < structure.rods.size(); ++i)
     if (structure.rods[i].gives) data->giving.push_back(static_cast<int>(i));
   data_ = std::move(data);
+  std::vector<double> scratch;
+  jacobian(data_->start, data_->pattern, scratch);  // tells which entries are large
 }
 
 System::~System() = default;
@@ -410,12 +412,14 @@ bool System::has_power(bool dissipative) const {
   });
 }
 
-double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const {
+double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v,
+                     const double* tension) const {
+  const Moment at = moment(t, tension);
   double sum = 0;
   for (const auto& block : data_->forces)
     if ((dissipative ? block->dissipates() : block->supplies()) && !block->takes_by_pose()) {
-      const double taken = block->dissipation(moment(t), q.data(), v.data());
-      sum += dissipative ? taken : block->power(moment(t), q.data(), v.data()) - taken;
+      const double taken = block->dissipation(at, q.data(), v.data());
+      sum += dissipative ? taken : block->power(at, q.data(), v.data()) - taken;
     }
   return sum;
 }

@@ -42,7 +42,8 @@ class System {
   Index followed_angles() const;
   void follow(const State& state);
   System at(const State& state) const;  // a copy that follows it; of no cost where no angle is followed
-  Moment moment(double t) const;        // a time, near those angles
+  // A time, near those angles; axial forces of the rods that give, where lengths do not tell them.
+  Moment moment(double t, const double* tension = nullptr) const;
   // The angles of a later state, counted on from those of the state that is followed.
   void count_on(State& later);
 
@@ -106,7 +107,8 @@ class System {
 
   // Power of the forces that have no potential [W]: loads that vary, or dampers (negative).
   bool has_power(bool dissipative) const;
-  double power(bool dissipative, double t, const ConstVec& q, const ConstVec& v) const;
+  double power(bool dissipative, double t, const ConstVec& q, const ConstVec& v,
+               const double* tension = nullptr) const;  // of the rods that give; nullptr: lengths tell
   // What dissipative forces that are left out of power() have taken by the pose of the state that is
   // followed, up to a constant [J].
   double taken(const ConstVec& q) const;
@@ -119,14 +121,18 @@ class System {
   void giving_rod_forces(double t, const ConstVec& q, const ConstVec& v, MutVec force) const;
   // What methods that take these forces as unknowns ask for; nullptr: no rod gives.
   const ElasticRods* elastic_rods() const;
-  void add_other_force(double t, const ConstVec& q, const ConstVec& v, double scale,
-                       MutVec f) const;  // F without that of rods that give
+  // f += scale (F without that of rods that give), where these have such axial forces.
+  void add_other_force(double t, const ConstVec& q, const ConstVec& v, const ConstVec& tension, double scale,
+                       MutVec f) const;
+  bool by_tension() const;  // some such force depends on them
   // d|d|/dz of these rods, and the derivatives of their rows (elastic_rods.hpp) by z and z' (allocate).
   SparseRows giving_rod_directions(const ConstVec& q) const;
   void giving_rod_rows(const ConstVec& q, const ConstVec& v, SparseRows& by_z, SparseRows& by_w) const;
-  // dF/dz and dF/dz' where these forces are given (allocates).
+  // dF/dz and dF/dz' where these forces are given, and dF/dN without their own pull (allocate).
   void force_derivatives(double t, const ConstVec& q, const ConstVec& v, const ConstVec& tension,
                          SparseRows& by_z, SparseRows& by_w) const;
+  SparseRows tension_derivatives(double t, const ConstVec& q, const ConstVec& v,
+                                 const ConstVec& tension) const;
   // f += scale * what rods with these axial forces pull their nodes with.
   void add_giving_rod_forces(const ConstVec& q, const ConstVec& force, double scale, MutVec f) const;
 

@@ -8,8 +8,9 @@ Index System::followed_angles() const {
   return static_cast<Index>(data_->followed.size());
 }
 
-Moment System::moment(double t) const {
+Moment System::moment(double t, const double* tension) const {
   Moment at(t);
+  at.tension = tension;
   if (angles_.size() == 0) return at;
   at.since = since_;
   at.angles = angles_.data();

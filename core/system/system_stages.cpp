@@ -3,6 +3,9 @@
 // the forces of rods that give.
 #include "core/system/system_data.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace unfurl {
 
 const std::vector<int>& System::giving_rods() const {
@@ -19,17 +22,46 @@ const ElasticRods* System::elastic_rods() const {
   return data_->elastic_rods;
 }
 
-void System::add_other_force(double t, const ConstVec& q, const ConstVec& v, double scale, MutVec f) const {
+void System::add_other_force(double t, const ConstVec& q, const ConstVec& v, const ConstVec& tension,
+                             double scale, MutVec f) const {
   f += scale * data_->constant_force;
+  const Moment at = moment(t, tension.data());
   for (const auto& block : data_->forces)
-    if (!block->of_giving_rods()) block->add(moment(t), q.data(), v.data(), scale, f.data());
+    if (!block->of_giving_rods()) block->add(at, q.data(), v.data(), scale, f.data());
 }
 
-double System::potential_energy(const State& state, const ConstVec& q) const {
-  if (state.tension.size() == 0) return potential_energy(q);
-  double sum = -data_->gravity_force.dot(q) + data_->elastic_rods->stored(state.tension.data());
+bool System::by_tension() const {
+  return std::any_of(data_->forces.begin(), data_->forces.end(),
+                     [](const auto& block) { return block->by_tension(); });
+}
+
+SparseRows System::tension_derivatives(double t, const ConstVec& q, const ConstVec& v,
+                                       const ConstVec& tension) const {
+  ForceDerivative entries;
   for (const auto& block : data_->forces)
-    if (!block->of_giving_rods()) sum += block->potential(moment(since_), q.data());
+    block->tension_derivatives(moment(t, tension.data()), q.data(), v.data(), entries);
+  SparseRows A(coordinates(), std::ssize(data_->giving));
+  A.setFromTriplets(entries.begin(), entries.end());
+  return SparseRows(data_->B_transposed * A);
+}
+
+// Waves that a step does not resolve keep their energy in the coordinates at its ends, e^2 / 2 C. What a
+// method holds still, e' = 0 to round-off, has no wave, and e is the error of the method's coordinates there:
+// it has stored C N^2 / 2.
+double System::potential_energy(const State& state, const ConstVec& q) const {
+  constexpr double still = 1e-11;  // of the rod's speed
+  double sum = potential_energy(q);
+  if (state.tension.size() == 0) return sum;
+  VectorXd v(coordinates());
+  expand_rate(state.w, v);
+  Index i = 0;
+  for (const Rod& rod : data_->elastic_rods->rods()) {
+    const Vec3 d = node_vector(q.data(), rod.b) - node_vector(q.data(), rod.a),
+               u = node_vector(v.data(), rod.b) - node_vector(v.data(), rod.a);
+    const double e = d.norm() - rod.rest_length(state.t), N = state.tension[i++], C = rod.compliance(),
+                 rate = d.normalized().dot(u) - rod.natural_length() * rod.warmed(state.t, 1);
+    if (std::abs(rate) <= still * v.lpNorm<Eigen::Infinity>()) sum += 0.5 * (C * N * N - e * e / C);
+  }
   return sum;
 }
 
@@ -60,7 +92,8 @@ void System::force_derivatives(double t, const ConstVec& q, const ConstVec& v, c
                                SparseRows& by_z, SparseRows& by_w) const {
   ForceDerivative by_q, by_v;
   for (const auto& block : data_->forces)
-    if (!block->of_giving_rods()) block->derivatives(moment(t), q.data(), v.data(), by_q, by_v);
+    if (!block->of_giving_rods())
+      block->derivatives(moment(t, tension.data()), q.data(), v.data(), by_q, by_v);
   if (data_->elastic_rods) data_->elastic_rods->turning(q.data(), tension.data(), by_q);
   by_z = data_->reduced_forces(by_q);
   by_w = data_->reduced_forces(by_v);
@@ -75,17 +108,18 @@ void System::reduce_sizes(const ConstVec& f, MutVec r) const {
 void System::expand_stages(const Interleaved& z, Index first, Interleaved& Q) const {
   const SparseRows& B = data_->B;
   const Index stride = Q.cols();
-  with_columns(static_cast<int>(z.cols()), [&](auto k) {
-    constexpr int K = k();
-    double* to = Q.data() + first;
-    for (Index i = 0; i < B.rows(); ++i, to += stride)
-      (Lanes<K>::all(data_->q0[i]) + row_times<K>(B, i, z.data())).store(to);
+  with_wide_columns(static_cast<int>(z.cols()), [&B, stride, from = z.data(), q0 = data_->q0.data(),
+                                                 first_row = Q.data() + first](auto k) {
+    constexpr LaneCount K = k();
+    double* to = first_row;
+    for (Index i = 0, rows = B.rows(); i < rows; ++i, to += stride)
+      (Lanes<K>::all(q0[i]) + row_times<K>(B, i, from)).store(to);
   });
 }
 
 void System::reduce_force_stages(const Interleaved& f, Interleaved& r) const {
-  with_columns(static_cast<int>(f.cols()),
-               [&](auto k) { multiply<k()>(data_->B_transposed, f.data(), r.data()); });
+  with_wide_columns(static_cast<int>(f.cols()), [&B = data_->B_transposed, from = f.data(),
+                                                 to = r.data()](auto k) { multiply<k()>(B, from, to); });
 }
 
 void System::constraint_stages(const double* t, const Interleaved& Q, Index first, Interleaved& phi,

@@ -79,6 +79,7 @@ Color group_color(std::size_t index) {
 Appearance appearance_of(const Structure& s, double size, double rod_scale) {
   Appearance out;
   const double median = median_length(s);
+  out.bare_radius = visible_radius * size;
   std::vector<bool> shown(s.rods.size(), false);
   for (const RodCopy& copy : s.rod_copies) shown[static_cast<std::size_t>(copy.source)] = true;
   for (std::size_t i = 0; i < s.rods.size(); ++i) {

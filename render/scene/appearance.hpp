@@ -19,6 +19,7 @@ struct Appearance {
   std::vector<double> rod_radius;   // per solved rod, as drawn [m]
   // The least and largest ratio of a drawn radius to the rod's own; 1 where no rod has one of its own.
   double least_scale = 1, largest_scale = 1;
+  double bare_radius = 0;            // of a rod that is just thick enough to be seen [m]
   std::vector<double> joint_radius;  // per copied node, of its ball; 0: no rod ends there [m]
   std::vector<bool> fixed;           // per copied node: held in place
   double arrow_length = 0;           // of the largest load [m]

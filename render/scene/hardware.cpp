@@ -73,8 +73,8 @@ Hardware::Hardware(const Structure& structure, const Appearance& looks, const Lo
   for (const std::string& group : looks_.groups) materials_.push_back(material_for(options_, group));
   for (std::size_t i = structure_.node_copies.size(); i-- > 0;)
     copy_of_[static_cast<std::size_t>(structure_.node_copies[i].source)] = static_cast<int>(i);
-  if (!detailed_) return;
-  find_supports(poses);
+  find_drives();
+  if (detailed_) find_supports(poses);
 }
 
 // The side of a node towards which no rod ever points: the wanted one, or the other end of that line, or
@@ -297,7 +297,7 @@ void Hardware::add_payload(std::size_t n, const Vec3& at, DrawList& list) const 
 
 // What pulls only is thin and straight; springs are wound.
 void Hardware::add_forces(const std::vector<Vec3>& at, DrawList& list) const {
-  if (structure_.node_copies.size() != structure_.nodes.size()) return;  // sectors have none
+  if (!solved_whole_) return;
   double thick = 0;
   for (const double r : looks_.rod_radius) thick = std::max(thick, r);
   for (const Force& force : structure_.forces) {
@@ -335,6 +335,7 @@ void Hardware::add(double t, const std::vector<Vec3>& at, const std::vector<Colo
   for (std::size_t n = 0; n < looks_.joint_radius.size(); ++n) add_joint(n, t, at, list);
   add_crossings(t, at, list);
   add_forces(at, list);
+  add_drives(at, list);
 }
 
 }  // namespace unfurl

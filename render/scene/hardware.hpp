@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rods, joints, supports and payloads of a pose as bodies: tubes with end fittings, hinges with lugs and
-// pins, scissor arms side by side, plates under what is held, cables and springs.
+// pins, scissor arms side by side, plates under what is held, cables, springs and pulleys, telescopes,
+// motors.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
@@ -45,6 +47,19 @@ class Hardware {
   double support_depth() const { return support_depth_; }
 
  private:
+  using Triple = std::array<int, 3>;  // copied nodes
+  struct Motored {  // a hinge: between nodes, the second is the hinge; axis: zero where it has no sign
+    Triple nodes;
+    Vec3 axis;
+  };
+  void find_drives();
+  void add_drive(const Measure& measure);
+  void add_drives(const std::vector<Vec3>& at, DrawList& list) const;
+  void add_pulley(const Triple& nodes, const std::vector<Vec3>& at, DrawList& list) const;
+  void add_telescope(const std::vector<int>& nodes, const std::vector<Vec3>& at, DrawList& list) const;
+  void add_motor(const Motored& motor, const std::vector<Vec3>& at, DrawList& list) const;
+  int copy(int node) const;  // of a solved node
+  double thickest() const;   // radius of the rods as drawn [m]
   void find_supports(const std::vector<std::vector<Vec3>>& poses);
   Vec3 free_side(int node, const Vec3& wanted, const std::vector<std::vector<Vec3>>& poses) const;
   RodCoat coat(int group, const Color* field) const;
@@ -77,6 +92,10 @@ class Hardware {
   std::vector<Vec3> support_;           // per copied node: from it to its plate [m]; zero: none
   std::vector<int> copy_of_;            // a copy of each solved node
   double support_depth_ = 0;
+  bool solved_whole_ = true;  // each node is shown as it is solved
+  std::vector<Triple> pulleys_;
+  std::vector<std::vector<int>> telescopes_;  // ends of their stages
+  std::vector<Motored> motors_;
 };
 
 }  // namespace unfurl

@@ -139,7 +139,8 @@ void Renderer::draw_solids(const DrawList& list, const View& view) {
 void Renderer::draw_outlines(const DrawList& list, const View& view) {
   for (const bool hidden : {false, true}) {
     const Program& program = begin_solids("outline", shaders::outline_fragment, list, view, hidden);
-    program.set("line_width", std::max(1.0f, static_cast<float>(frame_.height()) / 600.0f));
+    program.set("line_width",
+                std::max(1.0f, static_cast<float>(std::min(frame_.width(), frame_.height())) / 600.0f));
     program.set("hidden", hidden ? 1 : 0);
     program.set("nearer", list.hidden_gap);
     if (hidden) gl::DepthFunc(GL_GREATER), begin_blending();

@@ -310,15 +310,16 @@ void main() {
 // A line along both sides of what is round. Where `hidden`, only that line, pale; else also the paper inside.
 inline constexpr const char* outline_fragment = R"(
 uniform int hidden;
-uniform float line_width;  // [pixels]
+uniform float line_width, pixel;  // [pixels]; the height of one, where w = 1 [m]
 void main() {
   vec3 v = normalize(eye.xyz - eye.w * world), n = round_normal(v);
   vec3 across = normalize(v - axis * dot(axis, v) + 1e-6 * n);
   float inside = 1.0 - min(length(normal - across * dot(normal, across)), 1.0);  // 0 at the side, 1 in the middle
   if (abs(dot(n, axis)) > 0.3) inside = 1.0;  // the flat end of a fitting
-  float line = 1.0 - smoothstep(line_width - 0.5, line_width + 0.5, inside / max(fwidth(inside), 1e-6));
-  vec3 hue = encoded(albedo);
-  vec3 ink = hue * 0.62;
+  // Of what is round the radius tells how many pixels that is: differences would be dots along its middle.
+  float radius = material.z * gl_FragCoord.w / pixel, from_edge = inside * (radius > 0.0 ? radius : 1.0 / max(fwidth(inside), 1e-6));
+  float line = 1.0 - smoothstep(line_width - 0.5, line_width + 0.5, from_edge);
+  vec3 hue = encoded(albedo), ink = hue * 0.62;
   if (hidden == 1) {
     if (line < 0.02) discard;
     color = vec4(misty(mix(ink, vec3(1.0), 0.55)), 0.75 * line);
@@ -332,8 +333,7 @@ void main() {
 inline constexpr const char* ghost_fragment = R"(
 void main() {
   vec3 n = round_normal(normalize(eye.xyz - eye.w * world));
-  float opacity = material.x;
-  color = vec4(misty(encoded(albedo) * mix(0.85, 1.0, 0.5 + 0.5 * n.z)), opacity);
+  color = vec4(misty(encoded(albedo) * mix(0.85, 1.0, 0.5 + 0.5 * n.z)), material.x);  // its opacity
 })";
 
 // Passes of a blur. 0: of the depth map, along rows, whatever is nearer to the light than the floor, and how

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/ui/fonts.hpp"
 
-#include <filesystem>
+#include <string>
 
 #include "render/plot/typeface.hpp"
 #include "render/ui/font_file.hpp"
@@ -23,10 +23,9 @@ constexpr ImWchar glyph_ranges[] = {0x0020, 0x017F,  // Latin, Latin-1, Latin Ex
 }  // namespace
 
 ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold) {
-  const char* file = font_file(bold);
-  std::error_code error;  // ImGui aborts on a file that is not there
-  if (std::filesystem::is_regular_file(file, error)) {
-    if (ImFont* font = atlas.AddFontFromFileTTF(file, pixels, nullptr, glyph_ranges)) return font;
+  const std::string file = font_file(bold);
+  if (!file.empty()) {  // ImGui aborts on a file that is not there
+    if (ImFont* font = atlas.AddFontFromFileTTF(file.c_str(), pixels, nullptr, glyph_ranges)) return font;
   }
   ImFontConfig config;
   config.SizePixels = pixels;
@@ -47,10 +46,11 @@ ImFont* add_plot_font(ImFontAtlas& atlas, float pixels) {
   }
   // ImGui sizes a font by its ascender and descender; the letters shall be as large.
   const double ratio = face.line_height / lender.line_height;
-  ImFont* font = atlas.AddFontFromFileTTF(face.file, static_cast<float>(ratio * pixels), nullptr, own.Data);
+  ImFont* font = atlas.AddFontFromFileTTF(found_font(face.file).c_str(), static_cast<float>(ratio * pixels),
+                                          nullptr, own.Data);
   ImFontConfig config;
   config.MergeMode = true;
-  atlas.AddFontFromFileTTF(lender.file, pixels, &config, lent.Data);
+  atlas.AddFontFromFileTTF(found_font(lender.file).c_str(), pixels, &config, lent.Data);
   return font;
 }
 

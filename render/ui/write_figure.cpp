@@ -15,6 +15,7 @@
 #include "render/plot/scaled_canvas.hpp"
 #include "render/plot/style.hpp"
 #include "render/plot/svg_canvas.hpp"
+#include "render/ui/font_file.hpp"
 #include "render/ui/imgui_canvas.hpp"
 #include "render/ui/sheet.hpp"
 
@@ -34,9 +35,9 @@ struct FigureWriter::Painter {
 };
 
 void require_installed(const plot::Typeface& face) {
-  std::error_code error;
-  if (std::filesystem::is_regular_file(face.file, error)) return;
-  throw FileError(face.file, "the font of figures is missing; install " + std::string(face.package));
+  if (!found_font(face.file).empty()) return;
+  throw FileError(face.file, "the font of figures is missing; install " + std::string(face.package) +
+                                 " or name a folder that has it in UNFURL_FONTS");
 }
 
 FigureWriter::FigureWriter(FigureOptions options) : options_(options) {
@@ -109,7 +110,7 @@ namespace {
 
 plot::TrueType font_of(const plot::Typeface& face) {
   require_installed(face);
-  std::ifstream file(face.file, std::ios::binary);
+  std::ifstream file(found_font(face.file), std::ios::binary);
   return plot::TrueType(std::string(std::istreambuf_iterator<char>(file), {}));
 }
 

@@ -18,10 +18,10 @@ done
 desktop-file-validate "$work/prefix/share/applications/unfurl.desktop"
 appstreamcli validate --no-net "$work/prefix/share/metainfo/io.unfurl.Unfurl.metainfo.xml" >"$work/log" || { cat "$work/log"; exit 1; }
 for listed in man/man1/unfurl.1 bash-completion/completions/unfurl zsh/vendor-completions/_unfurl \
-    fish/vendor_completions.d/unfurl.fish icons/hicolor/scalable/apps/unfurl.svg; do
+    fish/vendor_completions.d/unfurl.fish icons/hicolor/scalable/apps/unfurl.svg unfurl/fonts/DejaVuSans.ttf; do
   [ -s "$work/prefix/share/$listed" ] || { say "share/$listed is not installed"; exit 1; }
 done
-say "desktop entry, AppStream, manual page, completions, icon: installed and valid"
+say "desktop entry, AppStream, manual page, completions, icon, font: installed and valid"
 cp -r "$source/assets/examples/client" "$work/client"
 
 cmake -S "$work/client" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_BUILD_TYPE=Release >"$work/log" || { cat "$work/log"; exit 1; }

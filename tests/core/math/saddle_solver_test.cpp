@@ -64,6 +64,88 @@ TEST_CASE("the saddle-point solver agrees with a dense rank-revealing solve, red
     }
 }
 
+// Entries of order one, and one in three of a hundredth: a row has its own coordinate by a large one.
+TEST_CASE("the sparse order solves to the same digits, with less fill, and redundant rows beside it") {
+  Index fill[2] = {0, 0};
+  for (unsigned seed = 1; seed <= 20; ++seed)
+    for (const int repeated : {0, 3}) {
+      Problem p = random_problem(60, 40, repeated, seed);
+      std::mt19937 random(seed);
+      for (int r = 0; r < 40; ++r)
+        for (int c = 0; c < 60; ++c)
+          if (random() % 3 == 0) p.G(r, c) *= 0.01;
+      for (int r = 0; r < repeated; ++r) p.G.row(40 + r) = 2.0 * p.G.row(r) - p.G.row(r + 1);
+      p.g = p.G * VectorXd::Ones(60);
+      VectorXd x[2], y[2];
+      for (const int k : {0, 1}) {
+        SaddleSolver solver(sparse_rows(p.M), sparse_rows(p.G), 1, SaddleSolver::standard_regularisation,
+                            k == 0 ? SaddleSolver::Order::safe : SaddleSolver::Order::sparse_first);
+        REQUIRE(solver.factorise(sparse_rows(p.G)));
+        x[k].resize(60), y[k].resize(40 + repeated);
+        // Round-off alone: a hundred terms, and unknowns up to a hundred times the right-hand side.
+        CHECK(solver.solve(p.f, p.g, x[k], y[k]) <= 1e-13);
+        fill[k] += solver.factor_nonzeros();
+      }
+      INFO("seed " << seed << ", repeated rows " << repeated);
+      // Condition numbers as above.
+      CHECK((x[1] - x[0]).norm() <= 1e-10 * x[0].norm());
+      CHECK((p.G.transpose() * (y[1] - y[0])).norm() <= 1e-9 * p.f.norm());
+    }
+  CHECK(fill[1] < fill[0]);
+}
+
+// Three rows on four coordinates. Of the pose that the order is made for, row k has coordinate k for its own;
+// then that of the first row goes to zero: a pivot of e, and growth by its inverse.
+TEST_CASE("where the sparse order brings growth the safe one is taken, matrix by matrix") {
+  MatrixXd M = MatrixXd::Identity(4, 4), G(3, 4);
+  G << 0.9, 0.02, 0.03, 0.4, 0.3, 0.8, 0.02, 0.5, 0.1, 0.2, 0.7, 0.6;
+  SaddleSolver solver(sparse_rows(M), sparse_rows(G), 1, SaddleSolver::standard_regularisation,
+                      SaddleSolver::Order::sparse_first);
+  for (const double entry : {0.9, 1e-9, 0.0, 0.7, 1e-4}) {
+    for (int c = 0; c < 3; ++c) G(0, c) = c == 0 ? entry : entry * 1e-3;
+    SparseRows rows = sparse_rows(MatrixXd::Ones(3, 4));
+    for (int r = 0; r < 3; ++r)
+      for (SparseRows::InnerIterator it(rows, r); it; ++it) it.valueRef() = G(r, it.col());
+    INFO("own entry " << entry);
+    REQUIRE(solver.factorise(rows));
+    const Eigen::Vector4d f(0.3, -0.2, 0.7, 0.4);
+    const Eigen::Vector3d g(0.1, 0.5, -0.3);
+    MatrixXd K = MatrixXd::Zero(7, 7);
+    K << M, G.transpose(), G, MatrixXd::Zero(3, 3);
+    VectorXd b(7), x(4), y(3);
+    b << f, g;
+    solver.solve(f, g, x, y);
+    const VectorXd exact = K.fullPivLu().solve(b);
+    CHECK((x - exact.head(4)).norm() <= 1e-12 * exact.norm());
+    CHECK((y - exact.tail(3)).norm() <= 1e-12 * exact.norm());
+    // One application has no refinement to mend growth: what e leaves, over squares of singular values that
+    // are above 0.01 here.
+    VectorXd once_x = f, once_y = g;
+    solver.apply(once_x.data(), once_y.data(), 1);
+    CHECK((once_x - exact.head(4)).norm() <= 1e-8 * exact.norm());
+  }
+}
+
+TEST_CASE("weak directions are found behind the sparse order, too") {
+  for (const double a : {1e-9, 1e-6, 1e-4}) {
+    MatrixXd G(4, 5), M = MatrixXd::Identity(5, 5);
+    G << 1, 0, 0, 0.3, 0, std::cos(a), std::sin(a), 0, 0.3 * std::cos(a), 0, 0, 0.2, 1, 0, 0.4, 0, 0, 0.5,
+        0.9, 0.7;
+    SaddleSolver sparse(sparse_rows(M), sparse_rows(G), 1, SaddleSolver::standard_regularisation,
+                        SaddleSolver::Order::sparse_first),
+        safe(sparse_rows(M), sparse_rows(G));
+    REQUIRE(sparse.factorise(sparse_rows(G)));
+    REQUIRE(safe.factorise(sparse_rows(G)));
+    // Pivots of a weak row depend on the order in which rows come: they are of one size.
+    const double found = sparse.weakest_pivot(1e-3), known = safe.weakest_pivot(1e-3);
+    CHECK(known < 1e-3);
+    CHECK(found == known);
+    CHECK(!sparse.in_first_order());
+    REQUIRE(sparse.factorise(sparse_rows(G)));
+    CHECK(sparse.weakest_pivot(1e-3 * a * a) == 1e-3 * a * a);  // none below
+  }
+}
+
 TEST_CASE("multipliers of repeated rows come with least norm") {
   MatrixXd M = MatrixXd::Identity(2, 2), G(3, 2);
   G << 1, 0, 1, 0, 1, 0;  // one rod three times: each carries a third

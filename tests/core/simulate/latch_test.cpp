@@ -121,8 +121,9 @@ namespace {
 constexpr double arm = 0.8, rod_mass = 0.9, tip = 0.35, rate = 0.9;
 constexpr double inertia = (rod_mass / 3 + tip) * arm * arm;
 
-// A rod on a pivot that turns into line with the x axis, free of loads, and is latched there by a spring.
-Simulation turned_in(double k, double c, double end_time) {
+// A rod on a pivot that turns into line with the x axis, free of loads, and is latched there by a spring. EA:
+// the rod gives, and starts stretched as its turning keeps it, without a wave; 0: it is rigid.
+Simulation turned_in(double k, double c, double end_time, double EA = 0) {
   CustomSpec spec;
   const double fold = 0.4;
   const Vec3 at = arm * Vec3(std::cos(fold), 0, std::sin(fold)),
@@ -130,6 +131,13 @@ Simulation turned_in(double k, double c, double end_time) {
   spec.nodes = {{"O", {0, 0, 0}, {0, 0, 0}, 0, true}, {"A", at, v, tip, false}};
   spec.rods = {{"arm", {"O", "A"}, rod_mass}};
   Structure structure = build_custom(spec);
+  if (EA > 0) {
+    Rod& rod = structure.rods.front();
+    rod.gives = true;
+    rod.area = 2e-4;
+    rod.youngs_modulus = EA / rod.area;
+    rod.free_length = arm / (1 + inertia / arm * rate * rate / EA);  // N = (m / 3 + M) l w^2
+  }
   structure.constraints.push_back({"plane", "plane", {1}, {Vec3::UnitY()}, 0.0, {}, {}});
   structure.deployment.fold_sine = {{1}, {Vec3(0, 0, 1 / arm)}, 0.0};
   structure.deployment.fold_cosine = {{1}, {Vec3(1 / arm, 0, 0)}, 0.0};
@@ -169,6 +177,23 @@ TEST_CASE(
   const Diagnostics d = diagnose(run);
   CHECK(d.at("dissipated_J").values.back() == Approx(0.5 * inertia * rate * rate).epsilon(1e-6));
   CHECK(d.at("latch_torque_max_N_m").values.back() < 1e-6);
+}
+
+// The rod gives by N / EA, N up to 2 N as it turns and 0 as it stands still: so do l, the torque and the
+// energy. Steps do not follow its waves from 1e6 N on, and hold them from 1e8 N on.
+TEST_CASE("a latch that gives beside a rod that gives meets it with w sqrt(I k), the stiffer the nearer") {
+  for (const double EA : {1e4, 1e6, 1e8, 1e10, 1e12})
+    for (const double k : {3.0, 40.0}) {
+      const Simulation run = turned_in(k, 0.0, 2.0, EA);
+      INFO(k << ", EA = " << EA << ": " << run.message);
+      REQUIRE(run.status == RunStatus::completed);
+      const double gives = 10 / EA;
+      const Diagnostics d = diagnose(run);
+      CHECK(largest_of_column(run, d, "latch_torque_max_N_m") ==
+            Approx(rate * std::sqrt(inertia * k)).epsilon(1e-7 + gives));
+      const double energy = 0.5 * inertia * rate * rate;
+      for (const double x : d.at("energy_balance_J").values) CHECK(std::abs(x) < (1e-7 + gives) * energy);
+    }
 }
 
 TEST_CASE("a mast on springs swings about its deployed pose and keeps its energy") {

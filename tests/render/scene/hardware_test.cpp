@@ -3,6 +3,7 @@
 // carried.
 #include "render/scene/hardware.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What drives and guides a structure, as bodies: pulleys under cables, stages of telescopes, actuators,
+// motors.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "render/scene/hardware.hpp"
+
+namespace unfurl {
+namespace {
+
+Vec3f single(const Vec3& v) {
+  return v.cast<float>();
+}
+
+using Pair = std::pair<int, int>;  // solved nodes
+
+// The stretches of a path in order; what a drum has drawn in has none.
+std::vector<Pair> stretches(const Measure& measure) {
+  std::vector<Pair> found;
+  const auto add = [&](const Measure& m) {
+    if (m.kind == MeasureKind::length) found.emplace_back(m.nodes[0], m.nodes[1]);
+  };
+  add(measure);
+  for (const MeasureTerm& term : measure.terms) add(term.measure);
+  return found;
+}
+
+// Two lengths that follow each other and of which one grows as the other does: stages.
+bool are_stages(const Constraint& constraint) {
+  const std::vector<MeasureTerm>& terms = constraint.measure.terms;
+  return terms.size() == 2 && terms[0].measure.kind == MeasureKind::length &&
+         terms[1].measure.kind == MeasureKind::length && terms[0].coefficient * terms[1].coefficient < 0 &&
+         terms[0].measure.nodes[1] == terms[1].measure.nodes[0];
+}
+
+}  // namespace
+
+int Hardware::copy(int node) const {
+  return copy_of_[static_cast<std::size_t>(node)];
+}
+
+// Cables run over the nodes between their ends, telescopes have stages, length drives two; none where only a
+// part of the structure is solved.
+void Hardware::find_drives() {
+  const auto whole = std::ranges::count_if(structure_.nodes, [](const Node& n) { return !n.ghost; });
+  solved_whole_ = static_cast<std::size_t>(whole) == structure_.node_copies.size();
+  if (!solved_whole_ || !detailed_) return;
+  const auto run_over = [&](const Measure& path) {
+    const std::vector<Pair> spans = stretches(path);
+    for (std::size_t k = 0; k + 1 < spans.size(); ++k) {
+      const auto [a, b] = spans[k];
+      const auto [c, d] = spans[k + 1];  // whichever way round each of them is
+      if (b == c || b == d) pulleys_.push_back({copy(a), copy(b), copy(b == c ? d : c)});
+      if (a == c || a == d) pulleys_.push_back({copy(b), copy(a), copy(a == c ? d : c)});
+    }
+  };
+  for (const Force& force : structure_.forces) {
+    if (force.kind == "cable" && !(force.smoothing > 0)) run_over(force.measure);
+    if (force.kind == "motor") add_drive(force.measure);
+  }
+  for (const Stop& stop : structure_.stops)
+    if (stop.reeled) run_over(stop.measure);
+  for (const Constraint& c : structure_.constraints) {
+    if (c.kind != "measure") continue;
+    if (are_stages(c)) {
+      const std::vector<Pair> two = stretches(c.measure);
+      const bool goes_on = !telescopes_.empty() && telescopes_.back().back() == copy(two[0].second) &&
+                           telescopes_.back()[telescopes_.back().size() - 2] == copy(two[0].first);
+      if (goes_on)
+        telescopes_.back().push_back(copy(two[1].second));
+      else
+        telescopes_.push_back({copy(two[0].first), copy(two[0].second), copy(two[1].second)});
+    } else {
+      add_drive(c.measure);
+    }
+  }
+}
+
+// A length is driven by an actuator of two stages, an angle by a motor at its hinge.
+void Hardware::add_drive(const Measure& measure) {
+  const std::vector<int>& n = measure.nodes;
+  if (measure.kind == MeasureKind::length) {
+    const bool rod = std::ranges::any_of(structure_.rods, [&](const Rod& r) {
+      return (r.a == n[0] && r.b == n[1]) || (r.a == n[1] && r.b == n[0]);
+    });
+    if (!rod) telescopes_.push_back({copy(n[0]), copy(n[1])});
+  }
+  if (measure.kind == MeasureKind::angle && n[0] == n[2])
+    motors_.push_back({{copy(n[1]), copy(n[0]), copy(n[3])}, measure.axis});
+}
+
+double Hardware::thickest() const {
+  double most = 0;
+  for (std::size_t i = 0; i < cables_.size(); ++i) most = std::max(most, cables_[i] ? 0.0 : radius(i));
+  return most > 0 ? most : looks_.bare_radius;
+}
+
+// A wheel on whose rim the cable bends, inside the bend, between two flanges.
+void Hardware::add_pulley(const Triple& nodes, const std::vector<Vec3>& at, DrawList& list) const {
+  const auto place = [&](int n) { return at[static_cast<std::size_t>(n)]; };
+  const Vec3 middle = place(nodes[1]), back = (place(nodes[0]) - middle).normalized(),
+             on = (place(nodes[2]) - middle).normalized(), inside = back + on, across = back.cross(on);
+  const double r = std::max(2.0 * thickest(), 0.8 * looks_.joint_radius[static_cast<std::size_t>(nodes[1])]);
+  if (across.norm() < 1e-3) return;  // it goes straight on
+  const Vec3 axis = across.normalized(), center = middle + r * inside.normalized();
+  const auto wheel = [&](double from, double to, double wide, const Color& color) {
+    list.sleeves.push_back({single(center + from * r * axis), single(center + to * r * axis),
+                            static_cast<float>(wide * r), color, Finish::metal});
+  };
+  wheel(-0.30, 0.30, 0.92, look_.joint);
+  for (const double side : {-0.42, 0.30}) wheel(side, side + 0.12, 1.22, look_.fitting);
+  wheel(-0.62, 0.62, 0.34, look_.joint);
+}
+
+// Tubes that are the thinner the farther out they are, each with a collar where the next one leaves it.
+void Hardware::add_telescope(const std::vector<int>& nodes, const std::vector<Vec3>& at,
+                             DrawList& list) const {
+  const auto place = [&](std::size_t k) { return at[static_cast<std::size_t>(nodes[k])]; };
+  std::vector<Vec3> ends;
+  for (std::size_t k = 0; k < nodes.size(); ++k) ends.push_back(place(k));
+  if (ends.size() == 2) ends.insert(ends.begin() + 1, 0.55 * ends[0] + 0.45 * ends[1]);
+  const auto stages = static_cast<double>(ends.size() - 1);
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    const Vec3 along = ends[k + 1] - ends[k];
+    const double length = along.norm(), r = thickest() * (1.75 - 0.95 * static_cast<double>(k) / stages);
+    if (length <= 0) continue;
+    list.tubes.push_back(
+        {single(ends[k]), single(ends[k + 1]), static_cast<float>(r), look_.fitting, Finish::anodised});
+    const bool last = k + 2 == ends.size();
+    const Vec3 collar = std::min(2.2 * r, 0.4 * length) / length * along;
+    list.sleeves.push_back({single(ends[k + 1] - collar), single(ends[k + 1]),
+                            static_cast<float>((last ? 1.35 : 1.22) * r), look_.joint, Finish::metal});
+  }
+}
+
+// A housing with its flange on the axis of the hinge, beside the lugs.
+void Hardware::add_motor(const Motored& motor, const std::vector<Vec3>& at, DrawList& list) const {
+  const auto place = [&](int n) { return at[static_cast<std::size_t>(n)]; };
+  const Vec3 hinge = place(motor.nodes[1]);
+  Vec3 axis = upright_ * motor.axis;
+  if (axis.isZero()) axis = (place(motor.nodes[0]) - hinge).cross(place(motor.nodes[2]) - hinge);
+  const double reach = (place(motor.nodes[0]) - hinge).norm() * (place(motor.nodes[2]) - hinge).norm();
+  if (motor.axis.isZero() && axis.norm() < 1e-4 * reach)
+    return;                           // folded flat: around what it turns is not known
+  const Vec3 viewer(0.47, -0.88, 0);  // as pictures begin: of both sides the one that is seen
+  axis *= (axis.dot(viewer) < 0 ? -1.0 : 1.0) / axis.norm();
+  const double r = thickest();
+  const auto part = [&](double from, double to, double wide, const Color& color, Finish finish) {
+    list.sleeves.push_back({single(hinge + from * r * axis), single(hinge + to * r * axis),
+                            static_cast<float>(wide * r), color, finish});
+  };
+  part(1.3, 1.9, 2.1, look_.fitting, Finish::metal);
+  part(1.9, 5.4, 1.75, {0.16f, 0.17f, 0.19f, 1}, Finish::anodised);
+  part(5.4, 5.9, 1.2, look_.fitting, Finish::metal);
+}
+
+void Hardware::add_drives(const std::vector<Vec3>& at, DrawList& list) const {
+  for (const Triple& pulley : pulleys_) add_pulley(pulley, at, list);
+  for (const std::vector<int>& telescope : telescopes_) add_telescope(telescope, at, list);
+  for (const Motored& motor : motors_) add_motor(motor, at, list);
+}
+
+}  // namespace unfurl
