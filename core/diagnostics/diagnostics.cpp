@@ -23,6 +23,10 @@
 namespace unfurl {
 namespace {
 
+double max_norm(const VectorXd& v) {
+  return v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
+}
+
 // What a diagnostic may look at in one state.
 struct Instant {
   const Simulation& run;
@@ -62,14 +66,8 @@ struct Instant {
       if (force.kind == "latch") most = std::max(most, std::abs(unfurl::latch_load(force, q, v)));
     return most;
   }
-  double relative_constraint() const {
-    return phi.size() ? phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() : 0.0;
-  }
+  double relative_constraint() const { return max_norm(phi.cwiseQuotient(lengths)); }
 };
-
-double max_norm(const VectorXd& v) {
-  return v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
-}
 
 // Whether the force that is largest in this direction is unique; of no rods it is.
 double extreme_unique(const Instant& s, double sign) {
@@ -318,9 +316,8 @@ const Series* Diagnostics::find(std::string_view name) const {
 }
 
 const Series& Diagnostics::at(std::string_view name) const {
-  const Series* s = find(name);
-  if (!s) throw std::out_of_range("no diagnostic " + std::string(name));
-  return *s;
+  if (const Series* s = find(name)) return *s;
+  throw std::out_of_range("no diagnostic " + std::string(name));
 }
 
 std::vector<DiagnosticColumn> diagnostic_columns() {
@@ -348,98 +345,124 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
 
 enum class Look { energies, books, states, all };
 
+// The columns of a run, filled state by state.
+class StateTable {
+ public:
+  StateTable(const Simulation& run, Look look, const ForceUniqueness* uniqueness)
+      : run_(run),
+        books_(look == Look::books || look == Look::energies),
+        uniqueness_(uniqueness),
+        used_(columns(run, books_, out_)),
+        flow_(run, look == Look::books || look == Look::all),
+        forces_(run.trajectory),
+        fold_(run.trajectory.structure().deployment) {
+    if (!books_) drives_.emplace(run.trajectory.model(), out_.columns);
+    first_own_ = out_.columns.size();
+    if (!books_) add_own_columns(run.trajectory.structure(), out_);
+    const auto rods = books_ ? Index{0} : static_cast<Index>(run.trajectory.structure().rods.size());
+    out_.axial_force.resize(static_cast<Index>(run.trajectory.size()), rods);
+    out_.force_unique.resize(out_.axial_force.rows(), rods);
+    out_.rod_unique.assign(static_cast<std::size_t>(rods), 1);
+    unique_ = out_.rod_unique;
+    force_.resize(rods);
+  }
+
+  void add(std::size_t i) {
+    const State& state = run_.trajectory.state(i);
+    if (model_ != &run_.trajectory.model(i)) enter(i);
+    system_->follow(state);
+    const VectorXd q = run_.trajectory.node_positions(i), v = run_.trajectory.node_velocities(i);
+    if (i > 0) flow_.step_to(i, books_ ? nullptr : &forces_);
+    system_->all_constraint_values(state.t, q, phi_);
+    system_->all_constraint_rates(state.t, q, v, velocity_phi_, scratch_);
+    VectorXd lambda;
+    if (!books_) lambda = find_forces(i, q, v);
+    if (i == 0) first_energy_ = system_->kinetic_energy(state.w) + system_->potential_energy(state, q);
+    const double angle = fold_.at(state.t, q, v);
+    const Instant instant{
+        run_,   i,       state,         q,        v,     phi_,           lengths_,     velocity_phi_,
+        force_, unique_, acceleration_, *system_, angle, flow_.so_far(), first_energy_};
+    out_.t.push_back(state.t);
+    for (std::size_t c = 0; c < used_.size(); ++c) out_.columns[c].values.push_back(used_[c]->value(instant));
+    if (books_) return;
+    add_own_values(run_.trajectory.structure(), instant, out_.columns.data() + first_own_);
+    static const std::vector<char> not_asked;
+    drives_->append(*model_, instant, lambda, uniqueness_ ? uniqueness_->at(i) : not_asked);
+  }
+
+  Diagnostics finish() {
+    leave_open(run_.trajectory, out_);
+    for (Series& column : out_.columns)
+      if (column.unit == "J")
+        for (double& energy : column.values) energy *= run_.trajectory.structure().sectors;
+    return std::move(out_);
+  }
+
+ private:
+  static std::vector<const Row*> columns(const Simulation& run, bool books, Diagnostics& out) {
+    std::vector<const Row*> used;
+    for (const Row& row : rows) {
+      const bool book =
+          row.unit == std::string_view("J") || std::string_view(row.name).starts_with("constraint_");
+      if (!present(row.needs, run) || (books && !book)) continue;
+      used.push_back(&row);
+      out.columns.push_back({row.name, row.label, row.unit, {}});
+    }
+    return used;
+  }
+
+  // State i is the first of its model.
+  void enter(std::size_t i) {
+    model_ = &run_.trajectory.model(i);
+    system_ = std::make_unique<System>(model_->system);
+    if (!books_) sharing_.emplace(*model_, !uniqueness_ || uniqueness_->all_by_rigid_rods(i));
+    lengths_ = model_->system.all_lengths();
+    phi_.resize(lengths_.size());
+    velocity_phi_.resize(lengths_.size());
+  }
+
+  // Of rods, and whether they are unique; returns the multipliers.
+  VectorXd find_forces(std::size_t i, const VectorXd& q, const VectorXd& v) {
+    const State& state = run_.trajectory.state(i);
+    VectorXd lambda = forces_.multipliers(i, acceleration_);
+    sharing_->share(state.t, q, run_.trajectory.report(i).singular_event, lambda);
+    axial_forces(*model_, state, q, v, lambda, force_);
+    for (std::size_t r = 0; uniqueness_ && r < unique_.size(); ++r) {
+      const std::vector<char>& rows_unique = uniqueness_->at(i);
+      const int row = system_->rod_rows()[r];
+      unique_[r] = row < 0 ? char{1} : rows_unique[static_cast<std::size_t>(row)];
+      if (uniqueness_->regular(i)) out_.rod_unique[r] = static_cast<char>(out_.rod_unique[r] & unique_[r]);
+      out_.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
+          unique_[r] != 0 && !std::isnan(force_[static_cast<Index>(r)]);
+    }
+    if (force_.size() > 0) out_.axial_force.row(static_cast<Index>(i)) = force_.transpose();
+    return lambda;
+  }
+
+  const Simulation& run_;
+  bool books_;
+  const ForceUniqueness* uniqueness_;
+  Diagnostics out_;
+  std::vector<const Row*> used_;
+  std::optional<DriveColumns> drives_;
+  std::size_t first_own_ = 0;  // column of what the structure has of its own
+  RunEnergyFlow flow_;
+  StateForces forces_;
+  FoldAngle fold_;
+  std::optional<ElasticSharing> sharing_;
+  const Model* model_ = nullptr;
+  std::unique_ptr<System> system_;  // of that model, as the angles have turned so far
+  VectorXd lengths_, phi_, velocity_phi_, force_, acceleration_;
+  std::vector<char> unique_;
+  std::vector<double> scratch_;
+  double first_energy_ = 0;
+};
+
 Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool()>& cancelled,
                       const ForceUniqueness* uniqueness) {
-  const bool books = look == Look::books || look == Look::energies;
-  const Trajectory& trajectory = run.trajectory;
-  Diagnostics out;
-  std::vector<const Row*> used;
-  for (const Row& row : rows) {
-    const bool book =
-        row.unit == std::string_view("J") || std::string_view(row.name).starts_with("constraint_");
-    if (!present(row.needs, run) || (books && !book)) continue;
-    used.push_back(&row);
-    out.columns.push_back({row.name, row.label, row.unit, {}});
-  }
-  std::optional<DriveColumns> drives;
-  if (!books) drives.emplace(trajectory.model(), out.columns);
-  const std::size_t first_own = out.columns.size();
-  if (!books) add_own_columns(trajectory.structure(), out);
-  RunEnergyFlow flow(run, look == Look::books || look == Look::all);
-  const auto rods = books ? Index{0} : static_cast<Index>(trajectory.structure().rods.size());
-  out.axial_force.resize(static_cast<Index>(trajectory.size()), rods);
-  out.force_unique.resize(out.axial_force.rows(), rods);
-  out.rod_unique.assign(static_cast<std::size_t>(rods), 1);
-  std::vector<char> unique(out.rod_unique);
-  const std::vector<char> not_asked;
-  VectorXd lengths, phi, force(rods), velocity_phi, acceleration;
-  std::vector<double> scratch;
-  const Model* model = nullptr;
-  std::unique_ptr<System> followed;
-  StateForces forces(trajectory);
-  std::optional<ElasticSharing> sharing;
-  FoldAngle fold(trajectory.structure().deployment);
-  double first_energy = 0;
-  for (std::size_t i = 0; i < trajectory.size() && !(cancelled && cancelled()); ++i) {
-    const State& state = trajectory.state(i);
-    if (model != &trajectory.model(i)) {
-      model = &trajectory.model(i);
-      followed = std::make_unique<System>(model->system);
-      if (!books) sharing.emplace(*model, !uniqueness || uniqueness->all_by_rigid_rods(i));
-      lengths = model->system.all_lengths();
-      phi.resize(lengths.size());
-      velocity_phi.resize(lengths.size());
-    }
-    followed->follow(state);
-    const System& system = *followed;
-    const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
-    if (i > 0) flow.step_to(i, books ? nullptr : &forces);
-    system.all_constraint_values(state.t, q, phi);
-    system.all_constraint_rates(state.t, q, v, velocity_phi, scratch);
-    VectorXd lambda;
-    if (!books) {
-      const bool limit = trajectory.report(i).singular_event;
-      lambda = forces.multipliers(i, acceleration);
-      sharing->share(state.t, q, limit, lambda);
-      axial_forces(*model, state, q, v, lambda, force);
-      for (std::size_t r = 0; uniqueness && r < unique.size(); ++r) {
-        const std::vector<char>& rows_unique = uniqueness->at(i);
-        const int row = system.rod_rows()[r];
-        unique[r] = row < 0 ? char{1} : rows_unique[static_cast<std::size_t>(row)];
-        if (uniqueness->regular(i)) out.rod_unique[r] = static_cast<char>(out.rod_unique[r] & unique[r]);
-        out.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
-            unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);
-      }
-    }
-    if (rods > 0) out.axial_force.row(static_cast<Index>(i)) = force.transpose();
-    if (i == 0) first_energy = system.kinetic_energy(state.w) + system.potential_energy(state, q);
-    const Instant instant{run,
-                          i,
-                          state,
-                          q,
-                          v,
-                          phi,
-                          lengths,
-                          velocity_phi,
-                          force,
-                          unique,
-                          acceleration,
-                          system,
-                          fold.at(state.t, q, v),
-                          flow.so_far(),
-                          first_energy};
-    out.t.push_back(state.t);
-    for (std::size_t c = 0; c < used.size(); ++c) out.columns[c].values.push_back(used[c]->value(instant));
-    if (!books) {
-      add_own_values(trajectory.structure(), instant, out.columns.data() + first_own);
-      drives->append(*model, instant, lambda, uniqueness ? uniqueness->at(i) : not_asked);
-    }
-  }
-  leave_open(trajectory, out);
-  for (Series& column : out.columns)
-    if (column.unit == "J")
-      for (double& energy : column.values) energy *= trajectory.structure().sectors;
-  return out;
+  StateTable table(run, look, uniqueness);
+  for (std::size_t i = 0; i < run.trajectory.size() && !(cancelled && cancelled()); ++i) table.add(i);
+  return table.finish();
 }
 
 }  // namespace
