@@ -101,7 +101,8 @@ TEST_CASE("a dip that is narrower than the steps is followed to its bottom") {
     REQUIRE(run.status == RunStatus::completed);
     const std::vector<Event> events = singular_events(run);
     REQUIRE(events.size() == 1);
-    CHECK(events[0].singular_value <= 1e-6);
+    // sigma goes with 23 / s there, and the bottom is looked for to 1e-4 of two steps, 1e-6 s.
+    CHECK(events[0].singular_value <= 2.5e-5);
     found.push_back(events[0]);
   }
   // Both motions are right to 1e-8 m at 5 m/s, at the longer step by order 8.
