@@ -156,7 +156,8 @@ TEST_CASE("what does not move is not warned of") {
 }
 
 // Two masses and their rod fall freely for 3 s, at a height that doubles tell apart by 3e-14 or by 0.5 m:
-// at 3e15 m each state's potential energy, m g z, is rounded by some 8 J of the 1170 J that the fall turns over.
+// at 3e15 m each state's potential energy, m g z, is rounded by some 8 J of the 1170 J that the fall turns
+// over.
 TEST_CASE("a balance that rounding alone can put off is said to check nothing, and only there") {
   const auto warnings = [](const std::string& height) {
     const std::string at = ", 0.0, " + height + "]\nmass = 1.3\n";
