@@ -5,7 +5,12 @@
 
 namespace unfurl {
 
-std::string what_locks(const Model& model, const State& state) {
+std::string what_locks(const Model& model, const State& state, bool latched) {
+  for (const Constraint& drive : model.structure.constraints)
+    if (latched && drive.target.derivative(1, state.t) != 0)
+      return "; the latch holds what " + drive.name +
+             " drives on: solver.at_deployed = \"stop\" ends the run there, a force of kind = \"motor\" "
+             "stalls";
   if (!PinLoads::any(model.structure)) return "";
   VectorXd q(model.system.coordinates());
   model.system.expand(state.z, q);

@@ -25,8 +25,9 @@ inline const char* reason(StepStatus status) {
   return "";
 }
 
-// "; ..." of a hinge that its dry friction locks at a state, with what to do; empty: there is none.
-std::string what_locks(const Model& model, const State& state);
+// "; ..." of a drive that moves on where the structure is latched, or of a hinge that its dry friction locks
+// at a state, with what to do; empty: there is none.
+std::string what_locks(const Model& model, const State& state, bool latched);
 
 // "0.125 s"
 inline std::string seconds(double t) {

@@ -186,7 +186,7 @@ class Stepper::Loop {
 
   bool fail(const std::string& why) {
     run_.status = RunStatus::failed;
-    run_.message = "at t = " + seconds(now().t) + ": " + why + what_locks(model(), now());
+    run_.message = "at t = " + seconds(now().t) + ": " + why + what_locks(model(), now(), latched_);
     return false;
   }
 

@@ -152,6 +152,17 @@ Simulation turned_in(double k, double c, double end_time, double EA = 0) {
   return simulate(make_model(structure), options);
 }
 
+// What a closed latch holds, a motion that is prescribed cannot move: the two are named, not the matrix.
+TEST_CASE("a drive that moves on behind a closed latch is named") {
+  const Scene scene = read_scene_file(
+      find_scene("hoop6_motor"),
+      {"solver.at_deployed=latch",
+       R"(constraints[0]={kind="angle",name="crank",fold_angle=true,motion="rate",rate=-20})"});
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  CHECK(run.status == RunStatus::failed);
+  CHECK(run.message.find("the latch holds what crank drives on") != std::string::npos);
+}
+
 }  // namespace
 
 TEST_CASE(
