@@ -238,8 +238,7 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
   } else if (off > energy_share * turned && moves(run)) {
     text << "the energy balance is off by " << off << " J, " << percent_of(off, turned)
          << " of the energy turned over, which rounding alone can do here: forces or coordinates are too "
-            "large "
-            "beside this motion for the balance to check it";
+            "large beside this motion for the balance to check it";
     warnings.push_back(text.str());
   }
   const double stretch = largest_magnitude(d.at("constraint_relative_max").values);

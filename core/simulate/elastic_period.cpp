@@ -66,8 +66,7 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
        << followed_share * period
        << (options.step > period && options.stages < 4
                ? "; with fewer than four stages they spoil velocities, and forces of all rods that dvm does "
-                 "not stop: "
-                 "solver.stages = 4"
+                 "not stop: solver.stages = 4"
                : "")
        << "; to let them die out, structure.damping_ratio or solver.method = \"generalized_alpha\"; to leave "
           "them out, structure.rod_model = \"quasi-static\"";
