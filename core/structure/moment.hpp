@@ -4,9 +4,8 @@
 namespace unfurl {
 
 // When forces and constraints are asked for, with what is known of that time beside pose and velocities; near
-// which values angles that count their turns are taken:
-// those of a state, carried on with its rates, so that a step may turn by any angle that its acceleration
-// does not change by half a turn.
+// which values angles that count their turns are taken: those of a state, carried on with its rates, so that
+// a step may turn by any angle that its acceleration does not change by half a turn.
 struct Moment {
   Moment(double time) : t(time) {}  // NOLINT: a time alone is a moment of a structure that follows no angle
   double t;                         // [s]
