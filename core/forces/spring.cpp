@@ -189,7 +189,10 @@ SpringPull spring_pull(const Force& force, double t, double s, double rate) {
   const SpringLaw law = spring_law(force, t);
   const Pull pull = pull_of(force, s - law.rest);
   const double elastic = law.stiffness * pull.elastic, n = elastic + force.damping * pull.share * rate;
-  return {force.one_sided ? std::max(n, 0.0) : n, law.stiffness_rate * pull.energy - elastic * law.rest_rate};
+  return {force.slack       ? 0.0
+          : force.one_sided ? std::max(n, 0.0)
+                            : n,
+          law.stiffness_rate * pull.energy - elastic * law.rest_rate};
 }
 
 std::unique_ptr<ForceBlock> spring_block(const std::vector<Force>& springs, const Deployment& deployment,

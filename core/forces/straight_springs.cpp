@@ -18,7 +18,7 @@ bool StraightSprings::fits(const Force& force) {
 void StraightSprings::push_back(const Force& force) {
   const SpringLaw law = spring_law(force, 0.0);
   members_.push_back({force.measure.nodes[0], force.measure.nodes[1], law.rest, law.stiffness, force.damping,
-                      force.smoothing, force.one_sided});
+                      force.smoothing, force.one_sided, force.slack});
 }
 
 struct StraightSprings::Tension {
@@ -37,7 +37,7 @@ bool StraightSprings::pulls(const Member& m, const double* q, const double* v, T
   at.pull = pull_of(m, at.s - m.rest);
   at.elastic = m.stiffness * at.pull.elastic;
   at.N = at.elastic + m.damping * at.pull.share * at.rate;
-  if (m.one_sided) at.N = std::max(at.N, 0.0);
+  if (m.one_sided) at.N = m.slack ? 0.0 : std::max(at.N, 0.0);
   return true;
 }
 

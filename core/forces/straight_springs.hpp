@@ -40,7 +40,7 @@ class StraightSprings {
   struct Member {
     int a, b;  // nodes
     double rest, stiffness, damping, smoothing;
-    bool one_sided;
+    bool one_sided, slack;
   };
   struct Tension;
   static bool pulls(const Member& m, const double* q, const double* v, Tension& at);

@@ -112,16 +112,16 @@ bool same_entry(const Measure& a, const Measure& b) {
 }
 
 bool same_entry(const Force& a, const Force& b) {
-  const auto& [kind, name, nodes, measure, stiffness, damping, rest, one_sided, smoothing, axial_stiffness,
-               unstressed, motor, direction, size, expansion, form, kinetic, holding, slip, rope, trolley] =
-      a;
+  const auto& [kind, name, nodes, measure, stiffness, damping, rest, one_sided, slack, smoothing,
+               axial_stiffness, unstressed, motor, direction, size, expansion, form, kinetic, holding, slip,
+               rope, trolley] = a;
   return kind == b.kind && nodes == b.nodes && same_entry(measure, b.measure) && stiffness == b.stiffness &&
          damping == b.damping && (close_to(rest, b.rest) || std::abs(rest - b.rest) <= rounding_share) &&
-         one_sided == b.one_sided && smoothing == b.smoothing && axial_stiffness == b.axial_stiffness &&
-         alike(unstressed, b.unstressed) && alike(motor, b.motor) && close_to(direction, b.direction) &&
-         alike(size, b.size) && expansion == b.expansion && form.empty() && b.form.empty() &&
-         kinetic == b.kinetic && holding == b.holding && slip == b.slip && alike(rope, b.rope) &&
-         close_to(trolley, b.trolley);
+         one_sided == b.one_sided && slack == b.slack && smoothing == b.smoothing &&
+         axial_stiffness == b.axial_stiffness && alike(unstressed, b.unstressed) && alike(motor, b.motor) &&
+         close_to(direction, b.direction) && alike(size, b.size) && expansion == b.expansion &&
+         form.empty() && b.form.empty() && kinetic == b.kinetic && holding == b.holding && slip == b.slip &&
+         alike(rope, b.rope) && close_to(trolley, b.trolley);
 }
 
 bool same_entry(const Constraint& a, const Constraint& b) {

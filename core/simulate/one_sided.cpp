@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/constraints/linear_rows.hpp"
 #include "core/forces/spring.hpp"
@@ -35,7 +36,8 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
 }
 
 bool OneSided::any_active() const {
-  return std::find(active_.begin(), active_.end(), true) != active_.end() ||
+  return (!cables_.empty() && !relaxed_) ||
+         std::find(active_.begin(), active_.end(), true) != active_.end() ||
          std::any_of(frictions_.begin(), frictions_.end(), [](const Friction& f) { return f.slip != 0; });
 }
 
@@ -51,11 +53,8 @@ bool OneSided::any_reeled() const {
 }
 
 bool OneSided::relax_cables() {
-  const auto cables = active_.begin() + static_cast<std::ptrdiff_t>(stops_.size()),
-             behind = active_.begin() + static_cast<std::ptrdiff_t>(first_friction());
-  const bool any = std::find(cables, behind, true) != behind;
-  std::fill(cables, behind, false);
-  return any;
+  std::fill_n(active_.begin() + static_cast<std::ptrdiff_t>(stops_.size()), cables_.size(), false);
+  return !std::exchange(relaxed_, true) && !cables_.empty();
 }
 
 const MeasureFunction& OneSided::measure(std::size_t i) const {
@@ -91,8 +90,14 @@ void OneSided::stick(std::size_t i, const System& system, const State& state) {
   active_[i] = true;
 }
 
+void OneSided::set_active(std::size_t i, bool active) {
+  active_[i] = active;
+  if (!is_stop(i) && !is_friction(i)) relaxed_ = false;
+}
+
 void OneSided::archive(Archive& archive) {
   archive(active_);
+  archive(relaxed_);
   archive(shift_);
   for (Friction& f : frictions_) {
     archive(f.by_load);
@@ -269,7 +274,10 @@ std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {
 std::shared_ptr<const Model> OneSided::model(const Model& base) const {
   Structure structure = base.structure;
   for (std::size_t k = 0; k < cables_.size(); ++k)
-    if (active_[stops_.size() + k]) structure.forces[cables_[k].force].one_sided = false;
+    if (active_[stops_.size() + k])
+      structure.forces[cables_[k].force].one_sided = false;
+    else
+      structure.forces[cables_[k].force].slack = !relaxed_;
   for (std::size_t k = 0; k < frictions_.size(); ++k) {
     const Friction& f = frictions_[k];
     structure.forces[f.force].slip = f.slip;

@@ -54,14 +54,14 @@ class OneSided {
   // "leaves stop NAME", "NAME pulls", ...: that the mode has begun.
   Event event(std::size_t i, double t) const;
 
-  void set_active(std::size_t i, bool active) { active_[i] = active; }
+  void set_active(std::size_t i, bool active);
   // A stop that is passed by less than rounding or by what a start left of it counts as touched there.
   void touch(const System& system, const State& state);
   // A stop that is held or whose gap counts as zero.
   bool touches(std::size_t i, const System& system, const State& state) const;
   // Cables that are stretched and pull.
   void find_cables(const System& system, const State& state);
-  // All cables by the law that knows both of their modes; whether any was not.
+  // All cables by the law that knows both of their modes, until one is set; whether they were not.
   bool relax_cables();
 
   // What a stop or friction acts along: sign * s.
@@ -127,7 +127,8 @@ class OneSided {
   std::vector<Cable> cables_;
   std::vector<Friction> frictions_;
   std::vector<bool> active_;
-  VectorXd shift_;  // of the stops' gaps [m] or [rad]
+  bool relaxed_ = false;  // cables are by the law of both modes
+  VectorXd shift_;        // of the stops' gaps [m] or [rad]
   double step_, length_;
   bool eliminate_linear_;
   VectorXd gradient_, acceleration_, lambda_;

@@ -143,6 +143,7 @@ struct Force {
   double damping = 0.0;           // [N s/m] or [N m s/rad]
   double rest = 0.0;              // value of the measure without a force [m] or [rad]
   bool one_sided = false;         // pulls only: a cable
+  bool slack = false;             // one that does not pull now, whatever its length is
   double smoothing = 0.0;         // of what pulls only: half of the width over which it begins to [m]
   double axial_stiffness = 0.0;   // of a cable, E A [N]; its stiffness is that over its unstressed length
   TimeFunction unstressed = {};   // of a cable: that length over time [m]
