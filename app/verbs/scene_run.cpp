@@ -114,12 +114,7 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {
   for (const auto& warnings : {run.warnings, accuracy_warnings(run, diagnostics)})
     for (const auto& warning : warnings) std::cerr << "unfurl: warning: " << warning << "\n";
-  const auto names = [&](const char* table) { return run.message.find(table) != std::string::npos; };
-  const bool says_the_cure = names("structure.") || names("solver.");
-  if (run.status == RunStatus::failed)
-    std::cerr << "unfurl: the solver failed: " << run.message
-              << (says_the_cure ? "\n"
-                                : "; a smaller solver.step, or solver.adaptive = true, may get through\n");
+  if (run.status == RunStatus::failed) std::cerr << "unfurl: the solver failed: " << run.message << "\n";
   if (run.status == RunStatus::stopped) std::cerr << "unfurl: interrupted; what is finished is kept\n";
   if (arguments.quiet) return;
   std::ostringstream text;

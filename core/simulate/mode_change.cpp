@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/math/box_complementarity.hpp"
+#include "core/simulate/latch.hpp"
 #include "core/simulate/push_responses.hpp"
 
 namespace unfurl {
@@ -16,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 class Change {
  public:
   Change(OneSided& sides, const Model& base, const State& state, const std::vector<std::size_t>& which)
-      : sides_(sides), system_(base.system.at(state)), which_(which) {
+      : sides_(sides), base_(base), system_(base.system.at(state)), which_(which) {
     out_.state = state;
   }
 
@@ -32,6 +33,7 @@ class Change {
                     sides_.limit_motion(i, out_.state.t));
     D_ = responses.matrix();
     for (Index i = 0; i < D_.rows(); ++i) movable_.push_back(responses.movable(i));
+    settle(responses);
     if (strike(responses, rests) && choose(responses)) assign();
     return std::move(out_);
   }
@@ -64,6 +66,22 @@ class Change {
     for (std::size_t i = sides_.first_friction(); i < sides_.size(); ++i) rows_.push_back(i);
     const auto n = rows_.size();
     struck_.assign(n, false);
+  }
+
+  // Friction turns round where its rate u is zero, in a state that may miss the constraints by what the
+  // method drifts from them. Once they are met it is zero still, else friction would turn back there.
+  void settle(const PushResponses& responses) {
+    const VectorXd u = responses.rates(out_.state.w);
+    VectorXd low = VectorXd::Zero(count()), high = low;
+    for (Index r = 0; r < count(); ++r)
+      if (sides_.is_friction(side(r)) && crossed(r) && movable(r) && at_rest(r, u[r]))
+        high[r] = infinity, low[r] = -infinity;
+    if (high.isZero(0.0)) return;
+    const State met = hand_over(base_, out_.state, base_).state;
+    if (const auto impulses = solve_box(D_, responses.rates(met.w), low, high)) {
+      out_.state = met;
+      responses.give(impulses->x, out_.state.w);
+    }
   }
 
   // The stops that are approached, all at once. False where there is no answer.
@@ -218,6 +236,7 @@ class Change {
   }
 
   OneSided& sides_;
+  const Model& base_;
   const System system_;
   const std::vector<std::size_t>& which_;
   ModeChange out_;

@@ -25,9 +25,10 @@ inline const char* reason(StepStatus status) {
   return "";
 }
 
-// "; ..." of a drive that moves on where the structure is latched, or of a hinge that its dry friction locks
-// at a state, with what to do; empty: there is none.
-std::string what_locks(const Model& model, const State& state, bool latched);
+// "; ..." behind what ended a run at a state: a drive that moves on where the structure is latched, or a
+// hinge that its dry friction locks, with what to do; else, of what ended in a step, another step. May be
+// empty.
+std::string cure(const Model& model, const State& state, bool latched, bool in_a_step);
 
 // "0.125 s"
 inline std::string seconds(double t) {

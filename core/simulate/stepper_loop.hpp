@@ -163,7 +163,7 @@ class Stepper::Loop {
   }
 
   bool accept(Probe& to, double t) {
-    if (!to.report.ok()) return fail(may_cross(0) ? stepping::too_near : reason(to.report.status));
+    if (!to.report.ok()) return fail(may_cross(0) ? stepping::too_near : reason(to.report.status), true);
     to.state.t = t;
     have_begin_ = to.margins.size() > 0;
     if (have_begin_) begin_ = to;
@@ -184,9 +184,9 @@ class Stepper::Loop {
     have_begin_ = false;
   }
 
-  bool fail(const std::string& why) {
+  bool fail(const std::string& why, bool in_a_step = false) {
     run_.status = RunStatus::failed;
-    run_.message = "at t = " + seconds(now().t) + ": " + why + what_locks(model(), now(), latched_);
+    run_.message = "at t = " + seconds(now().t) + ": " + why + cure(model(), now(), latched_, in_a_step);
     return false;
   }
 
