@@ -44,7 +44,9 @@ TEST_CASE("modelling choices that promise the same answer give it") {
     CHECK(m.difference < 1e-2);
     CHECK(m.tip_difference <= m.difference);
     CHECK(m.peak_unique);
+#ifndef __SANITIZE_ADDRESS__  // whose heap does not say how much of it is in use
     CHECK(m.memory > 0);
+#endif
   }
   // Coordinates up to 6 m in single precision: half a unit in the last place of [4, 8) is 2.4e-7.
   const double rounding = named("single precision").difference;
