@@ -123,7 +123,7 @@ class PathRun {
     for (std::size_t k = 0; k < law_->forces().cables().size(); ++k)
       law_->set_pulling(k, sides_.active(sides_.stops().size() + k));
     for (std::size_t k = 0; k < law_->forces().frictions().size(); ++k)
-      law_->set_slip(k, sides_.slip(sides_.first_friction() + k));
+      law_->set_slip(k, sides_.slip(sides_.first_friction()));  // the only one, of all that act there
   }
 
   // The path's equation and all the structure's must say the same of the start and of a pose on the way from
@@ -280,6 +280,9 @@ class PathRun {
     event.energy_lost = taken;
     run_.events.push_back(std::move(event));
   }
+  void add_events(std::size_t i, double t, double taken) {
+    for (Event& event : sides_.events(i, t)) add_event(std::move(event), std::exchange(taken, 0.0));
+  }
   Event impact(const StopSide& stop) const {
     return {.name = "stop " + stop.name, .t = motion_.t(), .kind = "contact", .element = stop.name};
   }
@@ -294,7 +297,7 @@ class PathRun {
     sides_.set_active(i, !sides_.active(i));
     tell_law();
     const double taken = change_model(sides_.model(*base_));
-    add_event(sides_.event(i, motion_.t()), taken);
+    add_events(i, motion_.t(), taken);
   }
 
   void strike(std::size_t i) {
@@ -320,7 +323,7 @@ class PathRun {
       motion_.set_speed(0);
       resting_ = true;
       const double taken = change_model(sides_.model(*base_));
-      Event rests = sides_.event(i, motion_.t());
+      Event rests = sides_.events(i, motion_.t()).front();
       rests.kind = "contact";
       add_event(std::move(rests), taken);
       return;
@@ -363,7 +366,7 @@ class PathRun {
     sides_.set_active(*held_, false);
     resting_ = false;
     change_model(sides_.model(*base_));
-    add_event(sides_.event(*held_, until), 0.0);
+    add_events(*held_, until, 0.0);
     held_.reset();
   }
 
@@ -380,7 +383,7 @@ class PathRun {
     constexpr double still = 1e-6;  // of the speed that what acts makes in a step
     const std::size_t i = sides_.first_friction();
     const double slope = watch_.friction_slope(i, motion_.s()), v = motion_.v();
-    law_->set_slip(0, 0);
+    for (std::size_t k = 0; k < law_->forces().frictions().size(); ++k) law_->set_slip(k, 0);
     const double pull = law_->at(motion_.s(), 0.0, motion_.t()).Q, most = law_->holding(motion_.s());
     if (std::abs(v) > still * options_.step * (std::abs(pull) + most)) {
       const int slip = sides_.slip(i);  // what it acts on turns while the motion goes on
@@ -396,7 +399,7 @@ class PathRun {
     choose_slip();
     tell_law();
     change_model(sides_.model(*base_));
-    add_event(sides_.event(i, motion_.t()), 0.0);
+    add_events(i, motion_.t(), 0.0);
   }
 
   // --- the deployed pose ---

@@ -15,6 +15,17 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double force_zero = 1e-10;  // of the largest multiplier
 
+// Do they measure the same? Ends of a length may be told either way round.
+bool same(const Measure& a, const Measure& b) {
+  const bool turned = a.kind == MeasureKind::length &&
+                      std::equal(a.nodes.begin(), a.nodes.end(), b.nodes.rbegin(), b.nodes.rend());
+  const auto same_term = [](const MeasureTerm& x, const MeasureTerm& y) {
+    return x.coefficient == y.coefficient && same(x.measure, y.measure);
+  };
+  return a.kind == b.kind && (a.nodes == b.nodes || turned) && a.axis == b.axis &&
+         a.reference == b.reference && std::ranges::equal(a.terms, b.terms, same_term);
+}
+
 }  // namespace
 
 OneSided::OneSided(const Structure& structure, const SolverOptions& options)
@@ -27,9 +38,15 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
     const Force& f = structure.forces[i];
     if (f.one_sided && f.smoothing == 0 && (f.stiffness > 0 || f.damping > 0 || f.axial_stiffness > 0))
       cables_.push_back({i, f.name, MeasureFunction(f.measure, structure.deployment), f});
-    if (f.kind == "friction" && (f.holding > 0 || PinLoads::arm(f) > 0))
-      frictions_.push_back({i, f.name, f.measure, MeasureFunction(f.measure, structure.deployment), f.kinetic,
-                            f.holding, followed[i], PinLoads::arm(f)});
+    if (f.kind != "friction" || !(f.holding > 0 || PinLoads::arm(f) > 0)) continue;
+    auto one = std::find_if(frictions_.begin(), frictions_.end(),
+                            [&](const Friction& other) { return same(other.measure, f.measure); });
+    if (one == frictions_.end())
+      one = frictions_.insert(one,
+                              {{}, f.measure, MeasureFunction(f.measure, structure.deployment), followed[i]});
+    one->pads.push_back({i, f.name, PinLoads::arm(f)});
+    one->kinetic += f.kinetic;
+    one->holding += f.holding;
   }
   active_.assign(stops_.size() + cables_.size() + frictions_.size(), false);
   shift_.setZero(static_cast<Index>(stops_.size()));
@@ -116,7 +133,10 @@ void OneSided::weigh(const Model& model, const State& state) {
   system.expand_rate(state.w, v);
   const double* const tension = state.tension.size() > 0 ? state.tension.data() : nullptr;
   const PinLoads::Loads loads = pin_loads_->evaluate(system.moment(state.t, tension), q.data(), v.data());
-  for (Friction& f : frictions_) f.by_load = f.arm * loads.size[f.force];
+  for (Friction& f : frictions_) {
+    f.by_load = 0;
+    for (const Friction::Pad& pad : f.pads) f.by_load += pad.arm * loads.size[pad.force];
+  }
 }
 
 std::set<std::size_t> OneSided::held() const {
@@ -126,29 +146,33 @@ std::set<std::size_t> OneSided::held() const {
   return out;
 }
 
-Event OneSided::event(std::size_t i, double t) const {
-  Event out{.name = {}, .t = t};
+std::vector<Event> OneSided::events(std::size_t i, double t) const {
+  std::vector<Event> out(is_friction(i) ? friction(i).pads.size() : 1, Event{.name = {}, .t = t});
+  for (std::size_t k = 0; k < out.size(); ++k) tell(i, k, out[k]);
+  return out;
+}
+
+void OneSided::tell(std::size_t i, std::size_t pad, Event& out) const {
   const bool on = active_[i];
   if (is_stop(i)) {
     out.element = stops_[i].name;
     if (stops_[i].reeled) {
       out.name = out.element + (on ? " pulls" : " is slack");
       out.kind = on ? "taut" : "slack";
-      return out;
+      return;
     }
     out.name = (on ? "rests on stop " : "leaves stop ") + out.element;
     out.kind = on ? "contact" : "free";
   } else if (is_friction(i)) {
     const Friction& f = friction(i);
-    out.element = f.name;
+    out.element = f.pads[pad].name;
     out.kind = f.slip == 0 ? "stick" : f.reversed ? "reversal" : "slip";
-    out.name = f.name + (f.slip == 0 ? " sticks" : f.reversed ? " slips the other way" : " slips");
+    out.name = out.element + (f.slip == 0 ? " sticks" : f.reversed ? " slips the other way" : " slips");
   } else {
     out.element = cables_[i - stops_.size()].name;
     out.name = out.element + (on ? " pulls" : " is slack");
     out.kind = on ? "taut" : "slack";
   }
-  return out;
 }
 
 bool OneSided::touches(std::size_t i, const System& system, const State& state) const {
@@ -280,11 +304,12 @@ std::shared_ptr<const Model> OneSided::model(const Model& base) const {
       structure.forces[cables_[k].force].slack = !relaxed_;
   for (std::size_t k = 0; k < frictions_.size(); ++k) {
     const Friction& f = frictions_[k];
-    structure.forces[f.force].slip = f.slip;
+    for (const Friction::Pad& pad : f.pads) structure.forces[pad.force].slip = f.slip;
     if (!active_[first_friction() + k]) continue;
     TimeFunction held_at;
     held_at.offset = f.held_at;
-    structure.constraints.push_back({"measure", f.name + " (sticks)", {}, {}, 0.0, f.measure, held_at});
+    structure.constraints.push_back(
+        {"measure", f.pads.front().name + " (sticks)", {}, {}, 0.0, f.measure, held_at});
   }
   stops_.hold(held(), structure);
   System system(structure, eliminate_linear_);

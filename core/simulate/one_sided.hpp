@@ -51,8 +51,8 @@ class OneSided {
   bool any_held() const;                                   // stops
   bool any_reeled() const;                                 // cables that are paid out or drawn in
   const Stops& stops() const { return stops_; }
-  // "leaves stop NAME", "NAME pulls", ...: that the mode has begun.
-  Event event(std::size_t i, double t) const;
+  // "leaves stop NAME", "NAME pulls", ...: that the mode has begun; of friction, for each that acts there.
+  std::vector<Event> events(std::size_t i, double t) const;
 
   void set_active(std::size_t i, bool active);
   // A stop that is passed by less than rounding or by what a start left of it counts as touched there.
@@ -103,20 +103,25 @@ class OneSided {
     MeasureFunction length;
     Force law;
   };
+  // All that acts along one measure, which sticks and slips as one.
   struct Friction {
-    std::size_t force;
-    std::string name;
+    struct Pad {
+      std::size_t force;  // of the structure
+      std::string name;
+      double arm;  // mu r of its pin [m]
+    };
+    std::vector<Pad> pads;
     Measure measure;
     MeasureFunction function;
-    double kinetic, holding;
-    int followed;          // index in State::angles; -1: it counts no turns
-    double arm = 0.0;      // mu r of its pin [m]
-    double by_load = 0.0;  // arm times the force of the pin, of the state that was weighed [N m]
+    int followed;                     // index in State::angles; -1: it counts no turns
+    double kinetic = 0, holding = 0;  // sums of the pads
+    double by_load = 0;  // arms times the forces of their pins, of the state that was weighed [N m]
     int slip = 0;
     double held_at = 0.0;
     bool reversed = false;  // it slipped the other way before
   };
   const Friction& friction(std::size_t i) const { return frictions_[i - first_friction()]; }
+  void tell(std::size_t i, std::size_t pad, Event& out) const;
   std::set<std::size_t> held() const;
   void measure_held(const Model& model, const State& state, Probe& probe);
   void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,

@@ -307,7 +307,7 @@ class Stepper::Loop {
     record(change);
     for (const std::size_t i : change.turned)
       if (std::ranges::find(change.impacts, i, &ModeChange::Impact::stop) == change.impacts.end())
-        run_.events.push_back(sides_.event(i, change.state.t));
+        std::ranges::copy(sides_.events(i, change.state.t), std::back_inserter(run_.events));
     if (change.changed)
       set_model(sides_.model(*base_), change.state, true);
     else if (!change.impacts.empty())
@@ -317,7 +317,7 @@ class Stepper::Loop {
 
   void record(const ModeChange& change) {
     for (const auto& [stop, energy_lost] : change.impacts) {
-      Event event = sides_.event(stop, change.state.t);
+      Event event = sides_.events(stop, change.state.t).front();
       if (!sides_.active(stop)) event.name = "stop " + event.element;
       event.kind = "contact";
       event.energy_lost = energy_lost * run_.trajectory.structure().sectors;

@@ -162,6 +162,29 @@ kinetic = 0.4
     CHECK(turns == 24);
   }
   CHECK(testing::largest(diagnose(run), "energy_balance_J") <= 1e-11);
+  // Together they hold 1.7 N, whatever each of them would hold alone, and give 0.8 N while they slip. A pull
+  // of 1.3 N/s from the spring's free length on gets there at 1.7 / 1.3 s.
+  const std::vector<std::string> pulled = {"structure.nodes.A.position=[2,0,0]", "solver.end_time=2"};
+  const std::string load = R"(
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [1, 0, 0]
+times = [0, 2]
+values = [0, 2.6]
+)";
+  std::vector<std::string> both = pulled, one = pulled;
+  both.insert(both.end(), {"forces[1].kinetic=0.6", "forces[1].static=1.5", "forces[2].static=0.2",
+                           "forces[2].kinetic=0.2"});
+  one.insert(one.end(), {"forces[1].kinetic=0.8", "forces[1].static=1.7"});
+  const Simulation two = run_scene(oscillator + half + load, both), alone = run_scene(oscillator + load, one);
+  for (const Simulation* r : {&two, &alone}) {
+    INFO(r->message);
+    REQUIRE(r->status == RunStatus::completed);
+    REQUIRE(!events_of(*r, "slip").empty());
+    CHECK(events_of(*r, "slip")[0].t == Approx(1.7 / 1.3).epsilon(1e-9));
+  }
+  CHECK(end_positions(two)[3] == Approx(end_positions(alone)[3]).epsilon(1e-12));
   // A motor takes the block 0.7 m there and back: it pays 1 N all the way.
   const Simulation driven = run_scene(oscillator + R"(
 [[constraints]]
