@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/mode_change.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -129,10 +130,11 @@ class Change {
       out_.failure = "the constraint matrix cannot be factorised where modes change";
       return false;
     }
+    if (b_.size() > 0 && b_.lpNorm<Eigen::Infinity>() <= sides_.zero_acceleration()) b_.setZero();
     low_ = high_ = VectorXd::Zero(count());
     rests_.assign(rows_.size(), false);
     slips_.assign(rows_.size(), 0);
-    std::vector<Index> leaving;
+    std::vector<Index> leaving;  // what sticks and cannot any more, and what stands by it
     for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r), k = static_cast<std::size_t>(r);
       if (!at_rest(r, rate[r])) {
@@ -142,6 +144,8 @@ class Change {
       if (!movable(r)) {
         if (sides_.is_friction(i) && std::abs(b_[r]) > sides_.zero_acceleration())
           slide(r, b_[r] > 0 ? 1 : -1);
+        else if (sides_.is_friction(i) && crossed(r))
+          slide(r, sides_.away_from_kink(i, system_, out_.state));
         continue;
       }
       rests_[k] = true;
@@ -149,13 +153,31 @@ class Change {
       if (sides_.is_friction(i)) low_[r] = -sides_.holding(i);
       high_[r] = sides_.is_friction(i) ? sides_.holding(i) : infinity;
     }
+    const std::vector<bool> still = rests_;
     if (!solve()) return false;
+    if (!leaving.empty()) let_go(leaving);
     for (const Index r : leaving) leave(r);
     if (!leaving.empty() && !solve()) return false;
     // Those that do not go after all: others push them back.
-    bool back = false;
-    for (const Index r : leaving) back = come_back(r) || back;
-    return !back || solve();
+    for (Index tries = count(); tries >= 0; --tries) {
+      bool back = false;
+      for (Index r = 0; r < count(); ++r) back = (still[static_cast<std::size_t>(r)] && come_back(r)) || back;
+      if (!back) return true;
+      if (!solve()) return false;
+    }
+    return true;
+  }
+
+  // Frictions that hold together let go together: all whose force is at its limit, and they alone.
+  void let_go(std::vector<Index>& leaving) const {
+    const auto at_limit = [&](Index r) {
+      return sides_.is_friction(side(r)) && rests_[static_cast<std::size_t>(r)] &&
+             std::abs(solution_.x[r]) >= (1 - 1e-6) * sides_.holding(side(r));
+    };
+    if (std::none_of(leaving.begin(), leaving.end(), at_limit)) return;
+    std::erase_if(leaving, [&](Index r) { return sides_.is_friction(side(r)); });
+    for (Index r = 0; r < count(); ++r)
+      if (at_limit(r)) leaving.push_back(r);
   }
 
   void slide(Index r, int sense) {
@@ -233,6 +255,28 @@ class Change {
       out_.changed = true;
       if (slip != 0 || before != 0) out_.turned.push_back(i);  // what rests still does, by other forces
     }
+    if (sides_.any_friction()) share();
+  }
+
+  // By D c = d over what is held, stops among it.
+  void share() {
+    const auto first = static_cast<Index>(sides_.first_friction()),
+               n = static_cast<Index>(sides_.size()) - first;
+    std::vector<Index> held;
+    for (Index r = 0; r < count(); ++r)
+      if (rests_[static_cast<std::size_t>(r)] && solution_.held[static_cast<std::size_t>(r)])
+        held.push_back(r);
+    MatrixXd c = MatrixXd::Zero(n, n);
+    const Eigen::LLT<MatrixXd> all(D_(held, held));
+    for (Index r = 0; r < count() && !held.empty(); ++r) {
+      const std::size_t i = side(r);
+      if (!sides_.is_friction(i) || sides_.active(i) || sides_.slip(i) != 0) continue;
+      const VectorXd shares = all.solve(VectorXd(D_(held, r)));
+      for (std::size_t k = 0; k < held.size(); ++k)
+        if (const std::size_t by = side(held[k]); sides_.is_friction(by))
+          c(static_cast<Index>(i) - first, static_cast<Index>(by) - first) = shares[static_cast<Index>(k)];
+    }
+    sides_.set_shares(std::move(c));
   }
 
   OneSided& sides_;

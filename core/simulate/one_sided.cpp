@@ -8,6 +8,7 @@
 
 #include "core/constraints/linear_rows.hpp"
 #include "core/forces/spring.hpp"
+#include "core/simulate/friction_hold.hpp"
 
 namespace unfurl {
 namespace {
@@ -50,6 +51,7 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
   }
   active_.assign(stops_.size() + cables_.size() + frictions_.size(), false);
   shift_.setZero(static_cast<Index>(stops_.size()));
+  friction_force_.setZero(std::ssize(frictions_));
 }
 
 bool OneSided::any_active() const {
@@ -97,6 +99,12 @@ void OneSided::set_slip(std::size_t i, int slip) {
   active_[i] = false;
 }
 
+int OneSided::away_from_kink(std::size_t i, const System& system, const State& state) const {
+  VectorXd q(system.coordinates());
+  system.expand(state.z, q);
+  return measure(i).is_angle() && measure(i).value(q.data(), near(i, state)) > pi / 2 ? -1 : 1;
+}
+
 void OneSided::stick(std::size_t i, const System& system, const State& state) {
   Friction& f = frictions_[i - first_friction()];
   if (active_[i]) return;
@@ -116,6 +124,7 @@ void OneSided::archive(Archive& archive) {
   archive(active_);
   archive(relaxed_);
   archive(shift_);
+  archive(shares_);
   for (Friction& f : frictions_) {
     archive(f.by_load);
     archive(f.slip);
@@ -224,13 +233,29 @@ void OneSided::measure_held(const Model& model, const State& state, Probe& probe
     probe.margins[static_cast<Index>(i)] = stops_.push(i, model, held, with_forces) / zero;
   // What sticks lies before the stops that are held, in its order.
   auto constraint = static_cast<int>(std::ssize(model.structure.constraints) - std::ssize(held));
-  for (std::size_t i = size(); i-- > first_friction();) {
-    if (!active_[i]) continue;
-    const double effort = with_forces.lambda[model.system.constraint_row(--constraint)] *
-                          (measure(i).is_angle() ? length_ : 1.0);
-    probe.margins[static_cast<Index>(i)] =
-        (holding(i) - std::abs(effort)) / std::max(zero, force_zero * holding(i));
+  for (std::size_t i = size(); i-- > first_friction();)
+    if (active_[i])
+      friction_force_[static_cast<Index>(i - first_friction())] =
+          with_forces.lambda[model.system.constraint_row(--constraint)] *
+          (measure(i).is_angle() ? length_ : 1.0);
+  measure_sticking(zero, probe);
+}
+
+// Of frictions that stick, those that are held and those that rest by them.
+void OneSided::measure_sticking(double zero, Probe& probe) {
+  std::vector<Index> held, resting;
+  VectorXd tau(std::ssize(frictions_));
+  for (Index k = 0; k < tau.size(); ++k) {
+    const std::size_t i = first_friction() + static_cast<std::size_t>(k);
+    tau[k] = holding(i);
+    if (active_[i]) held.push_back(k);
+    if (!active_[i] && slip(i) == 0 && shares_.rows() > 0) resting.push_back(k);
   }
+  const MatrixXd shares = resting.empty() ? MatrixXd(0, std::ssize(held)) : MatrixXd(shares_(resting, held));
+  for (const FrictionHold& hold : friction_holds(shares, friction_force_(held), tau(held), tau(resting)))
+    for (const Index k : hold.held)
+      probe.margins[static_cast<Index>(first_friction()) + held[static_cast<std::size_t>(k)]] =
+          (hold.capacity - hold.load) / std::max(zero, force_zero * hold.capacity);
 }
 
 void OneSided::measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,

@@ -26,7 +26,8 @@ namespace unfurl {
 //     cable     slack: no force                  margin: -min(s - rest, n / (k + c / h))
 //               pulls: a spring on both sides    margin: min(s - rest, n / (k + c / h)),  n = k (s - rest) +
 //               c s'
-//     friction  sticks: a constraint             margin: tau_s - |its force|
+//     friction  sticks: a constraint             margin: tau_s - |its force|, of all that can only move
+//                                                together as one (friction_hold.hpp)
 //               slips: -slip tau_k along s       margin: slip s'
 //               stands where others hold it: no force and no constraint, margin: 2 zero - |s'|
 //
@@ -77,8 +78,12 @@ class OneSided {
   void weigh(const Model& model, const State& state);
   int slip(std::size_t i) const { return friction(i).slip; }
   void set_slip(std::size_t i, int slip);
+  // The only sense in which an angle without a sign leaves 0 or pi, a distance 0: their gradients end there.
+  int away_from_kink(std::size_t i, const System& system, const State& state) const;
   void stand(std::size_t i) { active_[i] = false, frictions_[i - first_friction()].slip = 0; }
   void stick(std::size_t i, const System& system, const State& state);
+  // Of those that stand by those that stick: c_ji of friction_hold.hpp, frictions by frictions.
+  void set_shares(MatrixXd c) { shares_ = std::move(c); }
   // What counts as zero, of rates and accelerations: what comes to a zero length in a step.
   double zero_rate() const { return stops_.touching() / step_; }
   double zero_acceleration() const { return zero_rate() / step_; }
@@ -124,6 +129,7 @@ class OneSided {
   void tell(std::size_t i, std::size_t pad, Event& out) const;
   std::set<std::size_t> held() const;
   void measure_held(const Model& model, const State& state, Probe& probe);
+  void measure_sticking(double zero, Probe& probe);
   void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
                         Probe& probe);
   double stretch(const Cable& cable, double t, const VectorXd& q, const VectorXd& v, double& rate);
@@ -134,6 +140,8 @@ class OneSided {
   std::vector<bool> active_;
   bool relaxed_ = false;  // cables are by the law of both modes
   VectorXd shift_;        // of the stops' gaps [m] or [rad]
+  MatrixXd shares_;
+  VectorXd friction_force_;  // of those that stick, at the state that is measured
   double step_, length_;
   bool eliminate_linear_;
   VectorXd gradient_, acceleration_, lambda_;
