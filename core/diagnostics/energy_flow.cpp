@@ -160,7 +160,7 @@ void RunEnergyFlow::meter_of(const Model& model) {
                             const VectorXd& lambda) {
     for (std::size_t d = 0; d < drives_.size(); ++d)
       flow_.of_drives[d].back() +=
-          weight * drives_[d].sample(*model_, meter_->system(), t, q, v, lambda, {}).power;
+          weight * drives_[d].sample(*model_, meter_->system(), t, q, v, lambda).power;
   };
 }
 

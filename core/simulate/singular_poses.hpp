@@ -58,5 +58,9 @@ bool singular_at_end(const Trajectory& trajectory);
 // Once `cancelled` says so, the events so far are all.
 inline constexpr Index max_singular_size = 300;
 void record_singular_poses(Simulation& run, const std::function<bool()>& cancelled = {});
+// The same in two: what is found, which another thread may do, and the entry among the events of the run.
+std::vector<Event> find_singular_poses(const Trajectory& trajectory,
+                                       const std::function<bool()>& cancelled = {});
+void record_singular_poses(Simulation& run, const std::vector<Event>& found);
 
 }  // namespace unfurl
