@@ -68,6 +68,8 @@ void SmallestSingularValue::stir(Index column) {
 }
 
 void SmallestSingularValue::jacobian(const ConstVec& z) {
+  if (z_.size() == z.size() && std::equal(z.begin(), z.end(), z_.begin())) return;
+  z_ = z;
   system_.expand(z, q_);
   system_.jacobian(q_, G_, scratch_);
   scale_rows(G_);

@@ -37,7 +37,8 @@ class SmallestSingularValue {
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
-  VectorXd q_, sigma_, seen_;   // seen_: entries of G_ at the pose that moved() saw last
+  VectorXd z_, q_, sigma_;      // z_: the pose of G_
+  VectorXd seen_;               // entries of G_ at the pose that moved() saw last
   Interleaved rows_, columns_;  // the two parts of some of the saddle-point system's unknowns
   MatrixXd block_;              // columns: singular vectors, by rising sigma
 };

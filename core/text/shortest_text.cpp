@@ -84,49 +84,70 @@ constexpr std::array<char, 200> pairs = [] {
   return out;
 }();
 
-// All 20 digits, zeros in front; returns the first that is none.
-const char* digits_of(uint64_t x, std::array<char, 20>& text) {
-  char* at = text.data() + text.size();
-  for (; x >= 100; x /= 100) std::memcpy(at -= 2, pairs.data() + 2 * (x % 100), 2);
-  if (x >= 10) {
-    std::memcpy(at -= 2, pairs.data() + 2 * x, 2);
-    return at;
+void write_pair(std::uint32_t x, char* to) {
+  std::memcpy(to, pairs.data() + static_cast<std::size_t>(2) * x, 2);
+}
+
+void write_eight(std::uint32_t x, char* to) {
+  const std::uint32_t high = x / 10'000, low = x % 10'000;
+  write_pair(high / 100, to);
+  write_pair(high % 100, to + 2);
+  write_pair(low / 100, to + 4);
+  write_pair(low % 100, to + 6);
+}
+
+// The digits of a number below 10^18, in pieces of fixed size, which cost no calls: whoever copies them takes
+// `room` characters wherever he begins.
+constexpr std::size_t most_digits = 18, room = 24;
+
+struct Digits {
+  explicit Digits(uint64_t x) {
+    constexpr uint64_t eight = 100'000'000;
+    const uint64_t high = x / eight;
+    write_pair(static_cast<std::uint32_t>(high / eight), all.data());
+    write_eight(static_cast<std::uint32_t>(high % eight), all.data() + 2);
+    write_eight(static_cast<std::uint32_t>(x % eight), all.data() + 10);
+    while (*first == '0') ++first;
+    const char* end = all.data() + most_digits;
+    while (end[-1] == '0') --end, ++zeros;
+    count = static_cast<int>(end - first);
   }
-  *--at = static_cast<char>('0' + x);
-  return at;
-}
+  Digits(const Digits&) = delete;
+  Digits& operator=(const Digits&) = delete;
+  ~Digits() = default;
 
-char* copied(const char* from, int count, char* to) {
-  std::memcpy(to, from, static_cast<std::size_t>(count));
-  return to + count;
-}
+  std::array<char, most_digits + room> all{};
+  const char* first = all.data();  // that is no zero
+  int count = 0, zeros = 0;        // up to the last one that is none, and behind it
+};
 
-char* zeros(int count, char* to) {
-  std::memset(to, '0', static_cast<std::size_t>(count));
-  return to + count;
-}
-
-char* written_fixed(const char* digits, int count, int exponent, char* to) {
-  const int before = count + exponent;  // digits in front of the point
-  if (exponent >= 0) return zeros(exponent, copied(digits, count, to));
-  if (before > 0) {
-    to = copied(digits, before, to);
-    *to++ = '.';
-    return copied(digits + before, count - before, to);
+char* write_fixed(const Digits& d, int exponent, char* to) {
+  const int before = d.count + exponent;  // digits in front of the point
+  if (before <= 0) {
+    std::memcpy(to, "0.000000", 8);  // three at most: the other way is shorter then
+    std::memcpy(to + 2 - before, d.first, room);
+    return to + 2 - exponent;
   }
-  *to++ = '0';
-  *to++ = '.';
-  return copied(digits, count, zeros(-before, to));
+  std::memcpy(to, d.first, room);
+  if (exponent >= 0) {
+    std::memset(to + d.count, '0', room);
+    return to + before;
+  }
+  to[before] = '.';
+  std::memcpy(to + before + 1, d.first + before, room);
+  return to + d.count + 1;
 }
 
-char* written_scientific(const char* digits, int count, int exponent, char* to) {
-  *to++ = digits[0];
-  if (count > 1) *to++ = '.';
-  to = copied(digits + 1, count - 1, to);
-  const int power = exponent + count - 1, size = std::abs(power);  // below 100
-  *to++ = 'e';
-  *to++ = power < 0 ? '-' : '+';
-  return copied(pairs.data() + static_cast<std::ptrdiff_t>(2) * size, 2, to);
+char* write_scientific(const Digits& d, int exponent, char* to) {
+  to[0] = *d.first;
+  to[1] = '.';
+  std::memcpy(to + 2, d.first + 1, room);
+  to += d.count > 1 ? d.count + 1 : 1;
+  const int power = exponent + d.count - 1;  // below 100
+  to[0] = 'e';
+  to[1] = power < 0 ? '-' : '+';
+  write_pair(static_cast<std::uint32_t>(std::abs(power)), to + 2);
+  return to + 4;
 }
 
 }  // namespace
@@ -136,21 +157,25 @@ char* shortest_text(double x, char* text) {
   const uint64_t fraction = bits & ((uint64_t{1} << fraction_bits) - 1);
   const int q = static_cast<int>(bits >> fraction_bits & 0x7ffU) - bias;
   if (q < -182 || q >= 0) return std::to_chars(text, text + longest_number, x).ptr;
-  if (bits >> 63U != 0) *text++ = '-';
   const uint64_t c = fraction | uint64_t{1} << fraction_bits;
-  Decimal d{c, 0};
+  Decimal value{c, 0};
   if (q > -fraction_bits - 1 && (c & ((uint64_t{1} << -q) - 1)) == 0)
-    d.digits = c >> -q;  // an integer
+    value.digits = c >> -q;  // an integer
   else
-    d = shortest(c, q, fraction != 0);
-  for (; d.digits % 10 == 0; d.digits /= 10) ++d.exponent;
-  std::array<char, 20> all{};
-  const char* const digits = digits_of(d.digits, all);
-  const int count = static_cast<int>(all.data() + all.size() - digits);
-  const int fixed = d.exponent >= 0 ? count + d.exponent : d.exponent > -count ? count + 1 : 2 - d.exponent;
-  const int scientific = count + (count > 1 ? 1 : 0) + 4;
-  return fixed <= scientific ? written_fixed(digits, count, d.exponent, text)
-                             : written_scientific(digits, count, d.exponent, text);
+    value = shortest(c, q, fraction != 0);
+  const Digits d(value.digits);
+  const int exponent = value.exponent + d.zeros;
+  const int fixed = exponent >= 0 ? d.count + exponent : exponent > -d.count ? d.count + 1 : 2 - exponent;
+  const int scientific = d.count + (d.count > 1 ? 1 : 0) + 4;
+  std::array<char, 3 * room> out;
+  out[0] = '-';
+  const bool negative = bits >> 63U != 0;
+  char* const begin = out.data() + (negative ? 1 : 0);
+  const char* const end =
+      fixed <= scientific ? write_fixed(d, exponent, begin) : write_scientific(d, exponent, begin);
+  const std::ptrdiff_t size = end - out.data();
+  std::memcpy(text, out.data(), static_cast<std::size_t>(size));
+  return text + size;
 }
 
 }  // namespace unfurl

@@ -8,6 +8,7 @@
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/books.hpp"
+#include "core/diagnostics/state_forces.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
@@ -111,6 +112,40 @@ end_time = 0.7
   }
   CHECK(testing::largest(all, "drive_work_J") > 1);
   CHECK(testing::largest(all, "impact_loss_J") > 0.1);
+}
+
+// A ring whose constraints are redundant, a latch that changes the model, a deployed pose that is singular.
+TEST_CASE("what is found of a run ahead, piece by piece, changes no bit of its diagnosis") {
+  const Scene scene = read_scene_file(
+      find_scene("hoop6"),
+      {"structure.fold_angle=63.7", "solver.step=0.017", "solver.at_deployed=latch", "solver.end_time=5.5"});
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  REQUIRE(&run.trajectory.model(0) != &run.trajectory.last_model());
+  Simulation alone = run;
+  record_singular_poses(alone);
+  const Diagnostics wanted = diagnose(alone);
+
+  std::vector<SolvedPoint> forces;
+  std::vector<Trajectory> pieces;
+  for (std::size_t at = 0; at < run.trajectory.size(); at += 28)
+    pieces.push_back(run.trajectory.part(at, std::min(at + 28, run.trajectory.size()), scene.solver));
+  StateForces solver(pieces.front());
+  for (const Trajectory& piece : pieces) {
+    solver.go_on(piece);
+    for (std::size_t k = 0; k < piece.size(); ++k) forces.push_back(solver.at(k));
+  }
+  Simulation ahead = run;
+  const Diagnostics d = diagnose(ahead, {}, {&forces, [&] { record_singular_poses(ahead); }});
+  REQUIRE(d.columns.size() == wanted.columns.size());
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  for (std::size_t c = 0; c < d.columns.size(); ++c) {
+    CAPTURE(d.columns[c].name);
+    CHECK(std::ranges::equal(d.columns[c].values, wanted.columns[c].values, same));
+  }
+  CHECK(std::equal(d.axial_force.data(), d.axial_force.data() + d.axial_force.size(),
+                   wanted.axial_force.data(), same));
+  CHECK((d.force_unique == wanted.force_unique).all());
+  CHECK(d.rod_unique == wanted.rod_unique);
 }
 
 TEST_CASE("a search for singular poses that is cancelled ends at once") {
