@@ -50,7 +50,7 @@ Diagnostics judged(Simulation& run, RunAhead& ahead) {
   std::vector<Event> poses;
   const TaskQueue::Scope scope(ahead.beside());
   ahead.beside().add([&] { poses = find_singular_poses(run.trajectory, waited_enough); });
-  return judge_run(run, {&ahead.forces(), [&] {
+  return judge_run(run, {&ahead.forces(), ahead.flow(), [&] {
                            ahead.beside().finish();
                            record_singular_poses(run, poses);
                          }});
@@ -87,13 +87,6 @@ int write_end(const Scene& scene, UnfinishedRun& unfinished, Simulation& rest, s
   return exit_code_of(whole.run, d);
 }
 
-// What is looked at ahead of a run that is handed over in parts comes to nothing. Displacements that are
-// added afterwards (quasi-static models) are not in it.
-bool ends_in_one_part(const Scene& scene, const Model& model, const Parts& parts) {
-  return !model.structure.quasi_static && !parts.archived &&
-         scene.solver.end_time < static_cast<double>(parts.states) * scene.solver.step;
-}
-
 int run_in_parts(const Scene& scene, const std::shared_ptr<const Model>& model, const Arguments& arguments,
                  OwnDirectory& output, bool film) {
   UnfinishedRun unfinished(output.written(), scene, model, arguments.checkpoint, !film);
@@ -111,7 +104,9 @@ int run_in_parts(const Scene& scene, const std::shared_ptr<const Model>& model, 
     ahead.stop();
     unfinished.take(std::move(window), stepper, ahead.beside());
   };
-  if (ends_in_one_part(scene, *model, parts))
+  // Not of what is displaced afterwards. Of a run that turns out to be handed over in parts it was for
+  // nothing.
+  if (!model->structure.quasi_static && !parts.archived)
     parts.look = [&](const Trajectory& so_far) {
       ahead.look(so_far, std::clamp<std::size_t>(parts.states / 64 * 4, 4, 48));
     };

@@ -62,11 +62,23 @@ void RunAhead::examine(Piece& piece, bool start) {
 }
 
 void RunAhead::find_forces(const Trajectory& piece) {
-  if (solver_)
-    solver_->go_on(piece);
-  else
-    solver_.emplace(piece);
-  for (std::size_t k = 0; k < piece.size(); ++k) forces_.push_back(solver_->at(k));
+  const auto shared = [](const Model& model) {
+    return std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model);
+  };
+  if (!seen_) {
+    seen_.emplace(shared(piece.model()));
+    solver_.emplace(*seen_);
+    flow_.emplace(*seen_, true);
+  }
+  const std::size_t first = seen_->size();
+  for (std::size_t k = 0; k < piece.size(); ++k) {
+    if (&piece.model(k) != &seen_->last_model()) seen_->change_model(shared(piece.model(k)));
+    seen_->append(piece.state(k), piece.report(k));
+  }
+  for (std::size_t i = first; i < seen_->size(); ++i) {
+    if (i > 0) flow_->step_to(i, &*solver_);
+    forces_.push_back(solver_->at(i));
+  }
 }
 
 void RunAhead::stop() {
@@ -76,8 +88,10 @@ void RunAhead::stop() {
 }
 
 void RunAhead::drop() {
-  pieces_.clear();
+  flow_.reset();
   solver_.reset();
+  seen_.reset();
+  pieces_.clear();
   forces_.clear();
   rows_ = {};
   mobility_.reset();

@@ -5,6 +5,7 @@
 #include <deque>
 #include <optional>
 
+#include "core/diagnostics/energy_flow.hpp"
 #include "core/diagnostics/state_forces.hpp"
 #include "core/export/csv.hpp"
 #include "core/simulate/parts.hpp"
@@ -13,9 +14,10 @@
 
 namespace unfurl {
 
-// While a run is solved, its first states are looked at already: forces, rows of trajectory.csv, mobility at
-// the start. It is used where the run's states are still the same to the bit when it has ended. On one core,
-// or with one thread, nothing is done ahead, and what is given to beside() is done at once.
+// While a run is solved, its first states are looked at already: forces, energy that flows in and out, rows
+// of trajectory.csv, mobility at the start. It is used where the run's states are still the same to the bit
+// when it has ended. On one core, or with one thread, nothing is done ahead, and what is given to beside() is
+// done at once.
 class RunAhead {
  public:
   explicit RunAhead(int threads);  // at most; 0: as many as the machine has
@@ -29,6 +31,7 @@ class RunAhead {
   void take(const Trajectory& run);
   void leave_out(std::size_t size);  // states from here on
   const std::vector<SolvedPoint>& forces() const { return forces_; }
+  const EnergyFlow* flow() const { return flow_ ? &flow_->so_far() : nullptr; }
   const RowsAhead& rows() const { return rows_; }
   const std::optional<Mobility>& mobility() const { return mobility_; }
 
@@ -41,14 +44,16 @@ class RunAhead {
     bool done = false;
   };
   void examine(Piece& piece, bool start);
-  void find_forces(const Trajectory& piece);
+  void find_forces(const Trajectory& piece);  // and what flows in and out
   void drop();
 
   bool on_;
   std::size_t next_ = 0;  // state
   std::deque<Piece> pieces_;
   std::optional<Mobility> mobility_;
+  std::optional<Trajectory> seen_;  // all pieces, whose models it shares
   std::optional<StateForces> solver_;
+  std::optional<RunEnergyFlow> flow_;
   std::vector<SolvedPoint> forces_;
   RowsAhead rows_;
   TaskQueue queue_;  // last: it ends before what it works on

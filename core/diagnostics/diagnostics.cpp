@@ -338,14 +338,14 @@ enum class Look { energies, books, states, all };
 class StateTable {
  public:
   // `uniqueness`: where it is known already; null: it is asked for only at the end.
-  StateTable(const Simulation& run, Look look, const ForceUniqueness* uniqueness,
-             const std::vector<SolvedPoint>* ahead)
+  StateTable(const Simulation& run, Look look, const ForceUniqueness* uniqueness, const KnownAhead& ahead)
       : run_(run),
         books_(look == Look::books || look == Look::energies),
         uniqueness_(uniqueness),
         used_(columns(run, books_, out_)),
-        flow_(run, look == Look::books || look == Look::all),
-        forces_(run.trajectory, ahead),
+        flow_(run.trajectory, look == Look::books || look == Look::all),
+        known_flow_(ahead.flow),
+        forces_(run.trajectory, ahead.forces),
         fold_(run.trajectory.structure().deployment) {
     if (!books_) drives_.emplace(run.trajectory.model(), out_.columns);
     first_own_ = out_.columns.size();
@@ -362,16 +362,27 @@ class StateTable {
     if (model_ != &run_.trajectory.model(i)) enter(i);
     system_->follow(state);
     const VectorXd q = run_.trajectory.node_positions(i), v = run_.trajectory.node_velocities(i);
-    if (i > 0) flow_.step_to(i, books_ ? nullptr : &forces_);
+    if (i > 0 && !known_flow_) flow_.step_to(i, books_ ? nullptr : &forces_);
     system_->all_constraint_values(state.t, q, phi_);
     system_->all_constraint_rates(state.t, q, v, velocity_phi_, scratch_);
     VectorXd lambda;
     if (!books_) lambda = find_forces(i, q, v);
     if (i == 0) first_energy_ = system_->kinetic_energy(state.w) + system_->potential_energy(state, q);
     const double angle = fold_.at(state.t, q, v);
-    const Instant instant{
-        run_,          i,      state,         q,        v,     phi_,           lengths_,
-        velocity_phi_, force_, acceleration_, *system_, angle, flow_.so_far(), first_energy_};
+    const Instant instant{run_,
+                          i,
+                          state,
+                          q,
+                          v,
+                          phi_,
+                          lengths_,
+                          velocity_phi_,
+                          force_,
+                          acceleration_,
+                          *system_,
+                          angle,
+                          known_flow_ ? *known_flow_ : flow_.so_far(),
+                          first_energy_};
     out_.t.push_back(state.t);
     for (std::size_t c = 0; c < used_.size(); ++c) out_.columns[c].values.push_back(used_[c]->value(instant));
     if (books_) return;
@@ -433,6 +444,7 @@ class StateTable {
   std::optional<DriveColumns> drives_;
   std::size_t first_own_ = 0;  // column of what the structure has of its own
   RunEnergyFlow flow_;
+  const EnergyFlow* known_flow_;
   StateForces forces_;
   FoldAngle fold_;
   std::optional<ElasticSharing> sharing_;
@@ -444,7 +456,7 @@ class StateTable {
 };
 
 Diagnostics diagnosed(const Simulation& run, Look look, const ForceUniqueness* uniqueness) {
-  StateTable table(run, look, uniqueness, nullptr);
+  StateTable table(run, look, uniqueness, {});
   table.fill({});
   return table.finish(uniqueness);
 }
@@ -460,7 +472,7 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
   };
   const bool shared = any_elastic(run.trajectory.structure());
   if (shared) find_uniqueness();
-  StateTable table(run, Look::all, shared ? &*uniqueness : nullptr, ahead.forces);
+  StateTable table(run, Look::all, shared ? &*uniqueness : nullptr, ahead);
   table.fill(cancelled);
   if (!shared) find_uniqueness();
   return table.finish(&*uniqueness);

@@ -35,10 +35,12 @@ struct Diagnostics {
 };
 
 struct SolvedPoint;
+struct EnergyFlow;
 
 // What is known of a run before its diagnosis; the same bits come of it.
 struct KnownAhead {
   const std::vector<SolvedPoint>* forces = nullptr;  // at its first states
+  const EnergyFlow* flow = nullptr;                  // at all of them
   // Sees to it that the run's events name its singular poses: called once, where forces that may not be
   // unique are asked for. Empty: they do.
   std::function<void()> name_poses = {};

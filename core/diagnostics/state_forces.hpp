@@ -21,14 +21,7 @@ class StateForces {
  public:
   // `ahead`: what another one found at the first states already; null: nothing.
   explicit StateForces(const Trajectory& trajectory, const std::vector<SolvedPoint>* ahead = nullptr)
-      : trajectory_(&trajectory), ahead_(ahead) {}
-
-  // Further states of the same run, counted from 0 again: what was learnt of its redundant rows at those
-  // before decides about the last bits.
-  void go_on(const Trajectory& next) {
-    trajectory_ = &next;
-    first_ = behind_last_ = 0;
-  }
+      : trajectory_(trajectory), ahead_(ahead) {}
 
   // Multipliers of state i, least-norm where rows are redundant; NaN where the equations have no solution. At
   // an event in a singular pose they are the extrapolated ones that the state holds. Accelerations are those
@@ -40,7 +33,7 @@ class StateForces {
  private:
   void solve_from(std::size_t i);
 
-  const Trajectory* trajectory_;
+  const Trajectory& trajectory_;
   const std::vector<SolvedPoint>* ahead_;
   const Model* model_ = nullptr;
   std::optional<Index1Lanes> lanes_;         // of that model
