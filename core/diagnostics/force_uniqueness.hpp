@@ -55,6 +55,10 @@ class ForceUniqueness {
   std::map<std::size_t, std::vector<char>> singular_;
 };
 
+// Enters what is unique into diagnostics of the run's states that have everything else: flags of rods and
+// the columns that say so.
+void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& diagnostics);
+
 // The largest axial force among all rods and states: its magnitude, or of tensions or compressions alone.
 enum class Pull { either, tension, compression };
 struct PeakForce {
