@@ -27,7 +27,9 @@ class Change {
       if (!sides_.is_stop(i) && !sides_.is_friction(i)) turn(i, !sides_.active(i));
     find_rows();
     if (rows_.empty()) return std::move(out_);
-    PushResponses responses(system_, out_.state);
+    const Model acting = sides_.without_holds(base_);  // a cable may pull with a jump
+    const System system = acting.system.at(out_.state);
+    PushResponses responses(system, out_.state);
     if (!responses.ok()) return failed("the constraint matrix cannot be factorised where modes change");
     for (const std::size_t i : rows_)
       responses.add(sides_.measure(i), sides_.sign(i), sides_.near(i, out_.state),

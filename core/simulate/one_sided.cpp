@@ -320,13 +320,25 @@ std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
 }
 
-std::shared_ptr<const Model> OneSided::model(const Model& base) const {
-  Structure structure = base.structure;
+void OneSided::set_cables(Structure& structure) const {
   for (std::size_t k = 0; k < cables_.size(); ++k)
     if (active_[stops_.size() + k])
       structure.forces[cables_[k].force].one_sided = false;
     else
       structure.forces[cables_[k].force].slack = !relaxed_;
+}
+
+Model OneSided::without_holds(const Model& base) const {
+  if (cables_.empty()) return base;
+  Structure structure = base.structure;
+  set_cables(structure);
+  System system(structure, eliminate_linear_);
+  return {std::move(structure), std::move(system)};
+}
+
+std::shared_ptr<const Model> OneSided::model(const Model& base) const {
+  Structure structure = base.structure;
+  set_cables(structure);
   for (std::size_t k = 0; k < frictions_.size(); ++k) {
     const Friction& f = frictions_[k];
     for (const Friction::Pad& pad : f.pads) structure.forces[pad.force].slip = f.slip;

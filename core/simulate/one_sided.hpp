@@ -97,6 +97,8 @@ class OneSided {
 
   // `base` in the present modes.
   std::shared_ptr<const Model> model(const Model& base) const;
+  // `base` with cables in their modes, all else free.
+  Model without_holds(const Model& base) const;
   // `base` with the held stops as constraints for good, which leaves them free here. Reels stop at their
   // length at t instead.
   std::shared_ptr<const Model> lock_held(const Model& base, double t);
@@ -129,6 +131,7 @@ class OneSided {
   void tell(std::size_t i, std::size_t pad, Event& out) const;
   std::set<std::size_t> held() const;
   void measure_held(const Model& model, const State& state, Probe& probe);
+  void set_cables(Structure& structure) const;
   void measure_sticking(double zero, Probe& probe);
   void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
                         Probe& probe);
