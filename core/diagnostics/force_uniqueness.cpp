@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/math/determined_rows.hpp"
+#include "core/math/largest.hpp"
 #include "core/simulate/elastic_sharing.hpp"
 
 namespace unfurl {
@@ -83,6 +84,22 @@ bool ForceUniqueness::all_by_rigid_rods(std::size_t state) const {
 const std::vector<char>& ForceUniqueness::at(std::size_t state) const {
   const auto singular = singular_.find(state);
   return singular != singular_.end() ? singular->second : std::prev(usual_.upper_bound(state))->second;
+}
+
+std::vector<char> followed_forces(const Model& model, const State& state, const VectorXd& axial_force) {
+  constexpr double small = 0.01;
+  const std::vector<int>& giving = model.system.giving_rods();
+  if (state.tension_error.size() != std::ssize(giving) || giving.empty()) return {};
+  const std::vector<Rod>& rods = model.structure.rods;
+  const double most = small * largest_magnitude(axial_force.data(), axial_force.size());
+  std::vector<char> followed(rods.size(), 0);
+  bool all = true;
+  for (std::size_t k = 0; k < giving.size(); ++k) {
+    const auto r = static_cast<std::size_t>(giving[k]);
+    followed[r] = state.tension_error[static_cast<Index>(k)] / rods[r].multiplicity <= most ? 1 : 0;
+    all = all && followed[r];
+  }
+  return all ? std::vector<char>() : followed;
 }
 
 PeakForce peak_rod_force(const Diagnostics& d, Pull pull) {
