@@ -59,12 +59,8 @@ struct Instant {
     }
     return most;
   }
-  // Magnitude, of latches that give.
   double latch_load() const {
-    double most = 0;
-    for (const Force& force : run.trajectory.model(i).structure.forces)
-      if (force.kind == "latch") most = std::max(most, std::abs(unfurl::latch_load(force, q, v)));
-    return most;
+    return unfurl::latch_load(run.trajectory.model(i).structure, equations.moment(state.t), q, v);
   }
   double relative_constraint() const { return max_norm(phi.cwiseQuotient(lengths)); }
 };
@@ -193,6 +189,10 @@ bool can_strike(const Structure& structure, const SolverOptions& options) {
          (options.at_deployed == "latch" && !structure.deployment.empty() && !latch_gives(structure));
 }
 
+bool latched_angle(const Deployment& deployment) {
+  return deployment.latches.empty() && (!deployment.measured || is_angle(deployment.measure));
+}
+
 bool present(Needs needs, const Simulation& run) {
   const Model& model = run.trajectory.model();
   const auto latches = [&](double damping) {
@@ -220,9 +220,9 @@ bool present(Needs needs, const Simulation& run) {
     case Needs::strengths:
       return any_strength(model.structure);
     case Needs::latch_forces:
-      return latches(0.0) && !model.structure.deployment.latches.empty();
+      return latches(0.0) && !latched_angle(model.structure.deployment);
     case Needs::latch_torques:
-      return latches(0.0) && model.structure.deployment.latches.empty();
+      return latches(0.0) && latched_angle(model.structure.deployment);
   }
   return true;
 }
@@ -386,8 +386,7 @@ class StateTable {
     for (std::size_t c = 0; c < used_.size(); ++c) out_.columns[c].values.push_back(used_[c]->value(instant));
     if (books_) return;
     add_own_values(run_.trajectory.structure(), instant, out_.columns.data() + first_own_);
-    static const std::vector<char> not_asked;
-    drives_->append(*model_, instant, lambda, uniqueness_ ? uniqueness_->at(i) : not_asked);
+    drives_->append(*model_, instant, lambda, rows_unique_);
   }
 
   Diagnostics finish() {
@@ -427,15 +426,19 @@ class StateTable {
     VectorXd lambda = forces_.multipliers(i, acceleration_);
     sharing_->share(state.t, q, run_.trajectory.report(i).singular_event, lambda);
     axial_forces(*model_, state, q, v, lambda, force_);
+    const std::vector<char> followed = followed_forces(*model_, state, force_);
     for (std::size_t r = 0; uniqueness_ && r < unique_.size(); ++r) {
       const std::vector<char>& rows_unique = uniqueness_->at(i);
       const int row = system_->rod_rows()[r];
       unique_[r] = row < 0 ? char{1} : rows_unique[static_cast<std::size_t>(row)];
+      if (!followed.empty()) unique_[r] = static_cast<char>(unique_[r] & followed[r]);
       if (uniqueness_->regular(i)) out_.rod_unique[r] = static_cast<char>(out_.rod_unique[r] & unique_[r]);
       out_.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
           unique_[r] != 0 && !std::isnan(force_[static_cast<Index>(r)]);
     }
     if (force_.size() > 0) out_.axial_force.row(static_cast<Index>(i)) = force_.transpose();
+    rows_unique_ = uniqueness_ ? uniqueness_->at(i) : std::vector<char>();
+    if (!followed.empty()) std::fill(rows_unique_.begin(), rows_unique_.end(), char{0});
     return lambda;
   }
 
@@ -453,7 +456,7 @@ class StateTable {
   const Model* model_ = nullptr;
   std::unique_ptr<System> system_;  // of that model, as the angles have turned so far
   VectorXd lengths_, phi_, velocity_phi_, force_, acceleration_;
-  std::vector<char> unique_;
+  std::vector<char> unique_, rows_unique_;  // rods; rows, empty: not asked
   std::vector<double> scratch_;
   double first_energy_ = 0;
 };
