@@ -431,8 +431,8 @@ class StateTable {
       const std::vector<char>& rows_unique = uniqueness_->at(i);
       const int row = system_->rod_rows()[r];
       unique_[r] = row < 0 ? char{1} : rows_unique[static_cast<std::size_t>(row)];
-      if (!followed.empty()) unique_[r] = static_cast<char>(unique_[r] & followed[r]);
       if (uniqueness_->regular(i)) out_.rod_unique[r] = static_cast<char>(out_.rod_unique[r] & unique_[r]);
+      if (!followed.empty()) unique_[r] = static_cast<char>(unique_[r] & followed[r]);
       out_.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
           unique_[r] != 0 && !std::isnan(force_[static_cast<Index>(r)]);
     }
