@@ -9,7 +9,7 @@ constexpr Command table[] = {
     {"run", "SCENE -o DIR", "simulate; write data", 1, 1, false, cmd_run,
      "-o --set --tolerance --export --checkpoint --resume --size --fps --look --supersample --transparent "
      "--plan "
-     "--force --json --quiet",
+     "--force --threads --json --quiet",
      "unfurl run hoop6 -o data\n"
      "unfurl run hoop6 -o data --set structure.units=12 --set solver.step=0.005\n"
      "unfurl run my.toml -o data --tolerance 1e-8 --export vtk,npy\n"

@@ -264,8 +264,8 @@ void WrittenFiles::remove_all() {
 void WrittenFiles::forget_missing() {
   const std::lock_guard lock(mutex_);
   std::error_code error;
-  std::erase_if(lines_, [&](const auto& entry) { return !fs::exists(directory_ / entry.first, error); });
-  write_anew();
+  const auto missing = [&](const auto& entry) { return !fs::exists(directory_ / entry.first, error); };
+  if (std::erase_if(lines_, missing) > 0) write_anew();
 }
 
 std::vector<std::string> WrittenFiles::kept() const {

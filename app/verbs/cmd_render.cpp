@@ -65,7 +65,9 @@ int cmd_render(const Arguments& arguments) {
     });
     if (!writes) return interrupted() ? exit_interrupted : exit_code_of(run, diagnostics);
   }
-  const std::string summary = write_data(directory, scene, run, diagnostics, as_typed(arguments.words));
+  RunAhead beside(arguments.threads);
+  const std::string summary =
+      write_data(directory, scene, run, diagnostics, as_typed(arguments.words), beside);
   write_exports(formats, directory, scene, run, diagnostics, arguments);
   keeping.reset();
   report_run(run, diagnostics, arguments);

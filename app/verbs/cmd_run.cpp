@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl run SCENE -o DIR: simulate; write data.
+#include <algorithm>
 #include <iostream>
 
 #include "app/command.hpp"
@@ -43,12 +44,27 @@ bool in_parts(const Scene& scene, const Arguments& arguments) {
   throw FileError(directory, "holds no unfinished run of this scene to go on with; leave --resume out");
 }
 
+// Singular poses are looked for beside the diagnosis, which asks for them where it needs them.
+Diagnostics judged(Simulation& run, RunAhead& ahead) {
+  const auto waited_enough = [] { return interrupted_for(0.5); };
+  std::vector<Event> poses;
+  const TaskQueue::Scope scope(ahead.beside());
+  ahead.beside().add([&] { poses = find_singular_poses(run.trajectory, waited_enough); });
+  return judge_run(run, {&ahead.forces(), ahead.flow(), [&] {
+                           ahead.beside().finish();
+                           record_singular_poses(run, poses);
+                         }});
+}
+
 int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, OwnDirectory& output,
-              bool film) {
+              bool film, RunAhead& ahead) {
   const std::filesystem::path& directory = output.path();
-  const Diagnostics diagnostics = judge_run(run);
+  ahead.take(run.trajectory);
+  const Diagnostics diagnostics = judged(run, ahead);
+  ahead.leave_out(run.trajectory.size());
   if (!directory.empty() && !film) output.written().remove_all();
-  const std::string summary = write_data(directory, scene, run, diagnostics, as_typed(arguments.words));
+  const std::string summary =
+      write_data(directory, scene, run, diagnostics, as_typed(arguments.words), ahead);
   write_exports(export_formats_of(arguments), directory, scene, run, diagnostics, arguments);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary;
@@ -56,14 +72,15 @@ int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, O
 }
 
 int write_end(const Scene& scene, UnfinishedRun& unfinished, Simulation& rest, std::size_t first,
-              const Arguments& arguments) {
+              const Arguments& arguments, RunAhead& ahead) {
+  ahead.beside().finish();
   const bool stopped = rest.status == RunStatus::stopped;
   const Digest whole = stopped ? unfinished.interrupt(rest, first) : unfinished.finish(rest, first);
   const Diagnostics& d = whole.diagnostics;
   receipt_errors({{"constraint_error_m", largest_magnitude(d.at("constraint_max_m").values)},
                   {"energy_balance_J", largest_magnitude(d.at("energy_balance_J").values)}});
   const std::string summary =
-      write_data(arguments.output, scene, whole.run, d, as_typed(arguments.words), false);
+      write_data(arguments.output, scene, whole.run, d, as_typed(arguments.words), ahead, false);
   report_run(whole.run, d, arguments);
   if (stopped && !arguments.quiet) std::cerr << "unfurl: the same command goes on with it\n";
   if (arguments.json) std::cout << summary;
@@ -82,16 +99,25 @@ int run_in_parts(const Scene& scene, const std::shared_ptr<const Model>& model, 
   } else if (arguments.resume) {
     refuse_to_resume(output.path());
   }
-  parts.take = [&](Stepper::Window window, Stepper& stepper) { unfinished.take(std::move(window), stepper); };
+  RunAhead ahead(arguments.threads);
+  parts.take = [&](Stepper::Window window, Stepper& stepper) {
+    ahead.stop();
+    unfinished.take(std::move(window), stepper, ahead.beside());
+  };
+  // Not of what is displaced afterwards. Of a run that turns out to be handed over in parts it was for
+  // nothing.
+  if (!model->structure.quasi_static && !parts.archived)
+    parts.look = [&](const Trajectory& so_far) {
+      ahead.look(so_far, std::clamp<std::size_t>(parts.states / 64 * 4, 4, 48));
+    };
   Progress progress("simulating", arguments.quiet);
   SimulationHooks hooks;
   hooks.progress = [&](double fraction) { progress.show(fraction); };
   hooks.cancelled = interrupted;
   std::size_t first = 0;
   Simulation run = simulate_in_parts(model, scene.solver, hooks, parts, first);
-  if (unfinished.any()) return write_end(scene, unfinished, run, first, arguments);
-  record_singular_poses(run, [] { return interrupted_for(0.5); });
-  return write_run(scene, run, arguments, output, film);
+  if (unfinished.any()) return write_end(scene, unfinished, run, first, arguments, ahead);
+  return write_run(scene, run, arguments, output, film, ahead);
 }
 
 }  // namespace
@@ -119,8 +145,9 @@ int cmd_run(const Arguments& arguments) {
         "holds an unfinished run, which a run with --export, a tolerance or another model cannot go "
         "on with; use --force to begin anew, or another -o");
   if (arguments.resume) refuse_to_resume(directory);
-  Simulation run = simulate_scene(scene, std::move(model), arguments);
-  return write_run(scene, run, arguments, output, film);
+  Simulation run = simulate_scene(scene, std::move(model), arguments, false);
+  RunAhead beside(arguments.threads);
+  return write_run(scene, run, arguments, output, film, beside);
 }
 
 }  // namespace unfurl

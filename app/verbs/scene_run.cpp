@@ -4,8 +4,10 @@
 #include "app/output/command_line.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
@@ -52,36 +54,67 @@ std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& argum
   return build_model(scene);
 }
 
-Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model,
-                          const Arguments& arguments) {
+Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model, const Arguments& arguments,
+                          bool poses) {
   Progress progress("simulating", arguments.quiet);
   SimulationHooks hooks;
   hooks.progress = [&](double fraction) { progress.show(fraction); };
   hooks.cancelled = interrupted;
   Simulation run = simulate_as_asked(model, scene.solver, hooks);
-  record_singular_poses(run, waited_enough);
+  if (poses) record_singular_poses(run, waited_enough);
   return run;
 }
 
+namespace {
+
+// The tables, the longer ones beside what is done meanwhile; all of them take their places together.
+std::string write_tables(const std::filesystem::path& directory, const std::string& scene,
+                         const Simulation& run, const Diagnostics& diagnostics, RunAhead& ahead,
+                         const std::function<std::string()>& summary) {
+  PendingFile text(directory / "scene.toml"), series(directory / "series.csv"),
+      trajectory(directory / "trajectory.csv"), rod_forces(directory / "rod_forces.csv"),
+      end(directory / "summary.json");
+  const TaskQueue::Scope scope(ahead.beside());
+  ahead.beside().add([&] {
+    write_trajectory_csv(trajectory, run.trajectory, ahead.rows());
+    trajectory.complete();
+    write_rod_forces_csv(rod_forces, run.trajectory, diagnostics);
+    rod_forces.complete();
+  });
+  text.write(scene);
+  write_series_csv(series, diagnostics);
+  std::string json = summary();
+  end.write(json);
+  for (PendingFile* file : {&text, &series, &end}) file->complete();
+  ahead.beside().finish();
+  commit_together(std::array{&text, &series, &trajectory, &rod_forces, &end});
+  return json;
+}
+
+}  // namespace
+
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
-                       const Diagnostics& diagnostics, const std::string& command, bool tables) {
-  const Model& model = run.trajectory.model();
-  const Mobility mobility = analyse_mobility(model.system, run.trajectory.node_positions(0));
+                       const Diagnostics& diagnostics, const std::string& command, RunAhead& ahead,
+                       bool tables) {
   const std::string text = scene_text(scene);
-  Checksum hash;
-  hash.add(text);
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  const std::string summary =
-      summary_json(scene.name, run, diagnostics, mobility, {command, hash.text(), wall});
-  if (directory.empty()) return summary;
-  write_file_atomically(directory / "scene.toml", text);
-  if (tables) {
-    write_series_csv(directory / "series.csv", diagnostics);
-    write_trajectory_csv(directory / "trajectory.csv", run.trajectory);
-    write_rod_forces_csv(directory / "rod_forces.csv", run.trajectory, diagnostics);
-  }
-  write_file_atomically(directory / "summary.json", summary);
-  return summary;
+  const auto summary = [&] {
+    const Model& model = run.trajectory.model();
+    const Mobility mobility = ahead.mobility()
+                                  ? *ahead.mobility()
+                                  : analyse_mobility(model.system, run.trajectory.node_positions(0));
+    Checksum hash;
+    hash.add(text);
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    return summary_json(scene.name, run, diagnostics, mobility, {command, hash.text(), wall});
+  };
+  if (directory.empty()) return summary();
+  if (tables) return write_tables(directory, text, run, diagnostics, ahead, summary);
+  const std::string json = summary();
+  PendingFile origin(directory / "scene.toml"), end(directory / "summary.json");
+  origin.write(text);
+  end.write(json);
+  commit_together(std::array{&origin, &end});
+  return json;
 }
 
 std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments) {
@@ -132,8 +165,8 @@ void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arg
   std::cerr << text.str();
 }
 
-Diagnostics judge_run(Simulation& run) {
-  Diagnostics diagnostics = judge(run, waited_enough);
+Diagnostics judge_run(Simulation& run, const KnownAhead& ahead) {
+  Diagnostics diagnostics = judge(run, waited_enough, ahead);
   receipt_errors({{"constraint_error_m", largest_magnitude(diagnostics.at("constraint_max_m").values)},
                   {"energy_balance_J", largest_magnitude(diagnostics.at("energy_balance_J").values)}});
   return diagnostics;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/command.hpp"
+#include "app/verbs/run_ahead.hpp"
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/export/formats.hpp"
 #include "core/scene/scene.hpp"
@@ -19,13 +20,16 @@ Scene scene_of(const Arguments& arguments);
 // Its structure and equations; a large one says that it takes long.
 std::shared_ptr<const Model> model_of(const Scene& scene, const Arguments& arguments);
 
-// Simulate with a progress bar; Ctrl-C stops it. Warnings and the reason of a failure go to stderr.
-Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model, const Arguments& arguments);
+// Simulate with a progress bar; Ctrl-C stops it. Its events name singular poses, unless those are looked for
+// later.
+Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model, const Arguments& arguments,
+                          bool poses = true);
 
 // scene.toml, series.csv, trajectory.csv, rod_forces.csv and summary.json; returns the text of the latter. An
 // empty directory name writes nothing. command: what was typed, for the summary; tables: those in CSV, too.
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
-                       const Diagnostics& diagnostics, const std::string& command, bool tables = true);
+                       const Diagnostics& diagnostics, const std::string& command, RunAhead& ahead,
+                       bool tables = true);
 
 // The formats that --export names, in that order; throws UsageError with the nearest name of an unknown one.
 std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments);
@@ -39,8 +43,8 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments);
 
 // The run's diagnostics, which decide its end (judge()); half a second after Ctrl-C what is not computed yet
-// is left open.
-Diagnostics judge_run(Simulation& run);
+// is left open. What was found `ahead` is used.
+Diagnostics judge_run(Simulation& run, const KnownAhead& ahead = {});
 
 // 0, solver failed, or interrupted.
 int exit_code_of(const Simulation& run, const Diagnostics& diagnostics);

@@ -132,26 +132,33 @@ void UnfinishedRun::add(Simulation& window, std::size_t first, std::size_t last)
   tables_->add(window.trajectory, d, good, last);
 }
 
-void UnfinishedRun::take(Stepper::Window window, Stepper& stepper) {
+void UnfinishedRun::take(Stepper::Window window, Stepper& stepper, TaskQueue& beside) {
+  beside.finish();
   if (!any()) {
     if (alone_) written_.remove_all();
     begin();
     tables_->cut({});
   }
-  add(window.run, window.first, window.last);
-  digest_.settle();
-  t_ = stepper.time();
-  RunTables::Sizes sizes = tables_->sizes();
-  Archive archive, rest;
+  Archive rest;
   stepper.archive(rest);
-  std::string bytes = rest.bytes();
-  double cpu = cpu_s_ + window.run.cpu_s;
+  const auto part = std::make_shared<Part>(Part{std::move(window), stepper.time(), rest.bytes()});
+  beside.add([this, part] { take(*part); });
+}
+
+void UnfinishedRun::take(Part& part) {
+  Simulation& run = part.window.run;
+  add(run, part.window.first, part.window.last);
+  digest_.settle();
+  t_ = part.t;
+  RunTables::Sizes sizes = tables_->sizes();
+  Archive archive;
+  double cpu = cpu_s_ + run.cpu_s;
   archive(t_);
   archive(cpu);
   archive(sizes);
   archive(good_);
   digest_.archive(archive);
-  archive(bytes);
+  archive(part.stepper);
   last_ = archive.bytes();
   const auto now = std::chrono::steady_clock::now();
   if (now - written_at_ < std::chrono::duration<double>(seconds_)) return;

@@ -12,6 +12,7 @@
 #include "core/diagnostics/run_digest.hpp"
 #include "core/export/run_tables.hpp"
 #include "core/scene/scene.hpp"
+#include "render/image/task_queue.hpp"
 
 namespace unfurl {
 
@@ -32,7 +33,8 @@ class UnfinishedRun {
   double begins_at() const { return t_; }    // [s] of motion
 
   bool any() const { return tables_ != nullptr; }  // a part was taken or found
-  void take(Stepper::Window window, Stepper& stepper);
+  // The part's diagnosis, rows and checkpoint are made `beside` what comes next; one part at a time.
+  void take(Stepper::Window window, Stepper& stepper, TaskQueue& beside);
   // All of the run, its tables in their places and nothing left behind; `rest`: what no part had.
   Digest finish(Simulation& rest, std::size_t first);
   // The same of a run that was interrupted, which can still go on from its last part.
@@ -45,6 +47,12 @@ class UnfinishedRun {
   void take_back(const RunTables::Sizes& sizes) const;
   void begin();
   void add(Simulation& window, std::size_t first, std::size_t last);
+  struct Part {
+    Stepper::Window window;
+    double t;             // of the stepper behind it
+    std::string stepper;  // archived
+  };
+  void take(Part& part);
   void keep();  // as the last part left it
   Digest whole(Simulation& rest) const;
   std::string fingerprint() const;

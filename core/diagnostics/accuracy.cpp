@@ -196,8 +196,8 @@ void fail_for(const std::string& why, Simulation& run) {
   run.status = RunStatus::failed;
 }
 
-Diagnostics judge(Simulation& run, const std::function<bool()>& cancelled) {
-  Diagnostics d = diagnose(run, cancelled);
+Diagnostics judge(Simulation& run, const std::function<bool()>& cancelled, const KnownAhead& ahead) {
+  Diagnostics d = diagnose(run, cancelled, ahead);
   const std::size_t judged = d.t.size() - d.left_open;
   GoodPart part = good_part(run, d);
   if (part.states == judged) return d;

@@ -32,7 +32,7 @@ double energy_turned_over(const Diagnostics& diagnostics);
 // diagnose(), and what is known about the run decides its end: the longest beginning of it that can be
 // trusted is kept, in trajectory, events and diagnostics; where that is not all, its status is `failed` and
 // its message says when and why. `cancelled` as for diagnose(): states that were left open are not judged.
-Diagnostics judge(Simulation& run, const std::function<bool()>& cancelled = {});
+Diagnostics judge(Simulation& run, const std::function<bool()>& cancelled = {}, const KnownAhead& ahead = {});
 
 // "from t = 0.3 s on ...": why judge() would not keep all of the run; empty where it would.
 std::string mistrust(const Simulation& run, const Diagnostics& diagnostics);

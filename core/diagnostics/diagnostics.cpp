@@ -32,14 +32,13 @@ struct Instant {
   const Simulation& run;
   std::size_t i;
   const State& state;
-  const VectorXd &q, &v;                  // node coordinates, velocities
-  const VectorXd &phi, &lengths;          // of all constraints [m]
-  const VectorXd& velocity_phi;           // G v of all constraints [m/s]
-  const VectorXd& axial_force;            // of the solved rods [N]
-  const std::vector<char>& force_unique;  // of the solved rods
-  const VectorXd& acceleration;           // of the nodes; NaN where the equations have no solution [m/s^2]
-  const System& equations;                // that the state belongs to, near its angles
-  double fold_angle;                      // [rad]
+  const VectorXd &q, &v;          // node coordinates, velocities
+  const VectorXd &phi, &lengths;  // of all constraints [m]
+  const VectorXd& velocity_phi;   // G v of all constraints [m/s]
+  const VectorXd& axial_force;    // of the solved rods [N]
+  const VectorXd& acceleration;   // of the nodes; NaN where the equations have no solution [m/s^2]
+  const System& equations;        // that the state belongs to, near its angles
+  double fold_angle;              // [rad]
   const EnergyFlow& flow;
   double first_energy;  // kinetic + potential at t = 0 [J]
 
@@ -64,16 +63,6 @@ struct Instant {
   }
   double relative_constraint() const { return max_norm(phi.cwiseQuotient(lengths)); }
 };
-
-// Whether the force that is largest in this direction is unique; of no rods it is.
-double extreme_unique(const Instant& s, double sign) {
-  if (s.axial_force.size() == 0) return 1.0;
-  const double most = (sign * s.axial_force).maxCoeff();
-  const double close = 1e-9 * std::abs(most);  // equal ones differ by round-off
-  for (Index r = 0; r < s.axial_force.size(); ++r)
-    if (!(sign * s.axial_force[r] < most - close) && !s.force_unique[static_cast<std::size_t>(r)]) return 0.0;
-  return 1.0;
-}
 
 // What a scene must have for a column to mean something.
 enum class Needs {
@@ -136,9 +125,9 @@ const std::array rows{
     Row{"newton_iterations", "Newton iterations", "", Needs::nothing,
         [](const Instant& s) { return static_cast<double>(s.run.trajectory.report(s.i).newton_iterations); }},
     Row{"axial_force_max_unique", "largest axial force is unique", "", Needs::nothing,
-        [](const Instant& s) { return extreme_unique(s, 1.0); }},
+        [](const Instant&) { return 1.0; }},  // until mark_unique()
     Row{"axial_force_min_unique", "smallest axial force is unique", "", Needs::nothing,
-        [](const Instant& s) { return extreme_unique(s, -1.0); }},
+        [](const Instant&) { return 1.0; }},
     Row{"axial_stress_max_Pa", "largest axial stress", "Pa", Needs::moduli,
         [](const Instant& s) { return s.most_of_rods(1.0, axial_stress); }},
     Row{"axial_stress_min_Pa", "smallest axial stress", "Pa", Needs::moduli,
@@ -290,12 +279,12 @@ class DriveColumns {
     }
   }
   // `model`: that of the state, whose rows may be others than at the start.
-  void append(const Model& model, const Instant& s, const VectorXd& lambda, const std::vector<char>& unique) {
+  void append(const Model& model, const Instant& s, const VectorXd& lambda) {
     std::size_t column = first_;
     for (std::size_t d = 0; d < drives_.size(); ++d) {
-      const DriveSample now = drives_[d].sample(model, s.system(), s.state.t, s.q, s.v, lambda, unique);
-      for (const double x :
-           {now.value, now.effort, now.power, s.flow.of_drives[d][s.i], now.unique ? 1.0 : 0.0})
+      const DriveSample now = drives_[d].sample(model, s.system(), s.state.t, s.q, s.v, lambda);
+      for (const double x : {now.value, now.effort, now.power, s.flow.of_drives[d][s.i],
+                             drives_[d].unique(model, {}) ? 1.0 : 0.0})
         columns_[column++].values.push_back(x);
       if (drives_[d].angle()) columns_[column++].values.push_back(now.value / radians_per_degree);
     }
@@ -348,13 +337,15 @@ enum class Look { energies, books, states, all };
 // The columns of a run, filled state by state.
 class StateTable {
  public:
-  StateTable(const Simulation& run, Look look, const ForceUniqueness* uniqueness)
+  // `uniqueness`: where it is known already; null: it is asked for only at the end.
+  StateTable(const Simulation& run, Look look, const ForceUniqueness* uniqueness, const KnownAhead& ahead)
       : run_(run),
         books_(look == Look::books || look == Look::energies),
         uniqueness_(uniqueness),
         used_(columns(run, books_, out_)),
-        flow_(run, look == Look::books || look == Look::all),
-        forces_(run.trajectory),
+        flow_(run.trajectory, look == Look::books || look == Look::all),
+        known_flow_(ahead.flow),
+        forces_(run.trajectory, ahead.forces),
         fold_(run.trajectory.structure().deployment) {
     if (!books_) drives_.emplace(run.trajectory.model(), out_.columns);
     first_own_ = out_.columns.size();
@@ -363,7 +354,6 @@ class StateTable {
     out_.axial_force.resize(static_cast<Index>(run.trajectory.size()), rods);
     out_.force_unique.resize(out_.axial_force.rows(), rods);
     out_.rod_unique.assign(static_cast<std::size_t>(rods), 1);
-    unique_ = out_.rod_unique;
     force_.resize(rods);
   }
 
@@ -372,24 +362,40 @@ class StateTable {
     if (model_ != &run_.trajectory.model(i)) enter(i);
     system_->follow(state);
     const VectorXd q = run_.trajectory.node_positions(i), v = run_.trajectory.node_velocities(i);
-    if (i > 0) flow_.step_to(i, books_ ? nullptr : &forces_);
+    if (i > 0 && !known_flow_) flow_.step_to(i, books_ ? nullptr : &forces_);
     system_->all_constraint_values(state.t, q, phi_);
     system_->all_constraint_rates(state.t, q, v, velocity_phi_, scratch_);
     VectorXd lambda;
     if (!books_) lambda = find_forces(i, q, v);
     if (i == 0) first_energy_ = system_->kinetic_energy(state.w) + system_->potential_energy(state, q);
     const double angle = fold_.at(state.t, q, v);
-    const Instant instant{
-        run_,   i,       state,         q,        v,     phi_,           lengths_,     velocity_phi_,
-        force_, unique_, acceleration_, *system_, angle, flow_.so_far(), first_energy_};
+    const Instant instant{run_,
+                          i,
+                          state,
+                          q,
+                          v,
+                          phi_,
+                          lengths_,
+                          velocity_phi_,
+                          force_,
+                          acceleration_,
+                          *system_,
+                          angle,
+                          known_flow_ ? *known_flow_ : flow_.so_far(),
+                          first_energy_};
     out_.t.push_back(state.t);
     for (std::size_t c = 0; c < used_.size(); ++c) out_.columns[c].values.push_back(used_[c]->value(instant));
     if (books_) return;
     add_own_values(run_.trajectory.structure(), instant, out_.columns.data() + first_own_);
-    drives_->append(*model_, instant, lambda, rows_unique_);
+    drives_->append(*model_, instant, lambda);
   }
 
-  Diagnostics finish() {
+  void fill(const std::function<bool()>& cancelled) {
+    for (std::size_t i = 0; i < run_.trajectory.size() && !(cancelled && cancelled()); ++i) add(i);
+  }
+
+  Diagnostics finish(const ForceUniqueness* uniqueness) {
+    if (uniqueness) mark_unique(run_.trajectory, *uniqueness, out_);
     leave_open(run_.trajectory, out_);
     for (Series& column : out_.columns)
       if (column.unit == "J")
@@ -420,25 +426,13 @@ class StateTable {
     velocity_phi_.resize(lengths_.size());
   }
 
-  // Of rods, and whether they are unique; returns the multipliers.
+  // Of rods; returns the multipliers.
   VectorXd find_forces(std::size_t i, const VectorXd& q, const VectorXd& v) {
     const State& state = run_.trajectory.state(i);
     VectorXd lambda = forces_.multipliers(i, acceleration_);
     sharing_->share(state.t, q, run_.trajectory.report(i).singular_event, lambda);
     axial_forces(*model_, state, q, v, lambda, force_);
-    const std::vector<char> followed = followed_forces(*model_, state, force_);
-    for (std::size_t r = 0; uniqueness_ && r < unique_.size(); ++r) {
-      const std::vector<char>& rows_unique = uniqueness_->at(i);
-      const int row = system_->rod_rows()[r];
-      unique_[r] = row < 0 ? char{1} : rows_unique[static_cast<std::size_t>(row)];
-      if (uniqueness_->regular(i)) out_.rod_unique[r] = static_cast<char>(out_.rod_unique[r] & unique_[r]);
-      if (!followed.empty()) unique_[r] = static_cast<char>(unique_[r] & followed[r]);
-      out_.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
-          unique_[r] != 0 && !std::isnan(force_[static_cast<Index>(r)]);
-    }
     if (force_.size() > 0) out_.axial_force.row(static_cast<Index>(i)) = force_.transpose();
-    rows_unique_ = uniqueness_ ? uniqueness_->at(i) : std::vector<char>();
-    if (!followed.empty()) std::fill(rows_unique_.begin(), rows_unique_.end(), char{0});
     return lambda;
   }
 
@@ -450,49 +444,58 @@ class StateTable {
   std::optional<DriveColumns> drives_;
   std::size_t first_own_ = 0;  // column of what the structure has of its own
   RunEnergyFlow flow_;
+  const EnergyFlow* known_flow_;
   StateForces forces_;
   FoldAngle fold_;
   std::optional<ElasticSharing> sharing_;
   const Model* model_ = nullptr;
   std::unique_ptr<System> system_;  // of that model, as the angles have turned so far
   VectorXd lengths_, phi_, velocity_phi_, force_, acceleration_;
-  std::vector<char> unique_, rows_unique_;  // rods; rows, empty: not asked
   std::vector<double> scratch_;
   double first_energy_ = 0;
 };
 
-Diagnostics diagnosed(const Simulation& run, Look look, const std::function<bool()>& cancelled,
-                      const ForceUniqueness* uniqueness) {
-  StateTable table(run, look, uniqueness);
-  for (std::size_t i = 0; i < run.trajectory.size() && !(cancelled && cancelled()); ++i) table.add(i);
-  return table.finish();
+Diagnostics diagnosed(const Simulation& run, Look look, const ForceUniqueness* uniqueness) {
+  StateTable table(run, look, uniqueness, {});
+  table.fill({});
+  return table.finish(uniqueness);
 }
 
 }  // namespace
 
-Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled) {
-  const ForceUniqueness uniqueness(run);
-  return diagnosed(run, Look::all, cancelled, &uniqueness);
+// Where moduli share the load, what is unique comes first.
+Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled, const KnownAhead& ahead) {
+  std::optional<ForceUniqueness> uniqueness;
+  const auto find_uniqueness = [&] {
+    if (ahead.name_poses) ahead.name_poses();
+    uniqueness.emplace(run);
+  };
+  const bool shared = any_elastic(run.trajectory.structure());
+  if (shared) find_uniqueness();
+  StateTable table(run, Look::all, shared ? &*uniqueness : nullptr, ahead);
+  table.fill(cancelled);
+  if (!shared) find_uniqueness();
+  return table.finish(&*uniqueness);
 }
 
 Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniqueness& known) {
   const ForceUniqueness uniqueness(window, known, goes_on);
   known = uniqueness.known();
-  return diagnosed(window, Look::all, {}, &uniqueness);
+  return diagnosed(window, Look::all, &uniqueness);
 }
 
 Diagnostics diagnose_books(const Simulation& run) {
-  return diagnosed(run, Look::books, {}, nullptr);
+  return diagnosed(run, Look::books, nullptr);
 }
 
 Diagnostics diagnose_energies(const Simulation& run) {
-  return diagnosed(run, Look::energies, {}, nullptr);
+  return diagnosed(run, Look::energies, nullptr);
 }
 
 Diagnostics diagnose_states(const Simulation& run) {
   std::optional<ForceUniqueness> uniqueness;
   if (any_elastic(run.trajectory.structure())) uniqueness.emplace(run);
-  return diagnosed(run, Look::states, {}, uniqueness ? &*uniqueness : nullptr);
+  return diagnosed(run, Look::states, uniqueness ? &*uniqueness : nullptr);
 }
 
 }  // namespace unfurl

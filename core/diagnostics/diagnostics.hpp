@@ -34,6 +34,18 @@ struct Diagnostics {
   const Series& at(std::string_view name) const;    // throws std::out_of_range
 };
 
+struct SolvedPoint;
+struct EnergyFlow;
+
+// What is known of a run before its diagnosis; the same bits come of it.
+struct KnownAhead {
+  const std::vector<SolvedPoint>* forces = nullptr;  // at its first states
+  const EnergyFlow* flow = nullptr;                  // at all of them
+  // Sees to it that the run's events name its singular poses: called once, where forces that may not be
+  // unique are asked for. Empty: they do.
+  std::function<void()> name_poses = {};
+};
+
 // Column names: kinetic_energy_J potential_energy_J work_J energy_balance_J constraint_max_m
 // constraint_relative_max constraint_round_off_max constraint_velocity_max_m_s axial_force_max_N
 // axial_force_min_N step_s newton_iterations axial_force_max_unique axial_force_min_unique (1: the rod has no
@@ -42,7 +54,8 @@ struct Diagnostics {
 // modulus), latch_force_max_N latch_torque_max_N_m; of drives NAME.angle_rad NAME.torque_N_m NAME.power_W
 // NAME.torque_unique (or NAME.value_m NAME.force_N ...); the structure's own lengths and poisson_ratio.
 // `cancelled` is asked before every state: once it says so, the rest stays NaN.
-Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled = {});
+Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled = {},
+                     const KnownAhead& ahead = {});
 
 // Names of all columns that a scene may have.
 std::vector<std::string_view> diagnostic_names();

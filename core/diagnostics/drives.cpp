@@ -24,42 +24,48 @@ int held_row(const Model& model, const std::string& name) {
 
 }  // namespace
 
-DriveSample DriveChannel::of_row(const Model& model, const System& system, double t, const VectorXd& lambda,
-                                 const std::vector<char>& unique) const {
+int DriveChannel::row(const Model& model) const {
+  if (kind_ == Kind::reel) return held_row(model, name_);
+  int row = -1;
+  for (const Drive& d : model.system.drives())
+    if (d.constraint == static_cast<int>(index_)) row = d.row;
+  return row;
+}
+
+bool DriveChannel::unique(const Model& model, const std::vector<char>& rows) const {
+  if (!by_row()) return true;
+  const int row = this->row(model);
+  if (row < 0) return kind_ == Kind::reel;  // nothing pulls
+  return rows.empty() || rows[static_cast<std::size_t>(row)] != 0;
+}
+
+DriveSample DriveChannel::of_row(const Model& model, double t, const VectorXd& lambda) const {
   DriveSample s;
   // A reel stands still once the structure is locked.
   const TimeFunction& target = kind_ == Kind::reel ? model.structure.stops[index_].reel : target_;
   s.value = target(t);
-  int row = -1;
-  if (kind_ == Kind::reel) {
-    row = held_row(model, name_);
-    if (row < 0) return s;  // slack
-  } else {
-    for (const Drive& d : system.drives())
-      if (d.constraint == static_cast<int>(index_)) row = d.row;
-  }
+  const int row = this->row(model);
+  if (row < 0 && kind_ == Kind::reel) return s;
   s.effort = row >= 0 ? -scale_ * lambda[row] : unknown_effort;
   s.power = s.effort * target.derivative(1, t);
-  s.unique = row >= 0 && (unique.empty() || unique[static_cast<std::size_t>(row)] != 0);
   return s;
 }
 
 DriveSample DriveChannel::sample(const Model& model, const System& system, double t, const VectorXd& q,
-                                 const VectorXd& v, const VectorXd& lambda,
-                                 const std::vector<char>& unique) const {
-  if (kind_ == Kind::row || kind_ == Kind::reel) return of_row(model, system, t, lambda, unique);
+                                 const VectorXd& v, const VectorXd& lambda) const {
+  if (by_row()) return of_row(model, t, lambda);
   const Force& force = model.structure.forces[index_];
   const MeasureFunction& measure = measure_.front();
   std::vector<double> gradient(measure.stencil().size());
   if (kind_ == Kind::motor) {
     const MotorState s =
         motor_state(force, measure, followed_, system.moment(t), q.data(), v.data(), gradient.data());
-    return {s.value, s.effort, s.effort * s.rate, true};
+    return {s.value, s.effort, s.effort * s.rate};
   }
   const SpringLaw law = spring_law(force, t, q.data());
   const double s = measure.value_and_gradient(q.data(), gradient.data(), system.moment(t), followed_);
   const SpringPull pull = spring_pull(force, law, s, measure.rate(gradient.data(), v.data()));
-  return {law.rest, -pull.tension, pull.reeling, true};
+  return {law.rest, -pull.tension, pull.reeling};
 }
 
 std::vector<DriveChannel> drive_channels(const Model& model) {

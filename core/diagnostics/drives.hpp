@@ -14,23 +14,24 @@ struct DriveSample {
   double value = 0.0;   // of the measure, or of what is prescribed [m] or [rad]
   double effort = 0.0;  // along the measure [N] or [N m]
   double power = 0.0;   // that goes into the structure [W]
-  bool unique = true;   // the effort is
 };
 
 class DriveChannel {
  public:
   const std::string& name() const { return name_; }
   bool angle() const { return angle_; }
-  // At the node coordinates and velocities of a time; lambda: multipliers of the model's rows, `unique`: of
-  // each of them (empty: not asked).
+  // At the node coordinates and velocities of a time; lambda: multipliers of the model's rows.
   DriveSample sample(const Model& model, const System& system, double t, const VectorXd& q, const VectorXd& v,
-                     const VectorXd& lambda, const std::vector<char>& unique) const;
+                     const VectorXd& lambda) const;
+  // Whether the effort is: `rows` says it of the multipliers of the model's rows.
+  bool unique(const Model& model, const std::vector<char>& rows) const;
 
  private:
   enum class Kind { row, reel, motor, winch };
   friend std::vector<DriveChannel> drive_channels(const Model& model);
-  DriveSample of_row(const Model& model, const System& system, double t, const VectorXd& lambda,
-                     const std::vector<char>& unique) const;
+  bool by_row() const { return kind_ == Kind::row || kind_ == Kind::reel; }
+  int row(const Model& model) const;  // -1: slack
+  DriveSample of_row(const Model& model, double t, const VectorXd& lambda) const;
 
   Kind kind_ = Kind::row;
   std::string name_;

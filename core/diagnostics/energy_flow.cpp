@@ -146,10 +146,10 @@ double other_loads(const System& from, const System& to, const VectorXd& z) {
 
 }  // namespace
 
-RunEnergyFlow::RunEnergyFlow(const Simulation& run, bool booked)
-    : trajectory_(run.trajectory),
+RunEnergyFlow::RunEnergyFlow(const Trajectory& run, bool booked)
+    : trajectory_(run),
       booked_(booked),
-      drives_(drive_channels(run.trajectory.model())),
+      drives_(drive_channels(run.model())),
       flow_{{0.0}, {0.0}, {0.0}, {0.0}, std::vector(drives_.size(), std::vector{0.0})} {}
 
 void RunEnergyFlow::meter_of(const Model& model) {
@@ -160,7 +160,7 @@ void RunEnergyFlow::meter_of(const Model& model) {
                             const VectorXd& lambda) {
     for (std::size_t d = 0; d < drives_.size(); ++d)
       flow_.of_drives[d].back() +=
-          weight * drives_[d].sample(*model_, meter_->system(), t, q, v, lambda, {}).power;
+          weight * drives_[d].sample(*model_, meter_->system(), t, q, v, lambda).power;
   };
 }
 

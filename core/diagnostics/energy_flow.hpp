@@ -64,7 +64,7 @@ class EnergyMeter {
 // The same along the states of a run, each in its turn; zeros unless it is `booked`.
 class RunEnergyFlow {
  public:
-  RunEnergyFlow(const Simulation& run, bool booked);
+  RunEnergyFlow(const Trajectory& run, bool booked);
   // The step that ends in state i > 0; `forces` of the run, where they are asked for anyway: one
   // factorisation a state serves both.
   void step_to(std::size_t i, StateForces* forces);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/diagnostics/drives.hpp"
 #include "core/math/determined_rows.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/elastic_sharing.hpp"
@@ -100,6 +101,65 @@ std::vector<char> followed_forces(const Model& model, const State& state, const 
     all = all && followed[r];
   }
   return all ? std::vector<char>() : followed;
+}
+
+namespace {
+
+// Whether the force that is largest in this direction is unique; of no rods it is.
+double extreme_unique(const VectorXd& force, const std::vector<char>& unique, double sign) {
+  if (force.size() == 0) return 1.0;
+  const double most = (sign * force).maxCoeff();
+  const double close = 1e-9 * std::abs(most);  // equal ones differ by round-off
+  for (Index r = 0; r < force.size(); ++r)
+    if (!(sign * force[r] < most - close) && !unique[static_cast<std::size_t>(r)]) return 0.0;
+  return 1.0;
+}
+
+std::vector<double>* values_of(Diagnostics& d, std::string_view name) {
+  for (Series& column : d.columns)
+    if (column.name == name) return &column.values;
+  return nullptr;
+}
+
+// waves[i], 1: they change forces of state i.
+void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& d,
+               std::vector<char>& waves) {
+  std::vector<double>* const largest = values_of(d, "axial_force_max_unique");
+  std::vector<double>* const smallest = values_of(d, "axial_force_min_unique");
+  std::vector<char> unique(d.rod_unique.size(), 1);
+  VectorXd force;
+  for (std::size_t i = 0; i < d.t.size(); ++i) {
+    const std::vector<char>& rows = uniqueness.at(i);
+    const std::vector<int>& row_of = trajectory.model(i).system.rod_rows();
+    const bool regular = uniqueness.regular(i);
+    force = d.axial_force.row(static_cast<Index>(i));
+    const std::vector<char> followed = followed_forces(trajectory.model(i), trajectory.state(i), force);
+    waves[i] = followed.empty() ? 0 : 1;
+    for (std::size_t r = 0; r < unique.size(); ++r) {
+      unique[r] = row_of[r] < 0 ? char{1} : rows[static_cast<std::size_t>(row_of[r])];
+      if (regular) d.rod_unique[r] = static_cast<char>(d.rod_unique[r] & unique[r]);
+      if (!followed.empty()) unique[r] = static_cast<char>(unique[r] & followed[r]);
+      d.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
+          unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);
+    }
+    if (largest) (*largest)[i] = extreme_unique(force, unique, 1.0);
+    if (smallest) (*smallest)[i] = extreme_unique(force, unique, -1.0);
+  }
+}
+
+}  // namespace
+
+void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& d) {
+  std::size_t most = 0;  // rows of any model
+  for (std::size_t i = 0; i < d.t.size(); ++i) most = std::max(most, uniqueness.at(i).size());
+  const std::vector<char> none(most, 0);
+  std::vector<char> waves(d.t.size(), 0);
+  mark_rods(trajectory, uniqueness, d, waves);
+  for (const DriveChannel& drive : drive_channels(trajectory.model()))
+    if (std::vector<double>* const column =
+            values_of(d, drive.name() + (drive.angle() ? ".torque_unique" : ".force_unique")))
+      for (std::size_t i = 0; i < column->size(); ++i)
+        (*column)[i] = drive.unique(trajectory.model(i), waves[i] ? none : uniqueness.at(i)) ? 1.0 : 0.0;
 }
 
 PeakForce peak_rod_force(const Diagnostics& d, Pull pull) {

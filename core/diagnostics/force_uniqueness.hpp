@@ -60,6 +60,10 @@ class ForceUniqueness {
 // changed so much.
 std::vector<char> followed_forces(const Model& model, const State& state, const VectorXd& axial_force);
 
+// Enters what is unique into diagnostics of the run's states that have everything else: flags of rods and
+// the columns that say so.
+void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& diagnostics);
+
 // The largest axial force among all rods and states: its magnitude, or of tensions or compressions alone.
 enum class Pull { either, tension, compression };
 struct PeakForce {

@@ -8,6 +8,7 @@
 namespace unfurl {
 
 SolvedPoint StateForces::at(std::size_t i) {
+  if (ahead_ && i < ahead_->size()) return (*ahead_)[i];
   if (trajectory_.report(i).singular_event) return {};
   if (i < first_ || i >= behind_last_) solve_from(i);
   const std::size_t k = i - first_;

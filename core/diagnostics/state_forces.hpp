@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/integrators/index1.hpp"
 #include "core/simulate/trajectory.hpp"
@@ -18,7 +19,9 @@ struct SolvedPoint {
 // follow are solved along.
 class StateForces {
  public:
-  explicit StateForces(const Trajectory& trajectory) : trajectory_(trajectory) {}
+  // `ahead`: what another one found at the first states already; null: nothing.
+  explicit StateForces(const Trajectory& trajectory, const std::vector<SolvedPoint>* ahead = nullptr)
+      : trajectory_(trajectory), ahead_(ahead) {}
 
   // Multipliers of state i, least-norm where rows are redundant; NaN where the equations have no solution. At
   // an event in a singular pose they are the extrapolated ones that the state holds. Accelerations are those
@@ -31,6 +34,7 @@ class StateForces {
   void solve_from(std::size_t i);
 
   const Trajectory& trajectory_;
+  const std::vector<SolvedPoint>* ahead_;
   const Model* model_ = nullptr;
   std::optional<Index1Lanes> lanes_;         // of that model
   std::size_t first_ = 0, behind_last_ = 0;  // states that are solved

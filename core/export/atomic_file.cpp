@@ -97,8 +97,7 @@ std::string checksum_of_file(const std::filesystem::path& path) {
 
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes, Flush flush) {
   PendingFile pending(path);
-  if (const int error = write_all(pending.file(), bytes.data(), bytes.size()); error != 0)
-    throw FileError(path, error);
+  pending.write(bytes);
   pending.commit(flush);
 }
 
@@ -154,12 +153,26 @@ PendingFile::~PendingFile() {
   ::unlink(temporary_.c_str());
 }
 
-void PendingFile::commit(Flush flush) {
+void PendingFile::write(std::span<const std::byte> bytes) {
+  if (const int error = write_all(file_, bytes.data(), bytes.size()); error != 0)
+    throw FileError(target_, error);
+}
+
+void PendingFile::write(std::string_view text) {
+  write(std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void PendingFile::complete(Flush flush) {
+  if (std::exchange(complete_, true)) return;
   if (FileFinisher* finisher = file_finisher(); finisher) finisher->finish(temporary_, target_);
   if (flush == Flush::at_once && ::fsync(file_) != 0 && errno != EINVAL && errno != EROFS)
     throw FileError(target_, errno);
+  if (file_watcher.load()) checksum_ = checksum_of_file(temporary_);
+}
+
+void PendingFile::take_place() {
   if (FileWatcher* watcher = file_watcher; watcher)
-    watcher->before_file(target_, checksum_of_file(temporary_));
+    watcher->before_file(target_, checksum_.empty() ? checksum_of_file(temporary_) : checksum_);
   // Some file systems report a full disk only at close.
   if (::close(std::exchange(file_, -1)) != 0) {
     const int error = errno;
@@ -171,7 +184,18 @@ void PendingFile::commit(Flush flush) {
     ::unlink(temporary_.c_str());
     throw FileError(target_, error);
   }
+}
+
+void PendingFile::commit(Flush flush) {
+  complete(flush);
+  take_place();
   if (flush == Flush::at_once) flush_directory_of(target_);
+}
+
+void commit_together(std::span<PendingFile* const> files) {
+  for (PendingFile* file : files) file->complete();
+  for (PendingFile* file : files) file->take_place();
+  if (!files.empty()) flush_directory_of(files.front()->target());
 }
 
 void move_into_place(const std::filesystem::path& from, const std::filesystem::path& to) {

@@ -54,14 +54,26 @@ class PendingFile {
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
 
+  const std::filesystem::path& target() const { return target_; }
   const std::filesystem::path& name() const { return temporary_; }  // beside the target, hidden
   int file() const { return file_; }                                // open for writing
-  void commit(Flush flush = Flush::at_once);  // rename onto the target; throws FileError
+  void write(std::span<const std::byte> bytes);                     // throws FileError, as the others
+  void write(std::string_view text);
+  // All bytes are there, and on the disk when it returns. A thread may do this for a file.
+  void complete(Flush flush = Flush::at_once);
+  void commit(Flush flush = Flush::at_once);  // complete and rename onto the target; throws FileError
 
  private:
+  friend void commit_together(std::span<PendingFile* const> files);
+  void take_place();
   std::filesystem::path target_, temporary_;
+  std::string checksum_;
+  bool complete_ = false;
   int file_ = -1;
 };
+
+// Files of one directory get their names in this order when all are on the disk: one wait for the directory.
+void commit_together(std::span<PendingFile* const> files);
 
 // Is told of every file just before it takes its place, with the checksum (core/export/checksum.hpp) of its
 // bytes; may be called by several threads at once, may throw FileError: then the file does not appear.

@@ -6,7 +6,6 @@
 
 #include <bit>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -16,6 +15,7 @@
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
 #include "core/export/run_tables.hpp"
+#include "core/text/shortest_text.hpp"
 
 namespace unfurl {
 
@@ -27,7 +27,10 @@ class CsvRows {
   // Into a file that is open, a copy of which is kept open here.
   CsvRows(const std::filesystem::path& path, int file) : path_(path), file_(::fdopen(::dup(file), "wb")) {
     if (!file_) throw FileError(path_, errno);
+    std::setvbuf(file_, nullptr, _IOFBF, std::size_t{1} << 16U);
   }
+  // Behind a text.
+  explicit CsvRows(std::string& text) : text_(&text) {}
   ~CsvRows() {
     if (file_) std::fclose(file_);
   }
@@ -53,8 +56,15 @@ class CsvRows {
 
   void end_row() {
     row_[used_++] = '\n';  // room for it is always left
-    if (std::fwrite(row_.data(), 1, used_, file_) != used_) throw FileError(path_, errno);
+    if (text_)
+      text_->append(row_, 0, used_);
+    else if (std::fwrite(row_.data(), 1, used_, file_) != used_)
+      throw FileError(path_, errno);
     used_ = 0;
+  }
+
+  void rows(const std::string& text) {  // that are one already
+    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) throw FileError(path_, errno);
   }
 
   void close() {
@@ -72,7 +82,7 @@ class CsvRows {
     const auto bits = std::bit_cast<std::uint64_t>(x);
     Known& known = known_[(bits * 0x9e3779b97f4a7c15ULL) >> 55U];
     if (known.bits != bits || known.size == 0) {
-      const char* const end = std::to_chars(known.text, known.text + longest_number, x).ptr;
+      const char* const end = shortest_text(x, known.text);
       known.bits = bits;
       known.size = static_cast<unsigned char>(end - known.text);
     }
@@ -90,7 +100,6 @@ class CsvRows {
     used_ += text.copy(row_.data() + used_, text.size());
   }
 
-  static constexpr std::size_t longest_number = 31;
   struct Known {
     std::uint64_t bits = 0;
     unsigned char size = 0;  // 0: none
@@ -98,7 +107,8 @@ class CsvRows {
   };
 
   std::filesystem::path path_;
-  std::FILE* file_;
+  std::FILE* file_ = nullptr;
+  std::string* text_ = nullptr;
   std::vector<Known> known_ = std::vector<Known>(512);
   std::string row_ = std::string(4096, ' ');
   std::size_t used_ = 0;  // of it
@@ -179,26 +189,52 @@ void rod_forces_row(CsvRows& file, const Structure& structure, const Diagnostics
 
 }  // namespace
 
+void write_series_csv(PendingFile& file, const Diagnostics& diagnostics) {
+  CsvRows rows(file.target(), file.file());
+  series_header(rows, diagnostics);
+  for (std::size_t i = 0; i < diagnostics.t.size(); ++i) series_row(rows, diagnostics, i);
+  rows.close();
+}
+
+std::string trajectory_rows(const Trajectory& trajectory) {
+  std::string text;
+  CsvRows rows(text);
+  for (std::size_t i = 0; i < trajectory.size(); ++i) trajectory_row(rows, trajectory, i);
+  return text;
+}
+
+void write_trajectory_csv(PendingFile& file, const Trajectory& trajectory, const RowsAhead& ahead) {
+  CsvRows rows(file.target(), file.file());
+  trajectory_header(rows, trajectory.structure());
+  for (const std::string& text : ahead.text) rows.rows(text);
+  for (std::size_t i = ahead.states; i < trajectory.size(); ++i) trajectory_row(rows, trajectory, i);
+  rows.close();
+}
+
+void write_rod_forces_csv(PendingFile& file, const Trajectory& trajectory, const Diagnostics& diagnostics) {
+  CsvRows rows(file.target(), file.file());
+  rod_forces_header(rows, trajectory.structure());
+  for (std::size_t i = 0; i < diagnostics.t.size(); ++i)
+    rod_forces_row(rows, trajectory.structure(), diagnostics, i);
+  rows.close();
+}
+
 void write_series_csv(const std::filesystem::path& path, const Diagnostics& diagnostics) {
-  CsvFile file(path);
-  series_header(file.rows(), diagnostics);
-  for (std::size_t i = 0; i < diagnostics.t.size(); ++i) series_row(file.rows(), diagnostics, i);
+  PendingFile file(path);
+  write_series_csv(file, diagnostics);
   file.commit();
 }
 
 void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& trajectory) {
-  CsvFile file(path);
-  trajectory_header(file.rows(), trajectory.structure());
-  for (std::size_t i = 0; i < trajectory.size(); ++i) trajectory_row(file.rows(), trajectory, i);
+  PendingFile file(path);
+  write_trajectory_csv(file, trajectory);
   file.commit();
 }
 
 void write_rod_forces_csv(const std::filesystem::path& path, const Trajectory& trajectory,
                           const Diagnostics& diagnostics) {
-  CsvFile file(path);
-  rod_forces_header(file.rows(), trajectory.structure());
-  for (std::size_t i = 0; i < diagnostics.t.size(); ++i)
-    rod_forces_row(file.rows(), trajectory.structure(), diagnostics, i);
+  PendingFile file(path);
+  write_rod_forces_csv(file, trajectory, diagnostics);
   file.commit();
 }
 

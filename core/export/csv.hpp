@@ -5,8 +5,10 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
+#include "core/export/atomic_file.hpp"
 
 namespace unfurl {
 
@@ -24,6 +26,17 @@ void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& t
 // places.
 void write_rod_forces_csv(const std::filesystem::path& path, const Trajectory& trajectory,
                           const Diagnostics& diagnostics);
+
+// The same into files that get their names later.
+struct RowsAhead {  // of trajectory.csv, of the run's first states
+  std::size_t states = 0;
+  std::vector<std::string> text = {};
+};
+void write_series_csv(PendingFile& file, const Diagnostics& diagnostics);
+void write_trajectory_csv(PendingFile& file, const Trajectory& trajectory, const RowsAhead& ahead = {});
+void write_rod_forces_csv(PendingFile& file, const Trajectory& trajectory, const Diagnostics& diagnostics);
+// trajectory.csv of these states without its header.
+std::string trajectory_rows(const Trajectory& trajectory);
 
 // A cell: in quotes where it holds a comma, a quote or a line break (RFC 4180).
 std::string csv_cell(const std::string& text);

@@ -11,6 +11,9 @@ struct Parts {
   std::size_t around = 64;    // states of the parts before and after that a window shows
   // Is given every window, with the stepper right behind it, which may be archived; not the last one.
   std::function<void(Stepper::Window, Stepper&)> take = {};
+  // Is shown the run after every step: what it begins with may be looked at while it goes on. States at its
+  // end may still be taken back.
+  std::function<void(const Trajectory&)> look = {};
   Archive* archived = nullptr;  // a stepper to go on with; null: from the start
 };
 

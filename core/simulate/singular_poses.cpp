@@ -68,6 +68,8 @@ void SmallestSingularValue::stir(Index column) {
 }
 
 void SmallestSingularValue::jacobian(const ConstVec& z) {
+  if (z_.size() == z.size() && std::equal(z.begin(), z.end(), z_.begin())) return;
+  z_ = z;
   system_.expand(z, q_);
   system_.jacobian(q_, G_, scratch_);
   scale_rows(G_);
@@ -319,8 +321,7 @@ class DipSearch {
 
 }  // namespace
 
-void record_singular_poses(Simulation& run, const std::function<bool()>& cancelled) {
-  const Trajectory& trajectory = run.trajectory;
+std::vector<Event> find_singular_poses(const Trajectory& trajectory, const std::function<bool()>& cancelled) {
   std::vector<Event> found;
   for (std::size_t first = 0, last = 0; first < trajectory.size() && !(cancelled && cancelled());
        first = last + 1) {
@@ -333,6 +334,14 @@ void record_singular_poses(Simulation& run, const std::function<bool()>& cancell
     if (last < first + 2 || system.constraints() == 0 || size > max_singular_size) continue;
     DipSearch(trajectory, first, last).run(found, cancelled);
   }
+  return found;
+}
+
+void record_singular_poses(Simulation& run, const std::function<bool()>& cancelled) {
+  record_singular_poses(run, find_singular_poses(run.trajectory, cancelled));
+}
+
+void record_singular_poses(Simulation& run, const std::vector<Event>& found) {
   run.events.insert(run.events.end(), found.begin(), found.end());
   std::stable_sort(run.events.begin(), run.events.end(),
                    [](const Event& a, const Event& b) { return a.t < b.t; });

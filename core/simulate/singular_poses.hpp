@@ -37,7 +37,8 @@ class SmallestSingularValue {
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
-  VectorXd q_, sigma_, seen_;   // seen_: entries of G_ at the pose that moved() saw last
+  VectorXd z_, q_, sigma_;      // z_: the pose of G_
+  VectorXd seen_;               // entries of G_ at the pose that moved() saw last
   Interleaved rows_, columns_;  // the two parts of some of the saddle-point system's unknowns
   MatrixXd block_;              // columns: singular vectors, by rising sigma
 };
@@ -58,5 +59,9 @@ bool singular_at_end(const Trajectory& trajectory);
 // Once `cancelled` says so, the events so far are all.
 inline constexpr Index max_singular_size = 300;
 void record_singular_poses(Simulation& run, const std::function<bool()>& cancelled = {});
+// The same in two: what is found, which another thread may do, and the entry among the events of the run.
+std::vector<Event> find_singular_poses(const Trajectory& trajectory,
+                                       const std::function<bool()>& cancelled = {});
+void record_singular_poses(Simulation& run, const std::vector<Event>& found);
 
 }  // namespace unfurl

@@ -33,6 +33,15 @@ void Trajectory::pop_back() {
   if (stretch_.size() > states_.size()) stretch_.pop_back();
 }
 
+Trajectory Trajectory::part(std::size_t first, std::size_t last, const SolverOptions& options) const {
+  Trajectory out(models_.front().model, options);
+  for (std::size_t i = first; i < last; ++i) {
+    if (const Part& p = part_of(i); p.model != out.models_.back().model) out.change_model(p.model);
+    out.append(states_[i], reports_[i]);
+  }
+  return out;
+}
+
 VectorXd Trajectory::node_positions(std::size_t i) const {
   const System& system = model(i).system;
   VectorXd q(system.coordinates());

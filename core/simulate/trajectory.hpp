@@ -31,6 +31,10 @@ class Trajectory {
   // States appended from now on belong to another model of the same nodes and rods: one that is locked, say.
   void change_model(std::shared_ptr<const Model> model);
 
+  // A copy of the states [first, last) in the order they are in, beside the same first model; without what
+  // add_stretch() adds.
+  Trajectory part(std::size_t first, std::size_t last, const SolverOptions& options) const;
+
   const Model& model() const { return *models_.front().model; }  // that of the start
   const Model& model(std::size_t i) const;                       // that state i belongs to
   const Model& last_model() const { return *models_.back().model; }

@@ -55,6 +55,13 @@ void TaskQueue::add(std::function<void()> task) {
   changed_.notify_all();
 }
 
+void TaskQueue::give_up() {
+  std::unique_lock lock(mutex_);
+  waiting_.clear();
+  changed_.wait(lock, [this] { return running_ == 0; });
+  failure_ = nullptr;
+}
+
 void TaskQueue::finish() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return waiting_.empty() && running_ == 0; });

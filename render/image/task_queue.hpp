@@ -24,9 +24,22 @@ class TaskQueue {
   void add(std::function<void()> task);
   void finish();  // wait for all
 
+  // Where tasks look at what lives in a scope, one at the end of its variables: no task goes on beyond it.
+  class Scope {
+   public:
+    explicit Scope(TaskQueue& queue) : queue_(queue) {}
+    ~Scope() { queue_.give_up(); }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    TaskQueue& queue_;
+  };
+
  private:
   void work();
   void rethrow();
+  void give_up();  // what has not begun; waits for the rest
 
   std::mutex mutex_;
   std::condition_variable changed_;

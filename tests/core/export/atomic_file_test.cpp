@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -95,6 +96,36 @@ TEST_CASE("temporary names are new ones: random, never behind a link, and short 
   const fs::path longest = scratch.path / std::string(255, 'n');
   write_file_atomically(longest, "x");
   CHECK(content(longest) == "x");
+}
+
+TEST_CASE("files that are written together get their names when all are whole, or none does") {
+  const ScratchFolder scratch;
+  const fs::path a = scratch.path / "a.txt", b = scratch.path / "b.txt";
+  {
+    PendingFile one(a), other(b);
+    one.write("first");
+    other.write("second");
+    other.complete();
+    CHECK(fs::directory_iterator(scratch.path)->path().extension() == ".part");
+    CHECK_FALSE(fs::exists(b));
+    commit_together(std::array{&one, &other});
+  }
+  CHECK(content(a) == "first");
+  CHECK(content(b) == "second");
+  struct Refusing final : FileWatcher {
+    void before_file(const fs::path& target, const std::string&) override { throw FileError(target, "no"); }
+  } refusing;
+  FileWatcher* const before = watch_files(&refusing);
+  {
+    PendingFile one(a), other(b);
+    one.write("third");
+    other.write("fourth");
+    CHECK_THROWS_AS(commit_together(std::array{&one, &other}), FileError);
+  }
+  watch_files(before);
+  CHECK(content(a) == "first");
+  CHECK(content(b) == "second");
+  CHECK(std::distance(fs::directory_iterator(scratch.path), {}) == 2);
 }
 
 TEST_CASE("a link in the place of a file is replaced, what it leads to stays") {

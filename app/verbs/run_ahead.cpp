@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "app/verbs/run_ahead.hpp"
+
+#include <cstring>
+#include <thread>
+#include <utility>
+
+#include "app/output/interrupt.hpp"
+
+namespace unfurl {
+
+namespace {
+
+constexpr std::size_t unsettled = 8;  // states at the end, of which events take some back
+
+int helpers(int threads) {
+  return threads == 1 || std::thread::hardware_concurrency() == 1 ? 0 : 1;
+}
+
+template <class Numbers>
+bool same_bits(const Numbers& a, const Numbers& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() &&
+         (a.size() == 0 ||
+          std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0);
+}
+
+bool same_state(const State& a, const State& b) {
+  return std::memcmp(&a.t, &b.t, sizeof a.t) == 0 && same_bits(a.z, b.z) && same_bits(a.w, b.w) &&
+         same_bits(a.lambda, b.lambda) && same_bits(a.tension, b.tension) && same_bits(a.angles, b.angles) &&
+         same_bits(a.stage_tension, b.stage_tension);
+}
+
+// The states of a piece stand at these of the run.
+bool holds(const Trajectory& run, std::size_t first, const Trajectory& piece) {
+  if (run.size() < first + piece.size()) return false;
+  for (std::size_t k = 0; k < piece.size(); ++k)
+    if (&run.model(first + k) != &piece.model(k) || !same_state(run.state(first + k), piece.state(k)) ||
+        run.report(first + k).singular_event != piece.report(k).singular_event)
+      return false;
+  return true;
+}
+
+}  // namespace
+
+RunAhead::RunAhead(int threads) : on_(helpers(threads) > 0), queue_(helpers(threads)) {}
+
+void RunAhead::look(const Trajectory& run, std::size_t states) {
+  if (!on_ || run.size() < next_ + states + unsettled) return;
+  Piece& piece = pieces_.emplace_back(run.part(next_, next_ + states, {}));
+  const bool start = next_ == 0;
+  next_ += states;
+  queue_.add([this, &piece, start] { examine(piece, start); });
+}
+
+void RunAhead::examine(Piece& piece, bool start) {
+  if (interrupted_for(0.5)) return;
+  const Trajectory& run = piece.run;
+  if (start) mobility_ = analyse_mobility(run.model().system, run.node_positions(0));
+  find_forces(run);
+  piece.rows = trajectory_rows(run);
+  piece.done = true;
+}
+
+void RunAhead::find_forces(const Trajectory& piece) {
+  const auto shared = [](const Model& model) {
+    return std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model);
+  };
+  if (!seen_) {
+    seen_.emplace(shared(piece.model()));
+    solver_.emplace(*seen_);
+    flow_.emplace(*seen_, true);
+  }
+  const std::size_t first = seen_->size();
+  for (std::size_t k = 0; k < piece.size(); ++k) {
+    if (&piece.model(k) != &seen_->last_model()) seen_->change_model(shared(piece.model(k)));
+    seen_->append(piece.state(k), piece.report(k));
+  }
+  for (std::size_t i = first; i < seen_->size(); ++i) {
+    if (i > 0) flow_->step_to(i, &*solver_);
+    forces_.push_back(solver_->at(i));
+  }
+}
+
+void RunAhead::stop() {
+  if (!std::exchange(on_, false)) return;
+  queue_.finish();
+  drop();
+}
+
+void RunAhead::drop() {
+  flow_.reset();
+  solver_.reset();
+  seen_.reset();
+  pieces_.clear();
+  forces_.clear();
+  rows_ = {};
+  mobility_.reset();
+}
+
+void RunAhead::take(const Trajectory& run) {
+  queue_.finish();
+  for (Piece& piece : pieces_) {
+    if (!piece.done || !holds(run, rows_.states, piece.run)) return drop();
+    rows_.states += piece.run.size();
+    rows_.text.push_back(std::move(piece.rows));
+  }
+  if (pieces_.empty()) return;
+  pieces_.push_back({run.part(rows_.states, run.size(), {})});
+  find_forces(pieces_.back().run);
+}
+
+void RunAhead::leave_out(std::size_t size) {
+  while (rows_.states > size) {
+    rows_.text.pop_back();
+    rows_.states -= pieces_[rows_.text.size()].run.size();
+  }
+}
+
+}  // namespace unfurl

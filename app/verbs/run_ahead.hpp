@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a second core does for a run.
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "core/diagnostics/energy_flow.hpp"
+#include "core/diagnostics/state_forces.hpp"
+#include "core/export/csv.hpp"
+#include "core/simulate/parts.hpp"
+#include "core/system/mobility.hpp"
+#include "render/image/task_queue.hpp"
+
+namespace unfurl {
+
+// While a run is solved, its first states are looked at already: forces, energy that flows in and out, rows
+// of trajectory.csv, mobility at the start. It is used where the run's states are still the same to the bit
+// when it has ended. On one core, or with one thread, nothing is done ahead, and what is given to beside() is
+// done at once.
+class RunAhead {
+ public:
+  explicit RunAhead(int threads);  // at most; 0: as many as the machine has
+
+  // For Parts::look; `states`: how many are looked at together.
+  void look(const Trajectory& run, std::size_t states);
+  void stop();  // the run is handed over in parts: nothing of it is of use
+
+  // Behind the run's last step: the rest of its forces is found, and all of what was found is dropped where
+  // the run took back a state that was looked at.
+  void take(const Trajectory& run);
+  void leave_out(std::size_t size);  // states from here on
+  const std::vector<SolvedPoint>& forces() const { return forces_; }
+  const EnergyFlow* flow() const { return flow_ ? &flow_->so_far() : nullptr; }
+  const RowsAhead& rows() const { return rows_; }
+  const std::optional<Mobility>& mobility() const { return mobility_; }
+
+  TaskQueue& beside() { return queue_; }  // one thread, tasks in their order
+
+ private:
+  struct Piece {
+    Trajectory run;  // of these states alone
+    std::string rows = {};
+    bool done = false;
+  };
+  void examine(Piece& piece, bool start);
+  void find_forces(const Trajectory& piece);  // and what flows in and out
+  void drop();
+
+  bool on_;
+  std::size_t next_ = 0;  // state
+  std::deque<Piece> pieces_;
+  std::optional<Mobility> mobility_;
+  std::optional<Trajectory> seen_;  // all pieces, whose models it shares
+  std::optional<StateForces> solver_;
+  std::optional<RunEnergyFlow> flow_;
+  std::vector<SolvedPoint> forces_;
+  RowsAhead rows_;
+  TaskQueue queue_;  // last: it ends before what it works on
+};
+
+}  // namespace unfurl
