@@ -231,7 +231,9 @@ int cmd_check(const Arguments& arguments) {
   for (const auto& note : model->structure.notes) std::cerr << "unfurl: warning: " << note << "\n";
   const InitialState at_start = initial_state(model->structure, model->system);
   for (const std::string& warning : {velocity_warning(at_start, model->structure),
-                                     elastic_step_warning(*model, at_start.state, scene.solver)})
+                                     scene.solver.tolerance > 0  // steps are found
+                                         ? std::string()
+                                         : elastic_step_warning(*model, at_start.state, scene.solver)})
     if (!warning.empty()) std::cerr << "unfurl: warning: " << warning << "\n";
   const NearRods near = near_rods(model, scene, arguments);
   if (arguments.json)

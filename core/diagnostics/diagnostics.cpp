@@ -58,12 +58,8 @@ struct Instant {
     }
     return most;
   }
-  // Magnitude, of latches that give.
   double latch_load() const {
-    double most = 0;
-    for (const Force& force : run.trajectory.model(i).structure.forces)
-      if (force.kind == "latch") most = std::max(most, std::abs(unfurl::latch_load(force, q, v)));
-    return most;
+    return unfurl::latch_load(run.trajectory.model(i).structure, equations.moment(state.t), q, v);
   }
   double relative_constraint() const { return max_norm(phi.cwiseQuotient(lengths)); }
 };
@@ -182,6 +178,10 @@ bool can_strike(const Structure& structure, const SolverOptions& options) {
          (options.at_deployed == "latch" && !structure.deployment.empty() && !latch_gives(structure));
 }
 
+bool latched_angle(const Deployment& deployment) {
+  return deployment.latches.empty() && (!deployment.measured || is_angle(deployment.measure));
+}
+
 bool present(Needs needs, const Simulation& run) {
   const Model& model = run.trajectory.model();
   const auto latches = [&](double damping) {
@@ -209,9 +209,9 @@ bool present(Needs needs, const Simulation& run) {
     case Needs::strengths:
       return any_strength(model.structure);
     case Needs::latch_forces:
-      return latches(0.0) && !model.structure.deployment.latches.empty();
+      return latches(0.0) && !latched_angle(model.structure.deployment);
     case Needs::latch_torques:
-      return latches(0.0) && model.structure.deployment.latches.empty();
+      return latches(0.0) && latched_angle(model.structure.deployment);
   }
   return true;
 }

@@ -62,9 +62,9 @@ DriveSample DriveChannel::sample(const Model& model, const System& system, doubl
         motor_state(force, measure, followed_, system.moment(t), q.data(), v.data(), gradient.data());
     return {s.value, s.effort, s.effort * s.rate};
   }
-  const SpringLaw law = spring_law(force, t);
+  const SpringLaw law = spring_law(force, t, q.data());
   const double s = measure.value_and_gradient(q.data(), gradient.data(), system.moment(t), followed_);
-  const SpringPull pull = spring_pull(force, t, s, measure.rate(gradient.data(), v.data()));
+  const SpringPull pull = spring_pull(force, law, s, measure.rate(gradient.data(), v.data()));
   return {law.rest, -pull.tension, pull.reeling};
 }
 

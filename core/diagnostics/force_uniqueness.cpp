@@ -7,6 +7,7 @@
 
 #include "core/diagnostics/drives.hpp"
 #include "core/math/determined_rows.hpp"
+#include "core/math/largest.hpp"
 #include "core/simulate/elastic_sharing.hpp"
 
 namespace unfurl {
@@ -86,6 +87,22 @@ const std::vector<char>& ForceUniqueness::at(std::size_t state) const {
   return singular != singular_.end() ? singular->second : std::prev(usual_.upper_bound(state))->second;
 }
 
+std::vector<char> followed_forces(const Model& model, const State& state, const VectorXd& axial_force) {
+  constexpr double small = 0.01;
+  const std::vector<int>& giving = model.system.giving_rods();
+  if (state.tension_error.size() != std::ssize(giving) || giving.empty()) return {};
+  const std::vector<Rod>& rods = model.structure.rods;
+  const double most = small * largest_magnitude(axial_force.data(), axial_force.size());
+  std::vector<char> followed(rods.size(), 0);
+  bool all = true;
+  for (std::size_t k = 0; k < giving.size(); ++k) {
+    const auto r = static_cast<std::size_t>(giving[k]);
+    followed[r] = state.tension_error[static_cast<Index>(k)] / rods[r].multiplicity <= most ? 1 : 0;
+    all = all && followed[r];
+  }
+  return all ? std::vector<char>() : followed;
+}
+
 namespace {
 
 // Whether the force that is largest in this direction is unique; of no rods it is.
@@ -104,7 +121,9 @@ std::vector<double>* values_of(Diagnostics& d, std::string_view name) {
   return nullptr;
 }
 
-void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& d) {
+// waves[i], 1: they change forces of state i.
+void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& d,
+               std::vector<char>& waves) {
   std::vector<double>* const largest = values_of(d, "axial_force_max_unique");
   std::vector<double>* const smallest = values_of(d, "axial_force_min_unique");
   std::vector<char> unique(d.rod_unique.size(), 1);
@@ -114,9 +133,12 @@ void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness, 
     const std::vector<int>& row_of = trajectory.model(i).system.rod_rows();
     const bool regular = uniqueness.regular(i);
     force = d.axial_force.row(static_cast<Index>(i));
+    const std::vector<char> followed = followed_forces(trajectory.model(i), trajectory.state(i), force);
+    waves[i] = followed.empty() ? 0 : 1;
     for (std::size_t r = 0; r < unique.size(); ++r) {
       unique[r] = row_of[r] < 0 ? char{1} : rows[static_cast<std::size_t>(row_of[r])];
       if (regular) d.rod_unique[r] = static_cast<char>(d.rod_unique[r] & unique[r]);
+      if (!followed.empty()) unique[r] = static_cast<char>(unique[r] & followed[r]);
       d.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
           unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);
     }
@@ -128,12 +150,16 @@ void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness, 
 }  // namespace
 
 void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& d) {
-  mark_rods(trajectory, uniqueness, d);
+  std::size_t most = 0;  // rows of any model
+  for (std::size_t i = 0; i < d.t.size(); ++i) most = std::max(most, uniqueness.at(i).size());
+  const std::vector<char> none(most, 0);
+  std::vector<char> waves(d.t.size(), 0);
+  mark_rods(trajectory, uniqueness, d, waves);
   for (const DriveChannel& drive : drive_channels(trajectory.model()))
     if (std::vector<double>* const column =
             values_of(d, drive.name() + (drive.angle() ? ".torque_unique" : ".force_unique")))
       for (std::size_t i = 0; i < column->size(); ++i)
-        (*column)[i] = drive.unique(trajectory.model(i), uniqueness.at(i)) ? 1.0 : 0.0;
+        (*column)[i] = drive.unique(trajectory.model(i), waves[i] ? none : uniqueness.at(i)) ? 1.0 : 0.0;
 }
 
 PeakForce peak_rod_force(const Diagnostics& d, Pull pull) {

@@ -55,6 +55,11 @@ class ForceUniqueness {
   std::map<std::size_t, std::vector<char>> singular_;
 };
 
+// Per rod, 0: waves of elastic rods that the step does not resolve (State::tension_error) may change its
+// axial force by more than 1 % of the largest; beside such a rod, 0 for all rigid ones. Empty: none is
+// changed so much.
+std::vector<char> followed_forces(const Model& model, const State& state, const VectorXd& axial_force);
+
 // Enters what is unique into diagnostics of the run's states that have everything else: flags of rods and
 // the columns that say so.
 void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& diagnostics);

@@ -225,7 +225,7 @@ Digest RunDigest::thinned(const Digest& all) const {
     State state = in_coordinates(trajectory.model(i).system, trajectory.state(i), model_->system);
     if (i == quickest && speed > 0 && std::isfinite(top)) state.w *= top / speed;
     state.lambda.resize(0);
-    state.tension.resize(0);
+    state.tension.resize(0), state.tension_error.resize(0);
     state.stage_tension.resize(0, 0);
     out.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
     out.diagnostics.t.push_back(d.t[i]);

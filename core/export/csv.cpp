@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -15,7 +16,6 @@
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
 #include "core/export/run_tables.hpp"
-#include "core/text/shortest_text.hpp"
 
 namespace unfurl {
 
@@ -82,7 +82,7 @@ class CsvRows {
     const auto bits = std::bit_cast<std::uint64_t>(x);
     Known& known = known_[(bits * 0x9e3779b97f4a7c15ULL) >> 55U];
     if (known.bits != bits || known.size == 0) {
-      const char* const end = shortest_text(x, known.text);
+      const char* const end = std::to_chars(known.text, known.text + longest_number, x).ptr;
       known.bits = bits;
       known.size = static_cast<unsigned char>(end - known.text);
     }
@@ -100,6 +100,7 @@ class CsvRows {
     used_ += text.copy(row_.data() + used_, text.size());
   }
 
+  static constexpr std::size_t longest_number = 31;
   struct Known {
     std::uint64_t bits = 0;
     unsigned char size = 0;  // 0: none

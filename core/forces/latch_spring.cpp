@@ -2,9 +2,12 @@
 #include "core/forces/latch_spring.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <cmath>
 #include <limits>
 #include <map>
+
+#include "core/forces/spring.hpp"
+#include "core/structure/measure.hpp"
 
 namespace unfurl {
 namespace {
@@ -81,10 +84,20 @@ class LatchSprings final : public ForceBlock {
 }  // namespace
 
 std::unique_ptr<ForceBlock> latch_spring_block(const Structure& structure, const SparseRows&) {
-  std::vector<Force> latches;
-  std::copy_if(structure.forces.begin(), structure.forces.end(), std::back_inserter(latches),
-               [](const Force& f) { return f.kind == "latch" && !f.form.empty(); });
-  if (latches.empty()) return nullptr;
+  std::vector<Force> latches, measured;
+  std::vector<int> followed;
+  const std::vector<int> of_force = followed_angles(structure).of_force;
+  for (std::size_t i = 0; i < structure.forces.size(); ++i) {
+    const Force& force = structure.forces[i];
+    if (force.kind != "latch" || latch_waits(force)) continue;
+    if (!force.form.empty()) {
+      latches.push_back(force);
+    } else {
+      measured.push_back(force);
+      followed.push_back(of_force[i]);
+    }
+  }
+  if (latches.empty()) return spring_block(measured, structure.deployment, followed);
   return std::make_unique<LatchSprings>(latches);
 }
 
@@ -102,9 +115,28 @@ void fill_latch_spring(const ParamSet& values, Force& force) {
   force.damping = values.real("damping");
 }
 
-double latch_load(const Force& latch, const ConstVec& q, const ConstVec& v) {
-  if (latch.form.empty()) return 0.0;
-  return latch.stiffness * latch.form(q) + latch.damping * latch.form.rate(v);
+bool latch_waits(const Force& force) {
+  const bool measured = !force.measure.nodes.empty() || !force.measure.terms.empty();
+  return force.kind == "latch" && force.form.empty() && (force.slack || !measured);
+}
+
+double latch_load(const Structure& structure, const Moment& at, const VectorXd& q, const VectorXd& v) {
+  double most = 0;
+  std::vector<double> gradient;
+  for (std::size_t i = 0; i < structure.forces.size(); ++i) {
+    const Force& latch = structure.forces[i];
+    if (latch.kind != "latch" || latch_waits(latch)) continue;
+    double s = latch.form(q), rate = latch.form.rate(v);
+    if (latch.form.empty()) {
+      const MeasureFunction measure(latch.measure, structure.deployment);
+      gradient.resize(measure.stencil().size());
+      s = measure.value_and_gradient(q.data(), gradient.data(), at, followed_angles(structure).of_force[i]) -
+          latch.rest;
+      rate = measure.rate(gradient.data(), v.data());
+    }
+    most = std::max(most, std::abs(latch.stiffness * s + latch.damping * rate));
+  }
+  return most;
 }
 
 }  // namespace unfurl

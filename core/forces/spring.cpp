@@ -50,7 +50,9 @@ class Springs final : public ForceBlock {
     for (const Spring& spring : springs_) {
       const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
       const double rate = spring.law.damping > 0 ? spring.measure.rate(g.data(), v) : 0.0;
-      const double pull = scale * tension(spring, at.t, s, rate);
+      const SpringLaw law = spring_law(spring.law, at.t, q);
+      if (law.drum >= 0) f[law.drum] -= scale * law.by_drum * pull_of(spring.law, s - law.rest).energy;
+      const double pull = scale * spring_pull(spring.law, law, s, rate).tension;
       if (pull == 0.0) continue;
       if (spring.pulleys) spring.pulleys->weigh(v, g.data());
       const auto& stencil = spring.measure.stencil();
@@ -61,7 +63,7 @@ class Springs final : public ForceBlock {
   double potential(const Moment& at, const double* q) const override {
     double sum = straight_.potential(q);
     for (const Spring& spring : springs_) {
-      const SpringLaw law = spring_law(spring.law, at.t);
+      const SpringLaw law = spring_law(spring.law, at.t, q);
       const double s = spring.measure.value(q, at, spring.followed);
       sum += law.stiffness * pull_of(spring.law, s - law.rest).energy;
     }
@@ -79,8 +81,8 @@ class Springs final : public ForceBlock {
     for (const Spring& spring : springs_) {
       if (!(spring.law.damping > 0) && !spring.pulleys) continue;
       const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
-      const double rate = spring.measure.rate(g.data(), v), n = tension(spring, at.t, s, rate);
-      const SpringLaw law = spring_law(spring.law, at.t);
+      const SpringLaw law = spring_law(spring.law, at.t, q);
+      const double rate = spring.measure.rate(g.data(), v), n = spring_pull(spring.law, law, s, rate).tension;
       const double elastic = law.stiffness * pull_of(spring.law, s - law.rest).elastic;
       sum -= (n - elastic) * rate;
       if (!spring.pulleys) continue;
@@ -98,8 +100,8 @@ class Springs final : public ForceBlock {
       const auto& stencil = spring.measure.stencil();
       g.resize(static_cast<Index>(stencil.size()));
       const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
-      const double rate = spring.measure.rate(g.data(), v), n = tension(spring, at.t, s, rate);
-      const SpringLaw law = spring_law(spring.law, at.t);
+      const SpringLaw law = spring_law(spring.law, at.t, q);
+      const double rate = spring.measure.rate(g.data(), v), n = spring_pull(spring.law, law, s, rate).tension;
       const Pull pull = pull_of(spring.law, s - law.rest);
       if (spring.law.one_sided && n == 0.0) continue;
       if (spring.pulleys)
@@ -112,6 +114,14 @@ class Springs final : public ForceBlock {
       if (c > 0) spring.measure.add_hessian_times(q, v, c * pull.share, bend.data());
       const VectorXd along = g;  // of the rate; what pulls is weighed by the pulleys
       if (spring.pulleys) spring.pulleys->weigh(v, g.data());
+      if (law.drum >= 0) {
+        by_q.emplace_back(law.drum, law.drum, -law.by_drum_too * pull.energy);
+        for (std::size_t i = 0; i < stencil.size(); ++i) {
+          const auto k = static_cast<Index>(i);
+          by_q.emplace_back(stencil[i], law.drum, -law.by_drum * pull.elastic * g[k]);
+          by_q.emplace_back(law.drum, stencil[i], -law.by_drum * pull.elastic * along[k]);
+        }
+      }
       for (std::size_t j = 0; j < stencil.size(); ++j)
         for (std::size_t i = 0; i < stencil.size(); ++i) {
           const double gi = g[static_cast<Index>(i)], gj = along[static_cast<Index>(j)];
@@ -122,15 +132,13 @@ class Springs final : public ForceBlock {
   }
 
  private:
-  static double tension(const Spring& spring, double t, double s, double rate) {
-    return spring_pull(spring.law, t, s, rate).tension;
-  }
-
   double reeling(const Moment& at, const double* q) const {
     double sum = 0;
     for (const Spring& spring : springs_)
       if (spring.law.unstressed.moves())
-        sum += spring_pull(spring.law, at.t, spring.measure.value(q, at, spring.followed), 0.0).reeling;
+        sum += spring_pull(spring.law, spring_law(spring.law, at.t, q),
+                           spring.measure.value(q, at, spring.followed), 0.0)
+                   .reeling;
     return sum;
   }
 
@@ -172,21 +180,31 @@ void fill_spring(const ParamSet& values, double rest, Force& force) {
   if (!std::isnan(rest)) force.rest = rest;
 }
 
+// A winch's cable: its path and the coordinate of a drum, which goes with x.
+int drum_of(const Force& force) {
+  if (force.kind != "cable" || force.measure.terms.empty()) return -1;
+  const Measure& last = force.measure.terms.back().measure;
+  return last.kind == MeasureKind::coordinate ? 3 * last.nodes[0] : -1;
+}
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double as_built = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-SpringLaw spring_law(const Force& force, double t) {
+SpringLaw spring_law(const Force& force, double t, const double* q) {
   if (!(force.axial_stiffness > 0)) return {force.stiffness, force.rest, 0.0, 0.0};
   const double length = force.unstressed(t), rate = force.unstressed.derivative(1, t);
+  if (const int drum = drum_of(force); drum >= 0) {
+    const double left = length - q[drum], k = force.axial_stiffness / left;
+    return {k, length, 0.0, 0.0, drum, k / left, 2 * k / (left * left)};
+  }
   const double k = force.axial_stiffness / length;
   return {k, length, -k * rate / length, rate};
 }
 
 // dV/dt at a fixed pose: k' V / k - N_e s_0'
-SpringPull spring_pull(const Force& force, double t, double s, double rate) {
-  const SpringLaw law = spring_law(force, t);
+SpringPull spring_pull(const Force& force, const SpringLaw& law, double s, double rate) {
   const Pull pull = pull_of(force, s - law.rest);
   const double elastic = law.stiffness * pull.elastic, n = elastic + force.damping * pull.share * rate;
   return {force.slack       ? 0.0

@@ -26,17 +26,23 @@ namespace unfurl {
 // `followed`: of each spring, the index of its angle among those that count turns; empty: none does.
 std::unique_ptr<ForceBlock> spring_block(const std::vector<Force>& springs, const Deployment& deployment,
                                          const std::vector<int>& followed = {});
-// k and s_0 at a time, and their rates.
+// k and s_0 at a time, and their rates; of a cable on a drum at the node coordinates q. Its measure is the
+// path and x, what the drum has drawn in: unstressed it is L = s_0 - x, so that
+//
+//     k = E A / L,     V = k/2 (s - s_0)^2,     F_x = -N - k' / 2 (s - s_0)^2,     k' = dk/dx = E A / L^2
 struct SpringLaw {
   double stiffness, rest, stiffness_rate, rest_rate;
+  int drum = -1;           // coordinate x; -1: there is no drum
+  double by_drum = 0;      // k'
+  double by_drum_too = 0;  // k''
 };
-SpringLaw spring_law(const Force& force, double t);
+SpringLaw spring_law(const Force& force, double t, const double* q);
 
 // N of a spring at its measure's value and rate, and the power dV/dt that what changes its length puts in.
 struct SpringPull {
   double tension, reeling;
 };
-SpringPull spring_pull(const Force& force, double t, double s, double rate);
+SpringPull spring_pull(const Force& force, const SpringLaw& law, double s, double rate);
 
 std::unique_ptr<ForceBlock> cable_block(const Structure& structure, const SparseRows& node_mass);
 std::unique_ptr<ForceBlock> combination_block(const Structure& structure, const SparseRows& node_mass);

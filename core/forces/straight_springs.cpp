@@ -16,7 +16,7 @@ bool StraightSprings::fits(const Force& force) {
 }
 
 void StraightSprings::push_back(const Force& force) {
-  const SpringLaw law = spring_law(force, 0.0);
+  const SpringLaw law = spring_law(force, 0.0, nullptr);
   members_.push_back({force.measure.nodes[0], force.measure.nodes[1], law.rest, law.stiffness, force.damping,
                       force.smoothing, force.one_sided, force.slack});
 }

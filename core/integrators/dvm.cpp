@@ -343,13 +343,13 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
   if (settling_.lets_go()) let_go(h);
   state.w = w1_;
-  state.tension.resize(0);
+  state.tension.resize(0), state.tension_error.resize(0);
   state.stage_tension.resize(0, 0);
+  const double followed = resolved * (c_.s - 1);
+  const bool unresolved = system_.elastic_rods() != nullptr && eq_.h_omega() > followed && !eq_.held();
   if (eq_.rods.as_unknowns && (system_.rheonomic() || system_.by_tension()))
-    state.stage_tension = eq_.rods.tension;
-  const bool elastic = system_.elastic_rods() != nullptr;
-  if (elastic && eq_.h_omega() > resolved * (c_.s - 1) && !eq_.held())
-    eq_.end_tension(w1_, resolved * (c_.s - 1), state.tension);
+    state.stage_tension = unresolved ? eq_.stage_tension(unheld) : eq_.rods.tension;
+  if (unresolved) eq_.end_tension(w1_, followed, state.tension, state.tension_error);
 }
 
 // Rates at the Gauss points are those that the damper leaves, the rate at the end is not: w_1 becomes what

@@ -72,6 +72,16 @@ double ElasticStages::h_omega(Index i, double h, const SparseRows& directions) c
   return std::abs(h) * sum / std::sqrt(compliance_[i]);
 }
 
+double ElasticStages::rate_over_omega(Index i, double t, const VectorXd& w, const SparseRows& D) const {
+  const Rod& rod = rods_->rods()[static_cast<std::size_t>(i)];
+  double square = 0, rate = -rod.natural_length() * rod.warmed(t, 1);
+  for (SparseRows::InnerIterator it(D, static_cast<int>(i)); it; ++it) {
+    square += it.value() * it.value() / system_.mass().coeff(it.col(), it.col());
+    rate += it.value() * w[it.col()];
+  }
+  return square > 0 ? rate / std::sqrt(square * compliance_[i]) : 0.0;
+}
+
 // Factors are analysed anew where other rods are held than before.
 void ElasticStages::stack(const SparseRows& G, const SparseRows& D) {
   const Index m = G.rows();
@@ -93,20 +103,25 @@ void ElasticStages::stack(const SparseRows& G, const SparseRows& D) {
   rows_ = std::move(rows);
 }
 
+bool ElasticStages::take_as_rigid(std::vector<Index> rods, const SparseRows& G, const SparseRows& D) {
+  if (rods.empty()) return held_.clear(), false;
+  if (rods != stacked_) shared_.reset(), saddle_.reset(), stacked_ = rods;
+  held_ = std::move(rods);
+  stack(G, D);
+  if (saddle_->factorise(rows_)) return true;
+  return held_.clear(), false;
+}
+
 bool ElasticStages::still(double fast, double t, double h, const VectorXd& q, const Rigid& rigid, VectorXd& w,
                           VectorXd& mu) {
   std::vector<Index> fastest;
+  SparseRows D;
   if (as_unknowns) {
-    const SparseRows D = system_.giving_rod_directions(q);
+    D = system_.giving_rod_directions(q);
     for (Index i = 0; i < D.rows(); ++i)
       if (h_omega(i, h, D) > fast) fastest.push_back(i);
-    if (fastest != held_) shared_.reset(), saddle_.reset();
-    held_ = std::move(fastest);
-    if (!held_.empty()) stack(rigid.G, D);
-  } else {
-    held_.clear();
   }
-  if (held_.empty() || !saddle_->factorise(rows_)) return held_.clear(), false;
+  if (!take_as_rigid(std::move(fastest), rigid.G, D)) return false;
   const Index m = rigid.G.rows();
   VectorXd rates(rows_.rows()), impulse(rows_.rows());
   rates.head(m) = rigid.rate;

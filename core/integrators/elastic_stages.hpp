@@ -34,6 +34,11 @@ class ElasticStages {
   void add_sizes(double h, VectorXd& f) const;
   // h sqrt(k / m) of rod i moving alone, from above.
   double h_omega(Index i, double h, const SparseRows& directions) const;
+  // N' / omega of rod i moving alone: the amplitude of its wave where its velocity is the wave's [N].
+  double rate_over_omega(Index i, double t, const VectorXd& w, const SparseRows& directions) const;
+  // These rods, whose rows D are those of `rods`, are rigid in find_still_forces(). False: it cannot be
+  // asked.
+  bool take_as_rigid(std::vector<Index> rods, const SparseRows& G, const SparseRows& D);
   // Rods whose waves turn many times in a step, h omega > `fast`, become constraints of index 3, whose
   // velocities the Gauss points alone do not hold: what is left of D w at a step's end, D = d|d|/dz, would
   // grow from step to step. Here it is taken out, in the metric of the mass and with the rigid rows' own: M w
@@ -50,10 +55,11 @@ class ElasticStages {
   //     M a + G^T lambda + D^T N = F,   G a = -bias,   D a = l'' - |u_across|^2 / |d|
   //
   // but for C N''. What rigid rods leave open stays as their lengths at the Gauss points have it: `force`,
-  // which has all rods', changes by forces of least complementary energy. Only after still().
+  // which has all rods', changes by forces of least complementary energy. Only after still() or
+  // take_as_rigid().
   void find_still_forces(double t, const VectorXd& q, const VectorXd& v, VectorXd& force);
   double compliance(Index i) const { return compliance_[i]; }
-  // The rods that the last call of still() has held.
+  // The rods that the last call of still() has held, or those taken as rigid since.
   const std::vector<Index>& held() const { return held_; }
 
   MatrixXd tension, residual;  // N [N], R [m]: rods x points
@@ -68,7 +74,7 @@ class ElasticStages {
 
   VectorXd compliance_, stretch_;
   double level_ = 0;
-  std::vector<Index> held_;
+  std::vector<Index> held_, stacked_;  // stacked_: those that saddle_ was analysed for
   SparseRows rows_;
   std::unique_ptr<SaddleSolver> saddle_;
   std::optional<bool> shared_;  // whether these rows leave forces open

@@ -166,7 +166,7 @@ void StageEquations::applied_forces() {
   }
 }
 
-void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd& tension) {
+void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd& tension, VectorXd& error) {
   for (Index j = 0; j < c.tau.size() && !rods.as_unknowns; ++j) {
     move_to(j);
     rods.take_from_lengths(j, t + c.tau[j] * h, q_tau_, v_tau_);
@@ -175,10 +175,43 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
   system.expand_rate(w_1, v_tau_);
   tension.resize(rods.tension.rows());
   system.giving_rod_forces(t + h, q_tau_, v_tau_, tension);
+  const VectorXd by_lengths = tension;
   const SparseRows directions = system.giving_rod_directions(q_tau_);
   for (Index i = 0; i < tension.size(); ++i)
     if (rods.h_omega(i, h, directions) > resolved) tension[i] = rods.tension.row(i).dot(c.tau_to_end);
-  if (!rods.held().empty()) rods.find_still_forces(t + h, q_tau_, v_tau_, tension);
+  const std::vector<Index> stopped = rods.held();
+  if (!told_by_motion(t + h, directions, resolved, tension) && !stopped.empty())
+    rods.find_still_forces(t + h, q_tau_, v_tau_, tension);
+  error.setZero(tension.size());
+  for (Index i = 0; i < tension.size(); ++i)
+    if (rods.h_omega(i, h, directions) > resolved)
+      error[i] = std::hypot(by_lengths[i] - tension[i], rods.rate_over_omega(i, t + h, w_1, directions));
+  for (const Index i : stopped) error[i] = 0;
+}
+
+bool StageEquations::told_by_motion(double at, const SparseRows& directions, double resolved,
+                                    VectorXd& tension) {
+  if (c.s >= fewest_that_tell) return false;
+  std::vector<Index> fast;
+  for (Index i = 0; i < directions.rows(); ++i)
+    if (rods.h_omega(i, h, directions) > resolved) fast.push_back(i);
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  system.jacobian(q_tau_, G, scratch);
+  if (!rods.take_as_rigid(std::move(fast), G, directions)) return false;
+  rods.find_still_forces(at, q_tau_, v_tau_, tension);
+  return true;
+}
+
+MatrixXd StageEquations::stage_tension(double beyond) {
+  MatrixXd out = rods.tension;
+  for (Index j = 0; j < c.tau.size() && c.s < fewest_that_tell; ++j) {
+    move_to(j);
+    VectorXd tension = out.col(j);
+    if (told_by_motion(t + c.tau[j] * h, system.giving_rod_directions(q_tau_), beyond, tension))
+      out.col(j) = tension;
+  }
+  return out;
 }
 
 bool StageEquations::held() {

@@ -62,8 +62,14 @@ class StageEquations {
   double h_rate() const;   // h c / m of the strongest damper, from above
   // Axial forces of the rods that give at the step's end, with velocity w_1: by the polynomial through those
   // at the points of the quadrature for rods of h omega > `resolved`, whose waves are not resolved, so that
-  // the end's coordinates do not tell them; else by their lengths. Of rods that are held still by the motion.
-  void end_tension(const VectorXd& w_1, double resolved, VectorXd& tension);
+  // the end's coordinates do not tell them; else by their lengths. By the motion, for which they are rigid,
+  // those of rods that are held still and, with fewer than four stages, of all that are not resolved: there
+  // the points of the quadrature do not tell them. `error`: what waves that are neither resolved nor stopped
+  // may change of them, by what lengths say otherwise and by the rate at which these change over omega [N].
+  void end_tension(const VectorXd& w_1, double resolved, VectorXd& tension, VectorXd& error);
+  // At the points of the quadrature, as powers take them: with fewer than four stages by the motion for rods
+  // of h omega > `beyond`.
+  MatrixXd stage_tension(double beyond);
   // Whether the constraints leave no motion free (looked for once, at the present start, and not in
   // structures of many coordinates): lengths are what drives make them, and tell forces whatever the step.
   bool held();
@@ -94,6 +100,7 @@ class StageEquations {
   ElasticStages rods;
 
  private:
+  static constexpr int fewest_that_tell = 4;  // stages whose points tell the forces of waves not resolved
   static constexpr double momentum_noise = 4 * std::numeric_limits<double>::epsilon();
   // What is at rest beside other nodes in motion counts as moving by this share of theirs: its forces come
   // from theirs, members of nets just going taut among them, whose stiffness is not yet known.
@@ -107,6 +114,9 @@ class StageEquations {
   void measure_constraints();
   void use_step();
   void move_to(Index j);
+  // The forces of rods of h omega > `resolved` at the pose and velocity moved to, where stages do not tell
+  // them.
+  bool told_by_motion(double at, const SparseRows& directions, double resolved, VectorXd& tension);
   void applied_forces();
   void constraint_changes();
   void measure();

@@ -7,6 +7,7 @@
 
 #include "core/constraints/constraint.hpp"
 #include "core/constraints/linear_rows.hpp"
+#include "core/forces/latch_spring.hpp"
 
 namespace unfurl {
 namespace {
@@ -118,7 +119,7 @@ PathForces::PathForces(const Structure& structure, const System& system, bool se
   std::vector<char> done(structure.forces.size(), 0);
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
     const Force& force = structure.forces[i];
-    if (done[i] || (force.kind == "latch" && force.form.empty())) continue;
+    if (done[i] || latch_waits(force)) continue;
     if (force.kind == "friction" && !(force.holding > 0)) continue;
     one.forces = {force};
     const bool timed = force.size.moves();
@@ -132,7 +133,7 @@ PathForces::PathForces(const Structure& structure, const System& system, bool se
       for (std::size_t k = i + 1; k < structure.forces.size(); ++k) {
         const Force& other = structure.forces[k];
         if (other.kind != force.kind || other.size.moves() || is_cable(other) ||
-            (separately && other.name != force.name) || (other.kind == "latch" && other.form.empty()))
+            (separately && other.name != force.name) || latch_waits(other))
           continue;
         one.forces.push_back(other);
         done[k] = 1;

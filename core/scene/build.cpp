@@ -88,6 +88,9 @@ void check_latches(const Scene& scene, Structure& structure) {
       structure.notes.push_back(
           problem_text({force.where, force.key, "does nothing without solver.at_deployed = \"latch\""}));
   }
+  if (!structure.deployment.measured || !structure.deployment.latches.empty()) return;
+  for (Force& force : structure.forces)  // its angles count turns from the start
+    if (force.kind == "latch") force.measure = structure.deployment.measure, force.slack = true;
 }
 
 // The measure of a structure that has no fold angle, as [deployment] says.

@@ -368,9 +368,11 @@ void give_deployment(const Scene& scene, Structure& structure) {
   d.stowed = unit * e.values.real("stowed");
   if (std::isnan(d.stowed)) d.stowed = initial;
   const double way = d.deployed - d.stowed;
+  double factors = measure->kind == MeasureKind::combination ? 0.0 : 1.0;
+  for (const MeasureTerm& term : measure->terms) factors += std::abs(term.coefficient);
   if (!(std::abs(way) > 1e-9 * std::max(1.0, std::abs(d.stowed))))
     find.problem(e, "deployed", "is the value when stowed, too: nothing deploys");
-  else if (measure->kind != MeasureKind::combination && is_angle(*measure) && std::abs(way) >= 2 * pi)
+  else if (is_angle(*measure) && std::abs(way) >= 2 * pi * factors)
     find.problem(e, "deployed", "must be less than a turn away from stowed");
   else if (!((d.deployed - initial) / way > 1e-9)) {
     std::ostringstream text;

@@ -53,7 +53,6 @@ double fastest_elastic_period(const Model& model, const State& state) {
 }
 
 std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options) {
-  if (options.tolerance > 0) return {};  // steps are found
   const Method* method = find_method(options.method);
   if (!method || method->claims(options).damps) return {};
   const double period = fastest_elastic_period(model, start);
@@ -61,8 +60,9 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
   std::ostringstream text;
   text.precision(3);
   text << "the step of " << options.step << " s does not resolve the fastest elastic period, " << period
-       << " s: such waves are not followed, and forces at single states are theirs; dvm stops those whose "
-          "period is less than a sixteenth of the step. To follow them, solver.step = "
+       << " s: such waves are not followed, and forces at single states are theirs (axial_force_unique "
+          "= 0 where by more than 1 %); dvm stops those whose period is less than a sixteenth of the step. "
+          "To follow them, solver.step = "
        << followed_share * period
        << (options.step > period && options.stages < 4
                ? "; with fewer than four stages they spoil velocities, and forces of all rods that dvm does "

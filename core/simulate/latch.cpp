@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/forces/latch_spring.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/simulate/initial_state.hpp"
 
@@ -22,10 +23,6 @@ double constraint_error(const System& system, const State& state) {
   system.expand(state.z, q);
   system.constraint(state.t, q, phi);
   return phi.cwiseQuotient(system.constraint_lengths()).lpNorm<Eigen::Infinity>();
-}
-
-bool waits(const Force& force) {
-  return force.kind == "latch" && force.form.empty();
 }
 
 }  // namespace
@@ -46,24 +43,32 @@ LinearForm remaining_form(const Deployment& deployment) {
 }
 
 bool latch_gives(const Structure& structure) {
-  return std::any_of(structure.forces.begin(), structure.forces.end(), waits);
+  return std::any_of(structure.forces.begin(), structure.forces.end(), latch_waits);
 }
 
 std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear) {
   Structure structure = model.structure;
   const Deployment& deployment = structure.deployment;
   if (deployment.measured && deployment.latches.empty()) {
+    const bool gives = latch_gives(structure);
+    for (Force& force : structure.forces) {
+      if (!latch_waits(force)) continue;
+      force.measure = deployment.measure;
+      force.rest = deployment.deployed;
+      force.slack = false;
+    }
     TimeFunction held;
     held.offset = deployment.deployed;
-    structure.constraints.push_back(
-        {"measure", "latch of the deployment", {}, {}, 0.0, deployment.measure, held});
+    if (!gives)
+      structure.constraints.push_back(
+          {"measure", "latch of the deployment", {}, {}, 0.0, deployment.measure, held});
     System locked(structure, eliminate_linear);
     return std::make_shared<const Model>(Model{std::move(structure), std::move(locked)});
   }
   std::vector<LinearForm> latches = deployment.latches;
   if (latches.empty()) latches.push_back(remaining_form(deployment));
   std::vector<Force> springs;  // what gives in their place
-  std::copy_if(structure.forces.begin(), structure.forces.end(), std::back_inserter(springs), waits);
+  std::copy_if(structure.forces.begin(), structure.forces.end(), std::back_inserter(springs), latch_waits);
   for (const LinearForm& form : latches) {
     const std::string name =
         deployment.latches.empty()

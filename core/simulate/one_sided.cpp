@@ -204,7 +204,7 @@ void OneSided::find_cables(const System& system, const State& state) {
 
 // min(s - rest, n / (k + c / h)) [m]
 double OneSided::stretch(const Cable& cable, double t, const VectorXd& q, const VectorXd& v, double& rate) {
-  const SpringLaw law = spring_law(cable.law, t);
+  const SpringLaw law = spring_law(cable.law, t, q.data());
   const double damping = cable.law.damping;
   gradient_.resize(static_cast<Index>(cable.length.stencil().size()));
   const double s = cable.length.value_and_gradient(q.data(), gradient_.data()) - law.rest;

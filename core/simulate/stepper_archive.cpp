@@ -86,7 +86,9 @@ void Stepper::Loop::archive_states(Archive& archive) {
     StepReport report;
     if (!archive.reading()) state = run_.trajectory.state(i), report = run_.trajectory.report(i);
     archive(state.t);
-    for (VectorXd* x : {&state.z, &state.w, &state.lambda, &state.tension, &state.angles}) archive(*x);
+    for (VectorXd* x :
+         {&state.z, &state.w, &state.lambda, &state.tension, &state.tension_error, &state.angles})
+      archive(*x);
     archive(state.stage_tension);
     archive(report.status);
     for (int* x : {&report.newton_iterations, &report.factorisations, &report.right_hand_sides}) archive(*x);

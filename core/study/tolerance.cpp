@@ -97,8 +97,11 @@ class Picker {
  private:
   bool by_stages() const { return order_depends_on_stages(options_); }
 
+  // Elastic rods want four stages or more: with fewer, waves that steps do not resolve spoil velocities and
+  // forces, that of a pin with friction among them.
   std::vector<int> stage_choices() const {
     if (!by_stages()) return {options_.stages};
+    if (model_->system.elastic_rods()) return {4, 5, 6, 7};
     // Locating the deployed pose solves steps next to a singular one, at a price that grows fast with the
     // stages.
     if (!model_->structure.deployment.empty()) return {4, 3, 2, 5, 6, 7};

@@ -120,7 +120,89 @@ class Balance {
   std::vector<double> scratch_;
 };
 
-void note_self_stress(Structure& structure, const System& system, const VectorXd& q, double most) {
+// The same with what moves without stretching a rod held where it is: steps
+//
+//     [ e M  G^T  D^T ] [ dz     ]   [  0               ]
+//     [ G     0    0  ] [ lambda ] = [ -Phi             ]       D = d|d|/dz
+//     [ D     0   -C  ] [ N      ]   [ -(|d| - l)       ]
+//
+// with e large beside what self-stress makes of the stiffness, small beside the rods' own.
+class Joint {
+ public:
+  Joint(const System& system, const Structure& structure) : system_(system), structure_(structure) {}
+
+  bool find(VectorXd& q) {
+    const VectorXd given = q;
+    VectorXd z = system_.reduce(q), step;
+    double first = 0;
+    for (int it = 0; it < most_steps; ++it) {
+      if (!solve(q, step)) return false;
+      z += step;
+      system_.expand(z, q);
+      const double size = step.lpNorm<Eigen::Infinity>();
+      if (it == 0) first = size;
+      if (size <= settled * first) break;
+    }
+    return (q - given).lpNorm<Eigen::Infinity>() <= farthest * first;
+  }
+
+ private:
+  static constexpr double held = 1e-3;     // e M over K
+  static constexpr double settled = 1e-6;  // of the first step
+  static constexpr double farthest = 50;   // first steps
+
+  // lambda goes on from that of the step before, so that what keeps redundant rows solvable leaves no error.
+  bool solve(const VectorXd& q, VectorXd& step) {
+    const std::vector<int>& giving = system_.giving_rods();
+    const Index n = system_.solved_coordinates(), m = system_.constraints(), k = std::ssize(giving);
+    SparseRows G = system_.jacobian_pattern();
+    std::vector<double> scratch;
+    system_.jacobian(q, G, scratch);
+    const SparseRows D = system_.giving_rod_directions(q);
+    VectorXd phi(m), b = VectorXd::Zero(n + m + k);
+    system_.constraint(0.0, q, phi);
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add_row = [&](const SparseRows& A, int from, Index to) {
+      for (SparseRows::InnerIterator it(A, from); it; ++it) {
+        entries.emplace_back(static_cast<int>(to), static_cast<int>(it.col()), it.value());
+        entries.emplace_back(static_cast<int>(it.col()), static_cast<int>(to), it.value());
+      }
+    };
+    VectorXd stiffness = VectorXd::Zero(n);
+    for (int i = 0; i < k; ++i) {
+      const Rod& rod = structure_.rods[static_cast<std::size_t>(giving[static_cast<std::size_t>(i)])];
+      const Index at = n + m + i;
+      b[at] = rod.natural_length() - (node_vector(q.data(), rod.b) - node_vector(q.data(), rod.a)).norm();
+      add_row(D, i, at);
+      entries.emplace_back(static_cast<int>(at), static_cast<int>(at), -rod.compliance());
+      for (SparseRows::InnerIterator it(D, i); it; ++it)
+        stiffness[it.col()] += it.value() * it.value() / rod.compliance();
+    }
+    const double stiffest = (stiffness.array() / system_.mass().diagonal().array()).maxCoeff();
+    const double kept = redundant / stiffness.maxCoeff();
+    if (lambda_.size() != m) lambda_ = VectorXd::Zero(m);
+    b.segment(n, m) = -phi - kept * lambda_;
+    for (int r = 0; r < m; ++r) {
+      add_row(G, r, n + r);
+      entries.emplace_back(static_cast<int>(n) + r, static_cast<int>(n) + r, -kept);
+    }
+    add(entries, system_.mass(), held * stiffest);
+    Columns A(n + m + k, n + m + k);
+    A.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SparseLU<Columns> factors(A);
+    if (factors.info() != Eigen::Success) return false;
+    const VectorXd x = factors.solve(b);
+    step = x.head(n), lambda_ = x.segment(n, m);
+    return x.allFinite();
+  }
+
+  const System& system_;
+  const Structure& structure_;
+  VectorXd lambda_;
+};
+
+void note_self_stress(Structure& structure, const System& system, const VectorXd& q, double most,
+                      bool balanced) {
   VectorXd force(static_cast<Index>(system.giving_rods().size()));
   system.giving_rod_forces(0.0, q, VectorXd::Zero(q.size()), force);
   Index at = 0;
@@ -134,6 +216,9 @@ void note_self_stress(Structure& structure, const System& system, const VectorXd
   std::ostringstream note;
   note << "rods that do not quite fit were joined: nodes were moved by at most " << most
        << " m, and the largest force of self-stress is " << force[at] << " N (rod " << rod.name << ")";
+  if (!balanced)
+    note << "; no pose near the given one has them in balance, so that they drive the mechanism, which was "
+            "held as it is";
   structure.notes.push_back(note.str());
 }
 
@@ -154,7 +239,9 @@ void assemble_elastic(Structure& structure, bool eliminate_linear) {
   const System system(unloaded(structure), eliminate_linear);
   const VectorXd given = node_positions(structure);
   VectorXd q = given;
-  if (!Balance(system).find(q))
+  const bool balanced = Balance(system).find(q);
+  if (!balanced) q = given;
+  if (!balanced && !Joint(system, structure).find(q))
     throw StructureError(key, off.str() + ", and no pose near the given one has the rods in balance");
   double most = 0;
   for (std::size_t i = 0; i < structure.nodes.size(); ++i) {
@@ -162,7 +249,7 @@ void assemble_elastic(Structure& structure, bool eliminate_linear) {
     structure.nodes[i].position = q.segment<3>(at);
     most = std::max(most, (q - given).segment<3>(at).norm());
   }
-  note_self_stress(structure, system, q, most);
+  note_self_stress(structure, system, q, most, balanced);
 }
 
 }  // namespace unfurl

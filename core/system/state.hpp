@@ -14,6 +14,8 @@ struct State {
   // Of the rods that give, where a step does not resolve their waves: the axial forces of the method's stages
   // at the state, which its coordinates do not tell then; empty: they do [N].
   VectorXd tension = {};
+  // Beside them what waves that the step does not resolve may change of each [N]; empty or 0: nothing.
+  VectorXd tension_error = {};
   VectorXd angles =
       {};  // FollowedAngles (measure.hpp), counted on from turn to turn [rad]; none: those at t = 0
   // The axial forces at the Gauss points of the step that ended here [rods that give x points], where the

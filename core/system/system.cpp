@@ -153,6 +153,8 @@ void System::Data::build_forces(const Structure& structure) {
   }
   for (const Load& load : structure.loads) loads.segment<3>(3 * load.node) += load.force;
   gravity_force = node_mass * structure.gravity.replicate(coordinates / 3, 1);
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    if (structure.nodes[i].ghost) gravity_force.segment<3>(3 * static_cast<Index>(i)).setZero();
 }
 
 void System::Data::find_constraint_rows(std::size_t constraints) {

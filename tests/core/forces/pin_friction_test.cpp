@@ -260,6 +260,16 @@ TEST_CASE("friction by a rod's force with stages that do not tell it is refused 
   CHECK(error_of(pendulum, changes) == "");
 }
 
+// A coarse tolerance of positions is met by two or three stages too, whose steps do not tell the friction.
+TEST_CASE("a tolerance takes no fewer than four stages for friction by the force of an elastic rod") {
+  auto changes = on_elastic_rod(1e10);
+  changes.emplace_back("solver.tolerance=1e-3");
+  const Scene scene = read_scene_text(pendulum, "s.toml", changes);
+  const Simulation run = simulate_as_asked(build_model(scene), scene.solver);
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.options.stages >= 4);
+}
+
 // A torque tau turns the rod of mass m with M at its end by I = m l^2 / 3 + M l^2 about P, which bears
 // (m / 2 + M) l tau / I of it: mu r must be below l (m / 3 + M) / (m / 2 + M), without mass below l.
 TEST_CASE("a pin whose friction locks it is refused before the run, with the rod and what is allowed") {

@@ -67,6 +67,65 @@ TEST_CASE("a measured deployment latches and stays") {
   CHECK(run.events.back().energy_lost == Approx(0.5 * reduced * rate * rate).epsilon(1e-10));
 }
 
+// From s = 1.9 on with the rate v the spring alone is against the 12 N: m x'' = 12 - k x of the reduced mass
+// m.
+TEST_CASE("a latch that gives holds a measured deployment by its spring") {
+  const double k = 2300, m = 3 * 5 / 8.0, v = std::sqrt(2 * 1.5 * 12 / m), w = std::sqrt(k / m);
+  const Simulation run =
+      run_scene(pushed, {"solver.at_deployed=latch", "solver.end_time=1.1", "solver.stages=4",
+                         "solver.step=0.002", "forces=[{kind=\"latch\", stiffness=2300}]"});
+  REQUIRE(run.status == RunStatus::completed);
+  REQUIRE(time_of(run, "latched") > 0);
+  const double t = 1.1 - time_of(run, "latched");
+  const VectorXd end = testing::end_positions(run);
+  CHECK(end[3] - end[0] ==
+        Approx(1.9 + 12 / k * (1 - std::cos(w * t)) + v / w * std::sin(w * t)).margin(1e-9));
+  // The peak between states: half a step of the swing away at most.
+  const Diagnostics d = diagnose(run);
+  CHECK(testing::largest(d, "latch_force_max_N") ==
+        Approx(12 + std::sqrt(144 + k * m * v * v)).epsilon(1e-3));
+  CHECK(testing::largest(d, "energy_balance_J") <= 1e-9);
+}
+
+// An arm of inertia I that turns freely arrives at the rate w: the peak is w sqrt(I k), at the angle w sqrt(I
+// / k) beyond.
+TEST_CASE("a latch that gives holds an angle by its torque") {
+  const double w = 7.3, I = 0.9 * 0.8 * 0.8 / 3, k = 140;
+  const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "R", position = [1, 0, 0], fixed = true},
+         {name = "A", position = [0.8, 0, 0], velocity = [0, 5.84, 0]}]
+rods = [{nodes = ["O", "A"], mass = 0.9}]
+[[constraints]]
+kind = "plane"
+nodes = ["A"]
+normal = [0, 0, 1]
+[[forces]]
+kind = "latch"
+stiffness = 140
+damping = 0
+[deployment]
+measure = "2 angle R O A about 0 0 1"
+deployed = 300
+[solver]
+stages = 4
+step = 0.001
+end_time = 0.61
+at_deployed = "latch"
+)");
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(time_of(run, "latched") == Approx(150 * pi / 180 / w).epsilon(1e-9));
+  // The measure is twice the angle: k / 2 (2 x)^2.
+  const double t = 0.61 - 150 * pi / 180 / w, swing = std::sqrt(4 * k / I);
+  const double angle = 150 * pi / 180 + w / swing * std::sin(swing * t);
+  const VectorXd end = testing::end_positions(run);
+  CHECK(end[6] == Approx(0.8 * std::cos(angle)).margin(1e-8));
+  CHECK(end[7] == Approx(0.8 * std::sin(angle)).margin(1e-8));
+  CHECK(testing::largest(diagnose(run), "latch_torque_max_N_m") ==
+        Approx(w * std::sqrt(I * k)).epsilon(1e-3));
+}
+
 // A drive that comes to rest where it is deployed: the measure only just gets there.
 TEST_CASE("a drive that ends in the deployed pose deploys") {
   const std::string driven = pushed + R"(
@@ -129,6 +188,18 @@ rate = -0.5
 }
 
 TEST_CASE("a deployment that cannot be says why") {
+  // Angles count within a turn: 2 x is deployed at 720 degrees at most.
+  CHECK(error_of(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "R", position = [1, 0, 0], fixed = true},
+         {name = "A", position = [0.8, 0, 0], velocity = [0, 5, 0], mass = 1}]
+rods = [{nodes = ["O", "A"], mass = 0}]
+[deployment]
+measure = "2 angle R O A about 0 0 1"
+deployed = 940
+)")
+            .find("less than a turn") != std::string::npos);
   CHECK(error_of(pushed, {"deployment.deployed=0.4"}).find("nothing deploys") != std::string::npos);
   CHECK(error_of(pushed, {"deployment.deployed=0.2", "deployment.stowed=1"}) == "");
   CHECK(error_of(pushed, {"deployment.deployed=0.2", "deployment.stowed=0.1"}).find("reached already") !=

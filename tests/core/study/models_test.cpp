@@ -43,7 +43,7 @@ TEST_CASE("modelling choices that promise the same answer give it") {
     CHECK(m.difference > 1e-8);
     CHECK(m.difference < 1e-2);
     CHECK(m.tip_difference <= m.difference);
-    CHECK(m.peak_unique);
+    CHECK(m.peak_unique == (rods != std::string("elastic rods")));  // its steps do not follow the waves
 #ifndef __SANITIZE_ADDRESS__  // whose heap does not say how much of it is in use
     CHECK(m.memory > 0);
 #endif
