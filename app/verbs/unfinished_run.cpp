@@ -120,7 +120,11 @@ void UnfinishedRun::forget() {
   for (const char* name : tables) written_.remove(std::string("unfinished/") + name);
   written_.remove("unfinished/checkpoint");
   std::error_code error;
-  if (!fs::is_symlink(fs::symlink_status(folder(), error))) fs::remove(folder(), error);
+  if (!fs::is_symlink(fs::symlink_status(folder(), error))) {
+    for (const auto& entry : fs::directory_iterator(folder(), error))  // a run was killed in a checkpoint
+      if (is_unfinished_name(entry.path().filename().string())) remove_abandoned(entry.path());
+    fs::remove(folder(), error);
+  }
   written_.forget_missing();
 }
 

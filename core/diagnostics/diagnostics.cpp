@@ -322,7 +322,6 @@ std::vector<std::string_view> diagnostic_names() {
 }
 
 namespace {
-
 // The rows that were not looked at.
 void leave_open(const Trajectory& trajectory, Diagnostics& out) {
   out.left_open = trajectory.size() - out.t.size();

@@ -114,13 +114,11 @@ bool ElasticStages::take_as_rigid(std::vector<Index> rods, const SparseRows& G, 
 
 bool ElasticStages::still(double fast, double t, double h, const VectorXd& q, const Rigid& rigid, VectorXd& w,
                           VectorXd& mu) {
+  if (!as_unknowns) return held_.clear(), false;
   std::vector<Index> fastest;
-  SparseRows D;
-  if (as_unknowns) {
-    D = system_.giving_rod_directions(q);
-    for (Index i = 0; i < D.rows(); ++i)
-      if (h_omega(i, h, D) > fast) fastest.push_back(i);
-  }
+  const SparseRows D = system_.giving_rod_directions(q);
+  for (Index i = 0; i < D.rows(); ++i)
+    if (h_omega(i, h, D) > fast) fastest.push_back(i);
   if (!take_as_rigid(std::move(fastest), rigid.G, D)) return false;
   const Index m = rigid.G.rows();
   VectorXd rates(rows_.rows()), impulse(rows_.rows());

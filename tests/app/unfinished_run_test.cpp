@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/app/run_program.hpp"
@@ -174,8 +175,10 @@ TEST_CASE("a run that is killed while its tables take their places goes on to th
     killed_into(killed);
     for (std::size_t k = 0; k < moved; ++k)
       fs::rename(killed + "/unfinished/" + tables[k], killed + "/" + tables[k]);
+    std::ofstream(killed + "/unfinished/.unfurl-0123456789abcdef.part") << "of a next checkpoint";
     REQUIRE(run_program(run_of(scene, killed, {})).code == 0);
     check_same(whole, killed);
+    CHECK_FALSE(fs::exists(killed + "/unfinished"));
     CHECK(run_program({"verify", killed}).code == 0);
   }
   // And with a table that is lost it does not go on.
