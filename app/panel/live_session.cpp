@@ -101,7 +101,8 @@ void LiveSession::take_run(const SimulationOutcome& outcome) {
   state_.problems = outcome.problems;
   // What was said of the same document ("saved ...") stays when its run comes.
   const bool another = !outcome.run || (state_.shown && state_.shown->document != outcome.run->document);
-  if (another || !outcome.message.empty()) state_.message = outcome.message;
+  const bool saved = outcome.run && saved_ && outcome.run->document == *saved_;
+  if ((another && !saved) || !outcome.message.empty()) state_.message = outcome.message;
   if (!outcome.run || outcome.run->simulation.trajectory.empty()) return;
   const bool first = !state_.shown;
   let_go();  // of the run before
@@ -242,6 +243,7 @@ void LiveSession::save_now(const std::string& path) {
   const SceneDocument saved = saved_document(state_.history.now(), path, anew);
   if (!options_.replayed) write_file_atomically(path, *saved.text);
   state_.history.saved(saved);
+  saved_ = saved;
   state_.message = "saved " + absolute(path) + (anew ? ", written anew" : ", comments kept");
   state_.export_path = path;
   remember(path);

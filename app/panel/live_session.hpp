@@ -94,6 +94,7 @@ class LiveSession {
   Arrivals arrived_;
   std::optional<SimulationOutcome> outcome_;
   std::string exporting_to_;
+  std::optional<SceneDocument> saved_;  // the last one that was
   ChildProcess folder_;
   Hand hand_;
   ExportProcess export_;
