@@ -11,7 +11,6 @@ namespace unfurl {
 namespace {
 
 constexpr double connected = 1e-9;  // of the largest share
-constexpr double located = 1e-12;   // of a capacity
 constexpr double met = 1e-11;       // of a load: what rounding leaves of it
 
 // Those that `held` is connected with, by turns over the resting and the held ones.
@@ -28,26 +27,21 @@ void collect(const MatrixXd& linked, Index held, std::vector<Index>& all, std::v
     }
 }
 
-// Is there an x for the load, A x = l, |x| <= tau? Least squares in the box say.
-bool bears(const MatrixXd& A, const VectorXd& l, const VectorXd& tau) {
-  const auto least = solve_box(A.transpose() * A, -A.transpose() * l, -tau, tau);
-  return least && (A * least->x - l).lpNorm<Eigen::Infinity>() <= met * l.lpNorm<Eigen::Infinity>();
-}
-
-// The largest t with t l in reach, between what x_j = 0 gives and what each row by itself allows.
+// The largest t for which t l = A x has an x with |x| <= tau. Where t is too large, what the nearest x in the
+// box leaves, r = t l - A x, is normal to a plane that bounds all A x: r . A x <= sum tau_j |a_j . r|, where
+// t is tried next. The bounds are faces of a polytope, so that this ends.
 double most(const MatrixXd& A, const VectorXd& l, const VectorXd& tau) {
-  const VectorXd alone = tau.head(l.size()), reach = A.cwiseAbs() * tau;
-  double low = std::numeric_limits<double>::infinity(), high = low;
-  for (Index i = 0; i < l.size(); ++i) {
-    if (l[i] == 0) continue;
-    low = std::min(low, alone[i] / std::abs(l[i]));
-    high = std::min(high, reach[i] / std::abs(l[i]));
+  VectorXd r = l;
+  double t = std::numeric_limits<double>::infinity();
+  for (;;) {
+    const double next = (A.transpose() * r).cwiseAbs().dot(tau) / l.dot(r);
+    if (!(next < t)) return t;
+    t = next;
+    const auto nearest = solve_box(A.transpose() * A, -t * (A.transpose() * l), -tau, tau);
+    if (!nearest) return t;
+    r = t * l - A * nearest->x;
+    if (r.lpNorm<Eigen::Infinity>() <= met * t * l.lpNorm<Eigen::Infinity>()) return t;
   }
-  while (high - low > located * high) {
-    const double t = 0.5 * (low + high);
-    (bears(A, t * l, tau) ? low : high) = t;
-  }
-  return low;
 }
 
 }  // namespace

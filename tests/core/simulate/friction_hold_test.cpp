@@ -120,7 +120,7 @@ TEST_CASE("what frictions bear together is what duality says") {
     }
     REQUIRE(holds.size() == 1);
     CHECK(holds[0].load == l.lpNorm<Eigen::Infinity>());
-    // Told apart where the load is missed by 1e-11.
+    // The nearest x leaves 1e-11 of the load.
     CHECK(holds[0].capacity / holds[0].load == Approx(most_by_normals(A, l, tau)).epsilon(1e-10));
   }
   // Two that have nothing to do with one another, each with a helper: c = diag.
