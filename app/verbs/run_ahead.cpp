@@ -26,7 +26,8 @@ bool same_bits(const Numbers& a, const Numbers& b) {
 
 bool same_state(const State& a, const State& b) {
   return std::memcmp(&a.t, &b.t, sizeof a.t) == 0 && same_bits(a.z, b.z) && same_bits(a.w, b.w) &&
-         same_bits(a.lambda, b.lambda) && same_bits(a.tension, b.tension) && same_bits(a.angles, b.angles) &&
+         same_bits(a.lambda, b.lambda) && same_bits(a.tension, b.tension) &&
+         same_bits(a.tension_error, b.tension_error) && same_bits(a.angles, b.angles) &&
          same_bits(a.stage_tension, b.stage_tension);
 }
 

@@ -9,6 +9,7 @@
 #include "core/simulate/initial_state.hpp"
 #include "core/study/reference.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -17,13 +18,6 @@ using namespace unfurl::testing;
 namespace elastic_rods_test {
 
 namespace {
-
-std::string number(double x) {
-  std::ostringstream text;
-  text.precision(17);
-  text << x;
-  return text.str();
-}
 
 std::string node(const std::string& name, const std::string& position, const std::string& more = "") {
   return "[[structure.nodes]]\nname = '" + name + "'\nposition = " + position + "\n" + more + "\n";

@@ -7,6 +7,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -63,13 +64,6 @@ Judged judged(const std::string& scene, const std::vector<std::string>& changes)
   j.d = judge(j.run);
   j.warnings = accuracy_warnings(j.run, j.d);
   return j;
-}
-
-std::string number(double x) {
-  std::ostringstream text;
-  text.precision(17);
-  text << x;
-  return text.str();
 }
 
 VectorXd end_of(const Simulation& run) {

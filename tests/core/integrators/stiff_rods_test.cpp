@@ -7,6 +7,7 @@
 #include "core/scene/library.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -15,13 +16,6 @@ using namespace unfurl::testing;
 namespace stiff_rods_test {
 
 namespace {
-
-std::string number(double x) {
-  std::ostringstream text;
-  text.precision(17);
-  text << x;
-  return text.str();
-}
 
 std::string node(const std::string& name, const Vec3& at, const Vec3& velocity, double mass) {
   std::ostringstream text;

@@ -4,22 +4,18 @@
 #include <cmath>
 #include <sstream>
 
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
 namespace unresolved_forces_test {
 
+using unfurl::testing::number;
+
 using testing::run_scene;
 
 namespace {
-
-std::string number(double x) {
-  std::ostringstream text;
-  text.precision(17);
-  text << x;
-  return text.str();
-}
 
 // A rigid link and an elastic one, let go level: the elastic one takes up its load as a wave.
 std::string links(double EA, int stages, double step) {
