@@ -47,7 +47,7 @@ RunAhead::RunAhead(int threads) : on_(helpers(threads) > 0), queue_(helpers(thre
 
 void RunAhead::look(const Trajectory& run, std::size_t states) {
   if (!on_ || run.size() < next_ + states + unsettled) return;
-  Piece& piece = pieces_.emplace_back(run.part(next_, next_ + states, {}));
+  Piece& piece = pieces_.emplace_back(Piece{run.part(next_, next_ + states, {})});
   const bool start = next_ == 0;
   next_ += states;
   queue_.add([this, &piece, start] { examine(piece, start); });

@@ -10,7 +10,7 @@ namespace unfurl {
 namespace {
 
 constexpr double box_dependent = 1e-9;  // of a unit diagonal
-constexpr double box_zero = 1e-12;      // of the largest b, in the unit diagonal
+constexpr double box_zero = 1e-12;      // of the largest b of a row with a choice, in the unit diagonal
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 std::vector<Index> rows_of(const std::vector<bool>& held) {
@@ -20,8 +20,9 @@ std::vector<Index> rows_of(const std::vector<bool>& held) {
   return rows;
 }
 
-// d with d_i = 1, (D d)_k = 0 for the held rows k and zero elsewhere.
-VectorXd direction(const MatrixXd& D, const std::vector<bool>& held, Index i) {
+}  // namespace
+
+VectorXd past_held(const MatrixXd& D, const std::vector<bool>& held, Index i) {
   const std::vector<Index> rows = rows_of(held);
   VectorXd d = VectorXd::Zero(D.rows());
   d[i] = 1;
@@ -30,6 +31,8 @@ VectorXd direction(const MatrixXd& D, const std::vector<bool>& held, Index i) {
   for (std::size_t k = 0; k < rows.size(); ++k) d[rows[k]] = -part[static_cast<Index>(k)];
   return d;
 }
+
+namespace {
 
 // Dantzig's method with bounds: one row after the other is moved until its w is right, along the line on
 // which the held rows stay at w = 0; a held row that meets a bound on the way stays there. x^T D x / 2 + b^T
@@ -42,8 +45,11 @@ class BoxProblem {
         low_(low),
         high_(high),
         x_(VectorXd::Zero(b.size()).cwiseMax(low).cwiseMin(high)),
-        held_(static_cast<std::size_t>(b.size()), false),
-        zero_(box_zero * std::max((b + D * x_).lpNorm<Eigen::Infinity>(), b.lpNorm<Eigen::Infinity>())) {}
+        held_(static_cast<std::size_t>(b.size()), false) {
+    const VectorXd w = b + D * x_;
+    for (Index i = 0; i < w.size(); ++i)
+      if (low[i] < high[i]) zero_ = std::max({zero_, box_zero * std::abs(w[i]), box_zero * std::abs(b[i])});
+  }
 
   bool solve() {
     for (Index tries = 50 * (b_.size() + 1); tries > 0; --tries) {
@@ -78,7 +84,7 @@ class BoxProblem {
       const double w = D_.row(i).dot(x_) + b_[i];
       const int sense = way(i, w);
       if (sense == 0) return true;
-      const VectorXd d = sense * direction(D_, held_, i);
+      const VectorXd d = sense * past_held(D_, held_, i);
       const double bend = sense * D_.row(i).dot(d);
       double length = bend > box_dependent * D_(i, i) ? std::abs(w) / bend : unbounded;
       Index blocks = -1;
@@ -102,13 +108,13 @@ class BoxProblem {
   const VectorXd &b_, &low_, &high_;
   VectorXd x_;
   std::vector<bool> held_;
-  double zero_;
+  double zero_ = 0;  // by rows that have a choice: others may be measured where they hardly move
 };
 
 }  // namespace
 
 bool independent(const MatrixXd& D, const std::vector<bool>& held, Index i) {
-  return D(i, i) > 0 && D.row(i).dot(direction(D, held, i)) > box_dependent * D(i, i);
+  return D(i, i) > 0 && D.row(i).dot(past_held(D, held, i)) > box_dependent * D(i, i);
 }
 
 // In units in which the diagonal of D is 1; rows without any have no say.

@@ -27,6 +27,9 @@ struct BoxSolution {
 std::optional<BoxSolution> solve_box(const MatrixXd& D, const VectorXd& b, const VectorXd& low,
                                      const VectorXd& high);
 
+// d with d_i = 1, (D d)_k = 0 for the rows k that are held, and zero for others.
+VectorXd past_held(const MatrixXd& D, const std::vector<bool>& held, Index i);
+
 // Is row i of D independent of those held? Of unit diagonal, what they leave of it is above round-off.
 bool independent(const MatrixXd& D, const std::vector<bool>& held, Index i);
 

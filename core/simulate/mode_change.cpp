@@ -14,6 +14,7 @@ namespace unfurl {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double rounding = 1e-8;  // of the largest push
 
 class Change {
  public:
@@ -72,19 +73,26 @@ class Change {
   }
 
   // Friction turns round where its rate u is zero, in a state that may miss the constraints by what the
-  // method drifts from them. Once they are met it is zero still, else friction would turn back there.
+  // method drifts from them. Once they are met it is zero still, and what rested does, else friction would
+  // turn back there and stops be left.
   void settle(const PushResponses& responses) {
     const VectorXd u = responses.rates(out_.state.w);
-    VectorXd low = VectorXd::Zero(count()), high = low;
+    std::vector<bool> still(rows_.size(), false);
+    std::vector<Index> rows;
+    const auto keep = [&](Index r) {
+      if (!movable(r) || !at_rest(r, u[r]) || !independent(D_, still, r)) return;
+      still[static_cast<std::size_t>(r)] = true;
+      rows.push_back(r);
+    };
     for (Index r = 0; r < count(); ++r)
-      if (sides_.is_friction(side(r)) && crossed(r) && movable(r) && at_rest(r, u[r]))
-        high[r] = infinity, low[r] = -infinity;
-    if (high.isZero(0.0)) return;
-    const State met = hand_over(base_, out_.state, base_).state;
-    if (const auto impulses = solve_box(D_, responses.rates(met.w), low, high)) {
-      out_.state = met;
-      responses.give(impulses->x, out_.state.w);
-    }
+      if (sides_.is_friction(side(r)) && crossed(r)) keep(r);
+    if (rows.empty()) return;
+    for (Index r = 0; r < count(); ++r)
+      if (sides_.is_friction(side(r)) || sides_.active(side(r))) keep(r);
+    out_.state = hand_over(base_, out_.state, base_).state;
+    VectorXd impulses = VectorXd::Zero(count());
+    impulses(rows) = -D_(rows, rows).llt().solve(VectorXd(responses.rates(out_.state.w)(rows)));
+    responses.give(impulses, out_.state.w);
   }
 
   // The stops that are approached, all at once. False where there is no answer.
@@ -160,7 +168,7 @@ class Change {
     if (!leaving.empty()) let_go(leaving);
     for (const Index r : leaving) leave(r);
     if (!leaving.empty() && !solve()) return false;
-    // Those that do not go after all: others push them back.
+    // Those that do not go after all: others push them back or hold them.
     for (Index tries = count(); tries >= 0; --tries) {
       bool back = false;
       for (Index r = 0; r < count(); ++r) back = (still[static_cast<std::size_t>(r)] && come_back(r)) || back;
@@ -198,7 +206,10 @@ class Change {
   bool come_back(Index r) {
     const std::size_t i = side(r), k = static_cast<std::size_t>(r);
     const double sense = sides_.is_friction(i) ? slips_[k] : 1;
-    if (rests_[k] || sense * solution_.w[r] >= -sides_.zero_acceleration()) return false;
+    const double away = sense * solution_.w[r], zero = sides_.zero_acceleration();
+    const bool others_hold =
+        sides_.is_friction(i) && std::abs(away) <= zero && !independent(D_, solution_.held, r);
+    if (rests_[k] || (away >= -zero && !others_hold)) return false;
     rests_[k] = true;
     slips_[k] = 0;
     low_[r] = sides_.is_friction(i) ? -sides_.holding(i) : 0.0;
@@ -215,6 +226,7 @@ class Change {
         return false;
       }
       solution_ = *solution;
+      forget_rounding();
       bool any = false;
       for (Index r = 0; r < count(); ++r) {
         if (!rests_[static_cast<std::size_t>(r)] || !sides_.is_friction(side(r))) continue;
@@ -228,15 +240,28 @@ class Change {
     }
   }
 
-  // Rows that rest without a force are held too, where they are independent of the others: friction, and
-  // stops that were met or held before.
+  // Friction, and stops that were met or held before, are held where they rest without a force too; other
+  // stops that touch are not, whatever rounding leaves of a force.
+  bool wants(Index r) const {
+    return sides_.is_friction(side(r)) || struck_[static_cast<std::size_t>(r)] || sides_.active(side(r)) ||
+           crossed(r);
+  }
+  void forget_rounding() {
+    const double no_push = rounding * solution_.x.lpNorm<Eigen::Infinity>();
+    for (Index r = 0; r < count(); ++r)
+      if (!wants(r) && solution_.x[r] <= no_push) solution_.held[static_cast<std::size_t>(r)] = false;
+  }
+
+  // Rows that rest without a force are held too, where they are independent of the others.
   void assign() {
     for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r), k = static_cast<std::size_t>(r);
-      const bool wants = sides_.is_friction(i) || struck_[k] || sides_.active(i) || crossed(r);
-      if (rests_[k] && !solution_.held[k] && wants && solution_.w[r] <= sides_.zero_acceleration() &&
-          independent(D_, solution_.held, r))
+      if (!rests_[k] || solution_.held[k] || !wants(r) || solution_.w[r] > sides_.zero_acceleration())
+        continue;
+      if (independent(D_, solution_.held, r))
         solution_.held[k] = true;
+      else if (sides_.is_stop(i))
+        take_over(r);
     }
     for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r), k = static_cast<std::size_t>(r);
@@ -258,6 +283,24 @@ class Change {
       if (slip != 0 || before != 0) out_.turned.push_back(i);  // what rests still does, by other forces
     }
     if (sides_.any_friction()) share();
+  }
+
+  // A stop that holds what friction holds: it takes over until one of those bears nothing.
+  void take_over(Index r) {
+    const VectorXd d = past_held(D_, solution_.held, r);
+    double most = infinity;
+    Index spared = -1;
+    for (Index k = 0; k < count(); ++k) {
+      if (k == r || std::abs(d[k]) * std::sqrt(D_(k, k)) <= 1e-9 * std::sqrt(D_(r, r))) continue;
+      const double x = solution_.x[k];
+      const bool relieved = d[k] * x < 0;
+      const double room = std::abs(relieved ? x : (d[k] > 0 ? high_[k] : low_[k]) - x) / std::abs(d[k]);
+      if (room < most) most = room, spared = relieved && sides_.is_friction(side(k)) ? k : -1;
+    }
+    if (spared < 0) return;
+    solution_.x += most * d;
+    solution_.held[static_cast<std::size_t>(r)] = true;
+    solution_.held[static_cast<std::size_t>(spared)] = false;
   }
 
   // By D c = d over what is held, stops among it.

@@ -100,6 +100,10 @@ void OneSided::set_slip(std::size_t i, int slip) {
 }
 
 int OneSided::away_from_kink(std::size_t i, const System& system, const State& state) const {
+  const Measure& what = friction(i).measure;
+  const bool ends =
+      what.kind == MeasureKind::length || (what.kind == MeasureKind::angle && !counts_turns(what));
+  if (!ends) return 0;
   VectorXd q(system.coordinates());
   system.expand(state.z, q);
   return measure(i).is_angle() && measure(i).value(q.data(), near(i, state)) > pi / 2 ? -1 : 1;

@@ -79,6 +79,7 @@ class OneSided {
   int slip(std::size_t i) const { return friction(i).slip; }
   void set_slip(std::size_t i, int slip);
   // The only sense in which an angle without a sign leaves 0 or pi, a distance 0: their gradients end there.
+  // 0: of other measures, which no force moves there.
   int away_from_kink(std::size_t i, const System& system, const State& state) const;
   void stand(std::size_t i) { active_[i] = false, frictions_[i - first_friction()].slip = 0; }
   void stick(std::size_t i, const System& system, const State& state);

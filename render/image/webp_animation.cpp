@@ -178,7 +178,7 @@ class WebpAnimation::Film {
   }
 
   void begin_segment() {
-    Part& part = parts_.emplace_back(frames_ - static_cast<long>(waiting_.size()), frames_);
+    Part& part = parts_.emplace_back(Part{frames_ - static_cast<long>(waiting_.size()), frames_});
     workers_.add([this, &part, images = std::exchange(waiting_, {})] {
       webp::Segment segment(format_, part.first);
       for (const auto& image : images) segment.add(*image);

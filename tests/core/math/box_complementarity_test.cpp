@@ -112,4 +112,13 @@ TEST_CASE("pushes in a box are those of one of all choices, for independent and 
   CHECK(redundant > 1000);
 }
 
+TEST_CASE("a push that is given and hardly moves anything decides nothing about the others") {
+  // Of unit diagonal its motion were 1e14; 20 = 2 x.
+  const MatrixXd D = (MatrixXd(2, 2) << 2, 1e-14, 1e-14, 1e-26).finished();
+  const auto found = solve_box(D, Eigen::Vector2d(-20, 12), Eigen::Vector2d(-30, 2), Eigen::Vector2d(30, 2));
+  REQUIRE(found.has_value());
+  CHECK(found->x[0] == Approx(10));
+  CHECK(found->held[0]);
+}
+
 }  // namespace box_complementarity_test
