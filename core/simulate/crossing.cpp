@@ -158,7 +158,10 @@ class CrossingSearch {
     double at = 0.125 * high_.at;
     // Top of the parabola through both values and the rate: a throw that comes down again.
     if (std::isfinite(rate) && rate > 0)
-      at = high_.at * rate * high_.at / (2 * (rate * high_.at + from_.margins[i] - high_.margins[i]));
+      if (const double top =
+              high_.at * rate * high_.at / (2 * (rate * high_.at + from_.margins[i] - high_.margins[i]));
+          top > at_once * whole_)
+        at = top;
     for (; at > at_once * whole_; at *= 0.125) {
       solve(at, i, low);
       if (low.margins[i] > 0) return true;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/math/box_complementarity.hpp"
 #include "core/simulate/latch.hpp"
@@ -133,6 +134,12 @@ class Change {
     return rate <= sides_.zero_rate() || (struck_[static_cast<std::size_t>(r)] && rate <= 0);
   }
 
+  // A stop that is left so slowly that the way back ends before the gap counts.
+  bool falls_back(Index r, double rate) const {
+    return sides_.is_stop(side(r)) && !struck_[static_cast<std::size_t>(r)] && b_[r] < 0 &&
+           rate * rate <= -2 * b_[r] * sides_.stops().touching();
+  }
+
   bool choose(const PushResponses& responses) {
     const VectorXd rate = responses.rates(out_.state.w);
     b_ = responses.accelerations(out_.state);
@@ -147,7 +154,7 @@ class Change {
     std::vector<Index> leaving;  // what sticks and cannot any more, and what stands by it
     for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r), k = static_cast<std::size_t>(r);
-      if (!at_rest(r, rate[r])) {
+      if (!at_rest(r, rate[r]) && !falls_back(r, rate[r])) {
         if (sides_.is_friction(i)) slide(r, rate[r] > 0 ? 1 : -1);
         continue;
       }
@@ -246,23 +253,33 @@ class Change {
     return sides_.is_friction(side(r)) || struck_[static_cast<std::size_t>(r)] || sides_.active(side(r)) ||
            crossed(r);
   }
+  bool bears(Index r) const {
+    return std::abs(solution_.x[r]) > rounding * solution_.x.lpNorm<Eigen::Infinity>();
+  }
   void forget_rounding() {
-    const double no_push = rounding * solution_.x.lpNorm<Eigen::Infinity>();
     for (Index r = 0; r < count(); ++r)
-      if (!wants(r) && solution_.x[r] <= no_push) solution_.held[static_cast<std::size_t>(r)] = false;
+      if (!wants(r) && !bears(r)) solution_.held[static_cast<std::size_t>(r)] = false;
   }
 
-  // Rows that rest without a force are held too, where they are independent of the others.
-  void assign() {
-    for (Index r = 0; r < count(); ++r) {
-      const std::size_t i = side(r), k = static_cast<std::size_t>(r);
+  // Rows that rest without a force are held too, where they are independent of the others; before them
+  // friction that bears something, be it at its limit.
+  void hold_resting() {
+    std::vector<Index> order(static_cast<std::size_t>(count()));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::ranges::stable_partition(order, [&](Index r) { return sides_.is_friction(side(r)) && bears(r); });
+    for (const Index r : order) {
+      const auto k = static_cast<std::size_t>(r);
       if (!rests_[k] || solution_.held[k] || !wants(r) || solution_.w[r] > sides_.zero_acceleration())
         continue;
       if (independent(D_, solution_.held, r))
         solution_.held[k] = true;
-      else if (sides_.is_stop(i))
+      else if (sides_.is_stop(side(r)))
         take_over(r);
     }
+  }
+
+  void assign() {
+    hold_resting();
     for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r), k = static_cast<std::size_t>(r);
       const bool holds = rests_[k] && solution_.held[k];

@@ -162,6 +162,15 @@ TEST_CASE("a margin that begins at zero crosses at once if it falls, and later i
   CHECK(found->which == Which{1});
 }
 
+TEST_CASE("a margin that begins at zero with a rate of rounding alone and rises is not passed at once") {
+  // Back at zero after 0.6 s; with the rate alone, by both ends, it were after 1e-20 s.
+  Motion motion{{Margin{[](double t) { return t * t * (0.6 - t) + 1e-20 * t; },
+                        [](double t) { return 1.2 * t - 3 * t * t + 1e-20; }}}};
+  const auto found = motion.first();
+  REQUIRE(found);
+  CHECK(std::abs(found->probe.at - 0.6) <= 0.1 / unit);
+}
+
 TEST_CASE("a crossing is found before where steps cannot be solved") {
   Motion motion{{falling}};
   motion.solvable = 0.6;
