@@ -118,7 +118,8 @@ constexpr std::string_view entry_note =
 
 constexpr std::string_view column_note =
     "A drive NAME adds NAME.angle_rad, NAME.angle_deg, NAME.torque_N_m and NAME.power_W (of a length "
-    "NAME.value_m and NAME.force_N), a structure its own lengths. Energies of dampers, drives and impacts "
+    "NAME.value_m and NAME.force_N), a support NAME.reaction_N with _x_N, _y_N, _z_N and _unique, a "
+    "structure its own lengths. Energies of dampers, drives and impacts "
     "and what belongs to "
     "a fold angle are there where the scene has them.";
 

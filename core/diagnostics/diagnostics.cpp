@@ -14,6 +14,7 @@
 #include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/reactions.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "core/diagnostics/state_forces.hpp"
 #include "core/forces/latch_spring.hpp"
@@ -254,48 +255,6 @@ void axial_forces(const Model& model, const State& state, const VectorXd& q, con
   }
 }
 
-// Columns of each drive: what it prescribes or turns, what it gives for it, the power, the energy so far,
-// whether the effort is unique, and an angle in degrees.
-class DriveColumns {
- public:
-  DriveColumns(const Model& model, std::vector<Series>& columns)
-      : columns_(columns), first_(columns.size()), drives_(drive_channels(model)) {
-    for (const DriveChannel& drive : drives_) {
-      const std::string& name = drive.name();
-      const char* effort = drive.angle() ? " torque" : " force";
-      columns.push_back(
-          {name + (drive.angle() ? ".angle_rad" : ".value_m"), name, drive.angle() ? "rad" : "m", {}});
-      columns.push_back({name + (drive.angle() ? ".torque_N_m" : ".force_N"),
-                         name + effort,
-                         drive.angle() ? "N m" : "N",
-                         {}});
-      columns.push_back({name + ".power_W", name + " power", "W", {}});
-      columns.push_back({name + ".energy_J", name + " energy", "J", {}});
-      columns.push_back({name + (drive.angle() ? ".torque_unique" : ".force_unique"),
-                         name + effort + " is unique",
-                         "",
-                         {}});
-      if (drive.angle()) columns.push_back({name + ".angle_deg", name, "deg", {}});
-    }
-  }
-  // `model`: that of the state, whose rows may be others than at the start.
-  void append(const Model& model, const Instant& s, const VectorXd& lambda) {
-    std::size_t column = first_;
-    for (std::size_t d = 0; d < drives_.size(); ++d) {
-      const DriveSample now = drives_[d].sample(model, s.system(), s.state.t, s.q, s.v, lambda);
-      for (const double x : {now.value, now.effort, now.power, s.flow.of_drives[d][s.i],
-                             drives_[d].unique(model, {}) ? 1.0 : 0.0})
-        columns_[column++].values.push_back(x);
-      if (drives_[d].angle()) columns_[column++].values.push_back(now.value / radians_per_degree);
-    }
-  }
-
- private:
-  std::vector<Series>& columns_;
-  std::size_t first_;
-  std::vector<DriveChannel> drives_;
-};
-
 }  // namespace
 
 const Series* Diagnostics::find(std::string_view name) const {
@@ -347,6 +306,7 @@ class StateTable {
         forces_(run.trajectory, ahead.forces),
         fold_(run.trajectory.structure().deployment) {
     if (!books_) drives_.emplace(run.trajectory.model(), out_.columns);
+    if (!books_) reactions_.emplace(run.trajectory.model(), out_.columns);
     first_own_ = out_.columns.size();
     if (!books_) add_own_columns(run.trajectory.structure(), out_);
     const auto rods = books_ ? Index{0} : static_cast<Index>(run.trajectory.structure().rods.size());
@@ -386,7 +346,9 @@ class StateTable {
     for (std::size_t c = 0; c < used_.size(); ++c) out_.columns[c].values.push_back(used_[c]->value(instant));
     if (books_) return;
     add_own_values(run_.trajectory.structure(), instant, out_.columns.data() + first_own_);
-    drives_->append(*model_, instant, lambda);
+    drives_->append(*model_, *system_, state.t, q, v, lambda,
+                    [&](std::size_t d) { return instant.flow.of_drives[d][i]; });
+    reactions_->append(*model_, *system_, state, q, v, acceleration_, lambda);
   }
 
   void fill(const std::function<bool()>& cancelled) {
@@ -441,6 +403,7 @@ class StateTable {
   Diagnostics out_;
   std::vector<const Row*> used_;
   std::optional<DriveColumns> drives_;
+  std::optional<ReactionColumns> reactions_;
   std::size_t first_own_ = 0;  // column of what the structure has of its own
   RunEnergyFlow flow_;
   const EnergyFlow* known_flow_;

@@ -103,4 +103,33 @@ std::vector<DriveChannel> drive_channels(const Model& model) {
   return out;
 }
 
+DriveColumns::DriveColumns(const Model& model, std::vector<Series>& columns)
+    : columns_(columns), first_(columns.size()), drives_(drive_channels(model)) {
+  for (const DriveChannel& drive : drives_) {
+    const std::string& name = drive.name();
+    const bool angle = drive.angle();
+    const char* effort = angle ? " torque" : " force";
+    columns.push_back({name + (angle ? ".angle_rad" : ".value_m"), name, angle ? "rad" : "m", {}});
+    columns.push_back({name + (angle ? ".torque_N_m" : ".force_N"), name + effort, angle ? "N m" : "N", {}});
+    columns.push_back({name + ".power_W", name + " power", "W", {}});
+    columns.push_back({name + ".energy_J", name + " energy", "J", {}});
+    columns.push_back(
+        {name + (angle ? ".torque_unique" : ".force_unique"), name + effort + " is unique", "", {}});
+    if (angle) columns.push_back({name + ".angle_deg", name, "deg", {}});
+  }
+}
+
+void DriveColumns::append(const Model& model, const System& system, double t, const VectorXd& q,
+                          const VectorXd& v, const VectorXd& lambda,
+                          const std::function<double(std::size_t)>& energy) {
+  std::size_t column = first_;
+  for (std::size_t d = 0; d < drives_.size(); ++d) {
+    const DriveSample now = drives_[d].sample(model, system, t, q, v, lambda);
+    for (const double x :
+         {now.value, now.effort, now.power, energy(d), drives_[d].unique(model, {}) ? 1.0 : 0.0})
+      columns_[column++].values.push_back(x);
+    if (drives_[d].angle()) columns_[column++].values.push_back(now.value / radians_per_degree);
+  }
+}
+
 }  // namespace unfurl

@@ -2,9 +2,11 @@
 // What drives a structure, by name: rows that prescribe motions, cables that are reeled, and motors.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "core/diagnostics/diagnostics.hpp"
 #include "core/simulate/trajectory.hpp"
 #include "core/structure/measure.hpp"
 
@@ -45,5 +47,20 @@ class DriveChannel {
 
 // Of the model that a run begins with: later ones have the same and more. Names are unique.
 std::vector<DriveChannel> drive_channels(const Model& model);
+
+// Columns of each drive: what it prescribes or turns, what it gives for it, the power, the energy so far,
+// whether the effort is unique, and an angle in degrees.
+class DriveColumns {
+ public:
+  DriveColumns(const Model& model, std::vector<Series>& columns);
+  // `model`: that of the state, whose rows may be others than at the start. energy: of a drive, so far [J].
+  void append(const Model& model, const System& system, double t, const VectorXd& q, const VectorXd& v,
+              const VectorXd& lambda, const std::function<double(std::size_t)>& energy);
+
+ private:
+  std::vector<Series>& columns_;
+  std::size_t first_;
+  std::vector<DriveChannel> drives_;
+};
 
 }  // namespace unfurl

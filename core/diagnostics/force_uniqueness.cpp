@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/diagnostics/drives.hpp"
+#include "core/diagnostics/reactions.hpp"
 #include "core/math/determined_rows.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/elastic_sharing.hpp"
@@ -155,6 +156,7 @@ void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness
   const std::vector<char> none(most, 0);
   std::vector<char> waves(d.t.size(), 0);
   mark_rods(trajectory, uniqueness, d, waves);
+  mark_reactions(trajectory, uniqueness, waves, d);
   for (const DriveChannel& drive : drive_channels(trajectory.model()))
     if (std::vector<double>* const column =
             values_of(d, drive.name() + (drive.angle() ? ".torque_unique" : ".force_unique")))

@@ -115,6 +115,14 @@ void add_curves(const ExportJob& job, Page& page) {
   page["second"] = d.find("fold_angle_rad") ? "fold_angle_rad" : "constraint_max_m";
 }
 
+// Why a peak is not unique: the model leaves it open, or the run does not follow it.
+const char* doubt_about(const PeakForce& peak, const Diagnostics& d) {
+  if (peak.unique) return "";
+  return d.rod_unique[static_cast<std::size_t>(peak.rod)]
+             ? " (not certain: a singular pose, or waves of elastic rods that the step does not resolve)"
+             : " (one choice of many)";
+}
+
 void add_words(const ExportJob& job, Page& page) {
   const Simulation& run = job.run;
   const SolverOptions& solver = run.options;
@@ -137,7 +145,7 @@ void add_words(const ExportJob& job, Page& page) {
   facts("constraint error", largest("constraint_max_m") + " m");
   facts("energy balance", "off by " + largest("energy_balance_J") + " J at most");
   if (const PeakForce peak = peak_rod_force(job.diagnostics); peak.rod >= 0)
-    facts("peak rod force", short_text(peak.force_N) + " N" + (peak.unique ? "" : " (one choice of many)"));
+    facts("peak rod force", short_text(peak.force_N) + " N" + doubt_about(peak, job.diagnostics));
   if (!job.command.empty()) facts("command", std::string(job.command));
   facts("made by", "Unfurl " + version());
   page["events"] = page["warnings"] = Page::array();

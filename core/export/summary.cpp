@@ -10,6 +10,7 @@
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/reactions.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "core/math/largest.hpp"
 #include "core/text/version.hpp"
@@ -95,6 +96,15 @@ Json forces_json(const Structure& structure, const Diagnostics& diagnostics) {
   return forces;
 }
 
+// What each support gives at most: "A": {"peak_N": 29.4, "t_s": 0.7, "unique": true}.
+Json reactions_json(const Structure& structure, const Diagnostics& diagnostics) {
+  Json object = Json::object();
+  for (const PeakReaction& peak : peak_reactions(structure, diagnostics))
+    object[structure.nodes[static_cast<std::size_t>(peak.node)].name] = {
+        {"peak_N", peak.force_N}, {"t_s", peak.t}, {"unique", peak.unique}};
+  return object;
+}
+
 // What the rods that have a modulus bear; a margin is null where nothing is borne.
 Json strength_json(const Structure& structure, const Diagnostics& diagnostics) {
   Json strength;
@@ -146,6 +156,8 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   for (const auto& [column, key] : {std::pair("latch_force_max_N", "peak_latch_force_N"),
                                     std::pair("latch_torque_max_N_m", "peak_latch_torque_N_m")})
     if (diagnostics.find(column)) summary["forces"][key] = largest_of_column(run, diagnostics, column);
+  if (Json supports = reactions_json(model.structure, diagnostics); !supports.empty())
+    summary["reactions"] = std::move(supports);
   if (any_elastic(model.structure)) summary["strength"] = strength_json(model.structure, diagnostics);
   summary["events"] = Json::array();
   for (const auto& event : run.events) {

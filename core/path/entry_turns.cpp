@@ -125,9 +125,9 @@ bool same_entry(const Force& a, const Force& b) {
 }
 
 bool same_entry(const Constraint& a, const Constraint& b) {
-  const auto& [kind, name, nodes, vectors, value, measure, target] = a;
+  const auto& [kind, name, nodes, vectors, value, measure, target, symmetry] = a;
   return kind == b.kind && nodes == b.nodes && close_to(vectors, b.vectors) && close_to(value, b.value) &&
-         same_entry(measure, b.measure) && same_target(target, b.target);
+         same_entry(measure, b.measure) && same_target(target, b.target) && symmetry == b.symmetry;
 }
 
 bool same_entry(const Rod& x, const Rod& y) {

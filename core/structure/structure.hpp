@@ -104,6 +104,7 @@ struct Constraint {
   double value = 0.0;         // offset or length [m]
   Measure measure = {};       // "measure": what is held or driven
   TimeFunction target = {};   // "measure": its value over time, in the measure's unit
+  bool symmetry = false;      // says that a structure is flat or symmetric: no support
 };
 
 // An end stop: limits that a measure may touch but not pass (simulate/stops.hpp).

@@ -74,6 +74,7 @@ void Assembly::fix(int node) {
 
 void Assembly::plane(int node, const Vec3& normal) {
   constrain("plane", node, normal);
+  structure.constraints.back().symmetry = true;
 }
 
 void Assembly::line(int node, const Vec3& direction) {

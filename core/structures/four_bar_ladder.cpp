@@ -13,7 +13,7 @@ void add_nodes(Structure& out, int windows, double length, double speed) {
     out.nodes.push_back({"A" + number, {i * length, 0.0, 0.0}});
     out.nodes.push_back({"B" + number, {i * length, length, 0.0}, {speed, 0.0, 0.0}});
     out.constraints.push_back({"fixed", "fixed of A" + number, {foot}, {}, 0.0});
-    out.constraints.push_back({"plane", "plane of B" + number, {head}, {Vec3::UnitZ()}, 0.0});
+    out.constraints.push_back({"plane", "plane of B" + number, {head}, {Vec3::UnitZ()}, 0.0, {}, {}, true});
   }
 }
 

@@ -36,13 +36,17 @@ void add_symmetry(Structure& out, const HoopShape& s, int k) {
                                "plane of " + out.nodes[static_cast<std::size_t>(first + j)].name,
                                {first + j},
                                {tangential(angle)},
-                               0.0});
+                               0.0,
+                               {},
+                               {},
+                               true});
   }
   const Vec3 r = radial(s.corner_angle(k));
   const int b = first + bottom_corner, t = first + top_corner;
   const std::string post = "B" + std::to_string(k) + "-T" + std::to_string(k);
   out.constraints.push_back({"relation", "vertical post " + post, {b, t}, {-r, r}, 0.0});
-  out.constraints.push_back({"relation", "mirror " + post, {b, t}, {Vec3::UnitZ(), Vec3::UnitZ()}, 0.0});
+  out.constraints.push_back(
+      {"relation", "mirror " + post, {b, t}, {Vec3::UnitZ(), Vec3::UnitZ()}, 0.0, {}, {}, true});
 }
 
 Rod rod(const Structure& out, int a, int b, double mass, double length, const char* group, double radius) {

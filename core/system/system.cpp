@@ -25,6 +25,13 @@ std::size_t jacobian_entries(const ConstraintBlocks& blocks) {
   return count;
 }
 
+std::vector<int> sources_of(const ConstraintBlocks& blocks) {
+  std::vector<int> sources;
+  for (const ConstraintBlock* block : blocks)
+    for (int r = 0; r < block->rows(); ++r) sources.push_back(block->source(r));
+  return sources;
+}
+
 // out += scale * (derivative of g of this order) over all rows.
 void add_targets(const ConstraintBlocks& blocks, int order, double t, double scale, MutVec out) {
   double* row = out.data();
@@ -159,11 +166,9 @@ void System::Data::build_forces(const Structure& structure) {
 
 void System::Data::find_constraint_rows(std::size_t constraints) {
   constraint_rows.assign(constraints, -1);
-  int row = 0;
-  for (const ConstraintBlock* block : kept)
-    for (int r = 0; r < block->rows(); ++r, ++row)
-      if (const int source = block->source(r); source >= 0)
-        if (int& first = constraint_rows[static_cast<std::size_t>(source)]; first < 0) first = row;
+  const std::vector<int> sources = sources_of(kept);
+  for (std::size_t r = sources.size(); r-- > 0;)
+    if (sources[r] >= 0) constraint_rows[static_cast<std::size_t>(sources[r])] = static_cast<int>(r);
 }
 
 // G_z = G B, entry by entry, so that evaluating it is one pass over precomputed sums.
@@ -478,10 +483,10 @@ std::vector<std::string> System::all_names() const {
 }
 
 std::vector<int> System::all_sources() const {
-  std::vector<int> sources;
-  for (const ConstraintBlock* block : data_->all)
-    for (int r = 0; r < block->rows(); ++r) sources.push_back(block->source(r));
-  return sources;
+  return sources_of(data_->all);
+}
+std::vector<int> System::sources() const {
+  return sources_of(data_->kept);
 }
 
 VectorXd System::all_lengths() const {

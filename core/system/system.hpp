@@ -142,6 +142,7 @@ class System {
   const std::vector<std::string>& constraint_names() const;  // per kept row
   // Kept row of each rod; -1: it gives, and is none.
   const std::vector<int>& rod_rows() const;
+  std::vector<int> sources() const;  // per kept row: index in Structure::constraints, -1: a rod
   // First kept row of Structure::constraints[constraint]; -1 where it was eliminated.
   int constraint_row(int constraint) const;
 

@@ -157,6 +157,21 @@ TEST_CASE(
   CHECK(page.find("@DATA@") == std::string::npos);
 }
 
+TEST_CASE("a page says why its peak is not unique") {
+  Exported e("html");
+  const auto fact = [&] {
+    find_export_format("html")->write({e.run, e.diagnostics, e.directory, "swing", 0.1, 2.0});
+    const std::string page = e.text("viewer.html");
+    return std::pair(page.find("one choice of many)") != std::string::npos,
+                     page.find("waves of elastic rods") != std::string::npos);
+  };
+  CHECK(fact() == std::pair(false, false));
+  e.diagnostics.force_unique.setConstant(false);  // as waves do: the model determines both rods
+  CHECK(fact() == std::pair(false, true));
+  e.diagnostics.rod_unique.assign(2, 0);
+  CHECK(fact() == std::pair(true, false));
+}
+
 TEST_CASE("words in a page cannot leave their place") {
   const Exported e("html");
   const std::string evil = "</script><script>alert(1)</script> & \xff";

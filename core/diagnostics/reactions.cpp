@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/reactions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "core/math/determined_rows.hpp"
+#include "core/simulate/elastic_sharing.hpp"
+
+namespace unfurl {
+namespace {
+
+// What a measure changes by where everything is moved by a metre: zero for all but coordinates in space.
+Vec3 change_with_place(const Measure& measure) {
+  if (measure.kind == MeasureKind::coordinate && measure.nodes.size() == 1) return measure.axis;
+  Vec3 sum = Vec3::Zero();
+  for (const MeasureTerm& term : measure.terms) sum += term.coefficient * change_with_place(term.measure);
+  return sum;
+}
+
+bool tells_place(const Measure& measure) {
+  return !change_with_place(measure).isZero();
+}
+
+bool linear(const Constraint& c) {
+  return c.kind == "fixed" || c.kind == "plane" || c.kind == "line" || c.kind == "relation";
+}
+
+bool ties_to_ground(const Constraint& c) {
+  if (c.kind == "measure") return tells_place(c.measure);
+  return linear(c) && !c.symmetry && c.nodes.size() == 1;
+}
+
+void add_nodes(const Measure& measure, std::set<int>& nodes) {
+  nodes.insert(measure.nodes.begin(), measure.nodes.end());
+  for (const MeasureTerm& term : measure.terms) add_nodes(term.measure, nodes);
+}
+
+// Per row of these sources, 1: it belongs to a support.
+VectorXd rows_of_supports(const Structure& structure, const std::vector<int>& sources) {
+  VectorXd rows = VectorXd::Zero(std::ssize(sources));
+  for (std::size_t r = 0; r < sources.size(); ++r)
+    if (sources[r] >= 0 && ties_to_ground(structure.constraints[static_cast<std::size_t>(sources[r])]))
+      rows[static_cast<Index>(r)] = 1.0;
+  return rows;
+}
+
+std::string column_of(const Structure& structure, int support, const char* what) {
+  return structure.nodes[static_cast<std::size_t>(support)].name + ".reaction" + what;
+}
+
+// Per row of all constraints; empty where no rod is elastic.
+VectorXd all_compliances(const Model& model) {
+  const VectorXd kept = row_compliance(model);
+  if (kept.size() == 0) return {};
+  const std::vector<int> sources = model.system.all_sources();
+  VectorXd compliance = VectorXd::Zero(std::ssize(sources));
+  std::size_t rod = 0;  // rods are in their order, without those that give
+  for (std::size_t r = 0; r < sources.size(); ++r) {
+    if (sources[r] >= 0) continue;
+    while (model.system.rod_rows()[rod] < 0) ++rod;
+    compliance[static_cast<Index>(r)] = kept[model.system.rod_rows()[rod++]];
+  }
+  return compliance;
+}
+
+// Per support.
+std::vector<char> unique_supports(const Trajectory& trajectory, std::size_t i, bool shared) {
+  const Model& model = trajectory.model(i);
+  const SparseRows G = model.system.all_jacobian(trajectory.node_positions(i));
+  const VectorXd compliance = shared ? all_compliances(model) : VectorXd();
+  const std::vector<char> rows = compliance.size() > 0 ? determined_rows(G, compliance) : determined_rows(G);
+  const VectorXd of_support = rows_of_supports(model.structure, model.system.all_sources());
+  std::vector<char> node_unique(trajectory.structure().nodes.size(), 1), unique;
+  for (Index r = 0; r < of_support.size(); ++r)
+    if (of_support[r] != 0 && !rows[static_cast<std::size_t>(r)])
+      for (SparseRows::InnerIterator it(G, r); it; ++it)
+        if (it.value() != 0) node_unique[static_cast<std::size_t>(it.col() / 3)] = 0;
+  for (const int node : supports(trajectory.structure()))
+    unique.push_back(node_unique[static_cast<std::size_t>(node)]);
+  return unique;
+}
+
+}  // namespace
+
+std::vector<int> supports(const Structure& structure) {
+  std::set<int> nodes;
+  if (structure.sectors != 1.0) return {};
+  for (const Constraint& c : structure.constraints) {
+    if (!ties_to_ground(c)) continue;
+    nodes.insert(c.nodes.begin(), c.nodes.end());
+    add_nodes(c.measure, nodes);
+  }
+  for (const Stop& stop : structure.stops)
+    if (tells_place(stop.measure)) add_nodes(stop.measure, nodes);
+  for (const Force& force : structure.forces)
+    if (force.kind == "friction" && tells_place(force.measure)) add_nodes(force.measure, nodes);
+  return {nodes.begin(), nodes.end()};
+}
+
+ReactionColumns::ReactionColumns(const Model& first, std::vector<Series>& columns)
+    : columns_(columns), first_(columns.size()), supports_(supports(first.structure)) {
+  for (const int node : supports_) {
+    const std::string name = first.structure.nodes[static_cast<std::size_t>(node)].name + " reaction";
+    const auto add = [&](const char* what, const std::string& label, const char* unit) {
+      columns.push_back({column_of(first.structure, node, what), label, unit, {}});
+    };
+    add("_N", name, "N");
+    add("_x_N", name + " x", "N");
+    add("_y_N", name + " y", "N");
+    add("_z_N", name + " z", "N");
+    add("_unique", name + " is unique", "");
+  }
+}
+
+void ReactionColumns::enter(const Model& model) {
+  model_ = &model;
+  kept_ = rows_of_supports(model.structure, model.system.sources());
+  solver_.reset();
+  if (!model.system.eliminated()) return;
+  const std::vector<int> sources = model.system.all_sources();
+  const SparseRows all = model.system.all_jacobian(VectorXd::Zero(model.system.coordinates()));
+  std::vector<int> picked;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t r = 0; r < sources.size(); ++r) {
+    if (sources[r] < 0 || !linear(model.structure.constraints[static_cast<std::size_t>(sources[r])]))
+      continue;
+    for (SparseRows::InnerIterator it(all, static_cast<Index>(r)); it; ++it)
+      entries.emplace_back(static_cast<int>(picked.size()), static_cast<int>(it.col()), it.value());
+    picked.push_back(sources[r]);
+  }
+  linear_ = rows_of_supports(model.structure, picked);
+  if (linear_.isZero()) return;
+  rows_.resize(std::ssize(picked), model.system.coordinates());
+  rows_.setFromTriplets(entries.begin(), entries.end());
+  SparseRows identity(rows_.cols(), rows_.cols());
+  identity.setIdentity();
+  // Multipliers of rows that are there twice keep round-off of 1e-16 over this.
+  constexpr double regularisation = 1e-7;
+  solver_ = std::make_unique<SaddleSolver>(identity, rows_, 1, regularisation);
+  if (!solver_->factorise(rows_)) kept_.setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
+void ReactionColumns::append(const Model& model, const System& system, const State& state, const VectorXd& q,
+                             const VectorXd& v, const VectorXd& a, const VectorXd& lambda) {
+  if (supports_.empty()) return;
+  if (model_ != &model) enter(model);
+  VectorXd reaction = VectorXd::Zero(q.size());
+  system.add_constraint_force(q, kept_.cwiseProduct(lambda), -1.0, reaction);
+  if (solver_) {
+    VectorXd rest = VectorXd::Zero(q.size()), left(q.size()), mu(rows_.rows());  // rest = A^T mu
+    if (state.tension.size() > 0) {
+      system.add_other_force(state.t, q, v, state.tension, 1.0, rest);
+      system.add_giving_rod_forces(q, state.tension, 1.0, rest);
+    } else {
+      system.add_applied_force(state.t, q, v, 1.0, rest);
+    }
+    system.add_constraint_force(q, lambda, -1.0, rest);
+    rest.noalias() -= system.node_mass() * a;
+    constexpr int refinements = 40;  // as many as leave 1e-7 of the weakest rows nothing
+    solver_->solve(rest, VectorXd::Zero(mu.size()), left, mu, refinements);
+    reaction.noalias() -= rows_.transpose() * linear_.cwiseProduct(mu);
+  }
+  std::size_t column = first_;
+  for (const int node : supports_) {
+    const Vec3 force = reaction.segment<3>(3 * node);
+    for (const double x : {force.norm(), force.x(), force.y(), force.z(), 1.0})
+      columns_[column++].values.push_back(x);
+  }
+}
+
+void mark_reactions(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
+                    const std::vector<char>& waves, Diagnostics& d) {
+  const Structure& structure = trajectory.structure();
+  const std::vector<int> nodes = supports(structure);
+  if (nodes.empty()) return;
+  const auto first = std::find_if(d.columns.begin(), d.columns.end(), [&](const Series& column) {
+    return column.name == column_of(structure, nodes.front(), "_N");
+  });
+  if (first == d.columns.end()) return;
+  std::map<const std::vector<char>*, std::vector<char>> known;  // by what holds for the rows of the state
+  for (std::size_t i = 0; i < d.t.size(); ++i) {
+    const auto [at, is_new] = known.try_emplace(&uniqueness.at(i));
+    if (is_new)
+      at->second = unique_supports(trajectory, i, uniqueness.regular(i) && !uniqueness.all_by_rigid_rods(i));
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      Series* const column = &*first + 5 * k;
+      const bool unique = at->second[k] && !waves[i] && !std::isnan(column[0].values[i]);
+      column[4].values[i] = unique ? 1.0 : 0.0;
+    }
+  }
+}
+
+std::vector<PeakReaction> peak_reactions(const Structure& structure, const Diagnostics& d) {
+  std::vector<PeakReaction> peaks;
+  for (const int node : supports(structure)) {
+    const std::vector<double>& size = d.at(column_of(structure, node, "_N")).values;
+    const std::vector<double>& unique = d.at(column_of(structure, node, "_unique")).values;
+    PeakReaction peak{node, std::numeric_limits<double>::quiet_NaN()};
+    for (std::size_t i = 0; i < size.size(); ++i)
+      if (!std::isnan(size[i]) && !(size[i] <= peak.force_N))
+        peak = {node, size[i], d.t[i], unique[i] != 0.0};
+    peaks.push_back(peak);
+  }
+  return peaks;
+}
+
+}  // namespace unfurl
