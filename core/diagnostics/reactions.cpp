@@ -14,23 +14,27 @@ namespace unfurl {
 namespace {
 
 // What a measure changes by where everything is moved by a metre: zero for all but coordinates in space.
-Vec3 change_with_place(const Measure& measure) {
-  if (measure.kind == MeasureKind::coordinate && measure.nodes.size() == 1) return measure.axis;
+// A ghost is nowhere.
+Vec3 change_with_place(const Structure& structure, const Measure& measure) {
+  if (measure.kind == MeasureKind::coordinate && measure.nodes.size() == 1)
+    return structure.nodes[static_cast<std::size_t>(measure.nodes.front())].ghost ? Vec3(Vec3::Zero())
+                                                                                  : measure.axis;
   Vec3 sum = Vec3::Zero();
-  for (const MeasureTerm& term : measure.terms) sum += term.coefficient * change_with_place(term.measure);
+  for (const MeasureTerm& term : measure.terms)
+    sum += term.coefficient * change_with_place(structure, term.measure);
   return sum;
 }
 
-bool tells_place(const Measure& measure) {
-  return !change_with_place(measure).isZero();
+bool tells_place(const Structure& structure, const Measure& measure) {
+  return !change_with_place(structure, measure).isZero();
 }
 
 bool linear(const Constraint& c) {
   return c.kind == "fixed" || c.kind == "plane" || c.kind == "line" || c.kind == "relation";
 }
 
-bool ties_to_ground(const Constraint& c) {
-  if (c.kind == "measure") return tells_place(c.measure);
+bool ties_to_ground(const Structure& structure, const Constraint& c) {
+  if (c.kind == "measure") return tells_place(structure, c.measure);
   return linear(c) && !c.symmetry && c.nodes.size() == 1;
 }
 
@@ -43,7 +47,8 @@ void add_nodes(const Measure& measure, std::set<int>& nodes) {
 VectorXd rows_of_supports(const Structure& structure, const std::vector<int>& sources) {
   VectorXd rows = VectorXd::Zero(std::ssize(sources));
   for (std::size_t r = 0; r < sources.size(); ++r)
-    if (sources[r] >= 0 && ties_to_ground(structure.constraints[static_cast<std::size_t>(sources[r])]))
+    if (sources[r] >= 0 &&
+        ties_to_ground(structure, structure.constraints[static_cast<std::size_t>(sources[r])]))
       rows[static_cast<Index>(r)] = 1.0;
   return rows;
 }
@@ -90,14 +95,15 @@ std::vector<int> supports(const Structure& structure) {
   std::set<int> nodes;
   if (structure.sectors != 1.0) return {};
   for (const Constraint& c : structure.constraints) {
-    if (!ties_to_ground(c)) continue;
+    if (!ties_to_ground(structure, c)) continue;
     nodes.insert(c.nodes.begin(), c.nodes.end());
     add_nodes(c.measure, nodes);
   }
   for (const Stop& stop : structure.stops)
-    if (tells_place(stop.measure)) add_nodes(stop.measure, nodes);
+    if (tells_place(structure, stop.measure)) add_nodes(stop.measure, nodes);
   for (const Force& force : structure.forces)
-    if (force.kind == "friction" && tells_place(force.measure)) add_nodes(force.measure, nodes);
+    if (force.kind == "friction" && tells_place(structure, force.measure)) add_nodes(force.measure, nodes);
+  std::erase_if(nodes, [&](int node) { return structure.nodes[static_cast<std::size_t>(node)].ghost; });
   return {nodes.begin(), nodes.end()};
 }
 

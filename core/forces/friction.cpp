@@ -21,8 +21,10 @@ class DryFriction final : public ForceBlock {
       if (f.kind != "friction") continue;
       any_ = true;
       if (f.slip == 0) continue;
-      slipping_.push_back({MeasureFunction(f.measure, structure.deployment), f.slip * f.kinetic, followed[i],
-                           f.slip * PinLoads::arm(f), i});
+      slipping_.push_back(
+          {MeasureFunction(f.measure, structure.deployment), f.slip * f.kinetic, followed[i],
+           f.slip * PinLoads::arm(f), i, f.slip,
+           f.measure.kind == MeasureKind::angle && !counts_turns(f.measure) ? f.measure : Measure()});
       if (!(PinLoads::arm(f) > 0)) continue;
       if (!loads_) loads_ = std::make_unique<PinLoads>(structure, node_mass);
       if (const int giving = loads_->giving_rod(i); giving >= 0)
@@ -40,10 +42,10 @@ class DryFriction final : public ForceBlock {
     const PinLoads::Loads loads = loads_at(at, q, v);
     VectorXd g;
     for (const Slipping& s : slipping_) {
-      gradient(s, at, q, g);
+      const double tau = goes_on(s, at, q, v, g) * force(s, loads);
       const auto& stencil = s.measure.stencil();
       for (std::size_t i = 0; i < stencil.size(); ++i)
-        f[stencil[i]] -= scale * force(s, loads) * g[static_cast<Index>(i)];
+        f[stencil[i]] -= scale * tau * g[static_cast<Index>(i)];
     }
   }
   double power(const Moment& at, const double* q, const double* v) const override {
@@ -51,8 +53,8 @@ class DryFriction final : public ForceBlock {
     VectorXd g;
     double sum = 0;
     for (const Slipping& s : slipping_) {
-      gradient(s, at, q, g);
-      sum -= force(s, loads) * s.measure.rate(g.data(), v);
+      const double sense = goes_on(s, at, q, v, g);
+      sum -= sense * force(s, loads) * s.measure.rate(g.data(), v);
     }
     return sum;
   }
@@ -81,7 +83,9 @@ class DryFriction final : public ForceBlock {
                    ForceDerivative& by_v) const override {
     const PinLoads::Loads loads = loads_at(at, q, v);
     if (!at.tension) add_by_lengths(at, q, v, by_q, by_v);
+    VectorXd g;
     for (const Slipping& s : slipping_) {
+      const double tau = goes_on(s, at, q, v, g) * force(s, loads);
       const auto& stencil = s.measure.stencil();
       const auto size = static_cast<Index>(stencil.size());
       MatrixXd hess(size, size);
@@ -90,7 +94,7 @@ class DryFriction final : public ForceBlock {
         for (Index i = 0; i < size; ++i)
           if (hess(i, j) != 0.0)
             by_q.emplace_back(stencil[static_cast<std::size_t>(i)], stencil[static_cast<std::size_t>(j)],
-                              -force(s, loads) * hess(i, j));
+                              -tau * hess(i, j));
     }
   }
 
@@ -101,6 +105,8 @@ class DryFriction final : public ForceBlock {
     int followed;  // index among the angles that count turns; -1: not one of them
     double arm;    // slip mu r [m]
     std::size_t index;
+    int slip;
+    Measure measure_of;  // of an angle without a sign
   };
   // Whose pin's load is that of a rod which gives.
   struct ByRod {
@@ -135,9 +141,30 @@ class DryFriction final : public ForceBlock {
   static double near(const Slipping& s, const Moment& at) {
     return at.near(s.followed, s.measure.reference());
   }
-  static void gradient(const Slipping& s, const Moment& at, const double* q, VectorXd& g) {
+  static double gradient(const Slipping& s, const Moment& at, const double* q, VectorXd& g) {
     g.resize(static_cast<Index>(s.measure.stencil().size()));
-    s.measure.value_and_gradient(q, g.data(), near(s, at));
+    return s.measure.value_and_gradient(q, g.data(), near(s, at));
+  }
+  // Where rods come into line, the gradient of an angle without a sign ends, and behind that, where stages of
+  // a step may lie, the angle turns back; but the motion goes on and friction against it. g is then by the
+  // angle about the axis n of d(d_1 x d_2)/dt, about which it turns there. Returns slip times the sense of
+  // that.
+  static double goes_on(const Slipping& s, const Moment& at, const double* q, const double* v, VectorXd& g) {
+    constexpr double a_little = 0.01, in_line = 1e-6;  // [rad]; the motion seldom turns round so near
+    const double angle = gradient(s, at, q, g), beside = std::min(angle, pi - angle);
+    if (s.measure_of.nodes.empty() || !(beside < a_little)) return 1.0;
+    if (beside > in_line && s.slip * s.measure.rate(g.data(), v) >= 0) return 1.0;
+    const std::vector<int>& n = s.measure_of.nodes;
+    const Vec3 d1 = node_vector(q, n[1]) - node_vector(q, n[0]),
+               v1 = node_vector(v, n[1]) - node_vector(v, n[0]);
+    const Vec3 d2 = node_vector(q, n[3]) - node_vector(q, n[2]),
+               v2 = node_vector(v, n[3]) - node_vector(v, n[2]);
+    Measure about = s.measure_of;
+    about.axis = (v1.cross(d2) + d1.cross(v2)).normalized();
+    if (about.axis.isZero(0.0)) return 1.0;
+    const MeasureFunction signed_angle(about, {});
+    signed_angle.value_and_gradient(q, g.data());
+    return signed_angle.rate(g.data(), v) * s.slip < 0 ? -1.0 : 1.0;
   }
 
   std::vector<Slipping> slipping_;

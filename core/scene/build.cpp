@@ -209,6 +209,30 @@ void check_pins(const Scene& scene, const Structure& structure, const System& sy
   refuse_friction(locked.friction, locked.problem);
 }
 
+// A structure whose nodes all lie in one plane is flat: planes that say so are no supports.
+void find_flat(Structure& structure) {
+  std::vector<bool> free(structure.nodes.size(), false);
+  for (const Rod& rod : structure.rods)
+    free[static_cast<std::size_t>(rod.a)] = free[static_cast<std::size_t>(rod.b)] = true;
+  std::vector<Constraint*> planes;
+  for (Constraint& c : structure.constraints) {
+    if (c.kind == "fixed") free[static_cast<std::size_t>(c.nodes.front())] = false;
+    if (c.kind == "plane") planes.push_back(&c);
+  }
+  for (const Constraint* one : planes) {
+    if (!free[static_cast<std::size_t>(one->nodes.front())] || one->symmetry) continue;
+    const auto parallel = [&](const Constraint* other) {
+      return other->vectors.front().cross(one->vectors.front()).isZero(1e-12);
+    };
+    std::vector<bool> loose = free;
+    for (const Constraint* other : planes)
+      if (parallel(other)) loose[static_cast<std::size_t>(other->nodes.front())] = false;
+    if (std::find(loose.begin(), loose.end(), true) == loose.end())
+      for (Constraint* other : planes) other->symmetry = other->symmetry || parallel(other);
+    return;  // another plane through the same node would leave a line
+  }
+}
+
 void refuse_endless_runs(const Scene& scene, const Model& model) {
   const std::string problem = too_many_states(scene, model, machine_memory());
   if (!problem.empty()) throw SceneError({{location_of(scene, "solver.step"), "solver.step", problem}});
@@ -223,6 +247,7 @@ Structure build_structure(const Scene& scene) {
   if (is_sector(structure)) refuse_elements(scene);
   add_elements(scene.forces, scene_forces(), scene.solver.end_time, structure);
   add_elements(scene.constraints, scene_constraints(), scene.solver.end_time, structure);
+  find_flat(structure);
   add_deployment(scene, structure);
   check_latches(scene, structure);
   show_cables(structure);

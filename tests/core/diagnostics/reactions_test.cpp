@@ -147,6 +147,20 @@ TEST_CASE("supports that share a load are unique where their rods have a modulus
   }
 }
 
+TEST_CASE("planes that say that a structure is flat, and the rotor of a motor, are no supports") {
+  const auto flat = [](const std::string& held) {
+    return custom + node("O", Vec3(0, 0, 0), "fixed = true") + node("A", Vec3(1, 0, 0), "mass = 1") +
+           node("B", Vec3(2, 0, 0), "mass = 1") + rod("O", "A", "mass = 0.1") + rod("A", "B", "mass = 0.1") +
+           "[[structure.constraints]]\nkind = 'plane'\nnodes = " + held + "\nnormal = [0, 1, 0]\n" +
+           "[[forces]]\nkind = 'motor'\nnodes = ['O', 'A', 'B']\naxis = [0, 1, 0]\nstall_torque = 1\n"
+           "no_load_speed = 60\ninertia = 0.1\n" +
+           run_for(0.1);
+  };
+  CHECK(supports(testing::model_of(flat("['*']"))->structure) == std::vector<int>{0});
+  CHECK(supports(testing::model_of(flat("['A', 'B']"))->structure) == std::vector<int>{0});
+  CHECK(supports(testing::model_of(flat("['B']"))->structure) == std::vector<int>{0, 2});
+}
+
 TEST_CASE("what comes to rest on a stop is held by it") {
   const Simulation run =
       run_scene(custom + node("A", Vec3(0, 0, 0.02), "mass = 2") + node("B", Vec3(1, 0, 0.02), "mass = 1") +

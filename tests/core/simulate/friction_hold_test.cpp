@@ -193,6 +193,11 @@ TEST_CASE("friction on an angle without a sign goes on through straight rods") {
         std::ranges::count(with.events, "reversal", &Event::kind));
   // Steps end at other times there: two errors of four stages.
   CHECK((end_positions(with) - end_positions(without)).lpNorm<Eigen::Infinity>() <= 1e-8);
+  // What evaluates forces at the ends of steps, in line, too: (h w)^4 at some 10 rad/s.
+  const Simulation by_rk4 =
+      run_scene(pulled.scene(false), {"solver.end_time=1.2", "solver.method=rk4", "solver.step=0.0005"});
+  REQUIRE(by_rk4.status == RunStatus::completed);
+  CHECK((end_positions(by_rk4) - end_positions(with)).lpNorm<Eigen::Infinity>() <= 1e-8);
 }
 
 }  // namespace friction_hold_test
