@@ -49,7 +49,7 @@ auto alone_or_joined(Team* team, const Arguments& arguments, Journal& journal, S
     StudyHooks shared = hooks;
     shared.team = team;
     const bool writes = work_together(*team, arguments, [&] {
-      for (const auto& path : team->journals_of_others()) journal.take_in(path);
+      journal.take_in(team->journals_of_others());
       return whole(run(journal, shared));
     });
     if (!writes) return std::nullopt;

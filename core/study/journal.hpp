@@ -34,6 +34,9 @@ class Journal {
   // The results in another journal of the same columns, which may be growing, beside what is here; the file
   // does not get them. Throws JournalMismatch, FileError.
   void take_in(const std::filesystem::path& other);
+  void take_in(const std::vector<std::filesystem::path>& others) {
+    for (const auto& other : others) take_in(other);
+  }
   std::size_t size() const { return rows_.size(); }
 
  private:

@@ -168,14 +168,21 @@ std::vector<std::string> key_of(const Site& site, const Setting& setting, long s
 // All cells of a site that the journal lacks; false where another worker of the team is at them.
 bool fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mutex, const StudyHooks& hooks) {
   const TimingOptions once{.repeats = 1, .patience = 0, .limit = plan.limits.seconds};
+  const auto known = [&](const std::vector<std::string>& key) {
+    const std::lock_guard lock(mutex);
+    return journal.find(key) != nullptr;
+  };
   for (const Setting& setting : plan.settings)
     for (const long steps : plan.steps) {
       const auto key = key_of(site, setting, steps);
-      {
+      if (known(key)) continue;
+      const auto look_again = [&] {
         const std::lock_guard lock(mutex);
-        if (journal.find(key)) continue;
-      }
-      if (hooks.team && !hooks.team->takes(site.extreme->name + "-" + exact_number(site.value))) return false;
+        journal.take_in(hooks.team->journals_of_others());
+      };
+      if (hooks.team && !hooks.team->takes(site.extreme->name + "-" + exact_number(site.value), look_again))
+        return false;
+      if (known(key)) continue;
       if (!site.model) prepare(site, static_cast<int>(plan.steps.front()), hooks);
       if (!site.reference) return true;
       if (hooks.stopped()) throw Cancelled();

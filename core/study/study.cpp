@@ -141,15 +141,19 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
         hooks.tell(done / all);
         done += static_cast<double>(steps);
         if (exhausted(curve.runs, study.size)) continue;
-        if (const auto* row = journal.find({curve.setting.name, std::to_string(steps)})) {
-          curve.runs.push_back(run_of(curve.setting, *row));
-          continue;
-        }
+        const auto known = [&] {
+          const auto* row = journal.find({curve.setting.name, std::to_string(steps)});
+          if (row) curve.runs.push_back(run_of(curve.setting, *row));
+          return row != nullptr;
+        };
+        if (known()) continue;
         if (hooks.stopped()) throw Cancelled();
-        if (hooks.team && !hooks.team->takes(curve.setting.name)) {
+        const auto look_again = [&] { journal.take_in(hooks.team->journals_of_others()); };
+        if (hooks.team && !hooks.team->takes(curve.setting.name, look_again)) {
           study.complete = false;  // another's; the rest of its ladder too
           break;
         }
+        if (known()) continue;
         solve();
         curve.runs.push_back(
             measure_run(plan.model, curve.setting.options, steps, *reference, plan.timing, hooks));

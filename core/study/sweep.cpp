@@ -124,9 +124,18 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   const PathSweep along_path(plan);
   std::size_t done = 0;
   std::mutex mutex;
+  const auto look_again = [&] {
+    const std::lock_guard lock(mutex);
+    journal.take_in(hooks.team->journals_of_others());
+  };
+  const auto known = [&](std::size_t point) {
+    const std::lock_guard lock(mutex);
+    return journal.find(plan.key(point)) != nullptr;
+  };
   parallel_for(open.size(), hooks.threads, [&](std::size_t i) {
     const std::string piece = "points-" + std::to_string(scattered(open[i]) % pieces);
-    if (hooks.stopped() || (hooks.team && !hooks.team->takes(piece))) return;
+    if (hooks.stopped()) return;
+    if (hooks.team && (!hooks.team->takes(piece, look_again) || known(open[i]))) return;
     auto row = run_point(plan, along_path, open[i], hooks);
     if (!row) return;
     const std::lock_guard lock(mutex);

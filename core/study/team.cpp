@@ -105,8 +105,8 @@ double Team::age(const fs::path& file) const {
   return std::max(time_of(clock) - changed, 0.0);
 }
 
-bool Team::takes(const std::string& piece) {
-  const std::lock_guard lock(mutex_);
+bool Team::takes(const std::string& piece, const std::function<void()>& taken_over) {
+  std::unique_lock lock(mutex_);
   if (held_.contains(piece)) return age(lease_file(piece, held_[piece] + 1)) < 0;
   int last = -1;
   double idle = -1;
@@ -114,6 +114,8 @@ bool Team::takes(const std::string& piece) {
   if (last >= 0 && idle <= lease_) return false;
   if (!create(lease_file(piece, last + 1))) return false;
   held_[piece] = last + 1;
+  lock.unlock();
+  if (last >= 0 && taken_over) taken_over();
   return true;
 }
 

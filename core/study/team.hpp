@@ -4,6 +4,7 @@
 
 #include <condition_variable>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <stop_token>
@@ -31,8 +32,9 @@ class Team {
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  // This worker's piece of work, from now on or already; false: another's. Throws FileError.
-  bool takes(const std::string& piece);
+  // This worker's piece of work, from now on or already; false: another's. Of what another left, which may be
+  // finished, `taken_over` is called first. Throws FileError.
+  bool takes(const std::string& piece, const std::function<void()>& taken_over = {});
   // Whether a piece that it took is still its own.
   bool holds(const std::string& piece);
 
