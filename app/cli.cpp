@@ -14,6 +14,7 @@
 #include "app/output/interrupt.hpp"
 #include "app/output/printable_output.hpp"
 #include "app/output/receipt.hpp"
+#include "app/output/written_report.hpp"
 #include "app/own_options.hpp"
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
@@ -189,7 +190,10 @@ int dispatch(const std::vector<std::string>& words) {
   const Arguments& a = parsed.arguments;
   std::optional<ReceiptWriter> receipts;
   if (shows(command, "-o")) receipts.emplace(words, a.names.empty() ? "" : a.names.front(), a.output);
-  return command.run(a);
+  const WrittenReport report(a.view.picture.empty() ? a.output : a.view.picture);
+  const int code = command.run(a);
+  if (!a.quiet) std::cerr << report.text();
+  return code;
 }
 
 }  // namespace

@@ -191,6 +191,7 @@ std::string WrittenFiles::name_of(const fs::path& target) const {
 }
 
 void WrittenFiles::before_file(const fs::path& target, const std::string& checksum) {
+  if (before_) before_->before_file(target, checksum);
   const std::string name = name_of(target);
   if (name.empty()) return;
   const std::lock_guard lock(mutex_);
@@ -231,6 +232,7 @@ void WrittenFiles::put_aside(const fs::path& target) {
 void WrittenFiles::grows(const std::string& name) {
   const std::lock_guard lock(mutex_);
   append({any_content, owner_}, name);
+  if (before_) before_->before_file(directory_ / name, any_content);
 }
 
 bool WrittenFiles::ours(const std::string& name) const {

@@ -176,31 +176,37 @@ void print_state(const Judged& judged, const SelfStress& state, int redundant) {
   std::cout << "  " << judged.name(redundant) << (against.empty() ? " alone" : " against " + against) << "\n";
 }
 
-// Last, since it may be long.
+// Last, since it may be long: the redundant members by name, where it is known with those that they share.
 void print_forces(const Judged& judged) {
+  constexpr std::size_t most = 8;
   const auto rods = static_cast<Index>(judged.model.structure.rod_copies.size());
   if (rods > 0) print_row("rods of unique force", judged.unique_rods());
   if (judged.model.structure.sectors > 1) std::cout << "  (among forces with the symmetry of the sector)\n";
-  print_row("states of self-stress", static_cast<Index>(judged.mobility.redundant.size()));
+  const auto& redundant = judged.mobility.redundant;
+  print_row("states of self-stress", static_cast<Index>(redundant.size()));
   if (!judged.balance.listed) std::cout << "  (too large a structure to list their members)\n";
-  for (std::size_t k = 0; k < judged.balance.states.size(); ++k)
-    print_state(judged, judged.balance.states[k], judged.mobility.redundant_rows[k]);
+  for (std::size_t k = 0; k < std::min(most, redundant.size()); ++k)
+    if (k < judged.balance.states.size())
+      print_state(judged, judged.balance.states[k], judged.mobility.redundant_rows[k]);
+    else
+      std::cout << "  " << redundant[k] << "\n";
+  if (redundant.size() > most)
+    std::cout << "  and " << redundant.size() - most << " more: --json lists all\n";
 }
 
 void print_table(const Scene& scene, const Judged& judged, const NearRods& near) {
   const Model& model = judged.model;
   const Mobility& mobility = judged.mobility;
   std::cout << scene.name << ": " << scene.title << "\n";
+  print_row("degrees of freedom", mobility.degrees_of_freedom);
+  if (mobility.rigid_motions > 0) print_row("  as one rigid body", mobility.rigid_motions);
+  print_row("redundant", static_cast<Index>(mobility.redundant.size()));
   print_row("nodes", static_cast<Index>(model.structure.node_copies.size()));
   print_row("rods", static_cast<Index>(model.structure.rod_copies.size()));
   print_row("coordinates", mobility.coordinates);
   print_row("solved coordinates", model.system.solved_coordinates());
   print_row("constraints", mobility.constraints);
   print_row("rank", mobility.rank);
-  print_row("redundant", static_cast<Index>(mobility.redundant.size()));
-  for (const auto& name : mobility.redundant) std::cout << "  " << name << "\n";
-  print_row("degrees of freedom", mobility.degrees_of_freedom);
-  if (mobility.rigid_motions > 0) print_row("  as one rigid body", mobility.rigid_motions);
   print_row("by Maxwell's count", mobility.count);
   if (!std::isnan(mobility.smallest_singular_value))
     std::cout << std::left << std::setw(24) << "smallest singular value" << std::right << std::setw(8)

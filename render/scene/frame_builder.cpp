@@ -264,13 +264,16 @@ void FrameBuilder::add_bodies(double t, const std::vector<Vec3>& at, DrawList& l
   }
 }
 
+// Beside rods in colours from blue to red, where red is tension, a load is green; the other colours have no
+// red.
 void FrameBuilder::add_loads(const VectorXd& whole, DrawList& list) const {
+  const Color color = field_ && field_->diverging ? look_->group(2) : look_->load;
   for (const LoadCopy& load : trajectory_.structure().load_copies) {
     if (load.force.isZero()) continue;
     const Vec3 tail = node(whole, load.node);
     const Vec3 head = tail + upright_ * load.force * (looks_.arrow_length / looks_.largest_force);
     list.arrows.push_back(
-        {tail.cast<float>(), head.cast<float>(), static_cast<float>(looks_.arrow_radius), look_->load});
+        {tail.cast<float>(), head.cast<float>(), static_cast<float>(looks_.arrow_radius), color});
   }
 }
 

@@ -41,7 +41,7 @@ Color clear_backing(const Look& look) {
 
 }  // namespace
 
-// As long as it is at the middle of the motion.
+// As long as it is at the middle of the motion; in perspective what is nearer is larger, which it says.
 void FrameOverlay::add_scale_bar(DrawList& list) const {
   const Screen screen(list.camera);
   const Vec3f a = project(list.camera, style_.width, style_.height, list.center);
@@ -55,7 +55,7 @@ void FrameOverlay::add_scale_bar(DrawList& list) const {
   for (const float end : {x, x + length})
     list.lines.push_back({end, y - tick, end, y + tick, thick, look_.ink});
   char text[32];
-  std::snprintf(text, sizeof text, "%g m", metres);
+  std::snprintf(text, sizeof text, list.camera.parallel_height > 0 ? "%g m" : "%g m in the middle", metres);
   list.labels.push_back(quiet(list, {x + 0.5f * length, y - 1.35f * small_, small_, look_.ink, text, 0.5f}));
 }
 

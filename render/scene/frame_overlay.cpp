@@ -86,7 +86,10 @@ void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
   add_names(whole, list);
   add_heading(t, list);
   if (options.time) add_status(t, whole, list);
-  if (options.legend) field_ ? add_color_bar(list) : add_legend(list);
+  if (options.legend) {
+    if (field_) add_color_bar(list);
+    add_legend(list);
+  }
   if (options.scale_bar) add_scale_bar(list);
   if (options.axes) add_axes(list);
   add_inset(t, list);
@@ -163,12 +166,13 @@ void FrameOverlay::add_legend(DrawList& list) const {
     Color color;
   };
   std::vector<Entry> legend;
-  if (looks_.groups.size() > 1)
+  if (!field_ && looks_.groups.size() > 1)
     for (std::size_t i = 0; i < looks_.groups.size(); ++i)
       legend.push_back({false, looks_.groups[i], look_.group(i)});
-  if (!list.arrows.empty()) legend.push_back({true, "load", look_.load});
+  if (!list.arrows.empty()) legend.push_back({true, "load", list.arrows.front().color});
   if (!style_.trails.empty()) legend.push_back({false, "trail", look_.group(3)});
-  const float y = height_ - edge_ - small_, sign_width = 0.95f * small_;
+  const float bar = field_ ? 4.1f * std::round(0.8f * small_) + 12 * unit_ : 0;  // with its texts
+  const float y = height_ - edge_ - small_ - bar, sign_width = 0.95f * small_;
   float right = width_ - edge_;
   for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry) {
     const auto wide = static_cast<float>(plot::text_width(entry->name, static_cast<double>(small_)));

@@ -113,7 +113,26 @@ TEST_CASE("check counts the six-unit ring and names its redundant constraints") 
   const std::string text = run_program({"check", "hoop6"}).out;
   CHECK(contains(text, "\nsmallest clearance"));
   CHECK(contains(text, "rank                          71\n"));
-  for (const auto& name : json["redundant"]) CHECK(contains(text, "  " + name.get<std::string>() + "\n"));
+  for (const auto& name : json["redundant"])
+    CHECK(contains(text, "\n  " + name.get<std::string>() + " against "));
+}
+
+TEST_CASE("check says first what matters, and of many redundant members the first names") {
+  const std::vector<std::string> scene{"check", "hoop6", "--set", "structure.units=40"};
+  const ProgramResult r = run_program(scene);
+  const std::size_t title = r.out.find('\n'), freedom = r.out.find("degrees of freedom             1\n"),
+                    redundant = r.out.find("redundant                     41\n"),
+                    nodes = r.out.find("\nnodes"), listed = r.out.find(" against ");
+  INFO(r.out);
+  CHECK(freedom == title + 1);
+  CHECK(freedom < redundant);
+  CHECK(redundant < nodes);
+  CHECK(nodes < listed);
+  CHECK(std::count(r.out.begin(), r.out.end(), '\n') < 30);
+  CHECK(r.out.ends_with("  and 33 more: --json lists all\n"));
+  auto words = scene;
+  words.emplace_back("--json");
+  CHECK(nlohmann::json::parse(run_program(words).out)["redundant"].size() == 41);
 }
 
 TEST_CASE("margin: drives against resistances by source, in words, JSON and files") {

@@ -143,6 +143,7 @@ std::string exported(const ExportRequest& request, const ExportProcess::Task& ta
   const Log log;
   std::vector<std::string> words{request.program};
   words.insert(words.end(), request.words.begin(), request.words.end());
+  words.emplace_back("--quiet");  // what is left is what failed
   ChildProcess child;
   if (const int error = child.start(words, {.error = log.file}); error != 0)
     throw FileError(request.program, error);

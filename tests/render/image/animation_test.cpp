@@ -172,6 +172,10 @@ TEST_CASE("an MP4 of odd size is made even and has every frame") {
   CHECK(output_of("ffprobe -v error -count_frames -select_streams v -of csv=p=0 -show_entries "
                   "stream=width,height,r_frame_rate,nb_read_frames \"" +
                   file.string() + "\"") == "66,48,25/1,10\n");
+  // Players guess the colours of a film that does not say which they are, and small ones as those of old TV.
+  CHECK(output_of("ffprobe -v error -select_streams v -of default=nk=1:nw=1 -show_entries "
+                  "stream=color_range,color_space,color_transfer,color_primaries \"" +
+                  file.string() + "\"") == "tv\nbt709\nbt709\nbt709\n");
 }
 
 TEST_CASE("an MP4 that fails is a warning and leaves nothing behind") {
