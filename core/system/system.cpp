@@ -180,7 +180,7 @@ void System::Data::build_jacobian_map() {
   std::vector<Term> terms;
   int row = 0, source = 0;
   for (const ConstraintBlock* block : kept)
-    for (int r = 0; r < block->rows(); ++r, ++row)
+    for (int r = 0; r < block->rows(); ++r, ++row, row_ends.push_back(source))
       for (int c : block->stencil(r)) {
         for (SparseRows::InnerIterator it(B, c); it; ++it)
           terms.push_back({row, static_cast<int>(it.col()), source, it.value()});
@@ -377,12 +377,12 @@ void System::jacobian(const ConstVec& q, SparseRows& G, std::vector<double>& scr
   double* value = G.valuePtr();
   for (std::size_t e = 0; e + 1 < data_->sum_start.size(); ++e) {
     double sum = 0;
-    for (int k = data_->sum_start[e]; k < data_->sum_start[e + 1]; ++k) {
-      const auto uk = static_cast<std::size_t>(k);
-      sum += data_->sum_coefficient[uk] * scratch[static_cast<std::size_t>(data_->sum_source[uk])];
-    }
+    const auto end = static_cast<std::size_t>(data_->sum_start[e + 1]);
+    for (auto k = static_cast<std::size_t>(data_->sum_start[e]); k < end; ++k)
+      sum += data_->sum_coefficient[k] * scratch[static_cast<std::size_t>(data_->sum_source[k])];
     value[e] = sum;
   }
+  if (data_->eliminated) data_->clear_rounding(scratch, G);
 }
 
 SparseRows System::curvature(const ConstVec& q, const ConstVec& lambda) const {

@@ -35,6 +35,7 @@ struct System::Data {
   std::vector<double> sum_coefficient;
   std::vector<std::size_t> block_entries;  // entries of the node Jacobian of each kept block
   std::size_t entries = 0;
+  std::vector<int> row_ends;  // of the kept rows, among those entries
   // The node Jacobian of all blocks, entry by entry: columns, where rows end, entries of each block.
   std::vector<int> all_columns;
   std::vector<std::size_t> all_row_ends, all_block_entries;
@@ -47,6 +48,9 @@ struct System::Data {
   void build_coordinates();
   void build_forces(const Structure& structure);
   void build_jacobian_map();
+  // Rows of G_z that are rounding alone, of entries of the node Jacobian that cancel, become zero: rows are
+  // taken in units of their own size where they are solved for, and would hold what they do not touch.
+  void clear_rounding(const std::vector<double>& entries, SparseRows& G) const;
   void build_stencils();
   void find_constraint_rows(std::size_t constraints);
   void check_kinds(const Structure& structure) const;
