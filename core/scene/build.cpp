@@ -209,28 +209,39 @@ void check_pins(const Scene& scene, const Structure& structure, const System& sy
   refuse_friction(locked.friction, locked.problem);
 }
 
-// A structure whose nodes all lie in one plane is flat: planes that say so are no supports.
-void find_flat(Structure& structure) {
-  std::vector<bool> free(structure.nodes.size(), false);
+// Does nothing push the structure out of the plane through `at`, in which all ends of its rods lie?
+bool flat_by(const Structure& structure, const Vec3& normal, const Vec3& at) {
+  const auto across = [&](const Vec3& x) { return std::abs(normal.dot(x)) > 1e-12 * x.norm(); };
   for (const Rod& rod : structure.rods)
-    free[static_cast<std::size_t>(rod.a)] = free[static_cast<std::size_t>(rod.b)] = true;
-  std::vector<Constraint*> planes;
-  for (Constraint& c : structure.constraints) {
-    if (c.kind == "fixed") free[static_cast<std::size_t>(c.nodes.front())] = false;
-    if (c.kind == "plane") planes.push_back(&c);
-  }
-  for (const Constraint* one : planes) {
-    if (!free[static_cast<std::size_t>(one->nodes.front())] || one->symmetry) continue;
-    const auto parallel = [&](const Constraint* other) {
-      return other->vectors.front().cross(one->vectors.front()).isZero(1e-12);
-    };
-    std::vector<bool> loose = free;
-    for (const Constraint* other : planes)
-      if (parallel(other)) loose[static_cast<std::size_t>(other->nodes.front())] = false;
-    if (std::find(loose.begin(), loose.end(), true) == loose.end())
-      for (Constraint* other : planes) other->symmetry = other->symmetry || parallel(other);
-    return;  // another plane through the same node would leave a line
-  }
+    for (const int node : {rod.a, rod.b})
+      if (across(structure.nodes[static_cast<std::size_t>(node)].position - at)) return false;
+  for (const auto& load : structure.loads)
+    if (across(load.force)) return false;
+  for (const Force& force : structure.forces)
+    if (force.kind == "load_over_time" || force.kind == "follower" || force.kind == "offload") return false;
+  return !across(structure.gravity);
+}
+
+// Planes that only say that a structure is flat are no supports.
+void find_flat(Structure& structure) {
+  std::set<int> ends;
+  for (const Rod& rod : structure.rods) ends.insert({rod.a, rod.b});
+  for (const Constraint& c : structure.constraints)
+    if (c.kind == "fixed") ends.erase(c.nodes.front());
+  const auto plane_of = [&](Constraint& c, const Vec3& normal) {
+    return c.kind == "plane" && c.vectors.front().cross(normal).isZero(1e-12);
+  };
+  const auto first = std::ranges::find_if(structure.constraints, [&](const Constraint& c) {
+    return c.kind == "plane" && ends.contains(c.nodes.front());
+  });
+  if (first == structure.constraints.end()) return;
+  const Vec3 normal = first->vectors.front();
+  if (!flat_by(structure, normal, structure.nodes[static_cast<std::size_t>(first->nodes.front())].position))
+    return;
+  for (Constraint& c : structure.constraints)
+    if (plane_of(c, normal)) ends.erase(c.nodes.front());
+  if (!ends.empty()) return;
+  for (Constraint& c : structure.constraints) c.symmetry = c.symmetry || plane_of(c, normal);
 }
 
 void refuse_endless_runs(const Scene& scene, const Model& model) {

@@ -159,6 +159,13 @@ TEST_CASE("planes that say that a structure is flat, and the rotor of a motor, a
   CHECK(supports(testing::model_of(flat("['*']"))->structure) == std::vector<int>{0});
   CHECK(supports(testing::model_of(flat("['A', 'B']"))->structure) == std::vector<int>{0});
   CHECK(supports(testing::model_of(flat("['B']"))->structure) == std::vector<int>{0, 2});
+  // What bears something across: a table under its weight, a guide below a tripod.
+  const std::vector<std::string> weight{"gravity.acceleration=[0,-9.81,0]"};
+  CHECK(supports(testing::model_of(flat("['A', 'B']"), weight)->structure) == std::vector<int>{0, 1, 2});
+  const std::string tripod = custom + node("O", Vec3(0, 1, 0), "fixed = true") +
+                             node("A", Vec3(1, 0, 0), "mass = 1") + rod("O", "A", "mass = 0.1") +
+                             "[[structure.constraints]]\nkind = 'plane'\nnodes = ['A']\nnormal = [0, 1, 0]\n";
+  CHECK(supports(testing::model_of(tripod + run_for(0.1))->structure) == std::vector<int>{0, 1});
 }
 
 TEST_CASE("what comes to rest on a stop is held by it") {
