@@ -26,8 +26,8 @@ bool glob_match(std::string_view pattern, std::string_view name) {
 }
 
 int NameIndex::add(std::string_view name) {
-  const auto [entry, is_new] = index_.try_emplace(name, static_cast<int>(names_.size()));
-  names_.push_back(name);
+  names_.push_back(kept_.emplace_back(name));
+  const auto [entry, is_new] = index_.try_emplace(names_.back(), static_cast<int>(names_.size()) - 1);
   return is_new ? -1 : entry->second;
 }
 

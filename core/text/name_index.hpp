@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <deque>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
@@ -10,9 +12,13 @@ namespace unfurl {
 // Does `name` match `pattern` with * and ?
 bool glob_match(std::string_view pattern, std::string_view name);
 
-// Finds entries of a list by name or pattern. Keeps views: the names must outlive it.
+// Finds entries of a list by name or pattern.
 class NameIndex {
  public:
+  NameIndex() = default;
+  NameIndex(NameIndex&&) = default;  // a deque's entries stay where they are; those of a copy are others
+  NameIndex& operator=(NameIndex&&) = default;
+
   // The index of the name before, where it is there already; -1 where it is new (and takes the next index).
   int add(std::string_view name);
   int find(std::string_view name) const;  // -1: there is none
@@ -21,7 +27,8 @@ class NameIndex {
   const std::vector<std::string_view>& names() const { return names_; }
 
  private:
-  std::vector<std::string_view> names_;
+  std::deque<std::string> kept_;
+  std::vector<std::string_view> names_;  // of those
   std::unordered_map<std::string_view, int> index_;
 };
 
