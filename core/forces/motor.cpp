@@ -98,34 +98,85 @@ void ask(const Motor& m, double t, const double* q, MotorState& s) {
   s.by_integral = m.integral;
 }
 
-}  // namespace
+// Of the motor [N m] or [N], at a share of the full voltage and a rate of the measure.
+double full_torque(const Motor& m, double voltage, double rate) {
+  return m.stall * (voltage - m.gear_ratio * rate / m.no_load_speed);
+}
 
-MotorState motor_state(const Force& motor, const MeasureFunction& measure, int followed, const Moment& at,
+void at_voltage(const Motor& m, double voltage, MotorState& s) {
+  s.effort = m.gear_ratio * full_torque(m, voltage, s.rate);
+  s.by_value = s.by_integral = 0;
+  s.by_rate = -m.gear_ratio * m.gear_ratio * m.stall / m.no_load_speed;
+}
+
+// Value and rate with what voltage or controller asks for, cut by nothing.
+MotorState asked_state(const Force& motor, const MeasureFunction& measure, int followed, const Moment& at,
                        const double* q, const double* v, double* gradient) {
   const Motor& m = motor.motor;
   MotorState s;
   s.value = measure.value_and_gradient(q, gradient, at, followed);
   s.rate = measure.rate(gradient, v);
-  const double n = m.gear_ratio, speed = n * s.rate / m.no_load_speed,
-               slope = -n * n * m.stall / m.no_load_speed;
-  const auto at_voltage = [&](double share) {
-    s.effort = n * m.stall * (share - speed);
-    s.by_value = s.by_integral = 0;
-    s.by_rate = slope;
-  };
-  if (m.control == Motor::Control::none) {
-    at_voltage(m.command(at.t));
-  } else {
+  if (m.control == Motor::Control::none)
+    at_voltage(m, m.command(at.t), s);
+  else
     ask(m, at.t, q, s);
-    const double torque = s.effort / n;
-    if (torque > m.stall * (1 - speed)) at_voltage(1.0);
-    if (torque < m.stall * (-1 - speed)) at_voltage(-1.0);
-  }
-  if (const double most = std::abs(n) * m.limit; std::abs(s.effort) > most) {
-    s.effort = std::copysign(most, s.effort);
+  return s;
+}
+
+// The part of the law that the state asks for.
+Motor::Regime regime_of(const Motor& m, const MotorState& asked) {
+  using Regime = Motor::Regime;
+  if (m.regime != Regime::any) return m.regime;
+  double torque = asked.effort / m.gear_ratio;
+  Regime regime = Regime::asked;
+  if (m.control != Motor::Control::none)
+    for (const double voltage : {1.0, -1.0})
+      if (const double full = full_torque(m, voltage, asked.rate); voltage * torque > voltage * full)
+        torque = full, regime = voltage > 0 ? Regime::forward : Regime::backward;
+  if (std::abs(torque) <= m.limit) return regime;
+  return torque > 0 ? Regime::limit : Regime::reverse_limit;
+}
+
+}  // namespace
+
+MotorState motor_state(const Force& motor, const MeasureFunction& measure, int followed, const Moment& at,
+                       const double* q, const double* v, double* gradient) {
+  using Regime = Motor::Regime;
+  const Motor& m = motor.motor;
+  MotorState s = asked_state(motor, measure, followed, at, q, v, gradient);
+  const Regime regime = regime_of(m, s);
+  if (regime == Regime::forward || regime == Regime::backward)
+    at_voltage(m, regime == Regime::forward ? 1.0 : -1.0, s);
+  if (regime == Regime::limit || regime == Regime::reverse_limit) {
+    s.effort = (regime == Regime::limit ? 1.0 : -1.0) * m.gear_ratio * m.limit;
     s.by_value = s.by_rate = s.by_integral = 0;
   }
   return s;
+}
+
+MotorRooms motor_rooms(const Force& motor, const MeasureFunction& measure, int followed, const Moment& at,
+                       const double* q, const double* v, double* gradient) {
+  constexpr double share = 1e-10, rounding = 1e-13;
+  const Motor& m = motor.motor;
+  const MotorState s = asked_state(motor, measure, followed, at, q, v, gradient);
+  const double asked = s.effort / m.gear_ratio, limit = m.limit;
+  double forward = std::numeric_limits<double>::infinity(), backward = -forward;
+  double zero = share * std::min(m.stall, m.limit) + rounding * std::abs(asked);
+  if (m.control != Motor::Control::none) {
+    forward = full_torque(m, 1, s.rate), backward = full_torque(m, -1, s.rate);
+    zero +=
+        rounding * (std::abs(s.by_value * s.value) + std::abs(s.by_rate * s.rate)) / std::abs(m.gear_ratio);
+  }
+  const double cut = std::clamp(asked, backward, forward);
+  MotorRooms rooms = {std::min({forward - asked, asked - backward, limit - std::abs(asked)}),
+                      std::min(asked - forward, limit - std::abs(forward)),
+                      std::min(backward - asked, limit - std::abs(backward)), cut - limit, -limit - cut};
+  for (double& room : rooms) room /= zero;
+  return rooms;
+}
+
+bool bends(const Motor& m) {
+  return m.control != Motor::Control::none || std::isfinite(m.limit);
 }
 
 std::unique_ptr<ForceBlock> motor_block(const Structure& structure, const SparseRows&) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "core/forces/force.hpp"
@@ -16,7 +17,8 @@ namespace unfurl {
 //
 // where what a controller asks for is cut to what full voltage gives, T_0 (-1 - w / w_0) <= T <= T_0 (1 -
 // w / w_0); all of it is cut to the current's limit. Then F = n T ds/dq. The law is continuous and bends
-// where it is cut.
+// where it is cut: each of its parts is smooth, and OneSided (core/simulate/one_sided.hpp) says which one
+// holds.
 //   The rotor's inertia J is that of a ghost node of mass n^2 J (per m^2) whose coordinate x is tied to s by
 // the row s - x = s(0). The integral of the error is the coordinate z of another with the mass m on which the
 // motor acts with m e': m z'' = m e' and z'(0) = e(0) give z' = e exactly, whatever m.
@@ -27,6 +29,13 @@ struct MotorState {
 };
 MotorState motor_state(const Force& motor, const MeasureFunction& measure, int followed, const Moment& at,
                        const double* q, const double* v, double* gradient);
+
+// By how much a motor's torque may change before each part of its law, in the order of Motor::Regime, gives
+// way to another, in units of what counts as zero; the one that holds has the largest room, 0 or more.
+using MotorRooms = std::array<double, 5>;
+MotorRooms motor_rooms(const Force& motor, const MeasureFunction& measure, int followed, const Moment& at,
+                       const double* q, const double* v, double* gradient);
+bool bends(const Motor& motor);  // has it more than one part?
 
 std::unique_ptr<ForceBlock> motor_block(const Structure& structure, const SparseRows& node_mass);
 const std::vector<ParamSpec>& motor_params();

@@ -38,11 +38,11 @@ bool alike(const TimeFunction& a, const TimeFunction& b) {
 
 bool alike(const Motor& a, const Motor& b) {
   const auto& [stall, no_load_speed, gear_ratio, limit, control, proportional, integral, derivative, command,
-               integrator] = a;
+               integrator, regime] = a;
   return stall == b.stall && no_load_speed == b.no_load_speed && gear_ratio == b.gear_ratio &&
          limit == b.limit && control == b.control && proportional == b.proportional &&
          integral == b.integral && derivative == b.derivative && alike(command, b.command) &&
-         integrator == b.integrator;
+         integrator == b.integrator && regime == b.regime;
 }
 
 // A drive that begins at the value of the start has it from the nodes, to rounding.

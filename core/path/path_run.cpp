@@ -104,7 +104,7 @@ class PathRun {
     compare_equations();
     watch_.begin(last(), base_->system);
     if (sides_.empty()) return;
-    sides_.find_cables(base_->system, last());
+    sides_.find_laws(base_->system, last());
     if (sides_.any_friction()) choose_slip();
     tell_law();
     if (sides_.any_active()) change_model(sides_.model(*base_), true);

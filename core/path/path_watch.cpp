@@ -30,7 +30,7 @@ void PathWatch::watch(PathLaw& law) {
   for (std::size_t i = 0; i < sides_.stops().size(); ++i)
     stop_columns_.push_back(law.forces().add_measure(sides_.stops()[i].measure));
   friction_columns_.clear();
-  for (std::size_t i = sides_.first_friction(); i < sides_.size(); ++i)
+  for (std::size_t i = sides_.first_friction(); i < sides_.first_motor(); ++i)
     friction_columns_.push_back(law.forces().add_measure(frictions_[i - sides_.first_friction()]));
   if (deploys_) deployed_column_ = law.forces().add_remaining();
 }
@@ -73,7 +73,7 @@ void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out) const
     out[static_cast<Index>(stops + k)] = sides_.active(stops + k) ? stretch : -stretch;
   }
   out.head(out.size() - 1) /= sides_.stops().touching();
-  for (std::size_t i = sides_.first_friction(); i < sides_.size(); ++i)
+  for (std::size_t i = sides_.first_friction(); i < sides_.first_motor(); ++i)
     if (sides_.slip(i) != 0)
       out[static_cast<Index>(i)] = sides_.slip(i) * friction_slope(i, s) * v / sides_.zero_rate();
   if (deployed_column_ >= 0 && !deployed_) out[out.size() - 1] = remaining(s);

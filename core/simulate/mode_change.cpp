@@ -26,7 +26,7 @@ class Change {
 
   ModeChange run(const std::function<bool(std::size_t, double)>& rests) {
     for (const std::size_t i : which_)
-      if (!sides_.is_stop(i) && !sides_.is_friction(i)) turn(i, !sides_.active(i));
+      if (!sides_.is_stop(i) && !sides_.is_friction(i)) sides_.turn_law(i, system_, out_.state), tell(i);
     find_rows();
     if (rows_.empty()) return std::move(out_);
     const Model acting = sides_.without_holds(base_);  // a cable may pull with a jump
@@ -59,6 +59,9 @@ class Change {
   }
   void turn(std::size_t i, bool active) {
     sides_.set_active(i, active);
+    tell(i);
+  }
+  void tell(std::size_t i) {
     out_.turned.push_back(i);
     out_.changed = true;
   }
@@ -68,7 +71,7 @@ class Change {
       if (std::find(which_.begin(), which_.end(), i) != which_.end() ||
           sides_.touches(i, system_, out_.state))
         rows_.push_back(i);
-    for (std::size_t i = sides_.first_friction(); i < sides_.size(); ++i) rows_.push_back(i);
+    for (std::size_t i = sides_.first_friction(); i < sides_.first_motor(); ++i) rows_.push_back(i);
     const auto n = rows_.size();
     struck_.assign(n, false);
   }
@@ -323,7 +326,7 @@ class Change {
   // By D c = d over what is held, stops among it.
   void share() {
     const auto first = static_cast<Index>(sides_.first_friction()),
-               n = static_cast<Index>(sides_.size()) - first;
+               n = static_cast<Index>(sides_.first_motor()) - first;
     std::vector<Index> held;
     for (Index r = 0; r < count(); ++r)
       if (rests_[static_cast<std::size_t>(r)] && solution_.held[static_cast<std::size_t>(r)])

@@ -27,6 +27,23 @@ bool same(const Measure& a, const Measure& b) {
          a.reference == b.reference && std::ranges::equal(a.terms, b.terms, same_term);
 }
 
+// What a motor does now.
+const char* in_words(const Motor& motor) {
+  switch (motor.regime) {
+    case Motor::Regime::forward:
+      return " runs at full voltage";
+    case Motor::Regime::backward:
+      return " runs at full reverse voltage";
+    case Motor::Regime::limit:
+    case Motor::Regime::reverse_limit:
+      return " runs at its current limit";
+    case Motor::Regime::asked:
+    case Motor::Regime::any:
+      break;
+  }
+  return motor.control == Motor::Control::none ? " runs below its current limit" : " gives what is asked";
+}
+
 }  // namespace
 
 OneSided::OneSided(const Structure& structure, const SolverOptions& options)
@@ -39,6 +56,8 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
     const Force& f = structure.forces[i];
     if (f.one_sided && f.smoothing == 0 && (f.stiffness > 0 || f.damping > 0 || f.axial_stiffness > 0))
       cables_.push_back({i, f.name, MeasureFunction(f.measure, structure.deployment), f});
+    if (f.kind == "motor" && bends(f.motor))
+      motors_.push_back({i, f.name, MeasureFunction(f.measure, structure.deployment), followed[i], f});
     if (f.kind != "friction" || !(f.holding > 0 || PinLoads::arm(f) > 0)) continue;
     auto one = std::find_if(frictions_.begin(), frictions_.end(),
                             [&](const Friction& other) { return same(other.measure, f.measure); });
@@ -49,14 +68,13 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
     one->kinetic += f.kinetic;
     one->holding += f.holding;
   }
-  active_.assign(stops_.size() + cables_.size() + frictions_.size(), false);
+  active_.assign(first_motor() + motors_.size(), false);
   shift_.setZero(static_cast<Index>(stops_.size()));
   friction_force_.setZero(std::ssize(frictions_));
 }
 
 bool OneSided::any_active() const {
-  return (!cables_.empty() && !relaxed_) ||
-         std::find(active_.begin(), active_.end(), true) != active_.end() ||
+  return (laws() && !relaxed_) || std::find(active_.begin(), active_.end(), true) != active_.end() ||
          std::any_of(frictions_.begin(), frictions_.end(), [](const Friction& f) { return f.slip != 0; });
 }
 
@@ -71,9 +89,27 @@ bool OneSided::any_reeled() const {
                      [](const Cable& cable) { return cable.law.unstressed.moves(); });
 }
 
-bool OneSided::relax_cables() {
+bool OneSided::relax_laws() {
   std::fill_n(active_.begin() + static_cast<std::ptrdiff_t>(stops_.size()), cables_.size(), false);
-  return !std::exchange(relaxed_, true) && !cables_.empty();
+  return !std::exchange(relaxed_, true) && laws();
+}
+
+void OneSided::turn_law(std::size_t i, const System& system, const State& state) {
+  relaxed_ = false;
+  if (!is_motor(i)) {
+    active_[i] = !active_[i];
+    return;
+  }
+  Drive& motor = motors_[i - first_motor()];
+  Motor::Regime& regime = motor.law.motor.regime;
+  VectorXd q(system.coordinates()), v(q.size());
+  system.expand(state.z, q);
+  system.expand_rate(state.w, v);
+  MotorRooms all = rooms(motor, q, v, state);
+  if (regime != Motor::Regime::any)
+    all[static_cast<std::size_t>(regime)] = std::numeric_limits<double>::lowest();
+  regime = static_cast<Motor::Regime>(std::ranges::max_element(all) - all.begin());
+  active_[i] = regime != Motor::Regime::asked;
 }
 
 const MeasureFunction& OneSided::measure(std::size_t i) const {
@@ -121,7 +157,6 @@ void OneSided::stick(std::size_t i, const System& system, const State& state) {
 
 void OneSided::set_active(std::size_t i, bool active) {
   active_[i] = active;
-  if (!is_stop(i) && !is_friction(i)) relaxed_ = false;
 }
 
 void OneSided::archive(Archive& archive) {
@@ -134,6 +169,11 @@ void OneSided::archive(Archive& archive) {
     archive(f.slip);
     archive(f.held_at);
     archive(f.reversed);
+  }
+  for (Drive& motor : motors_) {
+    auto regime = static_cast<int>(motor.law.motor.regime);
+    archive(regime);
+    motor.law.motor.regime = static_cast<Motor::Regime>(regime);
   }
 }
 
@@ -181,6 +221,11 @@ void OneSided::tell(std::size_t i, std::size_t pad, Event& out) const {
     out.element = f.pads[pad].name;
     out.kind = f.slip == 0 ? "stick" : f.reversed ? "reversal" : "slip";
     out.name = out.element + (f.slip == 0 ? " sticks" : f.reversed ? " slips the other way" : " slips");
+  } else if (is_motor(i)) {
+    const Drive& motor = motors_[i - first_motor()];
+    out.element = motor.name;
+    out.name = motor.name + in_words(motor.law.motor);
+    out.kind = on ? "saturated" : "unsaturated";
   } else {
     out.element = cables_[i - stops_.size()].name;
     out.name = out.element + (on ? " pulls" : " is slack");
@@ -197,13 +242,26 @@ void OneSided::touch(const System& system, const State& state) {
     shift_[static_cast<Index>(i)] = active_[i] ? 0.0 : std::min(0.0, stops_.gap(i, system, state));
 }
 
-void OneSided::find_cables(const System& system, const State& state) {
+void OneSided::find_laws(const System& system, const State& state) {
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
   double rate = 0;
   for (std::size_t k = 0; k < cables_.size(); ++k)
     active_[stops_.size() + k] = stretch(cables_[k], state.t, q, v, rate) > stops_.touching();
+  for (std::size_t k = 0; k < motors_.size(); ++k) {
+    motors_[k].law.motor.regime = Motor::Regime::any;
+    turn_law(first_motor() + k, system, state);
+  }
+}
+
+MotorRooms OneSided::rooms(const Drive& motor, const VectorXd& q, const VectorXd& v, const State& state) {
+  gradient_.resize(static_cast<Index>(motor.measure.stencil().size()));
+  Moment at(state.t);
+  at.since = state.t;
+  if (state.angles.size() > 0)
+    at.angles = at.rates = state.angles.data();  // no time has passed: no rate counts
+  return motor_rooms(motor.law, motor.measure, motor.followed, at, q.data(), v.data(), gradient_.data());
 }
 
 // min(s - rest, n / (k + c / h)) [m]
@@ -237,7 +295,7 @@ void OneSided::measure_held(const Model& model, const State& state, Probe& probe
     probe.margins[static_cast<Index>(i)] = stops_.push(i, model, held, with_forces) / zero;
   // What sticks lies before the stops that are held, in its order.
   auto constraint = static_cast<int>(std::ssize(model.structure.constraints) - std::ssize(held));
-  for (std::size_t i = size(); i-- > first_friction();)
+  for (std::size_t i = first_motor(); i-- > first_friction();)
     if (active_[i])
       friction_force_[static_cast<Index>(i - first_friction())] =
           with_forces.lambda[model.system.constraint_row(--constraint)] *
@@ -275,8 +333,9 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
   const System& system = model.system;
   const auto count = static_cast<Index>(active_.size()), stops = static_cast<Index>(stops_.size());
   probe.margins = probe.rates = VectorXd::Constant(count, unknown);
-  const bool sticks = std::find(active_.begin() + static_cast<std::ptrdiff_t>(first_friction()),
-                                active_.end(), true) != active_.end();
+  const auto frictions = active_.begin() + static_cast<std::ptrdiff_t>(first_friction());
+  const bool sticks =
+      std::find(frictions, frictions + std::ssize(frictions_), true) - frictions < std::ssize(frictions_);
   if (forces && (any_held() || sticks)) measure_held(model, state, probe);
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
@@ -286,6 +345,11 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
     if ((i < stops || is_friction(k)) && active_[k]) continue;
     if (is_friction(k)) {
       measure_friction(q, v, state, k, probe);
+      continue;
+    }
+    if (is_motor(k)) {
+      const Drive& motor = motors_[k - first_motor()];
+      probe.margins[i] = rooms(motor, q, v, state)[static_cast<std::size_t>(motor.law.motor.regime)];
       continue;
     }
     double rate = 0, margin = 0;
@@ -324,25 +388,27 @@ std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
 }
 
-void OneSided::set_cables(Structure& structure) const {
+void OneSided::set_laws(Structure& structure) const {
   for (std::size_t k = 0; k < cables_.size(); ++k)
     if (active_[stops_.size() + k])
       structure.forces[cables_[k].force].one_sided = false;
     else
       structure.forces[cables_[k].force].slack = !relaxed_;
+  for (const Drive& motor : motors_)
+    structure.forces[motor.force].motor.regime = relaxed_ ? Motor::Regime::any : motor.law.motor.regime;
 }
 
 Model OneSided::without_holds(const Model& base) const {
-  if (cables_.empty()) return base;
+  if (!laws()) return base;
   Structure structure = base.structure;
-  set_cables(structure);
+  set_laws(structure);
   System system(structure, eliminate_linear_);
   return {std::move(structure), std::move(system)};
 }
 
 std::shared_ptr<const Model> OneSided::model(const Model& base) const {
   Structure structure = base.structure;
-  set_cables(structure);
+  set_laws(structure);
   for (std::size_t k = 0; k < frictions_.size(); ++k) {
     const Friction& f = frictions_[k];
     for (const Friction::Pad& pad : f.pads) structure.forces[pad.force].slip = f.slip;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What acts on one side only: end stops, which push or are out of touch, cables, which pull or are slack, and
-// dry friction, which holds or slips.
+// What acts on one side only: end stops, which push or are out of touch, cables, which pull or are slack, dry
+// friction, which holds or slips, and motors, which give what is asked of them or what they can.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/forces/motor.hpp"
 #include "core/forces/pin_loads.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/integrators/solver_options.hpp"
@@ -30,6 +31,7 @@ namespace unfurl {
 //                                                together as one (friction_hold.hpp)
 //               slips: -slip tau_k along s       margin: slip s'
 //               stands where others hold it: no force and no constraint, margin: 2 zero - |s'|
+//     motor     one part of its law               margin: its room (forces/motor.hpp)
 //
 // A margin that falls below zero ends the mode. Margins come in units of what counts as zero: 1e-11 of the
 // structure's length, a step's part of that for rates, or a part of the largest multiplier. A cable with
@@ -39,18 +41,21 @@ class OneSided {
   OneSided(const Structure& structure, const SolverOptions& options);
 
   bool empty() const { return active_.empty(); }
-  std::size_t size() const { return active_.size(); }  // stops first, then cables, then friction
+  std::size_t size() const { return active_.size(); }  // stops first, then cables, friction and motors
   bool is_stop(std::size_t i) const { return i < stops_.size(); }
-  bool is_friction(std::size_t i) const { return i >= first_friction(); }
+  bool is_friction(std::size_t i) const { return i >= first_friction() && i < first_motor(); }
+  bool is_motor(std::size_t i) const { return i >= first_motor(); }
   std::size_t first_friction() const { return stops_.size() + cables_.size(); }
+  std::size_t first_motor() const { return first_friction() + frictions_.size(); }
   bool any_friction() const { return !frictions_.empty(); }
   bool only_friction(const std::vector<std::size_t>& which) const {
     return std::all_of(which.begin(), which.end(), [this](std::size_t i) { return is_friction(i); });
   }
-  bool active(std::size_t i) const { return active_[i]; }  // a held stop, a cable that pulls, what sticks
-  bool any_active() const;                                 // what is not as in the model without any of it
-  bool any_held() const;                                   // stops
-  bool any_reeled() const;                                 // cables that are paid out or drawn in
+  // A held stop, a cable that pulls, what sticks, a motor that gives less than it is asked for.
+  bool active(std::size_t i) const { return active_[i]; }
+  bool any_active() const;  // what is not as in the model without any of it
+  bool any_held() const;    // stops
+  bool any_reeled() const;  // cables that are paid out or drawn in
   const Stops& stops() const { return stops_; }
   // "leaves stop NAME", "NAME pulls", ...: that the mode has begun; of friction, for each that acts there.
   std::vector<Event> events(std::size_t i, double t) const;
@@ -60,10 +65,12 @@ class OneSided {
   void touch(const System& system, const State& state);
   // A stop that is held or whose gap counts as zero.
   bool touches(std::size_t i, const System& system, const State& state) const;
-  // Cables that are stretched and pull.
-  void find_cables(const System& system, const State& state);
-  // All cables by the law that knows both of their modes, until one is set; whether they were not.
-  bool relax_cables();
+  // Cables that are stretched and pull, and what motors give.
+  void find_laws(const System& system, const State& state);
+  // All cables and motors by the law that knows all of its modes, until one is set; whether they were not.
+  bool relax_laws();
+  // A cable or motor whose margin is used up goes on by the next part of its law.
+  void turn_law(std::size_t i, const System& system, const State& state);
 
   // What a stop or friction acts along: sign * s.
   const MeasureFunction& measure(std::size_t i) const;
@@ -128,11 +135,20 @@ class OneSided {
     double held_at = 0.0;
     bool reversed = false;  // it slipped the other way before
   };
+  struct Drive {
+    std::size_t force;  // of the structure
+    std::string name;
+    MeasureFunction measure;
+    int followed;
+    Force law;  // its regime is the present one
+  };
   const Friction& friction(std::size_t i) const { return frictions_[i - first_friction()]; }
+  bool laws() const { return !cables_.empty() || !motors_.empty(); }
   void tell(std::size_t i, std::size_t pad, Event& out) const;
   std::set<std::size_t> held() const;
   void measure_held(const Model& model, const State& state, Probe& probe);
-  void set_cables(Structure& structure) const;
+  void set_laws(Structure& structure) const;
+  MotorRooms rooms(const Drive& motor, const VectorXd& q, const VectorXd& v, const State& state);
   void measure_sticking(double zero, Probe& probe);
   void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
                         Probe& probe);
@@ -141,8 +157,9 @@ class OneSided {
   Stops stops_;
   std::vector<Cable> cables_;
   std::vector<Friction> frictions_;
+  std::vector<Drive> motors_;
   std::vector<bool> active_;
-  bool relaxed_ = false;  // cables are by the law of both modes
+  bool relaxed_ = false;  // cables and motors are by the law of all their modes
   VectorXd shift_;        // of the stops' gaps [m] or [rad]
   MatrixXd shares_;
   VectorXd friction_force_;  // of those that stick, at the state that is measured

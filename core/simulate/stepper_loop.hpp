@@ -277,7 +277,7 @@ class Stepper::Loop {
 
   // Modes at the start of a run: nothing of that is an event but impacts. What cannot be ends it there.
   void find_first_modes() try {
-    sides_.find_cables(system(), now());
+    sides_.find_laws(system(), now());
     sides_.touch(system(), now());
     ModeChange change{.state = now()};  // the base is the model at the start
     if (sides_.any_friction()) change = modes_after(now());
@@ -343,7 +343,7 @@ class Stepper::Loop {
       run_.warnings.push_back(
           "at t = " + seconds(now().t) +
           ": stops, cables or friction switch without end; what they do in this step is not located");
-    if (sides_.relax_cables()) set_model(sides_.model(*base_), in_base(now()), true);
+    if (sides_.relax_laws()) set_model(sides_.model(*base_), in_base(now()), true);
     return true;
   }
 

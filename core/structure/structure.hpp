@@ -123,6 +123,8 @@ struct Stop {
 // A motor that turns or pulls a measure through a gear; forces/motor.hpp says by what law.
 struct Motor {
   enum class Control { none, position, rate };
+  // Which part of its law holds; any: the one that the state asks for.
+  enum class Regime { asked, forward, backward, limit, reverse_limit, any };
 
   double stall = 0.0;          // torque or force at rest, of the motor [N m] or [N]
   double no_load_speed = 0.0;  // of the motor, where its torque is zero [rad/s] or [m/s]
@@ -132,6 +134,7 @@ struct Motor {
   double proportional = 0.0, integral = 0.0, derivative = 0.0;
   TimeFunction command = {};  // what a controller follows, in the measure's unit or, of a rate, per second
   int integrator = -1;        // the ghost that sums up a controller's error; -1: none
+  Regime regime = Regime::any;
 };
 
 // One force of a kind in the force table (forces/force.hpp).

@@ -12,7 +12,7 @@ namespace motor_test {
 
 namespace {
 
-using testing::end_positions, testing::error_of, testing::run_scene;
+using testing::end_positions, testing::error_of, testing::model_of, testing::run_scene;
 
 // A crank of inertia 0.7 * 0.5^2 = 0.175 kg m^2 about z, no gravity.
 const std::string crank = R"(
@@ -75,6 +75,116 @@ TEST_CASE("a motor gives no more than its current allows") {
   // T = 0.01 N m while the line gives more, up to n th' = 2/3 w_0, which is later.
   const double angle = start_angle + 0.5 * ratio * 0.01 / inertia * 0.25;
   CHECK(last_of(diagnose(run), "motor.angle_rad") == Approx(angle).margin(1e-11));
+}
+
+// Each part of a motor's law is smooth; where one gives way to the next is the end of a step, for every
+// method and whatever the steps are.
+//
+//     limit    I th'' = n L while n L < n T_0 (1 - n th' / w_0); then along the line, th' = W - (W - W_1)
+//     exp(-t / tau)
+TEST_CASE("a motor leaves its current limit at the right time by every method") {
+  const double limit = 0.018, t = 1.5, top = no_load / ratio, tau = inertia * top / (ratio * stall);
+  const double rate1 = top * (1 - limit / stall), t1 = rate1 * inertia / (ratio * limit), rest = t - t1;
+  const double angle =
+      start_angle + 0.5 * rate1 * t1 + top * rest - (top - rate1) * tau * (1 - std::exp(-rest / tau));
+  REQUIRE(t1 < 1.2);
+  // dvm: order 8 at h / tau = 0.02 / 0.76; rk4: (h / tau)^5 / 120 a step of 4 ms, times 375 steps.
+  struct Case {
+    const char* method;
+    double step, error;
+  };
+  for (const Case& c :
+       {Case{"dvm", 0.037, 1e-10}, Case{"rk4", 0.0041, 1e-9}, Case{"rk4_projected", 0.0041, 1e-9}}) {
+    const Simulation run =
+        run_scene(crank, {"forces[0].current_limit=3.6", "forces[0].torque_constant=0.005",
+                          std::string("solver.method=") + c.method, "solver.step=" + std::to_string(c.step)});
+    INFO(c.method);
+    REQUIRE(run.events.size() == 1);
+    CHECK(run.events[0].name == "motor runs below its current limit");
+    CHECK(run.events[0].kind == "unsaturated");
+    CHECK(run.events[0].t == Approx(t1).margin(c.error));
+    CHECK(last_of(diagnose(run), "motor.angle_rad") == Approx(angle).margin(c.error));
+  }
+}
+
+// Full voltage as long as the controller asks for more, k (r - th') > n T_0 (1 - n th' / w_0), then th' = r -
+// (r - th'_1) exp(-k t / I).
+TEST_CASE("a controller takes over from full voltage at the right time by every method") {
+  const double r = 60 * pi / 180, k = 2.5, t = 1.5, top = no_load / ratio,
+               tau = inertia * top / (ratio * stall);
+  const double rate1 = (k * r - ratio * stall) / (k - ratio * stall / top),
+               t1 = -tau * std::log(1 - rate1 / top);
+  const double angle1 = top * (t1 - tau * (1 - std::exp(-t1 / tau))), rest = t - t1;
+  const double angle =
+      start_angle + angle1 + r * rest - (r - rate1) * inertia / k * (1 - std::exp(-k * rest / inertia));
+  REQUIRE((rate1 > 0 && t1 < 1.0));
+  struct Case {
+    const char* method;
+    double step, error;
+  };
+  for (const Case& c :
+       {Case{"dvm", 0.0137, 1e-10}, Case{"rk4", 0.0013, 1e-9}, Case{"rk4_baumgarte", 0.0013, 1e-9}}) {
+    const Simulation run =
+        run_scene(crank, {"forces[0].control=rate", "forces[0].motion=rate", "forces[0].rate=60",
+                          "forces[0].proportional=2.5", std::string("solver.method=") + c.method,
+                          "solver.step=" + std::to_string(c.step)});
+    INFO(c.method);
+    REQUIRE(run.events.size() == 1);
+    CHECK(run.events[0].name == "motor gives what is asked");
+    CHECK(run.events[0].t == Approx(t1).margin(c.error));
+    CHECK(last_of(diagnose(run), "motor.angle_rad") == Approx(angle).margin(c.error));
+  }
+}
+
+// Full voltage backwards, the controller, full voltage forwards, the controller again: what the
+// parts say one after the other, by the classic Runge-Kutta method in steps that end where they change
+// (bisection), of one equation.
+TEST_CASE("a controller that overshoots its voltage both ways keeps the order") {
+  const double k = 4, c = 0.6, aim = start_angle, top = no_load / ratio;
+  int part = -1;
+  const auto torque = [&](double th, double u, int of) {
+    const double asked = k * (aim - th) - c * u;
+    return of == 0 ? asked : ratio * stall * (of - u / top);
+  };
+  const auto room = [&](double th, double u) {
+    const double asked = torque(th, u, 0);
+    if (part == 0) return std::min(torque(th, u, 1) - asked, asked - torque(th, u, -1));
+    return part * (asked - torque(th, u, part));
+  };
+  double t = 0, th = start_angle, u = 5;  // 2.5 m/s at 0.5 m
+  std::vector<double> switches;
+  const auto step = [&](double h, double& to_th, double& to_u) {
+    const auto a = [&](double x, double y) { return torque(x, y, part) / inertia; };
+    const double k1 = a(th, u), k2 = a(th + h / 2 * u, u + h / 2 * k1),
+                 k3 = a(th + h / 2 * (u + h / 2 * k1), u + h / 2 * k2),
+                 k4 = a(th + h * (u + h / 2 * k2), u + h * k3);
+    to_th = th + h * u + h * h / 6 * (k1 + k2 + k3), to_u = u + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  };
+  while (t < 5) {
+    double h = std::min(1e-4, 5 - t), next_th = 0, next_u = 0;
+    step(h, next_th, next_u);
+    if (room(next_th, next_u) < 0) {
+      double low = 0, high = h;
+      for (int i = 0; i < 60; ++i) {
+        h = 0.5 * (low + high);
+        step(h, next_th, next_u);
+        (room(next_th, next_u) < 0 ? high : low) = h;
+      }
+      switches.push_back(t + h);
+      th = next_th, u = next_u, t += h;
+      part = part != 0 ? 0 : torque(th, u, 0) > 0 ? 1 : -1;
+      continue;
+    }
+    th = next_th, u = next_u, t += h;
+  }
+  REQUIRE(switches.size() >= 3);
+  const Simulation run = run_scene(
+      crank, {"forces[0].control=position", "forces[0].motion=hold", "forces[0].proportional=4",
+              "forces[0].derivative=0.6", "structure.nodes[2].velocity=[-2, 1.5, 0]", "solver.end_time=5"});
+  REQUIRE(run.events.size() == switches.size());
+  for (std::size_t i = 0; i < switches.size(); ++i)
+    CHECK(run.events[i].t == Approx(switches[i]).margin(1e-9));
+  CHECK(last_of(diagnose(run), "motor.angle_rad") == Approx(th).margin(1e-9));
 }
 
 // PD: I th'' = k (f - th) - c th', an oscillator about f. With k_i the third-order equation
@@ -225,6 +335,19 @@ TEST_CASE("the books of a motor close under gravity in any direction") {
     REQUIRE(run.status == RunStatus::completed);
     CHECK(testing::largest(diagnose(run), "energy_balance_J") <= 1e-8);
   }
+}
+
+// Rotors and drums are nodes of their own behind those of the scene, which entries that follow name.
+TEST_CASE("entries behind motors with rotors and winches find their nodes") {
+  std::string text = crank;
+  for (const char* kind : {"motor", "winch", "motor"})
+    text += std::string("[[forces]]\nkind = \"") + kind + "\"\nnodes = [\"E\", \"O\", \"T\"]\n" +
+            "stall_torque = 0.1\nno_load_speed = 3000\ninertia = 1e-4\n" +
+            (std::string(kind) == "winch" ? "drum_radius = 0.1\n" : "axis = [0, 0, 1]\n");
+  text += "[[forces]]\nkind = \"spring\"\nnodes = [\"E\", \"T\"]\nstiffness = 1\n";
+  text += "[[constraints]]\nkind = \"length_stop\"\nnodes = [\"E\", \"T\"]\nmin = 0.1\n";
+  CHECK(error_of(text) == "");
+  CHECK(model_of(text)->structure.nodes.size() == 6);
 }
 
 TEST_CASE("columns of motors are measures by name") {
