@@ -162,6 +162,7 @@ class Change {
         continue;
       }
       if (!movable(r)) {
+        if (sides_.is_stop(i) && crossed(r) && b_[r] < -sides_.zero_acceleration()) return fail_at(r);
         if (sides_.is_friction(i) && std::abs(b_[r]) > sides_.zero_acceleration())
           slide(r, b_[r] > 0 ? 1 : -1);
         else if (sides_.is_friction(i) && crossed(r))

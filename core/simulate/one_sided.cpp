@@ -15,6 +15,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double force_zero = 1e-10;  // of the largest multiplier
+constexpr double handed_over = 1e4;   // of what counts as zero for a motor's torque
 
 // Do they measure the same? Ends of a length may be told either way round.
 bool same(const Measure& a, const Measure& b) {
@@ -110,6 +111,8 @@ void OneSided::turn_law(std::size_t i, const System& system, const State& state)
     all[static_cast<std::size_t>(regime)] = std::numeric_limits<double>::lowest();
   regime = static_cast<Motor::Regime>(std::ranges::max_element(all) - all.begin());
   active_[i] = regime != Motor::Regime::asked;
+  motor.shift = 0;
+  motor.began = true;
 }
 
 const MeasureFunction& OneSided::measure(std::size_t i) const {
@@ -173,6 +176,8 @@ void OneSided::archive(Archive& archive) {
   for (Drive& motor : motors_) {
     auto regime = static_cast<int>(motor.law.motor.regime);
     archive(regime);
+    archive(motor.shift);
+    archive(motor.began);
     motor.law.motor.regime = static_cast<Motor::Regime>(regime);
   }
 }
@@ -240,6 +245,14 @@ bool OneSided::touches(std::size_t i, const System& system, const State& state) 
 void OneSided::touch(const System& system, const State& state) {
   for (std::size_t i = 0; i < stops_.size(); ++i)
     shift_[static_cast<Index>(i)] = active_[i] ? 0.0 : std::min(0.0, stops_.gap(i, system, state));
+  if (std::ranges::none_of(motors_, &Drive::began)) return;
+  VectorXd q(system.coordinates()), v(q.size());
+  system.expand(state.z, q);
+  system.expand_rate(state.w, v);
+  for (Drive& motor : motors_)
+    if (std::exchange(motor.began, false))
+      if (const double left = room(motor, q, v, state); left > -handed_over)
+        motor.shift = std::min(0.0, left);
 }
 
 void OneSided::find_laws(const System& system, const State& state) {
@@ -349,7 +362,7 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
     }
     if (is_motor(k)) {
       const Drive& motor = motors_[k - first_motor()];
-      probe.margins[i] = rooms(motor, q, v, state)[static_cast<std::size_t>(motor.law.motor.regime)];
+      probe.margins[i] = room(motor, q, v, state) - motor.shift;
       continue;
     }
     double rate = 0, margin = 0;

@@ -61,7 +61,8 @@ class OneSided {
   std::vector<Event> events(std::size_t i, double t) const;
 
   void set_active(std::size_t i, bool active);
-  // A stop that is passed by less than rounding or by what a start left of it counts as touched there.
+  // A stop that is passed by less than rounding or by what a start left of it counts as touched there, and so
+  // with the room of a motor whose regime has just begun.
   void touch(const System& system, const State& state);
   // A stop that is held or whose gap counts as zero.
   bool touches(std::size_t i, const System& system, const State& state) const;
@@ -140,7 +141,9 @@ class OneSided {
     std::string name;
     MeasureFunction measure;
     int followed;
-    Force law;  // its regime is the present one
+    Force law;           // its regime is the present one
+    double shift = 0.0;  // of its room: what handing over left of zero where that began
+    bool began = false;  // and nobody has looked since
   };
   const Friction& friction(std::size_t i) const { return frictions_[i - first_friction()]; }
   bool laws() const { return !cables_.empty() || !motors_.empty(); }
@@ -149,6 +152,9 @@ class OneSided {
   void measure_held(const Model& model, const State& state, Probe& probe);
   void set_laws(Structure& structure) const;
   MotorRooms rooms(const Drive& motor, const VectorXd& q, const VectorXd& v, const State& state);
+  double room(const Drive& motor, const VectorXd& q, const VectorXd& v, const State& state) {
+    return rooms(motor, q, v, state)[static_cast<std::size_t>(motor.law.motor.regime)];
+  }
   void measure_sticking(double zero, Probe& probe);
   void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
                         Probe& probe);

@@ -66,6 +66,38 @@ TEST_CASE("a motor turns a crank and reports the torque and power it gives") {
   }
 }
 
+// It would be at the stop with no speed at all: no impact says that it cannot go on.
+TEST_CASE("a drive that sets off into a stop it touches ends there") {
+  const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1, 0, 0], mass = 1}]
+constraints = [{kind = "line", nodes = ["A"], direction = [1, 0, 0]}]
+[[constraints]]
+kind = "coordinate"
+nodes = ["A"]
+direction = [1, 0, 0]
+motion = "rate"
+rate = 0.3
+ramp = 0.2
+start = 0.0133
+[[constraints]]
+kind = "coordinate_stop"
+name = "wall"
+nodes = ["A"]
+direction = [1, 0, 0]
+max = 1
+[solver]
+step = 0.003
+end_time = 0.4
+)");
+  REQUIRE(run.status == RunStatus::failed);
+  CHECK(run.message.find("a drive pushes against the stop wall") != std::string::npos);
+  // Within the way that counts as zero, 1e-11 m at 1.5 m/s^2 and more as the ramp begins: 1e-5 s.
+  CHECK(run.trajectory.end_time() == Approx(0.0133).margin(1e-4));
+  CHECK(run.warnings.empty());
+}
+
 TEST_CASE("a crank at a constant rate goes round and round") {
   const Simulation run =
       run_scene(crank, {"structure.constraints.motor.motion=rate", "structure.constraints.motor.rate=720",
