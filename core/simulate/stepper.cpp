@@ -11,6 +11,21 @@
 
 namespace unfurl {
 
+// A longer step, as far as time has no edge, where this one begins or ends too close to a singular pose.
+// The grid goes on after that.
+void Stepper::Loop::step_over(Probe& to, double& h) {
+  for (const double length : {1.41, 1.73, 1.19, 2.24, 1.09, 2.77, 1.57, 3.37}) {
+    if (now().t + length * h > grid_.next_edge(now().t)) continue;
+    Probe longer{.at = length * h, .state = now()};
+    integrator_->restart();
+    longer.report = take_step(*integrator_, longer.state, length * h);
+    if (!longer.report.ok()) continue;
+    part_end_ += (length - 1) * h;
+    to = std::move(longer), h *= length;
+    return;
+  }
+}
+
 Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& options)
     : Stepper(model, options, initial_state(model->structure, model->system).state) {}
 

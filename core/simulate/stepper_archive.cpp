@@ -49,6 +49,7 @@ void Stepper::Loop::archive(Archive& archive) {
   archive(new_);
   archive_models(archive);
   archive(last_touch_);
+  archive(turning_back_);
   for (double* x : {&target_, &part_end_, &last_step_, &crowd_time_, &unwatched_until_, &margin_})
     archive(*x);
   for (bool* x : {&unwatched_said_, &deployed_, &ended_, &regular_}) archive(*x);

@@ -24,6 +24,7 @@
 #include "core/simulate/step_in_parts.hpp"
 #include "core/simulate/stepper.hpp"
 #include "core/simulate/time_grid.hpp"
+#include "core/simulate/turning_back.hpp"
 
 namespace unfurl {
 namespace stepping {
@@ -64,6 +65,7 @@ class Stepper::Loop {
         present_(original_),
         deployment_(run.trajectory.structure().deployment),
         sides_(run.trajectory.structure(), run.options),
+        turning_back_(run.trajectory.structure()),
         start_(start),
         grid_(start, run.options, time_edges(run.trajectory.structure(), run.options.step)),
         last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {}
@@ -167,9 +169,14 @@ class Stepper::Loop {
     to.state.t = t;
     have_begin_ = to.margins.size() > 0;
     if (have_begin_) begin_ = to;
-    append(std::move(to.state), to.report);
-    ++run_.steps;
+    go_on(std::move(to.state), to.report);
     return true;
+  }
+
+  void go_on(State state, const StepReport& report) {
+    std::ranges::move(turning_back_.between(system(), now(), state), std::back_inserter(run_.warnings));
+    append(std::move(state), report);
+    ++run_.steps;
   }
 
   void append(State state, const StepReport& report) {
@@ -257,8 +264,7 @@ class Stepper::Loop {
   bool go_to(Crossing crossing) {
     if (const double t = now().t + crossing.probe.at; t > now().t) {
       crossing.probe.state.t = t;
-      append(std::move(crossing.probe.state), crossing.probe.report);
-      ++run_.steps;
+      go_on(std::move(crossing.probe.state), crossing.probe.report);
       integrator_->restart();
     }
     have_begin_ = false;
@@ -427,8 +433,7 @@ class Stepper::Loop {
     project(system(), event);
     while (run_.trajectory.size() > std::max<std::size_t>(1, new_) && run_.trajectory.end_time() >= event.t)
       run_.trajectory.pop_back();
-    append(std::move(event), StepReport{.singular_event = !regular_});
-    ++run_.steps;
+    go_on(std::move(event), StepReport{.singular_event = !regular_});
     if (run_.options.at_deployed == "latch") return latch();
     run_.status = RunStatus::deployed;
     return false;
@@ -455,20 +460,7 @@ class Stepper::Loop {
     return true;
   }
 
-  // A longer step, as far as time has no edge, where this one begins or ends too close to a singular pose.
-  // The grid goes on after that.
-  void step_over(Probe& to, double& h) {
-    for (const double length : {1.41, 1.73, 1.19, 2.24, 1.09, 2.77, 1.57, 3.37}) {
-      if (now().t + length * h > grid_.next_edge(now().t)) continue;
-      Probe longer{.at = length * h, .state = now()};
-      integrator_->restart();
-      longer.report = take_step(*integrator_, longer.state, length * h);
-      if (!longer.report.ok()) continue;
-      part_end_ += (length - 1) * h;
-      to = std::move(longer), h *= length;
-      return;
-    }
-  }
+  void step_over(Probe& to, double& h);
 
   Simulation& run_;
   std::shared_ptr<const Model> original_;  // at the start
@@ -476,6 +468,7 @@ class Stepper::Loop {
   std::shared_ptr<const Model> present_;   // the last one of the trajectory
   const Deployment& deployment_;
   OneSided sides_;
+  TurningBack turning_back_;
   double start_;
   TimeGrid grid_;
   double target_ = 0, part_end_ = 0;  // of the present step, and of what is solved of it at once

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/simulate/turning_back.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+#include "core/simulate/run_words.hpp"
+#include "core/structure/measure.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr double at_it = 1e-9;   // of the lengths that make it up: nearer, its side is rounding
+constexpr double near_it = 0.1;  // of both states' own: what passes further away has turned round otherwise
+
+// Zero where the measure turns back, pointing the other way behind: the distance itself, or the normal of an
+// angle's lines. `size`: what it is to be compared with.
+Vec3 side_of(const Measure& measure, const VectorXd& q, double& size) {
+  const auto between = [&](std::size_t a, std::size_t b) -> Vec3 {
+    return q.segment<3>(3 * measure.nodes[b]) - q.segment<3>(3 * measure.nodes[a]);
+  };
+  const Vec3 d1 = between(0, 1);
+  if (measure.kind == MeasureKind::length) return size = 1.0, d1;
+  const Vec3 d2 = between(2, 3);
+  size = d1.norm() * d2.norm();
+  return d1.cross(d2);
+}
+
+bool passes(const Vec3& a, const Vec3& b, double size) {
+  if (!(a.dot(b) < 0) || std::min(a.norm(), b.norm()) <= at_it * size) return false;
+  return a.cross(b).norm() <= near_it * std::min(a.norm(), b.norm()) * (b - a).norm();
+}
+
+}  // namespace
+
+TurningBack::TurningBack(const Structure& structure) : said_(structure.forces.size(), false) {
+  const auto turns_back = [](const Measure& m) {
+    return m.kind == MeasureKind::length || (m.kind == MeasureKind::angle && !counts_turns(m));
+  };
+  for (std::size_t i = 0; i < structure.forces.size(); ++i) {
+    const Force& f = structure.forces[i];
+    const bool motor = f.kind == "motor";
+    if (!motor && (f.one_sided || !(f.stiffness > 0))) continue;
+    constexpr double never = std::numeric_limits<double>::quiet_NaN();
+    if (turns_back(f.measure)) terms_.push_back({i, f.name, f.measure, motor ? never : f.rest});
+    for (const MeasureTerm& term : f.measure.terms)
+      if (turns_back(term.measure)) terms_.push_back({i, f.name, term.measure, never});
+  }
+}
+
+std::vector<std::string> TurningBack::between(const System& system, const State& before, const State& after) {
+  std::vector<std::string> told;
+  if (terms_.empty()) return told;
+  VectorXd q(system.coordinates()), later(q.size());
+  system.expand(before.z, q);
+  system.expand(after.z, later);
+  for (const Term& term : terms_) {
+    if (said_[term.force]) continue;
+    double size = 0;
+    const Vec3 side = side_of(term.measure, q, size);
+    if (!passes(side, side_of(term.measure, later, size), size)) continue;
+    const bool angle = term.measure.kind == MeasureKind::angle;
+    const double value = MeasureFunction(term.measure, {}).value(later.data());
+    const double turn = angle && value > pi / 2 ? pi : 0.0;
+    if (std::abs(turn - term.free) <= at_it) continue;
+    said_[term.force] = true;
+    told.push_back("at t = " + seconds(after.t) + ": " +
+                   (angle ? "the rods of " + term.name +
+                                " pass through one line, where an angle without an axis turns back and the "
+                                "torque on it jumps; give an axis, if the hinge turns through"
+                          : "the ends of " + term.name +
+                                " pass each other, where its force turns round; what follows is right to the "
+                                "first order of solver.step"));
+  }
+  return told;
+}
+
+}  // namespace unfurl
