@@ -36,6 +36,7 @@ bool passes(const Vec3& a, const Vec3& b, double size) {
 
 TurningBack::TurningBack(const Structure& structure) : said_(structure.forces.size(), false) {
   const auto turns_back = [](const Measure& m) {
+    if (m.nodes.empty()) return false;  // a force that acts on no measure
     return m.kind == MeasureKind::length || (m.kind == MeasureKind::angle && !counts_turns(m));
   };
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
