@@ -39,7 +39,8 @@ namespace {
 // x falls all the time.
 class BoxProblem {
  public:
-  BoxProblem(const MatrixXd& D, const VectorXd& b, const VectorXd& low, const VectorXd& high)
+  BoxProblem(const MatrixXd& D, const VectorXd& b, const VectorXd& low, const VectorXd& high,
+             const VectorXd& rounding)
       : D_(D),
         b_(b),
         low_(low),
@@ -48,7 +49,8 @@ class BoxProblem {
         held_(static_cast<std::size_t>(b.size()), false) {
     const VectorXd w = b + D * x_;
     for (Index i = 0; i < w.size(); ++i)
-      if (low[i] < high[i]) zero_ = std::max({zero_, box_zero * std::abs(w[i]), box_zero * std::abs(b[i])});
+      if (low[i] < high[i])
+        zero_ = std::max({zero_, box_zero * std::abs(w[i]), box_zero * std::abs(b[i]), rounding[i]});
   }
 
   bool solve() {
@@ -119,14 +121,14 @@ bool independent(const MatrixXd& D, const std::vector<bool>& held, Index i) {
 
 // In units in which the diagonal of D is 1; rows without any have no say.
 std::optional<BoxSolution> solve_box(const MatrixXd& D, const VectorXd& b, const VectorXd& low,
-                                     const VectorXd& high) {
+                                     const VectorXd& high, double rounding) {
   VectorXd unit(b.size());
   for (Index i = 0; i < b.size(); ++i) unit[i] = D(i, i) > 0 ? std::sqrt(D(i, i)) : 1.0;
   const VectorXd inverse = unit.cwiseInverse();
   const MatrixXd scaled = inverse.asDiagonal() * D * inverse.asDiagonal();
   const VectorXd scaled_b = b.cwiseProduct(inverse), scaled_low = low.cwiseProduct(unit),
                  scaled_high = high.cwiseProduct(unit);
-  BoxProblem problem(scaled, scaled_b, scaled_low, scaled_high);
+  BoxProblem problem(scaled, scaled_b, scaled_low, scaled_high, rounding * inverse);
   if (!problem.solve()) return std::nullopt;
   BoxSolution out = problem.solution();
   out.x = out.x.cwiseProduct(inverse).cwiseMax(low).cwiseMin(high);

@@ -15,7 +15,8 @@ namespace unfurl {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double rounding = 1e-8;  // of the largest push
+constexpr double rounding = 1e-8;        // of the largest push
+constexpr double rate_rounding = 1e-14;  // of the largest rate
 
 class Change {
  public:
@@ -120,7 +121,9 @@ class Change {
       if (!sides_.active(i) && !rests(i, -u[r])) b[r] += sides_.stops()[i].restitution * u[r];
     }
     if (!any) return true;
-    const auto impulses = solve_box(D_, b, low, high);
+    // Two stops on either side of what hardly moves: whether it leaves the one as fast as it meets the other
+    // is known as well as its rates are.
+    const auto impulses = solve_box(D_, b, low, high, rate_rounding * out_.state.w.lpNorm<Eigen::Infinity>());
     if (!impulses) return fail_at(std::find(struck_.begin(), struck_.end(), true) - struck_.begin());
     responses.give(impulses->x, out_.state.w);
     const VectorXd after = responses.rates(out_.state.w);
