@@ -25,10 +25,10 @@ inline const char* reason(StepStatus status) {
   return "";
 }
 
-// "; ..." behind what ended a run at a state: a drive that moves on where the structure is latched, or a
-// hinge that its dry friction locks, with what to do; else, of what ended in a step, another step. May be
-// empty.
-std::string cure(const Model& model, const State& state, bool latched, bool in_a_step);
+// "; ..." behind what ended a run at a state: a drive that moves on where the structure is latched, drives
+// that cannot all be followed, or a hinge that its dry friction locks, with what to do; else, of what ended
+// in a step of this size, another step. `step`: 0 where none ended it. May be empty.
+std::string cure(const Model& model, const State& state, bool latched, double step);
 
 // "0.125 s"
 inline std::string seconds(double t) {

@@ -193,7 +193,8 @@ class Stepper::Loop {
 
   bool fail(const std::string& why, bool in_a_step = false) {
     run_.status = RunStatus::failed;
-    run_.message = "at t = " + seconds(now().t) + ": " + why + cure(model(), now(), latched_, in_a_step);
+    run_.message = "at t = " + seconds(now().t) + ": " + why +
+                   cure(model(), now(), latched_, in_a_step ? run_.options.step : 0.0);
     return false;
   }
 

@@ -27,6 +27,25 @@ std::string listed(const std::vector<std::string>& names, std::size_t most = 6) 
   return text;
 }
 
+// Rows of unit size, and what they were divided by.
+MatrixXd unit_rows(const System& system, const VectorXd& q, VectorXd& norms) {
+  MatrixXd G(system.all_jacobian(q));
+  norms = G.rowwise().norm();
+  for (Index r = 0; r < G.rows(); ++r)
+    if (norms[r] > 0) G.row(r) /= norms[r];
+  return G;
+}
+
+// -g' of those rows.
+VectorXd unit_rates(const System& system, double t, const VectorXd& q, const VectorXd& norms) {
+  VectorXd rate(norms.size());
+  std::vector<double> scratch;
+  system.all_constraint_rates(t, q, VectorXd::Zero(q.size()), rate, scratch);
+  for (Index r = 0; r < rate.size(); ++r)
+    if (norms[r] > 0) rate[r] /= norms[r];
+  return rate;
+}
+
 class Checker {
  public:
   Checker(const Structure& structure, const System& system)
@@ -42,7 +61,7 @@ class Checker {
     if (system_.coordinates() > max_coordinates) return;
     const bool driven = !system_.drives().empty();
     if (!driven && system_.all_constraints() < system_.coordinates()) return;
-    G_ = unit_rows(q_, norms_);
+    G_ = unit_rows(system_, q_, norms_);
     if (driven)
       for (const Drive& drive : system_.drives()) check_drive(drive);
     else if (!elastic_ && !moved_from_outside())
@@ -78,15 +97,6 @@ class Checker {
     text << "the structure cannot be assembled as given: " << listed(wrong)
          << (wrong.size() == 1 ? " is" : " are") << " violated at t = 0, by up to " << worst << " m";
     throw StructureError("", text.str());
-  }
-
-  // Rows of unit size of the Jacobian at q, and what they were divided by.
-  MatrixXd unit_rows(const VectorXd& q, VectorXd& norms) const {
-    MatrixXd G(system_.all_jacobian(q));
-    norms = G.rowwise().norm();
-    for (Index r = 0; r < G.rows(); ++r)
-      if (norms[r] > 0) G.row(r) /= norms[r];
-    return G;
   }
 
   // Row r as a sum of the others, share by share; empty where it is none.
@@ -129,16 +139,10 @@ class Checker {
     VectorXd moved = q_, norms_moved;
     const double shift = 1e-3 * extent_of_nodes();
     for (Index i = 0; i < moved.size(); ++i) moved[i] += shift * std::sin(1.0 + 2.3 * static_cast<double>(i));
-    const VectorXd shares_moved = combination(unit_rows(moved, norms_moved), row);
+    const VectorXd shares_moved = combination(unit_rows(system_, moved, norms_moved), row);
     if (shares_moved.size() == 0 || (shares_moved - shares).norm() > 1e-6 * shares.norm()) return;
-    const VectorXd still = VectorXd::Zero(q_.size());
-    VectorXd rate(G_.rows());  // -g'
-    std::vector<double> scratch;
     for (const double t : times_of_drives()) {
-      system_.all_constraint_rates(t, q_, still, rate, scratch);
-      VectorXd wanted = rate;
-      for (Index r = 0; r < wanted.size(); ++r)
-        if (norms_[r] > 0) wanted[r] /= norms_[r];
+      const VectorXd wanted = unit_rates(system_, t, q_, norms_);
       if (std::abs(wanted[row] - shares.dot(wanted)) <= 1e-9 * wanted.lpNorm<Eigen::Infinity>()) continue;
       std::vector<std::string> names{name(row)};
       for (const Index k : members_of(shares)) names.push_back(name(k));
@@ -201,6 +205,24 @@ class Checker {
 
 void check_consistency(const Structure& structure, const System& system) {
   Checker(structure, system).run();
+}
+
+std::string driven_against(const System& system, double t, const VectorXd& q) {
+  constexpr double too_much = 1e-3;  // of the rates
+  if (system.coordinates() > max_coordinates) return "";
+  VectorXd norms;
+  const MatrixXd G = unit_rows(system, q, norms);
+  const VectorXd wanted = unit_rates(system, t, q, norms);
+  const double most = wanted.size() > 0 ? wanted.lpNorm<Eigen::Infinity>() : 0.0;
+  if (!(most > 0)) return "";
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(G);
+  const VectorXd found = solver.solve(wanted);
+  if ((G * found - wanted).norm() <= too_much * wanted.norm()) return "";
+  const std::vector<std::string> all = system.all_names();
+  std::vector<std::string> names;
+  for (Index r = 0; r < wanted.size(); ++r)
+    if (std::abs(wanted[r]) > 1e-9 * most) names.push_back(all[static_cast<std::size_t>(r)]);
+  return listed(names);
 }
 
 }  // namespace unfurl

@@ -14,4 +14,9 @@ namespace unfurl {
 // The last two need the rank of the constraints and are left out for structures of more than 900 coordinates.
 void check_consistency(const Structure& structure, const System& system);
 
+// What is driven or warms at a time, by name, where no velocities at the pose q give it the rates it asks
+// for: it moves what is held, or one of them against the other. Empty where there are such velocities, and
+// for structures of more than 900 coordinates.
+std::string driven_against(const System& system, double t, const VectorXd& q);
+
 }  // namespace unfurl
