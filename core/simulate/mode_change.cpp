@@ -273,7 +273,8 @@ class Change {
   void hold_resting() {
     std::vector<Index> order(static_cast<std::size_t>(count()));
     std::iota(order.begin(), order.end(), Index{0});
-    std::ranges::stable_partition(order, [&](Index r) { return sides_.is_friction(side(r)) && bears(r); });
+    std::stable_partition(order.begin(), order.end(),
+                          [&](Index r) { return sides_.is_friction(side(r)) && bears(r); });
     for (const Index r : order) {
       const auto k = static_cast<std::size_t>(r);
       if (!rests_[k] || solution_.held[k] || !wants(r) || solution_.w[r] > sides_.zero_acceleration())

@@ -164,9 +164,10 @@ duration = 0.5
 kind = "custom"
 nodes = [
   {name = "P", position = [1, 0, 0], fixed = true}, {name = "O", position = [0, 0, 0], fixed = true},
-  {name = "Q", position = [0, 2, 0], fixed = true}, {name = "A", position = [0.6, 0.8, 0], mass = 1}]
+  {name = "Q", position = [-0.5, 2, 0], fixed = true}, {name = "A", position = [0.6, 0.8, 0], mass = 1}]
 rods = [
-  {name = "arm", nodes = ["O", "A"]}, {name = "low", nodes = ["P", "A"]}, {name = "high", nodes = ["Q", "A"]}]
+  {name = "arm", nodes = ["O", "A"], mass = 0}, {name = "low", nodes = ["P", "A"], mass = 0},
+  {name = "high", nodes = ["Q", "A"], mass = 0}]
 constraints = [{kind = "plane", nodes = ["A"], normal = [0, 0, 1]}]
 [[forces]]
 kind = "temperature"
