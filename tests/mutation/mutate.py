@@ -333,7 +333,9 @@ class Tests:
     def __init__(self):
         self.program = os.path.join(WORK, "core_tests")
         listed = run([self.program, "--list-test-names-only", "-v", "high"]).stdout
-        self.tests = [Test(name, place) for name, place in re.findall(r"^(.+)\t@.*?/tests/\w+/(\w+).*$", listed, re.M)]
+        self.tests = [Test(name, place) for name, place in re.findall(r"^(.+)\t@(?:.*/)?tests/\w+/(\w+).*$", listed, re.M)]
+        if not self.tests:
+            sys.exit("no test is listed by " + self.program)
         self.tests.append(Test(RANDOM, "integrators"))
         known, stamp = os.path.join(WORK, "reach.json"), os.path.getmtime(self.program)
         before = json.load(open(known)) if os.path.exists(known) else {}
