@@ -72,20 +72,36 @@ VectorXd all_compliances(const Model& model) {
   return compliance;
 }
 
-// Per support.
+// Per support: what its rows may do to one another does not count, their sum does. For each of its
+// coordinates a multiplier s more, with a column that makes it that sum, sum_r G_rk lambda_r - s = 0, r over
+// rows of supports: s is determined where the reaction is.
 std::vector<char> unique_supports(const Trajectory& trajectory, std::size_t i, bool shared) {
   const Model& model = trajectory.model(i);
   const SparseRows G = model.system.all_jacobian(trajectory.node_positions(i));
-  const VectorXd compliance = shared ? all_compliances(model) : VectorXd();
-  const std::vector<char> rows = compliance.size() > 0 ? determined_rows(G, compliance) : determined_rows(G);
   const VectorXd of_support = rows_of_supports(model.structure, model.system.all_sources());
-  std::vector<char> node_unique(trajectory.structure().nodes.size(), 1), unique;
-  for (Index r = 0; r < of_support.size(); ++r)
-    if (of_support[r] != 0 && !rows[static_cast<std::size_t>(r)])
-      for (SparseRows::InnerIterator it(G, r); it; ++it)
-        if (it.value() != 0) node_unique[static_cast<std::size_t>(it.col() / 3)] = 0;
-  for (const int node : supports(trajectory.structure()))
-    unique.push_back(node_unique[static_cast<std::size_t>(node)]);
+  const std::vector<int> nodes = supports(trajectory.structure());
+  std::map<Index, int> sums;  // by coordinate of the nodes
+  for (const int node : nodes)
+    for (int k = 0; k < 3; ++k) sums.emplace(3 * node + k, static_cast<int>(sums.size()));
+  const auto rows = static_cast<int>(G.rows()), columns = static_cast<int>(G.cols());
+  const Index more = std::ssize(sums);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int r = 0; r < rows; ++r)
+    for (SparseRows::InnerIterator it(G, r); it; ++it) {
+      entries.emplace_back(r, static_cast<int>(it.col()), it.value());
+      if (const auto sum = sums.find(it.col()); of_support[r] != 0 && sum != sums.end())
+        entries.emplace_back(r, columns + sum->second, it.value());
+    }
+  for (int s = 0; s < more; ++s) entries.emplace_back(rows + s, columns + s, -1.0);
+  SparseRows with_sums(rows + more, columns + more);
+  with_sums.setFromTriplets(entries.begin(), entries.end());
+  VectorXd compliance = shared ? all_compliances(model) : VectorXd();
+  if (compliance.size() > 0) compliance.conservativeResizeLike(VectorXd::Zero(rows + more));
+  const std::vector<char> determined =
+      compliance.size() > 0 ? determined_rows(with_sums, compliance) : determined_rows(with_sums);
+  std::vector<char> unique;
+  for (auto at = determined.begin() + rows; at != determined.end(); at += 3)
+    unique.push_back(at[0] && at[1] && at[2]);
   return unique;
 }
 

@@ -49,8 +49,8 @@ class ReactionColumns {
 // Nodes of the structure that are supports, ascending.
 std::vector<int> supports(const Structure& structure);
 
-// Enters which reactions are unique. A reaction is where all rows of its support are; waves[i], 1: none is at
-// state i (followed_forces()).
+// Enters which reactions are unique: all of their coordinates, each a sum over the support's rows. waves[i],
+// 1: none is at state i (followed_forces()).
 void mark_reactions(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
                     const std::vector<char>& waves, Diagnostics& diagnostics);
 

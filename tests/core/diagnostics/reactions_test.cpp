@@ -147,6 +147,35 @@ TEST_CASE("supports that share a load are unique where their rods have a modulus
   }
 }
 
+// Its rows share the weight in many ways; what they give the node together is the weight.
+TEST_CASE("what holds a node twice over is unique as their sum") {
+  const std::string held =
+      "[[structure.constraints]]\nkind = 'plane'\nnodes = ['O']\nnormal = [0.3, 0.2, 0.9]\n"
+      "[[structure.constraints]]\nkind = 'line'\nnodes = ['O']\ndirection = [1, 1, 0.5]\n";
+  for (const char* eliminate : {"true", "false"}) {
+    const Diagnostics d = diagnose(
+        run_scene(custom + node("O", Vec3(0, 0, 0), "fixed = true") +
+                      node("P", Vec3(2, 0, 0), "fixed = true") + node("A", Vec3(0, 0, -1.5), "mass = 2") +
+                      rod("O", "A", "mass = 1") + rod("O", "P", "mass = 0") + held + run_for(0.05),
+                  {std::string("solver.eliminate_linear=") + eliminate}));
+    for (std::size_t i = 0; i < d.t.size(); ++i) {
+      // The rod from O to P may push both apart as it likes: across it all is told.
+      CHECK_FALSE(unique(d, "O", i));
+      CHECK_FALSE(unique(d, "P", i));
+      CHECK(reaction(d, "O", i).z() == Approx(3 * 9.81).margin(1e-6));
+    }
+    const Diagnostics alone = diagnose(run_scene(custom + node("O", Vec3(0, 0, 0), "fixed = true") +
+                                                     node("A", Vec3(0, 0, -1.5), "mass = 2") +
+                                                     rod("O", "A", "mass = 1") + held + run_for(0.05),
+                                                 {std::string("solver.eliminate_linear=") + eliminate}));
+    for (std::size_t i = 0; i < alone.t.size(); ++i) {
+      CHECK(unique(alone, "O", i));
+      // Of multipliers that are not unique 1e-9 is round-off (Index1).
+      CHECK((reaction(alone, "O", i) - Vec3(0, 0, 3 * 9.81)).norm() < 1e-6);
+    }
+  }
+}
+
 TEST_CASE("planes that say that a structure is flat, and the rotor of a motor, are no supports") {
   const auto flat = [](const std::string& held) {
     return custom + node("O", Vec3(0, 0, 0), "fixed = true") + node("A", Vec3(1, 0, 0), "mass = 1") +
