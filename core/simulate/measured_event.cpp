@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/measured_event.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace unfurl {
@@ -34,9 +35,14 @@ std::optional<State> step_to_zero(const State& from, double h,
   return to;
 }
 
+bool deploys_regularly(const Structure& structure) {
+  return structure.deployment.measured ||
+         std::ranges::all_of(structure.rods, [](const Rod& rod) { return rod.elastic(); });
+}
+
 std::optional<State> step_to_deployed(const Model& model, Integrator& integrator, const State& from, double h,
                                       double margin) {
-  if (!model.structure.deployment.measured) return std::nullopt;
+  if (!deploys_regularly(model.structure)) return std::nullopt;
   VectorXd q(model.system.coordinates());
   const auto left = [&](const State& state) {
     model.system.expand(state.z, q);

@@ -16,8 +16,12 @@ std::optional<State> step_to_zero(const State& from, double h,
                                   const std::function<double(const State&)>& left,
                                   const std::function<bool(double length, State& state)>& solve);
 
-// The same for what is left to the deployed value of a model's measure, less a margin; by a fresh integrator.
-// Nothing where the structure has a fold angle instead.
+// Is the deployed pose one like any other, which steps may end in? Not where a fold angle tells it and rods
+// are rigid: their constraints lose rank there.
+bool deploys_regularly(const Structure& structure);
+
+// The same for what is left to such a deployed pose, less a margin; by a fresh integrator. Nothing where the
+// pose is not regular.
 std::optional<State> step_to_deployed(const Model& model, Integrator& integrator, const State& from, double h,
                                       double margin);
 

@@ -72,7 +72,7 @@ class Stepper::Loop {
 
   void begin_run() {
     model_changed();
-    if (deployment_.measured) margin_ = stepping::deployed_already;
+    if (deploys_regularly(original_->structure)) margin_ = stepping::deployed_already;
     if (!deployment_.empty() && fold(now()) > stepping::deployed_already)
       margin_ = std::min(margin_, 0.1 * fold(now()));
     if (!sides_.empty()) find_first_modes();
