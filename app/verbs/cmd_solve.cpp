@@ -137,7 +137,9 @@ int cmd_solve(const Arguments& arguments) {
         true, arguments,
         target.measure.name + " is " + short_number(solved.value, 12) + " there, after " +
             std::to_string(solved.evaluations.size()) + " runs" +
-            (solved_force == false ? "; it is not unique: the rigid model does not determine it" : ""));
+            (solved_force == false
+                 ? "; it is not unique: the model does not determine it, or the steps do not follow it"
+                 : ""));
   } catch (const Cancelled&) {
     std::cerr << "unfurl: interrupted before the parameter was found\n";
     return exit_interrupted;
