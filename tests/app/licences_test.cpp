@@ -34,6 +34,14 @@ TEST_CASE("the licence is BSD-3-Clause") {
   CHECK(unfurl::file_text(UNFURL_ROOT "/LICENSE").starts_with("BSD 3-Clause License\n"));
 }
 
+// A user who only solves does not wait for what draws.
+TEST_CASE("what only some verbs need is not loaded at the start") {
+  for (const std::string& name : linked_libraries())
+    for (const char* late :
+         {"libSDL", "libOSMesa", "libGL", "libEGL", "libLLVM", "libX11", "libpython", "libav"})
+      CHECK_FALSE(name.starts_with(late));
+}
+
 TEST_CASE("docs/licences.md names every library that the program links") {
   const std::string page = unfurl::file_text(UNFURL_ROOT "/docs/licences.md");
   const auto names = linked_libraries();
