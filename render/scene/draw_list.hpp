@@ -17,6 +17,9 @@ using Vec3f = Eigen::Vector3f;
 struct Color {
   float r = 0, g = 0, b = 0, a = 1;  // sRGB-encoded, 0..1
 };
+inline Color mixed(const Color& a, const Color& b, float u) {
+  return {a.r + u * (b.r - a.r), a.g + u * (b.g - a.g), a.b + u * (b.b - a.b), a.a};
+}
 
 // How light meets a surface; the colour is the rest.
 enum class Finish { paint, anodised, metal, carbon, foil };

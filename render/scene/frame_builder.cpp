@@ -54,10 +54,6 @@ void add_shown(std::vector<Vec3>& pose, const std::vector<ShownSurface>& surface
     if (looks.fixed[n] && looks.joint_radius[n] > 0) pose.push_back(pose[n] - support_depth * Vec3::UnitZ());
 }
 
-Color mixed(const Color& a, const Color& b, float u) {
-  return {a.r + u * (b.r - a.r), a.g + u * (b.g - a.g), a.b + u * (b.b - a.b), a.a};
-}
-
 }  // namespace
 
 FrameBuilder::FrameBuilder(const Trajectory& trajectory, FrameStyle style)
@@ -247,8 +243,8 @@ void FrameBuilder::add_lines(const VectorXd& whole, DrawList& list) const {
   for (const ShownLine& line : trajectory_.structure().lines) {
     const bool net = line.group == "net";
     list.tubes.push_back({node(whole, line.a).cast<float>(), node(whole, line.b).cast<float>(),
-                          static_cast<float>((net ? 0.16 : 0.4) * thinnest), net ? look_->joint : look_->load,
-                          Finish::paint});
+                          static_cast<float>((net ? 0.2 : 0.4) * thinnest),
+                          look_->line_color(line.group, field_ && field_->diverging), Finish::paint});
   }
 }
 
@@ -264,10 +260,8 @@ void FrameBuilder::add_bodies(double t, const std::vector<Vec3>& at, DrawList& l
   }
 }
 
-// Beside rods in colours from blue to red, where red is tension, a load is green; the other colours have no
-// red.
 void FrameBuilder::add_loads(const VectorXd& whole, DrawList& list) const {
-  const Color color = field_ && field_->diverging ? look_->group(2) : look_->load;
+  const Color color = look_->load_color(field_ && field_->diverging);
   for (const LoadCopy& load : trajectory_.structure().load_copies) {
     if (load.force.isZero()) continue;
     const Vec3 tail = node(whole, load.node);

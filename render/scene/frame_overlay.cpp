@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "render/plot/text_metrics.hpp"
 #include "render/scene/view.hpp"
@@ -169,6 +170,10 @@ void FrameOverlay::add_legend(DrawList& list) const {
   if (!field_ && looks_.groups.size() > 1)
     for (std::size_t i = 0; i < looks_.groups.size(); ++i)
       legend.push_back({false, looks_.groups[i], look_.group(i)});
+  std::set<std::string> lines;
+  for (const ShownLine& line : trajectory_.structure().lines)
+    if (lines.insert(line.group).second)
+      legend.push_back({false, line.group, look_.line_color(line.group, field_ && field_->diverging)});
   if (!list.arrows.empty()) legend.push_back({true, "load", list.arrows.front().color});
   if (!style_.trails.empty()) legend.push_back({false, "trail", look_.group(3)});
   const float bar = field_ ? 4.1f * std::round(0.8f * small_) + 12 * unit_ : 0;  // with its texts

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "render/scene/draw_list.hpp"
@@ -29,6 +30,13 @@ struct Look {
   float stars = 0, depth_fade = 0;
 
   const Color& group(std::size_t index) const { return (*groups)[index % groups->size()]; }
+  // Of loads, and of the group of a ShownLine: beside rods in colours from blue to red, where red is tension,
+  // a load is green and a cable as the ink; the other colours have no red.
+  Color load_color(bool diverging) const { return diverging ? group(2) : load; }
+  Color line_color(const std::string& line, bool diverging) const {
+    if (line == "net") return mixed(joint, ink, 0.5f);
+    return diverging ? ink : load;
+  }
 };
 
 std::span<const Look> looks();

@@ -10,10 +10,6 @@ namespace unfurl {
 
 namespace {
 
-Color mixed(const Color& a, const Color& b, float share) {
-  return {a.r + share * (b.r - a.r), a.g + share * (b.g - a.g), a.b + share * (b.b - a.b), 1};
-}
-
 // The other run: thinner, all in one pale colour, so that nobody takes it for the present one.
 void add_ghost(const DrawList& other, DrawList& list) {
   const Color pale = mixed({0.48f, 0.31f, 0.64f, 1}, list.background_top, 0.45f);

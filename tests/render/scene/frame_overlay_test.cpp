@@ -18,10 +18,8 @@ namespace frame_overlay_test {
 
 namespace {
 
-DrawList ring(const std::string& render) {
-  const Scene scene = read_scene_text(
-      "structure.kind = \"hoop\"\nstructure.fold_angle = 85.0\nsolver.end_time = 10.0\n[render]\n" + render,
-      "ring.toml");
+DrawList picture(const std::string& structure, const std::string& render) {
+  const Scene scene = read_scene_text(structure + "[render]\n" + render, "ring.toml");
   const Simulation run = simulate(build_model(scene), scene.solver);
   const Diagnostics diagnostics = diagnose(run);
   FrameStyle style = film_style(scene, run, diagnostics);
@@ -29,9 +27,21 @@ DrawList ring(const std::string& render) {
   return FrameBuilder(run.trajectory, style).build(2.0);
 }
 
+DrawList ring(const std::string& render) {
+  return picture("structure.kind = \"hoop\"\nstructure.fold_angle = 85.0\nsolver.end_time = 10.0\n", render);
+}
+
 double distance(const Color& a, const Color& b) {
   return std::hypot(static_cast<double>(a.r - b.r), static_cast<double>(a.g - b.g),
                     static_cast<double>(a.b - b.b));
+}
+
+// Groups of rods are told apart: so are colours as far from each other as the two groups that are nearest.
+double told_apart(const Look& look) {
+  double least = 1;
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < i; ++j) least = std::min(least, distance(look.group(i), look.group(j)));
+  return least;
 }
 
 bool overlap(const TextLabel& a, const TextLabel& b) {
@@ -55,11 +65,7 @@ TEST_CASE("a scale bar says for which depth it holds, but where it holds for all
 
 TEST_CASE("loads have no colour of the rods' ramp, and a word beside it") {
   for (const Look& look : looks()) {
-    // Groups of rods are told apart: so are loads if they are as far from the ramp as the two groups that are
-    // nearest to each other.
-    double least = 1;
-    for (std::size_t i = 0; i < 6; ++i)
-      for (std::size_t j = 0; j < i; ++j) least = std::min(least, distance(look.group(i), look.group(j)));
+    const double least = told_apart(look);
     for (const char* by : {"axial_force", "speed"}) {
       INFO(look.name << ", " << by);
       const DrawList list =
@@ -78,6 +84,28 @@ TEST_CASE("loads have no colour of the rods' ramp, and a word beside it") {
       CHECK_FALSE(overlap(*word, *label(list, unit)));
     }
   }
+}
+
+TEST_CASE("cables and nets are named, and no cable looks pulled or loaded beside colours of force") {
+  const std::string reflector = "structure.kind = \"mesh_reflector\"\nsolver.end_time = 2.1\n";
+  for (const Look& look : looks())
+    for (const char* by : {"group", "axial_force"}) {
+      INFO(look.name << ", " << by);
+      const DrawList list = picture(
+          reflector, "look = \"" + std::string(look.name) + "\"\ncolour_by = \"" + std::string(by) + "\"\n");
+      CHECK(label(list, "net"));
+      CHECK(label(list, "cable"));
+      const bool forces = *by == 'a';
+      const Color cable = look.line_color("cable", forces);
+      const auto drawn = [&](const Color& color) {
+        return std::ranges::any_of(list.tubes, [&](const Tube& t) { return distance(t.color, color) == 0; });
+      };
+      CHECK(drawn(cable));
+      CHECK(drawn(look.line_color("net", forces)));
+      if (!forces) continue;
+      for (const Color& other : {diverging_color(-1), diverging_color(1), look.load_color(true)})
+        CHECK(distance(cable, other) >= told_apart(look));
+    }
 }
 
 }  // namespace frame_overlay_test
