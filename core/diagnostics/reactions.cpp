@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -77,15 +78,11 @@ std::vector<char> unique_supports(const Trajectory& trajectory, std::size_t i, b
   const Model& model = trajectory.model(i);
   const SparseRows G = model.system.all_jacobian(trajectory.node_positions(i));
   const VectorXd compliance = shared ? all_compliances(model) : VectorXd();
-  const std::vector<char> rows = compliance.size() > 0 ? determined_rows(G, compliance) : determined_rows(G);
   const VectorXd of_support = rows_of_supports(model.structure, model.system.all_sources());
-  std::vector<char> node_unique(trajectory.structure().nodes.size(), 1), unique;
-  for (Index r = 0; r < of_support.size(); ++r)
-    if (of_support[r] != 0 && !rows[static_cast<std::size_t>(r)])
-      for (SparseRows::InnerIterator it(G, r); it; ++it)
-        if (it.value() != 0) node_unique[static_cast<std::size_t>(it.col() / 3)] = 0;
+  const std::vector<char> sums = determined_sums(G, of_support, compliance);
+  std::vector<char> unique;
   for (const int node : supports(trajectory.structure()))
-    unique.push_back(node_unique[static_cast<std::size_t>(node)]);
+    unique.push_back(std::all_of(sums.begin() + 3 * node, sums.begin() + 3 * node + 3, std::identity()));
   return unique;
 }
 
