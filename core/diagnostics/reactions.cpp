@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -72,36 +73,16 @@ VectorXd all_compliances(const Model& model) {
   return compliance;
 }
 
-// Per support: what its rows may do to one another does not count, their sum does. For each of its
-// coordinates a multiplier s more, with a column that makes it that sum, sum_r G_rk lambda_r - s = 0, r over
-// rows of supports: s is determined where the reaction is.
+// Per support.
 std::vector<char> unique_supports(const Trajectory& trajectory, std::size_t i, bool shared) {
   const Model& model = trajectory.model(i);
   const SparseRows G = model.system.all_jacobian(trajectory.node_positions(i));
+  const VectorXd compliance = shared ? all_compliances(model) : VectorXd();
   const VectorXd of_support = rows_of_supports(model.structure, model.system.all_sources());
-  const std::vector<int> nodes = supports(trajectory.structure());
-  std::map<Index, int> sums;  // by coordinate of the nodes
-  for (const int node : nodes)
-    for (int k = 0; k < 3; ++k) sums.emplace(3 * node + k, static_cast<int>(sums.size()));
-  const auto rows = static_cast<int>(G.rows()), columns = static_cast<int>(G.cols());
-  const Index more = std::ssize(sums);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int r = 0; r < rows; ++r)
-    for (SparseRows::InnerIterator it(G, r); it; ++it) {
-      entries.emplace_back(r, static_cast<int>(it.col()), it.value());
-      if (const auto sum = sums.find(it.col()); of_support[r] != 0 && sum != sums.end())
-        entries.emplace_back(r, columns + sum->second, it.value());
-    }
-  for (int s = 0; s < more; ++s) entries.emplace_back(rows + s, columns + s, -1.0);
-  SparseRows with_sums(rows + more, columns + more);
-  with_sums.setFromTriplets(entries.begin(), entries.end());
-  VectorXd compliance = shared ? all_compliances(model) : VectorXd();
-  if (compliance.size() > 0) compliance.conservativeResizeLike(VectorXd::Zero(rows + more));
-  const std::vector<char> determined =
-      compliance.size() > 0 ? determined_rows(with_sums, compliance) : determined_rows(with_sums);
+  const std::vector<char> sums = determined_sums(G, of_support, compliance);
   std::vector<char> unique;
-  for (auto at = determined.begin() + rows; at != determined.end(); at += 3)
-    unique.push_back(at[0] && at[1] && at[2]);
+  for (const int node : supports(trajectory.structure()))
+    unique.push_back(std::all_of(sums.begin() + 3 * node, sums.begin() + 3 * node + 3, std::identity()));
   return unique;
 }
 

@@ -2,6 +2,7 @@
 #include "core/math/determined_rows.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "core/math/saddle_solver.hpp"
 
@@ -32,42 +33,66 @@ SparseRows without_round_off_transposed(const SparseRows& G) {
   return clean.transpose();
 }
 
-std::vector<char> determined_rows(const SparseRows& G) {
-  const Index rows = G.rows();
-  std::vector<char> determined(static_cast<std::size_t>(rows), 1);
-  if (rows == 0) return determined;
+namespace {
+
+SparseRows unit_rows(const SparseRows& G) {
   SparseRows unit = G;
-  for (Index r = 0; r < rows; ++r)
+  for (Index r = 0; r < unit.rows(); ++r)
     if (const double norm = unit.row(r).norm(); norm > 0) unit.row(r) /= norm;
-  const SparseRows across = without_round_off_transposed(unit);
-  SparseRows identity(rows, rows);
-  identity.setIdentity();
-  SaddleSolver solver(identity, across);
-  if (!solver.factorise(across)) return std::vector<char>(determined.size(), 0);
-  VectorXd r(rows), w(rows), x(G.cols());
-  for (int trial = 0; trial < trials; ++trial) {
-    for (Index i = 0; i < rows; ++i) r[i] = without_structure(i, trial);
-    solver.solve(r, VectorXd::Zero(G.cols()), w, x);
-    for (Index i = 0; i < rows; ++i)
-      if (!(std::abs(w[i]) <= negligible)) determined[static_cast<std::size_t>(i)] = 0;
-  }
-  return determined;
+  return unit;
 }
 
-std::vector<char> determined_rows(const SparseRows& G, const VectorXd& compliance) {
-  std::vector<int> rigid;
-  for (Index i = 0; i < G.rows(); ++i)
-    if (!(compliance[i] > 0)) rigid.push_back(static_cast<int>(i));
-  SparseRows rest(static_cast<Index>(rigid.size()), G.cols());
+// Vectors of null(unit^T) without structure; what is not a number where they cannot be had [rows x trials].
+MatrixXd null_vectors(const SparseRows& unit) {
+  MatrixXd out = MatrixXd::Zero(unit.rows(), trials);
+  if (unit.rows() == 0) return out;
+  const SparseRows across = without_round_off_transposed(unit);
+  SparseRows identity(unit.rows(), unit.rows());
+  identity.setIdentity();
+  SaddleSolver solver(identity, across);
+  if (!solver.factorise(across)) return out.setConstant(std::numeric_limits<double>::quiet_NaN());
+  VectorXd r(unit.rows()), w(unit.rows()), x(unit.cols());
+  for (int trial = 0; trial < trials; ++trial) {
+    for (Index i = 0; i < unit.rows(); ++i) r[i] = without_structure(i, trial);
+    solver.solve(r, VectorXd::Zero(unit.cols()), w, x);
+    out.col(trial) = w;
+  }
+  return out;
+}
+
+// Those of them that are zero in the rows that have a compliance.
+MatrixXd null_vectors(const SparseRows& unit, const VectorXd& compliance) {
+  if (compliance.size() == 0) return null_vectors(unit);
+  std::vector<Index> rigid;
+  for (Index i = 0; i < unit.rows(); ++i)
+    if (!(compliance[i] > 0)) rigid.push_back(i);
+  SparseRows rest(std::ssize(rigid), unit.cols());
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t r = 0; r < rigid.size(); ++r)
-    for (SparseRows::InnerIterator it(G, rigid[r]); it; ++it)
+    for (SparseRows::InnerIterator it(unit, rigid[r]); it; ++it)
       entries.emplace_back(static_cast<int>(r), static_cast<int>(it.col()), it.value());
   rest.setFromTriplets(entries.begin(), entries.end());
-  const std::vector<char> of_rest = determined_rows(rest);
-  std::vector<char> determined(static_cast<std::size_t>(G.rows()), 1);
-  for (std::size_t r = 0; r < rigid.size(); ++r) determined[static_cast<std::size_t>(rigid[r])] = of_rest[r];
-  return determined;
+  const MatrixXd of_rest = null_vectors(rest);
+  MatrixXd out = MatrixXd::Zero(unit.rows(), trials);
+  for (std::size_t r = 0; r < rigid.size(); ++r) out.row(rigid[r]) = of_rest.row(static_cast<Index>(r));
+  return out;
+}
+
+std::vector<char> vanishing_rows(const MatrixXd& samples) {
+  std::vector<char> out;
+  for (const auto& row : samples.rowwise()) out.push_back((row.array().abs() <= negligible).all());
+  return out;
+}
+
+}  // namespace
+
+std::vector<char> determined_rows(const SparseRows& G, const VectorXd& compliance) {
+  return vanishing_rows(null_vectors(unit_rows(G), compliance));
+}
+
+std::vector<char> determined_sums(const SparseRows& G, const VectorXd& taken, const VectorXd& compliance) {
+  const SparseRows unit = unit_rows(G);
+  return vanishing_rows(unit.transpose() * (taken.asDiagonal() * null_vectors(unit, compliance)));
 }
 
 }  // namespace unfurl

@@ -17,12 +17,17 @@ namespace unfurl {
 ///
 /// Rows of G may have any scale; directions whose singular value is below some 1e-6 of that of unit rows
 /// count as lost, entries below 1e-11 as round-off. A row of zeros is not determined.
-std::vector<char> determined_rows(const SparseRows& G);
+///
+/// With `compliance` y has in addition the least energy 1/2 sum compliance_i y_i^2 (least_energy.hpp). Two
+/// such y differ by a vector of null(G^T) without energy, which vanishes where compliance_i > 0: those
+/// entries are determined, and of the others those that the rows without compliance determine among
+/// themselves.
+std::vector<char> determined_rows(const SparseRows& G, const VectorXd& compliance = {});
 
-/// The same where y has in addition the least energy 1/2 sum compliance_i y_i^2 (least_energy.hpp). Two such
-/// y differ by a vector of null(G^T) without energy, which vanishes where compliance_i > 0: those entries are
-/// determined, and of the others those that the rows without compliance determine among themselves.
-std::vector<char> determined_rows(const SparseRows& G, const VectorXd& compliance);
+/// Which entries of the sum of taken_i y_i (row i of G), over the rows, are determined by the same equations
+/// [one a column of G, 1: yes]: what one choice of y takes from a row it may give to another one.
+std::vector<char> determined_sums(const SparseRows& G, const VectorXd& taken,
+                                  const VectorXd& compliance = {});
 
 /// G^T without the entries of round-off, below 1e-11 of their rows of G: solvers scale coordinates to one
 /// size and would take them for slopes. G is not changed but for those.

@@ -23,6 +23,8 @@ constexpr int points = 9;
 // Where the rates that all samples give and those of one degree less differ by more than this share of the
 // fastest, the samples lie too far apart, and are taken nearer by. (Rings stay below it at their own error.)
 constexpr double smooth_enough = 1e-4;
+// The same of axial forces of elastic rods, a share of the largest: waves change them sooner than rates.
+constexpr double smooth_force = 1e-2;
 // Before that, in rings of many units, theta theta' is nearly constant and a step of the run may be too long
 // for the last of its way. A step is short enough where the trapezoidal rule of its end rates gives its
 // change of the sine to this share: (r - 1)^2 / 4 r for rates of the ratio r, 1.1 here, which leaves 1e-9 s
@@ -112,12 +114,60 @@ class Locator {
   }
 
   // How far the rates of the deployed pose depend on the highest degree, as a share of the fastest.
-  double roughness() const {
+  double roughness() {
     if (samples_.size() < 3) return std::numeric_limits<double>::infinity();
     const int most = static_cast<int>(samples_.size()) - 1;
     const VectorXd w = at_zero(samples_, shares_at_zero(samples_, most), &State::w),
                    lower = at_zero(samples_, shares_at_zero(samples_, most - 1), &State::w);
-    return (w - lower).lpNorm<Eigen::Infinity>() / w.lpNorm<Eigen::Infinity>();
+    const double of_rates = (w - lower).lpNorm<Eigen::Infinity>() / w.lpNorm<Eigen::Infinity>();
+    if (system().giving_rods().empty()) return of_rates;
+    const MatrixXd tension = tensions();
+    const double of_forces = (tension * (shares_at_zero(samples_, most) - shares_at_zero(samples_, most - 1)))
+                                 .lpNorm<Eigen::Infinity>() /
+                             tension.lpNorm<Eigen::Infinity>();
+    return std::max(of_rates, smooth_enough / smooth_force * of_forces);
+  }
+
+  // Axial forces of the rods that give [rods x samples].
+  MatrixXd tensions() {
+    MatrixXd out(std::ssize(system().giving_rods()), std::ssize(samples_));
+    q_.resize(system().coordinates());
+    v_.resize(q_.size());
+    for (Index i = 0; i < out.cols(); ++i) {
+      const State& state = samples_[static_cast<std::size_t>(i)].state;
+      VectorXd tension = state.tension;
+      if (tension.size() == 0) {
+        system().expand(state.z, q_);
+        system().expand_rate(state.w, v_);
+        tension.resize(out.rows());
+        system().giving_rod_forces(state.t, q_, v_, tension);
+      }
+      out.col(i) = tension;
+    }
+    return out;
+  }
+
+  // Rods that give do so in waves, which no polynomial in the sine may follow: of the degree from which on
+  // it matters least, and in doubt by what higher ones say besides, or what the samples are in doubt by.
+  void extrapolate_tension(State& out) {
+    out.tension.resize(0), out.tension_error.resize(0);
+    if (system().giving_rods().empty()) return;
+    const MatrixXd tension = tensions();
+    std::vector<VectorXd> fits;
+    for (int degree = 0; degree < static_cast<int>(samples_.size()); ++degree)
+      fits.push_back(tension * shares_at_zero(samples_, degree));
+    std::size_t best = fits.size() - 1;
+    const auto change = [&](std::size_t degree) { return (fits[degree] - fits[degree - 1]).norm(); };
+    for (std::size_t degree = best; degree >= 2; --degree)
+      if (change(degree) < change(best)) best = degree;
+    out.tension = fits[best];
+    out.tension_error = VectorXd::Zero(out.tension.size());
+    for (std::size_t degree = best - 1; degree < fits.size(); ++degree)
+      out.tension_error = out.tension_error.cwiseMax((fits[degree] - fits[best]).cwiseAbs());
+    VectorXd of_samples = VectorXd::Zero(out.tension.size());
+    for (const Sample& sample : samples_)
+      if (sample.state.tension_error.size() > 0) of_samples = of_samples.cwiseMax(sample.state.tension_error);
+    out.tension_error += of_samples;
   }
 
   double reach(double far) {
@@ -249,10 +299,7 @@ class Locator {
       out.t += shares[static_cast<Index>(i)] * samples_[i].state.t;
     out.z = at_zero(samples_, shares, &State::z);
     out.w = at_zero(samples_, shares, &State::w);
-    const bool all_tell = std::all_of(samples_.begin(), samples_.end(), [&](const NearDeployed& sample) {
-      return sample.state.tension.size() == out.tension.size();
-    });
-    out.tension = all_tell ? at_zero(samples_, shares, &State::tension) : VectorXd();
+    extrapolate_tension(out);
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
     fit(out);
     followed_.follow(samples_.front().state);

@@ -173,7 +173,13 @@ class Stepper::Loop {
     return true;
   }
 
+  // What is said of waves that a step does not resolve holds for parts of steps behind it too: they resolve
+  // them, but not what they came as.
   void go_on(State state, const StepReport& report) {
+    if (const VectorXd& doubt = now().tension_error;
+        doubt.size() > 0 && state.t - now().t < 0.99 * run_.options.step)
+      state.tension_error =
+          state.tension_error.size() > 0 ? state.tension_error.cwiseMax(doubt).eval() : doubt;
     std::ranges::move(turning_back_.between(system(), now(), state), std::back_inserter(run_.warnings));
     append(std::move(state), report);
     ++run_.steps;

@@ -85,4 +85,14 @@ TEST_CASE("how singular a pose may be for its rows to be told apart") {
   CHECK(determined_rows(sparse_rows(line)) == std::vector<char>{0, 0});
 }
 
+// y_0 and 2 y_1 + y_0 of G = (1; 2), which says f = y_0 + 2 y_1 only; a row beside them is on its own.
+TEST_CASE("sums over rows are determined where what rows have each is open") {
+  SparseRows G(3, 2);
+  G.insert(0, 0) = 1, G.insert(1, 0) = 2, G.insert(2, 1) = 5;
+  CHECK(determined_rows(G) == std::vector<char>{0, 0, 1});
+  CHECK(determined_sums(G, Eigen::Vector3d(1, 1, 0)) == std::vector<char>{1, 1});
+  CHECK(determined_sums(G, Eigen::Vector3d(1, 0, 1)) == std::vector<char>{0, 1});
+  CHECK(determined_sums(G, Eigen::Vector3d(1, 0, 1), Eigen::Vector3d(1, 0, 0)) == std::vector<char>{1, 1});
+}
+
 }  // namespace determined_rows_test
