@@ -12,7 +12,7 @@ struct PanelSettings {
   int width = 1280, height = 720;             // of the window [units of the desktop]
   float left_width = 300, right_width = 360;  // of the panes [points]
   bool left_open = true, right_open = true, dark = false;
-  std::vector<std::string> open_figures = {"rod_forces", "deployment", "trade"};
+  std::vector<std::string> open_figures = {"rod_forces", "drives", "deployment", "trade"};
   std::vector<std::string> recent = {};  // scene files, the latest first
   bool tour_seen = false;                // the guided tour of the first start
 
