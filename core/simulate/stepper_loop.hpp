@@ -338,13 +338,16 @@ class Stepper::Loop {
     }
   }
 
+  void warn_once(const char* what) {
+    if (std::ranges::none_of(run_.warnings, [&](const std::string& w) { return w.ends_with(what); }))
+      run_.warnings.push_back("at t = " + seconds(now().t) + what);
+  }
+
   bool hold_what_touches() {
     std::vector<std::size_t> touched;
     for (std::size_t i = 0; i < sides_.stops().size(); ++i)
       if (!sides_.active(i) && sides_.touches(i, system(), now())) touched.push_back(i);
-    if (!touched.empty())
-      run_.warnings.push_back("at t = " + seconds(now().t) +
-                              ": impacts without end; what touches a stop is held");
+    if (!touched.empty()) warn_once(": impacts without end; what touches a stop is held");
     for (const std::size_t i : touched) last_touch_[i] = now().t;
     return apply(
         change_modes(sides_, *base_, in_base(now()), touched, [](std::size_t, double) { return true; }));
@@ -352,10 +355,7 @@ class Stepper::Loop {
 
   bool stop_watching() {
     unwatched_until_ = target_;
-    if (!std::exchange(unwatched_said_, true))
-      run_.warnings.push_back(
-          "at t = " + seconds(now().t) +
-          ": stops, cables or friction switch without end; what they do in this step is not located");
+    warn_once(": stops, cables or friction switch without end; what they do in this step is not located");
     if (sides_.relax_laws()) set_model(sides_.model(*base_), in_base(now()), true);
     return true;
   }
@@ -487,7 +487,7 @@ class Stepper::Loop {
   std::vector<double> last_touch_;  // of each stop
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
-  bool unwatched_said_ = false, deployed_ = false, ended_ = false, regular_ = false;
+  bool deployed_ = false, ended_ = false, regular_ = false;
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
   VectorXd q_;
   std::size_t new_ = 0;   // states before were handed over

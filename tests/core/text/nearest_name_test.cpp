@@ -19,6 +19,9 @@ TEST_CASE("what resembles nothing gets no suggestion but the list") {
   const std::vector<std::string_view> known = {"post_length", "density"};
   CHECK(nearest_name("gravity", known).empty());
   CHECK(nearest_name("", known).empty());
+  // Three slips where a third of six letters are two: one put before, one changed, one behind.
+  CHECK(nearest_name("abcdef", {"zabcdzfq"}).empty());
+  CHECK(nearest_name("abcdef", {"zabcdefq"}) == "zabcdefq");
   CHECK(did_you_mean("gravity", known) == "; known: post_length, density");
   CHECK(did_you_mean("densty", known) == "; did you mean 'density'?");
   CHECK(did_you_mean("x", {}).empty());
