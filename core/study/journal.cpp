@@ -40,12 +40,14 @@ void Journal::take_in(const std::filesystem::path& path) {
         path.string() +
         ": holds results with other columns, of another version or another question; use another "
         "directory, or --force to begin anew");
+  decltype(rows_) found;  // of a key that is there twice the later row, as append() would have it
   for (std::size_t i = 1; i < records.size(); ++i) {
     auto& row = records[i];
     if (row.size() != columns_.size()) continue;
     if (!std::ranges::all_of(numbers_, [&](std::size_t c) { return is_number(row[c]); })) continue;
-    rows_.try_emplace({row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_)}, row);
+    found.insert_or_assign({row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_)}, row);
   }
+  rows_.merge(found);
 }
 
 const std::vector<std::string>* Journal::find(const std::vector<std::string>& key) const {

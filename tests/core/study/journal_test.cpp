@@ -56,6 +56,17 @@ TEST_CASE("rows of another length are no results") {
   CHECK_FALSE(journal.find({"3"}));
 }
 
+TEST_CASE("of a result that was appended twice the later one stays, in the file as in memory") {
+  const File file;
+  {
+    Journal journal(file.path, {"n", "value"}, 1);
+    journal.append({"1", "0.5"});
+    journal.append({"1", "0.25"});
+    CHECK((*journal.find({"1"}))[1] == "0.25");
+  }
+  CHECK((*Journal(file.path, {"n", "value"}, 1).find({"1"}))[1] == "0.25");
+}
+
 TEST_CASE("a journal of other columns is refused") {
   const File file;
   { Journal(file.path, {"n", "value"}, 1).append({"1", "0.5"}); }
