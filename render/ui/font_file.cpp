@@ -3,11 +3,13 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <vector>
 
-#include "core/scene/library.hpp"
+#include "render/ui/embedded_fonts.hpp"
 
 namespace unfurl {
 namespace {
@@ -21,7 +23,7 @@ std::string environment(const char* name) {
 
 // Folders that may hold fonts, each with its own below it.
 std::vector<fs::path> font_folders() {
-  std::vector<fs::path> folders{environment("UNFURL_FONTS"), asset_folder("fonts")};
+  std::vector<fs::path> folders{environment("UNFURL_FONTS")};
   const std::string home = environment("HOME"), data = environment("XDG_DATA_HOME");
   if (!data.empty()) folders.push_back(fs::path(data) / "fonts");
   if (!home.empty())
@@ -44,20 +46,29 @@ std::string font_below(const fs::path& file) {
   return "";
 }
 
+std::string content(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 }  // namespace
 
 // What was found stays: figures ask for each of theirs.
-std::string found_font(const std::string& file) {
+std::string_view font_bytes(const std::string& file) {
+  const std::string name = fs::path(file).filename().string();
+  for (const EmbeddedFont& font : embedded_fonts())
+    if (font.name == name) return font.bytes;
   static std::mutex mutex;
   static std::map<std::string, std::string> found;
   const std::lock_guard lock(mutex);
-  std::string& place = found[file];
-  if (place.empty()) place = font_below(file);
-  return place;
+  std::string& bytes = found[file];
+  if (bytes.empty())
+    if (const std::string place = font_below(file); !place.empty()) bytes = content(place);
+  return bytes;
 }
 
-std::string font_file(bool bold) {
-  return found_font(bold ? "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"
+std::string_view own_font(bool bold) {
+  return font_bytes(bold ? "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"
                          : "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf");
 }
 

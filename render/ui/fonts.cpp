@@ -20,15 +20,20 @@ constexpr ImWchar glyph_ranges[] = {0x0020, 0x017F,  // Latin, Latin-1, Latin Ex
                                     0x25A0, 0x25FF,  // shapes
                                     0};
 
+// Null: these bytes are no font.
+ImFont* add(ImFontAtlas& atlas, std::string_view bytes, ImFontConfig config, const ImWchar* ranges) {
+  if (bytes.empty()) return nullptr;
+  config.FontDataOwnedByAtlas = false;
+  return atlas.AddFontFromMemoryTTF(const_cast<char*>(bytes.data()), static_cast<int>(bytes.size()),
+                                    config.SizePixels, &config, ranges);
+}
+
 }  // namespace
 
 ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold) {
-  const std::string file = font_file(bold);
-  if (!file.empty()) {  // ImGui aborts on a file that is not there
-    if (ImFont* font = atlas.AddFontFromFileTTF(file.c_str(), pixels, nullptr, glyph_ranges)) return font;
-  }
   ImFontConfig config;
   config.SizePixels = pixels;
+  if (ImFont* font = add(atlas, own_font(bold), config, glyph_ranges)) return font;
   return atlas.AddFontDefault(&config);
 }
 
@@ -46,11 +51,12 @@ ImFont* add_plot_font(ImFontAtlas& atlas, float pixels) {
   }
   // ImGui sizes a font by its ascender and descender; the letters shall be as large.
   const double ratio = face.line_height / lender.line_height;
-  ImFont* font = atlas.AddFontFromFileTTF(found_font(face.file).c_str(), static_cast<float>(ratio * pixels),
-                                          nullptr, own.Data);
   ImFontConfig config;
+  config.SizePixels = static_cast<float>(ratio * pixels);
+  ImFont* font = add(atlas, font_bytes(face.file), config, own.Data);
+  config.SizePixels = pixels;
   config.MergeMode = true;
-  atlas.AddFontFromFileTTF(found_font(lender.file).c_str(), pixels, &config, lent.Data);
+  add(atlas, font_bytes(lender.file), config, lent.Data);
   return font;
 }
 

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "core/export/atomic_file.hpp"
@@ -35,7 +33,7 @@ struct FigureWriter::Painter {
 };
 
 void require_installed(const plot::Typeface& face) {
-  if (!found_font(face.file).empty()) return;
+  if (!font_bytes(face.file).empty()) return;
   throw FileError(face.file, "the font of figures is missing; install " + std::string(face.package) +
                                  " or name a folder that has it in UNFURL_FONTS");
 }
@@ -110,8 +108,7 @@ namespace {
 
 plot::TrueType font_of(const plot::Typeface& face) {
   require_installed(face);
-  std::ifstream file(found_font(face.file), std::ios::binary);
-  return plot::TrueType(std::string(std::istreambuf_iterator<char>(file), {}));
+  return plot::TrueType(std::string(font_bytes(face.file)));
 }
 
 }  // namespace

