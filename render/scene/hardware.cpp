@@ -73,13 +73,13 @@ Hardware::Hardware(const Structure& structure, const Appearance& looks, const Lo
   for (const std::string& group : looks_.groups) materials_.push_back(material_for(options_, group));
   for (std::size_t i = structure_.node_copies.size(); i-- > 0;)
     copy_of_[static_cast<std::size_t>(structure_.node_copies[i].source)] = static_cast<int>(i);
-  find_drives();
+  find_drives(poses);
   if (detailed_) find_supports(poses);
 }
 
 // The side of a node towards which no rod ever points: the wanted one, or the other end of that line, or
 // along the axis that a rod turns around, first away from where cameras stand. Unit vectors.
-Vec3 Hardware::free_side(int node, const Vec3& wanted, const std::vector<std::vector<Vec3>>& poses) const {
+Vec3 Hardware::free_side(int node, const Vec3& wanted, const Poses& poses) const {
   constexpr double plate_half_angle = 0.69;  // cosine: as wide as the plate is seen from the node
   const Vec3 away(-0.47, 0.88, 0);
   const auto& ends = joints_->ends(node);
@@ -112,7 +112,7 @@ Vec3 Hardware::free_side(int node, const Vec3& wanted, const std::vector<std::ve
 
 // Below what is held, or above it where the structure begins to hang from there; where its rods pass both, on
 // a bracket beside it.
-void Hardware::find_supports(const std::vector<std::vector<Vec3>>& poses) {
+void Hardware::find_supports(const Poses& poses) {
   std::vector<double> height;
   for (const NodeCopy& copy : structure_.node_copies) {
     const Vec3& x = structure_.nodes[static_cast<std::size_t>(copy.source)].position;
@@ -246,7 +246,10 @@ void Hardware::add_joint(std::size_t n, double t, const std::vector<Vec3>& at, D
   if (pinned) add_pins(n, t, at[n], list);
   if (!support_[n].isZero()) add_support(n, at[n], list);
   const bool payload = structure_.nodes[static_cast<std::size_t>(structure_.node_copies[n].source)].mass > 0;
-  if (payload && !held && pinned) return add_payload(n, at[n], list);
+  // A pulley stands for what its node weighs.
+  const bool pulley =
+      std::ranges::any_of(pulleys_, [n](const Triple& p) { return p[1] == static_cast<int>(n); });
+  if (payload && !held && pinned && !pulley) return add_payload(n, at[n], list);
   if (detailed_ && (kind == JointKind::hinge || kind == JointKind::none)) return;
   const double scale = held && !detailed_ ? 1.5 : kind == JointKind::hub && detailed_ ? 0.86 : 1.0;
   list.balls.push_back({f(at[n]), static_cast<float>(scale * r), held ? look_.anchor : look_.joint,
@@ -335,7 +338,7 @@ void Hardware::add(double t, const std::vector<Vec3>& at, const std::vector<Colo
   for (std::size_t n = 0; n < looks_.joint_radius.size(); ++n) add_joint(n, t, at, list);
   add_crossings(t, at, list);
   add_forces(at, list);
-  add_drives(at, list);
+  add_drives(t, at, list);
 }
 
 }  // namespace unfurl

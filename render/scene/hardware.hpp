@@ -48,20 +48,27 @@ class Hardware {
 
  private:
   using Triple = std::array<int, 3>;  // copied nodes
+  using Poses = std::vector<std::vector<Vec3>>;
   struct Motored {  // a hinge: between nodes, the second is the hinge; axis: zero where it has no sign
     Triple nodes;
     Vec3 axis;
+    RodEnd end = {-1, 0};  // that turns there; rod -1: none does
+    double side = 0;       // of that rod's axis, where the motor sits: -1 or 1; 0: where it is seen from
   };
-  void find_drives();
-  void add_drive(const Measure& measure);
-  void add_drives(const std::vector<Vec3>& at, DrawList& list) const;
+  void find_drives(const Poses& poses);
+  void add_drive(const Measure& measure, const Poses& poses);
+  void add_fold_drive(const Poses& poses);
+  void add_drives(double t, const std::vector<Vec3>& at, DrawList& list) const;
   void add_pulley(const Triple& nodes, const std::vector<Vec3>& at, DrawList& list) const;
   void add_telescope(const std::vector<int>& nodes, const std::vector<Vec3>& at, DrawList& list) const;
-  void add_motor(const Motored& motor, const std::vector<Vec3>& at, DrawList& list) const;
-  int copy(int node) const;  // of a solved node
-  double thickest() const;   // radius of the rods as drawn [m]
-  void find_supports(const std::vector<std::vector<Vec3>>& poses);
-  Vec3 free_side(int node, const Vec3& wanted, const std::vector<std::vector<Vec3>>& poses) const;
+  void add_motor(const Motored& motor, double t, const std::vector<Vec3>& at, DrawList& list) const;
+  double outer_side(const Motored& motor, const Poses& poses) const;
+  Vec3 motor_axis(const Motored& motor, double t, const std::vector<Vec3>& at) const;
+  int copy(int node) const;              // of a solved node
+  int far_end(const RodEnd& end) const;  // the node at its rod's other end
+  double thickest() const;               // radius of the rods as drawn [m]
+  void find_supports(const Poses& poses);
+  Vec3 free_side(int node, const Vec3& wanted, const Poses& poses) const;
   RodCoat coat(int group, const Color* field) const;
   Vec3 offset(std::size_t rod, double t) const;
   void add_rod(std::size_t i, double t, const std::vector<Vec3>& at, const Color* field,

@@ -36,6 +36,20 @@ bool are_stages(const Constraint& constraint) {
          terms[0].measure.nodes[1] == terms[1].measure.nodes[0];
 }
 
+// Through what angle two rods turn against each other in a motion [rad].
+double swing_of(const std::array<int, 3>& nodes, const std::vector<std::vector<Vec3>>& poses) {
+  double least = 4, most = 0;
+  for (const std::vector<Vec3>& at : poses) {
+    const auto place = [&](int k) {
+      return at[static_cast<std::size_t>(nodes[static_cast<std::size_t>(k)])];
+    };
+    const Vec3 a = place(0) - place(1), b = place(2) - place(1);
+    const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+    least = std::min(least, angle), most = std::max(most, angle);
+  }
+  return most - least;
+}
+
 }  // namespace
 
 int Hardware::copy(int node) const {
@@ -44,7 +58,7 @@ int Hardware::copy(int node) const {
 
 // Cables run over the nodes between their ends, telescopes have stages, length drives two; none where only a
 // part of the structure is solved.
-void Hardware::find_drives() {
+void Hardware::find_drives(const Poses& poses) {
   const auto whole = std::ranges::count_if(structure_.nodes, [](const Node& n) { return !n.ghost; });
   solved_whole_ = static_cast<std::size_t>(whole) == structure_.node_copies.size();
   if (!solved_whole_ || !detailed_) return;
@@ -59,7 +73,7 @@ void Hardware::find_drives() {
   };
   for (const Force& force : structure_.forces) {
     if (force.kind == "cable" && !(force.smoothing > 0)) run_over(force.measure);
-    if (force.kind == "motor") add_drive(force.measure);
+    if (force.kind == "motor") add_drive(force.measure, poses);
   }
   for (const Stop& stop : structure_.stops)
     if (stop.reeled) run_over(stop.measure);
@@ -74,13 +88,15 @@ void Hardware::find_drives() {
       else
         telescopes_.push_back({copy(two[0].first), copy(two[0].second), copy(two[1].second)});
     } else {
-      add_drive(c.measure);
+      add_drive(c.measure, poses);
     }
   }
 }
 
 // A length is driven by an actuator of two stages, an angle by a motor at its hinge.
-void Hardware::add_drive(const Measure& measure) {
+void Hardware::add_drive(const Measure& measure, const Poses& poses) {
+  const bool one = measure.kind == MeasureKind::combination && measure.terms.size() == 1;
+  if (one) return add_drive(measure.terms.front().measure, poses);
   const std::vector<int>& n = measure.nodes;
   if (measure.kind == MeasureKind::length) {
     const bool rod = std::ranges::any_of(structure_.rods, [&](const Rod& r) {
@@ -88,8 +104,47 @@ void Hardware::add_drive(const Measure& measure) {
     });
     if (!rod) telescopes_.push_back({copy(n[0]), copy(n[1])});
   }
-  if (measure.kind == MeasureKind::angle && n[0] == n[2])
+  if (measure.kind == MeasureKind::angle && n[0] == n[2]) {
     motors_.push_back({{copy(n[1]), copy(n[0]), copy(n[3])}, measure.axis});
+    if (measure.axis.isZero())
+      for (const RodEnd& end : joints_->ends(copy(n[0])))
+        if (far_end(end) == copy(n[1])) {
+          motors_.back().end = end;
+          motors_.back().side = outer_side(motors_.back(), poses);
+        }
+  }
+  if (measure.kind == MeasureKind::fold) add_fold_drive(poses);
+}
+
+// A fold angle is all units' own: its motors sit at the hinges that turn most.
+void Hardware::add_fold_drive(const Poses& poses) {
+  constexpr double as_far = 0.9, least = 0.02;  // of the widest; [rad]
+  std::vector<Motored> hinges;
+  std::vector<double> swings;
+  for (std::size_t n = 0; n < structure_.node_copies.size(); ++n) {
+    const std::vector<RodEnd>& ends = joints_->ends(static_cast<int>(n));
+    double widest = least;
+    Motored hinge{{-1, static_cast<int>(n), -1}, Vec3::Zero()};
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      for (std::size_t j = i + 1; j < ends.size(); ++j) {
+        const int a = far_end(ends[i]), b = far_end(ends[j]);
+        const double swing = swing_of({a, static_cast<int>(n), b}, poses);
+        if (swing > widest) widest = swing, hinge.nodes = {a, static_cast<int>(n), b}, hinge.end = ends[i];
+      }
+    if (hinge.end.rod < 0) continue;
+    hinge.side = outer_side(hinge, poses);
+    hinges.push_back(hinge);
+    swings.push_back(widest);
+  }
+  if (hinges.empty()) return;
+  const double most = *std::ranges::max_element(swings);
+  for (std::size_t k = 0; k < hinges.size(); ++k)
+    if (swings[k] >= as_far * most) motors_.push_back(hinges[k]);
+}
+
+int Hardware::far_end(const RodEnd& end) const {
+  const RodCopy& rod = structure_.rod_copies[static_cast<std::size_t>(end.rod)];
+  return end.end == 0 ? rod.b : rod.a;
 }
 
 double Hardware::thickest() const {
@@ -136,17 +191,40 @@ void Hardware::add_telescope(const std::vector<int>& nodes, const std::vector<Ve
   }
 }
 
-// A housing with its flange on the axis of the hinge, beside the lugs.
-void Hardware::add_motor(const Motored& motor, const std::vector<Vec3>& at, DrawList& list) const {
+// To which side of its rod's axis a motor is farther from the middle of all: in the pose that tells it best.
+double Hardware::outer_side(const Motored& motor, const Poses& poses) const {
+  double best = 0.05, side = 0;  // [-], of the way to the hinge
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& x : poses[k]) middle += x / static_cast<double>(poses[k].size());
+    const Vec3 out = poses[k][static_cast<std::size_t>(motor.nodes[1])] - middle;
+    const double along = out.dot(joints_->axis(motor.end, joints_->times()[k]));
+    if (std::abs(along) > best * out.norm()) best = std::abs(along) / out.norm(), side = along < 0 ? -1 : 1;
+  }
+  return side;
+}
+
+// Around what a motor turns at a time, a unit vector towards the side where it sits. Zero: not known, folded
+// flat.
+Vec3 Hardware::motor_axis(const Motored& motor, double t, const std::vector<Vec3>& at) const {
   const auto place = [&](int n) { return at[static_cast<std::size_t>(n)]; };
-  const Vec3 hinge = place(motor.nodes[1]);
+  if (motor.side != 0)
+    if (const Vec3 axis = joints_->axis(motor.end, t); !axis.isZero()) return motor.side * axis;
   Vec3 axis = upright_ * motor.axis;
-  if (axis.isZero()) axis = (place(motor.nodes[0]) - hinge).cross(place(motor.nodes[2]) - hinge);
-  const double reach = (place(motor.nodes[0]) - hinge).norm() * (place(motor.nodes[2]) - hinge).norm();
-  if (motor.axis.isZero() && axis.norm() < 1e-4 * reach)
-    return;                           // folded flat: around what it turns is not known
+  if (axis.isZero()) {
+    const Vec3 hinge = place(motor.nodes[1]), a = place(motor.nodes[0]) - hinge,
+               b = place(motor.nodes[2]) - hinge;
+    axis = a.cross(b);
+    if (axis.norm() < 1e-4 * a.norm() * b.norm()) return Vec3::Zero();
+  }
   const Vec3 viewer(0.47, -0.88, 0);  // as pictures begin: of both sides the one that is seen
-  axis *= (axis.dot(viewer) < 0 ? -1.0 : 1.0) / axis.norm();
+  return (axis.dot(viewer) < 0 ? -1.0 : 1.0) * axis.normalized();
+}
+
+// A housing with its flange on the axis of the hinge, beside the lugs.
+void Hardware::add_motor(const Motored& motor, double t, const std::vector<Vec3>& at, DrawList& list) const {
+  const Vec3 hinge = at[static_cast<std::size_t>(motor.nodes[1])], axis = motor_axis(motor, t, at);
+  if (axis.isZero()) return;
   const double r = thickest();
   const auto part = [&](double from, double to, double wide, const Color& color, Finish finish) {
     list.sleeves.push_back({single(hinge + from * r * axis), single(hinge + to * r * axis),
@@ -157,10 +235,10 @@ void Hardware::add_motor(const Motored& motor, const std::vector<Vec3>& at, Draw
   part(5.4, 5.9, 1.2, look_.fitting, Finish::metal);
 }
 
-void Hardware::add_drives(const std::vector<Vec3>& at, DrawList& list) const {
+void Hardware::add_drives(double t, const std::vector<Vec3>& at, DrawList& list) const {
   for (const Triple& pulley : pulleys_) add_pulley(pulley, at, list);
   for (const std::vector<int>& telescope : telescopes_) add_telescope(telescope, at, list);
-  for (const Motored& motor : motors_) add_motor(motor, at, list);
+  for (const Motored& motor : motors_) add_motor(motor, t, at, list);
 }
 
 }  // namespace unfurl

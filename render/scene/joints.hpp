@@ -36,6 +36,7 @@ class Joints {
   Joints(const Structure& structure, std::vector<double> times, const std::vector<std::vector<Vec3>>& poses,
          const std::vector<double>& radius, const Vec3& center, const Vec3& plane_normal);
 
+  const std::vector<double>& times() const { return times_; }
   JointKind kind(int node) const { return kinds_[static_cast<std::size_t>(node)]; }
   const std::vector<RodEnd>& ends(int node) const { return ends_[static_cast<std::size_t>(node)]; }
   // The axis around which a rod's end turns at a time; zero: none is known.

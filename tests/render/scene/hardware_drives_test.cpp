@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/simulate/simulation.hpp"
 #include "render/scene/frame_builder.hpp"
@@ -116,6 +118,68 @@ TEST_CASE("what drives and guides is drawn where it acts") {
             const Vec3f a = s.a - node(5), b = s.b - node(5);
             return a.y() < -last && b.y() < a.y() && same(a, {0, a.y(), 0}) && same(b, {0, b.y(), 0});
           }) == 3);
+  }
+}
+
+// Housings, the longest part of a motor and the only black sleeve.
+std::vector<Sleeve> housings(const DrawList& list) {
+  std::vector<Sleeve> found;
+  for (const Sleeve& s : list.sleeves)
+    if (s.finish == Finish::anodised && s.color.r < 0.2f && s.color.b < 0.2f) found.push_back(s);
+  return found;
+}
+
+TEST_CASE("a telescope of one stage is an actuator, however it is written") {
+  const std::string one_stage = [] {
+    std::string text = machine;
+    const std::string length = "kind = \"length\"\nnodes = [\"N\", \"M\"]";
+    text.replace(text.find(length), length.size(), "kind = \"telescope\"\nnodes = [\"N\", \"M\"]");
+    return text;
+  }();
+  std::vector<std::size_t> tubes;
+  for (const std::string& text : {machine, one_stage}) {
+    const Scene scene = read_scene_text(text, "machine.toml");
+    const Simulation run = simulate(build_model(scene), scene.solver);
+    tubes.push_back(FrameBuilder(run.trajectory, {}).build(0.35).tubes.size());
+  }
+  CHECK(tubes[0] == tubes[1]);
+}
+
+TEST_CASE("what drives a fold angle is drawn at the hinges that turn most") {
+  const Scene scene = read_scene_file(find_scene("hoop6_motor"));
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  REQUIRE(run.status == RunStatus::completed);
+  const FrameBuilder frames(run.trajectory, {});
+  const Structure& s = run.trajectory.structure();
+  for (const double t : {0.0, 2.5, 5.9}) {
+    const VectorXd x = run.trajectory.positions_at(t);
+    const auto node = [&](int k) { return Vec3(x.segment<3>(3 * k)); };
+    const double fold = s.deployment.fold_angle(x);
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t k = 0; k < s.nodes.size(); ++k)
+      middle += node(static_cast<int>(k)) / static_cast<double>(s.nodes.size());
+    const std::vector<Sleeve> found = housings(frames.build(t));
+    CHECK(found.size() == 12);  // six units, at their hinges above and below
+    for (const Sleeve& housing : found) {
+      const Vec3 axis = (housing.b - housing.a).cast<double>().normalized();
+      int hinges = 0;
+      for (int k = 0; k < static_cast<int>(s.nodes.size()); ++k) {
+        const Vec3 off = housing.a.cast<double>() - node(k);
+        if (off.cross(axis).norm() > 1e-4 || off.norm() > 0.3) continue;
+        std::vector<Vec3> arms;  // of the rods that meet there
+        for (const Rod& rod : s.rods)
+          if (rod.a == k || rod.b == k)
+            arms.push_back((node(rod.a == k ? rod.b : rod.a) - node(k)).normalized());
+        REQUIRE(arms.size() == 2);
+        ++hinges;
+        // Both turn through the fold angle, from upright to level: pi - 2 fold is between them. Single
+        // precision.
+        CHECK(std::acos(arms[0].dot(arms[1])) == Approx(std::numbers::pi - 2 * fold).margin(1e-5));
+        for (const Vec3& arm : arms) CHECK(std::abs(arm.dot(axis)) < 1e-4);
+        CHECK(axis.dot(node(k) - middle) > 0);
+      }
+      CHECK(hinges == 1);
+    }
   }
 }
 
