@@ -74,7 +74,48 @@ void FrameOverlay::add_axes(DrawList& list) const {
   }
 }
 
-// A line beside a and b, moved by `away`, with a slash at its ends and its length in the middle.
+namespace {
+
+// Whether a straight line passes through a box.
+bool passes(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& low,
+            const Eigen::Vector2f& high) {
+  float enters = 0, leaves = 1;
+  for (int k = 0; k < 2; ++k) {
+    const float way = b[k] - a[k];
+    if (std::abs(way) < 1e-6f) {
+      if (a[k] < low[k] || a[k] > high[k]) return false;
+      continue;
+    }
+    const float first = (low[k] - a[k]) / way, second = (high[k] - a[k]) / way;
+    enters = std::max(enters, std::min(first, second));
+    leaves = std::min(leaves, std::max(first, second));
+  }
+  return enters <= leaves;
+}
+
+}  // namespace
+
+// Where on a dimension line from p to q its number stands, as a fraction: in the middle, or as near to it as
+// rods and arrows leave a box of half this size free.
+float FrameOverlay::number_place(const Eigen::Vector2f& p, const Eigen::Vector2f& q,
+                                 const Eigen::Vector2f& half, const DrawList& list) const {
+  const auto place = [&](const Vec3f& x) {
+    return Eigen::Vector2f(project(list.camera, style_.width, style_.height, x).head<2>());
+  };
+  std::vector<std::pair<Eigen::Vector2f, Eigen::Vector2f>> drawn;
+  for (const Tube& tube : list.tubes) drawn.emplace_back(place(tube.a), place(tube.b));
+  for (const Arrow& arrow : list.arrows) drawn.emplace_back(place(arrow.tail), place(arrow.head));
+  const Eigen::Vector2f room = half + Eigen::Vector2f::Constant(5 * unit_);
+  for (const float off : {0.0f, -0.08f, 0.08f, -0.16f, 0.16f, -0.24f, 0.24f, -0.32f, 0.32f}) {
+    const Eigen::Vector2f at = p + (0.5f + off) * (q - p);
+    if (std::ranges::none_of(
+            drawn, [&](const auto& line) { return passes(line.first, line.second, at - room, at + room); }))
+      return 0.5f + off;
+  }
+  return 0.5f;
+}
+
+// A line beside a and b, moved by `away`, with a slash at its ends and its length where there is room.
 void FrameOverlay::add_dimension(const Vec3& a, const Vec3& b, const Vec3& away, DrawList& list) const {
   const double metres = (b - a).norm();
   const auto place = [&](const Vec3& p) {
@@ -86,12 +127,14 @@ void FrameOverlay::add_dimension(const Vec3& a, const Vec3& b, const Vec3& away,
   const float thick = 1.2f * unit_, tick = 5 * unit_;
   const std::string text = length_text(metres);
   // The line leaves its number free.
-  const Eigen::Vector2f along = (q - p).head<2>() / length, middle = 0.5f * (p + q).head<2>();
+  const Eigen::Vector2f along = (q - p).head<2>() / length;
   const float wide = 0.32f * line * static_cast<float>(text.size()) + 0.25f * line, tall = 0.75f * line;
+  const float part = number_place(p.head<2>(), q.head<2>(), {wide, 0.5f * line}, list);
+  const Eigen::Vector2f middle = p.head<2>() + part * (q - p).head<2>();
   const float free =
       std::min(wide / std::max(std::abs(along.x()), 1e-3f), tall / std::max(std::abs(along.y()), 1e-3f));
   for (const auto& [end, sign] : {std::pair(p, -1.0f), std::pair(q, 1.0f)}) {
-    if (2 * free >= length) break;
+    if (free >= (sign < 0 ? part : 1 - part) * length) continue;
     const Eigen::Vector2f from = middle + sign * free * along;
     list.lines.push_back({from.x(), from.y(), end.x(), end.y(), thick, look_.ink});
   }
@@ -103,8 +146,8 @@ void FrameOverlay::add_dimension(const Vec3& a, const Vec3& b, const Vec3& away,
     pale.a = 0.45f;
     list.lines.push_back({from.x(), from.y(), to.x(), to.y(), 0.8f * thick, pale});
   }
-  list.labels.push_back({0.5f * (p.x() + q.x()), 0.5f * (p.y() + q.y()) - 0.5f * line, line, look_.ink, text,
-                         0.5f, false, clear_backing(look_)});
+  list.labels.push_back(
+      {middle.x(), middle.y() - 0.5f * line, line, look_.ink, text, 0.5f, false, clear_backing(look_)});
 }
 
 // Of the box around what there is, in the axes of the picture: the two lower edges towards the viewer, and

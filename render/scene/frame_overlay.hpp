@@ -36,6 +36,8 @@ class FrameOverlay {
   void add_scale_bar(DrawList& list) const;
   void add_axes(DrawList& list) const;
   void add_dimensions(const VectorXd& whole, DrawList& list) const;
+  float number_place(const Eigen::Vector2f& p, const Eigen::Vector2f& q, const Eigen::Vector2f& half,
+                     const DrawList& list) const;
   void add_dimension(const Vec3& a, const Vec3& b, const Vec3& away, DrawList& list) const;
   void add_names(const VectorXd& whole, DrawList& list) const;
   void add_name(const std::string& name, const Vec3& at, std::vector<Box>& taken, DrawList& list) const;

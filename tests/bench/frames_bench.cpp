@@ -21,7 +21,7 @@ using namespace unfurl;
 
 namespace {
 
-constexpr int frames = 30;  // spread over the run
+constexpr int frames = 120;  // spread over the run
 
 // CPU time of all threads: the machine may have other work to do, which wall time would count.
 double cpu_seconds(const std::function<void()>& work) {
