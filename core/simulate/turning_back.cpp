@@ -27,9 +27,45 @@ Vec3 side_of(const Measure& measure, const VectorXd& q, double& size) {
   return d1.cross(d2);
 }
 
-bool passes(const Vec3& a, const Vec3& b, double size) {
-  if (!(a.dot(b) < 0) || std::min(a.norm(), b.norm()) <= at_it * size) return false;
-  return a.cross(b).norm() <= near_it * std::min(a.norm(), b.norm()) * (b - a).norm();
+// How near a way from a to b comes to zero, as a part of all that lies between: 0 through it.
+double nearness(const Vec3& a, const Vec3& b) {
+  return a.cross(b).norm() / (b - a).squaredNorm();
+}
+
+enum class Passage { none, through, close_by };
+
+// Through: at a tenth of both sides' own at most. Close by: at less than half of the way, turning by more
+// than a right angle.
+Passage passage(const Vec3& a, const Vec3& b, double size) {
+  const double least = std::min(a.norm(), b.norm());
+  if (!(a.dot(b) < 0) || least <= at_it * size) return Passage::none;
+  return a.cross(b).norm() <= near_it * least * (b - a).norm() ? Passage::through : Passage::close_by;
+}
+
+std::string through(const std::string& name, bool angle) {
+  return angle ? "the rods of " + name +
+                     " pass through one line, where an angle without an axis turns back and the torque on it "
+                     "jumps; give an axis, if the hinge turns through"
+               : "the ends of " + name +
+                     " pass each other, where its force turns round; what follows is right to the first "
+                     "order of "
+                     "solver.step";
+}
+
+// `step`: in which it turns by some 30 degrees.
+std::string close_by(const std::string& name, bool angle, double distance, double step) {
+  char text[240];
+  if (angle)
+    std::snprintf(text, sizeof text, " pass one line at %.2g degrees",
+                  std::asin(std::min(1.0, distance)) * 180 / pi);
+  else
+    std::snprintf(text, sizeof text, " pass each other at %.2g m", distance);
+  const std::string how = text;
+  std::snprintf(text, sizeof text,
+                ", and what it pulls with turns round within a step, which does not resolve that; make "
+                "solver.step %.2g s",
+                step);
+  return (angle ? "the rods of " : "the ends of ") + name + how + text;
 }
 
 }  // namespace
@@ -60,19 +96,19 @@ std::vector<std::string> TurningBack::between(const System& system, const State&
     if (said_[term.force]) continue;
     double size = 0;
     const Vec3 side = side_of(term.measure, q, size);
-    if (!passes(side, side_of(term.measure, later, size), size)) continue;
+    const Vec3 there = side_of(term.measure, later, size);
+    const Passage how = passage(side, there, size);
+    if (how == Passage::none) continue;
     const bool angle = term.measure.kind == MeasureKind::angle;
     const double value = MeasureFunction(term.measure, {}).value(later.data());
     const double turn = angle && value > pi / 2 ? pi : 0.0;
     if (std::abs(turn - term.free) <= at_it) continue;
     said_[term.force] = true;
     told.push_back("at t = " + seconds(after.t) + ": " +
-                   (angle ? "the rods of " + term.name +
-                                " pass through one line, where an angle without an axis turns back and the "
-                                "torque on it jumps; give an axis, if the hinge turns through"
-                          : "the ends of " + term.name +
-                                " pass each other, where its force turns round; what follows is right to the "
-                                "first order of solver.step"));
+                   (how == Passage::through
+                        ? through(term.name, angle)
+                        : close_by(term.name, angle, nearness(side, there) * (there - side).norm() / size,
+                                   0.5 * nearness(side, there) * (after.t - before.t))));
   }
   return told;
 }

@@ -12,7 +12,8 @@ namespace unfurl {
 
 // A distance turns back at 0, an angle without a sign where its lines come to lie along each other. A spring
 // that is not free of force there, and a motor, then pull the other way from one moment to the next: the step
-// across that is of first order, and nothing in it shows.
+// across that is of first order, and nothing in it shows. Nor does it where they pass close by, and the force
+// turns round within a step.
 class TurningBack {
  public:
   explicit TurningBack(const Structure& structure);

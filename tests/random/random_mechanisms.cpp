@@ -18,13 +18,16 @@ int main(int count, char** words) {
       count > 3 ? static_cast<unsigned>(std::strtoul(words[3], nullptr, 10)) : all_features;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   std::map<std::string, std::uint64_t> aside, failures;
-  std::uint64_t set_aside = 0, failed = 0;
+  std::uint64_t set_aside = 0, failed = 0, shorter = 0;
   double worst = 0;
   for (std::uint64_t seed = first; seed < first + n; ++seed) {
     const Mechanism mechanism = draw(seed, features);
     const Verdict verdict = judge(mechanism, seed);
     const std::string kind = verdict.why.substr(0, verdict.why.find(':'));
-    if (verdict.kind == Verdict::Kind::agrees) worst = std::max(worst, verdict.error);
+    if (verdict.kind == Verdict::Kind::agrees) {
+      worst = std::max(worst, verdict.error);
+      if (!verdict.why.empty()) ++shorter;
+    }
     if (verdict.kind == Verdict::Kind::set_aside) ++set_aside, ++aside[kind];
     if (!verdict.failed()) continue;
     ++failures[kind];
@@ -42,6 +45,7 @@ int main(int count, char** words) {
       static_cast<unsigned long long>(n), static_cast<unsigned long long>(first),
       static_cast<unsigned long long>(n - set_aside - failed), worst,
       static_cast<unsigned long long>(set_aside), static_cast<unsigned long long>(failed));
+  std::printf("  with steps a quarter as long only: %llu\n", static_cast<unsigned long long>(shorter));
   for (const auto& [why, times] : aside)
     std::printf("  set aside, %s: %llu\n", why.c_str(), static_cast<unsigned long long>(times));
   for (const auto& [why, times] : failures)

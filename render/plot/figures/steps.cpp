@@ -63,9 +63,17 @@ void add_bars(const Histogram& h, int color, Panel& p) {
   p.y.max = 1.08 * std::max(1.0, *std::max_element(h.counts.begin(), h.counts.end()));
 }
 
-std::vector<double> behind_first(const Diagnostics& d, const char* name) {
-  const std::vector<double>& all = d.at(name).values;
-  return {all.begin() + (all.empty() ? 0 : 1), all.end()};
+// Steps and their iterations; what happened at an instant, an impact, is a state of its own but no step.
+struct Steps {
+  std::vector<double> sizes, iterations;
+};
+
+Steps steps_of(const Diagnostics& d) {
+  const std::vector<double>&sizes = d.at("step_s").values, &iterations = d.at("newton_iterations").values;
+  Steps steps;
+  for (std::size_t k = 1; k < sizes.size(); ++k)
+    if (sizes[k] > 0) steps.sizes.push_back(sizes[k]), steps.iterations.push_back(iterations[k]);
+  return steps;
 }
 
 double mean(const std::vector<double>& v) {
@@ -75,8 +83,7 @@ double mean(const std::vector<double>& v) {
 }  // namespace
 
 Figure steps_figure(const Simulation& run, const Diagnostics& diagnostics) {
-  const std::vector<double> h = behind_first(diagnostics, "step_s"),
-                            iterations = behind_first(diagnostics, "newton_iterations");
+  const auto [h, iterations] = steps_of(diagnostics);
   Figure f;
   f.name = "steps";
   f.title = "Steps";
@@ -87,8 +94,7 @@ Figure steps_figure(const Simulation& run, const Diagnostics& diagnostics) {
   left.x.label = "step (s)";
   right.x.label = "Newton iterations";
   f.caption = std::to_string(h.size()) + " steps.";
-  const bool usable = !h.empty() && *std::min_element(h.begin(), h.end()) > 0;
-  if (usable) {
+  if (!h.empty()) {
     const auto [lo, hi] = std::minmax_element(h.begin(), h.end());
     left.x.log = *hi > 10 * *lo;
     add_bars(histogram(h, step_edges(h, left.x.log)), 0, left);

@@ -116,6 +116,21 @@ TEST_CASE("the histogram of steps counts every step once", "[figures]") {
   }
 }
 
+TEST_CASE("an impact is a state of its own and no step", "[figures]") {
+  const Scene scene = read_scene_file(find_scene("cable_ring"));  // latches at 8.9 s
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics d = diagnose(run);
+  const std::vector<double>& sizes = d.at("step_s").values;
+  const auto steps = std::ranges::count_if(sizes, [](double h) { return h > 0; });
+  REQUIRE(steps < std::ssize(sizes) - 1);
+  const Figure f = find_figure("steps")->make(run, d);
+  double sum = 0;
+  for (std::size_t k = 0; k < f.panels[0].bands.at(0).upper.size(); k += 3)
+    sum += f.panels[0].bands[0].upper[k];
+  CHECK(sum == static_cast<double>(steps));
+  CHECK(f.caption.starts_with(std::to_string(steps) + " steps from"));
+}
+
 TEST_CASE("captions have the numbers of the run", "[figures]") {
   CHECK(hoop().figure("jacobian").caption.find("zero to round-off") != std::string::npos);
   CHECK(hoop().figure("phase").caption.find("From 60\u00B0") != std::string::npos);
