@@ -10,7 +10,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
+#include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
@@ -61,13 +61,13 @@ MatrixXd rigid_motions(const VectorXd& q) {
   return R;
 }
 
-// An orthonormal basis of what the columns span.
+// An orthonormal basis of what the columns span: `least` of what is left of a column counts.
 MatrixXd orthonormal(const MatrixXd& A, double least) {
   if (A.cols() == 0) return A;
-  const Eigen::BDCSVD<MatrixXd> svd(A, Eigen::ComputeThinU);
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);  // pivots descend
   Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > least) ++rank;
-  return svd.matrixU().leftCols(rank);
+  while (rank < std::min(A.rows(), A.cols()) && std::abs(qr.matrixQR()(rank, rank)) > least) ++rank;
+  return qr.householderQ() * MatrixXd::Identity(A.rows(), rank);
 }
 
 }  // namespace
@@ -177,13 +177,10 @@ MatrixXd FreePoses::motions(const VectorXd& q) const {
   // Rigid motions that are free, and what is left without them.
   const MatrixXd R = orthonormal(rigid_motions(q), 1e-9 * std::max(1.0, size_));
   const MatrixXd rest = R - V * (V.transpose() * R);
-  const Eigen::BDCSVD<MatrixXd> svd(rest, Eigen::ComputeThinV);
-  MatrixXd rigid(q.size(), 0);
-  for (Index k = 0; k < svd.singularValues().size(); ++k)
-    if (svd.singularValues()[k] < 1e-6) {
-      rigid.conservativeResize(Eigen::NoChange, rigid.cols() + 1);
-      rigid.rightCols(1) = R * svd.matrixV().col(k);
-    }
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> left(rest.transpose() *
+                                                     rest);  // squares of singular values, ascending
+  const Index free = (left.eigenvalues().array() < 1e-12).count();
+  const MatrixXd rigid = R * left.eigenvectors().leftCols(free);
   return orthonormal(V - rigid * (rigid.transpose() * V), 1e-6);
 }
 

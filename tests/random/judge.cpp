@@ -65,7 +65,7 @@ class Judge {
   Verdict verdict() {
     if (!reference()) return {Verdict::Kind::set_aside, why_};
     std::string error;
-    for (const double step : {0.005, 0.00125}) {  // what is too fast for the first gets another
+    for (const double step : {0.005, 0.00125, 0.0003125}) {  // what is too fast for one gets another
       step_ = step;
       fine_ = run_program(m_, 5, step);
       coarse_ = run_program(m_, 4, 2 * step);

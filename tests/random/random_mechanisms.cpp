@@ -45,7 +45,7 @@ int main(int count, char** words) {
       static_cast<unsigned long long>(n), static_cast<unsigned long long>(first),
       static_cast<unsigned long long>(n - set_aside - failed), worst,
       static_cast<unsigned long long>(set_aside), static_cast<unsigned long long>(failed));
-  std::printf("  with steps a quarter as long only: %llu\n", static_cast<unsigned long long>(shorter));
+  std::printf("  with shorter steps only: %llu\n", static_cast<unsigned long long>(shorter));
   for (const auto& [why, times] : aside)
     std::printf("  set aside, %s: %llu\n", why.c_str(), static_cast<unsigned long long>(times));
   for (const auto& [why, times] : failures)
