@@ -78,10 +78,12 @@ class Picker {
 
   Simulation pick() {
     for (const int stages : stage_choices()) {
-      try_stages(stages);
+      // Where fewer stages reach the tolerance, more do so at a lower price with few steps or not at all.
+      const bool few = stages > 4 && !model_->structure.deployment.empty() && reached();
+      if (few && steps_of(best_->run) <= fewest_steps) break;
+      try_stages(stages, few ? fewest_steps : first_steps);
       if (stopped_) return std::move(*stopped_);
       if (round_off_ > 1) break;  // fewer stages and more steps would meet it all the more
-      if (stages == 2 && best_ && best_->estimate <= most * options_.tolerance) break;
     }
     if (!best_) return as_the_scene_says();
     Simulation run = std::move(best_->run);
@@ -158,11 +160,11 @@ class Picker {
   // Steps are adjusted by the order that the last two estimates show, at most the claimed one, until the
   // estimate is where it should be. Given up where smaller steps gain nothing, at round-off or twice, or
   // would take too long.
-  void try_stages(int stages) {
+  void try_stages(int stages, long steps) {
     SolverOptions o = options_;
     o.stages = stages;
     const double claimed = std::max(1, method_.claims(o).order);
-    long steps = first_steps, enough = 0, before = 0;  // `enough`: the fewest steps known to suffice
+    long enough = 0, before = 0;  // `enough`: the fewest steps known to suffice
     double last = std::numeric_limits<double>::infinity();
     int stalls = 0;
     for (int i = 0; i < tries; ++i) {
@@ -185,11 +187,14 @@ class Picker {
       const long next = multiple * std::max(1L, std::lround(wanted / static_cast<double>(multiple)));
       const double growth = static_cast<double>(next) / static_cast<double>(steps);
       if (next == steps || next > max_steps || (enough > 0 && next >= enough)) return;
-      if (best_ && best_->estimate <= most * options_.tolerance && work * growth > 1.3 * best_->work) return;
+      if (reached() && work * growth > 1.3 * best_->work) return;
       if (spent_ + all_work * growth * unknowns_ > most_work) return;
       steps = std::max(fewest_steps, next);
     }
   }
+
+  bool reached() const { return best_ && best_->estimate <= most * options_.tolerance; }
+  static long steps_of(const Simulation& run) { return std::lround(run.options.end_time / run.options.step); }
 
   // The least work among those that reach the tolerance; without any, the smallest estimate.
   void keep(Judged pair) {
