@@ -2,6 +2,7 @@
 // Every row of the constraint table: Jacobian, curvature, bias and force against finite differences of the
 // values.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -60,21 +61,25 @@ MatrixXd dense_jacobian(const ConstraintBlock& block, const VectorXd& q) {
   return G;
 }
 
-// Rows of collinear nodes are differentiated across their line, which is what their value does on it: nodes
-// 0, 1 and 2 on a line e, velocities that keep them there, multipliers across it.
-void put_on_a_line(VectorXd& q, VectorXd& v, VectorXd& lambda) {
+// Rows of collinear nodes are differentiated across their line, which is what their value does on it: three
+// nodes on a line e, velocities that keep them there, multipliers across it.
+void put_on_a_line(const std::array<Index, 3>& node, VectorXd& q, VectorXd& v, VectorXd& lambda) {
   const Vec3 e = Vec3(0.36, -0.48, 0.8), spin(0.3, 0.7, -0.2);
-  q.segment<3>(3) = q.segment<3>(0) + 0.9 * e;
-  q.segment<3>(6) = q.segment<3>(0) - 0.4 * e;
-  v.segment<3>(3) = v.segment<3>(0) + 0.9 * spin.cross(e) + 0.15 * e;
-  v.segment<3>(6) = v.segment<3>(0) - 0.4 * spin.cross(e) - 0.65 * e;
+  q.segment<3>(3 * node[1]) = q.segment<3>(3 * node[0]) + 0.9 * e;
+  q.segment<3>(3 * node[2]) = q.segment<3>(3 * node[0]) - 0.4 * e;
+  v.segment<3>(3 * node[1]) = v.segment<3>(3 * node[0]) + 0.9 * spin.cross(e) + 0.15 * e;
+  v.segment<3>(3 * node[2]) = v.segment<3>(3 * node[0]) - 0.4 * spin.cross(e) - 0.65 * e;
   lambda -= e.dot(lambda) * e;
 }
 
 }  // namespace
 
 TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
-  const Structure structure = sample();
+  // The second time no kind's first node is the structure's first.
+  const bool backwards = GENERATE(false, true);
+  Structure structure = sample();
+  for (Constraint& c : structure.constraints)
+    for (int& node : c.nodes) node = backwards ? 3 - node : node;
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (const ConstraintKind& kind : constraint_kinds()) {
@@ -85,7 +90,8 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
     VectorXd q(n), v(n), lambda(m);
     for (VectorXd* x : {&q, &v, &lambda})
       for (Index i = 0; i < x->size(); ++i) (*x)[i] = uniform(random);
-    if (kind.kind == "collinear") put_on_a_line(q, v, lambda);
+    if (kind.kind == "collinear")
+      put_on_a_line(backwards ? std::array<Index, 3>{3, 2, 1} : std::array<Index, 3>{0, 1, 2}, q, v, lambda);
     const MatrixXd G = dense_jacobian(*block, q);
     // Central differences: round-off 1e-16 / 3e-6 = 3e-11; truncation step^2 = 1e-11 times derivatives of up
     // to 100 for angles.
@@ -155,7 +161,7 @@ TEST_CASE("collinear rows have rank two off their line, too") {
       q[i] = uniform(random);
       v[i] = uniform(random);
     }
-    put_on_a_line(q, v, lambda);
+    put_on_a_line({0, 1, 2}, q, v, lambda);
     q.segment<3>(3) += off * Vec3(0.5, 0.6, -0.2);
     const MatrixXd G = dense_jacobian(*block, q);
     // Three rows across one direction: the sum that is left is round-off of entries of order one.

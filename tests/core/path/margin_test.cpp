@@ -134,6 +134,9 @@ TEST_CASE("a jammed hinge stalls the motion where its energy is used up") {
   REQUIRE(chord != hinges.end());
   // Least at the start, where it is half of 12 f l cos(t_0); the first part of a step is 1e-6 of the way.
   CHECK(chord->stall_torque == Approx(torque).epsilon(1e-3));
+  // At rest the torque 12 f l cos t on the fold angle, of which the hinge turns twice as much: least at the
+  // start.
+  CHECK(chord->static_torque == Approx(0.5 * 12 * f * l * std::cos(start)).epsilon(1e-3));
   // A stop at its angle instead: the run comes to rest on it there.
   const Scene jam = ring(0, {R"(constraints=[{kind="angle_stop",name="jam",fold_angle=true,min=52}])"});
   const Simulation run = simulate(build_model(jam), jam.solver);

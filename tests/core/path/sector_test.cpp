@@ -171,4 +171,28 @@ TEST_CASE("auto takes the path where there is one, a sector where sectors are al
   CHECK(solved_as(solved({"hoop6_sector", {}}, "sector", 0.1)).why == "structure.model = \"sector\"");
 }
 
+TEST_CASE("one value that is another in one unit makes a ring unlike") {
+  const struct {
+    const char *kind, *alike, *unlike;
+  } cases[] = {
+      {"torsion_spring", "stiffness=37,damping=5,free_angle=137", "stiffness=37.1,damping=5,free_angle=137"},
+      {"torsion_spring", "stiffness=37,damping=5,free_angle=137", "stiffness=37,damping=5.1,free_angle=137"},
+      {"torsion_spring", "stiffness=37,damping=5,free_angle=137", "stiffness=37,damping=5,free_angle=137.1"},
+      {"motor", "stall_torque=3,no_load_speed=90", "stall_torque=3.1,no_load_speed=90"},
+      {"motor", "stall_torque=3,no_load_speed=90", "stall_torque=3,no_load_speed=91"}};
+  for (const auto& [kind, alike, unlike] : cases) {
+    CAPTURE(kind, alike, unlike);
+    const auto entry = [&, kind = kind](const char* values) {
+      return std::string("{name=\"hinge #\",kind=\"") + kind + R"(",nodes=["B#","Mb#","B@"],)" + values + "}";
+    };
+    const auto all = for_units(5, "forces", entry(alike));
+    CHECK(solved_as(solved({"hoop6", joined(joints, all)}, "auto", 0.01)).name == "sector");
+    auto one = all;
+    one[3] = for_units(5, "forces", entry(unlike))[3];
+    const Simulation run = solved({"hoop6", joined(joints, one)}, "auto", 0.01);
+    CHECK(solved_as(run).name == "full");
+    CHECK(solved_as(run).why.find("hinge ") != std::string::npos);
+  }
+}
+
 }  // namespace sector_test

@@ -138,7 +138,7 @@ TEST_CASE("one wrong node does not set off messages about what refers to it") {
 TEST_CASE("nodes and rods come from CSV files beside the scene") {
   const Folder folder;
   folder.write("n.csv",
-               "name,x_m,y,z,mass_kg,fixed\nA,0,0,0,,true\n\"B, 2\",1e0,0.5,-2,3.25,false\nC,9,9,9,1,1\n");
+               "name,x_m,y,z,mass_kg,fixed\nA,0,0,0,,true\n\"B, 2\",1e0,+0.5,-2,+3.25,false\nC,9,9,9,1,1\n");
   folder.write("r.csv", "\xEF\xBB\xBF# rods\r\na,b,mass\r\nA,\"B, 2\",1.5\r\n\"B, 2\",C,0.5\r\n");
   const auto path = folder.write("s.toml", head + "nodes_file = 'n.csv'\nrods_file = 'r.csv'\n");
   const Scene scene = read_scene_file(path);
@@ -161,6 +161,8 @@ TEST_CASE("mistakes in CSV files carry file and line") {
     folder.write("n.csv", csv);
     return file_error_of(scene);
   };
+  CHECK(error("name,x,y,z\nA,0,0,++1\n") == dir + "n.csv:2:1: z: must be a finite number; got '++1'");
+  CHECK(error("name,x,y,z\nA,0,0,+\n") == dir + "n.csv:2:1: z: must be a finite number; got '+'");
   CHECK(error("name,x,y,z\nA,0,0,one\n") == dir + "n.csv:2:1: z: must be a finite number; got 'one'");
   CHECK(error("name,x,y,z\nA,0,0,nan\n") == dir + "n.csv:2:1: z: must be a finite number; got 'nan'");
   CHECK(error("name,x,y,z\n\nA,0,0\n") == dir + "n.csv:3:1: has 3 cells; the header has 4");
