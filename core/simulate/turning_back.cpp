@@ -48,8 +48,7 @@ std::string through(const std::string& name, bool angle) {
                      "jumps; give an axis, if the hinge turns through"
                : "the ends of " + name +
                      " pass each other, where its force turns round; what follows is right to the first "
-                     "order of "
-                     "solver.step";
+                     "order of solver.step";
 }
 
 // `step`: in which it turns by some 30 degrees.

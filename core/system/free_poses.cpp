@@ -177,8 +177,8 @@ MatrixXd FreePoses::motions(const VectorXd& q) const {
   // Rigid motions that are free, and what is left without them.
   const MatrixXd R = orthonormal(rigid_motions(q), 1e-9 * std::max(1.0, size_));
   const MatrixXd rest = R - V * (V.transpose() * R);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> left(rest.transpose() *
-                                                     rest);  // squares of singular values, ascending
+  // Squares of singular values, ascending.
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> left(rest.transpose() * rest);
   const Index free = (left.eigenvalues().array() < 1e-12).count();
   const MatrixXd rigid = R * left.eigenvectors().leftCols(free);
   return orthonormal(V - rigid * (rigid.transpose() * V), 1e-6);
