@@ -13,8 +13,8 @@ namespace unfurl::random {
 // nothing where there is an answer.
 struct Verdict {
   enum class Kind { agrees, set_aside, failed } kind = Kind::agrees;
-  // The first words say the kind of failure, numbers follow after a colon. Of what agrees with shorter steps only:
-  // that.
+  // The first words say the kind of failure, numbers follow after a colon. Of what agrees with shorter steps
+  // only: that.
   std::string why;
   double error = 0;  // of the finer run against the independent solver, relative to what is allowed
   bool failed() const { return kind == Kind::failed; }
