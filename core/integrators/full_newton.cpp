@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/full_newton.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "core/math/saddle_solver.hpp"
@@ -8,13 +9,13 @@
 namespace unfurl {
 namespace {
 
-using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
-
 // The matrix, scaled: a small one entry by entry in its place, a larger one as a list of entries.
 class Entries {
  public:
-  Entries(const VectorXd& scale, MatrixXd* dense) : scale_(scale), dense_(dense) {
+  Entries(const VectorXd& scale, MatrixXd* dense, std::vector<Eigen::Triplet<double>>& list)
+      : scale_(scale), dense_(dense), list_(list) {
     if (dense_) dense_->setZero(scale.size(), scale.size());
+    list_.clear();
   }
   void add(Index i, Index j, double value) { add_scaled(i, j, value * scale_[i] * scale_[j]); }
   void add_scaled(Index i, Index j, double value) {
@@ -23,16 +24,11 @@ class Entries {
     else
       list_.emplace_back(static_cast<int>(i), static_cast<int>(j), value);
   }
-  Columns sparse() const {
-    Columns A(scale_.size(), scale_.size());
-    A.setFromTriplets(list_.begin(), list_.end());
-    return A;
-  }
 
  private:
   const VectorXd& scale_;
   MatrixXd* dense_;  // null: there is none
-  std::vector<Eigen::Triplet<double>> list_;
+  std::vector<Eigen::Triplet<double>>& list_;
 };
 
 void add_block(Entries& entries, const SparseRows& A, Index row, Index column, double scale,
@@ -193,17 +189,37 @@ void apply(StageEquations& eq, const VectorXd& x) {
 
 bool FullNewton::Factors::compute(StageEquations& eq, const VectorXd& scale) {
   const bool small = scale.size() <= largest_dense;
-  Entries entries(scale, small ? &matrix_ : nullptr);
+  Entries entries(scale, small ? &matrix_ : nullptr, entries_);
   add_newton_matrix(eq, scale, entries);
   if (small) {
     dense_.compute(matrix_);
     return true;
   }
-  const Columns A = entries.sparse();
-  if (A.nonZeros() != analysed_) sparse_.analyzePattern(A);
-  analysed_ = A.nonZeros();
-  sparse_.factorize(A);
+  assemble(scale.size());
+  sparse_.factorize(columns_);
   return sparse_.info() == Eigen::Success;
+}
+
+// Entries come in the same order for the same pattern, which is then filled as it is.
+void FullNewton::Factors::assemble(Index size) {
+  const bool known = columns_.rows() == size && slots_.size() == entries_.size() &&
+                     std::ranges::equal(slots_, entries_, [](const Slot& s, const auto& e) {
+                       return s.row == e.row() && s.column == e.col();
+                     });
+  if (known) {
+    std::fill_n(columns_.valuePtr(), columns_.nonZeros(), 0.0);
+    for (std::size_t k = 0; k < slots_.size(); ++k) columns_.valuePtr()[slots_[k].at] += entries_[k].value();
+    return;
+  }
+  columns_.resize(size, size);
+  columns_.setFromTriplets(entries_.begin(), entries_.end());
+  slots_.clear();
+  for (const auto& e : entries_) {
+    const int *first = columns_.innerIndexPtr() + columns_.outerIndexPtr()[e.col()],
+              *end = columns_.innerIndexPtr() + columns_.outerIndexPtr()[e.col() + 1];
+    slots_.push_back({e.row(), e.col(), std::lower_bound(first, end, e.row()) - columns_.innerIndexPtr()});
+  }
+  sparse_.analyzePattern(columns_);
 }
 
 VectorXd FullNewton::Factors::solve(const VectorXd& b) const {
@@ -232,10 +248,7 @@ StepStatus FullNewton::solve(StageEquations& eq, double wanted, double accepted,
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const bool kept = keep && known_ && h_ == eq.h;
   known_ = false;
-  if (!kept) {
-    set_scale(eq);
-    factors_.forget_pattern();
-  }
+  if (!kept) set_scale(eq);
   h_ = eq.h;
   double best = infinity, before = kept ? infinity : 0;
   int without_gain = 0;

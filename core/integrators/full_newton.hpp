@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <Eigen/SparseLU>
+#include <vector>
 
 #include "core/integrators/stage_equations.hpp"
 #include "core/system/state.hpp"
@@ -30,20 +31,27 @@ class FullNewton {
 
  private:
   // Small systems are factorised as dense ones, which is several times faster than what a sparse code needs
-  // to set itself up; the pattern of larger ones is analysed once a step.
+  // to set itself up; the pattern of larger ones is analysed when it is new.
   class Factors {
    public:
     using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
     bool compute(StageEquations& equations, const VectorXd& scale);  // of their Newton matrix
     VectorXd solve(const VectorXd& b) const;
-    void forget_pattern() { analysed_ = -1; }
 
    private:
     static constexpr Index largest_dense = 80;
     MatrixXd matrix_;
     Eigen::PartialPivLU<MatrixXd> dense_;
+    struct Slot {  // an entry's place in the matrix, and among its values
+      int row, column;
+      std::ptrdiff_t at;
+    };
+    void assemble(Index size);  // the entries into the columns
+
+    std::vector<Eigen::Triplet<double>> entries_;
+    std::vector<Slot> slots_;
+    Columns columns_;
     Eigen::SparseLU<Columns> sparse_;
-    Index analysed_ = -1;
   };
   void set_scale(const StageEquations& equations);
 
