@@ -158,7 +158,7 @@ void Hardware::add_pulley(const Triple& nodes, const std::vector<Vec3>& at, Draw
   const auto place = [&](int n) { return at[static_cast<std::size_t>(n)]; };
   const Vec3 middle = place(nodes[1]), back = (place(nodes[0]) - middle).normalized(),
              on = (place(nodes[2]) - middle).normalized(), inside = back + on, across = back.cross(on);
-  const double r = std::max(2.0 * thickest(), 0.8 * looks_.joint_radius[static_cast<std::size_t>(nodes[1])]);
+  const double r = std::max(3.2 * thickest(), 1.2 * looks_.joint_radius[static_cast<std::size_t>(nodes[1])]);
   if (across.norm() < 1e-3) return;  // it goes straight on
   const Vec3 axis = across.normalized(), center = middle + r * inside.normalized();
   const auto wheel = [&](double from, double to, double wide, const Color& color) {
