@@ -2,6 +2,7 @@
 #include "core/scene/write_back.hpp"
 
 #include <catch2/catch.hpp>
+#include <tuple>
 
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
@@ -71,6 +72,21 @@ TEST_CASE("written back, entries are found by their place, the first and the ten
     CHECK(result.text == expected);
     const WrittenBack moved = write_back(text, "n.toml", {"structure.nodes[" + n + "].position[1]=0.5"}, "");
     CHECK(read_scene_text(moved.text, "n.toml").custom.nodes[static_cast<std::size_t>(i)].position[1] == 0.5);
+  }
+}
+
+TEST_CASE("written back, columns count characters of one to four bytes") {
+  const std::string text =
+      "[structure]\nkind = \"custom\"\nnodes = [{name = \"\u00C4\u4E16\U0001F6F0\", mass = 5, position = [0, "
+      "0, 0]}, "
+      "{name = \"B\", mass = 7, position = [1, 0, 0]}]\nrods = [{name = \"r\", nodes = [0, 1], mass = 1}]\n";
+  for (const auto& [key, from, to] : {std::tuple("structure.nodes[0].mass=6", "mass = 5", "mass = 6"),
+                                      std::tuple("structure.nodes[1].mass=8", "mass = 7", "mass = 8")}) {
+    const WrittenBack result = write_back(text, "custom.toml", {key}, "");
+    CHECK_FALSE(result.anew);
+    std::string expected = text;
+    expected.replace(expected.find(from), 8, to);
+    CHECK(result.text == expected);
   }
 }
 
