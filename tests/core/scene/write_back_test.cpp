@@ -79,7 +79,8 @@ TEST_CASE("written back, columns count characters of one to four bytes") {
   const std::string text =
       "[structure]\nkind = \"custom\"\nnodes = [{name = \"\u00C4\u4E16\U0001F6F0\", mass = 5, position = [0, "
       "0, 0]}, "
-      "{name = \"B\", mass = 7, position = [1, 0, 0]}]\nrods = [{name = \"r\", nodes = [0, 1], mass = 1}]\n";
+      "{name = \"B\", mass = 7, position = [1, 0, 0]}]\nrods = [{name = \"r\", nodes = "
+      "[\"\u00C4\u4E16\U0001F6F0\", \"B\"], mass = 1}]\n";
   for (const auto& [key, from, to] : {std::tuple("structure.nodes[0].mass=6", "mass = 5", "mass = 6"),
                                       std::tuple("structure.nodes[1].mass=8", "mass = 7", "mass = 8")}) {
     const WrittenBack result = write_back(text, "custom.toml", {key}, "");
