@@ -107,6 +107,29 @@ TEST_CASE("a motor leaves its current limit at the right time by every method") 
   }
 }
 
+TEST_CASE("a motor hands over behind stops and cables as it does alone") {
+  const std::vector<std::string> limited{"forces[0].current_limit=3.6", "forces[0].torque_constant=0.005"};
+  const Simulation alone = run_scene(crank, limited), among = run_scene(crank + R"(
+[[forces]]
+kind = "spring"
+nodes = ["E", "T"]
+stiffness = 3
+free_length = 5.0
+tension_only = true
+[[constraints]]
+kind = "angle_stop"
+nodes = ["E", "O", "T"]
+axis = [0, 0, 1]
+max = 100000
+)",
+                                                                        limited);
+  REQUIRE(alone.events.size() == 1);
+  REQUIRE(among.events.size() == 1);  // never stretched, never touched
+  CHECK(among.events[0].name == alone.events[0].name);
+  CHECK(among.events[0].t == Approx(alone.events[0].t).margin(1e-12));
+  CHECK((end_positions(among) - end_positions(alone)).cwiseAbs().maxCoeff() <= 1e-12);
+}
+
 // Full voltage as long as the controller asks for more, k (r - th') > n T_0 (1 - n th' / w_0), then th' = r -
 // (r - th'_1) exp(-k t / I).
 TEST_CASE("a controller takes over from full voltage at the right time by every method") {
