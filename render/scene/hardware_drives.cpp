@@ -132,14 +132,16 @@ void Hardware::add_fold_drive(const Poses& poses) {
         if (swing > widest) widest = swing, hinge.nodes = {a, static_cast<int>(n), b}, hinge.end = ends[i];
       }
     if (hinge.end.rod < 0) continue;
-    hinge.side = outer_side(hinge, poses);
     hinges.push_back(hinge);
     swings.push_back(widest);
   }
   if (hinges.empty()) return;
   const double most = *std::ranges::max_element(swings);
-  for (std::size_t k = 0; k < hinges.size(); ++k)
-    if (swings[k] >= as_far * most) motors_.push_back(hinges[k]);
+  for (std::size_t k = 0; k < hinges.size(); ++k) {
+    if (swings[k] < as_far * most) continue;
+    hinges[k].side = outer_side(hinges[k], poses);
+    motors_.push_back(hinges[k]);
+  }
 }
 
 int Hardware::far_end(const RodEnd& end) const {

@@ -21,7 +21,7 @@ for listed in man/man1/unfurl.1 bash-completion/completions/unfurl zsh/vendor-co
     fish/vendor_completions.d/unfurl.fish icons/hicolor/scalable/apps/unfurl.svg; do
   [ -s "$work/prefix/share/$listed" ] || { say "share/$listed is not installed"; exit 1; }
 done
-say "desktop entry, AppStream, manual page, completions, icon, font: installed and valid"
+say "desktop entry, AppStream, manual page, completions, icon: installed and valid"
 cp -r "$source/assets/examples/client" "$work/client"
 
 cmake -S "$work/client" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_BUILD_TYPE=Release >"$work/log" || { cat "$work/log"; exit 1; }

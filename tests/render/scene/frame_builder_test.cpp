@@ -282,4 +282,27 @@ TEST_CASE("the number of a dimension line stands where neither rods nor arrows a
   }
 }
 
+TEST_CASE("arrows of loads stay apart where they crowd") {
+  const Scene scene = read_scene_file(find_scene("hoop6"));
+  const Simulation r = simulate(build_model(scene), scene.solver);
+  const FrameBuilder frames(r.trajectory, {});
+  const std::vector<Arrow> open = frames.build(r.trajectory.end_time()).arrows;
+  REQUIRE(open.size() == 12);
+  for (const double t : {0.0, 3.0, 4.0}) {
+    const std::vector<Arrow> arrows = frames.build(t).arrows;
+    REQUIRE(arrows.size() == open.size());
+    for (std::size_t i = 0; i < arrows.size(); ++i) {
+      CHECK(arrows[i].radius <= open[i].radius);
+      CHECK(arrows[i].radius >= 0.99f * open[i].radius / 3);
+      for (std::size_t k = 0; k < arrows.size();
+           ++k) {  // shafts of one sense do not touch, unless as thin as may be
+        const bool alike = (arrows[i].head - arrows[i].tail).dot(arrows[k].head - arrows[k].tail) > 0;
+        if (i != k && alike && arrows[i].radius > 0.34f * open[i].radius)
+          CHECK((arrows[i].tail - arrows[k].tail).norm() > arrows[i].radius + arrows[k].radius);
+      }
+    }
+  }
+  CHECK(frames.build(0).arrows[0].radius < 0.5f * open[0].radius);  // stowed, millimetres apart
+}
+
 }  // namespace frame_builder_test

@@ -145,6 +145,17 @@ TEST_CASE("a telescope of one stage is an actuator, however it is written") {
   CHECK(tubes[0] == tubes[1]);
 }
 
+TEST_CASE("a pulley stands for what its node weighs, a canister for that of others") {
+  const Scene scene = read_scene_file(find_scene("cable_ring"));
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const DrawList list = FrameBuilder(run.trajectory, {}).build(2.0);
+  const auto canisters =
+      std::ranges::count_if(list.sleeves, [](const Sleeve& s) { return s.finish == Finish::foil; });
+  // 24 corners: the cable bends at every second one above and below, and begins and ends at one.
+  CHECK(canisters > 0);
+  CHECK(canisters <= 13);
+}
+
 TEST_CASE("what drives a fold angle is drawn at the hinges that turn most") {
   const Scene scene = read_scene_file(find_scene("hoop6_motor"));
   const Simulation run = simulate(build_model(scene), scene.solver);
