@@ -193,8 +193,8 @@ Curve sample_points(const plot::Field& field) {
   dots.marker = Marker::circle;
   dots.marker_size = 0.4f;
   dots.color = 6;
-  for (std::size_t i = 0; i < field.x.size(); ++i)
-    for (std::size_t j = 0; j < field.y.size(); ++j)
+  for (std::size_t j = 0; j < field.y.size(); ++j)  // along x: of many above each other a trace keeps four
+    for (std::size_t i = 0; i < field.x.size(); ++i)
       if (!std::isnan(field.value(i, j))) dots.x.push_back(field.x[i]), dots.y.push_back(field.y[j]);
   return dots;
 }

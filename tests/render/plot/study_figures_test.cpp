@@ -9,6 +9,7 @@
 #include "render/plot/figures/stress_figures.hpp"
 #include "render/plot/figures/study_figures.hpp"
 #include "render/plot/figures/sweep_figures.hpp"
+#include "render/plot/layout.hpp"
 #include "tests/render/plot/recording_canvas.hpp"
 #include "tests/support/models.hpp"
 
@@ -163,6 +164,18 @@ TEST_CASE("the table of a map has a row for every cell", "[figures]") {
   std::size_t cells = 0;
   for (std::size_t at = 0; (at = numbers.find("1,cell,", at)) != std::string::npos; ++at) ++cells;
   CHECK(cells == map.panels.front().cells.size());
+}
+
+TEST_CASE("a map has a dot at every point that was computed", "[figures]") {
+  SweepPlan plan{{find_scene("hoop6_sector"), {"solver.step=0.05"}}, {}, {}, {}};
+  for (const char* axis : {"structure.fold_angle=40:80:6", "structure.hinge_force=100:400:7"})
+    plan.axes.push_back(parse_axis(axis));
+  const Figure map = sweep_figures(plan, sweep_of(plan), "Ring").front();
+  CHECK(map.panels.front().curves.back().marker == Marker::circle);
+  std::size_t dots = 0;
+  const plot::FigureLayout layout = plot::lay_out(map);
+  for (const auto& piece : layout.panels.front().curves.back()) dots += piece.size();
+  CHECK(dots == 6 * 7);
 }
 
 TEST_CASE("figures of stress runs are in order in every style", "[figures]") {
