@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/structure/course.hpp"
 #include "core/structure/dihedral.hpp"
 
 namespace unfurl {
@@ -194,6 +195,11 @@ double MeasureFunction::linear(const VectorXd& coefficients, double offset, cons
   return sum;
 }
 
+Vec3 MeasureFunction::edge(const double* q, std::size_t from) const {
+  const int a = stencil_[3 * from], b = stencil_[3 * from + 3];
+  return {q[b] - q[a], q[b + 1] - q[a + 1], q[b + 2] - q[a + 2]};
+}
+
 // s and c of the angle and their first derivatives by (d_1, d_2).
 struct MeasureFunction::Angle {
   Vec3 d1, d2;
@@ -202,13 +208,9 @@ struct MeasureFunction::Angle {
 };
 
 MeasureFunction::Angle MeasureFunction::angle_terms(const double* q) const {
-  const auto point = [&](std::size_t i) -> Vec3 {
-    const int at = stencil_[3 * i];
-    return {q[at], q[at + 1], q[at + 2]};
-  };
   Angle a;
-  a.d1 = point(1) - point(0);
-  a.d2 = point(3) - point(2);
+  a.d1 = edge(q, 0);
+  a.d2 = edge(q, 2);
   const Vec3 normal = a.d1.cross(a.d2);
   if (axis_.isZero(0.0)) {
     a.s = normal.norm();
@@ -230,14 +232,13 @@ double MeasureFunction::value_and_gradient(const double* q, double* gradient, do
   if (kind_ == MeasureKind::combination) return value_and_gradient(q, gradient, Moment(0.0), -1);
   const auto size = static_cast<Index>(stencil_.size());
   Eigen::Map<VectorXd> g(gradient, size);
-  if (kind_ == MeasureKind::dihedral) return on_branch(dihedral(q, stencil_, gradient, nullptr), near);
+  if (kind_ == MeasureKind::dihedral) return on_branch(dihedral(q, stencil_, gradient), near);
   if (kind_ == MeasureKind::coordinate) {
     g = sine_;
     return linear(sine_, 0.0, q);
   }
   if (kind_ == MeasureKind::length) {
-    const Vec3 d(q[stencil_[3]] - q[stencil_[0]], q[stencil_[4]] - q[stencil_[1]],
-                 q[stencil_[5]] - q[stencil_[2]]);
+    const Vec3 d = edge(q, 0);
     const double length = d.norm();
     const Vec3 unit = length > 0 ? Vec3(d / length) : Vec3::Zero();
     g << -unit, unit;
@@ -274,11 +275,8 @@ void MeasureFunction::hessian(const double* q, double* hess) const {
       return angle_hessian(q, hess);
     case MeasureKind::fold:
       return fold_hessian(q, hess);
-    case MeasureKind::dihedral: {
-      std::array<double, 12> unused{};
-      dihedral(q, stencil_, unused.data(), hess);
-      return;
-    }
+    case MeasureKind::dihedral:
+      return dihedral_hessian(q, stencil_, hess);
     case MeasureKind::combination:
       return combination_hessian(q, hess);
   }
@@ -299,26 +297,43 @@ void MeasureFunction::combination_hessian(const double* q, double* hess) const {
 }
 
 double MeasureFunction::curvature_along(const double* q, const double* v) const {
-  if (kind_ == MeasureKind::coordinate) return 0.0;
-  if (kind_ == MeasureKind::combination) {
-    double total = 0;
-    each_term([&](const MeasureFunction& term, double c, std::size_t, int) {
-      total += c * term.curvature_along(q, v);
-    });
-    return total;
+  switch (kind_) {
+    case MeasureKind::coordinate:
+      return 0.0;
+    case MeasureKind::length: {
+      const Vec3 d = edge(q, 0), rate = edge(v, 0);
+      return d.isZero(0.0) ? 0.0 : root(dot(d, rate, d, rate)).second;
+    }
+    case MeasureKind::angle:
+      return angle_curvature(q, v);
+    case MeasureKind::fold:
+      return second_of_angle({linear(sine_, sine_offset_, q), linear(sine_, 0.0, v), 0.0},
+                             {linear(cosine_, cosine_offset_, q), linear(cosine_, 0.0, v), 0.0});
+    case MeasureKind::dihedral:
+      return dihedral_curvature(q, v, stencil_);
+    case MeasureKind::combination:
+      break;
   }
-  if (kind_ == MeasureKind::fold) {  // atan2_hessian's form, with ds . v = s', dc . v = c'
-    const double s = linear(sine_, sine_offset_, q), c = linear(cosine_, cosine_offset_, q);
-    const double s1 = linear(sine_, 0.0, v), c1 = linear(cosine_, 0.0, v), r2 = s * s + c * c;
-    return 2 * (s * c * (c1 * c1 - s1 * s1) + (s * s - c * c) * s1 * c1) / (r2 * r2);
+  double total = 0;
+  each_term([&](const MeasureFunction& term, double c, std::size_t, int) {
+    total += c * term.curvature_along(q, v);
+  });
+  return total;
+}
+
+double MeasureFunction::angle_curvature(const double* q, const double* v) const {
+  const Vec3 d1 = edge(q, 0), d2 = edge(q, 2), v1 = edge(v, 0), v2 = edge(v, 2);
+  const Vec3 n = d1.cross(d2), n1 = d1.cross(v2) + v1.cross(d2), n2 = 2 * v1.cross(v2);
+  const Course c = dot(d1, v1, d2, v2);
+  if (!axis_.isZero(0.0)) {
+    const double h1 = axis_.dot(d1), h2 = axis_.dot(d2), r1 = axis_.dot(v1), r2 = axis_.dot(v2);
+    return second_of_angle({axis_.dot(n), axis_.dot(n1), axis_.dot(n2)},
+                           c - Course{h1 * h2, h1 * r2 + r1 * h2, 2 * r1 * r2});
   }
-  std::array<double, 144> hess{};
-  hessian(q, hess.data());
-  double sum = 0;
-  const std::size_t size = stencil_.size();
-  for (std::size_t j = 0; j < size; ++j)
-    for (std::size_t i = 0; i < size; ++i) sum += v[stencil_[i]] * hess[j * size + i] * v[stencil_[j]];
-  return sum;
+  const double s = n.norm();
+  if (s <= 1e-14 * std::abs(c.value)) return second_of_angle({s, 0, 0}, c);
+  const double s1 = n.dot(n1) / s;
+  return second_of_angle({s, s1, (n1.squaredNorm() + n.dot(n2) - s1 * s1) / s}, c);
 }
 
 // (I - n n^T) / length, n the unit direction.

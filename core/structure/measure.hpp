@@ -44,7 +44,7 @@ class MeasureFunction {
   void add_hessian(const double* q, double scale, std::vector<Eigen::Triplet<double>>& entries) const;
   // out += scale * Hess s v, by places in the stencil.
   void add_hessian_times(const double* q, const double* v, double scale, double* out) const;
-  // v^T Hess s v, without that matrix: a fold angle's is as large as the structure.
+  // v^T Hess s v: the second derivative of s along q + t v, without that matrix.
   double curvature_along(const double* q, const double* v) const;
   double rate(const double* gradient, const double* v) const {  // gradient . v
     double sum = 0;
@@ -63,6 +63,8 @@ class MeasureFunction {
   void length_hessian(const double* q, double* hess) const;
   void fold_hessian(const double* q, double* hess) const;
   void combination_hessian(const double* q, double* hess) const;
+  double angle_curvature(const double* q, const double* v) const;
+  Vec3 edge(const double* q, std::size_t from) const;  // from that of its nodes to the next
   double linear(const VectorXd& coefficients, double offset, const double* q) const;
   template <class Each>
   void each_term(const Each& each) const;

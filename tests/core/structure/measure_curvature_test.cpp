@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The second derivative of a measure along a straight line, by scalars, against v^T Hess v.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/structure/measure.hpp"
+
+using namespace unfurl;
+
+namespace measure_curvature_test {
+
+namespace {
+
+Measure of_nodes(MeasureKind kind, std::vector<int> nodes, Vec3 axis = Vec3::Zero()) {
+  Measure m;
+  m.kind = kind;
+  m.nodes = std::move(nodes);
+  m.axis = axis;
+  return m;
+}
+
+std::vector<Measure> one_of_each() {
+  const Vec3 axis = Vec3(1, -2, 0.5).normalized();
+  std::vector<Measure> all{of_nodes(MeasureKind::coordinate, {1}, axis),
+                           of_nodes(MeasureKind::length, {0, 3}),
+                           of_nodes(MeasureKind::angle, {0, 1, 2, 3}),
+                           of_nodes(MeasureKind::angle, {1, 0, 1, 4}, axis),
+                           of_nodes(MeasureKind::fold, {}),
+                           of_nodes(MeasureKind::dihedral, {0, 1, 2, 3})};
+  Measure sum;
+  sum.kind = MeasureKind::combination;
+  for (const Measure& m : all)
+    if (m.kind != MeasureKind::fold)
+      sum.terms.push_back({0.5 + 0.25 * static_cast<double>(sum.terms.size()), m});
+  all.push_back(sum);
+  return all;
+}
+
+}  // namespace
+
+// Two ways to one number: rounding of some hundred products, of terms up to the sum of the magnitudes. A
+// third, the difference of gradients over 1e-5, has an error of 1e-10 (second order) and 1e-11 (rounding) of
+// them.
+TEST_CASE("the curvature of a measure along a line is that of its Hessian") {
+  std::mt19937 random(20);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Deployment fold;
+  fold.fold_sine = {{0, 2}, {Vec3(1, 2, -1), Vec3(0.5, 0, 1)}, 0.3};
+  fold.fold_cosine = {{1, 2}, {Vec3(-1, 1, 0.2), Vec3(0.1, 1, 0)}, 0.8};
+  for (const Measure& measure : one_of_each())
+    for (int trial = 0; trial < 20; ++trial) {
+      const VectorXd q = VectorXd::NullaryExpr(15, [&] { return any(random); }),
+                     v = VectorXd::NullaryExpr(15, [&] { return any(random); });
+      const MeasureFunction f(measure, fold);
+      const std::vector<int>& stencil = f.stencil();
+      const auto size = static_cast<Index>(stencil.size());
+      MatrixXd hess(size, size);
+      f.hessian(q.data(), hess.data());
+      VectorXd along(size);
+      for (Index i = 0; i < size; ++i) along[i] = v[stencil[static_cast<std::size_t>(i)]];
+      const double by_hessian = along.dot(hess * along),
+                   terms = along.cwiseAbs().dot(hess.cwiseAbs() * along.cwiseAbs());
+      const double curvature = f.curvature_along(q.data(), v.data());
+      INFO("kind " << static_cast<int>(measure.kind) << " trial " << trial);
+      CHECK(std::abs(curvature - by_hessian) <= 1e-12 * terms);
+      const auto rate = [&](double t) {
+        const VectorXd there = q + t * v;
+        VectorXd gradient(size);
+        f.value_and_gradient(there.data(), gradient.data());
+        return gradient.dot(along);
+      };
+      CHECK(std::abs((rate(1e-5) - rate(-1e-5)) / 2e-5 - curvature) <= 1e-5 * terms + 1e-9);
+      if (measure.kind == MeasureKind::coordinate)
+        CHECK(curvature == 0.0);
+      else
+        CHECK(terms > 0.0);
+    }
+}
+
+}  // namespace measure_curvature_test
