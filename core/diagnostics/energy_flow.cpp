@@ -44,9 +44,8 @@ double EnergyMeter::taken(const State& state) {
 double EnergyMeter::damping_bound(const State& state) {
   system_.expand(state.z, q_);
   system_.expand_rate(state.w, v_);
-  SparseRows by_z, by_w;
-  system_.force_derivatives(state.t, q_, v_, by_z, by_w);
-  return rate_bound(by_w, system_.mass());
+  system_.force_derivatives(state.t, q_, v_, derivatives_);
+  return rate_bound(derivatives_.by_w.sum(), system_.mass());
 }
 
 double EnergyMeter::energy(const State& state) {

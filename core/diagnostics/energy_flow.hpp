@@ -57,6 +57,7 @@ class EnergyMeter {
   SolvedPoint before_, after_;
   bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since
   VectorXd q_, v_, unused_, lambda_, target_rate_;
+  ForceDerivatives derivatives_;
   double last_ = 0;  // time of the state that after_ is of
   Quadrature own_;   // Gauss points of steps that tell the forces of rods there
 };

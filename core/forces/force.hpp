@@ -13,7 +13,9 @@
 namespace unfurl {
 
 // dF/dq or dF/dv as entries of a sparse matrix.
-using ForceDerivative = std::vector<Eigen::Triplet<double>>;
+struct ForceDerivative : std::vector<Eigen::Triplet<double>> {
+  bool keeps_places = false;  // what is slack adds zeros, so that entries are at the same places again
+};
 
 // The three numbers of a node in node coordinates.
 inline Eigen::Map<const Vec3> node_vector(const double* x, int node) {

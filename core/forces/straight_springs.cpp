@@ -80,8 +80,12 @@ void StraightSprings::derivatives(const double* q, const double* v, ForceDerivat
   };
   Tension at;
   for (const Member& m : members_) {
-    if (!pulls(m, q, v, at) || (m.one_sided && at.N == 0.0)) continue;
     const double c = m.damping;
+    if (!pulls(m, q, v, at) || (m.one_sided && at.N == 0.0)) {
+      if (c > 0 && by_v.keeps_places) add(m, Mat3::Zero(), by_v);
+      if (by_q.keeps_places) add(m, Mat3::Zero(), by_q);
+      continue;
+    }
     const Mat3 along = at.u * at.u.transpose();
     const Mat3 hessian = at.s > 0 ? Mat3((Mat3::Identity() - along) / at.s) : Mat3(Mat3::Zero());
     Mat3 block = -at.N * hessian - (m.stiffness * at.pull.share + c * at.pull.bend * at.rate) * along;

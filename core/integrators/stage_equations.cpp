@@ -74,7 +74,10 @@ void StageEquations::look_at_forces(const VectorXd& q) {
   looked_ = t;
   if (system.constant_forces()) return;
   system.expand_rate(w_0_, v_tau_);
-  system.force_derivatives(t, q, v_tau_, by_z_, by_w_);
+  system.force_derivatives(t, q, v_tau_, derivatives_);
+  by_z_ = derivatives_.by_z.sum();
+  by_w_ = derivatives_.by_w.sum();
+  for (SparseRows* A : {&by_z_, &by_w_}) A->prune(0.0);  // of what is slack
   omega_ = std::sqrt(rate_bound(by_z_, system.mass()));
   rate_ = rate_bound(by_w_, system.mass());
   // Forces that are unknowns are not known by rounded coordinates.

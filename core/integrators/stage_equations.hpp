@@ -144,6 +144,7 @@ class StageEquations {
   // Largest magnitudes: forces, coordinates, M dX, momentum; whether all residuals are finite.
   double force_scale_ = 0, reach_ = 0, inertia_size_ = 0, momentum_size_ = 0;
   bool finite_ = true;
+  ForceDerivatives derivatives_;
   SparseRows by_z_, by_w_;       // dF/dz [N/m], dF/dz' [N s/m] where they were looked at last
   double stiffness_ = -1;        // largest entry of by_z_; negative: not looked at yet
   double damping_ = 0;           // and of by_w_

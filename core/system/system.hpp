@@ -25,6 +25,7 @@
 #include "core/math/linear_elimination.hpp"
 #include "core/math/types.hpp"
 #include "core/structure/structure.hpp"
+#include "core/system/reduced_sum.hpp"
 #include "core/system/state.hpp"
 
 namespace unfurl {
@@ -115,6 +116,8 @@ class System {
   // dF/dz and dF/dz' of the forces that vary, for Newton matrices (allocates).
   void force_derivatives(double t, const ConstVec& q, const ConstVec& v, SparseRows& by_z,
                          SparseRows& by_w) const;
+  // The same for those who ask at every step.
+  void force_derivatives(double t, const ConstVec& q, const ConstVec& v, ForceDerivatives& found) const;
 
   // Rods that give (indices of Structure::rods) and their axial forces, of all that each stands for [N].
   const std::vector<int>& giving_rods() const;

@@ -75,6 +75,12 @@ SparseRows System::Data::reduced_rows(const ForceDerivative& entries, Index coun
   return SparseRows(A * B);
 }
 
+void System::force_derivatives(double t, const ConstVec& q, const ConstVec& v,
+                               ForceDerivatives& found) const {
+  ForceDerivative &by_q = found.by_z.begin(data_->B), &by_v = found.by_w.begin(data_->B);
+  for (const auto& block : data_->forces) block->derivatives(moment(t), q.data(), v.data(), by_q, by_v);
+}
+
 SparseRows System::giving_rod_directions(const ConstVec& q) const {
   ForceDerivative by_q;
   if (data_->elastic_rods) data_->elastic_rods->directions(q.data(), by_q);
