@@ -71,7 +71,7 @@ bool SaddleSolver::factorise(const SparseRows& G) {
     for (int p = start[r]; p < start[r + 1]; ++p)
       values_[static_cast<std::size_t>(place[p])] *= row_scale_[r];
   }
-  return sparse_ ? first_serves(sparse_->ldlt.factorise(values_.data())) : factorise_safely();
+  return sparse_ ? first_serves(sparse_->ldlt.factorise(values_.data(), most_growth)) : factorise_safely();
 }
 
 bool SaddleSolver::factorise_safely() {

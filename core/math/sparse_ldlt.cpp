@@ -74,7 +74,7 @@ void SparseLdlt::analyse(const SparseRows& upper, const std::vector<int>& order)
   permuted_.assign(8 * n, 0.0);
 }
 
-bool SparseLdlt::factorise(const double* values) {
+bool SparseLdlt::factorise(const double* values, double most) {
   const int n = static_cast<int>(n_);
   std::copy(column_start_.begin(), column_start_.end() - 1, fill_.begin());
   double* const y = work_.data();
@@ -104,7 +104,7 @@ bool SparseLdlt::factorise(const double* values) {
     }
     // The pivot of a row of -C is its Schur complement in C + G A^-1 G^T: no weaker than what C has there.
     if (own < 0.0 && d > 0.5 * own) d = own;  // only round-off is left of a redundant row
-    if (d == 0.0 || !std::isfinite(d)) {
+    if (d == 0.0 || !std::isfinite(d) || d >= most) {
       std::fill(work_.begin(), work_.end(), 0.0);
       return false;
     }

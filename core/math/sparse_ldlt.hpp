@@ -6,6 +6,7 @@
 // nothing.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "core/math/types.hpp"
@@ -19,8 +20,8 @@ class SparseLdlt {
   void analyse(const SparseRows& upper, const std::vector<int>& order);
 
   // values: as the nonzeros of `upper` in their storage order. A pivot that round-off brought nearer to zero
-  // than C allows is that of C. False where a pivot is zero or not finite.
-  [[nodiscard]] bool factorise(const double* values);
+  // than C allows is that of C. False where a pivot is zero, not finite, or `most` or more.
+  [[nodiscard]] bool factorise(const double* values, double most = std::numeric_limits<double>::infinity());
 
   // Solve for `columns` right-hand sides held row by row: x[row * columns + c], in place, in the caller's row
   // order.
