@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string_view>
+#include <utility>
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
@@ -91,28 +94,48 @@ double heap_in_use() {
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-// Of the nodes that `a` shows, at every time that both have; segments add nodes behind them.
+// Where the nodes that both runs show begin among their positions: segments add nodes, a model without nets
+// has fewer.
+std::vector<std::pair<Index, Index>> common_nodes(const Trajectory& a, const Trajectory& b) {
+  std::map<std::string_view, Index> place;
+  Index at = 0;
+  for (const NodeCopy& node : b.structure().node_copies) place.emplace(node.name, at), at += 3;
+  std::vector<std::pair<Index, Index>> common;
+  at = 0;
+  for (const NodeCopy& node : a.structure().node_copies) {
+    if (const auto found = place.find(node.name); found != place.end())
+      common.emplace_back(at, found->second);
+    at += 3;
+  }
+  return common;
+}
+
+// Of those nodes, at every time that both runs have.
 double difference(const Trajectory& a, const Trajectory& b) {
-  if (b.structure().node_copies.size() < a.structure().node_copies.size()) return nan;
+  const auto common = common_nodes(a, b);
+  if (common.empty()) return nan;
   double largest = 0;
   for (std::size_t i = 0, k = 0; i < a.size(); ++i) {
     while (k < b.size() && b.time(k) < a.time(i) - 1e-9) ++k;
     if (k == b.size()) break;
-    if (b.time(k) < a.time(i) + 1e-9)
-      largest = std::max(largest, node_distance(a.positions(i), b.positions(k).head(a.positions(i).size())));
+    if (!(b.time(k) < a.time(i) + 1e-9)) continue;
+    const VectorXd x = a.positions(i), y = b.positions(k);
+    for (const auto& [at, there] : common)
+      largest = std::max(largest, (x.segment<3>(at) - y.segment<3>(there)).norm());
   }
   return largest;
 }
 
-// Of the node that moves furthest in the first run, at the last time that both have.
+// Of the one among them that moves furthest in the first run, at the last time that both have.
 double tip_difference(const Trajectory& a, const Trajectory& b) {
-  if (b.structure().node_copies.size() < a.structure().node_copies.size()) return nan;
+  const auto common = common_nodes(a, b);
+  if (common.empty()) return nan;
   const VectorXd moved = a.positions(a.size() - 1) - a.positions(0);
-  Index tip = 0;
-  for (Index i = 0; i < moved.size(); i += 3)
-    if (moved.segment<3>(i).norm() > moved.segment<3>(tip).norm()) tip = i;
+  const auto way = [&moved](const auto& node) { return moved.segment<3>(node.first).norm(); };
+  const auto [tip, there] = *std::max_element(
+      common.begin(), common.end(), [&way](const auto& x, const auto& y) { return way(x) < way(y); });
   const double t = std::min(a.end_time(), b.end_time());
-  return (a.positions_at(t) - b.positions_at(t).head(moved.size())).segment<3>(tip).norm();
+  return (a.positions_at(t).segment<3>(tip) - b.positions_at(t).segment<3>(there)).norm();
 }
 
 // What drawing sees of a run: node positions in single precision. It costs no step anything.
@@ -276,16 +299,17 @@ Table models_summary(const std::vector<MeasuredModel>& models) {
                "difference in the answer (m)", "of the tip at the end (m)", "deployed at (s)",
                "peak rod force (N)", "forces (ms)"},
               {}};
+  const auto known = [](double value) { return std::isnan(value) ? std::string() : short_number(value); };
   for (const MeasuredModel& m : models) {
     if (m.solved_coordinates == 0) {
       table.rows.push_back({m.choice.name + (m.outcome.empty() ? "" : " (" + m.outcome + ")"), "", "", "", "",
-                            "", std::isnan(m.difference) ? "" : short_number(m.difference), "", "", "", ""});
+                            "", known(m.difference), "", "", "", ""});
       continue;
     }
     table.rows.push_back(
         {m.choice.name, std::to_string(m.solved_coordinates), std::to_string(m.constraints),
          short_number(1e3 * m.cpu_median), short_number(m.cpu_median / models.front().cpu_median),
-         short_number(m.memory / 1e3), short_number(m.difference), short_number(m.tip_difference),
+         short_number(m.memory / 1e3), known(m.difference), known(m.tip_difference),
          std::isnan(m.deployment_time) ? "" : short_number(m.deployment_time, 8),
          std::isnan(m.peak_force) ? ""
                                   : short_number(m.peak_force, 6) + (m.peak_unique ? "" : " (not unique)"),
