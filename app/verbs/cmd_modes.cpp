@@ -52,7 +52,9 @@ void print_modes(const Scene& scene, const Vibration& vibration, bool elastic) {
   std::cout << scene.name << " at " << short_number(vibration.t, 6) << " s: mechanism motions "
             << vibration.mechanism_motions << ", modes of elastic rods " << elastic_modes << "\n";
   if (!elastic) std::cout << "  (no rod has a youngs_modulus: rods are rigid)\n";
-  if (!vibration.unique)
+  if (vibration.modes.empty())
+    std::cout << "  (nothing is free to move: constraints, stops and drives hold it)\n";
+  else if (!vibration.unique)
     std::cout << "  (forces are not unique at this pose, and with them the stiffness that they give)\n";
   if (!vibration.modes.empty()) std::cout << "mode   frequency (Hz)\n";
   for (std::size_t k = 0; k < std::min(most, vibration.modes.size()); ++k) {

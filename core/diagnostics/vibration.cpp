@@ -151,6 +151,7 @@ struct Solved {
 Solved solve(const AtPose& at) {
   const MatrixXd N0 = orthonormal(null_space(at.rows), at.mass),
                  Z = orthonormal(null_space(at.rigid_rows), at.mass);
+  if (Z.cols() == 0) return {};  // a drive holds all that could move
   const MatrixXd K = at.elastic + at.geometric;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> all(symmetric(Z.transpose() * K * Z));
   const MatrixXd X = Z * all.eigenvectors();

@@ -157,7 +157,6 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
           "there is no reference across the time of " + short_number(edge.t, 6) +
           " s, where the velocity of a drive jumps; an earlier solver.end_time, or a ramp, helps");
   goal = std::max(goal, 64 * std::numeric_limits<double>::epsilon() * size);
-  const double least = 1e-6 * size;
   Best best = tighten(extrapolated(*model, end, intervals, hooks), goal);
   double apart = std::numeric_limits<double>::infinity();
   Reference out;
@@ -176,7 +175,10 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
     apart = distance_of_other(variational(*model, end, intervals, hooks), *best.solution,
                               std::max(goal, best.uncertainty));
   }
-  if (!(best.uncertainty < least))
+  // Of one node alone the way that it goes is the size.
+  const double way = best.solution ? node_distance(best.solution->back(), best.solution->front()) : 0.0,
+               least = 1e-6 * std::max(size, way);
+  if (!(best.uncertainty <= least))
     throw ReferenceError(
         "the reference does not converge: " +
         (best.solution ? "its best two solutions differ by " + short_number(best.uncertainty) + " m"

@@ -204,4 +204,12 @@ TEST_CASE("a latched ring has no free motion, its lowest frequency is a measure 
   }
 }
 
+// Rods without a modulus, and a drive that holds the one way in which they can move.
+TEST_CASE("what a drive holds has no modes") {
+  const Vibration held = at_start(read_scene_file(find_scene("hoop6_motor")));
+  CHECK(held.mechanism_motions == 0);
+  CHECK(held.modes.empty());
+  CHECK(std::isnan(held.lowest_elastic()));
+}
+
 }  // namespace vibration_test

@@ -26,6 +26,20 @@ TEST_CASE("the reference of the ring is the quadrature of its energy") {
   CHECK(reference.uncertainty < 1e-12);
 }
 
+// Its size is the way that it goes: 0.05 m, of which 1e-6 are let pass and rounding is what is expected.
+TEST_CASE("one node alone has a reference, moving or at rest") {
+  const std::string text =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], mass = 2}]\n";
+  const Reference rest = solve_reference(build_model(read_scene_text(text, "rest.toml")), 0.1, 4, {}),
+                  fall =
+                      solve_reference(build_model(read_scene_text(
+                                          text + "[gravity]\nacceleration = [0, 0, -9.81]\n", "fall.toml")),
+                                      0.1, 4, {});
+  CHECK(rest.q.back().isZero(0.0));
+  CHECK(fall.q.back().z() == Approx(-0.5 * 9.81 * 0.01).epsilon(1e-14));
+  CHECK(fall.uncertainty <= 1e-15);
+}
+
 TEST_CASE("references of a whole ring, in which errors grow, are certain to round-off at every step") {
   // As above, over a chord's 3 m: 1e-13 m of the start, and by the rounding of every step or of a
   // constraint's value as much again where they are not carried.
