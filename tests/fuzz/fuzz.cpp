@@ -16,6 +16,17 @@ void require(bool holds, const char* what) {
   std::abort();
 }
 
+bool large_structure(std::string_view text) {
+  for (const char* key : {"units", "cells", "rows", "columns", "links", "windows", "sides"}) {
+    const auto at = text.find(key);
+    if (at == text.npos) continue;
+    int digits = 0;
+    for (const char c : text.substr(at, 30)) digits += c >= '0' && c <= '9';
+    if (digits > 1) return true;
+  }
+  return text.size() > 6000;
+}
+
 std::vector<std::string> lines_of(std::string_view text) {
   std::vector<std::string> lines = {""};
   for (const char c : text) {

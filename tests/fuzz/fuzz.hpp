@@ -15,6 +15,9 @@ void try_text(std::string_view text);  // one for each target
 // Ends the program where it is false, as a finding.
 void require(bool holds, const char* what);
 
+// Sizes of more than one digit are slow, not interesting.
+bool large_structure(std::string_view text);
+
 std::vector<std::string> lines_of(std::string_view text);
 
 // A file of that content in a directory of this process.

@@ -12,24 +12,8 @@
 
 using namespace unfurl;
 
-namespace {
-
-// Sizes of more than one digit are slow, not interesting.
-bool large(std::string_view text) {
-  for (const char* key : {"units", "cells", "rows", "columns", "links", "windows", "sides"}) {
-    const auto at = text.find(key);
-    if (at == text.npos) continue;
-    int digits = 0;
-    for (const char c : text.substr(at, 30)) digits += c >= '0' && c <= '9';
-    if (digits > 1) return true;
-  }
-  return text.size() > 6000;
-}
-
-}  // namespace
-
 void unfurl::fuzz::try_text(std::string_view text) {
-  if (large(text)) return;
+  if (large_structure(text)) return;
   try {
     Scene scene = read_scene_text(text, "fuzz.toml");
     scene.solver.end_time = std::min(scene.solver.end_time, 12 * scene.solver.step);
