@@ -12,6 +12,25 @@
 
 using namespace unfurl;
 
+namespace {
+
+// A JSON text without its strings: names may hold anything.
+std::string without_strings(const std::string& json) {
+  std::string out;
+  bool inside = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    if (inside && json[i] == '\\')
+      ++i;
+    else if (json[i] == '"')
+      inside = !inside;
+    else if (!inside)
+      out += json[i];
+  }
+  return out;
+}
+
+}  // namespace
+
 void unfurl::fuzz::try_text(std::string_view text) {
   if (large_structure(text)) return;
   try {
@@ -26,7 +45,8 @@ void unfurl::fuzz::try_text(std::string_view text) {
     const Diagnostics diagnostics = diagnose(run);
     const Mobility mobility = analyse_mobility(model->system, run.trajectory.node_positions(0));
     const std::string summary = summary_json("fuzz", run, diagnostics, mobility);
-    require(run.status == RunStatus::failed || summary.find("nan") == summary.npos, "a number is a number");
+    require(run.status == RunStatus::failed || without_strings(summary).find("nan") == std::string::npos,
+            "a number is a number");
   } catch (const SceneError&) {
   }
 }
