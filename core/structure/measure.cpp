@@ -302,7 +302,8 @@ double MeasureFunction::curvature_along(const double* q, const double* v) const 
       return 0.0;
     case MeasureKind::length: {
       const Vec3 d = edge(q, 0), rate = edge(v, 0);
-      return d.isZero(0.0) ? 0.0 : root(dot(d, rate, d, rate)).second;
+      const Course square = dot(d, rate, d, rate);
+      return square.value > 0 ? root(square).second : 0.0;
     }
     case MeasureKind::angle:
       return angle_curvature(q, v);

@@ -39,8 +39,9 @@ std::vector<Measure> one_of_each() {
 }  // namespace
 
 // Two ways to one number: rounding of some hundred products, of terms up to the sum of the magnitudes. A
-// third, the difference of gradients over 1e-5, has an error of 1e-10 (second order) and 1e-11 (rounding) of
-// them.
+// third, the difference of gradients over 2e-5, is off by 1e-10 / 6 times the fourth derivative, which is
+// some 1e4 times the second where points happen to lie near a line, and by the rounding of gradients over
+// 2e-5.
 TEST_CASE("the curvature of a measure along a line is that of its Hessian") {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> any(-1, 1);
@@ -75,6 +76,17 @@ TEST_CASE("the curvature of a measure along a line is that of its Hessian") {
       else
         CHECK(terms > 0.0);
     }
+}
+
+// Of points whose distance has no square: as of points in one place, where the Hessian is zero.
+TEST_CASE("the length between points closer than numbers can be squared has no curvature") {
+  VectorXd q = VectorXd::Zero(15), v = VectorXd::Zero(15);
+  q[9] = 1e-170;
+  v[10] = 1.0;
+  const MeasureFunction length(of_nodes(MeasureKind::length, {0, 3}), {});
+  CHECK(length.curvature_along(q.data(), v.data()) == 0.0);
+  q[9] = 0.5;  // v^2 / r
+  CHECK(length.curvature_along(q.data(), v.data()) == 2.0);
 }
 
 }  // namespace measure_curvature_test
