@@ -134,7 +134,10 @@ class CsvFile {
 using csv_tables::CsvFile, csv_tables::CsvRows;
 
 std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
+  const bool plain = text.find_first_of(",\"\r\n") == std::string::npos;
+  if (text.empty() || (plain && text.front() != '#' && !blank(text.front()) && !blank(text.back())))
+    return text;
   std::string cell = "\"";
   for (const char c : text) cell.append(c == '"' ? 2 : 1, c);
   return cell + '"';

@@ -38,7 +38,8 @@ void write_rod_forces_csv(PendingFile& file, const Trajectory& trajectory, const
 // trajectory.csv of these states without its header.
 std::string trajectory_rows(const Trajectory& trajectory);
 
-// A cell: in quotes where it holds a comma, a quote or a line break (RFC 4180).
+// A cell: in quotes where it holds a comma, a quote or a line break (RFC 4180), where it would begin a
+// comment, and where a reader would cut blanks off its ends.
 std::string csv_cell(const std::string& text);
 
 }  // namespace unfurl

@@ -140,7 +140,7 @@ class MarginMaker {
   void find_way() {
     const InitialState start = initial_state(structure_, model_->system);
     VectorXd z, tangent, v(path_->system().coordinates());
-    path_->point(0.0, z, tangent);
+    if (!path_->point(0.0, z, tangent)) throw PathRefused("no path leads on from the pose at the start");
     model_->system.expand_rate(start.state.w, v);
     speed_ = tangent.dot(path_->system().mass() * path_->system().reduce_rate(v));
     const double push = speed_ != 0 ? speed_ : sources_.at(0.0, 0.0, 0.0).Q;

@@ -20,6 +20,7 @@ std::string_view trimmed(std::string_view text) {
 struct Record {
   int line = 0;  // where it begins
   std::vector<std::string> cells;
+  bool closed = true;  // its quotes are
 };
 
 // Takes one record after the other from the text.
@@ -30,8 +31,8 @@ class Splitter {
   bool next(Record& record) {
     while (at_ < text_.size() && (text_[at_] == '\n' || text_[at_] == '\r' || text_[at_] == '#')) skip_line();
     if (at_ >= text_.size()) return false;
-    record = {line_, {}};
-    do record.cells.push_back(cell());
+    record = {line_, {}, true};
+    do record.cells.push_back(cell(record.closed));
     while (at_ < text_.size() && text_[at_++] == ',');
     if (at_ > 0 && text_[at_ - 1] == '\n') ++line_;
     return true;
@@ -45,10 +46,10 @@ class Splitter {
   }
 
   // Stops at the comma or line end behind the cell.
-  std::string cell() {
+  std::string cell(bool& closed) {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
     std::string value;
-    if (at_ < text_.size() && text_[at_] == '"') value = quoted_cell();
+    if (at_ < text_.size() && text_[at_] == '"') value = quoted_cell(closed);
     const std::size_t begin = at_;
     while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n') ++at_;
     std::string_view rest = text_.substr(begin, at_ - begin);
@@ -56,11 +57,13 @@ class Splitter {
     return value.append(trimmed(rest));
   }
 
-  std::string quoted_cell() {
+  std::string quoted_cell(bool& closed) {
     std::string value;
+    closed = false;
     for (++at_; at_ < text_.size(); ++at_) {
       if (text_[at_] == '"' && (at_ + 1 >= text_.size() || text_[at_ + 1] != '"')) {
         ++at_;
+        closed = true;
         break;
       }
       if (text_[at_] == '"') ++at_;
@@ -130,7 +133,8 @@ void read_number(const std::string& cell, const CsvColumn& column, CsvRow& row, 
 std::vector<std::vector<std::string>> csv_records(std::string_view text) {
   Splitter splitter(text);
   std::vector<std::vector<std::string>> rows;
-  for (Record record; splitter.next(record);) rows.push_back(std::move(record.cells));
+  for (Record record; splitter.next(record);)
+    if (record.closed) rows.push_back(std::move(record.cells));
   return rows;
 }
 
@@ -153,6 +157,10 @@ std::vector<CsvRow> read_csv(std::string_view text, const std::string& file,
   std::vector<CsvRow> rows;
   while (splitter.next(record)) {
     CsvRow row{{file, record.line, 1}, {}, {}};
+    if (!record.closed) {
+      notes.add(row.where, "", "has a quote that is not closed");
+      continue;
+    }
     if (record.cells.size() != header.size()) {
       notes.add(row.where, "",
                 "has " + std::to_string(record.cells.size()) + " cells; the header has " +

@@ -33,7 +33,7 @@ struct CsvRow {
 std::vector<CsvRow> read_csv(std::string_view text, const std::string& file,
                              const std::vector<CsvColumn>& columns, SceneNotes& notes);
 
-// The cells of every line, the header's too, unjudged.
+// The cells of every record, the header's too, unjudged; not a last one that ends within quotes.
 std::vector<std::vector<std::string>> csv_records(std::string_view text);
 
 }  // namespace unfurl

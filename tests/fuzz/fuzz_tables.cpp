@@ -8,6 +8,7 @@
 #include "core/scene/reader.hpp"
 #include "core/scene/write_back.hpp"
 #include "core/study/sweep.hpp"
+#include "core/study/table.hpp"
 #include "core/text/error.hpp"
 
 using namespace unfurl;
@@ -34,6 +35,10 @@ void unfurl::fuzz::try_text(std::string_view text) {
     SceneNotes notes;
     read_csv(text, "fuzz.csv", columns, notes);
     csv_records(text);
+    const std::string key(text.substr(0, text.size() / 2)), value(text.substr(text.size() / 2));
+    const std::vector<std::vector<std::string>> rows = {{key, value}, {value, key}};
+    require(csv_records(csv_line(rows[0]) + csv_line(rows[1])) == rows,
+            "cells read back as they were written");
   } else if (which % 3 == 1) {
     may_refuse([&] { parse_axis(std::string(text)); });
     may_refuse([&] { parse_shard(std::string(text)); });

@@ -120,6 +120,9 @@ TEST_CASE("cells that would break the table are quoted") {
   CHECK(csv_cell("plain") == "plain");
   CHECK(csv_cell("a,b") == "\"a,b\"");
   CHECK(csv_cell("say \"x\"\n") == "\"say \"\"x\"\"\n\"");
+  CHECK(csv_cell("#ff8800") == "\"#ff8800\"");  // no comment
+  CHECK(csv_cell("n#1") == "n#1");
+  CHECK(csv_cell("two ") == "\"two \"");
 }
 
 TEST_CASE("a directory that is not there is a file error") {

@@ -181,4 +181,25 @@ TEST_CASE("no margin where there is no path, or a drive does what it is told") {
   CHECK(refusal("chain").find("degrees of freedom") != std::string::npos);
 }
 
+// A lies straight above P, which its guide and the plane hold: to first order A can move sideways, and no
+// further than that.
+TEST_CASE("no margin where no path leads on from the start") {
+  const Scene scene = read_scene_text(R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [6, 0, 0], fixed = true}, {name = "A", position = [2, 0, 0.2]},
+  {name = "P", position = [2, 0, 0]}]
+rods = [{nodes = ["O", "A"], mass = 1}, {nodes = ["A", "P"], mass = 2}]
+[[constraints]]
+kind = "plane"
+nodes = ["*"]
+normal = [0, 0, 1]
+[[constraints]]
+kind = "line"
+nodes = ["P"]
+direction = [2, 1, 1]
+)",
+                                      "stuck.toml");
+  CHECK_THROWS_WITH(margin_in(scene), Catch::Contains("no path leads on from the pose at the start"));
+}
+
 }  // namespace margin_test

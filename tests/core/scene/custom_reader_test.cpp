@@ -166,6 +166,8 @@ TEST_CASE("mistakes in CSV files carry file and line") {
   CHECK(error("name,x,y,z\nA,0,0,one\n") == dir + "n.csv:2:1: z: must be a finite number; got 'one'");
   CHECK(error("name,x,y,z\nA,0,0,nan\n") == dir + "n.csv:2:1: z: must be a finite number; got 'nan'");
   CHECK(error("name,x,y,z\n\nA,0,0\n") == dir + "n.csv:3:1: has 3 cells; the header has 4");
+  CHECK(error("name,x,y,z\n\"A\",0,0,0\n\"B,0,0,1\nC,0,0,2\n") ==
+        dir + "n.csv:3:1: has a quote that is not closed");
   CHECK(error("name,x,y,z,fixed\nA,0,0,0,yes\n") ==
         dir + "n.csv:2:1: fixed: must be true or false; got 'yes'");
   CHECK(error("name,x,y\nA,0,0\n") == dir + "n.csv:1:1: column 'z' is missing");

@@ -67,6 +67,32 @@ TEST_CASE("of a result that was appended twice the later one stays, in the file 
   CHECK((*Journal(file.path, {"n", "value"}, 1).find({"1"}))[1] == "0.25");
 }
 
+TEST_CASE("a journal finds keys of any text") {
+  const std::vector<std::string> keys = {"#ff8800", " # 1", "two ", "\tthree", "a \"b\"",
+                                         "c\nd",    "\"",   "e\r",  ""};
+  const File file;
+  {
+    Journal journal(file.path, {"colour", "value"}, 1);
+    for (const std::string& key : keys) journal.append({key, key + "!"});
+  }
+  for (int again = 0; again < 2; ++again) {  // the second reads what the first has written anew
+    const Journal journal(file.path, {"colour", "value"}, 1);
+    CHECK(journal.size() == keys.size());
+    for (const std::string& key : keys) {
+      INFO(key);
+      REQUIRE(journal.find({key}));
+      CHECK((*journal.find({key}))[1] == key + "!");
+    }
+  }
+}
+
+TEST_CASE("a result torn within quotes is dropped") {
+  const File file;
+  { Journal(file.path, {"n", "value"}, 1).append({"1", "0.5"}); }
+  std::ofstream(file.path, std::ios::app) << "2,\"two\nlines";  // torn behind the break
+  CHECK(Journal(file.path, {"n", "value"}, 1).find({"2"}) == nullptr);
+}
+
 TEST_CASE("a journal of other columns is refused") {
   const File file;
   { Journal(file.path, {"n", "value"}, 1).append({"1", "0.5"}); }
