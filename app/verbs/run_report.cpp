@@ -45,7 +45,7 @@ Table outcome_of(const Simulation& run, const Diagnostics& diagnostics) {
 Table measures_of(const Simulation& run, const Diagnostics& diagnostics) {
   Table table{{"measure", "value", "unit", "meaning"}, {}};
   for (const NamedMeasure& measure : named_measures()) {
-    const double value = measure.name == "cpu" ? nan : measure.value(run, diagnostics);
+    const double value = measure.name == "cpu" ? std::nan("") : measure.value(run, diagnostics);
     if (!std::isfinite(value)) continue;
     table.rows.push_back({std::string(measure.name), short_number(value, 9), std::string(measure.unit),
                           std::string(measure.help)});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/forces/spring.hpp"
 #include "core/structure/motion_params.hpp"
 #include "core/structure/structure_error.hpp"
 

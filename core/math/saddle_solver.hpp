@@ -33,7 +33,6 @@ class SaddleSolver {
   // of small singular values.
   SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns = 1,
                double regularisation = standard_regularisation, Order order = Order::safe);
-  ~SaddleSolver();
   SaddleSolver(const SaddleSolver&) = delete;
   SaddleSolver& operator=(const SaddleSolver&) = delete;
 
@@ -104,7 +103,10 @@ class SaddleSolver {
   mutable VectorXd rhs_, best_, try_;
 
   struct Fine;  // the factors in twice the digits
-  std::unique_ptr<Fine> fine_;
+  struct FineDelete {
+    void operator()(Fine* fine) const;
+  };
+  std::unique_ptr<Fine, FineDelete> fine_;
   bool fine_ready_ = false;  // fine_ holds the present matrix
   Index redundant_ = 0;      // rows that depend on others, by the last fine factorisation
   double weakest_ = 1.0;     // the smallest pivot of the other rows, there

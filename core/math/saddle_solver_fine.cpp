@@ -56,7 +56,7 @@ struct SaddleSolver::Fine {
   }
 };
 
-SaddleSolver::~SaddleSolver() = default;
+void SaddleSolver::FineDelete::operator()(Fine* fine) const { delete fine; }
 
 double SaddleSolver::weakest_pivot(double bound) {
   if (in_use_ == sparse_.get() && !fine_ready_) {
@@ -83,7 +83,7 @@ bool SaddleSolver::factorise_finely() {
     return static_cast<std::size_t>(safe_.place[static_cast<std::size_t>(n_ + r)]);
   };
   if (!fine_) {
-    fine_ = std::make_unique<Fine>(safe_.ldlt, static_cast<std::size_t>(n_ + m_));
+    fine_.reset(new Fine(safe_.ldlt, static_cast<std::size_t>(n_ + m_)));
     for (Index r = 0; r < m_; ++r) fine_->shift[row_place(r)] = regularisation_ - fine_regularisation;
   }
   fine_ready_ = fine_->factors.factorise(values_.data(), fine_->shift.data());

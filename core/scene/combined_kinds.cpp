@@ -16,6 +16,7 @@
 #include "core/scene/scene.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/motion_params.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 namespace {

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/structures/assembly.hpp"
 #include "core/structures/hoop_joints.hpp"
 #include "core/structures/hoop_shape.hpp"
 #include "core/structures/ring.hpp"

@@ -8,6 +8,7 @@
 
 #include "render/gl/functions.hpp"
 #include "render/scene/renderer.hpp"
+#include "render/scene/shaders.hpp"
 
 namespace unfurl {
 namespace {
