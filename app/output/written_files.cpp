@@ -131,7 +131,7 @@ std::vector<WrittenFiles::Verdict> WrittenFiles::verify(const fs::path& director
     for (const Line& line : known) {
       if (now.empty()) break;
       if (line.checksum == now) verdict.kind = Verdict::same;
-      if (line.checksum == any_content && verdict.kind == Verdict::changed) verdict.kind = Verdict::grows;
+      if (line.checksum == any_content && verdict.kind == Verdict::changed) verdict.kind = Verdict::growing;
     }
     verdicts.push_back(std::move(verdict));
   }

@@ -55,7 +55,7 @@ class WrittenFiles final : public FileWatcher {
 
   // What became of the files that DIR's list names. Throws FileError where there is no list.
   struct Verdict {
-    enum Kind { same, changed, missing, grows };
+    enum Kind { same, changed, missing, growing };
     std::string name;
     Kind kind;
   };

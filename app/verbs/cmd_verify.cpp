@@ -79,7 +79,7 @@ int cmd_verify(const Arguments& arguments) {
       std::cout << (verdict.kind == Verdict::changed ? "changed: " : "missing: ") << verdict.name << "\n";
       ++bad;
     }
-    open += verdict.kind == Verdict::grows;
+    open += verdict.kind == Verdict::growing;
   }
   const std::string count = std::to_string(verdicts.size()) + (verdicts.size() == 1 ? " file" : " files");
   if (bad > 0) {

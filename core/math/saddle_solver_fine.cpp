@@ -56,7 +56,9 @@ struct SaddleSolver::Fine {
   }
 };
 
-void SaddleSolver::FineDelete::operator()(Fine* fine) const { delete fine; }
+void SaddleSolver::FineDelete::operator()(Fine* fine) const {
+  delete fine;
+}
 
 double SaddleSolver::weakest_pivot(double bound) {
   if (in_use_ == sparse_.get() && !fine_ready_) {

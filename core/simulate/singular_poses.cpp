@@ -185,7 +185,7 @@ class DipSearch {
   void run(std::vector<Event>& events, const std::function<bool()>& cancelled) {
     place_samples();
     double largest = 0;
-    for (const std::size_t quarter : {1, 2, 3})
+    for (std::size_t quarter = 1; quarter <= 3; ++quarter)
       if (const double sigma = exact(quarter * (times_.size() - 1) / 4); sigma > largest) largest = sigma;
     bool followed = false;  // the second time with the largest sigma of the first, the third without skipping
     for (int pass = 0; pass < 3 && !followed; ++pass) followed = follow(pass < 2, largest, cancelled);

@@ -13,7 +13,7 @@
 namespace unfurl {
 namespace {
 
-constexpr std::size_t printed = 0, runge_kutta = 1, nodes3 = 2, nodes4 = 3;
+constexpr std::size_t printed = 0, runge_kutta = 1, nodes3 = 2;
 
 ReproducedScheme scheme(SolverOptions o, const char* name, const char* what, const char* method, int stages,
                         const char* nodes, const char* constraints_at) {

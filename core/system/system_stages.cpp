@@ -65,13 +65,13 @@ double System::potential_energy(const State& state, const ConstVec& q) const {
   return sum;
 }
 
-SparseRows System::Data::reduced_forces(const ForceDerivative& entries) const {
-  return SparseRows(B_transposed * reduced_rows(entries, coordinates));
+SparseRows System::Data::reduced_forces(const ForceDerivative& derivative) const {
+  return SparseRows(B_transposed * reduced_rows(derivative, coordinates));
 }
 
-SparseRows System::Data::reduced_rows(const ForceDerivative& entries, Index count) const {
+SparseRows System::Data::reduced_rows(const ForceDerivative& derivative, Index count) const {
   SparseRows A(count, coordinates);
-  A.setFromTriplets(entries.begin(), entries.end());
+  A.setFromTriplets(derivative.begin(), derivative.end());
   return SparseRows(A * B);
 }
 

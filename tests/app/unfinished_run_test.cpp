@@ -144,8 +144,8 @@ TEST_CASE("a second core changes no byte of a run") {
   const std::string name = given.empty() ? scene : given;
   CAPTURE(name, changes);
   const std::string one = dir / "one", two = dir / "two";
-  const auto run = [&](const std::string& folder, const std::string& threads) {
-    Words words = run_of(name, folder, changes);
+  const auto run = [&, &given_changes = changes](const std::string& folder, const std::string& threads) {
+    Words words = run_of(name, folder, given_changes);
     words.insert(words.end(), {"--threads", threads});
     return run_program(words);
   };

@@ -296,7 +296,7 @@ end_time = 0.8
 // by the classic Runge-Kutta method, whose steps leave less than 1e-10 m (halved ones change 1e-11 m). As
 // stiff as it was at t = 0 the cable would be longer by 0.01 m in the end.
 TEST_CASE("a cable on a drum is the stiffer the less of it is left") {
-  const double EA = 900, l = 2.1, m = 1.7, g = 9.81, n = 30, J = 2e-4, r = 0.05, stall = 0.09,
+  const double EA = 900, l = 2.1, m = 1.7, g = 9.81, n = 30, J = 2e-4, r = 0.05, stalled = 0.09,
                top = 9000 * pi / 180;
   const Simulation run = run_scene(R"(
 [structure]
@@ -329,7 +329,7 @@ end_time = 6.5
   };
   const auto slope = [&](const Point& p) {
     const double left = l - p.x, N = std::max(EA * (-p.z / left - 1), 0.0);
-    const double torque = n * stall * (1 - n * p.u / (r * top));
+    const double torque = n * stalled * (1 - n * p.u / (r * top));
     return Point{p.v, N / m - g, p.u, (torque / r - N - N * N / (2 * EA)) / (n * n * J / (r * r))};
   };
   const auto moved = [](const Point& p, const Point& k, double h) {

@@ -325,14 +325,14 @@ TEST_CASE("a start that has no answer ends the run with a reason") {
                {"B", {0, 1, 1}, Vec3::Zero(), 1.0}};
     s.constraints.push_back(
         {"measure", "hinge", {}, {}, 0.0, {MeasureKind::angle, {0, 1, 0, 2}, Vec3::UnitZ(), 0.0, {}}, {}});
-    Force cable;
-    cable.kind = "spring";
-    cable.name = "cable";
-    cable.measure = {MeasureKind::length, {0, 3}, Vec3::Zero(), 0.0, {}};
-    cable.stiffness = 10;
-    cable.rest = 1;
-    cable.one_sided = true;
-    s.forces.push_back(cable);
+    Force rope;
+    rope.kind = "spring";
+    rope.name = "cable";
+    rope.measure = {MeasureKind::length, {0, 3}, Vec3::Zero(), 0.0, {}};
+    rope.stiffness = 10;
+    rope.rest = 1;
+    rope.one_sided = true;
+    s.forces.push_back(rope);
     show_as_solved(s);
     System system(s, true);
     return std::make_shared<const Model>(Model{std::move(s), std::move(system)});

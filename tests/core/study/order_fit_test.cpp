@@ -8,7 +8,8 @@ using namespace unfurl;
 
 TEST_CASE("a pure power law gives its exponent and an interval of no width") {
   std::vector<double> step, error;
-  for (int i = 0; i < 5; ++i) step.push_back(std::ldexp(1.0, -i)), error.push_back(3 * std::pow(step[i], 4));
+  for (int i = 0; i < 5; ++i)
+    step.push_back(std::ldexp(1.0, -i)), error.push_back(3 * std::pow(step.back(), 4));
   const ObservedOrder fit = fit_order(step, error);
   CHECK(fit.order == Approx(4).epsilon(1e-12));
   CHECK(fit.high - fit.low < 1e-6);  // round-off of logarithms, magnified by t = 3.2

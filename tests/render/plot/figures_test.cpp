@@ -255,7 +255,7 @@ TEST_CASE("the balance that the energy figure's caption writes is the one that i
     if (own.count(name) == 0) continue;
     const auto& curves = f.panels.at(0).curves;
     CHECK(std::count_if(curves.begin(), curves.end(),
-                        [&](const Curve& c) { return c.label == own.at(name); }) == 1);
+                        [&, &key = name](const Curve& c) { return c.label == own.at(key); }) == 1);
   }
 }
 

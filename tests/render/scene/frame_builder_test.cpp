@@ -251,7 +251,8 @@ TEST_CASE(
 TEST_CASE("the number of a dimension line stands where neither rods nor arrows are") {
   const Scene scene = read_scene_file(find_scene("hoop6"), {"render.look=blueprint", "render.hold=0"});
   const Simulation r = simulate(build_model(scene), scene.solver);
-  for (const auto& [width, height] : {std::pair(960, 600), std::pair(480, 800), std::pair(1280, 720)}) {
+  for (const auto& size : {std::pair(960, 600), std::pair(480, 800), std::pair(1280, 720)}) {
+    const auto width = size.first, height = size.second;
     FrameStyle style;
     style.width = width, style.height = height;
     style.options = scene.render;
