@@ -8,13 +8,15 @@ Draws N errors from a seed, as many from each folder of core, no file more than 
 them in at once, each behind a switch (switch.hpp). Every core test, and 60 random mechanisms, is run once to see which
 errors it passes by; then an error is switched on and the tests that pass by it are run until one fails, those of
 its own folder and the quick ones first. A test that takes six times its time has failed. Errors that do not compile
-are replaced; those that cannot change a result are left out by the rules of EQUIVALENT alone. Prints what survived, by
-folder and place, and writes build/mutation/SEED.tsv: --resume goes on from there, --again tries the survivors again
-with the tests as they are now (core must be what it was).
+are replaced by the next of the draw, as are those that cannot change a result: by the rules of EQUIVALENT, and those
+of equivalent.tsv, each with its reason. Prints what survived, by folder and place, and writes build/mutation/SEED.tsv:
+--resume goes on from there (also after more were argued equivalent), --again tries the survivors again with the tests
+as they are now (core must be what it was).
 """
 import argparse
 import hashlib
 import json
+import multiprocessing
 import os
 import random
 import re
@@ -33,8 +35,9 @@ RELEASE = os.path.join(ROOT, "build", "release")  # where the tests were built
 EQUIVALENT = [
     ("dropped statement", r"\.(reserve|shrink_to_fit)\(", "only where memory comes from"),
     ("swap", r"(min|max|hypot|larger|dot)(<[\w:]+>)?\(unfurl_mutation::on\(@\) \?", "the order says nothing"),
-    ("factor 2", r"twice\(@\) \* !?[\w:.]+(\([^()]*\))? \?", "twice what is true is true"),
 ]
+# Single ones, as (path, kind, changed line, why): found among the survivors, looked at one by one.
+ARGUED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "equivalent.tsv")
 
 
 # --- where errors can be put -------------------------------------------------------------------------------
@@ -115,7 +118,7 @@ def sites(line):
         far = {"<": ">", "<=": ">", ">": "<", ">=": "<", "==": "!=", "!=": "=="}[op]
         put("comparison", begin, end, f"({on} ? ({left} {far} {right}) : ({left} {op} {right}))")
         if near:
-            put("boundary", begin, end, f"({on} ? ({left} {near} {right}) : ({left} {op} {right}))")
+            put("boundary", begin, end, f"({on} ? ({space}edge({left}) {near} {right}) : ({left} {op} {right}))")
     for m in re.finditer(r" (&&|\|\|) ", code):
         end = end_of_operand(code, m.end(), LOW)
         if end is not None:
@@ -191,10 +194,21 @@ def in_turn(seed, folder, files, at_most):
             used[path] += 1
 
 
+def argued():
+    """{(path, kind, changed line)} that were looked at and can change nothing."""
+    with open(ARGUED, encoding="utf-8") as file:
+        rows = [row.rstrip("\n").split("\t") for row in file if row.strip() and row[0] != "#"]
+    for row in rows:
+        if len(row) != 4:
+            sys.exit(f"{ARGUED}: path, kind, changed line and why, not {row}")
+    return {tuple(row[:3]) for row in rows}
+
+
 def draw(seed, n, dropped):
     """n errors {number: (path, line, kind, change)}, as many from each folder (the first of a drawn order one more
-    where n does not divide), none of those in `dropped`, which did not compile. A number stays what it is."""
-    folders, chosen = defaultdict(list), {}
+    where n does not divide), none of those in `dropped`, which did not compile, nor of those argued equivalent. A
+    number stays what it is."""
+    folders, chosen, equivalent = defaultdict(list), {}, argued()
     for path, here in sorted(candidates().items()):
         if here:
             folders[path.split("/")[1]].append((path, here))
@@ -208,7 +222,8 @@ def draw(seed, n, dropped):
                 number, mutant = errors.send(taken)
             except StopIteration:
                 break
-            taken = mutant[:3] not in dropped
+            path, _, kind, change = mutant
+            taken = mutant[:3] not in dropped and (path, kind, readable(change)) not in equivalent
             if taken:
                 chosen[10000 * place + number] = mutant
                 quota -= 1
@@ -319,6 +334,11 @@ def compiled(seed, n):
         json.dump(sorted(dropped), open(known, "w"))
 
 
+def own(name):
+    """A path of this worker's."""
+    return os.path.join(WORK, f"{name}.{os.getpid()}")
+
+
 class Test:
     """A core test (or the random mechanisms), how long it takes and which errors it passes by."""
 
@@ -341,9 +361,10 @@ class Tests:
         before = json.load(open(known)) if os.path.exists(known) else {}
         if before.get("stamp") != stamp:
             before = {"stamp": stamp}
-        for test in self.tests:
-            if test.name not in before:
-                before[test.name] = self.look(test)
+        open_ones = [test for test in self.tests if test.name not in before]
+        with multiprocessing.Pool(os.cpu_count()) as workers:
+            for test, seen in zip(open_ones, workers.imap(self.look, open_ones)):
+                before[test.name] = seen
                 json.dump(before, open(known, "w"))
         for test in self.tests:
             if before[test.name] is not None:
@@ -357,18 +378,18 @@ class Tests:
         if self.run([test], -1, 600)[0]:
             print(f"left out, as it fails without any error: {test.name}", flush=True)
             return None
-        reached = [int(k) for k in open(os.path.join(WORK, "reached")).read().split()]
+        reached = [int(k) for k in open(own("reached")).read().split()]
         return [cpu_of_children() - begin, reached]
 
     def run(self, tests, k, seconds):
         """What fails of these tests with error k switched on, and how; '' if nothing."""
         words = [os.path.join(WORK, "random_mechanisms"), "60", "1", "43"]
         if tests[0].name != RANDOM:
-            with open(os.path.join(WORK, "chosen"), "w", encoding="utf-8") as file:
+            with open(own("chosen"), "w", encoding="utf-8") as file:
                 for test in tests:
                     file.write('"' + re.sub(r'([\\,\[\]"*])', r"\\\1", test.name) + '"\n')
-            words = [self.program, "--abort", "-f", os.path.join(WORK, "chosen")]
-        scratch = os.path.join(WORK, "scratch")
+            words = [self.program, "--abort", "-f", own("chosen")]
+        scratch = own("scratch")
         shutil.rmtree(scratch, ignore_errors=True)
         os.makedirs(scratch)
 
@@ -376,7 +397,7 @@ class Tests:
             resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds) + 1))
             resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
 
-        environment = {**os.environ, "UNFURL_MUTANT": str(k), "LP_NUM_THREADS": "0", "UNFURL_REACHED": os.path.join(WORK, "reached")}
+        environment = {**os.environ, "UNFURL_MUTANT": str(k), "LP_NUM_THREADS": "0", "UNFURL_REACHED": own("reached")}
         try:
             done = run(words, env=environment, cwd=scratch, preexec_fn=limit, timeout=20 * seconds)
         except subprocess.TimeoutExpired:
@@ -455,16 +476,24 @@ def main():
     try_all(compiled(given.seed, given.n), results, table)
 
 
+def judge(task):
+    tests, k, path = task
+    return k, *tests.verdict(k, path)
+
+
 def try_all(mutants, results, table):
     """The folders in turn, so that a run that is interrupted has looked at all of them."""
+    results = {k: v for k, v in results.items() if k in mutants}  # some may be argued equivalent since
     open_ones = sorted(set(mutants) - set(results), key=lambda k: (mutants_before(mutants, k), k))
     if open_ones:
         tests = Tests()
-    for k in open_ones:
-        path, line, kind, _ = mutants[k]
-        results[k], passing = tests.verdict(k, path)
-        print(f"{path}:{line + 1} {kind}: {results[k] or f'SURVIVES {passing} tests'}", flush=True)
-        write_table(table, mutants, results)
+        tasks = [(tests, k, mutants[k][0]) for k in open_ones]
+        with multiprocessing.Pool(os.cpu_count()) as workers:
+            for k, verdict, passing in workers.imap_unordered(judge, tasks):
+                results[k] = verdict
+                path, line, kind, _ = mutants[k]
+                print(f"{path}:{line + 1} {kind}: {verdict or f'SURVIVES {passing} tests'}", flush=True)
+                write_table(table, mutants, results)
     report(mutants, results, os.path.basename(table)[:-4])
 
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <type_traits>
 
 namespace unfurl_mutation {
 
@@ -30,15 +31,29 @@ inline bool on(int mutant) {
   reached.at[mutant].store(true, std::memory_order_relaxed);
   return mutant == chosen;
 }
-// What a term is multiplied with: -1, 2 or 0 where the error is on.
-inline int sign(int mutant) {
-  return on(mutant) ? -1 : 1;
+// What a term is multiplied with: -1, 2 or 0 where the error is on. Twice what is true or false is no error: it does
+// not compile, and another is drawn.
+struct Factor {
+  int value;
+};
+template <class T, std::enable_if_t<!std::is_same<T, bool>::value, int> = 0>
+auto operator*(Factor factor, const T& term) {
+  return factor.value * term;
 }
-inline int twice(int mutant) {
-  return on(mutant) ? 2 : 1;
+inline Factor sign(int mutant) {
+  return {on(mutant) ? -1 : 1};
 }
-inline int keep(int mutant) {
-  return on(mutant) ? 0 : 1;
+inline Factor twice(int mutant) {
+  return {on(mutant) ? 2 : 1};
+}
+inline Factor keep(int mutant) {
+  return {on(mutant) ? 0 : 1};
+}
+// The left side of a comparison that is tried with its boundary. Two reals are equal by design only, which no test
+// can force: there it does not compile.
+template <class T, std::enable_if_t<!std::is_floating_point<T>::value, int> = 0>
+const T& edge(const T& left) {
+  return left;
 }
 // What an index or a count is off by.
 inline int one(int mutant) {
