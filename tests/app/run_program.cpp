@@ -24,7 +24,8 @@ namespace {
   const int flags = O_WRONLY | O_CREAT;
   ::dup2(::open(out.c_str(), flags, 0600), STDOUT_FILENO);
   ::dup2(::open(err.c_str(), flags, 0600), STDERR_FILENO);
-  std::vector<char*> argv = {const_cast<char*>(UNFURL_PROGRAM)};
+  const char* const other = std::getenv("UNFURL_TEST_PROGRAM");  // one with seeded errors
+  std::vector<char*> argv = {const_cast<char*>(other ? other : UNFURL_PROGRAM)};
   for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   ::execv(argv[0], argv.data());

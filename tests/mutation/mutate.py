@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Seeded errors: how many the tests of core find.
+"""Seeded errors in core: how many the tests find.
 
     tests/mutation/mutate.py [SEED [N]] [--resume | --again]
 
 Draws N errors from a seed, as many from each folder of core, no file more than a third of its folder, and compiles
-them in at once, each behind a switch (switch.hpp). Every core test, and 60 random mechanisms, is run once to see which
-errors it passes by; then an error is switched on and the tests that pass by it are run until one fails, those of
-its own folder and the quick ones first. A test that takes six times its time has failed. Errors that do not compile
+them in at once, each behind a switch (switch.hpp). Every test of core, render and the program, what others read of
+its exports, and 60 random mechanisms are run once to see which errors they pass by; then an error is switched on and
+the tests that pass by it are run until one fails, core's first, of these those of its own folder and the quick ones; of
+the others the quickest, half a minute of each. A test that takes six times its time has failed. Errors that do not compile
 are replaced by the next of the draw, as are those that cannot change a result: by the rules of EQUIVALENT, and those
 of equivalent.tsv, each with its reason. Prints what survived, by folder and place, and writes build/mutation/SEED.tsv:
 --resume goes on from there (also after more were argued equivalent), --again tries the survivors again with the tests
@@ -307,7 +308,7 @@ def build(mutants):
     done = run(["cmake", "--build", folder, "--target", "unfurl_core", "--", "-k", "0"])
     if done.returncode == 0:
         shutil.rmtree(os.path.join(WORK, "objects"), ignore_errors=True)
-        for target in ("tests/core_tests", "tests/random/random_mechanisms"):
+        for target in ("unfurl", *(f"tests/{area}_tests" for area in AREAS), "tests/random/random_mechanisms"):
             done = run(linked(target), cwd=RELEASE)
             if done.returncode:
                 sys.exit(done.stderr)
@@ -334,34 +335,42 @@ def compiled(seed, n):
         json.dump(sorted(dropped), open(known, "w"))
 
 
+def program_of(area):
+    return os.path.join(WORK, f"{area}_tests")
+
+
 def own(name):
     """A path of this worker's."""
     return os.path.join(WORK, f"{name}.{os.getpid()}")
 
 
 class Test:
-    """A core test (or the random mechanisms), how long it takes and which errors it passes by."""
+    """A test (or the random mechanisms, or the exports), how long it takes and which errors it passes by."""
 
-    def __init__(self, name, folder):
-        self.name, self.folder, self.seconds, self.reached = name, folder, 0.0, set()
+    def __init__(self, area, folder, name):
+        self.area, self.folder, self.name, self.seconds, self.reached = area, folder, name, 0.0, set()
 
 
-RANDOM = "60 random mechanisms"
+AREAS = ("core", "render", "app")  # a program of tests each
+RANDOM = Test("random", "integrators", "60 random mechanisms")
+EXPORTS = Test("exports", "export", "exports: others read what was written")
+MOST_OTHERS = 30.0  # s, of the tests of render and of the program
 
 
 class Tests:
     def __init__(self):
-        self.program = os.path.join(WORK, "core_tests")
-        listed = run([self.program, "--list-test-names-only", "-v", "high"]).stdout
-        self.tests = [Test(name, place) for name, place in re.findall(r"^(.+)\t@(?:.*/)?tests/\w+/(\w+).*$", listed, re.M)]
-        if not self.tests:
-            sys.exit("no test is listed by " + self.program)
-        self.tests.append(Test(RANDOM, "integrators"))
-        known, stamp = os.path.join(WORK, "reach.json"), os.path.getmtime(self.program)
+        self.tests = [RANDOM, EXPORTS]
+        for area in AREAS:
+            listed = run([program_of(area), "--list-test-names-only", "-v", "high"]).stdout
+            found = re.findall(r"^(.+)\t@(?:.*/)?tests/\w+/(\w+).*$", listed, re.M)
+            if not found:
+                sys.exit("no test is listed by " + program_of(area))
+            self.tests += [Test(area, place, name) for name, place in found]
+        known, stamp = os.path.join(WORK, "reach.json"), os.path.getmtime(program_of("core"))
         before = json.load(open(known)) if os.path.exists(known) else {}
         if before.get("stamp") != stamp:
             before = {"stamp": stamp}
-        open_ones = [test for test in self.tests if test.name not in before]
+        open_ones = [test for test in self.tests if test.name not in before]  # names are of one test each
         with multiprocessing.Pool(os.cpu_count()) as workers:
             for test, seen in zip(open_ones, workers.imap(self.look, open_ones)):
                 before[test.name] = seen
@@ -375,20 +384,26 @@ class Tests:
     def look(self, test):
         """Its time and what it passes by; None where it fails as it is."""
         begin = cpu_of_children()
+        if os.path.exists(own("reached")):
+            os.remove(own("reached"))
         if self.run([test], -1, 600)[0]:
             print(f"left out, as it fails without any error: {test.name}", flush=True)
             return None
-        reached = [int(k) for k in open(own("reached")).read().split()]
-        return [cpu_of_children() - begin, reached]
+        seen = open(own("reached")).read().split() if os.path.exists(own("reached")) else []
+        return [cpu_of_children() - begin, sorted({int(k) for k in seen})]
 
     def run(self, tests, k, seconds):
         """What fails of these tests with error k switched on, and how; '' if nothing."""
-        words = [os.path.join(WORK, "random_mechanisms"), "60", "1", "43"]
-        if tests[0].name != RANDOM:
+        if tests[0].area == RANDOM.area:
+            words = [os.path.join(WORK, "random_mechanisms"), "60", "1", "43"]
+        elif tests[0].area == EXPORTS.area:
+            words = ["/usr/bin/python3", os.path.join(ROOT, "tests/support/check_exports.py"), os.path.join(WORK, "unfurl"),
+                     os.path.join(ROOT, "build/gltf-validator")]
+        else:
             with open(own("chosen"), "w", encoding="utf-8") as file:
                 for test in tests:
                     file.write('"' + re.sub(r'([\\,\[\]"*])', r"\\\1", test.name) + '"\n')
-            words = [self.program, "--abort", "-f", own("chosen")]
+            words = [program_of(tests[0].area), "--abort", "-f", own("chosen")]
         scratch = own("scratch")
         shutil.rmtree(scratch, ignore_errors=True)
         os.makedirs(scratch)
@@ -397,7 +412,8 @@ class Tests:
             resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds) + 1))
             resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
 
-        environment = {**os.environ, "UNFURL_MUTANT": str(k), "LP_NUM_THREADS": "0", "UNFURL_REACHED": own("reached")}
+        environment = {**os.environ, "UNFURL_MUTANT": str(k), "LP_NUM_THREADS": "0", "UNFURL_REACHED": own("reached"),
+                       "UNFURL_TEST_PROGRAM": os.path.join(WORK, "unfurl"), "UNFURL_ASSETS": os.path.join(ROOT, "assets")}
         try:
             done = run(words, env=environment, cwd=scratch, preexec_fn=limit, timeout=20 * seconds)
         except subprocess.TimeoutExpired:
@@ -413,11 +429,18 @@ class Tests:
     def verdict(self, k, path):
         """What finds error k, '' if nothing does, and how many tests pass by it."""
         mine = path.split("/")[1]
-        passing = sorted((t for t in self.tests if k in t.reached), key=lambda t: t.seconds * (0.1 if t.folder == mine else 1))
+        passing = sorted((t for t in self.tests if k in t.reached),
+                         key=lambda t: (AREAS[1:].index(t.area) if t.area in AREAS[1:] else -1,
+                                        t.seconds * (0.1 if t.folder == mine else 1)))
+        spent = defaultdict(float)
+        for test in passing:
+            spent[test.area] += test.seconds
+            test.late = test.area in AREAS[1:] and spent[test.area] > MOST_OTHERS
+        passing = [test for test in passing if not test.late]
         limits, portion, rank = [0.3, 1, 3, 10, 30, 1e9], [], 0
         for i, test in enumerate(passing):
             portion.append(test)
-            last = i + 1 == len(passing) or RANDOM in (test.name, passing[i + 1].name)
+            last = i + 1 == len(passing) or test.area != passing[i + 1].area
             if last or sum(t.seconds for t in portion) > limits[rank]:
                 found, _ = self.run(portion, k, 10 + 6 * sum(t.seconds for t in portion))
                 if found:

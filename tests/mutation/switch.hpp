@@ -14,12 +14,12 @@ inline const int chosen = [] {
   const char* number = std::getenv("UNFURL_MUTANT");
   return number ? std::atoi(number) : -1;
 }();
-// Which switches were passed by: written at the end into the file that UNFURL_REACHED names.
+// Which switches were passed by: added at the end to the file that UNFURL_REACHED names.
 struct Reached {
   std::atomic<bool> at[200000];
   ~Reached() {
     const char* path = std::getenv("UNFURL_REACHED");
-    std::FILE* file = path ? std::fopen(path, "w") : nullptr;
+    std::FILE* file = path ? std::fopen(path, "a") : nullptr;
     if (!file) return;
     for (int k = 0; k < 200000; ++k)
       if (at[k].load(std::memory_order_relaxed)) std::fprintf(file, "%d\n", k);

@@ -11,6 +11,7 @@
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -205,6 +206,33 @@ TEST_CASE("a latched ring has no free motion, its lowest frequency is a measure 
 }
 
 // Rods without a modulus, and a drive that holds the one way in which they can move.
+// A mass on a rigid rod that hangs down, between two rods along x that give, which pull unequally:
+// m w^2 = E A_1 / l_1 + E A_2 / l_2 + N / h along them, T_1 / L_1 + T_2 / L_2 + N / h across, N = m g.
+TEST_CASE("a mass between rods that give swings by their stiffness, their tension and its weight") {
+  const double m = 1.7, h = 0.8, L1 = 0.6, L2 = 0.9, l1 = 0.57, l2 = 0.88, EA1 = 3e4, EA2 = 2.1e4, g = 9.7;
+  const auto rod = [](const std::string& from, double stiffness, double free_length) {
+    return "{nodes = ['" + from + "', 'M'], mass = 0, area = 1e-4, elastic = true, youngs_modulus = " +
+           testing::number(stiffness / 1e-4) + ", free_length = " + testing::number(free_length) + "}";
+  };
+  const Vibration v = of_text(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "M", position = [0, 0, 0], mass = 1.7}, {name = "A", position = [-0.6, 0, 0], fixed = true},
+         {name = "B", position = [0.9, 0, 0], fixed = true}, {name = "D", position = [0, 0, 0.8], fixed = true}]
+rods = [)" + rod("A", EA1, l1) + ", " +
+                              rod("B", EA2, l2) + R"(, {nodes = ["D", "M"], mass = 0}]
+[gravity]
+acceleration = [0, 0, -9.7]
+)");
+  const double N = m * g, T1 = EA1 * (L1 - l1) / l1, T2 = EA2 * (L2 - l2) / l2;
+  REQUIRE(std::abs(T1 - T2) > 1);
+  std::vector<double> all = frequencies(v, false);
+  for (const double f : frequencies(v, true)) all.push_back(f);
+  std::sort(all.begin(), all.end());
+  // Eigenvalues of a 2 by 2 matrix.
+  check_close(all, {(EA1 / l1 + EA2 / l2 + N / h) / m, (T1 / L1 + T2 / L2 + N / h) / m}, 1e-12);
+}
+
 TEST_CASE("what a drive holds has no modes") {
   const Vibration held = at_start(read_scene_file(find_scene("hoop6_motor")));
   CHECK(held.mechanism_motions == 0);
