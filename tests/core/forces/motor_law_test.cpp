@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A motor's law where voltage, controller and current cut it, against those cuts written down.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "core/forces/motor.hpp"
+#include "core/system/mass_matrix.hpp"
+#include "tests/support/table_structure.hpp"
+
+using namespace unfurl;
+
+namespace motor_law_test {
+
+namespace {
+
+constexpr double t = 0.7;
+
+// On x of node a, behind a gear that turns the other way; its error is summed up in x of node d.
+Force motor_with(Motor::Control control) {
+  Force f;
+  f.kind = "motor";
+  f.measure = {MeasureKind::coordinate, {0}, Vec3::UnitX(), 0.0, {}};
+  Motor& m = f.motor;
+  m.stall = 0.4, m.no_load_speed = 12, m.gear_ratio = -2.5, m.limit = 0.31;
+  m.control = control;
+  m.command.kind = TimeFunction::Kind::rate;
+  m.command.offset = 0.3, m.command.rate = -0.2;
+  if (control == Motor::Control::none) m.command = TimeFunction(), m.command.offset = -0.8;
+  m.proportional = 0.9, m.integral = 0.35, m.derivative = control == Motor::Control::position ? 0.12 : 0.0;
+  if (control == Motor::Control::position) m.integrator = 3;
+  return f;
+}
+
+double effort_of(const Motor& m, double value, double rate, double sum) {
+  const auto full = [&](double share) { return m.stall * (share - m.gear_ratio * rate / m.no_load_speed); };
+  const double e = m.command(t) - value, e_rate = m.command.derivative(1, t) - rate;
+  double torque = full(m.command(t));
+  if (m.control != Motor::Control::none) {
+    const double asked = m.control == Motor::Control::position
+                             ? m.proportional * e + m.integral * sum + m.derivative * e_rate
+                             : m.proportional * e_rate + m.integral * e;
+    torque = std::clamp(asked / m.gear_ratio, full(-1), full(1));
+  }
+  return m.gear_ratio * std::clamp(torque, -m.limit, m.limit);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a motor gives what is asked, cut to its voltage and then to its current, and its derivatives are of "
+    "that") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const auto control : {Motor::Control::none, Motor::Control::position, Motor::Control::rate}) {
+    Structure structure = testing::table_structure();
+    structure.forces = {motor_with(control)};
+    const Force& f = structure.forces.front();
+    const MeasureFunction measure(f.measure, structure.deployment);
+    int cut = 0, uncut = 0;
+    for (int k = 0; k < 200; ++k) {
+      VectorXd q = VectorXd::Zero(12), v = VectorXd::Zero(12);
+      q[0] = 2 * uniform(random), v[0] = 4 * uniform(random), q[9] = uniform(random), v[9] = uniform(random);
+      VectorXd g(static_cast<Index>(measure.stencil().size()));
+      const MotorState s = motor_state(f, measure, -1, t, q.data(), v.data(), g.data());
+      const auto effort = [&](double by_q, double by_v, double by_z) {
+        return effort_of(f.motor, q[0] + by_q, v[0] + by_v, q[9] + by_z);
+      };
+      CHECK((s.value == q[0] && s.rate == v[0]));
+      CHECK(s.effort == Approx(effort(0, 0, 0)).margin(1e-14));
+      // Its parts are linear: differences are right to round-off, and where they agree on both sides no bend
+      // is near.
+      const double h = 1e-5;
+      const auto slope = [&](double a, double b, double c, double found) {
+        const double up = (effort(h * a, h * b, h * c) - effort(0, 0, 0)) / h,
+                     down = (effort(0, 0, 0) - effort(-h * a, -h * b, -h * c)) / h;
+        if (std::abs(up - down) < 1e-9) CHECK(found == Approx(up).margin(1e-9));
+      };
+      slope(1, 0, 0, s.by_value), slope(0, 1, 0, s.by_rate), slope(0, 0, 1, s.by_integral);
+      ++(std::abs(s.effort) == std::abs(f.motor.gear_ratio * f.motor.limit) ? cut : uncut);
+    }
+    CHECK(std::min(cut, uncut) > 20);
+  }
+}
+
+// The ghost that sums up the error, m (f' - s') on it, of the part of the motor's power and of its
+// derivatives.
+TEST_CASE("a motor and the ghost of its controller: power and derivatives agree with the force") {
+  Structure structure = testing::table_structure();
+  structure.forces = {motor_with(Motor::Control::position)};
+  structure.forces[0].motor.limit = 1e3, structure.forces[0].motor.stall = 1e3;
+  structure.forces[0].measure = {MeasureKind::length, {0, 1}, Vec3::Zero(), 0.0, {}};  // bends
+  const auto block = motor_block(structure, node_mass_matrix(structure));
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  VectorXd q(12), v(12);
+  for (VectorXd* x : {&q, &v})
+    for (double& one : *x) one = uniform(random);
+  const auto force = [&](const VectorXd& at, const VectorXd& rate) {
+    VectorXd f = VectorXd::Zero(12);
+    block->add(t, at.data(), rate.data(), 1.0, f.data());
+    return f;
+  };
+  const Vec3 d = q.segment<3>(3) - q.segment<3>(0), w = v.segment<3>(3) - v.segment<3>(0);
+  const Vec3 along = d.normalized();
+  const double rate = along.dot(w), command_rate = -0.2, mass = 1e-6;
+  const double effort = effort_of(structure.forces[0].motor, d.norm(), rate, q[9]);
+  VectorXd wanted = VectorXd::Zero(12);
+  wanted.segment<3>(0) = -effort * along, wanted.segment<3>(3) = effort * along;
+  wanted[9] = mass * (command_rate - rate);
+  CHECK((force(q, v) - wanted).cwiseAbs().maxCoeff() <= 1e-14);
+  CHECK(block->power(t, q.data(), v.data()) == Approx(wanted.dot(v)).epsilon(1e-13));
+  ForceDerivative by_q, by_v;
+  block->derivatives(t, q.data(), v.data(), by_q, by_v);
+  SparseRows K(12, 12), D(12, 12);
+  K.setFromTriplets(by_q.begin(), by_q.end());
+  D.setFromTriplets(by_v.begin(), by_v.end());
+  const double h = 1e-5;
+  for (Index i = 0; i < 12; ++i) {
+    const VectorXd unit = h * VectorXd::Unit(12, i);
+    const VectorXd k = (force(q + unit, v) - force(q - unit, v)) / (2 * h),
+                   c = (force(q, v + unit) - force(q, v - unit)) / (2 * h);
+    for (Index r = 0; r < 12;
+         ++r) {  // h^2 times third derivatives of order 10, 1e-16 / h; the ghost's by its mass
+      const double near = r == 9 ? mass * 1e-7 : 1e-8;
+      CHECK(MatrixXd(K)(r, i) == Approx(k[r]).margin(near));
+      CHECK(MatrixXd(D)(r, i) == Approx(c[r]).margin(near));
+    }
+  }
+}
+
+}  // namespace motor_law_test
