@@ -41,9 +41,9 @@ normal = [0, 1, 0]
 [gravity]
 acceleration = [0, 0, -9.81]
 [[forces]]
-kind = "torsion_spring"
-nodes = ["A", "P", "B"]
-axis = [0, 1, 0]
+kind = "torsion_spring"  # the same angle, told from its other side
+nodes = ["B", "P", "A"]
+axis = [0, -1, 0]
 stiffness = 3.7
 free_angle = 20
 [[forces]]

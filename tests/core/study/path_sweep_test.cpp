@@ -92,6 +92,31 @@ TEST_CASE("what a quadrature cannot tell goes the usual way, with the same answe
   CHECK(std::isinf(time_of(closing, c.rows[0])));
 }
 
+TEST_CASE("gravity and loads work along the path of a sweep as in a run") {
+  const std::string weak = R"(forces=[{kind="torsion_spring",fold_angle=true,stiffness=1e-9,free_angle=0}])";
+  const std::vector<std::string> axis{"structure.fold_angle=41,63"};
+  double without = 0;
+  for (const std::string more :
+       {"", "gravity.acceleration=[0.4,-1.1,-2.3]", "loads=[{nodes=[\"*\"],force=[0.2,0.1,-0.3]}]"}) {
+    INFO(more);
+    std::vector<std::string> changes{"solver.end_time=20", "solver.stages=5"};
+    if (!more.empty()) changes.push_back(more);
+    const SweepPlan plain = plan_of("scissor_mast", axis, changes);
+    std::vector<std::string> row;
+    CHECK(PathSweep(plain).measure(0, row));
+    changes.push_back(weak);
+    const SweepPlan full = plan_of("scissor_mast", axis, changes);
+    CHECK_FALSE(PathSweep(full).measure(0, row));
+    const Table a = run(plain), b = run(full);
+    for (std::size_t i = 0; i < a.rows.size(); ++i)  // 1e-9 N m of some 100, and steps of 0.01 s at order 8
+      CHECK(time_of(plain, a.rows[i]) == Approx(time_of(full, b.rows[i])).epsilon(1e-10));
+    if (more.empty())
+      without = time_of(plain, a.rows[1]);
+    else
+      CHECK(std::abs(time_of(plain, a.rows[1]) - without) > 1e-3);
+  }
+}
+
 TEST_CASE("a sweep over the method, or of what it makes, solves the full model") {
   for (const SweepPlan& plan :
        {plan_of("hoop6_sector", {"solver.stages=2,3"}, {"structure.fold_angle=40"}),
