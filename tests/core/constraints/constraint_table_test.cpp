@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every row of the constraint table: Jacobian, curvature, bias and force against finite differences of the
 // values.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -20,6 +21,9 @@ namespace {
 Structure sample() {
   Structure s = testing::table_structure();
   const Vec3 n = Vec3(1, 2, 2) / 3;
+  s.rods[1].expansion = 0.3;  // and is warmed
+  s.rods[1].warming.kind = TimeFunction::Kind::smooth;
+  s.rods[1].warming.rise = 0.7, s.rods[1].warming.duration = 2.0;
   s.constraints = {{"plane", "plane", {0}, {n}, 0.25},
                    {"line", "line", {1}, {n}, 0.0},
                    {"fixed", "fixed", {2}, {}, 0.0},
