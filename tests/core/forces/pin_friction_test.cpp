@@ -240,6 +240,18 @@ TEST_CASE("friction by a pin's force where there is no such force is refused wit
   const Scene path = read_scene_text(pendulum, "s.toml", {"solver.model=path"});
   CHECK_THROWS_WITH(simulate_as_asked(build_model(path), path.solver),
                     Catch::Contains("friction depends on the force of a pin"));
+  // A node without mass that two constraints together hold, wherever it stands in the list.
+  for (const std::string name : {"A0", "Z"}) {
+    const std::string three =
+        R"({name="P",position=[0,0,0],fixed=true},{name="B",position=[0,0,-1],fixed=true},)"
+        R"({name="A",position=[0.8,0,0],mass=1.3})";
+    const std::string held = "{name='" + name + "',position=[3,0,0]}";
+    CHECK(error_of(pendulum,
+                   {"structure.nodes=[" + (name == "Z" ? three + "," + held : held + "," + three) + "]",
+                    "constraints=[{kind='line',nodes=['" + name +
+                        "'],direction=[1,0,0]},{kind='plane',nodes=['" + name + "'],normal=[1,0,0]}]"})
+              .find("needs nodes with mass, and '" + name + "' has none") != std::string::npos);
+  }
   // A second rod beside the first: neither force is determined.
   const std::string twin =
       "structure.rods=[{name=\"arm\",nodes=[\"P\",\"A\"],mass=0},"

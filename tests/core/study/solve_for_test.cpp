@@ -46,6 +46,12 @@ TEST_CASE("a target out of reach is told with what was reached") {
   CHECK_THROWS_WITH(solve_for([](double x) { return x; }, 9, {.low = 0, .high = 1}, {}),
                     Catch::Contains("does not lie between the ends of --between"));
   CHECK_THROWS_AS(solve_for([](double) { return none; }, 9, {.start = 1}, {}), NotFound);
+  CHECK_THROWS_WITH(solve_for([](double x) { return 5 - x * x; }, 100, {.low = 1.3, .high = 4.7}, {}),
+                    Catch::Contains("for parameters from 1.3 to 4.7 the measure runs from -17.09 to 3.31"));
+  CHECK_THROWS_WITH(
+      solve_for([](double x) { return x; }, 9, {.start = 1, .most = 3}, {}),
+      Catch::Contains("no answer after 3 runs; for parameters from 0.98 to 1.02 the measure runs "
+                      "from 0.98 to 1.02"));
 }
 
 TEST_CASE("a jump over the target is no root") {
