@@ -34,14 +34,18 @@ const Command& find_command(const std::string& name) {
 }
 
 // A word that no option took: a mistyped option. Words without a dash are counted later.
-void refuse_unknown_options(const CLI::App& parser) {
+void refuse_unknown_options(const CLI::App& parser, const Command& command) {
   std::vector<std::string> kept;
   for (const auto* option : parser.get_options())
-    for (const auto& name : option->get_lnames()) kept.push_back("--" + name);
+    for (const auto& name : option->get_lnames())
+      if (takes(command, name == "output" ? "-o" : "--" + name)) kept.push_back("--" + name);
   for (const auto& word : parser.remaining()) {
     const std::string name = word.substr(0, word.find('='));
-    if (name.starts_with("-"))
-      throw UsageError("no option " + in_quotes(name) + did_you_mean(name, {kept.begin(), kept.end()}));
+    if (!name.starts_with("-")) continue;
+    const std::string near(nearest_name(name, {kept.begin(), kept.end()})), verb(command.name);
+    throw UsageError("unfurl " + verb + " has no option " + in_quotes(name) +
+                     (near.empty() ? "; unfurl help " + verb + " lists its options"
+                                   : "; did you mean " + in_quotes(near) + "?"));
   }
 }
 
@@ -145,7 +149,7 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(words_of(error));
   }
-  refuse_unknown_options(parser);
+  refuse_unknown_options(parser, command);
   refuse_foreign_options(parser, command);
   refuse_doubled_keys(parser, a.overrides);
   a.overrides.insert(a.overrides.end(), short_keys.begin(), short_keys.end());

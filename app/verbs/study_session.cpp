@@ -97,8 +97,6 @@ void StudySession::begin(const std::string& identity) {
   if (begun) require_identity(directory(), identity, "use another directory, or --force to begin anew");
   if (!identity.empty()) write_file_atomically(directory() / "scene.toml", identity);
   if (!arguments_.join) output_.written().grows(journal_);
-  fs::create_directories(directory() / "figures", error);
-  if (error) throw FileError(directory() / "figures", error.value());
   if (shard()) output_.lock().share();
 }
 
@@ -132,6 +130,9 @@ void StudySession::write(const std::string& name, const std::string& text) const
 
 std::string StudySession::write(const Figure& figure) {
   const std::string stem = "figures/" + figure.name;
+  std::error_code error;
+  fs::create_directories(directory() / "figures", error);
+  if (error) throw FileError(directory() / "figures", error.value());
   for (const char* extension : {".svg", ".pdf", ".png"}) {
     throw_if_interrupted();  // the points are kept, and figures are made of them again
     writer_.write(figure, directory() / (stem + extension));

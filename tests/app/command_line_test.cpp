@@ -44,7 +44,11 @@ TEST_CASE("a command line without a command shows the help and fails") {
 TEST_CASE("usage errors") {
   check_error({"rn"}, 2, "unfurl: no command 'rn'; did you mean 'run'?");
   check_error({"run", "hoop6", "--forse", "-o", "x"}, 2,
-              "unfurl: no option '--forse'; did you mean '--force'?");
+              "unfurl: unfurl run has no option '--forse'; did you mean '--force'?");
+  check_error({"run", "hoop6", "--banana", "3"}, 2,
+              "unfurl: unfurl run has no option '--banana'; unfurl help run lists its options");
+  check_error({"run", "hoop6", "--betwen", "3"}, 2,
+              "unfurl: unfurl run has no option '--betwen'; unfurl help run lists its options");
   check_error({"run", "hoop6", "-o"}, 2, "unfurl: -o needs a value behind it");
   check_error({"run", "hoop6", "-o", "x", "--set"}, 2, "unfurl: --set needs a value behind it");
   check_error({"figure", "hoop6", "energy", "-o", "x.png", "--dpi", "1e9"}, 2,
