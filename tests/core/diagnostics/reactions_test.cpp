@@ -177,9 +177,9 @@ TEST_CASE("what holds a node twice over is unique as their sum") {
 }
 
 TEST_CASE("planes that say that a structure is flat, and the rotor of a motor, are no supports") {
-  const auto flat = [](const std::string& held) {
-    return custom + node("O", Vec3(0, 0, 0), "fixed = true") + node("A", Vec3(1, 0, 0), "mass = 1") +
-           node("B", Vec3(2, 0, 0), "mass = 1") + rod("O", "A", "mass = 0.1") + rod("A", "B", "mass = 0.1") +
+  const auto flat = [](const std::string& held, double y = 0) {
+    return custom + node("O", Vec3(0, y, 0), "fixed = true") + node("A", Vec3(1, y, 0), "mass = 1") +
+           node("B", Vec3(2, y, 0), "mass = 1") + rod("O", "A", "mass = 0.1") + rod("A", "B", "mass = 0.1") +
            "[[structure.constraints]]\nkind = 'plane'\nnodes = " + held + "\nnormal = [0, 1, 0]\n" +
            "[[forces]]\nkind = 'motor'\nnodes = ['O', 'A', 'B']\naxis = [0, 1, 0]\nstall_torque = 1\n"
            "no_load_speed = 60\ninertia = 0.1\n" +
@@ -188,6 +188,15 @@ TEST_CASE("planes that say that a structure is flat, and the rotor of a motor, a
   CHECK(supports(testing::model_of(flat("['*']"))->structure) == std::vector<int>{0});
   CHECK(supports(testing::model_of(flat("['A', 'B']"))->structure) == std::vector<int>{0});
   CHECK(supports(testing::model_of(flat("['B']"))->structure) == std::vector<int>{0, 2});
+  CHECK(supports(testing::model_of(flat("['A', 'B']", 0.7))->structure) == std::vector<int>{0});
+  const std::vector<std::string> along{"loads=[{nodes=['B'],force=[3,0,-2]}]"};
+  CHECK(supports(testing::model_of(flat("['A', 'B']"), along)->structure) == std::vector<int>{0});
+  for (const std::string across :
+       {"loads=[{nodes=['B'],force=[3,0.1,-2]}]",
+        "forces[1]={kind='load_over_time',nodes=['B'],force=[1,0,0],times=[0,1],values=[0,1]}"}) {
+    INFO(across);
+    CHECK(supports(testing::model_of(flat("['A', 'B']"), {across})->structure) == std::vector<int>{0, 1, 2});
+  }
   // What bears something across: a table under its weight, a guide below a tripod.
   const std::vector<std::string> weight{"gravity.acceleration=[0,-9.81,0]"};
   CHECK(supports(testing::model_of(flat("['A', 'B']"), weight)->structure) == std::vector<int>{0, 1, 2});
