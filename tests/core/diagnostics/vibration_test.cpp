@@ -82,6 +82,14 @@ TEST_CASE("a bar of elastic rods, fixed at one end, has the frequencies of its f
   check_close(frequencies(v, false), squares, 1e-10);
   CHECK(v.lowest_elastic() == frequencies(v, false).front());
   CHECK(v.unique);
+  // Amplitudes sin((2 k - 1) pi i / 2 n) along the bar, the largest 1.
+  for (int mode = 1; mode <= n; ++mode) {
+    const VectorXd& shape = v.modes[static_cast<std::size_t>(mode - 1)].shape;
+    VectorXd wanted = VectorXd::Zero(3 * (n + 1));
+    for (int i = 1; i <= n; ++i) wanted[3 * i] = std::sin((2 * mode - 1) * i * pi / (2 * n));
+    wanted /= wanted.cwiseAbs().maxCoeff();
+    CHECK(std::min((shape - wanted).norm(), (shape + wanted).norm()) <= 1e-9);
+  }
 }
 
 TEST_CASE("a string of rods swings by its tension, and stretches by its stiffness") {
@@ -219,8 +227,8 @@ TEST_CASE("a mass between rods that give swings by their stiffness, their tensio
 kind = "custom"
 nodes = [{name = "M", position = [0, 0, 0], mass = 1.7}, {name = "A", position = [-0.6, 0, 0], fixed = true},
          {name = "B", position = [0.9, 0, 0], fixed = true}, {name = "D", position = [0, 0, 0.8], fixed = true}]
-rods = [)" + rod("A", EA1, l1) + ", " +
-                              rod("B", EA2, l2) + R"(, {nodes = ["D", "M"], mass = 0}]
+rods = [)" + rod("A", EA1, l1) +
+                              ", " + rod("B", EA2, l2) + R"(, {nodes = ["D", "M"], mass = 0}]
 [gravity]
 acceleration = [0, 0, -9.7]
 )");
@@ -231,6 +239,11 @@ acceleration = [0, 0, -9.7]
   std::sort(all.begin(), all.end());
   // Eigenvalues of a 2 by 2 matrix.
   check_close(all, {(EA1 / l1 + EA2 / l2 + N / h) / m, (T1 / L1 + T2 / L2 + N / h) / m}, 1e-12);
+  for (const VibrationMode& mode :
+       v.modes) {  // the stiff one along x, the other along y; M is the first node
+    const bool stiff = mode.frequency == all.back();
+    CHECK(mode.shape.cwiseAbs().isApprox(VectorXd::Unit(12, stiff ? 0 : 1), 1e-12));
+  }
 }
 
 TEST_CASE("what a drive holds has no modes") {
