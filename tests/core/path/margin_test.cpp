@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/integrators/index1.hpp"
@@ -15,6 +16,7 @@
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/simulation.hpp"
 #include "core/study/table.hpp"
+#include "tests/support/hoop_exact.hpp"
 
 using namespace unfurl;
 
@@ -68,6 +70,51 @@ TEST_CASE("static margins are the closed form's in every pose, by source") {
   const Margin half = margin_in(ring(k), {{"loads", 0.5}});
   CHECK(half.worst.margin + 1 == Approx(0.5 * (margin.worst.margin + 1)).epsilon(1e-9));
   CHECK_THROWS_WITH(margin_in(ring(k), {{"hoses", 0.5}}), Catch::Contains("did you mean"));
+}
+
+// s is the length in the metric of the masses, ds = sqrt(2 n l^2 G) dt; energies are those of springs and
+// forces, times by quadrature (tests/support/hoop_exact.hpp).
+TEST_CASE("the motion of a margin has the ring's places, times and energies, with the factors asked for") {
+  const exact::Hoop hoop{.fold_angle_deg = 74, .f = f};
+  const auto length = [&](double to) {
+    double sum = 0;
+    const auto slope = [&](double t) { return std::sqrt(12 * l * l * hoop.G(t)); };
+    for (int i = 0; i < 8; ++i)
+      sum += exact::gauss_panel(slope, to + (start - to) * i / 8, to + (start - to) * (i + 1) / 8);
+    return sum;
+  };
+  const double k = 700, factor = 1.3;
+  const Margin free = margin_in(ring(0)), sprung = margin_in(ring(k), {{"hose", factor}});
+  REQUIRE(sprung.sources.size() == 2);
+  CHECK(sprung.sources[1].name == "hose");
+  CHECK((sprung.sources[0].factor == 1 && sprung.sources[1].factor == factor));
+  for (const Margin* margin : {&free, &sprung}) {
+    const double stiffness = margin == &free ? 0 : k * factor;
+    CHECK(margin->arrives);
+    REQUIRE(margin->motion.size() > 20);
+    double least = 1e300, at = 0;
+    for (std::size_t i = 1; i < margin->motion.size(); ++i) {
+      const MarginReach& reach = margin->motion[i];
+      const double angle = reach.fold_angle, way = start - angle, spring = 0.5 * stiffness * way * way;
+      INFO(angle);
+      // Near the deployed pose an angle is known to the root of round-off: relative to the whole way.
+      CHECK(reach.s == Approx(length(angle)).margin(1e-6));
+      CHECK(reach.driven == Approx(driven(angle)).epsilon(1e-8));
+      CHECK(reach.resisted == Approx(spring).epsilon(1e-7));
+      CHECK(reach.kinetic == Approx(driven(angle) - spring).epsilon(1e-7));
+      if (margin == &free) {
+        CHECK(reach.t == Approx(hoop.time(angle)).epsilon(1e-7));
+        CHECK(reach.margin() == std::numeric_limits<double>::infinity());
+      } else if (reach.margin() < least) {
+        least = reach.margin(), at = reach.s;
+      }
+    }
+    if (margin == &sprung) {
+      // The spring, free at the start, takes its largest share at the end.
+      CHECK(margin->dynamic_min == Approx(driven(0) / (0.5 * stiffness * start * start) - 1).epsilon(1e-6));
+      CHECK(margin->dynamic_at == at);
+    }
+  }
 }
 
 TEST_CASE("the force along the path is the reaction of a drive that is held") {
