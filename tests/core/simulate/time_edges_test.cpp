@@ -168,6 +168,33 @@ TEST_CASE("every kind of time function names its edges") {
   CHECK(edges_of(f, 0.1).size() == 2);
 }
 
+TEST_CASE("all that moves has edges, in order; of one time there is one, and only what leads motions jumps") {
+  const auto from = [](double start) {
+    TimeFunction f;
+    f.kind = TimeFunction::Kind::rate, f.rate = 2, f.start = start;
+    return f;
+  };
+  Structure s;
+  s.constraints.resize(2);
+  s.constraints[0].target = from(0.9), s.constraints[1].target = from(0.4);
+  s.stops.resize(1);
+  s.stops[0].reel = from(0.6);
+  s.rods.resize(2);
+  s.rods[0].warming = from(0.1);  // does not expand
+  s.rods[1].expansion = 0.02, s.rods[1].warming = from(0.5);
+  s.forces.resize(2);
+  s.forces[0].size = from(0.2), s.forces[0].unstressed = from(0.3);
+  s.forces[1].motor.command = from(0.8), s.forces[1].size = from(0.4 * (1 + 1e-16));
+  const std::vector<std::pair<double, bool>> wanted = {{0.2, false}, {0.3, false}, {0.4, true}, {0.5, true},
+                                                       {0.6, true},  {0.8, false}, {0.9, true}};
+  const std::vector<TimeEdge> edges = time_edges(s, 0.01);
+  REQUIRE(edges.size() == wanted.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    CHECK(edges[i].t == wanted[i].first);
+    CHECK(edges[i].jump == wanted[i].second);
+  }
+}
+
 TEST_CASE("a very short step before or behind an edge leaves no noise to the next ones") {
   // Five points, each two joined by a rod: one rod more than a rigid body has. The load bends 18 or 23 us
   // from a time of the grid, on either side of it.

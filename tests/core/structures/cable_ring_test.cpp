@@ -58,6 +58,11 @@ TEST_CASE("gears leave a ring of bays one freedom, without them it has one for e
     return analyse_mobility(model->system, node_positions(model->structure)).degrees_of_freedom;
   };
   CHECK(freedom({}) == 6 + 1);  // of them 6 as a whole
+  // Each post holds the bays beside it, though one of the six is redundant.
+  int holds = 0;
+  const auto model = model_of(ring);
+  for (const Constraint& c : model->structure.constraints) holds += c.name.starts_with("bays at post B");
+  CHECK(holds == 6);
   CHECK(freedom({"structure.gears=false"}) == 6 + 6 - 3);
 }
 
