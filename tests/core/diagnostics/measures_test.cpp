@@ -4,7 +4,10 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "core/export/summary.hpp"
+#include "core/system/mobility.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -84,6 +87,58 @@ TEST_CASE("measures of a run are those of the motion, between its steps, too") {
   double newton = 0;
   for (const double x : d.at("newton_iterations").values) newton += std::isnan(x) ? 0 : x;
   CHECK(measure("newton_iterations") == newton);
+}
+
+TEST_CASE("a summary names the rod that bears most and when, of force, stress and buckling") {
+  const Simulation run = testing::run_scene(pendulums);
+  const Diagnostics d = diagnose(run);
+  struct Worst {
+    double size = 0, t = 0;
+    std::string rod;
+    void take(double x, double at, const char* name) {
+      if (x > size) *this = {x, at, name};
+    }
+  };
+  Worst force, stress, share, buckling, at_p, at_q;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+    const VectorXd x = run.trajectory.positions(i);
+    const double t = run.trajectory.time(i);
+    const double one = tension(1.3, 0.8, 1.1, -1, -x[5] / 0.8), two = tension(0.9, 1.1, 3, 0, -x[11] / 1.1);
+    const auto row = static_cast<Index>(i);
+    // Rates of order 8 in steps of 0.013 s at some 7 rad/s.
+    CHECK(d.axial_force(row, 0) == Approx(one).margin(1e-9));
+    CHECK(d.axial_force(row, 1) == Approx(two).margin(1e-9));
+    force.take(std::abs(one), t, "one"), force.take(std::abs(two), t, "two");
+    at_p.take(std::abs(one), t, ""), at_q.take(std::abs(two), t, "");
+    stress.take(std::abs(one) / 2e-5, t, "one"), stress.take(std::abs(two) / 1e-5, t, "two");
+    share.take(std::abs(one) / 600, t, "one"), share.take(std::abs(two) / 500, t, "two");
+    buckling.take(-one / euler(7e10, 2e-5, 0.8), t, "one"),
+        buckling.take(-two / euler(2e11, 1e-5, 1.1), t, "two");
+  }
+  const Model& model = run.trajectory.model();
+  const auto json = nlohmann::json::parse(
+      summary_json("two", run, d, analyse_mobility(model.system, run.trajectory.node_positions(0))));
+  const auto check = [](const nlohmann::json& entry, const char* value, const Worst& wanted, const char* rod,
+                        const char* time) {
+    CHECK(entry[value].get<double>() == Approx(wanted.size).epsilon(1e-9));
+    CHECK(entry[time] == wanted.t);
+    if (rod) CHECK(entry[rod] == wanted.rod);
+  };
+  check(json["forces"], "peak_rod_force_N", force, "peak_rod", "peak_t_s");
+  check(json["strength"]["axial_stress"], "peak_Pa", stress, "rod", "t_s");
+  check(json["strength"]["stress"], "peak_ratio", share, "rod", "t_s");
+  check(json["strength"]["buckling"], "peak_ratio", buckling, "rod", "t_s");
+  check(json["reactions"]["P"], "peak_N", at_p, nullptr, "t_s");
+  check(json["reactions"]["Q"], "peak_N", at_q, nullptr, "t_s");
+  CHECK(json["strength"]["stress"]["margin"].get<double>() == Approx(1 / share.size - 1).epsilon(1e-9));
+  CHECK(json["strength"]["buckling"]["margin"].get<double>() == Approx(1 / buckling.size - 1).epsilon(1e-9));
+  CHECK((json["forces"]["rods"] == 2 && json["forces"]["unique_rods"] == 2));
+  REQUIRE((stress.rod == "two" && share.rod == "one" && buckling.rod == "two"));  // each quantity has its own
+  for (const char* column : {"axial_force_max_unique", "axial_force_min_unique"})
+    for (const double x : d.at(column).values) CHECK(x == 1.0);
+  for (std::size_t i = 0; i < d.t.size(); ++i)
+    CHECK(d.at("constraint_round_off_max").values[i] ==
+          Approx(d.at("constraint_relative_max").values[i] / 2.220446049250313e-16));
 }
 
 }  // namespace measures_test
