@@ -113,7 +113,8 @@ nlohmann::json data_of(const std::string& page) {
   return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
 }
 
-std::vector<float> unpacked(const nlohmann::json& text) {
+template <class T = float>
+std::vector<T> unpacked(const nlohmann::json& text) {
   static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string bytes;
   unsigned bits = 0;
@@ -124,7 +125,7 @@ std::vector<float> unpacked(const nlohmann::json& text) {
     count += 6;
     if (count >= 8) bytes += static_cast<char>(bits >> static_cast<unsigned>(count -= 8) & 255U);
   }
-  return values_of<float>(bytes);
+  return values_of<T>(bytes);
 }
 
 }  // namespace
@@ -152,7 +153,18 @@ TEST_CASE(
   }
   CHECK(data["rods"][1][4] == "AB");
   CHECK(data["columns"].size() == e.diagnostics.columns.size());
-  CHECK(unpacked(data["columns"][0]["values"]).size() == unpacked(data["times"]).size());
+  const auto times = unpacked<double>(data["times"]);
+  REQUIRE(times.size() == e.diagnostics.t.size());  // few states: all of them
+  for (std::size_t c = 0; c < e.diagnostics.columns.size(); ++c) {
+    const Series& column = e.diagnostics.columns[c];
+    CHECK(data["columns"][c]["name"] == column.name);
+    const auto values = unpacked<double>(data["columns"][c]["values"]);
+    REQUIRE(values.size() == times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      CHECK(times[i] == e.diagnostics.t[i]);
+      CHECK((values[i] == column.values[i] || (std::isnan(values[i]) && std::isnan(column.values[i]))));
+    }
+  }
   CHECK(page.find("http") == std::string::npos);
   CHECK(page.find("@DATA@") == std::string::npos);
 }

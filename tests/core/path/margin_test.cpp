@@ -225,11 +225,60 @@ TEST_CASE("hinges and pairs of them that jam stall where the spring has left lea
     CHECK(h.static_torque == 0.0);
   }
   CHECK((found[1] > 0 && found[2] > 0 && found[12] > 0 && found[13] > 0 && found[14] > 0));
+  // The two halves of each of 12 chords, and at each of 12 joints two chords and a post: every two of them
+  // turn.
+  CHECK(singles == 12 + 12 * 3);
   CHECK(pairs == singles * (singles - 1) / 2);
   double together = 0;  // each hinge is in one pair with every other one
   for (const StuckHinge& h : hinges)
     if (h.name.find(" and ") != std::string::npos) together += h.turn;
   CHECK(together == Approx((singles - 1) * single).epsilon(1e-12));
+}
+
+TEST_CASE("a jammed hinge holds the structure at rest where it turns most for what is left of the drive") {
+  // Weakest at the end, where a tenth of the drive at 0 degrees is left, and twice the turn.
+  const double k = 0.9 * 12 * f * l / start;
+  const Scene scene = ring(k);
+  const auto hinges = stuck_hinges(build_model(scene), margin_in(scene), false);
+  int halves = 0;
+  for (const StuckHinge& h : hinges) {
+    if (std::abs(h.turn - 2 * start) > 1e-6) continue;
+    ++halves;
+    // Of the last of some hundred parts of the way: a few hundredths above its value at the end.
+    CHECK(h.static_torque == Approx(0.5 * 0.1 * 12 * f * l).epsilon(0.1));
+  }
+  CHECK(halves >= 12);
+}
+
+// Without a deployed pose the way is that in which it moves at the start: a pendulum thrown either way.
+TEST_CASE("a margin without a deployed pose is that of the way on which the structure sets out") {
+  for (const double speed : {1.3, -1.3}) {
+    const Scene scene =
+        read_scene_text(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "P", position = [0, 0, 0], fixed = true}, {name = "A", position = [0.8, 0, 0], mass = 1.5}]
+rods = [{nodes = ["P", "A"], mass = 0}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["A"]
+normal = [0, 1, 0]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+end_time = 0.2
+)",
+                        "s.toml", {"structure.nodes[1].velocity=[0,0," + exact_number(speed) + "]"});
+    const Margin margin = margin_in(scene);
+    REQUIRE(margin.motion.size() > 3);
+    // At level gravity is m g along the way down; s = sqrt(m) l times the angle turned.
+    CHECK(margin.points.front().forces[0] ==
+          Approx((speed < 0 ? 1 : -1) * std::sqrt(1.5) * 9.81).epsilon(1e-9));
+    const MarginReach& last = margin.motion.back();
+    const double turned = last.s / (std::sqrt(1.5) * 0.8);
+    const double fall = (speed < 0 ? 1 : -1) * 0.8 * std::sin(turned);
+    CHECK(last.kinetic == Approx(0.5 * 1.5 * 1.3 * 1.3 + 1.5 * 9.81 * fall).margin(1e-8));
+  }
 }
 
 TEST_CASE("dry friction resists in every pose, with what it holds at rest and what it takes on the way") {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/integrators/integrator.hpp"
+#include "core/simulate/pushed_model.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -156,6 +157,30 @@ end_time = 0.5
                                : 0.5 * (t - 0.4) - 5 * (t - 0.4) * (t - 0.4);
     CHECK(run.trajectory.positions_at(t)[2] == Approx(z).margin(1e-10));
   }
+}
+
+TEST_CASE(
+    "what is pushed on a node is one load of its own, behind those of the scene, however often it changes") {
+  Structure structure = double_pendulum();
+  structure.loads = {{1, Vec3(1, 2, 3)}};
+  auto model = make_model(structure);
+  const auto push = [&](int node, const Vec3& force) {
+    const auto next = pushed_model(*model, 1, node, force, true);
+    if (next) model = next;
+    return next != nullptr;
+  };
+  CHECK_FALSE(push(2, Vec3::Zero()));  // nothing was pushed there
+  CHECK(push(1, Vec3(0.5, 0, 0)));
+  CHECK(push(2, Vec3(0, 0.7, 0)));
+  CHECK(push(1, Vec3(0, 0, -4)));
+  CHECK_FALSE(push(1, Vec3(0, 0, -4)));
+  const auto& loads = model->structure.loads;
+  REQUIRE(loads.size() == 3);
+  CHECK((loads[0].node == 1 && loads[0].force == Vec3(1, 2, 3)));
+  CHECK((loads[1].node == 1 && loads[1].force == Vec3(0, 0, -4)));
+  CHECK((loads[2].node == 2 && loads[2].force == Vec3(0, 0.7, 0)));
+  CHECK_THROWS_AS(push(3, Vec3::Zero()), std::out_of_range);
+  CHECK_THROWS_AS(push(-1, Vec3::Zero()), std::out_of_range);
 }
 
 }  // namespace stepper_test

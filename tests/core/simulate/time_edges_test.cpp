@@ -168,7 +168,7 @@ TEST_CASE("every kind of time function names its edges") {
   CHECK(edges_of(f, 0.1).size() == 2);
 }
 
-TEST_CASE("all that moves has edges, in order; of one time there is one, and only what leads motions jumps") {
+TEST_CASE("all that moves has edges in order, one of one time, and only what leads motions jumps") {
   const auto from = [](double start) {
     TimeFunction f;
     f.kind = TimeFunction::Kind::rate, f.rate = 2, f.start = start;

@@ -153,6 +153,28 @@ TEST_CASE("each mistake is found, with its place and its cure") {
   }
 }
 
+TEST_CASE("every number of a rod that cannot be is named") {
+  const double endless = std::numeric_limits<double>::infinity();
+  const auto problem = [](double CustomRod::*key, double value) {
+    CustomSpec spec = triangle();
+    spec.rods[2].*key = value;
+    const std::string text = problems_of(spec);
+    return text.substr(0, text.find(':'));
+  };
+  for (const double wrong : {-1.0, endless, std::nan("")}) {
+    INFO(wrong);
+    CHECK(problem(&CustomRod::length, wrong) == "rods[2].length");
+    CHECK(problem(&CustomRod::second_moment, wrong) == "rods[2].second_moment");
+    CHECK(problem(&CustomRod::free_length, wrong) == "rods[2].free_length");
+  }
+  for (const double wrong : {-1.0, 0.0}) {
+    INFO(wrong);
+    CHECK(problem(&CustomRod::youngs_modulus, wrong) == "rods[2].youngs_modulus");
+    CHECK(problem(&CustomRod::strength, wrong) == "rods[2].strength");
+  }
+  CHECK(problem(&CustomRod::length, 2.0).empty());
+}
+
 TEST_CASE("building a wrong list throws its first problem") {
   CustomSpec spec = triangle();
   spec.rods.push_back(rod("A", "X"));

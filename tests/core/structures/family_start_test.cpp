@@ -28,6 +28,22 @@ TEST_CASE("every family: a deployment begins at fraction 0, at the fold angle th
   CHECK(found >= 6);
 }
 
+TEST_CASE("braces of every family are called so, by the nodes that they join") {
+  int found = 0;
+  for (const Family& family : families()) {
+    INFO(family.kind);
+    const Structure structure = family_structure(family.kind);
+    for (const Rod& rod : structure.rods) {
+      CHECK((rod.group == "brace") == rod.name.starts_with("brace "));
+      if (rod.group != "brace") continue;
+      ++found;
+      const auto name = [&](int node) { return structure.nodes[static_cast<std::size_t>(node)].name; };
+      CHECK(rod.name == "brace " + name(rod.a) + "-" + name(rod.b));
+    }
+  }
+  CHECK(found > 10);
+}
+
 TEST_CASE("a broken list says each thing once") {
   CustomSpec spec;
   spec.nodes = {{"A", {0, 0, 0}, {0, 0, 0}, 1.0, false}, {"B", {1.3, 0.2, 0}, {0, 0, 0}, 1.0, false}};
