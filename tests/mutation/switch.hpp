@@ -31,8 +31,8 @@ inline bool on(int mutant) {
   reached.at[mutant].store(true, std::memory_order_relaxed);
   return mutant == chosen;
 }
-// What a term is multiplied with: -1, 2 or 0 where the error is on. Twice what is true or false is no error: it does
-// not compile, and another is drawn.
+// What a term is multiplied with: -1, 2 or 0 where the error is on. Twice what is true or false is no error:
+// it does not compile, and another is drawn.
 struct Factor {
   int value;
 };
@@ -49,8 +49,8 @@ inline Factor twice(int mutant) {
 inline Factor keep(int mutant) {
   return {on(mutant) ? 0 : 1};
 }
-// The left side of a comparison that is tried with its boundary. Two reals are equal by design only, which no test
-// can force: there it does not compile.
+// The left side of a comparison that is tried with its boundary. Two reals are equal by design only, which no
+// test can force: there it does not compile.
 template <class T, std::enable_if_t<!std::is_floating_point<T>::value, int> = 0>
 const T& edge(const T& left) {
   return left;
