@@ -108,7 +108,7 @@ TEST_CASE("Ctrl-C while drawing keeps the finished frames") {
   const ScratchDirectory dir;
   const ProgramResult r =
       run_program({"render", "hoop6", "--quiet", "-o", dir / "out", "--set", "render.fps=500"},
-                  {.interrupt_after_s = 3.0});
+                  {.interrupt_after_s = 0.3, .first_wait_for = dir / "out/frames/frame_00000.png"});
   CHECK(r.code == 130);
   CHECK(r.err.find("unfurl: interrupted; what is finished is kept\n") != std::string::npos);
   const auto frames = files_in(dir / "out/frames");

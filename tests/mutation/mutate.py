@@ -301,7 +301,7 @@ def build(mutants):
     tree, folder = write_tree(mutants), os.path.join(WORK, "build")
     launcher = re.findall(r"^UNFURL_CCACHE:\w+=(.*)$", open(os.path.join(RELEASE, "CMakeCache.txt")).read(), re.M)
     done = run(["cmake", "-S", tree, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DUNFURL_TESTS=OFF",
-                "-DCMAKE_CXX_FLAGS_RELEASE=-O1", f"-DUNFURL_CCACHE={launcher[0]}",
+                "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -D_GLIBCXX_ASSERTIONS", f"-DUNFURL_CCACHE={launcher[0]}",
                 f"-DCMAKE_CXX_FLAGS=-w -include {ROOT}/tests/mutation/switch.hpp"])
     if done.returncode:
         sys.exit(done.stdout + done.stderr)
@@ -413,7 +413,8 @@ class Tests:
             if tests[0].area != EXPORTS.area:  # others reserve more than they use
                 resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
 
-        environment = {**os.environ, "UNFURL_MUTANT": str(k), "LP_NUM_THREADS": "0", "UNFURL_REACHED": own("reached"),
+        environment = {**os.environ, "UNFURL_MUTANT": str(k), "LP_NUM_THREADS": "0", "MALLOC_PERTURB_": "165",
+                       "UNFURL_REACHED": own("reached"),
                        "UNFURL_TEST_PROGRAM": os.path.join(WORK, "unfurl"), "UNFURL_ASSETS": os.path.join(ROOT, "assets")}
         try:
             done = run(words, env=environment, cwd=scratch, preexec_fn=limit, timeout=20 * seconds)

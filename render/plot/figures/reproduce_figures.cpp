@@ -11,7 +11,7 @@
 namespace unfurl {
 namespace {
 
-constexpr std::array colors{1, 6, 5, 0};
+constexpr std::array scheme_colors{1, 6, 5, 0};
 constexpr std::array dashes{Dash::solid, Dash::dashed, Dash::dash_dot, Dash::dotted};
 constexpr std::array markers{Marker::square, Marker::triangle, Marker::diamond, Marker::circle};
 
@@ -27,7 +27,7 @@ Panel error_panel(std::string title, std::string x, std::string y) {
 Curve curve(const Reproduction& r, std::size_t scheme, bool labelled) {
   Curve c;
   if (labelled) c.label = r.schemes[scheme].name;
-  c.color = colors[scheme];
+  c.color = scheme_colors[scheme];
   c.dash = dashes[scheme];
   return c;
 }
