@@ -100,7 +100,7 @@ void ElasticStages::stack(const SparseRows& G, const SparseRows& D) {
            std::equal(rows.innerIndexPtr(), rows.innerIndexPtr() + rows.nonZeros(), rows_.innerIndexPtr());
   };
   if (!saddle_ || !same_places()) saddle_ = std::make_unique<SaddleSolver>(system_.mass(), rows);
-  rows_ = std::move(rows);
+  rows_.swap(rows);
 }
 
 bool ElasticStages::take_as_rigid(std::vector<Index> rods, const SparseRows& G, const SparseRows& D) {

@@ -154,6 +154,7 @@ class Locator {
     if (system().giving_rods().empty()) return;
     const MatrixXd tension = tensions();
     std::vector<VectorXd> fits;
+    fits.reserve(samples_.size());
     for (int degree = 0; degree < static_cast<int>(samples_.size()); ++degree)
       fits.push_back(tension * shares_at_zero(samples_, degree));
     std::size_t best = fits.size() - 1;

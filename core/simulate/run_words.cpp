@@ -21,7 +21,7 @@ std::string cure(const Model& model, const State& state, bool latched, double h)
       return "; no motion follows what is driven there (" + driven +
              "): they move one another or what is held; take one away, or let rods give "
              "(structure.rod_model)";
-  const std::string step = h > 0 ? "; a smaller solver.step, or solver.adaptive = true, may get through" : "";
+  std::string step = h > 0 ? "; a smaller solver.step, or solver.adaptive = true, may get through" : "";
   if (!PinLoads::any(model.structure)) return step;
   const auto locked = PinLoads::self_locking(model.structure, model.system.node_mass(), state.t, q.data());
   return locked.friction.empty() ? step : "; pin_friction of " + locked.friction + " " + locked.problem;
