@@ -135,7 +135,6 @@ class PathRun {
     const double length = piece->b - piece->a;
     const double speed = std::sqrt(std::abs(law_->at(0.0, 0.0, 0.0).Q) * length) + std::abs(motion_.v());
     compare_equations(*piece, -1, speed);
-    if (!law_->forces().cables().empty()) return;  // which of them pull there is not known yet
     for (const double on_the_way : {-0.37, 0.61}) compare_equations(*piece, on_the_way, speed);
     law_->look_from(0.0);
   }
@@ -144,6 +143,7 @@ class PathRun {
   void compare_equations(const PathPiece& piece, double x, double v) {
     const double s = 0.5 * (piece.a + piece.b) + 0.5 * x * (piece.b - piece.a);
     law_->look_from(s);
+    pull_where_taut(s, v);
     const State state = state_at(0.0, s, v);
     const System followed = base_->system.at(last());
     Index1 index1(followed);
@@ -159,6 +159,16 @@ class PathRun {
     const auto size = [&](const VectorXd& u) { return std::sqrt(u.dot(base_->system.mass() * u)); };
     if (!(size(a - in_model) <= same_equations * (size(a) + size(in_model)) + 1e-12))
       throw PathRefused("the equations of motion hold something that the path does not know");
+  }
+
+  // Cables as the equations have them that know both of their modes.
+  void pull_where_taut(double s, double v) {
+    for (std::size_t k = 0; k < law_->forces().cables().size(); ++k) {
+      const PathForces::Cable& cable = law_->forces().cables()[k];
+      const ValueAndSlope length = law_->table().at(cable.measure, s);
+      const double e = length.value - cable.rest;
+      law_->set_pulling(k, e > 0 && cable.stiffness * e + cable.damping * length.slope * v > 0);
+    }
   }
 
   // d tangent / ds at x in [-1, 1] of a piece: T_k'(x) = k U_{k-1}(x).

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/export/atomic_file.hpp"
 
+#include <pthread.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include "core/export/checksum.hpp"
 #include "tests/support/not_tested.hpp"
@@ -195,6 +201,41 @@ TEST_CASE("whatever is written, read back or refused leaves no file open") {
     const PendingFile abandoned(scratch.path / "b.txt");
   }
   CHECK(open_files() == before);
+}
+
+// A pipe takes 64 kB; a signal ends the wait for room with what was written so far.
+TEST_CASE("what is written in parts arrives whole") {
+  const ScratchFolder scratch;
+  const fs::path pipe = scratch.path / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  struct sigaction interrupting = {}, before = {};
+  interrupting.sa_handler = [](int) {};
+  REQUIRE(::sigaction(SIGUSR1, &interrupting, &before) == 0);
+  std::string sent(1000003, ' ');
+  for (std::size_t i = 0; i < sent.size(); ++i) sent[i] = static_cast<char>('a' + i * i % 23);
+  std::string failed;
+  std::atomic<bool> done = false;
+  std::thread writer([&] {
+    try {
+      replace_bytes(pipe, sent);
+    } catch (const FileError& error) {
+      failed = error.what();
+    }
+    done = true;
+  });
+  std::ifstream in(pipe, std::ios::binary);
+  std::string received;
+  std::array<char, 4096> part{};
+  while (in.read(part.data(), part.size()) || in.gcount() > 0) {
+    received.append(part.data(), static_cast<std::size_t>(in.gcount()));
+    if (done || received.size() % (20 * part.size()) != 0) continue;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));  // until the pipe is full and the writer waits
+    ::pthread_kill(writer.native_handle(), SIGUSR1);
+  }
+  writer.join();
+  ::sigaction(SIGUSR1, &before, nullptr);
+  CHECK(failed.empty());
+  CHECK(received == sent);
 }
 
 }  // namespace atomic_file_test

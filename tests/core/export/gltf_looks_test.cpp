@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "core/export/formats.hpp"
@@ -171,6 +172,27 @@ TEST_CASE("an exported cone has its normals across its side") {
     CHECK(normal.dot(Vec3(0, 0.5, 0) - base) == Approx(0).margin(1e-6));
     CHECK(normal.dot(Vec3(base.x(), 0, base.z())) > 0);
   }
+}
+
+TEST_CASE("glTF: a node at which no rod ends is as large as the middle one of the joints") {
+  // Rods of 1, 2 and 3 m without radius are a sixtieth as thick, joints half as thick again as the thickest
+  // rod.
+  Shown shown;
+  shown.run = testing::run_scene(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', "
+      "position = [1, 0, 0]}, {name = 'C', position = [1, 0, -2]}, {name = 'D', position = [4, 0, -2]}, "
+      "{name "
+      "= 'P', position = [0, 0, 1], mass = 1}]\nrods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], "
+      "mass = 1}, {nodes = ['C', 'D'], mass = 1}]\n[solver]\nstep = 0.02\nend_time = 0.14\n");
+  const testing::Glb glb = shown.glb();
+  std::map<std::string, double> size;
+  for (const auto& node : glb.json["nodes"])
+    if (node.contains("scale") && node.contains("name")) size[node["name"]] = node["scale"][0];
+  CHECK(size.at("A") == Approx(1.5 / 60));
+  CHECK(size.at("B") == Approx(3.0 / 60));
+  CHECK(size.at("C") == Approx(4.5 / 60));
+  CHECK(size.at("D") == Approx(4.5 / 60));
+  CHECK(size.at("P") == Approx(4.5 / 60));
 }
 
 }  // namespace gltf_looks_test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A motor's law where voltage, controller and current cut it, against those cuts written down.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -82,6 +83,48 @@ TEST_CASE(
     }
     CHECK(std::min(cut, uncut) > 20);
   }
+}
+
+// The parts of clamp(clamp(asked, backward, forward), -limit, limit), told apart by what the clamps do.
+TEST_CASE("the part of a motor's law that holds is the one that has room, and no other has") {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::array<int, 5> held{};
+  for (const auto control : {Motor::Control::position, Motor::Control::rate}) {
+    Structure structure = testing::table_structure();
+    structure.forces = {motor_with(control)};
+    const Force& f = structure.forces.front();
+    const Motor& m = f.motor;
+    const MeasureFunction measure(f.measure, structure.deployment);
+    for (int k = 0; k < 2000; ++k) {
+      VectorXd q = VectorXd::Zero(12), v = VectorXd::Zero(12);
+      q[0] = 2 * uniform(random), v[0] = 6 * uniform(random), q[9] = uniform(random), v[9] = uniform(random);
+      VectorXd g(static_cast<Index>(measure.stencil().size()));
+      const MotorRooms rooms = motor_rooms(f, measure, -1, t, q.data(), v.data(), g.data());
+      const auto full = [&](double share) {
+        return m.stall * (share - m.gear_ratio * v[0] / m.no_load_speed);
+      };
+      const double torque = effort_of(m, q[0], v[0], q[9]) / m.gear_ratio;
+      const auto is = [&](double cut) {
+        return std::abs(torque - cut) < 1e-14;
+      };  // but for the gear's rounding
+      std::size_t part = 0;
+      if (is(m.limit))
+        part = 3;
+      else if (is(-m.limit))
+        part = 4;
+      else if (is(full(1)))
+        part = 1;
+      else if (is(full(-1)))
+        part = 2;
+      ++held[part];
+      for (std::size_t other = 0; other < rooms.size(); ++other) {
+        INFO(other << " where " << part << " holds");
+        CHECK((rooms[other] > 0) == (other == part));
+      }
+    }
+  }
+  for (const int times : held) CHECK(times > 20);
 }
 
 // The ghost that sums up the error, m (f' - s') on it, of the part of the motor's power and of its

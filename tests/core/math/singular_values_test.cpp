@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/math/singular_values.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -83,5 +84,16 @@ TEST_CASE("singular values do not depend on signs, and keep the sums of their po
     CHECK(values.array().pow(4).sum() == Approx((S * S).trace()).epsilon(1e-13));
     CHECK(values.array().pow(6).sum() == Approx((S * S * S).trace()).epsilon(1e-13));
     for (Index k = 1; k < values.size(); ++k) CHECK(values[k] <= values[k - 1]);
+  }
+}
+
+TEST_CASE("a matrix that is not finite has as many singular values as any other of its shape, none known") {
+  for (const Index rows : {2, 3, 5}) {
+    MatrixXd matrix = MatrixXd::Ones(rows, 3);
+    CHECK(singular_values(matrix).size() == std::min<Index>(rows, 3));
+    matrix(1, 1) = std::nan("");
+    const VectorXd values = singular_values(matrix);
+    REQUIRE(values.size() == std::min<Index>(rows, 3));
+    for (const double value : values) CHECK(std::isnan(value));
   }
 }

@@ -125,6 +125,33 @@ TEST_CASE("forces, dampers, cables and stops act on the path as on the full mode
   }
 }
 
+TEST_CASE("several cables go slack and taut on the path, each by itself") {
+  const Both run = both(
+      scene_with(
+          "four_bar",
+          {R"(forces[0]={kind="spring",nodes=["B","D"],stiffness=400,tension_only=true,free_length=3.3})",
+           R"(forces[1]={kind="spring",nodes=["A","C"],stiffness=70,tension_only=true,free_length=2.9})",
+           R"(forces[2]={kind="spring",nodes=["B","D"],stiffness=900,tension_only=true,free_length=3.45})"}),
+      3.0);
+  check_same(run, 1e-11);
+  std::set<std::string> taken_up;
+  for (const Event& event : run.full.events) taken_up.insert(event.element);
+  CHECK(taken_up.size() >= 2);
+}
+
+TEST_CASE("a cable that is taut, or just so, at the start pulls on the path as in the full model") {
+  // A and C are 3.5384 m apart there.
+  for (const char* length : {"2.9", "3.5", "3.53", "3.54", "3.6"})
+    for (const char* damping : {"0", "6"}) {
+      INFO(length << " m, " << damping << " N s/m");
+      check_same(both(scene_with("four_bar",
+                                 {std::string(R"(forces[0]={kind="spring",nodes=["A","C"],stiffness=70,)") +
+                                  "tension_only=true,free_length=" + length + ",damping=" + damping + "}"}),
+                      3.0),
+                 1e-11);
+    }
+}
+
 TEST_CASE("friction slips, reverses, sticks and gives way on the path as in the full model") {
   const std::string
       weak = R"(forces[0]={kind="friction",rods=["crank","coupler"],axis=[0,1,0],kinetic=0.4,static=0.7})",

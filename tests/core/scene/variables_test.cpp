@@ -158,4 +158,14 @@ TEST_CASE("scenes without variables keep their braces and titles") {
   CHECK(scene.custom.nodes[0].position.z() == 2.0);
 }
 
+TEST_CASE("a variable that is no finite number is refused by its name") {
+  for (const char* value : {"inf", "-inf", "nan", "true", "'12'", "[1]"}) {
+    const std::string said =
+        mistakes(with(polygon, "radius = \"=1 + 1/4\"", std::string("radius = ") + value));
+    INFO(value << ": " << said);
+    CHECK(said.find("variables.radius") != std::string::npos);
+    CHECK(said.find("must be a finite number or an expression") != std::string::npos);
+  }
+}
+
 }  // namespace variables_test

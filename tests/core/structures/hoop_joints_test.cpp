@@ -9,6 +9,7 @@
 #include "tests/support/deployment_check.hpp"
 #include "tests/support/family_structure.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 using namespace unfurl::testing;
@@ -101,6 +102,30 @@ TEST_CASE("what only joints allow is refused to the symmetric models") {
             .starts_with("perturbed_unit: planes of symmetry keep all units alike"));
   CHECK(refusal("hoop", {{"model", joints}, {"perturbed_unit", 6L}}) ==
         "perturbed_unit: perturbed_unit = 6 is none of the 6 units, which count from 0");
+}
+
+TEST_CASE("the unevenness of a hoop is the farthest that corners and sides are from each other") {
+  const Simulation run = run_scene(
+      "[structure]\nkind = 'hoop'\nmodel = 'joints'\nunits = 5\n[solver]\nstep = 0.01\nend_time = 0.01\n");
+  const Structure& s = run.trajectory.structure();
+  const VectorXd even = run.trajectory.node_positions(0);
+  const double length = s.rods.front().length, by = 0.01 * length;
+  CHECK(unevenness(s, even) <= 1e-14);
+  const Index posts = even.size() / 12;
+  for (Index k = 0; k < posts; ++k) {
+    VectorXd q = even;
+    q[12 * k + 2] += by;
+    CHECK(unevenness(s, q) == Approx(0.01).epsilon(1e-12));
+    // A corner along the side to the next: that one is shorter by as much, the one before at most longer by
+    // it.
+    const auto corner = [&](Index i) { return Vec3(even.segment<3>(12 * (i % posts))); };
+    const Vec3 along = (corner(k + 1) - corner(k)).normalized();
+    q = even;
+    q.segment<3>(12 * k) += by * along;
+    const double side = (corner(k + 1) - corner(k)).norm();
+    const double before = (corner(k) + by * along - corner(k + posts - 1)).norm();
+    CHECK(unevenness(s, q) == Approx((std::max(before, side) - (side - by)) / length).epsilon(1e-12));
+  }
 }
 
 }  // namespace hoop_joints_test

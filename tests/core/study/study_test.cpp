@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -54,6 +55,20 @@ TEST_CASE("a second study takes its points from the journal") {
   const Study second = run_study(plan, journal, {});
   // CPU times never repeat to the last digit: equal ones were not measured again.
   CHECK(points_table(first).rows == points_table(second).rows);
+}
+
+TEST_CASE("a study tells how far it is, and at its end that it is done") {
+  StudyPlan plan = small_plan();
+  plan.settings.resize(2);
+  Journal nowhere({}, study_columns(), study_key_columns);
+  std::vector<double> told;
+  StudyHooks hooks;
+  hooks.progress = [&](double fraction) { told.push_back(fraction); };
+  run_study(plan, nowhere, hooks);
+  REQUIRE(told.size() > 2);
+  CHECK(std::is_sorted(told.begin(), told.end()));
+  CHECK(told.front() < 0.5);
+  CHECK(told.back() == 1);
 }
 
 TEST_CASE("a cancelled study keeps its points") {
