@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "core/path/path_run.hpp"
 #include "core/scene/build.hpp"
@@ -112,6 +113,19 @@ std::vector<const Event*> lasting(const Simulation& run) {
   return out;
 }
 
+// What is said of an event, by its kind.
+std::string said_of(const Event& event) {
+  if (event.kind == "contact" && event.name.starts_with("rests")) return "rests on stop " + event.element;
+  if (event.kind == "contact") return "stop " + event.element;
+  if (event.kind == "free") return "leaves stop " + event.element;
+  if (event.kind == "taut") return event.element + " pulls";
+  if (event.kind == "slack") return event.element + " is slack";
+  if (event.kind == "stick") return event.element + " sticks";
+  if (event.kind == "slip") return event.element + " slips";
+  if (event.kind == "reversal") return event.element + " slips the other way";
+  return event.name;
+}
+
 // The farthest that two runs are from each other at times both have.
 double apart(const Trajectory& a, const Trajectory& b) {
   double most = 0;
@@ -127,6 +141,7 @@ double apart(const Trajectory& a, const Trajectory& b) {
 
 TEST_CASE("whatever acts on a linkage, it moves along its path as by the full model") {
   int compared = 0, with_events = 0;
+  std::set<std::string> kinds;
   for (unsigned seed = 1; seed <= 150; ++seed) {
     const std::vector<std::string> changes = Draw(seed).changes();
     std::string said;
@@ -156,6 +171,8 @@ TEST_CASE("whatever acts on a linkage, it moves along its path as by the full mo
     REQUIRE(a.size() == b.size());
     for (std::size_t i = 0; i < a.size(); ++i) {
       CHECK(a[i]->name == b[i]->name);
+      CHECK(b[i]->name == said_of(*b[i]));
+      kinds.insert(b[i]->kind);
       CHECK(a[i]->element == b[i]->element);
       CHECK(a[i]->t == Approx(b[i]->t).margin(1e-9 + 100 * own));  // at a slow rate
     }
@@ -164,6 +181,10 @@ TEST_CASE("whatever acts on a linkage, it moves along its path as by the full mo
   }
   CHECK(compared > 120);
   CHECK(with_events > 40);
+  for (const char* kind : {"contact", "taut", "slack", "stick", "reversal"}) {
+    INFO(kind);
+    CHECK(kinds.count(kind) == 1);
+  }
 }
 
 }  // namespace random_path_test
