@@ -6,6 +6,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/study/study.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 using namespace unfurl::testing;
@@ -35,16 +36,33 @@ TEST_CASE("every method has its place in a study, with stages where they change 
 
 TEST_CASE("a study observes the orders that methods claim") {
   Journal nowhere({}, study_columns(), study_key_columns);
-  const Study study = run_study(small_plan(), nowhere, {});
+  const StudyPlan plan = small_plan();
+  const Study study = run_study(plan, nowhere, {});
   CHECK(study.complete);
-  int judged = 0;
+  int judged = 0, drifting = 0;
   for (const StudyCurve& curve : study.curves) {
+    if (curve.runs.empty()) continue;
+    // What a run is said to have kept is what it kept.
+    const MeasuredRun& measured = curve.runs.front();
+    SolverOptions options = curve.setting.options;
+    options.step = measured.step, options.end_time = plan.end;
+    const Diagnostics d = diagnose(simulate(plan.model, options));
+    const auto same = [&](double found, const char* column) {
+      const double kept = largest(d, column);
+      INFO(curve.setting.name << " " << column);
+      CHECK(found == Approx(kept).epsilon(1e-6).margin(1e-13));
+      drifting += kept > 1e-9;
+    };
+    same(measured.constraint_max, "constraint_max_m");
+    same(measured.constraint_relative_max, "constraint_relative_max");
+    same(measured.constraint_velocity_max, "constraint_velocity_max_m_s");
     if (curve.setting.claimed_order > 4 || !(curve.order.points >= 4)) continue;  // round-off comes too soon
     INFO(curve.setting.name << " " << curve.order.order);
     CHECK(std::abs(curve.order.order - curve.setting.claimed_order) < 0.4);
     ++judged;
   }
   CHECK(judged >= 4);
+  CHECK(drifting >= 3);
 }
 
 TEST_CASE("a second study takes its points from the journal") {

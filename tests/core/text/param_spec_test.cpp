@@ -37,6 +37,8 @@ TEST_CASE("values outside their range are refused with the range and what was gi
   CHECK(range_error(positive_param("l", "m", 1, ""), -3L) == "must be > 0 m; got -3");
   CHECK(range_error(positive_param("l", "m", 1, ""), 0.0) == "must be > 0 m; got 0");
   CHECK(range_error(real_param("x", "", 1, 0, 1, ""), 1.5) == "must be in [0, 1]; got 1.5");
+  CHECK(range_error(real_param("x", "", 1, 0, 1, ""), std::string("a")) ==
+        "must be a number in [0, 1]; got \"a\"");
   CHECK(range_error(integer_param("n", 3, 2, 8, ""), 9L) == "must be a whole number in [2, 8]; got 9");
   CHECK(range_error(integer_param("n", 3, 2, 8, ""), 2.5) == "must be a whole number in [2, 8]; got 2.5");
   CHECK(range_error(boolean_param("b", true, ""), 1L) == "must be true or false; got 1");
