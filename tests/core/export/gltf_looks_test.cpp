@@ -175,15 +175,20 @@ TEST_CASE("an exported cone has its normals across its side") {
 }
 
 TEST_CASE("glTF: a node at which no rod ends is as large as the middle one of the joints") {
-  // Rods of 1, 2 and 3 m without radius are a sixtieth as thick, joints half as thick again as the thickest
-  // rod.
+  // Without a radius of its own a rod of 1, 2 or 3 m has a sixtieth of its length, a joint 1.5 of the
+  // largest.
   Shown shown;
-  shown.run = testing::run_scene(
-      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', "
-      "position = [1, 0, 0]}, {name = 'C', position = [1, 0, -2]}, {name = 'D', position = [4, 0, -2]}, "
-      "{name "
-      "= 'P', position = [0, 0, 1], mass = 1}]\nrods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], "
-      "mass = 1}, {nodes = ['C', 'D'], mass = 1}]\n[solver]\nstep = 0.02\nend_time = 0.14\n");
+  shown.run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0]},
+  {name = "C", position = [1, 0, -2]}, {name = "D", position = [4, 0, -2]},
+  {name = "P", position = [0, 0, 1], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 1}, {nodes = ["B", "C"], mass = 1}, {nodes = ["C", "D"], mass = 1}]
+[solver]
+step = 0.02
+end_time = 0.14
+)");
   const testing::Glb glb = shown.glb();
   std::map<std::string, double> size;
   for (const auto& node : glb.json["nodes"])

@@ -105,9 +105,8 @@ TEST_CASE("the part of a motor's law that holds is the one that has room, and no
         return m.stall * (share - m.gear_ratio * v[0] / m.no_load_speed);
       };
       const double torque = effort_of(m, q[0], v[0], q[9]) / m.gear_ratio;
-      const auto is = [&](double cut) {
-        return std::abs(torque - cut) < 1e-14;
-      };  // but for the gear's rounding
+      // But for the gear's rounding.
+      const auto is = [&](double cut) { return std::abs(torque - cut) < 1e-14; };
       std::size_t part = 0;
       if (is(m.limit))
         part = 3;

@@ -13,6 +13,7 @@
 #include "core/study/reference.hpp"
 #include "core/study/tolerance.hpp"
 #include "tests/support/hoop_exact.hpp"
+#include "tests/support/runs_apart.hpp"
 
 using namespace unfurl;
 
@@ -39,23 +40,10 @@ Both both(const Scene& scene, double end = 0) {
   return {simulate_on_path(model, options), simulate(model, options)};
 }
 
-double distance(const Simulation& a, const Simulation& b) {
-  double largest = 0;
-  std::size_t k = 0, shared = 0;
-  for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
-    while (k < b.trajectory.size() && b.trajectory.time(k) < a.trajectory.time(i) - 1e-9) ++k;
-    if (k == b.trajectory.size()) break;
-    if (b.trajectory.time(k) > a.trajectory.time(i) + 1e-9) continue;
-    ++shared;
-    largest = std::max(largest, node_distance(a.trajectory.positions(i), b.trajectory.positions(k)));
-  }
-  return shared + 2 >= a.trajectory.size() ? largest : std::numeric_limits<double>::infinity();
-}
-
 void check_same(const Both& run, double tolerance) {
   CHECK(run.path.status == run.full.status);
   CHECK(run.path.trajectory.size() == run.full.trajectory.size());
-  CHECK(distance(run.path, run.full) <= tolerance);
+  CHECK(testing::runs_apart(run.path, run.full) <= tolerance);
   CHECK(std::abs(run.path.trajectory.end_time() - run.full.trajectory.end_time()) <= 1e-10);
   REQUIRE(run.path.events.size() == run.full.events.size());
   for (std::size_t e = 0; e < run.path.events.size(); ++e) {

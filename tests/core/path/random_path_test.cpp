@@ -9,11 +9,12 @@
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
-#include "core/study/reference.hpp"
 #include "tests/support/number.hpp"
+#include "tests/support/runs_apart.hpp"
 
 using namespace unfurl;
 using unfurl::testing::number;
+using unfurl::testing::runs_apart;
 
 namespace random_path_test {
 
@@ -126,17 +127,6 @@ std::string said_of(const Event& event) {
   return event.name;
 }
 
-// The farthest that two runs are from each other at times both have.
-double apart(const Trajectory& a, const Trajectory& b) {
-  double most = 0;
-  for (std::size_t i = 0, k = 0; i < a.size(); ++i) {
-    while (k + 1 < b.size() && b.time(k) < a.time(i) - 1e-9) ++k;
-    if (std::abs(b.time(k) - a.time(i)) <= 1e-9)
-      most = std::max(most, node_distance(a.positions(i), b.positions(k)));
-  }
-  return most;
-}
-
 }  // namespace
 
 TEST_CASE("whatever acts on a linkage, it moves along its path as by the full model") {
@@ -162,11 +152,11 @@ TEST_CASE("whatever acts on a linkage, it moves along its path as by the full mo
     finer.step /= 2;
     // Order 12: half the step is right to a thousandth of the difference; 1e-11 for rounding, ten times at
     // impacts.
-    const double own = apart(simulate(model, finer).trajectory, full.trajectory);
+    const double own = runs_apart(full, simulate(model, finer));
     CHECK(own < 1e-7);
     CHECK(path.status == full.status);
     CHECK(path.trajectory.end_time() == Approx(full.trajectory.end_time()).margin(1e-9));
-    CHECK(apart(path.trajectory, full.trajectory) <= 2e-11 + 1.1 * own);
+    CHECK(runs_apart(path, full) <= 2e-11 + 1.1 * own);
     const auto a = lasting(path), b = lasting(full);
     REQUIRE(a.size() == b.size());
     for (std::size_t i = 0; i < a.size(); ++i) {

@@ -8,12 +8,17 @@
 using namespace unfurl;
 
 TEST_CASE("between its rows a trajectory shows a straight line of what rods give way by") {
-  const std::string text =
-      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', "
-      "position = [1, 0, 0]}]\nrods = [{name = 'r', nodes = ['A', 'B'], mass = 1}]\n[gravity]\nacceleration "
-      "= "
-      "[0, 0, -9.81]\n[solver]\nstep = 0.07\nend_time = 0.5\n";
-  const Simulation rigid = testing::run_scene(text);
+  const Simulation rigid = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0]}]
+rods = [{nodes = ["A", "B"], mass = 1}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+step = 0.07
+end_time = 0.5
+)");
   Simulation shown = rigid;
   // In proportion to time: straight lines between uneven rows are it.
   VectorXd grows(6);

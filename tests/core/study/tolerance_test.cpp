@@ -157,9 +157,8 @@ TEST_CASE("a tolerance ends in bounded time where it cannot be met") {
   const Simulation run = simulate_as_asked(model, options, counting);
   CHECK(run.status == RunStatus::deployed);
   CHECK(std::isfinite(run.position_estimate));
-  CHECK(
-      steps <
-      30000);  // of all runs together: 3130 with the pick as it is, thirty times as long where it did not end
+  // Of all runs together: 3130, some 5 s. A sanitizer's build takes as many.
+  CHECK(steps < 10000);
 }
 
 TEST_CASE("a pick that is cancelled has stopped, whichever of its runs it was") {
