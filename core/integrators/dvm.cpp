@@ -191,8 +191,9 @@ bool Dvm::frozen_iterations(StepReport& report) {
   eq_.take_rods_as_unknowns(false);
   careful_ = !system_.constant_forces();  // what is carried asks for more iterations than rods do
   feed_ = true;
-  double best_momentum = std::numeric_limits<double>::infinity(), best_constraint = best_momentum;
+  double best_momentum = infinity, best_constraint = infinity, last_momentum = infinity;
   int without_gain = 0;
+  bool was_slow = false;
   for (int it = 0; it <= max_frozen_iterations; ++it) {
     eq_.evaluate();
     const double level = eq_.level(), momentum = eq_.momentum_level(), constraint = eq_.constraint_level();
@@ -215,13 +216,47 @@ bool Dvm::frozen_iterations(StepReport& report) {
     }
     if (it == max_frozen_iterations) break;
     ++report.newton_iterations;
-    if (eq_.at_ends)
+    if (eq_.at_ends) {
       correct_at_ends(report);
-    else
-      correct(report);
+      continue;
+    }
+    const bool slow = !steered_ && momentum > 4 * wanted && momentum > 0.02 * last_momentum;
+    if (slow) with_wide_columns(c_.s - 1, [this, was_slow](auto k) { accelerate<k()>(was_slow); });
+    was_slow = slow;
+    last_momentum = momentum;
+    correct(report);
   }
   report.status = std::isfinite(eq_.level()) ? StepStatus::stalled : StepStatus::not_finite;
   return false;
+}
+
+// Anderson's extrapolation of depth one: once single modes are slower than the rest (those of redundant rows,
+// whose multipliers hardly move anything, by a third where others take a hundredth), the iterate goes where
+// the line through the last two momentum residuals is nearest to zero; all is linear in that iterate.
+// Walker & Ni, SIAM J. Numer. Anal. 49 (2011), 1715.
+template <LaneCount K>
+void Dvm::accelerate(bool extrapolate) {
+  Interleaved* const now[] = {&eq_.momentum, &eq_.phi, &eq_.dX, &eq_.lambda};
+  double theta = 0;
+  if (extrapolate) {
+    Lanes<K> along = Lanes<K>::all(0.0), square = along;
+    const double *const r = eq_.momentum.data(), *const before = last_[0].data();
+    for (Index i = 0, size = eq_.momentum.size(); i < size; i += K) {
+      const Lanes<K> x(r + i), change = x - Lanes<K>(before + i);
+      along = along + x * change;
+      square = square + change * change;
+    }
+    theta = along.sum() / square.sum();
+    if (!(std::abs(theta) < 3)) theta = 0;
+  }
+  for (std::size_t i = 0; i < last_.size(); ++i) {
+    double *const x = now[i]->data(), *const before = last_[i].data();
+    for (Index j = 0, size = now[i]->size(); j < size; j += K) {
+      const Lanes<K> here(x + j);
+      if (theta != 0) (here - theta * (here - Lanes<K>(before + j))).store(x + j);
+      here.store(before + j);
+    }
+  }
 }
 
 // M dX_j + G^T Y_j = -h (C^-1 r)_j,  G dX_j = -Phi_j,  then  b_k dlambda_k = -(C Y)_k / h^2.
@@ -240,14 +275,15 @@ void Dvm::correct_stages() {
   const Index n = eq_.dX.rows(), m = eq_.lambda.rows();
   double* const f = rhs_f_.data();
   double* const g = rhs_g_.data();
-  with_widest([n, f, r = eq_.momentum.data(), T = momentum_to_f_.data()](auto wide) {
-    mix<LaneCount(K, wide())>(r, n, T, f);
+  with_wide<K>(
+      [n, f, r = eq_.momentum.data(), T = momentum_to_f_.data()](auto lanes) { mix<lanes()>(r, n, T, f); });
+  with_wide<K>([m, g, phi = eq_.phi.data(), this](auto lanes) {
+    using Row = Lanes<lanes()>;
+    for (Index r = 0; r < m; ++r) {
+      const double noise = tight_ ? 0.0 : feed_ ? wanted_constraint * eq_.constraint_noise(r) : infinity;
+      beyond(Row::all(0.0) - Row(phi + r * K), noise).store(g + r * K);
+    }
   });
-  const double* const phi = eq_.phi.data();
-  for (Index r = 0; r < m; ++r) {
-    const double noise = tight_ ? 0.0 : feed_ ? wanted_constraint * eq_.constraint_noise(r) : infinity;
-    for (Index i = r * K; i < (r + 1) * K; ++i) g[i] = std::abs(phi[i]) > noise ? -phi[i] : 0.0;
-  }
   if (careful_) std::copy(rhs_f_.begin(), rhs_f_.end(), consistent_f_.data());
   if (careful_) {
     saddle_.apply(f, g, K);
@@ -260,8 +296,8 @@ void Dvm::correct_stages() {
     saddle_.apply(f, g, K);
   double* const dX = eq_.dX.data();
   for (Index i = 0; i < n * K; ++i) dX[i] += f[i];
-  with_widest([m, g, lambda = eq_.lambda.data(), T = y_to_lambda_.data()](auto wide) {
-    constexpr LaneCount all(K, wide());
+  with_wide<K>([m, g, lambda = eq_.lambda.data(), T = y_to_lambda_.data()](auto lanes) {
+    constexpr LaneCount all = lanes();
     for (Index r = 0; r < m * K; r += K) mixed<all>(Lanes<all>(lambda + r), g + r, T).store(lambda + r);
   });
 }

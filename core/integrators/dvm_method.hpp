@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -34,6 +35,7 @@ class Dvm final : public Integrator {
     rhs_g_.assign(static_cast<std::size_t>(m * (c_.s - 1)), 0.0);
     previous_.setZero(n, c_.s - 1);
     consistent_f_.setZero(n, c_.s - 1);
+    for (std::size_t i = 0; i < last_.size(); ++i) last_[i].setZero(i % 2 == 0 ? n : m, c_.s - 1);
     y_to_lambda_.setZero(c_.s - 1, c_.s - 1);
     for (VectorXd* v : {&p1_, &w1_, &end_z_, &pull_}) v->setZero(n);
     end_q_.setZero(system.coordinates());
@@ -59,7 +61,7 @@ class Dvm final : public Integrator {
     tight_ = !stiff_ && !eq_.at_ends && needs_care();
     if (slow_ && !tight_ && !stiff_) freeze_in_the_middle(report);
     if (!(tight_ && tight_iterations(state, report))) iterate(state, h, report);
-    slow_ = !tight_ && !stiff_ && report.newton_iterations > slow_iterations;
+    slow_ = !tight_ && !stiff_ && report.newton_iterations > (slow_ ? slow_even_so : slow_iterations);
     if (slow_ && steerable_) stiff_ = is_stiff(), slow_ = !stiff_;
     if (report.ok()) finish(state, h, report);
     if (!report.ok()) restart();
@@ -89,7 +91,9 @@ class Dvm final : public Integrator {
   static constexpr Index few_unknowns = 80;
   static constexpr double most_steered = 30;
   static constexpr int max_frozen_iterations = 30;
-  static constexpr int slow_iterations = 8;
+  // More iterations than these make the next step freeze G in its middle, which takes a third of them away;
+  // it goes on while that is worth a factorisation.
+  static constexpr int slow_iterations = 8, slow_even_so = 5;
   // Weak modes: what the level accepts of a constraint's error, divided by the smallest singular value, may
   // move the structure by this share of the motion of the step; else the step is solved with care: errors
   // grow where a motion is unstable, in a ring of joints a thousandfold while it opens. Singular values above
@@ -125,6 +129,8 @@ class Dvm final : public Integrator {
   bool needs_care();
   bool tight_iterations(const State& state, StepReport& report);
   void arrive(State& state);
+  template <LaneCount K>
+  void accelerate(bool extrapolate);
   void correct(StepReport& report);
   template <LaneCount K>
   void correct_stages();
@@ -145,6 +151,7 @@ class Dvm final : public Integrator {
   std::vector<double> rhs_f_, rhs_g_;
   VectorXd p1_, w1_, end_z_, end_q_, pull_, mu_, rate_, pose_, halfway_;
   Interleaved previous_, consistent_f_;
+  std::array<Interleaved, 4> last_;                 // momentum, phi, dX, lambda of the last iteration
   MatrixXd prolong_, momentum_to_f_, y_to_lambda_;  // -h C^-1; -C_kj / (h^2 b_k)
   double matrices_h_ = 0;                           // the step that they are for
   double previous_h_ = 0;

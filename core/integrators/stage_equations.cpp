@@ -265,7 +265,7 @@ void StageEquations::spread_forces() {
 // B^T f_k + (1/h) sum_j C_kj M dX_j with f_k = h sum_j w_j l_k(tau_j) F(tau_j) - h b_k G(Q_k)^T lambda_k
 void StageEquations::evaluate_momentum() {
   if (!system.constant_forces()) with_wide_columns(c.s - 1, [this](auto k) { spread_forces<k()>(); });
-  f_ = applied_;
+  std::copy_n(applied_.data(), applied_.size(), f_.data());
   system.add_constraint_force_stages(Q, 0, lambda, scale_.data(), f_, scratch_);
   system.reduce_force_stages(f_, momentum);
   with_wide_columns(c.s - 1, [this](auto k) { add_inertia<k()>(); });
@@ -390,7 +390,9 @@ void StageEquations::measure() {
 // does not feed the momentum step by step.
 void StageEquations::end_momentum(MutVec p1) {
   f_end_.noalias() = force_ * impulse_.row(c.s - 1).transpose();
-  f_end_ += f_.rowwise().sum();
+  with_columns(c.s - 1, [rows = f_.rows(), f = f_.data(), to = f_end_.data()](auto k) {
+    for (Index i = 0; i < rows; ++i) to[i] += Lanes<k()>(f + i * k()).sum();
+  });
   system.reduce_force(f_end_, p1);
   p1 += p0;
 }

@@ -15,77 +15,108 @@ namespace unfurl {
 using Interleaved = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 inline constexpr int most_columns = 8;
 
-// How many columns, and whether they go through AVX2.
+// How many columns, and how many of them go through one instruction: 2 on every 64-bit processor, 4 by AVX2,
+// 8 by AVX-512.
 struct LaneCount {
   int count;
-  bool wide = false;
-  constexpr LaneCount(int columns, bool widely = false) : count(columns), wide(widely) {}
+  int width = 2;
+  constexpr LaneCount(int columns, int wide = 2) : count(columns), width(wide) {}
   constexpr operator int() const { return count; }
 };
+template <int columns, int width>
+using LaneConstant = std::integral_constant<LaneCount, LaneCount(columns, width)>;
 
-// work(std::integral_constant<LaneCount, columns>()), 1 <= columns <= most_columns: the compiler knows their
-// number.
-template <bool wide = false, class Work>
+// work(LaneConstant<columns, width>()), 1 <= columns <= most_columns: the compiler knows their number.
+template <int width = 2, class Work>
 inline void with_columns(int columns, Work&& work) {
   switch (columns) {
     case 1:
-      return work(std::integral_constant<LaneCount, LaneCount(1, wide)>());
+      return work(LaneConstant<1, width>());
     case 2:
-      return work(std::integral_constant<LaneCount, LaneCount(2, wide)>());
+      return work(LaneConstant<2, width>());
     case 3:
-      return work(std::integral_constant<LaneCount, LaneCount(3, wide)>());
+      return work(LaneConstant<3, width>());
     case 4:
-      return work(std::integral_constant<LaneCount, LaneCount(4, wide)>());
+      return work(LaneConstant<4, width>());
     case 5:
-      return work(std::integral_constant<LaneCount, LaneCount(5, wide)>());
+      return work(LaneConstant<5, width>());
     case 6:
-      return work(std::integral_constant<LaneCount, LaneCount(6, wide)>());
+      return work(LaneConstant<6, width>());
     case 7:
-      return work(std::integral_constant<LaneCount, LaneCount(7, wide)>());
+      return work(LaneConstant<7, width>());
     default:
       eigen_assert(columns == most_columns);
-      return work(std::integral_constant<LaneCount, LaneCount(most_columns, wide)>());
+      return work(LaneConstant<most_columns, width>());
   }
 }
 
-// work(std::bool_constant<wide>()), wide where the processor has AVX2. Everything that it then calls and that
-// the compiler can see is compiled for that, so that it should be one kernel; its captures, by value, are
-// known to be nobody else's. Neither instruction set fuses products with sums: results have the same bits.
+// work(std::integral_constant<int, width>()) with the widest instructions of the processor, eight numbers
+// only where `eight` says so. Everything that it then calls and that the compiler can see is compiled for
+// them, so that it should be one kernel; its captures, by value, are known to be nobody else's. No
+// instruction set fuses products with sums: results have the same bits.
 #if defined(__x86_64__)
 template <class Work>
-[[gnu::target("avx2"), gnu::flatten, gnu::noinline]] void work_widely(Work work) {
-  work(std::true_type());
+[[gnu::target("avx2"), gnu::flatten, gnu::noinline]] void work_by_four(Work work) {
+  work(std::integral_constant<int, 4>());
 }
 template <class Work>
+[[gnu::target("avx512f"), gnu::flatten, gnu::noinline]] void work_by_eight(Work work) {
+  work(std::integral_constant<int, 8>());
+}
+template <bool eight = false, class Work>
 inline void with_widest(Work work) {
-  static const bool wide = __builtin_cpu_supports("avx2");
-  if (wide)
-    work_widely(work);
+  static const int width = __builtin_cpu_supports("avx512f") ? 8 : __builtin_cpu_supports("avx2") ? 4 : 2;
+  if constexpr (eight)
+    if (width == 8) return work_by_eight(work);
+  if (width >= 4)
+    work_by_four(work);
   else
-    work(std::false_type());
+    work(std::integral_constant<int, 2>());
 }
 #else
-template <class Work>
+template <bool eight = false, class Work>
 inline void with_widest(Work work) {
-  work(std::false_type());
+  work(std::integral_constant<int, 2>());
 }
 #endif
 
-// with_columns for one kernel, as with_widest does it.
+// The same for one kernel of so many columns, work(LaneConstant<columns, width>()).
+template <int columns, class Work>
+inline void with_wide(Work work) {
+  with_widest<columns == most_columns>([work](auto width) { work(LaneConstant<columns, width()>()); });
+}
 template <class Work>
 inline void with_wide_columns(int columns, Work work) {
-  with_widest([columns, work](auto wide) { with_columns<wide()>(columns, work); });
+  if (columns == most_columns) return with_wide<most_columns>(work);
+  with_widest([columns, work](auto width) { with_columns<width()>(columns, work); });
 }
 
-// One entry of K vectors, in packs of the width that every 64-bit processor computes with, or of AVX2's.
+// All entries of a pack. Compiled for its width by itself, or filling it becomes an instruction a number.
+template <class Pack>
+inline void fill(Pack& pack, double value) {
+  pack = value - Pack{};
+}
+#if defined(__x86_64__)
+typedef double FourNumbers __attribute__((vector_size(32)));
+typedef double EightNumbers __attribute__((vector_size(64)));
+[[gnu::target("avx2")]] inline void fill(FourNumbers& pack, double value) {
+  pack = value - FourNumbers{};
+}
+[[gnu::target("avx512f")]] inline void fill(EightNumbers& pack, double value) {
+  pack = value - EightNumbers{};
+}
+#endif
+
+// One entry of K vectors, in packs of as many as go through one instruction.
 template <LaneCount K>
 struct Lanes {
-  static constexpr int width = K.wide ? 4 : 2, packs = K / width;
+  static constexpr int width = K.width, packs = K / width;
+  static_assert(width < 8 || K % width == 0);
   static constexpr bool has_pair = K - packs * width >= 2, has_last = K % 2 == 1;
   typedef double Pack __attribute__((vector_size(width * sizeof(double))));
   typedef double Pair __attribute__((vector_size(16)));
   Pack pack[packs > 0 ? packs : 1];
-  Pair pair;    // what packs of four leave
+  Pair pair;    // what packs leave
   double last;  // for odd K
 
   Lanes() = default;
@@ -96,7 +127,7 @@ struct Lanes {
   }
   static Lanes all(double value) {
     Lanes out;
-    for (int i = 0; i < packs; ++i) out.pack[i] = value - Pack{};
+    for (int i = 0; i < packs; ++i) fill(out.pack[i], value);
     if constexpr (has_pair) out.pair = Pair{value, value};
     if constexpr (has_last) out.last = value;
     return out;
@@ -133,6 +164,13 @@ struct Lanes {
     return map(most, x, [](auto& out, const auto& m, const auto& y) {
       const auto up = y > m ? y : m, down = -y;
       out = down > up ? down : up;
+    });
+  }
+  // Zero where the magnitude is no larger than `bound`, or not a number.
+  friend Lanes beyond(const Lanes& x, double bound) {
+    return map(x, all(bound), [](auto& out, const auto& y, const auto& b) {
+      const std::remove_cvref_t<decltype(y)> none{}, down = -y;
+      out = y > b ? y : down > b ? y : none;
     });
   }
   double largest() const {
@@ -188,12 +226,12 @@ inline void mix(const double* x, Index rows, const double* T, double* y) {
 // The largest magnitude of `size` numbers; what is not a number is passed over.
 inline double largest_magnitude(const double* x, Index size) {
   double most = 0;
-  with_widest([x, size, out = &most](auto wide) {
-    using Four = Lanes<LaneCount(4, wide())>;
-    Four fours = Four::all(0.0);
+  with_wide<8>([x, size, out = &most](auto eight) {
+    using Eight = Lanes<eight()>;
+    Eight eights = Eight::all(0.0);
     Index i = 0;
-    for (; i + 4 <= size; i += 4) fours = larger(fours, Four(x + i));
-    double found = fours.largest();
+    for (; i + 8 <= size; i += 8) eights = larger(eights, Eight(x + i));
+    double found = eights.largest();
     for (; i < size; ++i) found = std::abs(x[i]) > found ? std::abs(x[i]) : found;
     *out = found;
   });

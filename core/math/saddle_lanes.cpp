@@ -11,8 +11,8 @@ namespace unfurl {
 namespace {
 
 constexpr int lane_count = SaddleLanes::lanes;
-template <bool wide>
-using LaneOf = Lanes<LaneCount(lane_count, wide)>;
+template <int width>
+using LaneOf = Lanes<LaneCount(lane_count, width)>;
 
 std::size_t at(std::size_t entry) {
   return entry * static_cast<std::size_t>(lane_count);
@@ -55,13 +55,13 @@ void SaddleLanes::set(int lane, const SparseRows& G) {
 void SaddleLanes::factorise() {
   ok_.fill(true);
   std::copy(ldlt_.column_start_.begin(), ldlt_.column_start_.end() - 1, fill_.begin());
-  with_widest([this](auto wide) { eliminate<wide()>(); });
+  with_widest([this](auto width) { eliminate<width()>(); });
 }
 
 // SparseLdlt::factorise.
-template <bool wide>
+template <int width>
 void SaddleLanes::eliminate() {
-  using Lane = LaneOf<wide>;
+  using Lane = LaneOf<width>;
   const SparseLdlt& a = ldlt_;
   const auto n = static_cast<std::size_t>(a.size());
   double* const y = work_.data();
@@ -126,9 +126,9 @@ bool SaddleLanes::hand_over(int lane, SaddleSolver& alone) const {
   return alone.sparse_ ? alone.first_serves(ok(lane)) : ok(lane);
 }
 
-template <bool wide>
+template <int width>
 void SaddleLanes::solve_ordered(double* const b) const {
-  using Lane = LaneOf<wide>;
+  using Lane = LaneOf<width>;
   const SparseLdlt& a = ldlt_;
   const int n = static_cast<int>(a.size());
   const double* const l = l_.data();
@@ -151,9 +151,9 @@ void SaddleLanes::solve_ordered(double* const b) const {
 }
 
 // r -= K_0 x, in the order of SparseLdlt::subtract_product and SaddleSolver::solve.
-template <bool wide>
+template <int width>
 void SaddleLanes::subtract_product(const double* x, double* r) const {
-  using Lane = LaneOf<wide>;
+  using Lane = LaneOf<width>;
   const SparseLdlt& a = ldlt_;
   for (int k = 0, n = static_cast<int>(a.size()); k < n; ++k) {
     const Lane xk(x + static_cast<Index>(k) * lane_count);
@@ -178,7 +178,7 @@ void SaddleLanes::subtract_product(const double* x, double* r) const {
 }
 
 SaddleLanes::Norms SaddleLanes::residual_norms(const double* r) const {
-  using Lane = LaneOf<false>;
+  using Lane = LaneOf<2>;
   Lane f = Lane::all(0.0), g = f;
   const int* place = place_;
   const auto add = [&](Lane& sum, Index count) {
@@ -220,7 +220,7 @@ void SaddleLanes::solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors&
   for (auto* v : {&best_, &try_}) std::fill(v->begin(), v->end(), 0.0);
   for (int it = 0; it <= max_refinements + 1; ++it) {
     std::copy(right_.begin(), right_.end(), packed_.begin());
-    if (it > 0) with_widest([this](auto wide) { subtract_product<wide()>(try_.data(), packed_.data()); });
+    if (it > 0) with_widest([this](auto width) { subtract_product<width()>(try_.data(), packed_.data()); });
     const Norms residual = residual_norms(packed_.data());
     std::array<bool, lanes> better{};
     for (std::size_t c = 0; c < lane_count; ++c) {
@@ -234,7 +234,7 @@ void SaddleLanes::solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors&
       for (std::size_t c = 0; c < lane_count; ++c)
         if (better[c]) best_[i + c] = try_[i + c];
     if (std::none_of(active.begin(), active.end(), [](bool a) { return a; })) break;
-    with_widest([this](auto wide) { solve_ordered<wide()>(packed_.data()); });
+    with_widest([this](auto width) { solve_ordered<width()>(packed_.data()); });
     for (std::size_t i = 0; i < try_.size(); ++i) try_[i] += packed_[i];
   }
   for (std::size_t c = 0; c < lane_count; ++c) {

@@ -31,12 +31,12 @@ class SaddleLanes {
  private:
   using Norms = std::array<double, lanes>;
   Norms residual_norms(const double* r) const;
-  template <bool wide>
+  template <int width>
   void eliminate();
   void settle_pivot(std::size_t k, const double* own, double* d);
-  template <bool wide>
+  template <int width>
   void solve_ordered(double* b) const;
-  template <bool wide>
+  template <int width>
   void subtract_product(const double* x, double* r) const;
 
   const SaddleSolver& alone_;

@@ -65,42 +65,46 @@ void SparseLdlt::analyse(const SparseRows& upper, const std::vector<int>& order)
   pivot_.assign(n, 0.0);
   inverse_pivot_.assign(n, 0.0);
   work_.assign(n, 0.0);
-  fill_.assign(column_start_.begin(), column_start_.end() - 1);
+  std::vector<int> free(column_start_.begin(), column_start_.end() - 1);
+  slot_.clear();
   for (int k = 0; k < n_; ++k)
     for (int r = reach_start_[static_cast<std::size_t>(k)]; r < reach_start_[static_cast<std::size_t>(k) + 1];
-         ++r)
-      row_index_[static_cast<std::size_t>(
-          fill_[static_cast<std::size_t>(reach_[static_cast<std::size_t>(r)])]++)] = k;
+         ++r) {
+      slot_.push_back(free[static_cast<std::size_t>(reach_[static_cast<std::size_t>(r)])]++);
+      row_index_[static_cast<std::size_t>(slot_.back())] = k;
+    }
   permuted_.assign(8 * n, 0.0);
 }
 
 bool SparseLdlt::factorise(const double* values, double most) {
   const int n = static_cast<int>(n_);
-  std::copy(column_start_.begin(), column_start_.end() - 1, fill_.begin());
   double* const y = work_.data();
   double* const l = l_.data();
+  double* const inverse_pivot = inverse_pivot_.data();
   const int* const rows = row_index_.data();
-  int* const fill = fill_.data();
+  const int* const start = column_start_.data();
+  const int* entry_row = entry_row_.data();
+  const int* entry_source = entry_source_.data();
+  const int* entry_end = entry_start_.data() + 1;
+  const int* reach = reach_.data();
+  const int* slot = slot_.data();
+  const int* reach_end = reach_start_.data() + 1;
   for (int k = 0; k < n; ++k) {
-    const auto uk = static_cast<std::size_t>(k);
-    for (int e = entry_start_[uk]; e < entry_start_[uk + 1]; ++e) {
-      const auto ue = static_cast<std::size_t>(e);
-      y[entry_row_[ue]] += values[entry_source_[ue]];
-    }
+    for (const int* const end = entry_row_.data() + entry_end[k]; entry_row != end;
+         ++entry_row, ++entry_source)
+      y[*entry_row] += values[*entry_source];
     const double own = y[k];
     double d = own;
     y[k] = 0.0;
-    for (int r = reach_start_[uk]; r < reach_start_[uk + 1]; ++r) {
-      const int i = reach_[static_cast<std::size_t>(r)];
+    for (const int* const end = reach_.data() + reach_end[k]; reach != end; ++reach, ++slot) {
+      const int i = *reach;
       const double yi = y[i];
       y[i] = 0.0;
-      const int end = fill[i];
-#pragma GCC unroll 4
-      for (int p = column_start_[static_cast<std::size_t>(i)]; p < end; ++p) y[rows[p]] -= l[p] * yi;
-      const double lki = yi * inverse_pivot_[static_cast<std::size_t>(i)];
+      const int free = *slot;
+      for (int p = start[i]; p < free; ++p) y[rows[p]] -= l[p] * yi;
+      const double lki = yi * inverse_pivot[i];
       d -= lki * yi;
-      l[end] = lki;
-      ++fill[i];
+      l[free] = lki;
     }
     // The pivot of a row of -C is its Schur complement in C + G A^-1 G^T: no weaker than what C has there.
     if (own < 0.0 && d > 0.5 * own) d = own;  // only round-off is left of a redundant row
@@ -108,8 +112,8 @@ bool SparseLdlt::factorise(const double* values, double most) {
       std::fill(work_.begin(), work_.end(), 0.0);
       return false;
     }
-    pivot_[uk] = d;
-    inverse_pivot_[uk] = 1.0 / d;
+    pivot_[static_cast<std::size_t>(k)] = d;
+    inverse_pivot[k] = 1.0 / d;
   }
   return true;
 }
@@ -124,11 +128,12 @@ double SparseLdlt::largest_pivot() const {
 
 template <int R>
 void SparseLdlt::solve_fixed(double* const b) const {
-  with_widest([b, n = static_cast<int>(n_), l = l_.data(), rows = row_index_.data(),
-               start = column_start_.data(), inverse_pivot = inverse_pivot_.data()](auto wide) {
-    using Row = Lanes<LaneCount(R, wide())>;
+  with_wide<R>([b, n = static_cast<int>(n_), l = l_.data(), rows = row_index_.data(),
+                start = column_start_.data(), inverse_pivot = inverse_pivot_.data()](auto lanes) {
+    using Row = Lanes<lanes()>;
     for (int j = 0; j < n; ++j) {
       const Row bj(b + j * R);
+#pragma GCC unroll 2
       for (int p = start[j], end = start[j + 1]; p < end; ++p) {
         double* const to = b + static_cast<Index>(rows[p]) * R;
         (Row(to) - l[p] * bj).store(to);
@@ -136,6 +141,7 @@ void SparseLdlt::solve_fixed(double* const b) const {
     }
     for (int j = n - 1; j >= 0; --j) {
       Row bj = inverse_pivot[j] * Row(b + j * R);
+#pragma GCC unroll 2
       for (int p = start[j], end = start[j + 1]; p < end; ++p)
         bj = bj - l[p] * Row(b + static_cast<Index>(rows[p]) * R);
       bj.store(b + j * R);

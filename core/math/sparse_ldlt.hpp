@@ -52,10 +52,10 @@ class SparseLdlt {
   std::vector<double> l_;
   std::vector<double> pivot_, inverse_pivot_;
   std::vector<int> reach_start_, reach_;       // row k of L: its columns in elimination order
+  std::vector<int> slot_;                      // where its entries are in l_
   std::vector<int> entry_start_;               // column k of the permuted upper triangle
   std::vector<int> entry_row_, entry_source_;  // its rows and where their values come from
   std::vector<double> work_;
-  std::vector<int> fill_;  // next free place of each column of L
   mutable std::vector<double> permuted_;
 };
 

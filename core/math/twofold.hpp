@@ -9,6 +9,25 @@
 
 namespace unfurl {
 
+// In the width that every 64-bit processor computes with.
+typedef double DoublePair __attribute__((vector_size(16)));
+
+// What rounding takes from a product p = a b, by one instruction of the processor: for code that is compiled
+// for it and runs where there is one.
+inline void rest_of_product(double a, double b, double p, double& rest) {
+  rest = std::fma(a, b, -p);
+}
+#if defined(__x86_64__)
+[[gnu::target("fma")]] inline void rest_of_product(const DoublePair& a, const DoublePair& b,
+                                                   const DoublePair& p, DoublePair& rest) {
+  rest = __builtin_ia32_vfmaddpd(a, b, -p);
+}
+#else
+inline void rest_of_product(const DoublePair& a, const DoublePair& b, const DoublePair& p, DoublePair& rest) {
+  rest = DoublePair{std::fma(a[0], b[0], -p[0]), std::fma(a[1], b[1], -p[1])};
+}
+#endif
+
 // T: double, or a vector of doubles for several such numbers at once.
 template <class T>
 struct TwofoldOf {
@@ -33,13 +52,25 @@ struct TwofoldOf {
     const T s = a + b;
     return of(s, b - (s - a));
   }
-  // a b without rounding; |a|, |b| below 1e300.
+  // a b without rounding; |a|, |b| below 1e300. Fused: by rest_of_product(), to the same bits.
+  template <bool fused = false>
   static TwofoldOf product(T a, T b) {
-    constexpr double split = 134217729.0;  // 2^27 + 1
-    const T a1 = split * a - (split * a - a), a2 = a - a1;
-    const T b1 = split * b - (split * b - b), b2 = b - b1;
     const T p = a * b;
-    return of(p, ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2);
+    T rest;
+    if constexpr (fused) {
+      rest_of_product(a, b, p, rest);
+    } else {
+      constexpr double split = 134217729.0;  // 2^27 + 1
+      const T a1 = split * a - (split * a - a), a2 = a - a1;
+      const T b1 = split * b - (split * b - b), b2 = b - b1;
+      rest = ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2;
+    }
+    return of(p, rest);
+  }
+  template <bool fused>
+  static TwofoldOf times(const TwofoldOf& a, const TwofoldOf& b) {
+    const TwofoldOf p = product<fused>(a.hi, b.hi);
+    return quick_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
   }
 
   friend TwofoldOf operator+(const TwofoldOf& a, const TwofoldOf& b) {
@@ -49,10 +80,7 @@ struct TwofoldOf {
   }
   friend TwofoldOf operator-(const TwofoldOf& a) { return of(-a.hi, -a.lo); }
   friend TwofoldOf operator-(const TwofoldOf& a, const TwofoldOf& b) { return a + -b; }
-  friend TwofoldOf operator*(const TwofoldOf& a, const TwofoldOf& b) {
-    const TwofoldOf p = product(a.hi, b.hi);
-    return quick_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
-  }
+  friend TwofoldOf operator*(const TwofoldOf& a, const TwofoldOf& b) { return times<false>(a, b); }
   // Of one Newton step on 1 / a.
   friend TwofoldOf inverse(const TwofoldOf& a) {
     const TwofoldOf x = 1.0 / a.hi;
@@ -61,9 +89,7 @@ struct TwofoldOf {
 };
 using Twofold = TwofoldOf<double>;
 
-// Two at once, in the width that every 64-bit processor computes with: the same operations on each, so the
-// same bits.
-typedef double DoublePair __attribute__((vector_size(16)));
+// Two at once: the same operations on each, so the same bits.
 using TwofoldPair = TwofoldOf<DoublePair>;
 inline TwofoldPair both(const Twofold& a, const Twofold& b) {
   return TwofoldPair::of(DoublePair{a.hi, b.hi}, DoublePair{a.lo, b.lo});

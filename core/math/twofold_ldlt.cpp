@@ -7,47 +7,85 @@
 namespace unfurl {
 namespace {
 
+// work(std::bool_constant<fused>()): products fused where the processor can (core/math/twofold.hpp).
+#if defined(__x86_64__)
+template <class Work>
+[[gnu::target("fma"), gnu::flatten, gnu::noinline]] void work_fused(Work work) {
+  work(std::true_type());
+}
+template <class Work>
+void with_fused(Work work) {
+  static const bool fused = __builtin_cpu_supports("fma");
+  if (fused)
+    work_fused(work);
+  else
+    work(std::false_type());
+}
+#else
+template <class Work>
+void with_fused(Work work) {
+  work(std::false_type());
+}
+#endif
+
+template <bool fused>
+Twofold times(const Twofold& a, const Twofold& x) {
+  return Twofold::times<fused>(a, x);
+}
+template <bool fused>
+TwofoldPair times(const TwofoldPair& a, const TwofoldPair& x) {
+  return TwofoldPair::times<fused>(a, x);
+}
+template <bool fused>
+TwofoldPair times(const Twofold& a, const TwofoldPair& x) {
+  return times<fused>(both(a, a), x);
+}
+
 // b[rows[p]] -= l[p] y for p of [first, last), whose rows differ.
+template <bool fused>
 void subtract_column(const Twofold* l, const int* rows, std::size_t first, std::size_t last, const Twofold& y,
                      Twofold* b) {
   const TwofoldPair twice = both(y, y);
   std::size_t p = first;
   for (; p + 2 <= last; p += 2) {
     Twofold &u = b[rows[p]], &v = b[rows[p + 1]];
-    const TwofoldPair left = both(u, v) - both(l[p], l[p + 1]) * twice;
+    const TwofoldPair left = both(u, v) - times<fused>(both(l[p], l[p + 1]), twice);
     u = one_of(left, 0);
     v = one_of(left, 1);
   }
-  if (p < last) b[rows[p]] = b[rows[p]] - l[p] * y;
+  if (p < last) b[rows[p]] = b[rows[p]] - times<fused>(l[p], y);
 }
 
-// sum - l[p] b[rows[p]] - ..., in the order of p.
-Twofold subtract_row(Twofold sum, const Twofold* l, const int* rows, std::size_t first, std::size_t last,
-                     const Twofold* b) {
+// sum - l[p] b[rows[p]] - ..., every second product by itself: one sum has to wait for the other.
+template <bool fused>
+Twofold subtract_row(const Twofold& sum, const Twofold* l, const int* rows, std::size_t first,
+                     std::size_t last, const Twofold* b) {
+  TwofoldPair products;
   std::size_t p = first;
-  for (; p + 2 <= last; p += 2) {
-    const TwofoldPair product = both(l[p], l[p + 1]) * both(b[rows[p]], b[rows[p + 1]]);
-    sum = sum - one_of(product, 0);
-    sum = sum - one_of(product, 1);
-  }
-  return p < last ? sum - l[p] * b[rows[p]] : sum;
+  for (; p + 2 <= last; p += 2)
+    products = products + times<fused>(both(l[p], l[p + 1]), both(b[rows[p]], b[rows[p + 1]]));
+  Twofold even = one_of(products, 0);
+  if (p < last) even = even + times<fused>(l[p], b[rows[p]]);
+  return sum - (even + one_of(products, 1));
 }
 
 // Of two right-hand sides each entry is a pair already.
+template <bool fused>
 void subtract_column(const Twofold* l, const int* rows, std::size_t first, std::size_t last,
                      const TwofoldPair& y, TwofoldPair* b) {
-  for (std::size_t p = first; p < last; ++p) b[rows[p]] = b[rows[p]] - both(l[p], l[p]) * y;
+  for (std::size_t p = first; p < last; ++p) b[rows[p]] = b[rows[p]] - times<fused>(l[p], y);
 }
-TwofoldPair subtract_row(TwofoldPair sum, const Twofold* l, const int* rows, std::size_t first,
+template <bool fused>
+TwofoldPair subtract_row(const TwofoldPair& sum, const Twofold* l, const int* rows, std::size_t first,
                          std::size_t last, const TwofoldPair* b) {
-  for (std::size_t p = first; p < last; ++p) sum = sum - both(l[p], l[p]) * b[rows[p]];
-  return sum;
-}
-Twofold times(const Twofold& a, const Twofold& x) {
-  return a * x;
-}
-TwofoldPair times(const Twofold& a, const TwofoldPair& x) {
-  return both(a, a) * x;
+  TwofoldPair even, odd;
+  std::size_t p = first;
+  for (; p + 2 <= last; p += 2) {
+    even = even + times<fused>(l[p], b[rows[p]]);
+    odd = odd + times<fused>(l[p + 1], b[rows[p + 1]]);
+  }
+  if (p < last) even = even + times<fused>(l[p], b[rows[p]]);
+  return sum - (even + odd);
 }
 
 }  // namespace
@@ -61,6 +99,15 @@ TwofoldLdlt::TwofoldLdlt(const SparseLdlt& pattern)
       fill_(pivot_.size()) {}
 
 bool TwofoldLdlt::factorise(const double* values, const double* diagonal_shift) {
+  bool held = false;
+  with_fused([this, values, diagonal_shift, &held](auto fused) {
+    held = eliminate<fused()>(values, diagonal_shift);
+  });
+  return held;
+}
+
+template <bool fused>
+bool TwofoldLdlt::eliminate(const double* values, const double* diagonal_shift) {
   const SparseLdlt& a = pattern_;
   std::copy(a.column_start_.begin(), a.column_start_.end() - 1, fill_.begin());
   std::fill(work_.begin(), work_.end(), Twofold());
@@ -78,10 +125,10 @@ bool TwofoldLdlt::factorise(const double* values, const double* diagonal_shift) 
       const Twofold yi = work_[i];
       work_[i] = 0.0;
       const auto end = static_cast<std::size_t>(fill_[i]);
-      subtract_column(l_.data(), a.row_index_.data(), static_cast<std::size_t>(a.column_start_[i]), end, yi,
-                      work_.data());
-      const Twofold lki = yi * inverse_pivot_[i];
-      d = d - lki * yi;
+      subtract_column<fused>(l_.data(), a.row_index_.data(), static_cast<std::size_t>(a.column_start_[i]),
+                             end, yi, work_.data());
+      const Twofold lki = times<fused>(yi, inverse_pivot_[i]);
+      d = d - times<fused>(lki, yi);
       l_[end] = lki;
       ++fill_[i];
     }
@@ -94,13 +141,16 @@ bool TwofoldLdlt::factorise(const double* values, const double* diagonal_shift) 
 
 template <class Number>
 void TwofoldLdlt::solve_in_place(Number* b) const {
-  const SparseLdlt& a = pattern_;
-  const std::size_t n = pivot_.size();
-  const auto start = [&](std::size_t j) { return static_cast<std::size_t>(a.column_start_[j]); };
-  const int* const rows = a.row_index_.data();
-  for (std::size_t j = 0; j < n; ++j) subtract_column(l_.data(), rows, start(j), start(j + 1), b[j], b);
-  for (std::size_t j = n; j-- > 0;)
-    b[j] = subtract_row(times(inverse_pivot_[j], b[j]), l_.data(), rows, start(j), start(j + 1), b);
+  with_fused([this, b](auto fused) {
+    const std::size_t n = pivot_.size();
+    const int* const start = pattern_.column_start_.data();
+    const int* const rows = pattern_.row_index_.data();
+    const auto at = [start](std::size_t j) { return static_cast<std::size_t>(start[j]); };
+    for (std::size_t j = 0; j < n; ++j) subtract_column<fused()>(l_.data(), rows, at(j), at(j + 1), b[j], b);
+    for (std::size_t j = n; j-- > 0;)
+      b[j] = subtract_row<fused()>(times<fused()>(inverse_pivot_[j], b[j]), l_.data(), rows, at(j), at(j + 1),
+                                   b);
+  });
 }
 
 void TwofoldLdlt::solve_ordered(Twofold* b) const {
@@ -112,32 +162,35 @@ void TwofoldLdlt::solve_ordered(TwofoldPair* b) const {
 
 void TwofoldLdlt::subtract_product(const double* values, const TwofoldPair* x, TwofoldPair* r) const {
   const SparseLdlt& a = pattern_;
-  for (std::size_t k = 0; k < pivot_.size(); ++k)
-    for (auto e = static_cast<std::size_t>(a.entry_start_[k]);
-         e < static_cast<std::size_t>(a.entry_start_[k + 1]); ++e) {
-      const double number = values[a.entry_source_[e]];
-      const TwofoldPair value(DoublePair{number, number});
-      const auto row = static_cast<std::size_t>(a.entry_row_[e]);
-      r[k] = r[k] - value * x[row];
-      if (row != k) r[row] = r[row] - value * x[k];
-    }
+  with_fused([&a, values, x, r](auto fused) {
+    for (std::size_t k = 0, n = static_cast<std::size_t>(a.n_); k < n; ++k)
+      for (auto e = static_cast<std::size_t>(a.entry_start_[k]);
+           e < static_cast<std::size_t>(a.entry_start_[k + 1]); ++e) {
+        const Twofold value = values[a.entry_source_[e]];
+        const auto row = static_cast<std::size_t>(a.entry_row_[e]);
+        r[k] = r[k] - times<fused()>(value, x[row]);
+        if (row != k) r[row] = r[row] - times<fused()>(value, x[k]);
+      }
+  });
 }
 
 void TwofoldLdlt::subtract_product(const double* values, const Twofold* x, Twofold* r) const {
   const SparseLdlt& a = pattern_;
-  for (std::size_t k = 0; k < pivot_.size(); ++k)
-    for (auto e = static_cast<std::size_t>(a.entry_start_[k]);
-         e < static_cast<std::size_t>(a.entry_start_[k + 1]); ++e) {
-      const Twofold value = values[a.entry_source_[e]];
-      const auto row = static_cast<std::size_t>(a.entry_row_[e]);
-      if (row == k) {
-        r[k] = r[k] - value * x[k];
-        continue;
+  with_fused([&a, values, x, r](auto fused) {
+    for (std::size_t k = 0, n = static_cast<std::size_t>(a.n_); k < n; ++k)
+      for (auto e = static_cast<std::size_t>(a.entry_start_[k]);
+           e < static_cast<std::size_t>(a.entry_start_[k + 1]); ++e) {
+        const Twofold value = values[a.entry_source_[e]];
+        const auto row = static_cast<std::size_t>(a.entry_row_[e]);
+        if (row == k) {
+          r[k] = r[k] - times<fused()>(value, x[k]);
+          continue;
+        }
+        const TwofoldPair left = both(r[k], r[row]) - times<fused()>(both(value, value), both(x[row], x[k]));
+        r[k] = one_of(left, 0);
+        r[row] = one_of(left, 1);
       }
-      const TwofoldPair left = both(r[k], r[row]) - both(value, value) * both(x[row], x[k]);
-      r[k] = one_of(left, 0);
-      r[row] = one_of(left, 1);
-    }
+  });
 }
 
 }  // namespace unfurl

@@ -25,6 +25,8 @@ class TwofoldLdlt {
   double pivot(Index k) const { return pivot_[static_cast<std::size_t>(k)].hi; }  // k-th eliminated
 
  private:
+  template <bool fused>
+  [[nodiscard]] bool eliminate(const double* values, const double* diagonal_shift);
   template <class Number>
   void solve_in_place(Number* b) const;
 

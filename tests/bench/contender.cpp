@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/simulate/initial_state.hpp"
+#include "core/simulate/step_control.hpp"
 #include "tests/support/models.hpp"
 
 namespace unfurl::bench {
@@ -30,7 +32,43 @@ void run_ida(Contender& c, const Track& track) {
     c.error = std::max(c.error, distance(system, run.states[i], track.exact[i]));
 }
 
+// One step of it is as many as the control asks for.
+class StepsThatFollow final : public Integrator {
+ public:
+  StepsThatFollow(const Model& model, const SolverOptions& options)
+      : control_(model.structure, model.system, options),
+        method_(find_method(options.method)->make(model.system, options)) {}
+
+  StepReport step(State& state, double h) override {
+    const double end = state.t + h, nearly = 1e-9 * h;
+    StepReport report;
+    while (state.t < end - nearly) {
+      const double wanted = control_.next(state), left = end - state.t;
+      report = method_->step(state, wanted < left - nearly ? wanted : left);
+      if (!report.ok()) break;
+    }
+    return report;
+  }
+  void restart() override { method_->restart(); }
+
+ private:
+  StepControl control_;
+  std::unique_ptr<Integrator> method_;
+};
+
 }  // namespace
+
+Contender adaptive_dvm(int stages, double largest_step, double turn) {
+  SolverOptions options = testing::dvm_options(stages, largest_step, 1.0);
+  options.adaptive = true;
+  options.turn = turn;
+  char settings[60];
+  std::snprintf(settings, sizeof settings, ", steps up to %g s, turn %g", largest_step, turn);
+  Contender c{"dvm, " + std::to_string(stages) + " stages",
+              [options](const Model& m) { return std::make_unique<StepsThatFollow>(m, options); }, 0};
+  c.settings = settings;
+  return c;
+}
 
 Contender dvm(int stages, double h) {
   SolverOptions options = testing::dvm_options(stages, h, 1.0);
@@ -52,7 +90,8 @@ void run(Contender& c, const Track& track) {
   if (!c.make) return run_ida(c, track);
   const auto integrator = c.make(*track.model);
   State state = initial_state(track.model->structure, track.model->system).state;
-  const auto steps = static_cast<long>(std::ceil(track.end / c.h - 1e-9));
+  const double of_its_own = track.times.front();
+  const auto steps = static_cast<long>(std::ceil(track.end / (c.h > 0 ? c.h : of_its_own) - 1e-9));
   const double h = track.end / static_cast<double>(steps);
   double spent = 0;
   c.error = 0;
@@ -81,7 +120,7 @@ void add(Report& report, const std::string& group, const Contender& c) {
   const bool own_steps = c.relative_tolerance > 0;
   std::snprintf(h, sizeof h, c.make && !own_steps ? ", h = %.4g s" : ", rtol = %.0e",
                 own_steps ? c.relative_tolerance : c.h);
-  const std::string name = c.name + h;
+  const std::string name = c.name + (c.settings.empty() ? h : c.settings);
   if (c.failure.empty())
     report.add({group, name, c.best, "s", "", c.error});
   else

@@ -32,9 +32,12 @@ struct Contender {
   std::string failure = {};  // why it did not finish
   double absolute_tolerance = 0;  // of IDA [m], [m/s]
   double relative_tolerance = 0;  // of what takes steps of its own; 0: it takes steps of h
+  std::string settings = {};      // in words, where neither of them tells
 };
 
 Contender dvm(int stages, double h);
+// With steps that follow the motion (solver.adaptive), those between two of the track's times its own.
+Contender adaptive_dvm(int stages, double largest_step, double turn);
 Contender rk4(double h);
 // IDA has no step: `h` is its relative tolerance.
 Contender ida(double relative_tolerance, double absolute_tolerance);
