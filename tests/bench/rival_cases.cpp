@@ -4,6 +4,7 @@
 // compared.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/simulate/initial_state.hpp"
 #include "tests/bench/cases.hpp"
@@ -83,10 +84,15 @@ void rings(Report& report) {
           std::pair{7, 0.098}, std::pair{7, 0.07}, std::pair{8, 0.07}, std::pair{8, 0.05},
           std::pair{8, 0.035}, std::pair{7, 0.035}})
       ours.push_back(dvm(stages, h));
-    for (const auto& [stages, turn] :
-         {std::pair{6, 0.25}, std::pair{6, 0.2}, std::pair{7, 0.3}, std::pair{7, 0.2}, std::pair{7, 0.1},
-          std::pair{8, 0.1}, std::pair{9, 0.2}})
-      ours.push_back(adaptive_dvm(stages, 0.8, turn));
+    for (const auto& [stages, largest, turn] : {std::tuple{6, 1.6, 0.36},
+                                                {6, 1.2, 0.28},
+                                                {7, 1.6, 0.36},
+                                                {6, 0.8, 0.2},
+                                                {7, 0.8, 0.2},
+                                                {7, 0.8, 0.1},
+                                                {8, 0.8, 0.1},
+                                                {9, 0.8, 0.2}})
+      ours.push_back(adaptive_dvm(stages, largest, turn));
     for (int digits = 5; digits <= 13; ++digits)
       rivals.push_back(dop853(track, half, std::pow(10.0, -digits), false));
     duel(report, std::string("ring, ") + kind, track, ours, rivals, {1e-6, 1e-8, 1e-10, 1e-12}, 5);
