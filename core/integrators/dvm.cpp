@@ -220,7 +220,8 @@ bool Dvm::frozen_iterations(StepReport& report) {
       correct_at_ends(report);
       continue;
     }
-    const bool slow = !steered_ && momentum > 4 * wanted && momentum > 0.02 * last_momentum;
+    // Not through the kinks of cables that go taut within a step.
+    const bool slow = !steerable_ && momentum > 4 * wanted && momentum > 0.02 * last_momentum;
     if (slow) with_wide_columns(c_.s - 1, [this, was_slow](auto k) { accelerate<k()>(was_slow); });
     was_slow = slow;
     last_momentum = momentum;
