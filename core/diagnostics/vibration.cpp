@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/diagnostics/vibration.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +8,7 @@
 
 #include "core/integrators/index1.hpp"
 #include "core/math/determined_rows.hpp"
+#include "core/math/factors.hpp"
 #include "core/simulate/elastic_sharing.hpp"
 #include "core/system/rigid_twin.hpp"
 
@@ -24,18 +22,12 @@ constexpr double far_below = 1e-3;  // of the lowest elastic eigenvalue: solved 
 // Orthonormal columns that span the x with A x = 0; rows of A of unit length or zero.
 MatrixXd null_space(const MatrixXd& A) {
   if (A.rows() == 0) return MatrixXd::Identity(A.cols(), A.cols());
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
-  const auto pivots = qr.matrixR().diagonal().cwiseAbs();
-  const Index rank = (pivots.array() > no_rank).count();
-  MatrixXd last = MatrixXd::Zero(A.cols(), A.cols() - rank);
-  last.bottomRows(A.cols() - rank).setIdentity();
-  return qr.householderQ() * last;
+  return column_complement(A.transpose(), no_rank);
 }
 
 // X with X^T M X = 1 for the columns' span.
 MatrixXd orthonormal(const MatrixXd& X, const MatrixXd& M) {
-  const Eigen::LLT<MatrixXd> L(X.transpose() * M * X);
-  return L.matrixL().solve(X.transpose()).transpose();
+  return Cholesky(X.transpose() * M * X).solve_lower(X.transpose()).transpose();
 }
 
 MatrixXd symmetric(const MatrixXd& A) {
@@ -97,9 +89,8 @@ class AtPose {
     system_.reduce_force(force, reduced);
     reduced -= G.transpose() * given;
     const MatrixXd Gr = MatrixXd(G)(rest, Eigen::all);
-    const Eigen::LLT<MatrixXd> M((MatrixXd(system_.mass())));
-    const VectorXd held =
-        MatrixXd(Gr * M.solve(Gr.transpose())).completeOrthogonalDecomposition().solve(Gr * M.solve(reduced));
+    const Cholesky M((MatrixXd(system_.mass())));
+    const VectorXd held = least_squares(Gr * M.solve(MatrixXd(Gr.transpose())), Gr * M.solve(reduced));
     lambda = given;
     for (std::size_t k = 0; k < rest.size(); ++k) lambda[rest[k]] = held[static_cast<Index>(k)];
   }
@@ -126,7 +117,7 @@ class AtPose {
     system_.reduce_force(force, reduced);
     double shortest = std::numeric_limits<double>::infinity();
     for (const Rod& rod : model.structure.rods) shortest = std::min(shortest, rod.length);
-    if (mass.rows() > 0) pull = mass.llt().solve(reduced).lpNorm<Eigen::Infinity>() / shortest;
+    if (mass.rows() > 0) pull = Cholesky(mass).solve(reduced).lpNorm<Eigen::Infinity>() / shortest;
     for (Index row = 0; row < rows.rows(); ++row) {
       if (const double norm = rows.row(row).norm(); norm > 0) rows.row(row) /= norm;
       if (!(compliance[row] > 0)) rigid.push_back(row);
@@ -153,8 +144,8 @@ Solved solve(const AtPose& at) {
                  Z = orthonormal(null_space(at.rigid_rows), at.mass);
   if (Z.cols() == 0) return {};  // a drive holds all that could move
   const MatrixXd K = at.elastic + at.geometric;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> all(symmetric(Z.transpose() * K * Z));
-  const MatrixXd X = Z * all.eigenvectors();
+  const SymmetricEigen all = symmetric_eigen(symmetric(Z.transpose() * K * Z));
+  const MatrixXd X = Z * all.vectors;
   Solved out;
   out.mechanism = N0.cols();
   std::vector<Index> order(static_cast<std::size_t>(X.cols()));
@@ -165,7 +156,7 @@ Solved solve(const AtPose& at) {
   const auto own = order.begin() + out.mechanism;
   std::sort(order.begin(), own);
   std::sort(own, order.end());
-  for (const Index k : order) out.squares.push_back(all.eigenvalues()[k]);
+  for (const Index k : order) out.squares.push_back(all.values[k]);
   out.vectors = X(Eigen::all, order);
   if (out.mechanism == 0) return out;
 
@@ -180,23 +171,20 @@ Solved solve(const AtPose& at) {
   // drawn^T K drawn without the round-off of N_0^T elastic, which is zero.
   const MatrixXd stretched = drawn - N0, small = drawn.transpose() * at.geometric * drawn +
                                                  stretched.transpose() * at.elastic * stretched;
-  const MatrixXd to_unit = (drawn.transpose() * at.mass * drawn)
-                               .llt()
-                               .matrixL()
-                               .solve(MatrixXd::Identity(out.mechanism, out.mechanism));
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> own_motions(
-      symmetric(to_unit * symmetric(small) * to_unit.transpose()));
+  const MatrixXd to_unit = Cholesky(drawn.transpose() * at.mass * drawn)
+                               .solve_lower(MatrixXd::Identity(out.mechanism, out.mechanism));
+  const SymmetricEigen own_motions =
+      symmetric_eigen(symmetric(to_unit * symmetric(small) * to_unit.transpose()));
   const double lowest = N1.cols() > 0 ? out.squares[static_cast<std::size_t>(out.mechanism)]
                                       : std::numeric_limits<double>::infinity();
-  if (!(largest_magnitude_of(own_motions.eigenvalues()) < far_below * lowest)) return out;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> pulls(symmetric(Z.transpose() * at.geometric * Z),
-                                                      Eigen::EigenvaluesOnly);
-  const double zero = nothing * std::max(at.pull, largest_magnitude_of(pulls.eigenvalues()));
+  if (!(largest_magnitude_of(own_motions.values) < far_below * lowest)) return out;
+  const VectorXd pulls = symmetric_eigenvalues(symmetric(Z.transpose() * at.geometric * Z));
+  const double zero = nothing * std::max(at.pull, largest_magnitude_of(pulls));
   for (Index k = 0; k < out.mechanism; ++k) {
-    const double square = own_motions.eigenvalues()[k];
+    const double square = own_motions.values[k];
     out.squares[static_cast<std::size_t>(k)] = std::abs(square) <= zero ? 0.0 : square;
   }
-  out.vectors.leftCols(out.mechanism) = drawn * to_unit.transpose() * own_motions.eigenvectors();
+  out.vectors.leftCols(out.mechanism) = drawn * to_unit.transpose() * own_motions.vectors;
   return out;
 }
 

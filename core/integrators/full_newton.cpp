@@ -196,8 +196,7 @@ bool FullNewton::Factors::compute(StageEquations& eq, const VectorXd& scale) {
     return true;
   }
   assemble(scale.size());
-  sparse_.factorize(columns_);
-  return sparse_.info() == Eigen::Success;
+  return sparse_.factorise(columns_);
 }
 
 // Entries come in the same order for the same pattern, which is then filled as it is.
@@ -219,11 +218,11 @@ void FullNewton::Factors::assemble(Index size) {
               *end = columns_.innerIndexPtr() + columns_.outerIndexPtr()[e.col() + 1];
     slots_.push_back({e.row(), e.col(), std::lower_bound(first, end, e.row()) - columns_.innerIndexPtr()});
   }
-  sparse_.analyzePattern(columns_);
+  sparse_.analyse(columns_);
 }
 
 VectorXd FullNewton::Factors::solve(const VectorXd& b) const {
-  return b.size() <= largest_dense ? VectorXd(dense_.solve(b)) : VectorXd(sparse_.solve(b));
+  return b.size() <= largest_dense ? dense_.solve(b) : sparse_.solve(b);
 }
 
 void FullNewton::set_scale(const StageEquations& eq) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/LU>
-#include <Eigen/SparseLU>
 #include <vector>
 
 #include "core/integrators/stage_equations.hpp"
+#include "core/math/factors.hpp"
 #include "core/system/state.hpp"
 
 namespace unfurl {
@@ -34,14 +33,13 @@ class FullNewton {
   // to set itself up; the pattern of larger ones is analysed when it is new.
   class Factors {
    public:
-    using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
     bool compute(StageEquations& equations, const VectorXd& scale);  // of their Newton matrix
     VectorXd solve(const VectorXd& b) const;
 
    private:
     static constexpr Index largest_dense = 80;
     MatrixXd matrix_;
-    Eigen::PartialPivLU<MatrixXd> dense_;
+    DenseLu dense_;
     struct Slot {  // an entry's place in the matrix, and among its values
       int row, column;
       std::ptrdiff_t at;
@@ -50,8 +48,8 @@ class FullNewton {
 
     std::vector<Eigen::Triplet<double>> entries_;
     std::vector<Slot> slots_;
-    Columns columns_;
-    Eigen::SparseLU<Columns> sparse_;
+    SparseColumns columns_;
+    SparseLu sparse_;
   };
   void set_scale(const StageEquations& equations);
 

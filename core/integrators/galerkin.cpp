@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/galerkin.hpp"
 
-#include <Eigen/LU>
+#include "core/math/factors.hpp"
 
 namespace unfurl {
 GalerkinCoefficients::GalerkinCoefficients(std::string_view family, int stages)
@@ -13,7 +13,7 @@ GalerkinCoefficients::GalerkinCoefficients(std::string_view family, int stages)
   take(gauss_legendre(s - 1));
   tau_to_end = Barycentric(tau).values(1.0);
   C = K.topRightCorner(s - 1, s - 1);
-  C_inverse = C.inverse();
+  C_inverse = inverse_of(C);
   extrapolate(1.0, extrapolation);
 }
 

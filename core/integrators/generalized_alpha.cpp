@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/generalized_alpha.hpp"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 #include "core/integrators/index1.hpp"
 #include "core/integrators/row_noise.hpp"
 #include "core/integrators/stage_equations.hpp"
+#include "core/math/factors.hpp"
 #include "core/math/saddle_solver.hpp"
 
 namespace unfurl {
@@ -240,14 +240,14 @@ bool GeneralizedAlpha::correct_with_forces(double t, double h, StepReport& repor
     entries.emplace_back(static_cast<int>(n + r), static_cast<int>(n + r),
                          -SaddleSolver::standard_regularisation);
   }
-  Eigen::SparseMatrix<double> A(n + m, n + m);
+  SparseColumns A(n + m, n + m);
   A.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(A);
+  const SparseLu factors(A);
   ++report.factorisations;
-  if (factors.info() != Eigen::Success) return false;
+  if (!factors.ok()) return false;
   VectorXd right(n + m);
   right << residual_ / -b, -phi_;
-  const VectorXd x = scale.cwiseProduct(VectorXd(factors.solve(scale.cwiseProduct(right))));
+  const VectorXd x = scale.cwiseProduct(factors.solve(scale.cwiseProduct(right)));
   acceleration_ += b * x.head(n);
   lambda_ += b * x.tail(m);
   ++report.right_hand_sides;

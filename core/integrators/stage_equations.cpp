@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/stage_equations.hpp"
 
-#include <Eigen/QR>
+#include "core/math/factors.hpp"
 
 namespace unfurl {
 
@@ -226,7 +226,7 @@ bool StageEquations::held() {
     SparseRows G = system.jacobian_pattern();
     std::vector<double> scratch;
     system.jacobian(q_0_, G, scratch);
-    held_ = MatrixXd(G).colPivHouseholderQr().rank() == n;
+    held_ = rank_of(MatrixXd(G)) == n;
   }
   return *held_;
 }

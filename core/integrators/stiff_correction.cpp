@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/stiff_correction.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "core/math/factors.hpp"
 
 namespace unfurl {
 namespace {
@@ -18,13 +19,12 @@ StiffCorrection::StiffCorrection(const GalerkinCoefficients& c, Index coordinate
     : stages_(c.s - 1) {
   const MatrixXd B =
       c.value.topRows(stages_) * c.weight.asDiagonal() * c.slope.bottomRows(stages_).transpose();
-  const Eigen::EigenSolver<MatrixXd> eigen(MatrixXd(-c.C_inverse * B));
-  const Eigen::MatrixXcd T = eigen.eigenvectors(), inverse = T.inverse();
+  const ComplexEigen eigen = complex_eigen(-c.C_inverse * B);
   for (Index k = 0; k < stages_; ++k) {
-    const Complex zeta = eigen.eigenvalues()[k];
+    const Complex zeta = eigen.values[k];
     if (zeta.imag() < 0) continue;
     const double copies = zeta.imag() > 0 ? 2.0 : 1.0;
-    modes_.push_back({zeta, inverse.row(k), copies * T.col(k), {}});
+    modes_.push_back({zeta, eigen.inverse.row(k), copies * eigen.vectors.col(k), {}});
   }
   for (Eigen::VectorXcd* v : {&x_, &r_, &z_, &p_, &Ap_}) v->setZero(coordinates);
   y_.setZero(constraints);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/math/box_complementarity.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/math/factors.hpp"
 
 namespace unfurl {
 namespace {
@@ -27,7 +28,7 @@ VectorXd past_held(const MatrixXd& D, const std::vector<bool>& held, Index i) {
   VectorXd d = VectorXd::Zero(D.rows());
   d[i] = 1;
   if (rows.empty()) return d;
-  const VectorXd part = D(rows, rows).llt().solve(VectorXd(D(rows, std::vector{i}).col(0)));
+  const VectorXd part = Cholesky(D(rows, rows)).solve(VectorXd(D(rows, std::vector{i}).col(0)));
   for (std::size_t k = 0; k < rows.size(); ++k) d[rows[k]] = -part[static_cast<Index>(k)];
   return d;
 }

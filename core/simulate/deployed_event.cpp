@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/deployed_event.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "core/integrators/index1.hpp"
+#include "core/math/factors.hpp"
 #include "core/simulate/initial_state.hpp"
 
 namespace unfurl {
@@ -56,17 +56,8 @@ VectorXd shares_at_zero(const std::vector<Sample>& samples, int degree) {
     weight[i] = std::pow(x, 4);
     for (Index j = 0; j <= degree; ++j) powers(i, j) = weight[i] * std::pow(x, static_cast<double>(j));
   }
-  // The first row of the pseudo-inverse, by R^T y = e_0: shares = W Q y.
-  const Eigen::HouseholderQR<MatrixXd> qr(powers);
-  const VectorXd y = qr.matrixQR()
-                         .topRows(degree + 1)
-                         .triangularView<Eigen::Upper>()
-                         .transpose()
-                         .solve(VectorXd::Unit(degree + 1, 0));
-  VectorXd shares = VectorXd::Zero(count);
-  shares.head(degree + 1) = y;
-  shares.applyOnTheLeft(qr.householderQ());
-  return weight.cwiseProduct(shares);
+  // The first row of the pseudo-inverse.
+  return weight.cwiseProduct(least_norm(powers, VectorXd::Unit(degree + 1, 0)));
 }
 VectorXd at_zero(const std::vector<Sample>& samples, const VectorXd& shares, VectorXd State::*part) {
   VectorXd sum = VectorXd::Zero((samples.front().state.*part).size());

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/mode_change.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "core/math/box_complementarity.hpp"
+#include "core/math/factors.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/push_responses.hpp"
 
@@ -96,7 +96,7 @@ class Change {
       if (sides_.is_friction(side(r)) || sides_.active(side(r))) keep(r);
     out_.state = hand_over(base_, out_.state, base_).state;
     VectorXd impulses = VectorXd::Zero(count());
-    impulses(rows) = -D_(rows, rows).llt().solve(VectorXd(responses.rates(out_.state.w)(rows)));
+    impulses(rows) = -Cholesky(D_(rows, rows)).solve(VectorXd(responses.rates(out_.state.w)(rows)));
     responses.give(impulses, out_.state.w);
   }
 
@@ -337,7 +337,7 @@ class Change {
       if (rests_[static_cast<std::size_t>(r)] && solution_.held[static_cast<std::size_t>(r)])
         held.push_back(r);
     MatrixXd c = MatrixXd::Zero(n, n);
-    const Eigen::LLT<MatrixXd> all(D_(held, held));
+    const Cholesky all(D_(held, held));
     for (Index r = 0; r < count() && !held.empty(); ++r) {
       const std::size_t i = side(r);
       if (!sides_.is_friction(i) || sides_.active(i) || sides_.slip(i) != 0) continue;

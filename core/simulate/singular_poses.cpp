@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/singular_poses.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/math/factors.hpp"
 #include "core/math/singular_values.hpp"
 
 namespace unfurl {
@@ -129,12 +128,11 @@ void SmallestSingularValue::improve() {
     saddle_.apply(columns_.data(), rows_.data(), static_cast<int>(count));
     block_.middleCols(c, count) = by_rows_ ? rows_ : columns_;
   }
-  const Eigen::HouseholderQR<MatrixXd> qr(block_);
-  const MatrixXd basis = qr.householderQ() * MatrixXd::Identity(block_.rows(), columns);
+  const MatrixXd basis = orthonormal_columns(block_);
   const MatrixXd image = by_rows_ ? MatrixXd(G_.transpose() * basis) : MatrixXd(G_ * basis);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(image.transpose() * image);
-  block_ = basis * ritz.eigenvectors();
-  sigma_ = ritz.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const SymmetricEigen ritz = symmetric_eigen(image.transpose() * image);
+  block_ = basis * ritz.vectors;
+  sigma_ = ritz.values.cwiseMax(0.0).cwiseSqrt();
 }
 
 Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last) {

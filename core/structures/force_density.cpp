@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/structures/force_density.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <cmath>
 #include <string>
 
+#include "core/math/factors.hpp"
 #include "core/structure/structure_error.hpp"
 
 namespace unfurl {
@@ -30,14 +30,14 @@ void find_form(const std::vector<NetMember>& members, const std::vector<bool>& f
       else
         right.row(row) += m.density * positions[static_cast<std::size_t>(there)].transpose();
     }
-  Eigen::SparseMatrix<double> D(free, free);
+  SparseColumns D(free, free);
   D.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(D);
-  const MatrixXd x = solver.info() == Eigen::Success ? MatrixXd(solver.solve(right)) : MatrixXd();
+  const SparseCholesky solver(D);
+  const MatrixXd x = solver.ok() ? solver.solve(right) : MatrixXd();
+  const VectorXd pivots = solver.pivots().cwiseAbs();
   // A part without a fixed node leaves a pivot that is round-off of its densities.
   const bool held =
-      x.rows() == free && x.allFinite() &&
-      (free == 0 || solver.vectorD().cwiseAbs().minCoeff() > 1e-12 * solver.vectorD().cwiseAbs().maxCoeff());
+      x.rows() == free && x.allFinite() && (free == 0 || pivots.minCoeff() > 1e-12 * pivots.maxCoeff());
   if (!held)
     throw StructureError("",
                          "form finding has no solution: some nodes of the net hang on nothing that is fixed");

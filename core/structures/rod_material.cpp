@@ -12,7 +12,7 @@ namespace unfurl {
 
 namespace {
 
-constexpr double endless = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 std::string thickness_text(double x) {
   char text[32];
@@ -28,26 +28,26 @@ bool RodMaterial::elastic() const {
 
 const std::vector<ParamSpec>& rod_material_params() {
   static const std::vector<ParamSpec> params{
-      positive_param("youngs_modulus", "Pa", endless,
+      positive_param("youngs_modulus", "Pa", unbounded,
                      "of the rods: how they share forces that rigid ones leave open, stress, buckling, "
                      "frequencies; inf: rigid"),
-      positive_param("strength", "Pa", endless, "axial stress that the rods may bear"),
+      positive_param("strength", "Pa", unbounded, "axial stress that the rods may bear"),
       choice_param("section", "round", {"round", "tube", "square"},
                    "shape of the cross section, for buckling"),
       only_with(
           "section", {"tube"},
-          positive_param("wall_thickness", "m", endless, "of a tube; its diameter follows from the area")),
+          positive_param("wall_thickness", "m", unbounded, "of a tube; its diameter follows from the area")),
       choice_param(
           "rod_model", "rigid", {"rigid", "quasi-static", "elastic"},
           "elastic: rods with a youngs_modulus give, with waves; quasi-static: the rigid motion, what "
           "its forces stretch added to what is shown"),
-      real_param("damping_ratio", "", 0.0, 0.0, endless,
+      real_param("damping_ratio", "", 0.0, 0.0, unbounded,
                  "of elastic rods, of critical damping where a rod is free and alone"),
-      real_param("damping_time", "s", 0.0, 0.0, endless,
+      real_param("damping_time", "s", 0.0, 0.0, unbounded,
                  "of elastic rods, in place of damping_ratio: stress = E (strain + damping_time * its rate)"),
       integer_param("segments", 1, 1, 1000,
                     "that rods with a youngs_modulus are cut into, to bend between their ends"),
-      real_param("length_error", "m", 0.0, 0.0, endless,
+      real_param("length_error", "m", 0.0, 0.0, unbounded,
                  "of the rods as they are made, standard deviation; elastic rods are joined all the same"),
       integer_param("error_seed", 1, 0, 1000000000, "of the errors: another number, other errors"),
   };

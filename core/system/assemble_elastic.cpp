@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/system/assemble_elastic.hpp"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "core/math/factors.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/system/fit_lengths.hpp"
@@ -13,8 +13,6 @@
 
 namespace unfurl {
 namespace {
-
-using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
 constexpr double joins = 1e-12;      // of the length: what fits
 constexpr double shortening = 1e-8;  // e M over K
@@ -102,16 +100,16 @@ class Balance {
       }
       entries.emplace_back(row, row, -redundant / largest);
     }
-    Columns A(n + m, n + m);
+    SparseColumns A(n + m, n + m);
     A.setFromTriplets(entries.begin(), entries.end());
     VectorXd force = VectorXd::Zero(q.size()), phi(m), b(n + m), reduced(n);
     system_.add_applied_force(0.0, q, rest, 1.0, force);
     system_.reduce_force(force, reduced);
     system_.constraint(0.0, q, phi);
     b << reduced, -phi;
-    const Eigen::SparseLU<Columns> factors(A);
-    if (factors.info() != Eigen::Success) return false;
-    step = VectorXd(factors.solve(b)).head(n);
+    const SparseLu factors(A);
+    if (!factors.ok()) return false;
+    step = factors.solve(b).head(n);
     return step.allFinite();
   }
 
@@ -187,10 +185,10 @@ class Joint {
       entries.emplace_back(static_cast<int>(n) + r, static_cast<int>(n) + r, -kept);
     }
     add(entries, system_.mass(), held * stiffest);
-    Columns A(n + m + k, n + m + k);
+    SparseColumns A(n + m + k, n + m + k);
     A.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SparseLU<Columns> factors(A);
-    if (factors.info() != Eigen::Success) return false;
+    const SparseLu factors(A);
+    if (!factors.ok()) return false;
     const VectorXd x = factors.solve(b);
     step = x.head(n), lambda_ = x.segment(n, m);
     return x.allFinite();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/system/consistency.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
+#include "core/math/factors.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 
@@ -103,8 +103,7 @@ class Checker {
   static VectorXd combination(const MatrixXd& G, Index r) {
     MatrixXd A = G.transpose();
     A.col(r).setZero();
-    const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(A);
-    const VectorXd row = G.row(r).transpose(), y = solver.solve(row);
+    const VectorXd row = G.row(r).transpose(), y = least_squares(A, row);
     if ((A * y - row).norm() > dependent * std::max(1.0, y.norm())) return {};
     return y;
   }
@@ -180,9 +179,7 @@ class Checker {
   }
 
   void check_freedom() const {
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(G_);
-    qr.setThreshold(1e-9);
-    if (qr.rank() < G_.cols()) return;
+    if (rank_of(G_, 1e-9) < G_.cols()) return;
     std::vector<std::string> members;
     for (auto n = names_.rbegin(); n != names_.rend(); ++n)  // what is held or driven by name comes first
       if (n->rfind("rod ", 0) != 0) members.push_back(*n);
@@ -215,8 +212,7 @@ std::string driven_against(const System& system, double t, const VectorXd& q) {
   const VectorXd wanted = unit_rates(system, t, q, norms);
   const double most = wanted.size() > 0 ? wanted.lpNorm<Eigen::Infinity>() : 0.0;
   if (!(most > 0)) return "";
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(G);
-  const VectorXd found = solver.solve(wanted);
+  const VectorXd found = least_squares(G, wanted);
   if ((G * found - wanted).norm() <= too_much * wanted.norm()) return "";
   const std::vector<std::string> all = system.all_names();
   std::vector<std::string> names;

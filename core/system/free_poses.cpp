@@ -8,17 +8,14 @@
 // mu grows while a step leads away from x + d, and falls again (Levenberg and Marquardt).
 #include "core/system/free_poses.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
+
+#include "core/math/factors.hpp"
 
 namespace unfurl {
 
 namespace {
-
-using Columns = Eigen::SparseMatrix<double>;
 
 constexpr double met = 1e-10;          // of a constraint, in units of the structure's size
 constexpr double at_rest = 1e-4;       // mu: of moving at all, where nothing speaks for more
@@ -42,8 +39,8 @@ double size_of_structure(const Structure& structure) {
   return size > 0 && std::isfinite(size) ? size : 1.0;
 }
 
-Columns identity(Index n, double value) {
-  Columns I(n, n);
+SparseColumns identity(Index n, double value) {
+  SparseColumns I(n, n);
   I.setIdentity();
   return value * I;
 }
@@ -63,11 +60,7 @@ MatrixXd rigid_motions(const VectorXd& q) {
 
 // An orthonormal basis of what the columns span: `least` of what is left of a column counts.
 MatrixXd orthonormal(const MatrixXd& A, double least) {
-  if (A.cols() == 0) return A;
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);  // pivots descend
-  Index rank = 0;
-  while (rank < std::min(A.rows(), A.cols()) && std::abs(qr.matrixQR()(rank, rank)) > least) ++rank;
-  return qr.householderQ() * MatrixXd::Identity(A.rows(), rank);
+  return A.cols() == 0 ? A : column_space(A, least);
 }
 
 }  // namespace
@@ -97,11 +90,10 @@ bool FreePoses::project(VectorXd& z) const {
     VectorXd phi;
     const SparseRows G = jacobian(z, phi);
     if (phi.size() == 0 || phi.cwiseAbs().maxCoeff() <= met * size_) return true;
-    Columns A = Columns(G.transpose() * G) + identity(z.size(), 1e-10);
-    const Eigen::SimplicialLDLT<Columns> solver(A);
+    SparseColumns A = SparseColumns(G.transpose() * G) + identity(z.size(), 1e-10);
+    const SparseCholesky solver(A);
     const VectorXd step = solver.solve(VectorXd(G.transpose() * phi));
-    if (solver.info() != Eigen::Success || !step.allFinite() || step.cwiseAbs().maxCoeff() > size_)
-      return false;
+    if (!solver.ok() || !step.allFinite() || step.cwiseAbs().maxCoeff() > size_) return false;
     z -= step;
   }
   return false;
@@ -116,17 +108,17 @@ VectorXd FreePoses::node_at(const VectorXd& z, int node) const {
 VectorXd FreePoses::step_towards(const VectorXd& z, int node, const Vec3& way, double damping) const {
   VectorXd phi;
   const SparseRows G = jacobian(z, phi);
-  Columns A = kept * Columns(G.transpose() * G) + identity(z.size(), damping);
+  SparseColumns A = kept * SparseColumns(G.transpose() * G) + identity(z.size(), damping);
   VectorXd right = VectorXd::Zero(z.size());
   for (Index c = 0; c < 3; ++c) {  // a row of J each
     VectorXd unit = VectorXd::Zero(system_.coordinates()), row = VectorXd::Zero(z.size());
     unit[3 * node + c] = 1;
     system_.reduce_force(unit, row);
-    const Columns J = row.sparseView();
-    A += Columns(J * J.transpose());
+    const SparseColumns J = row.sparseView();
+    A += SparseColumns(J * J.transpose());
     right += way[c] * row;
   }
-  const Eigen::SimplicialLDLT<Columns> solver(A);
+  const SparseCholesky solver(A);
   return solver.solve(right);
 }
 
@@ -161,11 +153,11 @@ MatrixXd FreePoses::motions(const VectorXd& q) const {
   const MatrixXd G = MatrixXd(jacobian(z, phi));
   MatrixXd N = MatrixXd::Identity(z.size(), z.size());
   if (G.rows() > 0) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(G.transpose() * G);
-    const double largest = std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
+    const SymmetricEigen eigen = symmetric_eigen(G.transpose() * G);
+    const double largest = std::max(eigen.values.maxCoeff(), 1e-300);
     Index count = 0;
-    while (count < z.size() && eigen.eigenvalues()[count] < free_value * largest) ++count;
-    N = eigen.eigenvectors().leftCols(count).eval();
+    while (count < z.size() && eigen.values[count] < free_value * largest) ++count;
+    N = eigen.vectors.leftCols(count).eval();
   }
   MatrixXd V(q.size(), N.cols());
   for (Index k = 0; k < N.cols(); ++k) {
@@ -178,9 +170,9 @@ MatrixXd FreePoses::motions(const VectorXd& q) const {
   const MatrixXd R = orthonormal(rigid_motions(q), 1e-9 * std::max(1.0, size_));
   const MatrixXd rest = R - V * (V.transpose() * R);
   // Squares of singular values, ascending.
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> left(rest.transpose() * rest);
-  const Index free = (left.eigenvalues().array() < 1e-12).count();
-  const MatrixXd rigid = R * left.eigenvectors().leftCols(free);
+  const SymmetricEigen left = symmetric_eigen(rest.transpose() * rest);
+  const Index free = (left.values.array() < 1e-12).count();
+  const MatrixXd rigid = R * left.vectors.leftCols(free);
   return orthonormal(V - rigid * (rigid.transpose() * V), 1e-6);
 }
 

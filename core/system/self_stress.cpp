@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/system/self_stress.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "core/math/determined_rows.hpp"
+#include "core/math/factors.hpp"
 
 namespace unfurl {
 namespace {
@@ -51,9 +51,10 @@ ForceBalance force_balance(const System& system, const ConstVec& q, const Mobili
   std::vector<int> basis;
   for (int r = 0; r < static_cast<int>(G.rows()); ++r)
     if (std::find(dependent.begin(), dependent.end(), r) == dependent.end()) basis.push_back(r);
-  const Eigen::HouseholderQR<MatrixXd> independent(G(basis, Eigen::all).transpose());
-  for (const int row : dependent)
-    out.states.push_back(state_of(independent.solve(G.row(row).transpose()), basis, row, norm));
+  const MatrixXd shares =
+      fitted_columns(G(basis, Eigen::all).transpose(), G(dependent, Eigen::all).transpose());
+  for (std::size_t k = 0; k < dependent.size(); ++k)
+    out.states.push_back(state_of(shares.col(static_cast<Index>(k)), basis, dependent[k], norm));
   return out;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/diagnostics/force_uniqueness.hpp"
 
-#include <Eigen/QR>
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/math/factors.hpp"
 #include "core/scene/library.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -22,9 +22,7 @@ Simulation library_run(const char* scene, const std::vector<std::string>& change
 }
 
 Index rank(const MatrixXd& A) {
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
-  qr.setThreshold(1e-9);
-  return A.size() > 0 ? qr.rank() : 0;
+  return A.size() > 0 ? rank_of(A, 1e-9) : 0;
 }
 
 // By the definition: removing a rod's row lowers the rank.

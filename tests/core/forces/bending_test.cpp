@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rods that bend, against the elastica.
-#include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/diagnostics/vibration.hpp"
+#include "core/math/factors.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/structure/node_positions.hpp"
 #include "tests/support/models.hpp"
@@ -67,7 +67,7 @@ VectorXd equilibrium(const Model& model, int steps) {
       A.bottomLeftCorner(m, n) = MatrixXd(G);
       VectorXd b(n + m);
       b << r, -phi;
-      const VectorXd x = A.fullPivLu().solve(b);
+      const VectorXd x = least_squares(A, b);
       z += x.head(n);
       lambda += x.tail(m);
       if (x.head(n).lpNorm<Eigen::Infinity>() < 1e-13) break;

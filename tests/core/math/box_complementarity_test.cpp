@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bounded pushes against every choice of what holds, tried one by one.
 #include "core/math/box_complementarity.hpp"
+#include "core/math/factors.hpp"
 
-#include <Eigen/QR>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -46,7 +46,7 @@ std::optional<VectorXd> by_enumeration(const Problem& p) {
     if (!held.empty()) {
       const VectorXd rest = -(p.D * x + p.b);
       const MatrixXd part = p.D(held, held);
-      const VectorXd found = part.completeOrthogonalDecomposition().solve(VectorXd(rest(held)));
+      const VectorXd found = least_squares(part, rest(held));
       for (std::size_t k = 0; k < held.size(); ++k) x[held[k]] = found[static_cast<Index>(k)];
     }
     if (fulfils(p, x, 1e-9)) return VectorXd(p.D * x + p.b);

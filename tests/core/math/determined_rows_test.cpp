@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/math/determined_rows.hpp"
 
-#include <Eigen/QR>
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "core/math/factors.hpp"
 #include "tests/support/sparse_rows.hpp"
 
 using namespace unfurl;
@@ -16,9 +16,7 @@ using testing::sparse_rows;
 namespace {
 
 Index rank(const MatrixXd& A) {
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
-  qr.setThreshold(1e-9);
-  return A.size() > 0 ? qr.rank() : 0;
+  return A.size() > 0 ? rank_of(A, 1e-9) : 0;
 }
 
 // The rows of length 1 of a random pin-jointed frame in space: `rods` rods between random pairs of `nodes`

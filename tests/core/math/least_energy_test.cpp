@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/math/least_energy.hpp"
+#include "core/math/factors.hpp"
 
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
@@ -54,12 +55,12 @@ VectorXd by_definition(const Truss& t) {
   const MatrixXd N = null_space(t.G.transpose());
   if (N.cols() == 0) return t.y;
   const VectorXd c = t.compliance / t.compliance.maxCoeff();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> energy(N.transpose() * c.asDiagonal() * N);
-  const VectorXd slope = energy.eigenvectors().transpose() * N.transpose() * c.cwiseProduct(t.y);
+  const SymmetricEigen energy = symmetric_eigen(N.transpose() * c.asDiagonal() * N);
+  const VectorXd slope = energy.vectors.transpose() * N.transpose() * c.cwiseProduct(t.y);
   VectorXd a = VectorXd::Zero(N.cols());
   for (Index k = 0; k < a.size(); ++k)
-    if (energy.eigenvalues()[k] > 1e-10) a[k] = -slope[k] / energy.eigenvalues()[k];
-  return t.y + N * energy.eigenvectors() * a;
+    if (energy.values[k] > 1e-10) a[k] = -slope[k] / energy.values[k];
+  return t.y + N * energy.vectors * a;
 }
 
 }  // namespace

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/math/factors.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+namespace unfurl {
+namespace {
+
+using PivotedQr = Eigen::ColPivHouseholderQR<MatrixXd>;
+
+Index pivots_above(const PivotedQr& qr, double least) {
+  return (qr.matrixQR().diagonal().cwiseAbs().array() > least).count();
+}
+
+}  // namespace
+
+SymmetricEigen symmetric_eigen(const MatrixXd& A) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(A);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+VectorXd symmetric_eigenvalues(const MatrixXd& A) {
+  return Eigen::SelfAdjointEigenSolver<MatrixXd>(A, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+ComplexEigen complex_eigen(const MatrixXd& A) {
+  const Eigen::EigenSolver<MatrixXd> solver(A);
+  ComplexEigen out{solver.eigenvalues(), solver.eigenvectors(), {}};
+  out.inverse = out.vectors.inverse();
+  return out;
+}
+
+MatrixXd inverse_of(const MatrixXd& A) {
+  return A.inverse();
+}
+
+VectorXd least_squares(const MatrixXd& A, const VectorXd& b) {
+  return Eigen::CompleteOrthogonalDecomposition<MatrixXd>(A).solve(b);
+}
+
+Index rank_of(const MatrixXd& A, double threshold) {
+  PivotedQr qr(A);
+  if (threshold >= 0) qr.setThreshold(threshold);
+  return qr.rank();
+}
+
+MatrixXd column_space(const MatrixXd& A, double least) {
+  const PivotedQr qr(A);
+  return qr.householderQ() * MatrixXd::Identity(A.rows(), pivots_above(qr, least));
+}
+
+MatrixXd column_complement(const MatrixXd& A, double least) {
+  const PivotedQr qr(A);
+  const Index left = A.rows() - pivots_above(qr, least);
+  MatrixXd last = MatrixXd::Zero(A.rows(), left);
+  last.bottomRows(left).setIdentity();
+  return qr.householderQ() * last;
+}
+
+MatrixXd orthonormal_columns(const MatrixXd& A) {
+  const Eigen::HouseholderQR<MatrixXd> qr(A);
+  return qr.householderQ() * MatrixXd::Identity(A.rows(), A.cols());
+}
+
+MatrixXd fitted_columns(const MatrixXd& A, const MatrixXd& b) {
+  const Eigen::HouseholderQR<MatrixXd> qr(A);
+  MatrixXd x(A.cols(), b.cols());
+  for (Index k = 0; k < b.cols(); ++k) x.col(k) = qr.solve(b.col(k));
+  return x;
+}
+
+VectorXd least_norm(const MatrixXd& A, const VectorXd& b) {
+  const Eigen::HouseholderQR<MatrixXd> qr(A);
+  VectorXd x = VectorXd::Zero(A.rows());
+  x.head(b.size()) = qr.matrixQR().topRows(b.size()).triangularView<Eigen::Upper>().transpose().solve(b);
+  x.applyOnTheLeft(qr.householderQ());
+  return x;
+}
+
+Cholesky::Cholesky(const MatrixXd& A) : factors_(A) {}
+VectorXd Cholesky::solve(const VectorXd& b) const {
+  return factors_.solve(b);
+}
+MatrixXd Cholesky::solve(const MatrixXd& b) const {
+  return factors_.solve(b);
+}
+MatrixXd Cholesky::solve_lower(const MatrixXd& b) const {
+  return factors_.matrixL().solve(b);
+}
+
+void DenseLu::compute(const MatrixXd& A) {
+  factors_.compute(A);
+}
+VectorXd DenseLu::solve(const VectorXd& b) const {
+  return factors_.solve(b);
+}
+
+SparseLu::SparseLu() = default;
+SparseLu::SparseLu(const SparseColumns& A) : factors_(A) {}
+SparseLu::~SparseLu() = default;
+void SparseLu::analyse(const SparseColumns& A) {
+  factors_.analyzePattern(A);
+}
+bool SparseLu::factorise(const SparseColumns& A) {
+  factors_.factorize(A);
+  return ok();
+}
+bool SparseLu::ok() const {
+  return factors_.info() == Eigen::Success;
+}
+VectorXd SparseLu::solve(const VectorXd& b) const {
+  return factors_.solve(b);
+}
+
+SparseCholesky::SparseCholesky(const SparseColumns& A) : factors_(A) {}
+SparseCholesky::~SparseCholesky() = default;
+bool SparseCholesky::ok() const {
+  return factors_.info() == Eigen::Success;
+}
+VectorXd SparseCholesky::solve(const VectorXd& b) const {
+  return factors_.solve(b);
+}
+MatrixXd SparseCholesky::solve(const MatrixXd& b) const {
+  return factors_.solve(b);
+}
+VectorXd SparseCholesky::pivots() const {
+  return factors_.vectorD();
+}
+
+}  // namespace unfurl
