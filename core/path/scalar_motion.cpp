@@ -16,6 +16,8 @@ using Vector = Eigen::Matrix<double, n, 1>;
 
 // Tails of s'' that count as nothing: as a share of its largest value, and of what it is the sum of.
 constexpr double step_resolved = 1e-13, step_round_off = 2e-15;
+// What rounding of the place and of the speed leaves in s'', in its coefficients over a step, as a share.
+constexpr double rounded = 2e-15;
 constexpr int most_iterations = 14, most_tries = 200;
 constexpr double shortest = 1e-15;  // step, as a share of the time
 
@@ -96,7 +98,9 @@ bool solve_stages(const ScalarLaw& law, double t, double s, double v, double h, 
       by_s[i] = q.by_s;
       by_v[i] = q.by_v;
       stages.scale = std::max(stages.scale, q.scale);
-      stages.noise = std::max(stages.noise, q.noise);
+      const double from_place = std::abs(q.by_s * (s + h * r.node[i] * v + place[i]));
+      const double from_speed = std::abs(q.by_v * (v + speed[i]));
+      stages.noise = std::max(stages.noise, q.noise + rounded * (from_place + from_speed));
     }
     const double size = residual.cwiseAbs().maxCoeff();
     if (!std::isfinite(size)) return false;
