@@ -73,7 +73,7 @@ constexpr Command table[] = {
     {"margin", "SCENE [-o DIR]",
      "what drives a deployment against what resists it, by source, in every pose and along the motion", 1, 1,
      false, cmd_margin, "-o --set --factor --stuck --style --font --dpi --force --json --quiet",
-     "unfurl margin hoop6 --set gravity.acceleration=[0,0,-0.2] --stuck -o margin"},
+     "unfurl margin scissor_mast --set gravity.acceleration=[0,0,-1.6] --stuck -o margin"},
     {"view", "[SCENE]", "interactive window: tweak, scrub, compare", 0, 1, false, cmd_view,
      "--set --tolerance --picture --record --replay --at --dark --bench --ui-scale --size --fps --look "
      "--supersample "

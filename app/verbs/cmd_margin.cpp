@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl margin SCENE [--factor NAME=VALUE] [--stuck] [-o DIR]: drives against resistances along the path.
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -125,6 +126,35 @@ std::string words(double margin) {
   return std::isfinite(margin) ? short_number(margin, 6) : "without bound";
 }
 
+// Names in a column, with two blanks behind the longest.
+int name_column(const std::vector<std::string_view>& names) {
+  std::size_t width = 28;
+  for (const std::string_view name : names) width = std::max(width, name.size());
+  return static_cast<int>(width) + 2;
+}
+
+void print_sources(const Margin& margin) {
+  std::vector<std::string_view> names;
+  for (const MarginSource& source : margin.sources) names.push_back(source.name);
+  const int width = name_column(names);
+  std::cout << std::left << std::setw(width) << "source"
+            << "factor   at the worst pose (" << margin.unit << ")\n";
+  for (std::size_t k = 0; k < names.size(); ++k)
+    std::cout << std::setw(width) << names[k] << std::setw(9) << short_number(margin.sources[k].factor, 4)
+              << short_number(margin.worst.forces[static_cast<Index>(k)], 6) << "\n";
+}
+
+void print_hinges(const Margin& margin, const std::vector<StuckHinge>& hinges, const std::string& unit) {
+  std::vector<std::string_view> names;
+  for (const StuckHinge& hinge : hinges) names.push_back(hinge.name);
+  const int width = name_column(names);
+  std::cout << std::left << std::setw(width) << "hinge jammed"
+            << "stalls by (N m)   at\n";
+  for (const StuckHinge& h : hinges)
+    std::cout << std::setw(width) << h.name << std::setw(18) << short_number(h.stall_torque, 6)
+              << short_number(place(margin, h.stall_fold, h.stall_at), 5) << unit << "\n";
+}
+
 void print_margin(const Scene& scene, const Margin& margin, const std::vector<StuckHinge>& hinges) {
   const std::string unit = folds(margin) ? " deg" : " m kg^1/2";
   const MarginReach& last = margin.motion.back();
@@ -134,16 +164,9 @@ void print_margin(const Scene& scene, const Margin& margin, const std::vector<St
             << (margin.arrives ? "; the motion arrives"
                                : "; the motion ends at " +
                                      short_number(place(margin, last.fold_angle, last.s), 6) + unit)
-            << "\nsource                        factor   at the worst pose (" << margin.unit << ")\n";
-  for (std::size_t k = 0; k < margin.sources.size(); ++k)
-    std::cout << std::left << std::setw(30) << margin.sources[k].name << std::setw(9)
-              << short_number(margin.sources[k].factor, 4)
-              << short_number(margin.worst.forces[static_cast<Index>(k)], 6) << "\n";
-  if (hinges.empty()) return;
-  std::cout << "hinge jammed                  stalls by (N m)   at\n";
-  for (const StuckHinge& h : hinges)
-    std::cout << std::left << std::setw(30) << h.name << std::setw(18) << short_number(h.stall_torque, 6)
-              << short_number(place(margin, h.stall_fold, h.stall_at), 5) << unit << "\n";
+            << "\n";
+  print_sources(margin);
+  if (!hinges.empty()) print_hinges(margin, hinges, unit);
 }
 
 }  // namespace

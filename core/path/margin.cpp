@@ -35,15 +35,17 @@ class Sources final : public ScalarLaw {
   double low = -infinite, high = infinite;  // where it may be asked
 
   // Of source k along the path, at rest or at a speed.
-  double force(std::size_t k, double s, double v, double t) const {
+  double force(std::size_t k, double s, double v, double t) const { return of(k, s, v, t).Q; }
+  Value of(std::size_t k, double s, double v, double t) const {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const PathTable::Segment* here = table_.segment(s);
-    return here ? value_of(*here, k, s, v, t).Q : std::numeric_limits<double>::quiet_NaN();
+    return here ? value_of(*here, k, s, v, t) : Value{nan, nan, nan, nan, nan};
   }
 
   Value at(double s, double v, double t) const override {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const PathTable::Segment* here = s >= low && s <= high ? table_.segment(s) : nullptr;
-    if (!here) return {nan, nan, nan, nan};
+    if (!here) return {nan, nan, nan, nan, nan};
     Value sum;
     for (std::size_t k = 0; k < list().size(); ++k) {
       const Value q = value_of(*here, k, s, v, t);
@@ -51,6 +53,7 @@ class Sources final : public ScalarLaw {
       sum.by_s += q.by_s;
       sum.by_v += q.by_v;
       sum.scale += q.scale;
+      sum.noise += q.noise;
     }
     return sum;
   }
@@ -68,7 +71,9 @@ class Sources final : public ScalarLaw {
     const ValueAndSlope p = here.at(source.position, s), c = here.at(source.damping, s);
     const double f = factors[k], size = f * (source.timed ? source.size(t) : 1.0);
     return {size * p.value - f * c.value * v, size * p.slope - f * c.slope * v, -f * c.value,
-            std::abs(size) * here.scale[source.position] + std::abs(f * c.value * v)};
+            std::abs(size) * here.scale[source.position] + std::abs(f * c.value * v),
+            std::abs(size) * here.noise[source.position] + std::abs(f * v) * here.noise[source.damping] +
+                f * source.size_noise(t) * std::abs(p.value)};
   }
 
   // Against the motion; at rest, what holds it.
@@ -78,7 +83,7 @@ class Sources final : public ScalarLaw {
     const double against = v != 0 ? -std::copysign(1.0, v) : -sense;
     const double size = factors[k] * against * (v != 0 ? law.kinetic : law.holding);
     return {size * std::abs(p.value), size * std::copysign(p.slope, p.value * p.slope), 0.0,
-            std::abs(size) * here.scale[list()[k].position]};
+            std::abs(size) * here.scale[list()[k].position], std::abs(size) * here.noise[list()[k].position]};
   }
 
   PathForces forces_;
@@ -225,7 +230,8 @@ class MarginMaker {
   }
 
   void take_dynamic() {
-    out_.dynamic_min = static_margin(0.0, 0.0);
+    // A motion that begins with a speed has resisted nothing yet there.
+    out_.dynamic_min = speed_ != 0 ? infinite : static_margin(0.0, 0.0);
     for (const MarginReach& reach : out_.motion)
       if (const double m = reach.margin(); reach.resisted > 0 && m < out_.dynamic_min)
         out_.dynamic_min = m, out_.dynamic_at = reach.s;
@@ -242,8 +248,9 @@ class MarginMaker {
   double static_margin(double s, double t) const {
     double drives = 0, resistances = 0;
     for (std::size_t k = 0; k < out_.sources.size(); ++k) {
-      const double q = sense_ * sources_.force(k, sense_ * s, 0.0, t);
-      (q > 0 ? drives : resistances) += std::abs(q);
+      const ScalarLaw::Value at = sources_.of(k, sense_ * s, 0.0, t);
+      if (std::abs(at.Q) <= rounding * at.scale) continue;
+      (sense_ * at.Q > 0 ? drives : resistances) += std::abs(at.Q);
     }
     if (resistances <= rounding * drives) return drives > 0 ? infinite : 0.0;
     return drives / resistances - 1;
@@ -268,8 +275,12 @@ class MarginMaker {
   void take_points() {
     out_.unit = structure_.deployment.folds() ? "N m" : "N/kg^1/2";
     for (int i = 0; i < poses; ++i) out_.points.push_back(point(*end_ * i / (poses - 1)));
-    const auto worst = std::min_element(out_.points.begin(), out_.points.end(),
-                                        [](const auto& a, const auto& b) { return a.margin < b.margin; });
+    const auto worst =
+        std::min_element(out_.points.begin(), out_.points.end(), [](const auto& a, const auto& b) {
+          // Where nothing drives, the strongest resistance.
+          return a.margin != b.margin ? a.margin < b.margin
+                                      : a.margin == -1 && a.forces.sum() < b.forces.sum();
+        });
     out_.worst = *worst;
     if (!std::isfinite(worst->margin)) return;
     // Golden section between the poses beside the worst.

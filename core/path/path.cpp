@@ -103,6 +103,8 @@ class Path::Tracer {
       if (!left.poses.ends(fine * size_, rough * size_) ||
           !left.tangents.ends(fine * size_, rough_tangent * size_))
         continue;
+      if (left.tangents.last > fine * size_)
+        piece.noise = left.tangents.last / ((piece.b - piece.a) * piece.tangent.cwiseAbs().maxCoeff());
       z = Z_.col(degree);
       tangent = T_.col(degree);
       const int used = coefficients_above(piece.z, std::max(fine * size_, 3 * left.poses.last));

@@ -8,6 +8,7 @@
 // by.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ class PathForces final : public PathFunctions {
     TimeFunction size = {};
     int cable = -1;     // index in `cables`
     int friction = -1;  // index in `frictions`; the position's column is then -ds/dpath of its measure s
+    // What rounding of the time leaves in the size, in its coefficients over a step.
+    double size_noise(double t) const { return timed ? 4e-15 * std::abs(t * size.derivative(1, t)) : 0.0; }
   };
   struct Cable {
     std::string name;

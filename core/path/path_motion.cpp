@@ -38,7 +38,7 @@ void PathLaw::look_from(double s) {
 ScalarLaw::Value PathLaw::at(double s, double v, double t) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const PathTable::Segment* here = s >= low_ && s <= high_ ? table_->segment(s) : nullptr;
-  if (!here) return {nan, nan, nan, nan};
+  if (!here) return {nan, nan, nan, nan, nan};
   Value out;
   const auto add = [&](Index position, Index damping, double size) {
     const ValueAndSlope p = here->at(position, s), c = here->at(damping, s);
@@ -46,10 +46,14 @@ ScalarLaw::Value PathLaw::at(double s, double v, double t) const {
     out.by_s += size * p.slope - c.slope * v;
     out.by_v -= c.value;
     out.scale += std::abs(size) * here->scale[position] + std::abs(c.value * v);
+    out.noise += std::abs(size) * here->noise[position] + std::abs(v) * here->noise[damping];
   };
   add(0, 1, 1.0);
   for (const PathForces::Source& source : forces_.sources()) {
-    if (source.timed) add(source.position, source.damping, source.size(t));
+    if (source.timed) {
+      add(source.position, source.damping, source.size(t));
+      out.noise += source.size_noise(t) * std::abs(here->at(source.position, s).value);
+    }
     if (source.cable >= 0 && pulling_[static_cast<std::size_t>(source.cable)])
       add(source.position, source.damping, 1.0);
     if (source.friction < 0) continue;

@@ -320,7 +320,7 @@ class PathRun {
     const bool series = stop.restitution < 1 && flight > 0 && flight <= accumulated * options_.step;
     if (series || stop.restitution * approach <= stop.rest_speed) {
       const double Q = law_->at(motion_.s(), 0.0, motion_.t()).Q;
-      if (stop.restitution == 0 && slope * Q > 0) {  // it is stopped and goes back at once
+      if (slope * Q > 0) {  // it is stopped and goes back at once
         const double taken = 0.5 * motion_.v() * motion_.v();
         add_event(impact(stop), taken);
         motion_.set_speed(0);
@@ -354,8 +354,12 @@ class PathRun {
         return stuck_ ? excess(t) : held_slope_ * law_->at(motion_.s(), 0.0, t).Q;
       };
       const double h = std::min(options_.step, (until - now) / 8);
+      const std::vector<TimeEdge> edges = time_edges(structure(), options_.step);
+      auto edge = edges.begin();
       for (double a = now; a < grid_.end();) {
-        const double b = std::min(a + h, grid_.end());
+        // A load is largest where its line bends.
+        while (edge != edges.end() && edge->t <= a) ++edge;
+        const double b = std::min({a + h, grid_.end(), edge != edges.end() ? edge->t : grid_.end()});
         if (pull(b) > 0) {
           double low = a, high = b;
           for (int it = 0; it < 60; ++it) (pull(0.5 * (low + high)) > 0 ? high : low) = 0.5 * (low + high);

@@ -13,6 +13,10 @@ constexpr int table_points = Path::degree;
 constexpr double table_resolved = 2e-14, table_rough = 3e-10, no_gain = 0.2;
 constexpr int table_tail_size = 2, most_cuts = 12;
 
+// A series of noise has coefficients of one size: it is off by so many times its last ones, and jumps by that
+// to the next. What the tangent of a piece has of it a part of the piece resolves as if it were more.
+constexpr double noise_of_tail = 5;
+
 // The largest of the last coefficients as a share of its function's scale.
 double table_tail(const MatrixXd& c, const VectorXd& scale) {
   double most = 0;
@@ -69,7 +73,11 @@ void PathTable::tabulate(const PathPiece& piece, double from, double to, Cut cut
   const System& system = path_.system();
   VectorXd angles = side.angles, q, dq, z, value(functions_.size()), scale(functions_.size());
   MatrixXd values(functions_.size(), table_points + 1);
-  Segment out{piece.at(low), piece.at(high), {}, VectorXd::Zero(functions_.size())};
+  Segment out{piece.at(low),
+              piece.at(high),
+              {},
+              VectorXd::Zero(functions_.size()),
+              VectorXd::Zero(functions_.size())};
   if (whole) out.a = piece.a, out.b = piece.b;
   for (int i = 0; i <= table_points; ++i) {
     const int k = forward ? i : table_points - i;
@@ -100,6 +108,9 @@ void PathTable::tabulate(const PathPiece& piece, double from, double to, Cut cut
     tabulate(piece, 0.5 * (from + to), to, next, side, forward);
     return;
   }
+  for (Index f = 0; f < functions_.size(); ++f)
+    out.noise[f] = noise_of_tail * std::max(out.c.col(f).tail(table_tail_size).cwiseAbs().maxCoeff(),
+                                            piece.noise * out.scale[f]);
   side.angles = angles;
   side.segments.push_back(std::move(out));
 }

@@ -29,6 +29,7 @@ class PathTable {
     double a = 0.0, b = 0.0;
     MatrixXd c;      // [points x functions]: a column of coefficients each
     VectorXd scale;  // of the functions
+    VectorXd noise;  // what they may be off by, more than round-off next to singular poses
     double x_of(double s) const { return (2 * s - (a + b)) / (b - a); }
     const double* of(Index function) const { return c.data() + function * c.rows(); }
     ValueAndSlope at(Index function, double s) const;  // the slope by s

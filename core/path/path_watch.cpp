@@ -55,52 +55,85 @@ double PathWatch::gap_slope(std::size_t stop, double s) const {
 }
 
 // In units of what counts as zero, as OneSided has them; positive where nothing happens.
-void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out) const {
+void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out, VectorXd& rates) const {
   double s = 0, v = 0;
   motion.at(t, s, v);
   const std::size_t stops = sides_.stops().size();
   out.setConstant(static_cast<Index>(sides_.size()) + 1, std::numeric_limits<double>::quiet_NaN());
+  rates.setZero(out.size());
   for (std::size_t i = 0; i < stops; ++i) {
     const StopSide& stop = sides_.stops()[i];
-    const double m = law_->table().at(stop_columns_[i], s).value;
-    out[static_cast<Index>(i)] = stop.sign * (m - stop.limit) - shift_[i];
+    const ValueAndSlope m = law_->table().at(stop_columns_[i], s);
+    out[static_cast<Index>(i)] = stop.sign * (m.value - stop.limit) - shift_[i];
+    rates[static_cast<Index>(i)] = stop.sign * m.slope * v;
   }
   for (std::size_t k = 0; k < law_->forces().cables().size(); ++k) {
     const PathForces::Cable& cable = law_->forces().cables()[k];
     const ValueAndSlope m = law_->table().at(cable.measure, s);
     const double e = m.value - cable.rest, n = cable.stiffness * e + cable.damping * m.slope * v;
     const double stretch = cable.damping > 0 ? std::min(e, n / (cable.stiffness + cable.damping / step_)) : e;
-    out[static_cast<Index>(stops + k)] = sides_.active(stops + k) ? stretch : -stretch;
+    const int sign = sides_.active(stops + k) ? 1 : -1;
+    out[static_cast<Index>(stops + k)] = sign * stretch;
+    if (sign < 0 || !(cable.damping > 0)) rates[static_cast<Index>(stops + k)] = sign * m.slope * v;
   }
   out.head(out.size() - 1) /= sides_.stops().touching();
+  rates.head(out.size() - 1) /= sides_.stops().touching();
   for (std::size_t i = sides_.first_friction(); i < sides_.first_motor(); ++i)
     if (sides_.slip(i) != 0)
       out[static_cast<Index>(i)] = sides_.slip(i) * friction_slope(i, s) * v / sides_.zero_rate();
-  if (deployed_column_ >= 0 && !deployed_) out[out.size() - 1] = remaining(s);
+  if (deployed_column_ < 0 || deployed_) return;
+  const ValueAndSlope m = law_->table().at(deployed_column_, s);
+  out[out.size() - 1] = m.value;
+  rates[out.size() - 1] = m.slope * v;
+}
+
+double PathWatch::margin(const PathMotion& motion, double t, Index i) const {
+  VectorXd out, rates;
+  margins(motion, t, out, rates);
+  return out[i];
 }
 
 std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double from, double to) {
-  VectorXd a, b;
-  margins(motion, from, a);
+  VectorXd a, b, rates_a, rates_b;
+  margins(motion, from, a, rates_a);
   const Index deployed = a.size() - 1;
   for (Index i = 0; i < deployed; ++i)
     if (a[i] < -1) return {from, static_cast<int>(i)};
   std::pair<double, int> first{to, -1};
   double t0 = from;
   for (const double t1 : looked_at(motion, from, to)) {
-    margins(motion, t1, b);
+    margins(motion, t1, b, rates_b);
     if (a[deployed] > margin_) armed_ = true;
+    const auto below = [&](Index i, double m) { return i < deployed ? m < -1 : armed_ && m <= 0; };
     for (Index i = 0; i <= deployed; ++i) {
-      const bool below = i < deployed ? b[i] < -1 : armed_ && b[i] <= 0;
-      if (!below || !(a[i] > b[i])) continue;
-      const double t = zero_of(motion, i, t0, t1);
+      double end = t1, left = b[i];
+      if (!below(i, left) && rates_a[i] < 0 && rates_b[i] > 0) {
+        // It cannot have fallen further than at the steeper of both rates.
+        const double reach = std::max(-rates_a[i], rates_b[i]) * (t1 - t0);
+        if (!below(i, std::min(a[i], b[i]) - reach)) continue;
+        end = least_between(motion, i, t0, t1);
+        left = margin(motion, end, i);
+      }
+      if (!below(i, left) || !(a[i] > left)) continue;
+      const double t = zero_of(motion, i, t0, end);
       if (t < first.first || first.second < 0) first = {t, static_cast<int>(i)};
     }
     if (first.second >= 0) break;
     a = b;
+    rates_a = rates_b;
     t0 = t1;
   }
   return first;
+}
+
+double PathWatch::least_between(const PathMotion& motion, Index i, double a, double b) const {
+  VectorXd m, rates;
+  for (int it = 0; it < 60 && b - a > 2e-16 * std::abs(b); ++it) {
+    const double t = 0.5 * (a + b);
+    margins(motion, t, m, rates);
+    (rates[i] < 0 ? a : b) = t;
+  }
+  return b;
 }
 
 // Equal parts of a step, and the time at which the motion turns: margins are smallest there.
@@ -130,33 +163,28 @@ std::vector<double> PathWatch::looked_at(const PathMotion& motion, double from, 
 // Regula falsi and, every third time, bisection: to the last bit of the time. A margin that begins at zero
 // and rises first, as behind a rebound, is followed to where it falls again.
 double PathWatch::zero_of(const PathMotion& motion, Index i, double a, double b) const {
-  VectorXd m;
-  margins(motion, a, m);
-  double fa = m[i];
-  margins(motion, b, m);
-  double fb = m[i];
-  if (i + 1 < m.size() && fa <= 1) {
-    double up = b;
-    for (int it = 0; it < 60 && !(m[i] > std::max(fa, 0.0)); ++it) {
+  double fa = margin(motion, a, i), fb = margin(motion, b, i);
+  if (i < static_cast<Index>(sides_.size()) && fa <= 1) {
+    double up = b, m = fb;
+    for (int it = 0; it < 60 && !(m > std::max(fa, 0.0)); ++it) {
       b = up;
       up = a + 0.5 * (b - a);
-      margins(motion, up, m);
+      m = margin(motion, up, i);
     }
-    if (!(m[i] > std::max(fa, 0.0)) || !(b > up)) return a;
-    a = up, fa = m[i];
-    margins(motion, b, m);
-    fb = m[i];
+    if (!(m > std::max(fa, 0.0)) || !(b > up)) return a;
+    a = up, fa = m;
+    fb = margin(motion, b, i);
   }
   for (int it = 0; it < 200 && b - a > 2e-16 * std::abs(b); ++it) {
     double t = it % 3 == 2 ? 0.5 * (a + b) : b - fb * (b - a) / (fb - fa);
     if (!(t > a && t < b)) t = 0.5 * (a + b);
     if (!(t > a && t < b)) break;
-    margins(motion, t, m);
-    if (m[i] == 0) return t;
-    if (m[i] > 0)
-      a = t, fa = m[i];
+    const double m = margin(motion, t, i);
+    if (m == 0) return t;
+    if (m > 0)
+      a = t, fa = m;
     else
-      b = t, fb = m[i];
+      b = t, fb = m;
   }
   return b;
 }

@@ -36,7 +36,11 @@ class PathWatch {
   }
 
  private:
-  void margins(const PathMotion& motion, double t, VectorXd& out) const;
+  // With their rates where those follow from the pose and the speed, 0 otherwise.
+  void margins(const PathMotion& motion, double t, VectorXd& out, VectorXd& rates) const;
+  double margin(const PathMotion& motion, double t, Index i) const;
+  // When a margin that falls at one time and rises at another is least in between.
+  double least_between(const PathMotion& motion, Index i, double a, double b) const;
   std::vector<double> looked_at(const PathMotion& motion, double from, double to) const;
   double zero_of(const PathMotion& motion, Index i, double a, double b) const;
 

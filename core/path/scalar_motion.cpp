@@ -16,6 +16,8 @@ using Vector = Eigen::Matrix<double, n, 1>;
 
 // Tails of s'' that count as nothing: as a share of its largest value, and of what it is the sum of.
 constexpr double step_resolved = 1e-13, step_round_off = 2e-15;
+// What rounding of the place and of the speed leaves in s'', in its coefficients over a step, as a share.
+constexpr double rounded = 2e-15;
 constexpr int most_iterations = 14, most_tries = 200;
 constexpr double shortest = 1e-15;  // step, as a share of the time
 
@@ -72,7 +74,7 @@ const Rule& rule() {
 
 struct Stages {
   Vector k = Vector::Zero();
-  double scale = 0;
+  double scale = 0, noise = 0;
   int iterations = 0;
 };
 
@@ -89,17 +91,21 @@ bool solve_stages(const ScalarLaw& law, double t, double s, double v, double h, 
     ++stages.iterations;
     const Vector place = h * h * (r.AA * stages.k), speed = h * (r.A * stages.k);
     Vector residual, by_s, by_v;
-    stages.scale = 0;
+    stages.scale = stages.noise = 0;
     for (int i = 0; i < n; ++i) {
       const ScalarLaw::Value q = law.at(s + h * r.node[i] * v + place[i], v + speed[i], t + h * r.node[i]);
       residual[i] = stages.k[i] - q.Q;
       by_s[i] = q.by_s;
       by_v[i] = q.by_v;
       stages.scale = std::max(stages.scale, q.scale);
+      const double from_place = std::abs(q.by_s * (s + h * r.node[i] * v + place[i]));
+      const double from_speed = std::abs(q.by_v * (v + speed[i]));
+      stages.noise = std::max(stages.noise, q.noise + rounded * (from_place + from_speed));
     }
     const double size = residual.cwiseAbs().maxCoeff();
     if (!std::isfinite(size)) return false;
-    if (size <= 4e-16 * stages.scale || (size <= 1e-14 * stages.scale && size > 0.3 * last)) return true;
+    const double left = std::max(1e-14 * stages.scale, stages.noise);  // with Newton at its end
+    if (size <= 4e-16 * stages.scale || (size <= left && size > 0.3 * last)) return true;
     if (size > 2 * last && it > 4) return false;
     if (!have || size > 0.1 * last) {
       lu.compute(Matrix::Identity() - by_s.asDiagonal() * (h * h * r.AA) - by_v.asDiagonal() * (h * r.A));
@@ -108,7 +114,7 @@ bool solve_stages(const ScalarLaw& law, double t, double s, double v, double h, 
     stages.k -= lu.solve(residual);
     last = size;
   }
-  return last <= 1e-13 * stages.scale;
+  return last <= std::max(1e-13 * stages.scale, stages.noise);
 }
 
 }  // namespace
@@ -139,8 +145,8 @@ bool scalar_step(const ScalarLaw& law, double t, double s, double v, double late
     }
     const Vector c = rule().project * stages.k;
     const double left = std::max(std::abs(c[n - 1]), 0.1 * std::abs(c[n - 2]));
-    const double allowed =
-        std::max(step_resolved * stages.k.cwiseAbs().maxCoeff(), step_round_off * stages.scale);
+    const double allowed = std::max(
+        {step_resolved * stages.k.cwiseAbs().maxCoeff(), step_round_off * stages.scale, stages.noise});
     const double factor = left > 0 ? 0.85 * std::pow(allowed / left, 1.0 / n) : 3.0;
     if (left > allowed) {
       h = length * std::clamp(factor, 0.2, 0.8);

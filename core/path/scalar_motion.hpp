@@ -18,6 +18,8 @@ class ScalarLaw {
   struct Value {
     double Q = 0.0, by_s = 0.0, by_v = 0.0;
     double scale = 0.0;  // what Q is the sum of: its round-off is some 1e-16 of that
+    // What more it may be off by: steps resolve no less, and go through jumps of that size.
+    double noise = 0.0;
   };
   virtual ~ScalarLaw() = default;
   virtual Value at(double s, double v, double t) const = 0;  // NaN where s is out of reach

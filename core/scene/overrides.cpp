@@ -33,7 +33,11 @@ std::string quoted_step(std::string_view key, std::size_t& i) {
 }
 
 Step index_step(std::string_view key, std::size_t& i) {
-  const std::size_t end = key.find(']', i);
+  // A name in quotes may hold brackets.
+  std::size_t from = i + 1;
+  if (from < key.size() && (key[from] == '"' || key[from] == '\''))
+    from = std::min(key.find(key[from], from + 1), key.size());
+  const std::size_t end = key.find(']', from);
   if (end == std::string_view::npos) throw Refusal{"a bracket in the key stays open"};
   std::string_view text = key.substr(i + 1, end - i - 1);
   i = end + 1;
@@ -114,7 +118,8 @@ std::string entry_name(const TomlTree& entry) {
 // Lists of entries to which one more may be added.
 bool grows(std::string_view key) {
   return key == "loads" || key == "forces" || key == "constraints" || key == "structure.nodes" ||
-         key == "structure.rods" || key == "structure.constraints";
+         key == "structure.rods" || key == "structure.constraints" || key == "surfaces" ||
+         key == "render.camera_keys" || key == "render.materials";
 }
 
 TomlTree made_here(TomlTree::Kind kind) {
@@ -135,32 +140,35 @@ TomlTree& step_into_array(TomlTree& array, const Step& step, std::string_view so
   }
   std::vector<std::string> names;
   for (auto& item : array.items) {
-    names.push_back(entry_name(item));
-    if (names.back() == step.name) return item;
+    const std::string name = entry_name(item);
+    if (name == step.name) return item;
+    if (!name.empty()) names.push_back(name);
   }
+  const std::string first = "; " + std::string(array.items.empty() ? "a new one" : "the first") + " is [0]";
   throw Refusal{std::string(so_far) + " has no entry named " + in_quotes(step.name) +
-                did_you_mean(step.name, {names.begin(), names.end()})};
+                (names.empty() ? first : did_you_mean(step.name, {names.begin(), names.end()}))};
 }
 
-TomlTree& step_into(TomlTree& tree, const Step& step, std::string_view so_far) {
+// `in_list`: what follows is an entry of a list.
+TomlTree& step_into(TomlTree& tree, const Step& step, const std::string& so_far, bool in_list) {
   if (tree.kind == TomlTree::Kind::array) return step_into_array(tree, step, so_far);
-  if (tree.kind != TomlTree::Kind::table)
-    throw Refusal{std::string(so_far) + " is " + tree.describe() + ", not a table"};
-  if (step.index || step.entry) throw Refusal{std::string(so_far) + " is not a list"};
+  if (tree.kind != TomlTree::Kind::table) throw Refusal{so_far + " is " + tree.describe() + ", not a table"};
+  if (step.index || step.entry) throw Refusal{so_far + " is not a list"};
   if (TomlTree* found = tree.find(step.name)) return *found;
-  tree.entries.push_back({step.name, made_here(TomlTree::Kind::table)});
+  const bool list = in_list && grows((so_far.empty() ? "" : so_far + ".") + step.name);
+  tree.entries.push_back({step.name, made_here(list ? TomlTree::Kind::array : TomlTree::Kind::table)});
   return tree.entries.back().value;
 }
 
 void apply(TomlTree& root, std::string_view key, std::string_view text) {
   const auto steps = parse_key(key);
   TomlTree value = parse_value(text);
-  if (steps.size() > 1 && steps[1].index && grows(steps[0].name) && !root.find(steps[0].name))
-    root.entries.push_back({steps[0].name, made_here(TomlTree::Kind::array)});
   TomlTree* target = &root;
   std::string so_far;
-  for (const auto& step : steps) {
-    target = &step_into(*target, step, so_far);
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const Step& step = steps[k];
+    const bool in_list = k + 1 < steps.size() && (steps[k + 1].index || steps[k + 1].entry);
+    target = &step_into(*target, step, so_far, in_list);
     so_far += step.index ? "[" + std::to_string(*step.index) + "]" : (so_far.empty() ? "" : ".") + step.name;
   }
   *target = std::move(value);

@@ -15,6 +15,7 @@
 #include "core/scene/title.hpp"
 #include "core/scene/variables.hpp"
 #include "core/structures/family.hpp"
+#include "core/structures/rod_material.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {
@@ -46,10 +47,14 @@ void read_structure(TableReader& root, const TomlTree& tree, const std::string& 
   TableReader table(found, "structure", place(found, tree), notes);
   scene.kind = table.read({kind_param()}).text("kind");
   if (scene.kind.empty()) return;  // its other keys mean nothing without it
-  if (const Family* family = find_family(scene.kind))
+  if (const Family* family = find_family(scene.kind)) {
     scene.structure = table.read(family->params());
-  else
+    table.warn_idle(family->params(), scene.structure, Idle::from_command_line);
+  } else {
     scene.custom = read_custom(table, folder, notes, scene.constraints);
+    table.warn_idle(rod_material_params(), rod_material_values(scene.custom.material),
+                    Idle::from_command_line);
+  }
   table.finish();
 }
 
@@ -116,7 +121,9 @@ void read_deployment(TableReader& root, const TomlTree& tree, Scene& scene, Scen
 void read_solver(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
   const TomlTree* found = root.table("solver");
   TableReader table(found, "solver", place(found, tree), notes);
-  scene.solver = solver_options(table.read(solver_params()));
+  const ParamSet values = table.read(solver_params());
+  table.warn_idle(solver_params(), values, Idle::from_command_line);
+  scene.solver = solver_options(values);
   const Family* family = find_family(scene.kind);
   if (!table.has("end_time") && ((family && family->deploys) || !scene.deployment.terms.empty()))
     scene.solver.end_time = time_to_deploy;

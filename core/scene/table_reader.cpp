@@ -179,12 +179,14 @@ std::vector<const TomlTree*> TableReader::tables(std::string_view name) {
   return found;
 }
 
-void TableReader::warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values) {
+void TableReader::warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values, Idle which) {
   for (const ParamSpec& spec : specs) {
     if (!has(spec.name) || means_something(spec, values)) continue;
+    if (which == Idle::from_command_line && !overridden(*table_->find(spec.name))) continue;
     const std::string other(spec.only_with);
     std::string text = "does nothing with " + other + " = ";
-    text += std::holds_alternative<bool>(values.value(other)) ? "false" : in_quotes(values.text(other));
+    const bool* on = std::get_if<bool>(&values.value(other));
+    text += !on ? in_quotes(values.text(other)) : *on ? "true" : "false";
     notes_.warnings.push_back({table_->find(spec.name)->where, key(spec.name), text});
   }
 }

@@ -22,6 +22,10 @@ struct SceneNotes {
   void add(const SourceLocation& where, std::string key, std::string message);
 };
 
+// Keys that do nothing: all, or those alone that --set gives. A table of a whole scene may keep what another
+// method or model would need.
+enum class Idle { all, from_command_line };
+
 // Reads keys of one table; finish() reports the keys that nobody asked for. `path` is the dotted name of the
 // table,
 // "" for the root. The table may be absent (nullptr): every parameter takes its default then.
@@ -43,7 +47,7 @@ class TableReader {
   std::vector<const TomlTree*> tables(std::string_view key);
   void finish();
   // Warns of every key that is given although it means nothing with the values that the others have.
-  void warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values);
+  void warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values, Idle which = Idle::all);
 
   std::string key(std::string_view name) const;  // dotted
   bool has(std::string_view name) const { return table_ && table_->find(name); }

@@ -117,6 +117,55 @@ TEST_CASE("the motion of a margin has the ring's places, times and energies, wit
   }
 }
 
+TEST_CASE("a motion that begins with a speed has a dynamic margin by what is left of it") {
+  // A bob of 1.7 kg on a rod of 0.8 m and 0.6 kg, hanging, is pushed by 2.9 m/s and swings up in a plane.
+  const std::string text = R"(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+name = "O"
+position = [0, 0, 0]
+fixed = true
+[[structure.nodes]]
+name = "B"
+position = [0, 0, -0.8]
+velocity = [2.9, 0, 0]
+mass = 1.7
+[[structure.rods]]
+nodes = ["O", "B"]
+mass = 0.6
+[[structure.constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 1, 0]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+stages = 6
+step = 0.005
+)";
+  const double start_energy = 0.5 * (1.7 + 0.6 / 3) * 2.9 * 2.9;
+  const auto margin_until = [&](const std::string& end) {
+    return margin_in(read_scene_text(text + "end_time = " + end + "\n", "swing.toml"));
+  };
+  // Before it turns: K / (K_0 - K), K from the full model's speed.
+  const Scene scene = read_scene_text(text + "end_time = 0.21\n", "swing.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const VectorXd v = run.trajectory.velocities(run.trajectory.size() - 1);
+  const double left = 0.5 * (1.7 + 0.6 / 3) * v.tail<3>().squaredNorm();
+  const Margin short_one = margin_until("0.21");
+  CHECK(short_one.arrives);
+  CHECK(short_one.dynamic_min == Approx(left / (start_energy - left)).epsilon(1e-9));
+  // 0 where it turns. Nothing drives it at rest; hanging nothing resists either, so that pose is not the
+  // worst.
+  const Margin whole = margin_until("2");
+  CHECK(!whole.arrives);
+  CHECK(std::abs(whole.dynamic_min) <= 1e-9);
+  CHECK(whole.worst.margin == -1);
+  CHECK(whole.worst.s == Approx(whole.motion.back().s).epsilon(1e-9));
+  CHECK(whole.points.front().margin == 0);
+}
+
 TEST_CASE("the force along the path is the reaction of a drive that is held") {
   const double k = 900;
   for (const double angle : {71.3, 43.9, 11.7}) {

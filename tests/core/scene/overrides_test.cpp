@@ -80,6 +80,20 @@ TEST_CASE("the index behind the last adds an entry of loads, forces or constrain
   CHECK(with({"structure.nodes[2].mass=1"}).problems == "");  // behind the last: a new one
 }
 
+TEST_CASE("entries of lists that a scene does not have yet, and names with brackets and dots in them") {
+  const Result r =
+      with({"surfaces[0].kind=net", "render.camera_keys[0].time=1.5", "render.camera_keys[1]={time = 2.5}",
+            "forces[0].name='a b.c[2]'", "forces[\"a b.c[2]\"].damping=3"});
+  CHECK(r.problems == "");
+  CHECK(r.tree.find("surfaces")->items.size() == 1);
+  CHECK(r.tree.find("render")->find("camera_keys")->items.size() == 2);
+  CHECK(r.tree.find("forces")->items[0].find("damping")->integer == 3);
+  CHECK(with({"forces[pull].damping=3"}).problems ==
+        "--set forces[pull].damping: forces has no entry named 'pull'; a new one is [0]\n");
+  CHECK(with({"forces[0].kind=drag", "forces[pull].damping=3"}).problems ==
+        "--set forces[pull].damping: forces has no entry named 'pull'; the first is [0]\n");
+}
+
 TEST_CASE("overrides that cannot be applied say why") {
   CHECK(with({"solver.step"}).problems == "--set solver.step: must be key=value\n");
   CHECK(with({"solver.step="}).problems == "--set solver.step: has no value\n");
