@@ -17,7 +17,7 @@ as they are now (core must be what it was).
 import argparse
 import hashlib
 import json
-import multiprocessing.pool
+import multiprocessing
 import os
 import random
 import re
@@ -305,9 +305,6 @@ def build(mutants):
                 f"-DCMAKE_CXX_FLAGS=-w -include {ROOT}/tests/mutation/switch.hpp"])
     if done.returncode:
         sys.exit(done.stdout + done.stderr)
-    bad = at_lines(mutants, refused(folder))  # a fifth of what compiling costs
-    if bad:
-        return bad
     done = run(["cmake", "--build", folder, "--target", "unfurl_core", "--", "-k", "0"])
     if done.returncode == 0:
         shutil.rmtree(os.path.join(WORK, "objects"), ignore_errors=True)
@@ -316,24 +313,12 @@ def build(mutants):
             if done.returncode:
                 sys.exit(done.stderr)
         return set()
-    bad = at_lines(mutants, done.stdout)
+    bad = set()
+    for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", done.stdout):
+        bad |= {k for k, m in mutants.items() if m[0] == path and m[1] == int(line) - 1}
     if not bad:
         sys.exit(done.stdout[-4000:])
     return bad
-
-
-def refused(folder):
-    """What the compiler says of the syntax of all that core is made of."""
-    commands = run(["ninja", "-C", folder, "-t", "commands", "unfurl_core"]).stdout.split("\n")
-    looks = [re.sub(r" -MD.*? -c ", " -fsyntax-only -c ", c) for c in commands if " -c " in c]
-    with multiprocessing.pool.ThreadPool(os.cpu_count()) as workers:
-        return "".join(done.stderr for done in workers.imap(lambda c: run(["sh", "-c", c], cwd=folder), looks))
-
-
-def at_lines(mutants, messages):
-    """The mutants on lines that a compiler names."""
-    named = {(path, int(line) - 1) for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", messages)}
-    return {k for k, m in mutants.items() if m[:2] in named}
 
 
 def compiled(seed, n):
