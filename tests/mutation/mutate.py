@@ -316,6 +316,10 @@ def build(mutants):
     bad = set()
     for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", done.stdout):
         bad |= {k for k, m in mutants.items() if m[0] == path and m[1] == int(line) - 1}
+    if not bad:  # the end of a statement is named, and the error stands where it begins
+        for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", done.stdout):
+            before = [(m[1], k) for k, m in mutants.items() if m[0] == path and m[1] < int(line)]
+            bad |= {max(before)[1]} if before else set()
     if not bad:
         sys.exit(done.stdout[-4000:])
     return bad
