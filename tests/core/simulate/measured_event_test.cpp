@@ -77,7 +77,7 @@ TEST_CASE("a step that does not get there, or cannot be solved, ends nowhere") {
   CHECK(whole.solves == 1);
 }
 
-TEST_CASE("poses that a measure tells, or rods that give, are regular; flat ones of rigid rods are not") {
+TEST_CASE("poses that a measure tells, or rods that give, are regular, flat ones of rigid rods are not") {
   Structure structure = testing::hoop_structure();
   CHECK_FALSE(deploys_regularly(structure));
   for (Rod& rod : structure.rods) rod.area = 1e-4, rod.youngs_modulus = 7e10;
