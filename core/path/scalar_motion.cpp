@@ -97,7 +97,7 @@ bool solve_stages(const ScalarLaw& law, double t, double s, double v, double h, 
       by_v[i] = q.by_v;
       stages.scale = std::max(stages.scale, q.scale);
     }
-    const double size = residual.cwiseAbs().maxCoeff();
+    const double size = residual.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     if (!std::isfinite(size)) return false;
     if (size <= 4e-16 * stages.scale || (size <= 1e-14 * stages.scale && size > 0.3 * last)) return true;
     if (size > 2 * last && it > 4) return false;
