@@ -376,9 +376,13 @@ class Tests:
             before = {"stamp": stamp}
         open_ones = [test for test in self.tests if test.name not in before]  # names are of one test each
         with multiprocessing.Pool(os.cpu_count()) as workers:
+            kept = time.monotonic()
             for test, seen in zip(open_ones, workers.imap(self.look, open_ones)):
                 before[test.name] = seen
-                json.dump(before, open(known, "w"))
+                if time.monotonic() > kept + 20:  # writing takes longer than most tests
+                    json.dump(before, open(known, "w"))
+                    kept = time.monotonic()
+        json.dump(before, open(known, "w"))
         for test in self.tests:
             if before[test.name] is not None:
                 test.seconds, test.reached = before[test.name][0], set(before[test.name][1])
