@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/scene/library.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/stops.hpp"
 #include "tests/support/scene_run.hpp"
@@ -111,6 +112,44 @@ TEST_CASE("a table of two rows moves a drive, of one it does not") {
   CHECK_FALSE(said(drive + "times=[0]\nvalues=[1.5]").empty());
   CHECK_FALSE(said(drive + "times=[0,2]\nvalues=[1.5]").empty());
   CHECK(said(drive + "times=[0,2]\nvalues=[1.6,1.75]").find("values: ") != std::string::npos);
+}
+
+TEST_CASE("drives that leave what their measure can be are refused, with the time and the key") {
+  // 4000 samples of two seconds: the first at which 5 m less 3 m/s is no length is 1.667 s.
+  const auto refused = [](const std::string& entry, const std::string& why) {
+    const std::string text = testing::error_of(with(entry), {"solver.end_time=2"});
+    INFO(text);
+    CHECK(text.find(why) != std::string::npos);
+  };
+  const std::string length = "kind='length'\nnodes=['O','D']\n",
+                    angle = "kind='angle'\nnodes=['A','O','C']\n";
+  refused(length + "motion='rate'\nrate=-3",
+          "rate: takes the length to -0.001 m at t = 1.667 s: it must stay > 0");
+  refused(length + "motion='smooth'\nto=-1\nduration=1", "to: takes the length to ");
+  refused(length + "motion='table'\ntimes=[0,1,2]\nvalues=[5,-1,4]", "values: takes the length to ");
+  refused(angle + "motion='rate'\nrate=50",
+          "rate: takes the angle to 180 deg at t = 1.8 s: without an axis it stays between 0 and 180 deg; "
+          "give the "
+          "axis of the hinge");
+  refused(angle + "motion='rate'\nrate=-50", "rate: takes the angle to 0 deg at t = 1.8 s: ");
+  for (const std::string& fine :
+       {length + "motion='rate'\nrate=-2.4", angle + "motion='rate'\nrate=44",
+        angle + "axis=[0,0,1]\nmotion='rate'\nrate=500", length + "motion='smooth'\nto=0.1\nduration=1",
+        std::string("kind='coordinate'\nnodes=['C']\ndirection=[0,1,0]\nmotion='rate'\nrate=-30")})
+    CHECK(testing::error_of(with(fine), {"solver.end_time=2"}) == "");
+  // What deploys may have ended before; a drive with an end of its own says where it goes.
+  const auto ring = [](const std::string& motion) {
+    try {
+      build_model(read_scene_file(
+          find_scene("hoop6"), {"structure.model=joints", "solver.end_time=6",
+                                "constraints[0]={kind='length',nodes=['Mb0','Mt0'],motion=" + motion + "}"}));
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(ring("'rate',rate=-3").empty());
+  CHECK(ring("'smooth',to=-1,duration=2").find("to: takes the length to ") != std::string::npos);
 }
 
 }  // namespace limits_test
