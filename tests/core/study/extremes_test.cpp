@@ -233,6 +233,20 @@ TEST_CASE("verdicts turn where their limits are, the first that applies counts")
   CHECK(cell().verdict == Verdict::too_slow);
 }
 
+TEST_CASE("extremes that a scene cannot be built at are noted, and the others shown") {
+  StressPlan plan = plan_stress({find_scene("hoop6_sector"), {}}, {"units"});
+  plan.extremes[0].values = {1, 6};  // a ring of one unit is none
+  plan.settings.resize(1);
+  plan.steps = {16};
+  Journal journal({}, stress_columns(), stress_key_columns);
+  const Stress stress = run_stress(plan, journal, {});
+  REQUIRE(stress.notes.size() == 1);
+  CHECK(stress.notes[0].starts_with("units = 1: "));
+  CHECK(stress.notes[0].find("units") < stress.notes[0].rfind("must be"));
+  REQUIRE(stress.cells.size() == 1);
+  CHECK(stress.cells[0].value == 6);
+}
+
 TEST_CASE("a long run shows the largest errors so far, at counts that grow by a twentieth") {
   StressPlan plan = plan_stress(source_of(swing, {"forces=[]", "loads=[]"}), {"force"});
   std::erase_if(plan.settings, [](const Setting& s) { return s.name != "rk4" && s.name != "dvm s=2"; });
