@@ -141,7 +141,7 @@ def sites(line):
         if begin is not None and end > 0:
             text = line[begin:end]
             put("swap", begin, end, f"({on} ? {text.replace(a, b, 1)} : {text})")
-    for m in re.finditer(r"(?<=[\w>])\((\w[\w.\[\]]*), (\w[\w.\[\]]*)\)", code):
+    for m in re.finditer(r"(?<=[\w>])\((\w[\w.\[\]]*), (?!\1\))(\w[\w.\[\]]*)\)", code):
         put("swap", m.start() + 1, m.end() - 1,
             f"{on} ? {m.group(2)} : {m.group(1)}, {on} ? {m.group(1)} : {m.group(2)}")
     statement = re.match(r"^(\s+)((?!return\b|if\b|for\b|else\b|const\b|auto\b|using\b|case\b|throw\b|break\b|continue\b|delete\b)"

@@ -239,7 +239,11 @@ TEST_CASE("extremes that a scene cannot be built at are noted, and the others sh
   plan.settings.resize(1);
   plan.steps = {16};
   Journal journal({}, stress_columns(), stress_key_columns);
-  const Stress stress = run_stress(plan, journal, {});
+  std::vector<double> told;
+  StudyHooks hooks;
+  hooks.progress = [&](double fraction) { told.push_back(fraction); };
+  const Stress stress = run_stress(plan, journal, hooks);
+  CHECK(told == std::vector<double>{0.25, 0.5});  // two places, and what is left to do behind them
   REQUIRE(stress.notes.size() == 1);
   CHECK(stress.notes[0].starts_with("units = 1: "));
   CHECK(stress.notes[0].find("units") < stress.notes[0].rfind("must be"));
