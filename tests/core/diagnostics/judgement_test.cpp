@@ -215,7 +215,7 @@ TEST_CASE("energies are turned over by the largest of their spans, or by motion"
   CHECK(turned.value() == 13);
 }
 
-// A mass of 1.7 kg flies freely, so far from where coordinates are counted: its position is rounded by 64
+// A mass of 17 g flies freely, so far from where coordinates are counted: its position is rounded by 64
 // units in a step, which add up to a velocity along each axis, and what its weight could do over that reach
 // is rounded once a step, at random. The one counts close by, the other far away.
 TEST_CASE("the round-off of an energy is that of heights and of steps") {
@@ -223,7 +223,7 @@ TEST_CASE("the round-off of an energy is that of heights and of steps") {
     const Simulation run = testing::run_scene(R"(
 [structure]
 kind = "custom"
-nodes = [{name = "P", position = [0.2, 3.1, -0.7], mass = 1.7}]
+nodes = [{name = "P", position = [0.2, 3.1, -0.7], mass = 0.017}]
 [gravity]
 acceleration = [0, 0, -2.3]
 [solver]
@@ -234,13 +234,13 @@ end_time = 0.5
     REQUIRE(run.trajectory.size() == 11);
     const std::vector<double> noise = energy_round_off(run);
     REQUIRE(noise.size() == 11);
-    const double unit = 64 * 2.220446049250313e-16, weight = 1.7 * 2.3;
+    const double unit = 64 * 2.220446049250313e-16, weight = 0.017 * 2.3;
     for (std::size_t i = 0; i < noise.size(); ++i) {
       const double t = run.trajectory.time(i), steps = static_cast<double>(i);
       const double drift = i > 0 ? unit * reach * steps / t : 0.0;
       const double height = 0.7 + 0.5 * 2.3 * t * t;
       CHECK(noise[i] ==
-            Approx(std::sqrt(steps + 1) * unit * weight * (reach + height) + 3 * 1.7 * drift * drift)
+            Approx(std::sqrt(steps + 1) * unit * weight * (reach + height) + 3 * 0.017 * drift * drift)
                 .epsilon(1e-9));
     }
   }
