@@ -111,10 +111,6 @@ TEST_CASE("a search stops at what it was told to reach, and where it is told to 
   const Solved rough = solve_for(f, 40, {.start = 3, .x_tolerance = 2e-5}, {});
   CHECK(rough.x == Approx(4).epsilon(2e-5));
   CHECK(rough.high - rough.low <= 8.2e-5);
-  const Solved near = solve_for(f, 40, {.start = 3, .f_tolerance = 0.5}, {});
-  CHECK(std::abs(near.value - 40) <= 0.5);
-  for (std::size_t i = 0; i + 1 < near.evaluations.size(); ++i)
-    CHECK(std::abs(near.evaluations[i].value - 40) > 0.5);
   int calls = 0;
   StudyHooks hooks;
   hooks.cancelled = [&] { return ++calls > 3; };
