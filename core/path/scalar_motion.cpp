@@ -102,7 +102,7 @@ bool solve_stages(const ScalarLaw& law, double t, double s, double v, double h, 
       const double from_speed = std::abs(q.by_v * (v + speed[i]));
       stages.noise = std::max(stages.noise, q.noise + rounded * (from_place + from_speed));
     }
-    const double size = residual.cwiseAbs().maxCoeff();
+    const double size = residual.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     if (!std::isfinite(size)) return false;
     const double left = std::max(1e-14 * stages.scale, stages.noise);  // with Newton at its end
     if (size <= 4e-16 * stages.scale || (size <= left && size > 0.3 * last)) return true;

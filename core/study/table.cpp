@@ -89,10 +89,9 @@ std::string short_number(double value, int digits) {
   std::array<char, 40> buffer{};
   const double x = value + 0.0;
   const bool countable = std::abs(x) >= 1 && std::abs(x) < 1e6;  // 1230 rather than 1.23e+03
-  if (countable && std::abs(x) >= std::pow(10.0, digits))
+  std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, x);
+  if (countable && std::string_view(buffer.data()).find('e') != std::string_view::npos)
     std::snprintf(buffer.data(), buffer.size(), "%.0f", x);
-  else
-    std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, x);
   std::string text = buffer.data();
   if (const std::size_t e = text.find('e'); e != std::string::npos) {  // 1e-6, as people write it
     std::size_t first = e + (text[e + 1] == '-' ? 2 : 1);

@@ -6,8 +6,8 @@
 namespace unfurl {
 namespace {
 
-SparseRows pattern_of(const ForceDerivative& entries, Index rows, Index columns) {
-  SparseRows A(rows, columns);
+SparseRows square_of(const ForceDerivative& entries, Index size) {
+  SparseRows A(size, size);
   A.setFromTriplets(entries.begin(), entries.end());
   return A;
 }
@@ -37,7 +37,7 @@ bool ReducedSum::same_places() const {
 
 void ReducedSum::find_places() {
   const SparseRows& B = *B_;
-  A_ = pattern_of(entries_, B.rows(), B.rows());
+  A_ = square_of(entries_, B.rows());
   for (auto* list : {&row_, &column_, &to_, &target_}) list->clear();
   for (const auto& entry : entries_) {
     row_.push_back(entry.row());
@@ -63,7 +63,7 @@ void ReducedSum::find_places() {
         }
       start_.push_back(static_cast<int>(reduced.size()));
     }
-  result_ = pattern_of(reduced, B.cols(), B.cols());
+  result_ = square_of(reduced, B.cols());
   for (const auto& entry : reduced) target_.push_back(place_of(result_, entry.row(), entry.col()));
 }
 

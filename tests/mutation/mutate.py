@@ -141,7 +141,7 @@ def sites(line):
         if begin is not None and end > 0:
             text = line[begin:end]
             put("swap", begin, end, f"({on} ? {text.replace(a, b, 1)} : {text})")
-    for m in re.finditer(r"(?<=[\w>])\((\w[\w.\[\]]*), (\w[\w.\[\]]*)\)", code):
+    for m in re.finditer(r"(?<=[\w>])\((\w[\w.\[\]]*), (?!\1\))(\w[\w.\[\]]*)\)", code):
         put("swap", m.start() + 1, m.end() - 1,
             f"{on} ? {m.group(2)} : {m.group(1)}, {on} ? {m.group(1)} : {m.group(2)}")
     statement = re.match(r"^(\s+)((?!return\b|if\b|for\b|else\b|const\b|auto\b|using\b|case\b|throw\b|break\b|continue\b|delete\b)"
@@ -316,6 +316,10 @@ def build(mutants):
     bad = set()
     for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", done.stdout):
         bad |= {k for k, m in mutants.items() if m[0] == path and m[1] == int(line) - 1}
+    if not bad:  # the end of a statement is named, and the error stands where it begins
+        for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", done.stdout):
+            before = [(m[1], k) for k, m in mutants.items() if m[0] == path and m[1] < int(line)]
+            bad |= {max(before)[1]} if before else set()
     if not bad:
         sys.exit(done.stdout[-4000:])
     return bad
@@ -372,9 +376,13 @@ class Tests:
             before = {"stamp": stamp}
         open_ones = [test for test in self.tests if test.name not in before]  # names are of one test each
         with multiprocessing.Pool(os.cpu_count()) as workers:
+            kept = time.monotonic()
             for test, seen in zip(open_ones, workers.imap(self.look, open_ones)):
                 before[test.name] = seen
-                json.dump(before, open(known, "w"))
+                if time.monotonic() > kept + 20:  # writing takes longer than most tests
+                    json.dump(before, open(known, "w"))
+                    kept = time.monotonic()
+        json.dump(before, open(known, "w"))
         for test in self.tests:
             if before[test.name] is not None:
                 test.seconds, test.reached = before[test.name][0], set(before[test.name][1])

@@ -130,6 +130,35 @@ TEST_CASE("the largest force names its rod, its time and whether it is unique") 
   CHECK(peak_rod_force(diagnose(sector)).unique);  // under the sector's symmetry
 }
 
+TEST_CASE("of pull and push each has its own largest, which is unique where all that equal it are") {
+  Diagnostics d;
+  d.t = {0.5, 1.25, 3};
+  d.axial_force.resize(3, 2);
+  d.axial_force << 4, -9, 7, -2, std::nan(""), 7 * (1 - 1e-11);
+  d.force_unique.setConstant(3, 2, true);
+  const auto is = [&](Pull pull, double force, Index rod, double t, bool unique) {
+    const PeakForce peak = peak_rod_force(d, pull);
+    CHECK(peak.force_N == force);
+    CHECK(peak.rod == rod);
+    CHECK(peak.t == t);
+    CHECK(peak.unique == unique);
+  };
+  is(Pull::either, -9, 1, 0.5, true);
+  is(Pull::tension, 7, 0, 1.25, true);
+  is(Pull::compression, -9, 1, 0.5, true);
+  d.force_unique(0, 1) = false;
+  is(Pull::either, -9, 1, 0.5, false);
+  is(Pull::tension, 7, 0, 1.25, true);
+  is(Pull::compression, -9, 1, 0.5, false);
+  d.force_unique(0, 1) = true, d.force_unique(2, 1) = false;  // as large, up to round-off
+  is(Pull::either, -9, 1, 0.5, true);
+  is(Pull::tension, 7, 0, 1.25, false);
+  d.axial_force(2, 1) = 7 * (1 - 1e-7);
+  is(Pull::tension, 7, 0, 1.25, true);
+  d.axial_force.setConstant(std::nan(""));
+  CHECK(peak_rod_force(d).rod == -1);
+}
+
 TEST_CASE("what a drive gives is unique unless something else holds the same") {
   const Diagnostics d = diagnose(library_run("hoop6_motor", {"structure.units=3", "solver.step=0.25"}));
   for (const double flag : d.at("motor.torque_unique").values) CHECK(flag == 1.0);

@@ -2,6 +2,7 @@
 // Peaks are those of the motion, not of the ends of steps.
 #include "core/diagnostics/peaks.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -97,6 +98,32 @@ TEST_CASE("what grows to the end has its peak there, and what is not there has n
   const Diagnostics d = diagnose(run);
   CHECK(largest_of_column(run, d, "step_s") == Approx(0.05).epsilon(1e-12));
   CHECK(std::isnan(largest_of_column(run, d, "fold_angle_rad")));
+}
+
+TEST_CASE("a peak is found beside a state whose value is not known, on either side") {
+  const Simulation run = swing(73, 0.08);
+  const StateValues speeds = [](const Simulation& piece) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < piece.trajectory.size(); ++i)
+      out.push_back(piece.trajectory.node_velocities(i).tail<3>().norm());
+    return out;
+  };
+  const std::vector<double> at_states = speeds(run);
+  const double top = std::sqrt(2 * g * 0.8 * (1 - std::cos(73 * pi / 180)));
+  const auto highest =
+      static_cast<std::size_t>(std::max_element(at_states.begin(), at_states.end()) - at_states.begin());
+  REQUIRE(at_states[highest] < 0.99995 * top);
+  CHECK(largest_in_motion(run, at_states, {}) == at_states[highest]);
+  for (const int side : {-1, 0, 1}) {
+    std::vector<double> known = at_states;
+    if (side) known[highest + static_cast<std::size_t>(side)] = std::nan("");
+    CHECK(largest_in_motion(run, known, speeds) == Approx(top).epsilon(2e-6));
+  }
+  std::vector<double> none(at_states.size(), std::nan(""));
+  CHECK(std::isnan(largest_in_motion(run, none, speeds)));
+  // One that is known alone, where the motion is faster by far.
+  none[highest + 3] = 0.1;
+  CHECK(largest_in_motion(run, none, speeds) > 0.5 * top);
 }
 
 }  // namespace peaks_test

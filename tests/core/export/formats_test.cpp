@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "core/export/formats.hpp"
@@ -71,6 +72,14 @@ TEST_CASE("exported shapes are closed and look outward: the divergence theorem g
   CHECK(volume(unit_cylinder(16)) == Approx(8 * std::sin(pi / 8)).epsilon(1e-6));  // floats
   CHECK(volume(unit_sphere(16)) > 0.92 * 4 * pi / 3);
   CHECK(volume(unit_sphere(16)) < 4 * pi / 3);
+  // A cone on a 16-gon; and no vertex of any of them stands apart.
+  CHECK(volume(unit_cone(16)) == Approx(8 * std::sin(pi / 8) / 3).epsilon(1e-6));
+  for (const ShapeMesh& mesh : {unit_cylinder(11), unit_cone(11), unit_sphere(12)}) {
+    std::set<std::uint16_t> used(mesh.triangles.begin(), mesh.triangles.end());
+    CHECK(mesh.positions.size() == 3 * used.size());
+    CHECK(mesh.normals.size() == mesh.positions.size());
+    CHECK(*used.rbegin() + 1U == used.size());
+  }
 }
 
 TEST_CASE("a VTU of each state and their times in the PVD") {

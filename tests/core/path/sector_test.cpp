@@ -69,6 +69,14 @@ TEST_CASE("a ring whose sectors are alike is solved as one of them, and is where
        "one of 11",
        1.0},
       {{"hoop6", joined(joints, hinge_springs)}, "one of 5", 0.5},
+      // Of what has no direction one may be named the other way round.
+      {{"hoop6",
+        joined(joints, joined(for_units(5, "forces",
+                                        R"({name="bar #",kind="spring",nodes=["B#","Mt#"],stiffness=37,)"
+                                        R"(damping=5,free_length=2.5})"),
+                              {"forces[2].nodes=[\"Mt2\",\"B2\"]"}))},
+       "one of 5",
+       0.5},
       {{"hoop6", joined(joints, {"loads[0]={nodes=[\"T*\"],force=[0,0,2.5]}",
                                  "forces[0]={kind=\"joint_damping\",nodes=[\"Mb*\",\"Mt*\"],damping=21}",
                                  "forces[1]={kind=\"drag\",nodes=[\"B*\"],damping=3.1}"})},

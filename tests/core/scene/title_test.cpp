@@ -68,6 +68,7 @@ TEST_CASE("a place in a title takes a key of the structure, its default too, and
   }
   CHECK(written("A set {1, 2} or {a b}").title == "A set {1, 2} or {a b}");
   CHECK(written("No set {}, none { or }").title == "No set {}, none { or }");
+  CHECK(written("{} and {units} of {a b} { {units}").title == "{} and nine of {a b} { nine");
 }
 
 TEST_CASE("the scene as run keeps the title's places") {

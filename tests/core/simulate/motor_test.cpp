@@ -69,6 +69,22 @@ TEST_CASE("a motor runs up along its torque-speed line, with its rotor behind th
   }
 }
 
+TEST_CASE("a motor's rotor is its own, whatever other forces stand before and behind it") {
+  // A spring between what is fixed does nothing.
+  const std::string idle =
+      "[[forces]]\nkind = \"spring\"\nname = \"idle\"\nnodes = [\"O\", \"E\"]\nstiffness = 3\n";
+  std::string text = crank;
+  text.insert(text.find("[[forces]]"), idle);
+  text.insert(text.find("[solver]"),
+              idle.substr(0, idle.find("idle")) + "behind" + idle.substr(idle.find("idle") + 4));
+  const double rotor = 6e-4, all = inertia + ratio * ratio * rotor, top = no_load / ratio,
+               tau = all * top / (ratio * stall);
+  const Simulation run = run_scene(text, {"forces[1].inertia=" + std::to_string(rotor)});
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(last_of(diagnose(run), "motor.angle_rad") ==
+        Approx(start_angle + top * (1.5 - tau * (1 - std::exp(-1.5 / tau)))).margin(1e-10));
+}
+
 TEST_CASE("a motor gives no more than its current allows") {
   const Simulation run = run_scene(
       crank, {"forces[0].current_limit=2", "forces[0].torque_constant=0.005", "solver.end_time=0.5"});

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a user is told of forces whose measure turns back inside a step.
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
 
+#include "core/simulate/turning_back.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -112,6 +115,147 @@ TEST_CASE("ends of a spring that pass close by are told where the step does not 
   CHECK(said(run_scene(crank, {"structure.nodes[2].position=[0, 1, 0.005]",
                                "structure.nodes[2].velocity=[2, 0, 0]"}),
              hinge.c_str()) == 1);
+}
+
+namespace {
+
+// Springs, a cable, a hinge and a motor between free masses, whose poses are set by hand.
+const std::string loose = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "A", position = [0, 0, 0], mass = 1}, {name = "B", position = [1, 0, 0], mass = 1},
+  {name = "C", position = [0, 2, 0], mass = 1}, {name = "D", position = [1, 2, 0.5], mass = 1}]
+[[forces]]
+kind = "spring"
+name = "bar"
+nodes = ["A", "B"]
+stiffness = 3
+free_length = 0.7
+[[forces]]
+kind = "spring"
+name = "cable"
+nodes = ["C", "D"]
+stiffness = 3
+free_length = 0.7
+tension_only = true
+[solver]
+step = 0.1
+)";
+
+struct Told {
+  std::shared_ptr<const Model> model;
+  TurningBack turning;
+
+  explicit Told(Structure structure)
+      : model(std::make_shared<const Model>(Model{structure, System(structure, true)})), turning(structure) {}
+
+  // From one difference of B and A to another, or of two lines, between t = 0.3 and 0.8.
+  std::vector<std::string> said(const Vec3& before, const Vec3& after, const Vec3& lines = Vec3(1, 0, 0)) {
+    const System& system = model->system;
+    const auto state = [&](double t, const Vec3& b) {
+      VectorXd q(12);
+      q << 0.2, 0.1, -0.4, Vec3(0.2, 0.1, -0.4) + b, 5, 6, 7, Vec3(5, 6, 7) + lines;
+      State s;
+      s.t = t;
+      s.z = system.reduce(q);
+      s.w = VectorXd::Zero(s.z.size());
+      return s;
+    };
+    return turning.between(system, state(0.3, before), state(0.8, after));
+  }
+};
+
+using Texts = std::vector<std::string>;
+
+Structure loose_structure() {
+  return testing::model_of(loose)->structure;
+}
+
+std::string rounded(const char* form, double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, form, x);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("ends that pass each other are told apart from ends that pass close by and from others") {
+  const Texts through = {
+      "at t = 0.8 s: the ends of bar pass each other, where its force turns round; what "
+      "follows is right to the first order of solver.step"};
+  const auto said = [](const Vec3& a, const Vec3& b) { return Told(loose_structure()).said(a, b); };
+  CHECK(said({0.3, 0, 0}, {-0.2, 0, 0}) == through);
+  CHECK(said({-0.1, 0.2, 0.3}, {0.2, -0.4, -0.6}) == through);
+  CHECK(said({0.3, 0, 0}, {0.2, 0, 0}).empty());
+  CHECK(said({0.3, 0, 0}, {0.001, 5, 0}).empty());   // by less than a right angle
+  CHECK(said({0.3, 0, 0}, {-1e-10, 0, 0}).empty());  // there, on neither side
+  // The way from (0.3, 0, 0) to (-0.2, y, 0) passes at 0.3 y / hypot(0.5, y), a tenth of 0.2 at y = 0.0339.
+  CHECK(said({0.3, 0, 0}, {-0.2, 0.033, 0}) == through);
+  for (const double y : {0.036, -0.4, 3.0}) {
+    const double way = std::hypot(0.5, y), distance = 0.3 * std::abs(y) / way;
+    CHECK(said({0.3, 0, 0}, {-0.2, 0, y}) ==
+          Texts{"at t = 0.8 s: the ends of bar pass each other at " + rounded("%.2g m", distance) +
+                ", and what it pulls with turns round within a step, which does not resolve that; make "
+                "solver.step " +
+                rounded("%.2g s", 0.5 * distance / way * 0.5)});
+  }
+  // The cable does not push, whatever its ends do; and what was said once is not said again.
+  CHECK(Told(loose_structure()).said({1, 0, 0}, {1, 0, 0}, {0, 0, 1}).empty());
+  Told once(loose_structure());
+  CHECK(once.said({0.3, 0, 0}, {-0.2, 0, 0}).size() == 1);
+  CHECK(once.said({-0.3, 0, 0}, {0.2, 0, 0}).empty());
+  Structure free = loose_structure();
+  free.forces[0].rest = 0;  // no force to turn round
+  CHECK(Told(free).said({0.3, 0, 0}, {-0.2, 0, 0}).empty());
+  free = loose_structure();
+  free.forces[0].stiffness = 0;
+  CHECK(Told(free).said({0.3, 0, 0}, {-0.2, 0, 0}).empty());
+  free.forces[0].kind = "motor";  // which has one by other laws, also towards no length
+  free.forces[0].rest = 0;
+  CHECK(Told(free).said({0.3, 0, 0}, {-0.2, 0, 0}) == through);
+}
+
+TEST_CASE("lines that an angle without an axis passes are told with the angle that is left") {
+  Structure structure = loose_structure();
+  Force& hinge = structure.forces[0];
+  hinge.kind = "torsion_spring", hinge.name = "hinge", hinge.rest = 0.4;
+  hinge.measure = {MeasureKind::angle, {0, 1, 2, 3}, Vec3::Zero(), 0.0, {}};
+  const Texts through = {
+      "at t = 0.8 s: the rods of hinge pass through one line, where an angle without an axis "
+      "turns back and the torque on it jumps; give an axis, if the hinge turns through"};
+  const Vec3 along(1.3, 0, 0);
+  const auto said = [&](const Vec3& a, const Vec3& b, double rest = 0.4) {
+    Structure s = structure;
+    s.forces[0].rest = rest;
+    return Told(s).said(a, b, along);
+  };
+  for (const double side : {1.0, -1.0}) {  // in line, or folded onto it
+    CHECK(said({side, 0.2, 0}, {side, -0.1, 0}) == through);
+    CHECK(said({side, 0.2, 0}, {side, 0.1, 0}).empty());
+    // A torque that is nothing in line does not jump.
+    CHECK(said({side, 0.2, 0}, {side, -0.1, 0}, side > 0 ? 0.0 : std::acos(-1.0)).empty());
+    CHECK(said({side, 0.2, 0}, {side, -0.1, 0}, side > 0 ? std::acos(-1.0) : 0.0) == through);
+    // Normals (0, -z, y) of the lines, times 1.3: from (0, 0, 0.2) to (0, 0.15, -0.1) of 1 m.
+    const double way = std::hypot(0.3, 0.15), sine = 0.2 * 0.15 / way;
+    // The product of the lengths is that before the step.
+    const double size = std::hypot(1, 0.2);
+    const double left = std::asin(1.3 * sine / (1.3 * std::hypot(1.0, std::hypot(0.1, 0.15))));
+    const Texts close = said({side, 0.2, 0}, {side, -0.1, 0.15});
+    REQUIRE(close.size() == 1);
+    CHECK(close[0].starts_with("at t = 0.8 s: the rods of hinge pass one line at "));
+    double degrees = 0, step = 0;
+    CHECK(std::sscanf(close[0].c_str(), "at t = 0.8 s: the rods of hinge pass one line at %lf degrees, and",
+                      &degrees) == 1);
+    CHECK(std::sscanf(close[0].c_str() + close[0].find("make "), "make solver.step %lf s", &step) == 1);
+    // Two digits are printed; lengths are those of either state.
+    const double most = std::asin(sine) * 180 / std::acos(-1.0), least = left * 180 / std::acos(-1.0);
+    CHECK(degrees <= most * 1.05);
+    CHECK(degrees >= std::min(least, std::asin(sine / size) * 180 / std::acos(-1.0)) * 0.95);
+    CHECK(step == Approx(0.5 * 0.2 * 0.15 / (way * way) * 0.5).epsilon(0.05));
+  }
+  structure.forces[0].measure.axis = Vec3(0, 0, 1);  // which counts on
+  CHECK(said({1, 0.2, 0}, {1, -0.1, 0}).empty());
 }
 
 }  // namespace turning_back_test

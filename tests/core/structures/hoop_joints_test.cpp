@@ -128,4 +128,54 @@ TEST_CASE("the unevenness of a hoop is the farthest that corners and sides are f
   }
 }
 
+TEST_CASE("a ring is driven evenly where all that acts on it is the same for every unit") {
+  const Structure ring = testing::model_of(R"(
+[structure]
+kind = "hoop"
+model = "joints"
+units = 5
+)")
+                             ->structure;
+  REQUIRE(driven_evenly(ring));
+  const auto even = [&](const auto& change) {
+    Structure s = ring;
+    change(s);
+    return driven_evenly(s);
+  };
+  const auto with = [&](const char* kind, const char* name, MeasureKind measured) {
+    return even([&](Structure& s) {
+      s.constraints.push_back({kind, name, {}, {}, 0.0, {measured, {}, Vec3::Zero(), 0.0, {}}, {}});
+    });
+  };
+  CHECK(with("coplanar", "any", MeasureKind::length));
+  CHECK(with("relation", "post 3", MeasureKind::length));
+  CHECK_FALSE(with("relation", "bar 3", MeasureKind::length));
+  CHECK_FALSE(with("plane", "post 3", MeasureKind::length));
+  CHECK(with("measure", "drive", MeasureKind::fold));  // of all units as one
+  CHECK_FALSE(with("measure", "drive", MeasureKind::length));
+  CHECK_FALSE(with("relation", "drive", MeasureKind::fold));
+  CHECK_FALSE(even(
+      [](Structure& s) { s.constraints.front().kind = "relation", s.constraints.front().name = "post 1"; }));
+  CHECK_FALSE(even([](Structure& s) { s.constraints.clear(); }));
+  CHECK_FALSE(even([](Structure& s) { s.forces.emplace_back(); }));
+  CHECK_FALSE(even([](Structure& s) { s.stops.emplace_back(); }));
+  CHECK(even([](Structure& s) { s.gravity = Vec3(0, 0, -3); }));
+  CHECK_FALSE(even([](Structure& s) { s.gravity = Vec3(0.1, 0, -3); }));
+  CHECK_FALSE(even([](Structure& s) { s.gravity = Vec3(0, 0.1, -3); }));
+  CHECK_FALSE(even([](Structure& s) { s.kind = "custom"; }));
+  CHECK_FALSE(even([](Structure& s) { s.rods.pop_back(); }));
+  CHECK_FALSE(even([](Structure& s) { s.nodes.pop_back(); }));
+  const auto loaded = [&](const std::vector<Vec3>& forces) {  // on the same node of every unit
+    return even([&](Structure& s) {
+      for (std::size_t k = 0; k < forces.size(); ++k)
+        s.loads.push_back({static_cast<int>(4 * k + 2), forces[k]});
+    });
+  };
+  CHECK(loaded(std::vector<Vec3>(5, Vec3(0, 0, 2.5))));
+  CHECK_FALSE(loaded(std::vector<Vec3>(4, Vec3(0, 0, 2.5))));
+  CHECK_FALSE(loaded(std::vector<Vec3>(5, Vec3(0.1, 0, 2.5))));
+  CHECK_FALSE(loaded(std::vector<Vec3>(5, Vec3(0, 0.1, 2.5))));
+  CHECK(loaded({Vec3(0, 0, 1), Vec3(0, 0, 1), Vec3(0, 0, 1), Vec3(0, 0, 1), Vec3(0, 0, 1)}));
+}
+
 }  // namespace hoop_joints_test

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "core/study/solve_for.hpp"
 
@@ -57,6 +58,87 @@ TEST_CASE("a target out of reach is told with what was reached") {
 TEST_CASE("a jump over the target is no root") {
   CHECK_THROWS_WITH(solve_for([](double x) { return x < 2 ? 0.0 : 10.0; }, 5, {.start = 1}, {}),
                     Catch::Contains("jumps over the target at 2"));
+}
+
+TEST_CASE("roots of any rise or fall are found from any side, closely bracketed, in few runs") {
+  std::mt19937 dice(41);
+  std::uniform_real_distribution<double> any(-1, 1);
+  std::size_t most = 0, all = 0;
+  const int trials = 400;
+  for (int trial = 0; trial < trials; ++trial) {
+    const double root = 5 * any(dice), slope = 0.3 + std::abs(any(dice)), cubic = 0.8 * std::abs(any(dice)),
+                 bend = 2 * any(dice), sign = trial % 2 ? -1 : 1, target = 3 * any(dice);
+    // Its derivative is at least the slope: one root.
+    const auto f = [&](double x) {
+      const double d = x - root;
+      return target + sign * (slope * d + cubic * d * d * d + 0.1 * slope * std::sin(bend * d) / 2);
+    };
+    const double start = trial % 7 ? 5 * any(dice) : 0;
+    SolveOptions options{.start = start};
+    if (trial % 3 == 0) options.low = root - 0.3 - any(dice) * 0.2, options.high = root + 1.7;
+    const Solved s = solve_for(f, target, options, {});
+    CAPTURE(trial, root, start);
+    // Rounding of f is magnified by 1 / slope, and x is good to 1e-12 of itself.
+    CHECK(s.x == Approx(root).epsilon(2e-12).margin(1e-13));
+    CHECK(s.value == f(s.x));
+    CHECK(std::abs(s.low - s.high) <=
+          1e-12 * std::max(std::abs(s.low), std::abs(s.high)) + (s.value == target ? 10 : 0));
+    if (s.value != target) CHECK((f(s.low) < target) != (f(s.high) < target));
+    for (const Evaluation& e : s.evaluations) {
+      CHECK(e.value == f(e.x));
+      CHECK(std::abs(e.value - target) >= std::abs(s.value - target));
+    }
+    if (options.low == options.high) {
+      REQUIRE(s.evaluations.size() > 2);
+      CHECK(s.evaluations[0].x == start);
+      // A fiftieth of where the scene stands, to each side.
+      const double first = start != 0 ? 0.02 * std::abs(start) : 0.02;
+      CHECK(s.evaluations[1].x == Approx(start + first).epsilon(1e-14));
+      if (s.evaluations[2].x < start) CHECK(s.evaluations[2].x == Approx(start - first).epsilon(1e-14));
+    }
+    most = std::max(most, s.evaluations.size());
+    all += s.evaluations.size();
+  }
+  // Doubling from 0.02 |start|, at least some 1e-4 in 400 trials, takes 2 log2(1e5) runs at most; then regula
+  // falsi of order 1.44 or more from a width of 10 to 1e-12, every fourth a bisection: 15 or so; bisection
+  // alone would take 43.
+  CHECK(most < 70);
+  CHECK(all < 32U * trials);
+}
+
+TEST_CASE("a search stops at what it was told to reach, and where it is told to stop") {
+  const auto f = [](double x) { return 2.5 * x * x; };
+  const Solved rough = solve_for(f, 40, {.start = 3, .x_tolerance = 2e-5}, {});
+  CHECK(rough.x == Approx(4).epsilon(2e-5));
+  CHECK(rough.high - rough.low <= 8.2e-5);
+  int calls = 0;
+  StudyHooks hooks;
+  hooks.cancelled = [&] { return ++calls > 3; };
+  CHECK_THROWS_AS(solve_for(f, 40, {.start = 3}, hooks), Cancelled);
+  CHECK(calls == 4);
+  CHECK_THROWS_WITH(solve_for(f, 40, {.start = 3, .most = 0}, {}),
+                    "no answer after 0 runs; no parameter that was tried gave a run with this measure");
+}
+
+TEST_CASE("walls on both sides are told, and a measure that ends between the ends") {
+  // On the way up the measure ends at 3.3, below at 1.7: the target lies beyond both.
+  const auto walled = [](double x) { return x > 1.7 && x < 3.3 ? 10 - x : none; };
+  for (const double target : {11.0, 5.0}) {
+    int runs = 0;
+    const auto counted = [&](double x) { return ++runs, walled(x); };
+    CHECK_THROWS_WITH(
+        solve_for(counted, target, {.start = 2.3}, {}),
+        Catch::StartsWith("the target is not reached on either side of 2.3; for parameters from "
+                          "1.7 to 3.3 the measure runs from 6.7 to 8.3"));
+    CHECK(runs < 140);  // halving from 1 to 1e-9 on each side: 60, doubling before: 12
+  }
+  CHECK_THROWS_WITH(
+      solve_for([](double x) { return x < 2 || x > 3.5 ? x : none; }, 2.6, {.low = 1.5, .high = 4.25}, {}),
+      Catch::StartsWith("the measure is not there for a parameter of 2.6"));
+  CHECK_THROWS_WITH(
+      solve_for([](double x) { return x < 2 ? 1.5 : std::numeric_limits<double>::infinity(); }, 5,
+                {.low = 1, .high = 3}, {}),
+      "the measure jumps over the target at 2, from 1.5 to inf; a later solver.end_time may help");
 }
 
 }  // namespace solve_for_test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
 #include "core/scene/build.hpp"
@@ -38,9 +39,111 @@ TEST_CASE("a range of one is its beginning") {
   CHECK(parse_axis("a=2.5:7:1:log").numbers == std::vector<double>{2.5});
 }
 
+TEST_CASE("ranges run evenly from end to end, log ranges by equal factors") {
+  for (const int count : {2, 3, 7, 11}) {
+    const SweepAxis even = parse_axis("a.b=-1.7:5.3:" + std::to_string(count));
+    const SweepAxis log = parse_axis("a.b=0.3:47:" + std::to_string(count) + ":log");
+    CHECK_FALSE(even.log);
+    CHECK(log.log);
+    REQUIRE((even.numbers.size() == static_cast<std::size_t>(count) &&
+             log.numbers.size() == even.numbers.size()));
+    for (std::size_t i = 0; i < even.numbers.size(); ++i) {
+      const double u = static_cast<double>(i) / (count - 1);
+      CHECK(even.numbers[i] == Approx(-1.7 + 7 * u).epsilon(1e-14).margin(1e-15));
+      CHECK(std::log(log.numbers[i]) == Approx(std::log(0.3) + u * std::log(47 / 0.3)).epsilon(1e-14));
+      CHECK(number_of(even.values[i]) == even.numbers[i]);
+    }
+    CHECK(even.numbers.back() == 5.3);  // as it was written, not rounded
+    CHECK(log.numbers.back() == 47);
+    CHECK(even.key == "a.b");
+  }
+  CHECK(parse_axis("a=5:2:4").numbers == std::vector<double>{5, 4, 3, 2});
+  CHECK(parse_axis("a=1:2:1000000").numbers.size() == 1000000);
+  CHECK(parse_axis("a=3,1,2.5").numbers == std::vector<double>{3, 1, 2.5});
+  CHECK(parse_axis("a=1,x,2").values == std::vector<std::string>{"1", "x", "2"});
+  CHECK(parse_axis("a=1,inf").numbers.empty());  // no place on an axis of numbers
+}
+
+TEST_CASE("what is no axis is told why") {
+  const struct {
+    const char *axis, *why;
+  } rows[] = {{"a", "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C"},
+              {"=1:2:3", "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C"},
+              {"a=", "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C"},
+              {"a=1:2", "a range is FROM:TO:COUNT"},
+              {"a=1:2:3:log:5", "a range is FROM:TO:COUNT"},
+              {"a=1:inf:3", "a range runs from one finite number to another"},
+              {"a=x:2:3", "a range runs from one finite number to another"},
+              {"a=1:2:0", "the count must be a whole number from 1 to 1000000; got '0'"},
+              {"a=1:2:2.5", "the count must be a whole number from 1 to 1000000; got '2.5'"},
+              {"a=1:2:1000001", "the count must be a whole number from 1 to 1000000; got '1000001'"},
+              {"a=1:2:3:lin", "only 'log' may follow the count"},
+              {"a=0:2:3:log", "a log range needs numbers > 0"},
+              {"a=2:-1:3:log", "a log range needs numbers > 0"},
+              {"a=2:2:3", "the range is empty; its ends are equal"},
+              {"a=1,,2", "the list has an empty entry"},
+              {"a=1,2,1", "'1' is there twice"}};
+  for (const auto& row : rows)
+    CHECK_THROWS_WITH(parse_axis(row.axis), "'" + std::string(row.axis) + "': " + row.why);
+  CHECK(parse_axis("a=2:2:1").numbers == std::vector<double>{2});
+}
+
+TEST_CASE("points of a grid are counted with the last axis fastest") {
+  SweepPlan plan{{find_scene("hoop6_sector"), {}},
+                 {parse_axis("a=1,2"), parse_axis("b=x,y,z"), parse_axis("c=0.5,0.25,0.75,4")},
+                 {},
+                 {}};
+  REQUIRE(plan.points() == 24);
+  std::size_t point = 0;
+  for (const char* a : {"1", "2"})
+    for (const char* b : {"x", "y", "z"})
+      for (const char* c : {"0.5", "0.25", "0.75", "4"})
+        CHECK(plan.key(point++) == std::vector<std::string>{a, b, c});
+  plan.measures = {find_measure("deploy_time"), find_measure("peak_rod_force")};
+  CHECK(plan.columns() ==
+        std::vector<std::string>{"a", "b", "c", "outcome", "deploy_time_s", "peak_rod_force_N"});
+  CHECK(plan.number_columns() == std::vector<std::size_t>{4, 5});
+  // More than anybody can count is only known to be too many.
+  plan.axes.assign(5, parse_axis("a=1:2:10000"));
+  CHECK(plan.points() == 10'000'001);
+  plan.axes.resize(1);
+  CHECK(plan.points() == 10'000);
+}
+
+TEST_CASE("a plan is refused with its reason, and says which forces are unique") {
+  const auto refusal = [](std::vector<std::string> axes, std::vector<std::string> measures) -> std::string {
+    SweepPlan plan{{find_scene("hoop6_sector"), {}}, {}, {}, {}};
+    for (const auto& axis : axes) plan.axes.push_back(parse_axis(axis));
+    for (const auto& name : measures) plan.measures.push_back(find_measure(name));
+    try {
+      check_plan(plan);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    std::string names;
+    for (const RunMeasure& measure : plan.measures) names += measure.name + " ";
+    return names;
+  };
+  const std::vector<std::string> angle = {"structure.fold_angle=40:80:3"};
+  CHECK(refusal({}, {"deploy_time"}) == "nothing to vary; give --vary KEY=FROM:TO:COUNT");
+  CHECK(refusal(angle, {}) == "nothing to measure; give --measure NAME,...");
+  CHECK(refusal({angle[0], "solver.step=0.01:0.02:2", angle[0]}, {"deploy_time"}) ==
+        "the key 'structure.fold_angle' is varied twice");
+  CHECK(refusal({"structure.units=4:9:2", "solver.step=0.01:0.02:2"}, {"deploy_time"}) == "deploy_time ");
+  CHECK(refusal({"structure.units=4:9:3"}, {"deploy_time"}) ==
+        "'structure.units' takes whole numbers; 6.5 is none: give a COUNT that leads to some, or list them "
+        "(structure.units=4,6,12)");
+  CHECK(refusal({"structure.fold_angle=40:80:4000", "solver.step=0.01:0.02:2501"}, {"deploy_time"}) ==
+        "the grid has more than 1e7 points");
+  CHECK(refusal(angle, {"peak_tension", "deploy_time"}) == "peak_tension deploy_time peak_tension_unique ");
+  CHECK(refusal(angle, {"peak_tension_unique", "peak_tension"}) == "peak_tension_unique peak_tension ");
+}
+
 TEST_CASE("shards part the points and nothing else is one") {
   CHECK(parse_shard("2/8").index == 2);
-  for (const char* bad : {"0/8", "9/8", "1/0", "1", "a/b", "1.5/3"})
+  CHECK(parse_shard("2/8").count == 8);
+  CHECK(parse_shard("1000000/1000000").index == 1000000);
+  for (const char* bad : {"0/8", "9/8", "1/0", "1", "a/b", "1.5/3", "1/2.5", "1/1000001", "1/2/3", ""})
     CHECK_THROWS_WITH(parse_shard(bad), Catch::Contains("a shard is I/N"));
 }
 

@@ -28,4 +28,38 @@ TEST_CASE("nodes that are off their line are refused by the same measure, howeve
   }
 }
 
+// Seven nodes on a plane through the first of all, each by a constraint of its own.
+std::string table(const std::vector<double>& off) {
+  std::string text =
+      "[structure]\nkind = 'custom'\nnodes = "
+      "[{name='O',position=[0.4,0.2,1.5],fixed=true},{name='R',position=[0.9,0.2,1.5],fixed=true}";
+  for (std::size_t i = 0; i < off.size(); ++i)
+    text += ",\n{name='N" + std::to_string(i) + "',position=[" + std::to_string(i + 1) + ",0.2," +
+            testing::number(1.5 + off[i]) + "],mass=1}";
+  text += "]\n";
+  for (std::size_t i = 0; i < off.size(); ++i)
+    text += "[[structure.constraints]]\nkind='collinear'\nname='p" + std::to_string(i) +
+            "'\nnodes=['O','R','N" + std::to_string(i) + "']\n";
+  return text;
+}
+
+TEST_CASE("what is violated at the start is listed with the worst, up to six by name") {
+  const std::string head = "s.toml:1:1: structure: the structure cannot be assembled as given: ";
+  CHECK(testing::error_of(table({0, 0, 0})) == "");
+  // A row is the offset times the half metre of the line, over the metre that a structure without rods has
+  // for its length.
+  CHECK(testing::error_of(table({0, 3e-3, 0})) == head + "p1 y is violated at t = 0, by up to 0.0015 m");
+  CHECK(testing::error_of(table({0, 3e-3, 0, -0.02})) ==
+        head + "p1 y, p3 y are violated at t = 0, by up to 0.01 m");
+  CHECK(testing::error_of(table({1e-3, 3e-3, 2e-3, -0.02, 1e-3, 1e-3})) ==
+        head + "p0 y, p1 y, p2 y, p3 y, p4 y, p5 y are violated at t = 0, by up to 0.01 m");
+  CHECK(testing::error_of(table({1e-3, 3e-3, 2e-3, -0.02, 1e-3, 1e-3, 4e-3, 1e-3})) ==
+        head + "p0 y, p1 y, p2 y, p3 y, p4 y, p5 y and 2 more are violated at t = 0, by up to 0.01 m");
+  // A ten-millionth of the longest side, here 7 - 0.4 = 6.6 m, for half of the offset.
+  CHECK(testing::error_of(table({0, 0, 13.1e-7, 0, 0, 0, 0})) == "");
+  CHECK(testing::error_of(table({0, 0, -13.1e-7, 0, 0, 0, 0})) == "");
+  CHECK(testing::error_of(table({0, 0, 13.3e-7, 0, 0, 0, 0})) != "");
+  CHECK(testing::error_of(table({0, 0, -13.3e-7, 0, 0, 0, 0})) != "");
+}
+
 }  // namespace consistency_test

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/text/nearest_name.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdio>
+#include <random>
+#include <string>
 
 using namespace unfurl;
+
+namespace nearest_name_test {
 
 TEST_CASE("the nearest name is found by small slips") {
   const std::vector<std::string_view> known = {"post_length", "chord_rod_length", "density", "step"};
@@ -31,3 +37,86 @@ TEST_CASE("a name in a message stays on its line") {
   CHECK(in_quotes("a\nb") == "'a\\x0ab'");
   CHECK(in_quotes(std::string(1000, 'x')).size() < 70);
 }
+
+namespace {
+
+// The distance by its definition (Oommen and Loke's optimal string alignment), a recursion over what is left.
+std::size_t slips(std::string_view a, std::string_view b) {
+  if (a.empty() || b.empty()) return a.size() + b.size();
+  const auto same = [](char x, char y) { return (x | 0x20) == (y | 0x20); };  // letters
+  if (same(a[0], b[0])) return slips(a.substr(1), b.substr(1));
+  std::size_t least =
+      std::min({slips(a.substr(1), b), slips(a, b.substr(1)), slips(a.substr(1), b.substr(1))});
+  if (a.size() > 1 && b.size() > 1 && same(a[0], b[1]) && same(a[1], b[0]))
+    least = std::min(least, slips(a.substr(2), b.substr(2)));
+  return least + 1;
+}
+
+// The first of the nearest: less than a third of the letters wrong (one at least may be), and not all of
+// them.
+std::string_view nearest_by_slips(std::string_view given, const std::vector<std::string_view>& known) {
+  std::string_view best;
+  std::size_t least = std::max<std::size_t>(1, given.size() / 3) + 1;
+  for (const auto name : known) {
+    const std::size_t n = slips(given, name);
+    if (n >= least || n >= std::max(given.size(), name.size())) continue;
+    least = n;
+    best = name;
+  }
+  if (best.empty() && given.size() >= 3)
+    for (const auto name : known)
+      if (name.substr(0, given.size()) == given) return name;
+  return best;
+}
+
+}  // namespace
+
+TEST_CASE("the nearest name is that of the fewest slips, whatever the names") {
+  std::mt19937 dice(20);
+  const auto word = [&](std::size_t shortest, std::size_t longest) {
+    std::string text(shortest + dice() % (longest - shortest + 1), ' ');
+    for (char& c : text) c = "abcAB"[dice() % 5];
+    return text;
+  };
+  int near = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    const std::vector<std::string> names = {word(1, 8), word(1, 8), word(3, 8)};
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    const std::string given = trial % 3 ? word(1, 7) : names[2].substr(0, 1 + dice() % names[2].size());
+    const std::string_view expected = nearest_by_slips(given, known);
+    near += !expected.empty();
+    if (nearest_name(given, known) != expected)
+      FAIL(given << " among " << names[0] << ", " << names[1] << ", " << names[2] << ": " << expected);
+  }
+  CHECK(near > 1000);
+  CHECK(near < 3500);
+}
+
+TEST_CASE("a dozen known names are listed, of more there is no end") {
+  std::vector<std::string_view> known = {"b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m"};
+  const std::string dozen = "; known: b, c, d, e, f, g, h, i, j, k, l, m";
+  CHECK(did_you_mean("zzzz", known) == dozen);
+  known.push_back("n");
+  CHECK(did_you_mean("zzzz", known) == dozen + ", ...");
+  // Who wrote eighty letters may have meant something, who wrote more has pasted something else.
+  const std::string eighty(80, 'x'), name(79, 'x');
+  CHECK(nearest_name(eighty, {name}) == name);
+  CHECK(nearest_name(eighty + "x", {name}).empty());
+  CHECK(nearest_name("ab", {"abcdefgh"}).empty());  // two letters begin too much
+}
+
+TEST_CASE("every byte has its place in quotes") {
+  for (int byte = 0; byte < 256; ++byte) {
+    const char c = static_cast<char>(byte);
+    char code[8];
+    std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned>(byte));
+    CHECK(in_quotes(std::string("p") + c + "q") ==
+          (byte < 32 || byte == 127 ? std::string("'p") + code + "q'" : std::string("'p") + c + "q'"));
+  }
+  std::string name;
+  for (int i = 0; i < 60; ++i) name += static_cast<char>('a' + i % 26);
+  CHECK(in_quotes(name) == "'" + name + "'");
+  CHECK(in_quotes(name + "z") == "'" + name + "...'");
+}
+
+}  // namespace nearest_name_test

@@ -45,4 +45,35 @@ TEST_CASE("bytes that are no UTF-8 are passed one by one", "[text]") {
   }
 }
 
+// RFC 3629, section 3: the bits of the table, put together without the code that takes them apart.
+TEST_CASE("every code point is read back, and no other three bytes are one", "[text]") {
+  std::size_t wrong = 0, three = 0;
+  for (char32_t c = 0; c <= 0x10FFFF; ++c) {
+    if (c >= 0xD800 && c < 0xE000) continue;
+    std::string text;
+    const auto put = [&](char32_t byte) { text += static_cast<char>(static_cast<unsigned char>(byte)); };
+    if (c < 0x80) {
+      put(c);
+    } else if (c < 0x800) {
+      put(0xC0 + c / 64), put(0x80 + c % 64);
+    } else if (c < 0x10000) {
+      put(0xE0 + c / 4096), put(0x80 + c / 64 % 64), put(0x80 + c % 64), ++three;
+    } else {
+      put(0xF0 + c / 262144), put(0x80 + c / 4096 % 64), put(0x80 + c / 64 % 64), put(0x80 + c % 64);
+    }
+    std::size_t at = 0;
+    wrong += utf8_length(text, 0) != text.size() || next_code_point(text, at) != c || at != text.size();
+  }
+  CHECK(wrong == 0);
+  // As many threes as there are points of three bytes: none too many.
+  std::size_t found = 0;
+  std::string bytes(3, ' ');
+  for (unsigned lead = 0xE0; lead < 0xF0; ++lead)
+    for (unsigned rest = 0; rest < 0x10000; ++rest) {
+      bytes = {static_cast<char>(lead), static_cast<char>(rest >> 8U), static_cast<char>(rest & 0xFFU)};
+      found += utf8_length(bytes, 0) == 3;
+    }
+  CHECK(found == three);
+}
+
 }  // namespace unfurl::utf8_test

@@ -3,6 +3,7 @@
 #include "core/text/xml_text.hpp"
 
 #include <catch2/catch.hpp>
+#include <cstdio>
 #include <string>
 
 using namespace unfurl;
@@ -28,6 +29,37 @@ TEST_CASE("texts in XML are what they were, without what XML cannot hold") {
                              "b",
                              5)) == "ab");
   CHECK(xml_text("\xFFx\uFFFEy\uFFFFz") == "xyz");
+}
+
+// XML 1.0, section 2.2 (but for a carriage return, which readers take for a line break), and Unicode's
+// category Cc and its marks that turn the direction: every code point is what it was, or what stands for it.
+TEST_CASE("every code point is kept in XML and on a terminal, or is one that neither may have") {
+  for (char32_t c = 0; c <= 0x10FFFF; c += c < 0x3000 || (c > 0xFFF0 && c < 0x10010) ? 1 : 13) {
+    if (c >= 0xD800 && c < 0xE000) continue;
+    std::string text;
+    const auto put = [&](char32_t byte) { text += static_cast<char>(static_cast<unsigned char>(byte)); };
+    if (c < 0x80) {
+      put(c);
+    } else if (c < 0x800) {
+      put(0xC0 + c / 64), put(0x80 + c % 64);
+    } else if (c < 0x10000) {
+      put(0xE0 + c / 4096), put(0x80 + c / 64 % 64), put(0x80 + c % 64);
+    } else {
+      put(0xF0 + c / 262144), put(0x80 + c / 4096 % 64), put(0x80 + c / 64 % 64), put(0x80 + c % 64);
+    }
+    const std::string xml = xml_text(text), terminal = printable_text(text);
+    const bool markup = c == '&' || c == '<' || c == '>' || c == '"';
+    const bool none = (c < 0x20 && c != '\n') || c == 0xFFFD || c == 0xFFFE || c == 0xFFFF;
+    if (xml != (markup ? xml : none ? "" : text) || (markup && (xml.size() < 4 || xml.back() != ';')))
+      FAIL("XML has " << xml << " for " << static_cast<unsigned>(c));
+    const bool control = (c < 0x20 && c != '\n' && c != '\t') || (c > 0x7E && c < 0xA0);
+    const bool turns = (c > 0x2029 && c < 0x202F) || (c > 0x2065 && c < 0x206A);
+    char code[16];
+    std::snprintf(code, sizeof code, turns ? "\\u%04x" : "\\x%02x", static_cast<unsigned>(c));
+    if (terminal != (control || turns ? std::string(code) : text))
+      FAIL("a terminal has " << terminal << " for " << static_cast<unsigned>(c));
+  }
+  CHECK(xml_text("\uFFFE\uFFFF\uFFFD").empty());
 }
 
 }  // namespace xml_text_test

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is said of a run, word by word, of books whose errors are known.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/books.hpp"
+#include "core/diagnostics/good_part.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace judgement_test {
+
+namespace {
+
+using Values = std::vector<double>;
+
+struct Judged {
+  Simulation run;
+  Diagnostics d;
+
+  void set(std::string_view name, const Values& values) {
+    for (Series& column : d.columns)
+      if (column.name == name) column.values = values;
+  }
+};
+
+// A mass on a spring; its books are replaced by six states of 60 J turned over: most between the largest and
+// the smallest potential energy.
+Judged six_states() {
+  Judged j{testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0.4, 0.1, -0.3], fixed = true},
+         {name = "P", position = [1.6, 0.1, -0.3], mass = 1.3}]
+[[structure.constraints]]
+kind = "line"
+nodes = ["P"]
+direction = [1, 0, 0]
+[[forces]]
+kind = "spring"
+nodes = ["O", "P"]
+stiffness = 50
+damping = 0.3
+free_length = 1.0
+[solver]
+step = 0.01
+end_time = 0.05
+)"),
+           {}};
+  j.d = diagnose(j.run);
+  REQUIRE(j.d.t.size() == 6);
+  for (Series& column : j.d.columns)
+    if (column.unit == "J") column.values.assign(6, 0.0);
+  j.set("kinetic_energy_J", {3, 20, 50, 30, 10, 40});
+  j.set("potential_energy_J", {-7, -40, -67, -35, -12, -45});
+  j.set("dissipated_J", {0, 1, 2, 5, 9, 11});
+  return j;
+}
+
+std::vector<std::string> warnings(const Judged& j) {
+  return accuracy_warnings(j.run, j.d);
+}
+
+using Texts = std::vector<std::string>;
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+TEST_CASE("an energy balance that is off is told with its size, its share and its cure") {
+  for (const double sign : {1.0, -1.0}) {
+    Judged j = six_states();
+    CHECK(energy_turned_over(j.d) == 60);
+    const auto off_by = [&](double most) {
+      j.set("energy_balance_J", {0, 0.2 * sign * most, sign * most, -0.9 * sign * most, 0, 0.1 * most});
+    };
+    off_by(0.0599);
+    CHECK(warnings(j).empty());
+    off_by(0.75);
+    const std::string what = "the energy balance is off by 0.75 J, 1.25 % of the energy turned over";
+    CHECK(warnings(j) == Texts{what + ": take a smaller solver.step or more solver.stages"});
+    j.run.options.method = "rk4";  // whose order is 4 whatever the stages
+    CHECK(warnings(j) == Texts{what + ": take a smaller solver.step"});
+    j.run.options.method = "dvm";
+    off_by(61);
+    CHECK(warnings(j) == Texts{"the energy balance is off by 61 J, more than all of the energy turned over: "
+                               "take a smaller solver.step or more solver.stages"});
+    j.set("energy_balance_J", {0, 0, nan_value, 0, 0, 0});
+    CHECK(warnings(j).size() == 1);
+  }
+}
+
+TEST_CASE("what a damping method takes on purpose is lost, what it adds is off") {
+  Judged j = six_states();
+  j.run.options.method = "generalized_alpha";
+  j.run.options.rho_inf = 0.7;
+  j.set("energy_balance_J", {0, -0.1, -0.3, -0.5, -0.7, -0.75});
+  CHECK(warnings(j) ==
+        Texts{"what the steps do not resolve has lost 0.75 J, 1.25 % of the energy turned over, as "
+              "solver.rho_inf means it to: a smaller solver.step loses less"});
+  CHECK(mistrust(j.run, j.d).empty());
+  j.set("energy_balance_J", {0, -30, -33, -35, -40, -45});  // whatever it loses
+  CHECK(mistrust(j.run, j.d).empty());
+  // Half of it gained again from the lowest on: off.
+  j.set("energy_balance_J", {0, -0.1, -0.75, -0.5, -0.4, -0.37});
+  CHECK(warnings(j) == Texts{"the energy balance is off by 0.75 J, 1.25 % of the energy turned over: take a "
+                             "smaller solver.step"});
+  j.set("energy_balance_J", {0, -0.1, -0.75, -0.5, -0.4, -0.38});
+  CHECK(warnings(j).front().starts_with("what the steps do not resolve has lost"));
+}
+
+TEST_CASE("constraints that are violated are told in percent of a rod") {
+  Judged j = six_states();
+  j.set("constraint_relative_max", {0, 1e-4, 9.9e-4, 1e-5, 0, 0});
+  CHECK(warnings(j).empty());
+  j.set("constraint_relative_max", {0, 1e-4, 0.0025, 1e-5, 0, 0});
+  CHECK(warnings(j) ==
+        Texts{"constraints are violated by 0.25 % of a rod's length: take a smaller solver.step"});
+  j.run.options.method = "rk4";
+  j.set("energy_balance_J", {0, 0, 0, 0, 0, -3});
+  CHECK(
+      warnings(j) ==
+      Texts{
+          "the energy balance is off by 3 J, 5 % of the energy turned over: take a smaller solver.step",
+          "constraints are violated by 0.25 % of a rod's length: take a smaller solver.step, or method dvm, "
+          "which holds them"});
+}
+
+TEST_CASE("a run is good up to where its books are off for good, and says why") {
+  Judged j = six_states();
+  const auto part = [&] { return good_part(j.run, j.d); };
+  const auto at = [&](std::size_t i) {
+    std::ostringstream text;
+    text << "from t = " << j.d.t[i] << " s on ";
+    return text.str();
+  };
+  CHECK(part().states == 6);
+  CHECK(part().text(j.d).empty());
+  // 6.5 J: too much of the 60 J up to then, and of what is turned over later.
+  j.set("energy_balance_J", {0, 0.1, 0, -6.5, 0, 0});
+  CHECK(part().states == 3);
+  CHECK(mistrust(j.run, j.d) ==
+        at(3) + "the energy balance is off by 6.5 J, 10.8 % of the energy turned over");
+  // 66 J by the end are enough for them.
+  j.set("potential_energy_J", {-7, -40, -67, -35, -12, -1});
+  CHECK(part().states == 6);
+  // 4 J are too much of the 33 J after one step.
+  j.set("energy_balance_J", {0, 4, 0, 0, 0, 0});
+  CHECK(part().states == 6);
+  j.set("kinetic_energy_J", {3, 20, 20, 20, 20, 20});
+  j.set("potential_energy_J", {-7, -40, -12, -12, -12, -12});
+  CHECK(part().states == 1);
+  CHECK(mistrust(j.run, j.d) == at(1) + "the energy balance is off by 4 J, 12.1 % of the energy turned over");
+  j = six_states();
+  j.set("constraint_relative_max", {0, 0.01, 0.05, 0.0999, 0.11, 0.12});
+  CHECK(part().states == 4);
+  CHECK(mistrust(j.run, j.d) == at(4) + "constraints are violated by 11 % of a rod's length");
+  j.set("constraint_relative_max", {0, 0.01, 0.05, 0.0999, nan_value, 0.12});
+  CHECK(part().states == 4);
+  CHECK(mistrust(j.run, j.d) == at(4) + "the state is not finite any more");
+  j = six_states();
+  j.set("dissipated_J", {0, 0, nan_value, 0, 0, 0});
+  CHECK(mistrust(j.run, j.d) == at(2) + "the state is not finite any more");
+  j.set("dissipated_J", {nan_value, 0, 0, 0, 0, 0});
+  CHECK(part().states == 1);  // what is kept is never nothing
+  // What was not looked at is not judged.
+  j = six_states();
+  j.d.left_open = 2;
+  j.set("energy_balance_J", {0, 0, 0, 0, nan_value, nan_value});
+  CHECK(part().states == 4);
+  CHECK(mistrust(j.run, j.d).empty());
+  std::ostringstream open;
+  open << "the run was judged up to t = " << j.d.t[3]
+       << " s only: what follows is empty in series and rod forces";
+  CHECK(warnings(j) == Texts{open.str()});
+}
+
+TEST_CASE("what is kept of a run is its beginning, in all that belongs to it") {
+  Judged j = six_states();
+  const double t2 = j.d.t[2];
+  j.run.events = {{"early", 0.5 * t2}, {"at the end", t2}, {"late", 1.01 * t2}};
+  keep_states(3, j.run, j.d);
+  CHECK(j.run.trajectory.size() == 3);
+  CHECK(j.d.t.size() == 3);
+  for (const Series& column : j.d.columns) CHECK(column.values.size() == 3);
+  CHECK(j.d.at("kinetic_energy_J").values == Values{3, 20, 50});
+  CHECK(j.d.axial_force.rows() == 3);
+  CHECK(j.d.force_unique.rows() == 3);
+  REQUIRE(j.run.events.size() == 2);
+  CHECK(j.run.events[1].name == "at the end");
+  REQUIRE(j.run.status == RunStatus::completed);
+  fail_for("from t = 2 s on it rains", j.run);
+  CHECK(j.run.status == RunStatus::failed);
+  CHECK(j.run.message == "from t = 2 s on it rains: what follows is left out");
+  fail_for("it snows", j.run);
+  CHECK(j.run.message ==
+        "from t = 2 s on it rains: what follows is left out; it snows: what follows is left out");
+}
+
+TEST_CASE("energies are turned over by the largest of their spans, or by motion") {
+  const Values first{5, -2, 1}, second{4, 9, 1}, third{-3, 2, 1.5};
+  EnergyTurnedOver turned;
+  CHECK(turned.value() == 0);
+  turned.add(0.5, first);
+  CHECK(turned.value() == 0.5);
+  turned.add(0.25, second);
+  CHECK(turned.value() == 11);
+  turned.add(0.125, third);
+  CHECK(turned.value() == 11);
+  turned.add(12, third);
+  CHECK(turned.value() == 12);
+  turned.add(1, Values{10, 0, 1});
+  CHECK(turned.value() == 13);
+}
+
+// A mass of 17 g flies freely, so far from where coordinates are counted: its position is rounded by 64
+// units in a step, which add up to a velocity along each axis, and what its weight could do over that reach
+// is rounded once a step, at random. The one counts close by, the other far away.
+TEST_CASE("the round-off of an energy is that of heights and of steps") {
+  for (const double reach : {3.1, 3.1e12, 3.1e14}) {
+    const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "P", position = [0.2, 3.1, -0.7], mass = 0.017}]
+[gravity]
+acceleration = [0, 0, -2.3]
+[solver]
+step = 0.05
+end_time = 0.5
+)",
+                                              {"structure.nodes.P.position[1]=" + std::to_string(reach)});
+    REQUIRE(run.trajectory.size() == 11);
+    const std::vector<double> noise = energy_round_off(run);
+    REQUIRE(noise.size() == 11);
+    const double unit = 64 * 2.220446049250313e-16, weight = 0.017 * 2.3;
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+      const double t = run.trajectory.time(i), steps = static_cast<double>(i);
+      const double drift = i > 0 ? unit * reach * steps / t : 0.0;
+      const double height = 0.7 + 0.5 * 2.3 * t * t;
+      CHECK(noise[i] ==
+            Approx(std::sqrt(steps + 1) * unit * weight * (reach + height) + 3 * 0.017 * drift * drift)
+                .epsilon(1e-9));
+    }
+  }
+}
+
+}  // namespace judgement_test

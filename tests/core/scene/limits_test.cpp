@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// End stops as scenes give them: which limits are taken, which are passed already, and in what unit.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/library.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "core/simulate/stops.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace limits_test {
+
+namespace {
+
+// A and B on two sides of O, C above it, all free but O.
+std::string with(const std::string& entry) {
+  return "[structure]\nkind = 'custom'\nnodes = [{name='O',position=[0,0,0],fixed=true},\n"
+         "{name='A',position=[1,0,0],mass=1},{name='B',position=[-2,0,0],mass=1},\n"
+         "{name='C',position=[0,1.5,0],mass=1},{name='D',position=[-3,4,0],mass=1}]\n"
+         "rods=[{nodes=['O','A'],mass=1},{nodes=['O','B'],mass=1}]\n[[constraints]]\nname='end'\n" +
+         entry + "\n[solver]\nstep = 0.01\n";
+}
+
+// What is said, without the place.
+std::string said(const std::string& entry) {
+  const std::string text = testing::error_of(with(entry));
+  const auto at = text.find("constraints");
+  return at == std::string::npos ? text : text.substr(at);
+}
+
+// All gaps at the start.
+std::vector<double> gaps(const std::string& entry) {
+  const auto model = testing::model_of(with(entry));
+  const State start = initial_state(model->structure, model->system).state;
+  const Stops stops(model->structure);
+  std::vector<double> out;
+  for (std::size_t i = 0; i < stops.size(); ++i) out.push_back(stops.gap(i, model->system, start));
+  return out;
+}
+
+void are(const std::vector<double>& found, const std::vector<double>& wanted) {
+  REQUIRE(found.size() == wanted.size());
+  for (std::size_t i = 0; i < found.size(); ++i) CHECK(found[i] == Approx(wanted[i]).margin(1e-12));
+}
+
+constexpr double degree = 3.14159265358979323846 / 180;
+
+}  // namespace
+
+TEST_CASE("limits are kept as they are given, lower and upper, in metres and degrees") {
+  are(gaps("kind='coordinate_stop'\nnodes=['C']\ndirection=[0,3,4]\nmin=-0.2\nmax=7"), {1.1, 6.1});
+  are(gaps("kind='coordinate_stop'\nnodes=['C','D']\ndirection=[0,2,0]\nmax=2.75"), {0.25});
+  are(gaps("kind='length_stop'\nnodes=['O','D']\nmin=4.5\nmax=5"), {0.5, 0});
+  are(gaps("kind='angle_stop'\nnodes=['A','O','C']\nmin=30\nmax=175"), {60 * degree, 85 * degree});
+  are(gaps("kind='angle_stop'\nnodes=['A','O','C']\naxis=[0,0,2]\nmin=-300\nmax=500"),
+      {390 * degree, 410 * degree});
+  are(gaps("kind='clearance'\nnodes=['O','D']\nclearance=5.75"), {0.75});
+  are(gaps("kind='clearance'\nnodes=['O','D']\nclearance=5"), {0});
+  const auto model = testing::model_of(
+      with("kind='angle_stop'\nnodes=['A','O','C']\nmin=30\nrestitution=0.35\nrest_speed=4"));
+  CHECK(model->structure.stops.at(0).restitution == 0.35);
+  CHECK(model->structure.stops.at(0).rest_speed == Approx(4 * degree));
+  CHECK(model->structure.stops.at(0).name == "end");
+  CHECK(std::isinf(model->structure.stops.at(0).max));
+}
+
+TEST_CASE("half a turn is the one that lies within the limits") {
+  // From A to B about z: 180 degrees, or -180.
+  const std::string half = "kind='angle_stop'\nnodes=['A','O','B']\naxis=[0,0,1]\n";
+  are(gaps(half + "min=170\nmax=190"), {10 * degree, 10 * degree});
+  are(gaps(half + "min=-190\nmax=-150"), {10 * degree, 30 * degree});
+  are(gaps(half + "min=-190\nmax=200"), {370 * degree, 20 * degree});
+  are(gaps(half + "max=-150"), {30 * degree});
+  CHECK(said(half + "min=10\nmax=20").find("max: is passed already at t = 0, where the value is 180") !=
+        std::string::npos);
+  // Another angle is never turned.
+  CHECK(said("kind='angle_stop'\nnodes=['A','O','C']\naxis=[0,0,1]\nmin=-290\nmax=-250")
+            .find("max: is passed already at t = 0, where the value is 90") != std::string::npos);
+}
+
+TEST_CASE("limits that are passed, never met or missing are refused with the value") {
+  const auto refused = [](const std::string& entry, const std::string& why) {
+    INFO(entry << ": " << said(entry));
+    CHECK(said(entry).find(why) != std::string::npos);
+  };
+  refused("kind='coordinate_stop'\nnodes=['C']\ndirection=[0,1,0]\nmin=1.6",
+          "min: is passed already at t = 0, where the value is 1.5");
+  refused("kind='coordinate_stop'\nnodes=['C']\ndirection=[0,1,0]\nmax=1.4",
+          "max: is passed already at t = 0, where the value is 1.5");
+  refused("kind='length_stop'\nnodes=['O','D']\nmin=5.001",
+          "min: is passed already at t = 0, where the value is 5");
+  refused("kind='coordinate_stop'\nnodes=['C']\ndirection=[0,1,0]",
+          "min: is missing, and so is max: a stop needs a limit");
+  refused("kind='coordinate_stop'\nnodes=['C']\ndirection=[0,0,0]\nmin=0", "direction: must not be zero");
+  refused("kind='coordinate_stop'\nnodes=['C','D','A']\ndirection=[0,0,1]\nmin=0",
+          "nodes: must be one or two");
+  refused(
+      "kind='angle_stop'\nnodes=['A','O','C']\nmin=-5",
+      "min: is never met: without an axis the angle stays between 0 and 180 deg; give the axis of the hinge");
+  refused("kind='clearance'\nnodes=['O','D']\nclearance=4.9",
+          "clearance: is passed already at t = 0, where the nodes are 5 m apart");
+  // Where it touches to a billionth, it is not passed.
+  are(gaps("kind='coordinate_stop'\nnodes=['C']\ndirection=[0,1,0]\nmin=1.5000000005"), {-5e-10});
+  CHECK(said("kind='coordinate_stop'\nnodes=['C']\ndirection=[0,1,0]\nmin=1.50000001") != "");
+}
+
+TEST_CASE("a table of two rows moves a drive, of one it does not") {
+  const std::string drive = "kind='coordinate'\nnodes=['C']\ndirection=[0,1,0]\nmotion='table'\n";
+  CHECK(said(drive + "times=[0,2]\nvalues=[1.5,1.75]").empty());
+  CHECK_FALSE(said(drive + "times=[0]\nvalues=[1.5]").empty());
+  CHECK_FALSE(said(drive + "times=[0,2]\nvalues=[1.5]").empty());
+  CHECK(said(drive + "times=[0,2]\nvalues=[1.6,1.75]").find("values: ") != std::string::npos);
+}
+
+TEST_CASE("drives that leave what their measure can be are refused, with the time and the key") {
+  // 4000 samples of two seconds: the first at which 5 m less 3 m/s is no length is 1.667 s.
+  const auto refused = [](const std::string& entry, const std::string& why) {
+    const std::string text = testing::error_of(with(entry), {"solver.end_time=2"});
+    INFO(text);
+    CHECK(text.find(why) != std::string::npos);
+  };
+  const std::string length = "kind='length'\nnodes=['O','D']\n",
+                    angle = "kind='angle'\nnodes=['A','O','C']\n";
+  refused(length + "motion='rate'\nrate=-3",
+          "rate: takes the length to -0.001 m at t = 1.667 s: it must stay > 0");
+  refused(length + "motion='smooth'\nto=-1\nduration=1", "to: takes the length to ");
+  refused(length + "motion='table'\ntimes=[0,1,2]\nvalues=[5,-1,4]", "values: takes the length to ");
+  refused(angle + "motion='rate'\nrate=50",
+          "rate: takes the angle to 180 deg at t = 1.8 s: without an axis it stays between 0 and 180 deg; "
+          "give the "
+          "axis of the hinge");
+  refused(angle + "motion='rate'\nrate=-50", "rate: takes the angle to 0 deg at t = 1.8 s: ");
+  for (const std::string& fine :
+       {length + "motion='rate'\nrate=-2.4", angle + "motion='rate'\nrate=44",
+        angle + "axis=[0,0,1]\nmotion='rate'\nrate=500", length + "motion='smooth'\nto=0.1\nduration=1",
+        std::string("kind='coordinate'\nnodes=['C']\ndirection=[0,1,0]\nmotion='rate'\nrate=-30")})
+    CHECK(testing::error_of(with(fine), {"solver.end_time=2"}) == "");
+  // What deploys may have ended before; a drive with an end of its own says where it goes.
+  const auto ring = [](const std::string& motion) {
+    try {
+      build_model(read_scene_file(
+          find_scene("hoop6"), {"structure.model=joints", "solver.end_time=6",
+                                "constraints[0]={kind='length',nodes=['Mb0','Mt0'],motion=" + motion + "}"}));
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(ring("'rate',rate=-3").empty());
+  CHECK(ring("'smooth',to=-1,duration=2").find("to: takes the length to ") != std::string::npos);
+}
+
+}  // namespace limits_test

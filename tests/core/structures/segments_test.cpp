@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/structures/segments.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/structure/structure_error.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace segments_test {
+
+namespace {
+
+// Three rods in a row, all elastic, of unlike lengths and masses.
+Structure row() {
+  Structure s = testing::model_of(R"(
+[structure]
+kind = "custom"
+section = "round"
+youngs_modulus = 7e10
+nodes = [{name = "O", position = [0.5, 0, 0], fixed = true},
+         {name = "A", position = [1.7, 0, 0.9], velocity = [0, 0.6, 0], mass = 0.4},
+         {name = "B", position = [1.7, 2, 0.9], velocity = [0.3, 0.6, 0], mass = 0.6},
+         {name = "C", position = [4.7, 2, 0.9], velocity = [0.3, 1.5, -3], mass = 0.2}]
+rods = [{nodes = ["O", "A"], mass = 1.2, area = 3e-5}, {nodes = ["A", "B"], mass = 0.9, area = 2e-5},
+        {nodes = ["B", "C"], mass = 2.1, area = 1e-5}]
+)")
+                    ->structure;
+  for (Rod& rod : s.rods) rod.free_length = 0.99 * rod.length, rod.multiplicity = 2;
+  return s;
+}
+
+std::string refusal(Structure s, const std::vector<long>& segments) {
+  try {
+    cut_rods(s, segments);
+  } catch (const StructureError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("rods are cut into equal parts that bend, and the others stay what they were") {
+  const Structure whole = row();
+  Structure cut = whole;
+  cut_rods(cut, {3, 1, 2});
+  const struct {
+    const char* name;
+    int a, b;
+    std::size_t of;
+    double share;
+  } parts[] = {{"O-A.1", 0, 4, 0, 3}, {"O-A.2", 4, 5, 0, 3}, {"O-A.3", 5, 1, 0, 3},
+               {"A-B", 1, 2, 1, 1},   {"B-C.1", 2, 6, 2, 2}, {"B-C.2", 6, 3, 2, 2}};
+  REQUIRE(cut.rods.size() == 6);
+  REQUIRE(cut.rod_copies.size() == 6);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Rod &part = cut.rods[i], &rod = whole.rods[parts[i].of];
+    CAPTURE(i);
+    CHECK(part.name == parts[i].name);
+    CHECK(part.a == parts[i].a);
+    CHECK(part.b == parts[i].b);
+    CHECK(part.mass == Approx(rod.mass / parts[i].share));
+    CHECK(part.length == Approx(rod.length / parts[i].share));
+    CHECK(part.free_length == Approx(rod.free_length / parts[i].share));
+    CHECK(part.area == rod.area);
+    CHECK(part.second_moment == rod.second_moment);
+    CHECK(part.multiplicity == 2);
+    const RodCopy& shown = cut.rod_copies[i];
+    CHECK(shown.name == parts[i].name);
+    CHECK(shown.a == parts[i].a);
+    CHECK(shown.b == parts[i].b);
+    CHECK(shown.source == static_cast<int>(i));
+  }
+  // Nodes between, with positions and velocities of their shares of the way, without a mass of their own.
+  REQUIRE(cut.nodes.size() == 7);
+  REQUIRE(cut.node_copies.size() == 7);
+  const auto between = [&](std::size_t i, const char* name, std::size_t a, std::size_t b, double u) {
+    const Node& node = cut.nodes[i];
+    CHECK(node.name == name);
+    CHECK((node.position - (1 - u) * whole.nodes[a].position - u * whole.nodes[b].position).norm() < 1e-15);
+    CHECK((node.velocity - (1 - u) * whole.nodes[a].velocity - u * whole.nodes[b].velocity).norm() < 1e-15);
+    CHECK(node.mass == 0);
+    CHECK(cut.node_copies[i].name == name);
+    CHECK(cut.node_copies[i].source == static_cast<int>(i));
+    CHECK(cut.node_copies[i].map == Mat3::Identity());
+    CHECK(cut.node_copies[i].offset.isZero(0.0));
+  };
+  between(4, "O-A.1", 0, 1, 1.0 / 3);
+  between(5, "O-A.2", 0, 1, 2.0 / 3);
+  between(6, "B-C.1", 2, 3, 0.5);
+  const struct {
+    const char* name;
+    std::vector<int> nodes;
+    std::size_t rod;
+  } bends[] = {{"bending of O-A.1", {0, 4, 5}, 0},
+               {"bending of O-A.2", {4, 5, 1}, 0},
+               {"bending of B-C.1", {2, 6, 3}, 2}};
+  REQUIRE(cut.forces.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(cut.forces[i].kind == "bending");
+    CHECK(cut.forces[i].name == bends[i].name);
+    CHECK(cut.forces[i].nodes == bends[i].nodes);
+    // A round section of area A has the second moment A^2 / 4 pi; two of them side by side.
+    const double area = whole.rods[bends[i].rod].area;
+    CHECK(cut.forces[i].stiffness ==
+          Approx(2 * 7e10 * area * area / (4 * 3.14159265358979323846)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("what is not cut stays, and what cannot be cut is refused") {
+  Structure same = row();
+  cut_rods(same, {1, 1, 0});
+  CHECK(same.rods.size() == 3);
+  CHECK(same.nodes.size() == 4);
+  CHECK(same.forces.empty());
+  Structure rigid = row();
+  rigid.rods[1].youngs_modulus = std::numeric_limits<double>::infinity();
+  CHECK(refusal(rigid, {2, 1, 2}).empty());
+  CHECK(refusal(rigid, {1, 2, 1}) == "rod A-B needs area and youngs_modulus to bend");
+  Structure thin = row();
+  thin.rods[0].second_moment = 0;
+  CHECK(refusal(thin, {2, 1, 1}) == "rod O-A needs area and youngs_modulus to bend");
+  Structure sector = row();
+  sector.sectors = 5;
+  const std::string whole = "a sector model cannot cut its rods; set structure.model to \"full\"";
+  CHECK(refusal(sector, {1, 1, 2}) == whole);
+  sector = row();
+  sector.node_copies.pop_back();
+  CHECK(refusal(sector, {1, 1, 2}) == whole);
+  Structure pin = row();
+  pin.nodes.push_back({"P", Vec3(1, 1, 1), Vec3::Zero(), 0.0});
+  pin.node_copies.push_back({"P", 4, Mat3::Identity(), Vec3::Zero()});
+  CHECK(refusal(pin, {1, 1, 2}) == "rods that carry a pin between their ends (P) cannot be cut");
+  pin.nodes.back().mass = 0.1;
+  CHECK(refusal(pin, {1, 1, 2}).empty());
+}
+
+}  // namespace segments_test

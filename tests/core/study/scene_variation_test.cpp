@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/study/scene_variation.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/diagnostics/measures.hpp"
+
+using namespace unfurl;
+
+namespace scene_variation_test {
+
+namespace {
+
+SceneSource source(std::vector<std::string> overrides = {}) {
+  const std::string text = R"(
+[structure]
+kind = "hoop"
+units = 7
+post_length = 1.3
+fold_angle = 80
+[solver]
+step = 0.02
+)";
+  return {"ring.toml", std::move(overrides), std::make_shared<const std::string>(text), ""};
+}
+
+}  // namespace
+
+TEST_CASE("a scene is read again with changes behind those of the command line") {
+  const SceneSource plain = source(), changed = source({"structure.units=9", "solver.step=0.5"});
+  CHECK(scene_number(plain.read(), "structure.units") == 7.0);
+  CHECK(scene_number(changed.read(), "structure.units") == 9.0);
+  CHECK(scene_number(changed.read({"structure.units=11"}), "structure.units") == 11.0);
+  CHECK(changed.read({"structure.units=11"}).solver.step == 0.5);
+  CHECK(changed.overrides.size() == 2);
+  CHECK_THROWS_WITH(plain.read({"structure.unit=11"}), Catch::Contains("did you mean 'units'"));
+}
+
+TEST_CASE("numbers of a scene are found where they stand or by default, and are whole or not") {
+  const Scene scene = source().read();
+  CHECK(scene_number(scene, "structure.post_length") == 1.3);
+  CHECK(scene_number(scene, "structure.fold_angle") == 80.0);
+  CHECK(scene_number(scene, "solver.step") == 0.02);
+  CHECK(scene_number(scene, "solver.stages") == static_cast<double>(scene.solver.stages));  // a default
+  for (const char* none :
+       {"structure.kind", "structure", "structure.post", "solver.step.x", "", "x", "solver."})
+    CHECK_FALSE(scene_number(scene, none));
+  for (const char* whole : {"structure.units", "solver.stages"}) CHECK(is_whole_number(scene, whole));
+  for (const char* other : {"structure.post_length", "structure.fold_angle", "structure.kind", "structure.x"})
+    CHECK_FALSE(is_whole_number(scene, other));
+}
+
+TEST_CASE("many runs go by the model that costs least, unless the method itself is what is asked about") {
+  const Scene scene = source().read();
+  const auto model = [&](std::vector<std::string> varied, const char* measure) {
+    return study_solver(scene, varied, {find_measure("end_time"), find_measure(measure)}).model;
+  };
+  CHECK(model({"structure.units"}, "deploy_time") == "auto");
+  CHECK(model({"solver.end_time", "structure.units"}, "deploy_time") == "auto");
+  CHECK(model({"solver.at_deployed"}, "deploy_time") == "auto");
+  CHECK(model({"structure.units", "solver.stages"}, "deploy_time") == "full");
+  CHECK(model({"solver.step"}, "deploy_time") == "full");
+  CHECK(model({"structure.units"}, "newton_iterations") == "full");
+  for (const char* given : {"path", "sector", "full"}) {
+    const Scene asked = source({std::string("solver.model=") + given}).read();
+    CHECK(study_solver(asked, {"solver.step"}, {}).model == given);
+    CHECK(study_solver(asked, {"structure.units"}, {}).model == given);
+  }
+  CHECK(study_solver(scene, {}, {}).step == 0.02);
+}
+
+}  // namespace scene_variation_test
