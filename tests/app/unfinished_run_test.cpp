@@ -258,7 +258,9 @@ TEST_CASE("ten times as many steps take the same memory") {
     return static_cast<double>(used.ru_maxrss);
   };
   const double one = peak(12), ten = peak(120);
-  CHECK(ten <= 1.1 * one);
+  // Two megabytes of states, and as many that wait for the second core where others keep it busy; all states
+  // that are more would be 120 MB.
+  CHECK(ten <= one + 4096);
 }
 
 }  // namespace unfurl::unfinished_run_test

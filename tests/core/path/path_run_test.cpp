@@ -131,14 +131,15 @@ TEST_CASE("several cables go slack and taut on the path, each by itself") {
 
 TEST_CASE("a stop that is met at the turn of its length, between two looks, is met on the path too") {
   // The crank passes the line through both supports with B 4 m from D, and A is 3.9529645461488205 m from C
-  // where they are furthest apart: within a small part of a step the stop is passed by so little.
+  // where they are furthest apart: within a small part of a step the stop is passed by so little. It throws
+  // back even so: no force would hold what came to rest on it, and rounding decide when it leaves.
   for (const double little : {1e-3, 1e-5, 1e-7})
     for (const auto& [nodes, most] : {std::pair{R"(["B","D"])", 4.0}, {R"(["A","C"])", 3.9529645461488205}}) {
       INFO(nodes << " by " << little << " m");
-      const Both run =
-          both(scene_with("four_bar", {std::string(R"(constraints[0]={kind="length_stop",nodes=)") + nodes +
-                                       ",max=" + number(most - little) + ",restitution=0.6}"}),
-               2.5);
+      const Both run = both(
+          scene_with("four_bar", {std::string(R"(constraints[0]={kind="length_stop",nodes=)") + nodes +
+                                  ",max=" + number(most - little) + ",restitution=0.6,rest_speed=1e-5}"}),
+          2.5);
       CHECK(run.full.events.size() == 1);
       // A crossing is located to some 1e-13 m of the gap; where that closes at a rate r an error e of it is
       // one of e / r in the time, and r^2 is 2 `little` times a curvature of 1/m and more, at metres a
