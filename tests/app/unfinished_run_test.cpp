@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -239,8 +240,9 @@ TEST_CASE("a checkpoint of another run is refused with one sentence and left alo
 // The largest memory of the children so far [kB]: each run that is larger shows.
 TEST_CASE("ten times as many steps take the same memory") {
   const ScratchDirectory dir;
+  int runs = 0;
   const auto peak = [&](double end_time) {
-    const std::string out = dir / ("o" + std::to_string(end_time));
+    const std::string out = dir / ("o" + std::to_string(runs++));
     const std::string end = "solver.end_time=" + std::to_string(end_time);
     const pid_t child = ::fork();
     if (child == 0) {
@@ -257,10 +259,13 @@ TEST_CASE("ten times as many steps take the same memory") {
     REQUIRE(WEXITSTATUS(status) == 0);
     return static_cast<double>(used.ru_maxrss);
   };
-  const double one = peak(12), ten = peak(120);
-  // Two megabytes of states, and as many that wait for the second core where others keep it busy; all states
-  // that are more would be 120 MB.
-  CHECK(ten <= one + 4096);
+  // Of runs alike the largest holds some 10 % more than the least, as their two threads meet: the least of
+  // three.
+  const auto least = [&](double end_time) {
+    return std::min({peak(end_time), peak(end_time), peak(end_time)});
+  };
+  const double one = least(12), ten = least(120);
+  CHECK(ten <= 1.1 * one);
 }
 
 }  // namespace unfurl::unfinished_run_test
