@@ -29,12 +29,6 @@ Shown& shown() {
   return shown;
 }
 
-std::string bytes_of(const fs::path& file) {
-  TextFile text = read_text_file(file.string());
-  if (!text.error.empty()) throw FileError(file, text.error);
-  return std::move(text.text);
-}
-
 // Without the characters that mean something in XML and HTML.
 std::string plain(const std::string& json) {
   std::string text;
@@ -117,6 +111,12 @@ void ReceiptWriter::finish(const fs::path& temporary, const fs::path& target) {
   if (extension != ".mp4") file = with_note(std::move(file), extension, note(target));
   file = sealed(std::move(file), extension);
   replace_bytes(temporary, file);
+}
+
+std::string bytes_of(const fs::path& file) {
+  TextFile text = read_text_file(file.string());
+  if (!text.error.empty()) throw FileError(file, text.error);
+  return std::move(text.text);
 }
 
 std::optional<Receipt> receipt_of(const fs::path& file) {

@@ -22,6 +22,8 @@ struct Receipt {
   std::map<std::string, double> errors;
 };
 
+// Every byte of a file. Throws FileError where it cannot be read.
+std::string bytes_of(const std::filesystem::path& file);
 // Nothing where the file carries no receipt. Throws FileError where it cannot be read.
 std::optional<Receipt> receipt_of(const std::filesystem::path& file);
 // Is every byte of a file with a receipt as it was written?

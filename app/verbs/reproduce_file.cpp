@@ -9,7 +9,6 @@
 #include "app/output/command_line.hpp"
 #include "app/output/output_directory.hpp"
 #include "app/output/receipt.hpp"
-#include "core/scene/text_file.hpp"
 #include "core/text/version.hpp"
 #include "render/image/child_process.hpp"
 
@@ -50,12 +49,6 @@ std::vector<std::string> only(const std::string& file, const std::string& verb) 
   const bool film = stem == "report" || (stem == "animation" && extension != ".glb");
   if (verb == "render" && !film) words.insert(words.end(), {"--frames", "0:1"});
   return words;
-}
-
-std::string bytes_of(const fs::path& file) {
-  const TextFile text = read_text_file(file.string());
-  if (!text.error.empty()) throw FileError(file, text.error);
-  return text.text;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace unfurl {
 namespace {
 
-constexpr double endless = std::numeric_limits<double>::infinity();
+constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -25,13 +25,13 @@ std::vector<ParamSpec> motion_params(std::string_view unit, std::vector<std::str
                            unit == "m"     ? "m/s"
                            : unit == "deg" ? "deg/s"
                                            : "",
-                           0.0, -endless, endless, "rate: per second")),
+                           0.0, -infinite, infinite, "rate: per second")),
       only_with("motion", {"rate"},
-                real_param("ramp", "s", 0.0, 0.0, endless, "rate: how long it takes to reach the rate")),
+                real_param("ramp", "s", 0.0, 0.0, infinite, "rate: how long it takes to reach the rate")),
       only_with("motion", {"smooth"},
-                real_param("to", unit, not_given, -endless, endless, "smooth: the value in the end")),
+                real_param("to", unit, not_given, -infinite, infinite, "smooth: the value in the end")),
       only_with("motion", {"rate", "smooth"},
-                real_param("start", "s", 0.0, 0.0, endless, "rate, smooth: when the motion begins")),
+                real_param("start", "s", 0.0, 0.0, infinite, "rate, smooth: when the motion begins")),
       only_with("motion", {"smooth"},
                 positive_param("duration", "s", 1.0, "smooth: how long the motion takes")),
       only_with("motion", {"table"}, vector_param("times", "s", {}, "table: ascending, with values")),
