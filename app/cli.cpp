@@ -101,6 +101,14 @@ void refuse_foreign_options(const CLI::App& parser, const Command& command) {
       throw UsageError("unfurl " + std::string(command.name) + " has no option " + in_quotes(own.name));
 }
 
+// Those that are about files, where none are written.
+void refuse_idle_options(const CLI::App& parser, const Command& command, const Arguments& arguments) {
+  if (command.needs_output || !arguments.output.empty()) return;
+  for (const char* option : {"--export", "--checkpoint", "--resume", "--force", "--style", "--font", "--dpi"})
+    if (parser.count(option) > 0)
+      throw UsageError(std::string(option) + " needs -o DIR: without it no files are written");
+}
+
 // `short_keys`: where options that are short for a key of the scene put it.
 struct Adder {
   CLI::App& parser;
@@ -151,6 +159,7 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   }
   refuse_unknown_options(parser, command);
   refuse_foreign_options(parser, command);
+  refuse_idle_options(parser, command, a);
   refuse_doubled_keys(parser, a.overrides);
   a.overrides.insert(a.overrides.end(), short_keys.begin(), short_keys.end());
   for (const auto& word : parser.remaining()) a.names.push_back(word);

@@ -84,7 +84,9 @@ constexpr Command table[] = {
     {"list", "WHAT [TABLE]",
      "what there is to choose from: structures, methods, figures, scenes, constraints, forces, looks, "
      "surfaces, measures, "
-     "columns, and keys [TABLE]: those of scenes with type, unit, range and default",
+     "columns, and keys [TABLE]: those of scenes with type, unit, range and default; solver, render and "
+     "scene "
+     "are tables of keys too",
      1, 2, false, cmd_list, "--json --markdown",
      "unfurl list keys solver\n"
      "unfurl list keys hoop\n"

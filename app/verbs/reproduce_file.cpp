@@ -54,6 +54,10 @@ std::vector<std::string> only(const std::string& file, const std::string& verb) 
 }  // namespace
 
 int reproduce_file(const Arguments& arguments) {
+  if (!arguments.style.empty() || !arguments.font.empty() || arguments.dpi > 0 || arguments.study.validation)
+    throw UsageError(
+        "a file is made again as its receipt says: with its path, --style, --font, --dpi and --validation "
+        "mean nothing");
   const fs::path file = arguments.names.front();
   const auto receipt = receipt_of(file);
   if (!receipt || receipt->command.empty())

@@ -126,8 +126,6 @@ std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments) {
     if (!format) throw UsageError("no export format " + in_quotes(name) + did_you_mean(name, known));
     if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
   }
-  if (!formats.empty() && arguments.output.empty())
-    throw UsageError("--export needs -o DIR: where the files go");
   return formats;
 }
 

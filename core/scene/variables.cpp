@@ -189,7 +189,9 @@ class Expansion {
     const auto from = evaluated(range, std::string_view(range.text).substr(0, colon), key);
     const auto end = evaluated(range, std::string_view(range.text).substr(colon + 1), key);
     if (!from || !end) return values;
-    if (*end - *from > static_cast<double>(max_turns))
+    if (*end < *from)
+      note(range, key, "must not end before it begins; got " + in_quotes(range.text));
+    else if (*end - *from > static_cast<double>(max_turns))
       note(range, key, too_many());
     else
       for (double x = *from; x < *end; x = *from + static_cast<double>(values.size())) values.push_back(x);

@@ -191,6 +191,8 @@ Structure build_hoop(const ParamSet& params) {
                   : model == "joints" ? build_hoop_joints(s)
                                       : build_full(s);
   out.kind = "hoop";
+  if (s.perturbed_force != 0 && s.perturbed_unit < 0)
+    out.notes.emplace_back("perturbed_force does nothing: perturbed_unit says which unit has it");
   out.lumped_mass = params.text("mass") == "lumped";
   return out;
 }

@@ -41,10 +41,13 @@ const std::vector<ParamSpec>& rod_material_params() {
           "rod_model", "rigid", {"rigid", "quasi-static", "elastic"},
           "elastic: rods with a youngs_modulus give, with waves; quasi-static: the rigid motion, what "
           "its forces stretch added to what is shown"),
-      real_param("damping_ratio", "", 0.0, 0.0, unbounded,
-                 "of elastic rods, of critical damping where a rod is free and alone"),
-      real_param("damping_time", "s", 0.0, 0.0, unbounded,
-                 "of elastic rods, in place of damping_ratio: stress = E (strain + damping_time * its rate)"),
+      only_with("rod_model", {"elastic"},
+                real_param("damping_ratio", "", 0.0, 0.0, unbounded,
+                           "of elastic rods, of critical damping where a rod is free and alone")),
+      only_with("rod_model", {"elastic"},
+                real_param("damping_time", "s", 0.0, 0.0, unbounded,
+                           "of elastic rods, in place of damping_ratio: stress = E (strain + damping_time * "
+                           "its rate)")),
       integer_param("segments", 1, 1, 1000,
                     "that rods with a youngs_modulus are cut into, to bend between their ends"),
       real_param("length_error", "m", 0.0, 0.0, unbounded,
@@ -121,7 +124,10 @@ double normal(std::uint64_t seed, std::uint64_t index) {
 }  // namespace
 
 void add_length_errors(Structure& structure, const RodMaterial& material) {
-  if (material.length_error == 0) return;
+  if (material.length_error == 0) {
+    if (material.error_seed != 1) structure.notes.emplace_back("error_seed does nothing: length_error is 0");
+    return;
+  }
   if (structure.sectors > 1 || structure.node_copies.size() != structure.nodes.size())
     throw StructureError("length_error",
                          "errors of length break the symmetry of a sector model; set structure.model to "

@@ -37,7 +37,7 @@ class Search {
   }
   double off(const Evaluation& e) const { return std::abs(e.value - target_); }
   bool valid(const Evaluation& e) const { return !std::isnan(e.value); }
-  bool exact(const Evaluation& e) const { return valid(e) && off(e) <= o_.f_tolerance; }
+  bool exact(const Evaluation& e) const { return e.value == target_; }
   bool opposite(const Evaluation& a, const Evaluation& b) const {
     return valid(a) && valid(b) && (a.value < target_) != (b.value < target_);
   }

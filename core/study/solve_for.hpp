@@ -17,7 +17,6 @@ struct SolveOptions {
   double start = 0;            // where the search begins
   double low = 0, high = 0;    // --between; equal: not given, the search looks around `start`
   double x_tolerance = 1e-12;  // relative
-  double f_tolerance = 0;      // absolute
   int most = 200;              // evaluations
 };
 

@@ -60,6 +60,18 @@ TEST_CASE("usage errors") {
   check_error({"check", "hoop6", "--frames", "0:2"}, 2, "unfurl: unfurl check has no option '--frames'");
   check_error({"check", "hoop6", "-o", "x"}, 2, "unfurl: unfurl check has no option '-o'");
   check_error({"run", "hoop6"}, 2, "unfurl: -o DIR is missing (or --json, for the summary alone)");
+  for (const char* verb : {"modes", "margin"})
+    for (const std::vector<std::string>& idle : {std::vector<std::string>{"--style", "slide"},
+                                                 {"--font", "helvetica"},
+                                                 {"--dpi", "300"},
+                                                 {"--force"}}) {
+      std::vector<std::string> words{verb, "four_bar"};
+      words.insert(words.end(), idle.begin(), idle.end());
+      check_error(words, 2, "unfurl: " + idle[0] + " needs -o DIR: without it no files are written");
+    }
+  for (const char* idle : {"--force", "--resume"})
+    check_error({"run", "four_bar", "--json", idle}, 2,
+                "unfurl: " + std::string(idle) + " needs -o DIR: without it no files are written");
   check_error({"run"}, 2, "unfurl: too few arguments; usage: unfurl run SCENE -o DIR");
   check_error({"check", "hoop6", "hoop12"}, 2,
               "unfurl: unexpected argument 'hoop12'; usage: unfurl check SCENE");
@@ -169,6 +181,9 @@ TEST_CASE("margin: drives against resistances by source, in words, JSON and file
   const ProgramResult text = run_program(scene);
   CHECK(contains(text.out, "hoop6: static margin "));
   CHECK(contains(text.out, "the motion arrives"));
+  const ProgramResult full = run_program({"margin", "hoop6", "--set", "solver.model=full"});
+  CHECK(full.code == 0);
+  CHECK(contains(full.err, "--set solver.model=full does nothing: margins are those of the path"));
   const ProgramResult chain = run_program({"margin", "chain"});
   CHECK(chain.code == 3);
   CHECK(contains(chain.err, "no margin: the structure has 32 degrees of freedom"));

@@ -71,6 +71,11 @@ TEST_CASE("a figure of its own, with options, is made again where it is asked fo
   CHECK(receipt->file.empty());
   CHECK(run_program({"reproduce", dir / "a.svg", "-o", dir / "again"}).code == 0);
   CHECK(file_text(dir / "again/a.svg") == file_text(dir / "a.svg"));
+  const ProgramResult restyled =
+      run_program({"reproduce", dir / "a.svg", "-o", dir / "slide", "--style", "slide"});
+  CHECK(restyled.code == 2);
+  CHECK(restyled.err.find("a file is made again as its receipt says") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(dir / "slide"));
   const ProgramResult none = run_program({"reproduce", dir.write("b.svg", "<svg></svg>")});
   CHECK(none.code == 5);
   CHECK(none.err.find("carries no receipt") != std::string::npos);

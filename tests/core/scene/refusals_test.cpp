@@ -255,9 +255,27 @@ TEST_CASE("what is set on the command line and does nothing is warned of in ever
   CHECK(said({"solver.rho_inf=0.5"}) == "--set solver.rho_inf: does nothing with method = 'dvm'\n");
   CHECK(said({"structure.wall_thickness=0.001"}) ==
         "--set structure.wall_thickness: does nothing with section = 'round'\n");
+  for (const std::string key : {"damping_ratio", "damping_time"}) {
+    CHECK(said({"structure.youngs_modulus=7e10", "structure." + key + "=0.01"}) ==
+          "--set structure." + key + ": does nothing with rod_model = 'rigid'\n");
+    CHECK(said({"structure.youngs_modulus=7e10", "structure.rod_model=elastic", "structure." + key + "=0.01"})
+              .empty());
+  }
   CHECK(said({"structure.arc_angle=90"}) == "--set structure.arc_angle: does nothing with closed = true\n");
   // What the scene itself keeps for other methods is not what was asked for: its stages here.
   CHECK(said({"solver.method=rk4"}).empty());
+}
+
+TEST_CASE("numbers that need another number beside them are warned of where they stand alone") {
+  const auto notes = [](std::vector<std::string> changes) {
+    changes.emplace_back("structure.model=joints");
+    return build_model(read_scene_file(find_scene("hoop6"), changes))->structure.notes;
+  };
+  using Notes = std::vector<std::string>;
+  CHECK(notes({"structure.perturbed_force=190"}) ==
+        Notes{"perturbed_force does nothing: perturbed_unit says which unit has it"});
+  CHECK(notes({"structure.perturbed_force=190", "structure.perturbed_unit=2"}).empty());
+  CHECK(notes({"structure.error_seed=7"}) == Notes{"error_seed does nothing: length_error is 0"});
 }
 
 TEST_CASE("entries are addressed by name in brackets, too") {

@@ -138,6 +138,9 @@ TEST_CASE("mistakes in variables and repeats have a place") {
             .find("structure.nodes[0].repeat.n: is the name of another variable") != std::string::npos);
   CHECK(mistakes(with(polygon, "{i = \"0:n\"}", "{i = \"0:9e9\"}")).find("more than 100000 entries") !=
         std::string::npos);
+  CHECK(mistakes(with(polygon, "{i = \"0:n\"}", "{i = \"n:0\"}"))
+            .find("structure.nodes[0].repeat.i: must not end before it begins; got 'n:0'") !=
+        std::string::npos);
   const std::string loops = "{i = \"0:90000\", j = \"0:90000\", k = []}";  // none of them makes an entry
   CHECK(mistakes(with(polygon, "{i = \"0:n\"}", loops)).find("more than 100000 entries") !=
         std::string::npos);

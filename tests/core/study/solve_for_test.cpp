@@ -27,8 +27,7 @@ TEST_CASE("a root between two ends is found on either side of where the scene st
     CHECK(s.x == Approx(std::sqrt(7.3)).epsilon(1e-11));
     for (const Evaluation& e : s.evaluations) CHECK((e.x >= 1.3 && e.x <= 4.7));
   }
-  const Solved exact =
-      solve_for([](double x) { return 3 * x; }, 7.5, {.start = 2.5, .f_tolerance = 1e-12}, {});
+  const Solved exact = solve_for([](double x) { return 3 * x; }, 7.5, {.start = 2.5}, {});
   CHECK(exact.x == 2.5);
   CHECK(exact.low == 2.5);
   CHECK(exact.high == 2.5);
