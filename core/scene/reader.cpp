@@ -49,11 +49,10 @@ void read_structure(TableReader& root, const TomlTree& tree, const std::string& 
   if (scene.kind.empty()) return;  // its other keys mean nothing without it
   if (const Family* family = find_family(scene.kind)) {
     scene.structure = table.read(family->params());
-    table.warn_idle(family->params(), scene.structure, Idle::from_command_line);
+    table.warn_idle(family->params(), scene.structure);
   } else {
     scene.custom = read_custom(table, folder, notes, scene.constraints);
-    table.warn_idle(rod_material_params(), rod_material_values(scene.custom.material),
-                    Idle::from_command_line);
+    table.warn_idle(rod_material_params(), rod_material_values(scene.custom.material));
   }
   table.finish();
 }

@@ -243,6 +243,20 @@ TEST_CASE("keys that do nothing as the others are given are warned of with their
   }
 }
 
+TEST_CASE("what a structure's table gives and does nothing is warned of with its line") {
+  const auto said = [](const std::string& keys) {
+    std::string text;
+    for (const SceneProblem& warning :
+         read_scene_text("[structure]\nkind = 'hoop'\nyoungs_modulus = 7e10\n" + keys, "s.toml").warnings)
+      text += problem_text(warning) + "\n";
+    return text;
+  };
+  CHECK(said("damping_ratio = 0.02\n") ==
+        "s.toml:4:17: structure.damping_ratio: does nothing with rod_model = 'rigid'\n");
+  CHECK(said("damping_ratio = 0.02\nrod_model = 'elastic'\n").empty());
+  CHECK(said("arc_angle = 90\n") == "s.toml:4:13: structure.arc_angle: does nothing with closed = true\n");
+}
+
 TEST_CASE("what is set on the command line and does nothing is warned of in every table") {
   const auto said = [](const std::vector<std::string>& changes) {
     std::string text;
