@@ -36,7 +36,14 @@ MatrixXd inverse_of(const MatrixXd& A) {
 }
 
 VectorXd least_squares(const MatrixXd& A, const VectorXd& b) {
-  return Eigen::CompleteOrthogonalDecomposition<MatrixXd>(A).solve(b);
+  return fitted_columns(A, b);
+}
+
+MatrixXd fitted_columns(const MatrixXd& A, const MatrixXd& B) {
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> factors(A);
+  MatrixXd x(A.cols(), B.cols());
+  for (Index k = 0; k < B.cols(); ++k) x.col(k) = factors.solve(VectorXd(B.col(k)));
+  return x;
 }
 
 Index rank_of(const MatrixXd& A, double threshold) {
@@ -56,26 +63,6 @@ MatrixXd column_complement(const MatrixXd& A, double least) {
   MatrixXd last = MatrixXd::Zero(A.rows(), left);
   last.bottomRows(left).setIdentity();
   return qr.householderQ() * last;
-}
-
-MatrixXd orthonormal_columns(const MatrixXd& A) {
-  const Eigen::HouseholderQR<MatrixXd> qr(A);
-  return qr.householderQ() * MatrixXd::Identity(A.rows(), A.cols());
-}
-
-MatrixXd fitted_columns(const MatrixXd& A, const MatrixXd& b) {
-  const Eigen::HouseholderQR<MatrixXd> qr(A);
-  MatrixXd x(A.cols(), b.cols());
-  for (Index k = 0; k < b.cols(); ++k) x.col(k) = qr.solve(b.col(k));
-  return x;
-}
-
-VectorXd least_norm(const MatrixXd& A, const VectorXd& b) {
-  const Eigen::HouseholderQR<MatrixXd> qr(A);
-  VectorXd x = VectorXd::Zero(A.rows());
-  x.head(b.size()) = qr.matrixQR().topRows(b.size()).triangularView<Eigen::Upper>().transpose().solve(b);
-  x.applyOnTheLeft(qr.householderQ());
-  return x;
 }
 
 Cholesky::Cholesky(const MatrixXd& A) : factors_(A) {}

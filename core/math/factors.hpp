@@ -35,22 +35,17 @@ MatrixXd inverse_of(const MatrixXd& A);
 
 /// The x of least norm among those with the smallest |A x - b|; A of any shape and rank.
 VectorXd least_squares(const MatrixXd& A, const VectorXd& b);
+/// The same for each column of B.
+MatrixXd fitted_columns(const MatrixXd& A, const MatrixXd& B);
 
 /// Columns whose pivot, the column less what those before it hold of it, is larger than `threshold` times the
 /// largest count; negative: than the round-off of the factorisation.
 Index rank_of(const MatrixXd& A, double threshold = -1);
 
 /// Orthonormal columns that span what A's span, and those that span the rest: pivots larger than `least`
-/// count.
+/// count, all of them where it is negative.
 MatrixXd column_space(const MatrixXd& A, double least);
 MatrixXd column_complement(const MatrixXd& A, double least);
-
-/// The Q of A = Q R, as wide as A, of which the columns are independent.
-MatrixXd orthonormal_columns(const MatrixXd& A);
-/// The x with the smallest |A x - b| for each column of b; columns of A independent.
-MatrixXd fitted_columns(const MatrixXd& A, const MatrixXd& b);
-/// The x of least norm with A^T x = b; columns of A independent.
-VectorXd least_norm(const MatrixXd& A, const VectorXd& b);
 
 /// A = L L^T of a symmetric positive matrix.
 class Cholesky {

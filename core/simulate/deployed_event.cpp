@@ -57,7 +57,7 @@ VectorXd shares_at_zero(const std::vector<Sample>& samples, int degree) {
     for (Index j = 0; j <= degree; ++j) powers(i, j) = weight[i] * std::pow(x, static_cast<double>(j));
   }
   // The first row of the pseudo-inverse.
-  return weight.cwiseProduct(least_norm(powers, VectorXd::Unit(degree + 1, 0)));
+  return weight.cwiseProduct(least_squares(powers.transpose(), VectorXd::Unit(degree + 1, 0)));
 }
 VectorXd at_zero(const std::vector<Sample>& samples, const VectorXd& shares, VectorXd State::*part) {
   VectorXd sum = VectorXd::Zero((samples.front().state.*part).size());

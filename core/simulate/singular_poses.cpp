@@ -128,7 +128,7 @@ void SmallestSingularValue::improve() {
     saddle_.apply(columns_.data(), rows_.data(), static_cast<int>(count));
     block_.middleCols(c, count) = by_rows_ ? rows_ : columns_;
   }
-  const MatrixXd basis = orthonormal_columns(block_);
+  const MatrixXd basis = column_space(block_, -1);
   const MatrixXd image = by_rows_ ? MatrixXd(G_.transpose() * basis) : MatrixXd(G_ * basis);
   const SymmetricEigen ritz = symmetric_eigen(image.transpose() * image);
   block_ = basis * ritz.vectors;
