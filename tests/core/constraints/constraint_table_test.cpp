@@ -150,6 +150,159 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
   }
 }
 
+// All that a block says of its rows at a pose, row by row; what belongs together is summed up by the rows.
+struct Said {
+  std::vector<std::string> names;
+  std::vector<double> lengths;
+  std::vector<int> sources, stencils, driven;
+  VectorXd values, near, bias, target, rate;
+  MatrixXd jacobian, curvature;
+  VectorXd force;
+
+  Said(const ConstraintBlock& block, const VectorXd& q, const VectorXd& v, const VectorXd& lambda)
+      : values(block.rows()),
+        near(values),
+        bias(values),
+        target(VectorXd::Zero(block.rows())),
+        rate(target),
+        jacobian(dense_jacobian(block, q)),
+        curvature(MatrixXd::Zero(q.size(), q.size())),
+        force(VectorXd::Zero(q.size())) {
+    std::size_t entries = 0;
+    for (int r = 0; r < block.rows(); ++r) {
+      names.push_back(block.name(r));
+      lengths.push_back(block.length(r));
+      sources.push_back(block.source(r));
+      const std::vector<int> stencil = block.stencil(r);
+      stencils.insert(stencils.end(), stencil.begin(), stencil.end());
+      entries += stencil.size() * stencil.size();
+    }
+    std::vector<Drive> drives;
+    block.list_drives(drives);
+    for (const Drive& drive : drives) driven.insert(driven.end(), {drive.constraint, drive.row});
+    block.value(q.data(), values.data());
+    block.value_at(0.3, q.data(), near.data());
+    block.bias(q.data(), v.data(), bias.data());
+    block.add_target(0, 0.8, 1.0, target.data());
+    block.add_target(1, 0.8, 2.0, rate.data());
+    block.add_force(q.data(), lambda.data(), 0.6, force.data());
+    std::vector<double> hess(entries);
+    block.curvature(q.data(), lambda.data(), hess.data());
+    auto h = hess.begin();
+    for (int r = 0; r < block.rows(); ++r)
+      for (const auto c = block.stencil(r); int j : c)
+        for (int i : c) curvature(i, j) += *h++;
+    std::vector<Eigen::Triplet<double>> sums;
+    block.add_curvature(q.data(), lambda.data(), sums);
+    for (const auto& e : sums) curvature(e.row(), e.col()) -= e.value();
+    CHECK(curvature.cwiseAbs().maxCoeff() <= 1e-14);  // the same numbers, summed up in another order
+    for (const auto& e : sums) curvature(e.row(), e.col()) += e.value();
+  }
+};
+
+template <class T>
+std::vector<T> both(std::vector<T> a, const std::vector<T>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+VectorXd both(const VectorXd& a, const VectorXd& b) {
+  VectorXd out(a.size() + b.size());
+  out << a, b;
+  return out;
+}
+
+TEST_CASE("two constraints of a kind do what each does by itself") {
+  Structure all = sample();
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  VectorXd q(12), v(12);
+  for (VectorXd* x : {&q, &v})
+    for (Index i = 0; i < x->size(); ++i) (*x)[i] = uniform(random);
+  for (const ConstraintKind& kind : constraint_kinds()) {
+    INFO("constraint " << kind.kind);
+    Structure first = all, second = all, pair = all;
+    // The same kind on other nodes, and elsewhere; a rod is no constraint of its own.
+    pair.constraints.clear();
+    for (const Constraint& c : all.constraints) {
+      if (c.kind != kind.kind) continue;
+      Constraint other = c;
+      for (int& node : other.nodes) node = 3 - node;
+      other.name += "_other";
+      other.value += 0.3;
+      pair.constraints.push_back(c);
+      pair.constraints.push_back(other);
+      break;
+    }
+    if (pair.constraints.empty())
+      first.rods.pop_back(), second.rods.erase(second.rods.begin());
+    else
+      first.constraints = {pair.constraints[0], {}}, second.constraints = {{}, pair.constraints[1]};
+    const auto a = kind.make(first), b = kind.make(second), ab = kind.make(pair);
+    REQUIRE(a);
+    REQUIRE(b);
+    REQUIRE(ab);
+    REQUIRE(ab->rows() == a->rows() + b->rows());
+    VectorXd of_a(a->rows()), of_b(b->rows());
+    for (VectorXd* x : {&of_a, &of_b})
+      for (Index i = 0; i < x->size(); ++i) (*x)[i] = uniform(random);
+    const Said one(*a, q, v, of_a), two(*b, q, v, of_b), said(*ab, q, v, both(of_a, of_b));
+    CHECK(said.names == both(one.names, two.names));
+    CHECK(said.lengths == both(one.lengths, two.lengths));
+    CHECK(said.sources == both(one.sources, two.sources));
+    CHECK(said.stencils == both(one.stencils, two.stencils));
+    std::vector<int> driven = two.driven;
+    for (std::size_t i = 1; i < driven.size(); i += 2) driven[i] += a->rows();
+    CHECK(said.driven == both(one.driven, driven));
+    const auto same = [](const auto& x, const auto& y) { return (x - y).cwiseAbs().maxCoeff() <= 1e-14; };
+    CHECK(said.values == both(one.values, two.values));
+    CHECK(said.near == both(one.near, two.near));
+    CHECK(said.bias == both(one.bias, two.bias));
+    CHECK(said.target == both(one.target, two.target));
+    CHECK(said.rate == both(one.rate, two.rate));
+    CHECK(said.jacobian.topRows(a->rows()) == one.jacobian);
+    CHECK(said.jacobian.bottomRows(b->rows()) == two.jacobian);
+    CHECK(same(said.force, one.force + two.force));
+    CHECK(same(said.curvature, one.curvature + two.curvature));
+  }
+}
+
+TEST_CASE("a block of constraints takes several poses at once as it takes each") {
+  Structure structure = sample();
+  structure.rods[1].expansion = 0.0;  // those that are warmed are asked pose by pose
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  constexpr int poses = 3;
+  constexpr Index stride = 4;
+  int offered = 0;
+  for (const ConstraintKind& kind : constraint_kinds()) {
+    INFO("constraint " << kind.kind);
+    const auto block = kind.make(structure);
+    const Index m = block->rows();
+    std::vector<double> q(12 * stride), phi(static_cast<std::size_t>(m * poses)), lambda(phi.size()),
+        f(12 * poses, 0.0);
+    for (std::vector<double>* x : {&q, &lambda})
+      for (double& number : *x) number = uniform(random);
+    const double scale[poses] = {1.0, -0.6, 2.5};
+    const bool values = block->values(poses, q.data(), stride, phi.data());
+    const bool forces = block->add_forces(poses, q.data(), stride, lambda.data(), scale, f.data());
+    CHECK(values == forces);
+    if (!values) continue;
+    offered += 1;
+    for (int c = 0; c < poses; ++c) {
+      VectorXd pose(12), multipliers(m), one(m), force = VectorXd::Zero(12);
+      for (Index i = 0; i < 12; ++i) pose[i] = q[static_cast<std::size_t>(i * stride + c)];
+      for (Index r = 0; r < m; ++r) multipliers[r] = lambda[static_cast<std::size_t>(r * poses + c)];
+      block->value(pose.data(), one.data());
+      block->add_force(pose.data(), multipliers.data(), scale[c], force.data());
+      for (Index r = 0; r < m; ++r)
+        CHECK(phi[static_cast<std::size_t>(r * poses + c)] == Approx(one[r]).margin(1e-14));
+      for (Index i = 0; i < 12; ++i)
+        CHECK(f[static_cast<std::size_t>(i * poses + c)] == Approx(force[i]).margin(1e-13));
+    }
+  }
+  CHECK(offered > 1);
+}
+
 TEST_CASE("collinear rows have rank two off their line, too") {
   const Structure structure = sample();
   const auto kinds = constraint_kinds();

@@ -11,6 +11,7 @@
 
 #include "core/export/formats.hpp"
 #include "core/export/unit_shapes.hpp"
+#include "core/simulate/stepper.hpp"
 #include "tests/support/glb.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -31,10 +32,10 @@ struct Shown {
   ExportedLooks looks;
   fs::path folder = fs::temp_directory_path() / ("unfurl_looks_" + std::to_string(::getpid()));
 
-  testing::Glb glb() const {
+  testing::Glb glb(double interval = 0.04) const {
     fs::create_directories(folder);
     const Diagnostics d = diagnose(run);
-    find_export_format("gltf")->write({run, d, folder, "ring", 0.04, 2.5, {}, {}, {}, &looks});
+    find_export_format("gltf")->write({run, d, folder, "ring", interval, 2.5, {}, {}, {}, &looks});
     std::ostringstream text;
     text << std::ifstream(folder / "animation.glb", std::ios::binary).rdbuf();
     fs::remove_all(folder);
@@ -141,6 +142,31 @@ TEST_CASE("glTF: a surface is where its nodes are at every key") {
         CHECK(x == Approx(point(pose, nodes[v])[static_cast<Index>(c)]).margin(2e-6));  // single precision
       }
   }
+}
+
+TEST_CASE("glTF: keys are an interval apart from the run's start to its end, which is the last") {
+  const auto times = [](const Shown& shown, double interval) {
+    const testing::Glb glb = shown.glb(interval);
+    return glb.floats(glb.json["animations"][0]["samplers"][0]["input"].get<std::size_t>());
+  };
+  Shown shown;
+  // 0.14 / 0.02 is 7 and a rounding error.
+  for (const auto& [interval, keys] : {std::pair{0.02, 8U}, {0.04, 5U}, {0.2, 2U}}) {
+    const std::vector<float> t = times(shown, interval);
+    REQUIRE(t.size() == keys);
+    for (std::size_t k = 0; k < t.size(); ++k)
+      CHECK(t[k] == Approx(std::min(0.14, interval * static_cast<double>(k)) / 2.5).margin(1e-8));
+  }
+  // From 0.06 s on.
+  Stepper later(std::make_shared<const Model>(shown.run.trajectory.model()), shown.run.options,
+                shown.run.trajectory.state(3));
+  while (later.step()) {
+  }
+  shown.run = later.run();
+  REQUIRE(shown.run.trajectory.start_time() == Approx(0.06));
+  const std::vector<float> t = times(shown, 0.02);
+  REQUIRE(t.size() == 5);
+  for (std::size_t k = 0; k < 5; ++k) CHECK(t[k] == Approx(0.02 * static_cast<double>(k) / 2.5).margin(1e-8));
 }
 
 TEST_CASE("glTF: the camera sees the last pose whole, and it fills the picture") {

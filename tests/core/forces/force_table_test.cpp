@@ -175,6 +175,80 @@ TEST_CASE("every force kind: derivatives, potential and power agree with the for
   }
 }
 
+// The same force on other nodes, half as large where it is by a measure.
+Measure other_way(Measure measure) {
+  for (int& node : measure.nodes) node = 3 - node;
+  for (auto& term : measure.terms) term.measure = other_way(term.measure);
+  return measure;
+}
+Force other(Force force) {
+  for (int& node : force.nodes) node = 3 - node;
+  for (int& node : force.form.nodes) node = 3 - node;
+  force.measure = other_way(force.measure);
+  force.stiffness *= 0.5, force.damping *= 0.7, force.rest *= 0.8;
+  return force;
+}
+
+// What a block says at one moment; sums of blocks' add up.
+struct Said {
+  VectorXd force = VectorXd::Zero(12);
+  MatrixXd by_q = MatrixXd::Zero(12, 12), by_v = by_q;
+  VectorXd numbers = VectorXd::Zero(4);
+
+  static Said of(const ForceBlock* block, const VectorXd& q, const VectorXd& v) {
+    Said out;
+    if (!block) return out;
+    const double t = 0.6;
+    block->add(t, q.data(), v.data(), 0.7, out.force.data());
+    ForceDerivative by_q, by_v;
+    block->derivatives(t, q.data(), v.data(), by_q, by_v);
+    for (const auto& e : by_q) out.by_q(e.row(), e.col()) += e.value();
+    for (const auto& e : by_v) out.by_v(e.row(), e.col()) += e.value();
+    out.numbers << block->potential(t, q.data()), block->power(t, q.data(), v.data()),
+        block->dissipation(t, q.data(), v.data()), block->taken(t, q.data());
+    return out;
+  }
+  double apart(const Said& o) const {
+    const auto far = [](const auto& a, const auto& b) { return (a - b).cwiseAbs().maxCoeff(); };
+    return std::max({far(force, o.force), far(by_q, o.by_q), far(by_v, o.by_v), far(numbers, o.numbers)});
+  }
+  Said plus(const Said& o) const {
+    return {force + o.force, by_q + o.by_q, by_v + o.by_v, numbers + o.numbers};
+  }
+};
+
+TEST_CASE("two forces of a kind do what each does by itself") {
+  Structure bare = sample();
+  bare.forces.clear();
+  bare.rods.push_back({"cd", 2, 3, 1.0, 2.0, "rod", 0.01, 1.0});  // two joints
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  VectorXd q(12), v(12);
+  for (VectorXd* x : {&q, &v})
+    for (Index i = 0; i < x->size(); ++i) (*x)[i] = uniform(random);
+  int with_members = 0;
+  for (const ForceKind& kind : force_kinds()) {
+    INFO("force " << kind.kind);
+    if (!kind.params || kind.kind == "temperature") continue;
+    with_members += 1;
+    const auto said = [&](std::vector<Force> forces) {
+      Structure s = bare;
+      s.forces = std::move(forces);
+      const SparseRows mass = node_mass_matrix(s);
+      return Said::of(kind.make(s, mass).get(), q, v);
+    };
+    const Force one = force_of(kind), two = other(one);
+    const Said first = said({one}), second = said({two}), none = said({});
+    CHECK(first.apart(none) > 1e-3);
+    CHECK(second.apart(none) > 1e-3);
+    CHECK(first.apart(second) > 1e-3);
+    // Round-off of some sums of numbers up to 1e3.
+    CHECK(said({one, two}).plus(none).apart(first.plus(second)) <= 1e-12);
+    CHECK(said({two, one}).plus(none).apart(first.plus(second)) <= 1e-12);
+  }
+  CHECK(with_members > 10);
+}
+
 TEST_CASE("internal forces exert no net force and no net torque") {
   const Structure structure = sample();
   std::mt19937 random(8);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/path/path_run.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -49,6 +50,24 @@ TEST_CASE("a ball bounces on a stop as its restitution says") {
   const Diagnostics d = diagnose(run);
   for (const double x : d.at("energy_balance_J").values) CHECK(std::abs(x) <= 1e-10);
   for (std::size_t i = 0; i < run.trajectory.size(); ++i) CHECK(run.trajectory.positions(i)[2] >= -1e-10);
+}
+
+TEST_CASE("on its path, too, a ball bounces as its restitution says, in steps longer than its bounces") {
+  for (const char* step : {"0.03", "0.7", "2.6"}) {
+    INFO(step);
+    // On a guide, so that it has one freedom.
+    const Scene scene = read_scene_text(
+        ball + "[[structure.constraints]]\nkind = \"line\"\nnodes = [\"A\"]\ndirection = [0, 0, 1]\n",
+        "s.toml", {std::string("solver.step=") + step, "solver.end_time=2.6"});
+    const Simulation run = simulate_on_path(build_model(scene), scene.solver);
+    REQUIRE(run.status == RunStatus::completed);
+    REQUIRE(run.events.size() == 3);
+    CHECK(run.events[0].t == Approx(1).epsilon(1e-12));
+    CHECK(run.events[1].t == Approx(2).epsilon(1e-12));
+    CHECK(run.events[2].t == Approx(2.5).epsilon(1e-12));
+    // Off again at 1.25 m/s.
+    CHECK(end_positions(run)[2] == Approx(0.125 - 0.05).epsilon(1e-11));
+  }
 }
 
 TEST_CASE("a stop that is touched and left within one step is not missed") {

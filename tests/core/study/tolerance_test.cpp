@@ -36,6 +36,18 @@ TEST_CASE("the true error is below the tolerance that was asked for") {
   }
 }
 
+TEST_CASE("what was solved along its path says its error where a tolerance was asked for") {
+  const auto ring = make_model(hoop_structure());
+  SolverOptions options = dvm_options(3, 0.02, 2.0);
+  options.model = "path";
+  CHECK(std::isnan(simulate_as_asked(ring, options).position_estimate));
+  options.tolerance = 1e-6;
+  const Simulation run = simulate_as_asked(ring, options);
+  CHECK(run.solved_as.name == "path");
+  CHECK(run.position_estimate > 0);
+  CHECK(run.position_estimate <= 1e-10);
+}
+
 TEST_CASE("a tolerance below round-off is said to be out of reach") {
   SolverOptions options = dvm_options(3, 0.01, 1.0);
   options.tolerance = 1e-18;
