@@ -65,6 +65,20 @@ MatrixXd dense_jacobian(const ConstraintBlock& block, const VectorXd& q) {
   return G;
 }
 
+// Summed up over the rows.
+MatrixXd dense_curvature(const ConstraintBlock& block, const VectorXd& q, const VectorXd& lambda) {
+  std::size_t size = 0;
+  for (int r = 0; r < block.rows(); ++r) size += block.stencil(r).size() * block.stencil(r).size();
+  std::vector<double> hess(size);
+  block.curvature(q.data(), lambda.data(), hess.data());
+  MatrixXd H = MatrixXd::Zero(q.size(), q.size());
+  const double* h = hess.data();
+  for (int r = 0; r < block.rows(); ++r)
+    for (const auto c = block.stencil(r); int j : c)
+      for (int i : c) H(i, j) += *h++;
+  return H;
+}
+
 // Rows of collinear nodes are differentiated across their line, which is what their value does on it: three
 // nodes on a line e, velocities that keep them there, multipliers across it.
 void put_on_a_line(const std::array<Index, 3>& node, VectorXd& q, VectorXd& v, VectorXd& lambda) {
@@ -119,15 +133,7 @@ TEST_CASE("every constraint kind: value, Jacobian and curvature agree") {
         (dense_jacobian(*block, q + step * v) - dense_jacobian(*block, q - step * v)) * v / (2 * step);
     CHECK((bias - turned).cwiseAbs().maxCoeff() <= 1e-8);
 
-    std::size_t size = 0;
-    for (int r = 0; r < m; ++r) size += block->stencil(r).size() * block->stencil(r).size();
-    std::vector<double> hess(size);
-    block->curvature(q.data(), lambda.data(), hess.data());
-    MatrixXd H = MatrixXd::Zero(n, n);
-    const double* h = hess.data();
-    for (int r = 0; r < m; ++r)
-      for (const auto c = block->stencil(r); int j : c)
-        for (int i : c) H(i, j) += *h++;
+    const MatrixXd H = dense_curvature(*block, q, lambda);
     for (Index i = 0; i < n; ++i) {
       VectorXd unit = VectorXd::Unit(n, i) * step;
       const VectorXd column =
@@ -166,16 +172,14 @@ struct Said {
         target(VectorXd::Zero(block.rows())),
         rate(target),
         jacobian(dense_jacobian(block, q)),
-        curvature(MatrixXd::Zero(q.size(), q.size())),
+        curvature(dense_curvature(block, q, lambda)),
         force(VectorXd::Zero(q.size())) {
-    std::size_t entries = 0;
     for (int r = 0; r < block.rows(); ++r) {
       names.push_back(block.name(r));
       lengths.push_back(block.length(r));
       sources.push_back(block.source(r));
       const std::vector<int> stencil = block.stencil(r);
       stencils.insert(stencils.end(), stencil.begin(), stencil.end());
-      entries += stencil.size() * stencil.size();
     }
     std::vector<Drive> drives;
     block.list_drives(drives);
@@ -186,17 +190,12 @@ struct Said {
     block.add_target(0, 0.8, 1.0, target.data());
     block.add_target(1, 0.8, 2.0, rate.data());
     block.add_force(q.data(), lambda.data(), 0.6, force.data());
-    std::vector<double> hess(entries);
-    block.curvature(q.data(), lambda.data(), hess.data());
-    auto h = hess.begin();
-    for (int r = 0; r < block.rows(); ++r)
-      for (const auto c = block.stencil(r); int j : c)
-        for (int i : c) curvature(i, j) += *h++;
-    std::vector<Eigen::Triplet<double>> sums;
-    block.add_curvature(q.data(), lambda.data(), sums);
-    for (const auto& e : sums) curvature(e.row(), e.col()) -= e.value();
-    CHECK(curvature.cwiseAbs().maxCoeff() <= 1e-14);  // the same numbers, summed up in another order
-    for (const auto& e : sums) curvature(e.row(), e.col()) += e.value();
+    MatrixXd summed = MatrixXd::Zero(q.size(), q.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    block.add_curvature(q.data(), lambda.data(), entries);
+    for (const auto& e : entries) summed(e.row(), e.col()) += e.value();
+    // The same numbers, summed up in another order.
+    CHECK((curvature - summed).cwiseAbs().maxCoeff() <= 1e-14);
   }
 };
 
