@@ -57,6 +57,11 @@ MatrixXd column_space(const MatrixXd& A, double least) {
   return qr.householderQ() * MatrixXd::Identity(A.rows(), pivots_above(qr, least));
 }
 
+MatrixXd orthonormal_columns(const MatrixXd& A) {
+  const PivotedQr qr(A);
+  return qr.householderQ() * MatrixXd::Identity(A.rows(), A.cols());
+}
+
 MatrixXd column_complement(const MatrixXd& A, double least) {
   const PivotedQr qr(A);
   const Index left = A.rows() - pivots_above(qr, least);

@@ -43,9 +43,11 @@ MatrixXd fitted_columns(const MatrixXd& A, const MatrixXd& B);
 Index rank_of(const MatrixXd& A, double threshold = -1);
 
 /// Orthonormal columns that span what A's span, and those that span the rest: pivots larger than `least`
-/// count, all of them where it is negative.
+/// count.
 MatrixXd column_space(const MatrixXd& A, double least);
 MatrixXd column_complement(const MatrixXd& A, double least);
+/// Of independent columns the same, as many as A has, the longest taken first.
+MatrixXd orthonormal_columns(const MatrixXd& A);
 
 /// A = L L^T of a symmetric positive matrix.
 class Cholesky {

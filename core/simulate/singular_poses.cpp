@@ -115,8 +115,7 @@ double SmallestSingularValue::estimate(const ConstVec& z) {
 
 // With b in the place of f or of g, [I G^T; G -e] [x; y] = [f; g] has the solutions
 //     f = 0:  y = -(G G^T + e)^-1 g,      g = 0:  x = e (G^T G + e)^-1 f.
-// Columns are kept in the order of their sigma, so that those of zeros, which grow most, are orthogonalised
-// first.
+// Columns of zeros grow most, and are orthogonalised first.
 void SmallestSingularValue::improve() {
   const Index columns = block_.cols();
   for (Index c = 0; c < columns; c += most_columns) {
@@ -128,7 +127,7 @@ void SmallestSingularValue::improve() {
     saddle_.apply(columns_.data(), rows_.data(), static_cast<int>(count));
     block_.middleCols(c, count) = by_rows_ ? rows_ : columns_;
   }
-  const MatrixXd basis = column_space(block_, -1);
+  const MatrixXd basis = orthonormal_columns(block_);
   const MatrixXd image = by_rows_ ? MatrixXd(G_.transpose() * basis) : MatrixXd(G_ * basis);
   const SymmetricEigen ritz = symmetric_eigen(image.transpose() * image);
   block_ = basis * ritz.vectors;
