@@ -12,12 +12,15 @@
 namespace unfurl {
 namespace {
 
-constexpr double integrator_mass = 1e-6;  // [kg]: of no meaning, and small beside what moves
+// Of the structure's: of no meaning, left out of energies (System::kinetic_energy), and small beside what
+// moves.
+constexpr double integrator_mass = 1e-6;
 
 struct MotorOn {
   Force force;
   MeasureFunction measure;
   int followed;
+  double ghost_mass;  // of its integrator
 };
 
 class Motors final : public ForceBlock {
@@ -33,7 +36,7 @@ class Motors final : public ForceBlock {
       const auto& stencil = motor.measure.stencil();
       for (std::size_t i = 0; i < stencil.size(); ++i) f[stencil[i]] += scale * now.effort * g[i];
       if (const int ghost = motor.force.motor.integrator; ghost >= 0)
-        f[3 * ghost] += scale * integrator_mass * (motor.force.motor.command.derivative(1, at.t) - now.rate);
+        f[3 * ghost] += scale * motor.ghost_mass * (motor.force.motor.command.derivative(1, at.t) - now.rate);
     }
   }
 
@@ -43,8 +46,6 @@ class Motors final : public ForceBlock {
     for (const MotorOn& motor : motors_) {
       const MotorState now = state(motor, at, q, v, g);
       sum += now.effort * now.rate;
-      if (const int ghost = motor.force.motor.integrator; ghost >= 0)
-        sum += integrator_mass * (motor.force.motor.command.derivative(1, at.t) - now.rate) * v[3 * ghost];
     }
     return sum;
   }
@@ -66,8 +67,8 @@ class Motors final : public ForceBlock {
         }
         if (ghost < 0) continue;
         by_q.emplace_back(stencil[j], ghost, g[j] * now.by_integral);
-        by_q.emplace_back(ghost, stencil[j], -integrator_mass * turned[j]);
-        by_v.emplace_back(ghost, stencil[j], -integrator_mass * g[j]);
+        by_q.emplace_back(ghost, stencil[j], -motor.ghost_mass * turned[j]);
+        by_v.emplace_back(ghost, stencil[j], -motor.ghost_mass * g[j]);
       }
     }
   }
@@ -185,7 +186,10 @@ std::unique_ptr<ForceBlock> motor_block(const Structure& structure, const Sparse
   const std::vector<int> followed = followed_angles(structure).of_force;
   for (std::size_t i = 0; i < structure.forces.size(); ++i)
     if (const Force& f = structure.forces[i]; f.kind == "motor")
-      motors.push_back({f, MeasureFunction(f.measure, structure.deployment), followed[i]});
+      motors.push_back({f, MeasureFunction(f.measure, structure.deployment), followed[i],
+                        f.motor.integrator < 0
+                            ? 0.0
+                            : structure.nodes[static_cast<std::size_t>(f.motor.integrator)].mass});
   if (motors.empty()) return nullptr;
   return std::make_unique<Motors>(std::move(motors));
 }
@@ -214,9 +218,12 @@ void add_rotor(Structure& structure, double inertia, double initial) {
 }
 
 void add_integrator(Structure& structure, double initial) {
-  Force& motor = structure.forces.back();
-  const int ghost =
-      add_ghost(structure, "integral of " + motor.name, integrator_mass, motor.motor.command(0.0) - initial);
+  const Force& motor = structure.forces.back();
+  double mass = 0;
+  for (const Node& node : structure.nodes) mass += node.ghost ? 0.0 : node.mass;
+  for (const Rod& rod : structure.rods) mass += rod.mass;
+  const int ghost = add_ghost(structure, "integral of " + motor.name,
+                              integrator_mass * (mass > 0 ? mass : 1.0), motor.motor.command(0.0) - initial);
   structure.forces.back().motor.integrator = ghost;
 }
 

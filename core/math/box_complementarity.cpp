@@ -122,14 +122,16 @@ bool independent(const MatrixXd& D, const std::vector<bool>& held, Index i) {
 
 // In units in which the diagonal of D is 1; rows without any have no say.
 std::optional<BoxSolution> solve_box(const MatrixXd& D, const VectorXd& b, const VectorXd& low,
-                                     const VectorXd& high, double rounding) {
+                                     const VectorXd& high, const VectorXd& rounding) {
   VectorXd unit(b.size());
   for (Index i = 0; i < b.size(); ++i) unit[i] = D(i, i) > 0 ? std::sqrt(D(i, i)) : 1.0;
   const VectorXd inverse = unit.cwiseInverse();
   const MatrixXd scaled = inverse.asDiagonal() * D * inverse.asDiagonal();
   const VectorXd scaled_b = b.cwiseProduct(inverse), scaled_low = low.cwiseProduct(unit),
                  scaled_high = high.cwiseProduct(unit);
-  BoxProblem problem(scaled, scaled_b, scaled_low, scaled_high, rounding * inverse);
+  BoxProblem problem(
+      scaled, scaled_b, scaled_low, scaled_high,
+      rounding.size() > 0 ? VectorXd(rounding.cwiseProduct(inverse)) : VectorXd::Zero(b.size()));
   if (!problem.solve()) return std::nullopt;
   BoxSolution out = problem.solution();
   out.x = out.x.cwiseProduct(inverse).cwiseMax(low).cwiseMin(high);

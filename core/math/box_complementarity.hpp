@@ -23,10 +23,10 @@ struct BoxSolution {
   std::vector<bool> held;
 };
 
-// Nothing where no x does it: a push without a bound that cannot stop what it must. `rounding`: what b may be
-// off by, where that is more than 1e-12 of b.
+// Nothing where no x does it: a push without a bound that cannot stop what it must. `rounding`: what each row
+// of b may be off by, where that is more than 1e-12 of it; empty: it is not.
 std::optional<BoxSolution> solve_box(const MatrixXd& D, const VectorXd& b, const VectorXd& low,
-                                     const VectorXd& high, double rounding = 0.0);
+                                     const VectorXd& high, const VectorXd& rounding = {});
 
 // d with d_i = 1, (D d)_k = 0 for the rows k that are held, and zero for others.
 VectorXd past_held(const MatrixXd& D, const std::vector<bool>& held, Index i);

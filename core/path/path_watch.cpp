@@ -64,8 +64,8 @@ void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out, Vecto
   for (std::size_t i = 0; i < stops; ++i) {
     const StopSide& stop = sides_.stops()[i];
     const ValueAndSlope m = law_->table().at(stop_columns_[i], s);
-    out[static_cast<Index>(i)] = stop.sign * (m.value - stop.limit) - shift_[i];
-    rates[static_cast<Index>(i)] = stop.sign * m.slope * v;
+    out[static_cast<Index>(i)] = (stop.sign * (m.value - stop.limit) - shift_[i]) / sides_.touching(i);
+    rates[static_cast<Index>(i)] = stop.sign * m.slope * v / sides_.touching(i);
   }
   for (std::size_t k = 0; k < law_->forces().cables().size(); ++k) {
     const PathForces::Cable& cable = law_->forces().cables()[k];
@@ -73,14 +73,13 @@ void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out, Vecto
     const double e = m.value - cable.rest, n = cable.stiffness * e + cable.damping * m.slope * v;
     const double stretch = cable.damping > 0 ? std::min(e, n / (cable.stiffness + cable.damping / step_)) : e;
     const int sign = sides_.active(stops + k) ? 1 : -1;
-    out[static_cast<Index>(stops + k)] = sign * stretch;
-    if (sign < 0 || !(cable.damping > 0)) rates[static_cast<Index>(stops + k)] = sign * m.slope * v;
+    const double zero = sides_.stops().touching();
+    out[static_cast<Index>(stops + k)] = sign * stretch / zero;
+    if (sign < 0 || !(cable.damping > 0)) rates[static_cast<Index>(stops + k)] = sign * m.slope * v / zero;
   }
-  out.head(out.size() - 1) /= sides_.stops().touching();
-  rates.head(out.size() - 1) /= sides_.stops().touching();
   for (std::size_t i = sides_.first_friction(); i < sides_.first_motor(); ++i)
     if (sides_.slip(i) != 0)
-      out[static_cast<Index>(i)] = sides_.slip(i) * friction_slope(i, s) * v / sides_.zero_rate();
+      out[static_cast<Index>(i)] = sides_.slip(i) * friction_slope(i, s) * v / sides_.zero_rate(i);
   if (deployed_column_ < 0 || deployed_) return;
   const ValueAndSlope m = law_->table().at(deployed_column_, s);
   out[out.size() - 1] = m.value;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/write.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -31,42 +32,48 @@ std::string names_text(const std::vector<std::string>& names) {
   return "[" + text + "]";
 }
 
-std::string line(std::string_view key, const std::string& value) {
-  return std::string(key) + " = " + value + "\n";
+std::string line(std::string_view key, const std::string& value, std::string_view unit = {}) {
+  return std::string(key) + " = " + value + (unit.empty() ? "" : "  # " + std::string(unit)) + "\n";
+}
+
+// With the unit that the key is declared with.
+std::string line_of(const std::vector<ParamSpec>& specs, std::string_view key, const std::string& value) {
+  const auto spec = std::ranges::find(specs, key, &ParamSpec::name);
+  return line(key, value, spec == specs.end() ? "" : spec->unit);
 }
 
 std::string params_text(const std::vector<ParamSpec>& specs, const ParamSet& values) {
   std::string text;
-  for (const auto& spec : specs) {
-    text += line(spec.name, toml_value(values.value(spec.name)));
-    if (!spec.unit.empty()) text.insert(text.size() - 1, "  # " + std::string(spec.unit));
-  }
+  for (const auto& spec : specs) text += line(spec.name, toml_value(values.value(spec.name)), spec.unit);
   return text;
 }
 
 std::string node_text(const CustomNode& node) {
+  const auto& specs = custom_node_params();
   std::string text = "\n[[structure.nodes]]\n" + line("name", toml_string(node.name));
-  text += line("position", vec_text(node.position));
-  if (!node.velocity.isZero(0.0)) text += line("velocity", vec_text(node.velocity));
-  if (node.mass != 0.0) text += line("mass", real_text(node.mass));
+  text += line_of(specs, "position", vec_text(node.position));
+  if (!node.velocity.isZero(0.0)) text += line_of(specs, "velocity", vec_text(node.velocity));
+  if (node.mass != 0.0) text += line_of(specs, "mass", real_text(node.mass));
   if (node.fixed) text += line("fixed", "true");
   return text;
 }
 
 std::string rod_text(const CustomRod& rod) {
+  const auto& specs = custom_rod_params();
   std::string text = "\n[[structure.rods]]\n";
   if (!rod.name.empty()) text += line("name", toml_string(rod.name));
   text += line("nodes", names_text(rod.nodes));
-  if (rod.mass >= 0.0) text += line("mass", real_text(rod.mass));
-  if (rod.density != 0.0) text += line("density", real_text(rod.density));
-  if (rod.area != 0.0) text += line("area", real_text(rod.area));
-  if (rod.length != 0.0) text += line("length", real_text(rod.length));
-  if (!std::isnan(rod.youngs_modulus)) text += line("youngs_modulus", real_text(rod.youngs_modulus));
-  if (!std::isnan(rod.strength)) text += line("strength", real_text(rod.strength));
-  if (rod.second_moment != 0.0) text += line("second_moment", real_text(rod.second_moment));
+  if (rod.mass >= 0.0) text += line_of(specs, "mass", real_text(rod.mass));
+  if (rod.density != 0.0) text += line_of(specs, "density", real_text(rod.density));
+  if (rod.area != 0.0) text += line_of(specs, "area", real_text(rod.area));
+  if (rod.length != 0.0) text += line_of(specs, "length", real_text(rod.length));
+  if (!std::isnan(rod.youngs_modulus))
+    text += line_of(specs, "youngs_modulus", real_text(rod.youngs_modulus));
+  if (!std::isnan(rod.strength)) text += line_of(specs, "strength", real_text(rod.strength));
+  if (rod.second_moment != 0.0) text += line_of(specs, "second_moment", real_text(rod.second_moment));
   if (rod.elastic) text += line("elastic", *rod.elastic ? "true" : "false");
   if (rod.segments > 0) text += line("segments", std::to_string(rod.segments));
-  if (rod.free_length != 0.0) text += line("free_length", real_text(rod.free_length));
+  if (rod.free_length != 0.0) text += line_of(specs, "free_length", real_text(rod.free_length));
   if (rod.group != "rod") text += line("group", toml_string(rod.group));
   return text;
 }
@@ -90,8 +97,7 @@ std::string element_text(std::string_view table, const SceneElement& element, co
   for (const auto& spec : kind.params()) {
     const ParamValue& value = element.values.value(spec.name);
     if (!worth_writing(value) || !means_something(spec, element.values)) continue;
-    text += line(spec.name, toml_value(value));
-    if (!spec.unit.empty()) text.insert(text.size() - 1, "  # " + std::string(spec.unit));
+    text += line(spec.name, toml_value(value), spec.unit);
   }
   return text;
 }
@@ -158,10 +164,10 @@ std::string scene_text(const Scene& scene) {
   std::string text =
       line("title", toml_string(scene.title_pattern.empty() ? scene.title : scene.title_pattern)) +
       structure_text(scene);
-  text += "\n[gravity]\n" + line("acceleration", vec_text(scene.gravity));
+  text += "\n[gravity]\n" + line_of(gravity_params(), "acceleration", vec_text(scene.gravity));
   for (const auto& load : scene.loads)
     text += "\n[[loads]]\n" + (load.enabled ? "" : line("enabled", "false")) +
-            line("nodes", names_text(load.nodes)) + line("force", vec_text(load.force));
+            line("nodes", names_text(load.nodes)) + line_of(load_params(), "force", vec_text(load.force));
   for (const auto& force : scene.forces)
     text += element_text("forces", force, *find_kind(scene_forces(), force.kind));
   for (const auto& constraint : scene.constraints)

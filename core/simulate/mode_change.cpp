@@ -102,7 +102,6 @@ class Change {
 
   // The stops that are approached, all at once. False where there is no answer.
   bool strike(const PushResponses& responses, const std::function<bool(std::size_t, double)>& rests) {
-    const double zero = sides_.zero_rate();
     VectorXd u = responses.rates(out_.state.w), b = u, low = VectorXd::Zero(count()), high = low;
     bool any = false;
     for (Index r = 0; r < count(); ++r) {
@@ -110,11 +109,10 @@ class Change {
       if (!sides_.is_stop(i)) continue;
       high[r] = movable(r) ? infinity : 0.0;
       const bool new_here = crossed(r) && !sides_.active(i);
-      if (!(u[r] < (new_here ? 0.0 : -zero))) continue;
+      if (!(u[r] < (new_here ? 0.0 : -sides_.zero_rate(i)))) continue;
       if (!movable(r)) {
         // No impulse moves it. What others hold needs no hold of its own.
-        if (-u[r] <= std::max(sides_.stops()[i].rest_speed, 1e-9 * out_.state.w.lpNorm<Eigen::Infinity>()))
-          continue;
+        if (-u[r] <= std::max(sides_.stops()[i].rest_speed, 1e-9 * sides_.fastest(i, out_.state))) continue;
         return fail_at(r);
       }
       any = struck_[static_cast<std::size_t>(r)] = true;
@@ -123,7 +121,9 @@ class Change {
     if (!any) return true;
     // Two stops on either side of what hardly moves: whether it leaves the one as fast as it meets the other
     // is known as well as its rates are.
-    const auto impulses = solve_box(D_, b, low, high, rate_rounding * out_.state.w.lpNorm<Eigen::Infinity>());
+    VectorXd rounding(count());
+    for (Index r = 0; r < count(); ++r) rounding[r] = rate_rounding * sides_.fastest(side(r), out_.state);
+    const auto impulses = solve_box(D_, b, low, high, rounding);
     if (!impulses) return fail_at(std::find(struck_.begin(), struck_.end(), true) - struck_.begin());
     responses.give(impulses->x, out_.state.w);
     const VectorXd after = responses.rates(out_.state.w);
@@ -136,14 +136,14 @@ class Change {
   // Does friction move, or does a stop stay out of it, whatever the forces are?
   bool at_rest(Index r, double rate) const {
     const std::size_t i = side(r);
-    if (sides_.is_friction(i)) return std::abs(rate) <= 1.0001 * sides_.zero_rate();
-    return rate <= sides_.zero_rate() || (struck_[static_cast<std::size_t>(r)] && rate <= 0);
+    if (sides_.is_friction(i)) return std::abs(rate) <= 1.0001 * sides_.zero_rate(i);
+    return rate <= sides_.zero_rate(i) || (struck_[static_cast<std::size_t>(r)] && rate <= 0);
   }
 
   // A stop that is left so slowly that the way back ends before the gap counts.
   bool falls_back(Index r, double rate) const {
     return sides_.is_stop(side(r)) && !struck_[static_cast<std::size_t>(r)] && b_[r] < 0 &&
-           rate * rate <= -2 * b_[r] * sides_.stops().touching();
+           rate * rate <= -2 * b_[r] * sides_.touching(side(r));
   }
 
   bool choose(const PushResponses& responses) {
@@ -153,7 +153,10 @@ class Change {
       out_.failure = "the constraint matrix cannot be factorised where modes change";
       return false;
     }
-    if (b_.size() > 0 && b_.lpNorm<Eigen::Infinity>() <= sides_.zero_acceleration()) b_.setZero();
+    bool still_there = true;
+    for (Index r = 0; r < count(); ++r)
+      still_there = still_there && std::abs(b_[r]) <= sides_.zero_acceleration(side(r));
+    if (still_there) b_.setZero();
     low_ = high_ = VectorXd::Zero(count());
     rests_.assign(rows_.size(), false);
     slips_.assign(rows_.size(), 0);
@@ -165,8 +168,8 @@ class Change {
         continue;
       }
       if (!movable(r)) {
-        if (sides_.is_stop(i) && crossed(r) && b_[r] < -sides_.zero_acceleration()) return fail_at(r);
-        if (sides_.is_friction(i) && std::abs(b_[r]) > sides_.zero_acceleration())
+        if (sides_.is_stop(i) && crossed(r) && b_[r] < -sides_.zero_acceleration(i)) return fail_at(r);
+        if (sides_.is_friction(i) && std::abs(b_[r]) > sides_.zero_acceleration(i))
           slide(r, b_[r] > 0 ? 1 : -1);
         else if (sides_.is_friction(i) && crossed(r))
           slide(r, sides_.away_from_kink(i, system_, out_.state));
@@ -220,7 +223,7 @@ class Change {
   bool come_back(Index r) {
     const std::size_t i = side(r), k = static_cast<std::size_t>(r);
     const double sense = sides_.is_friction(i) ? slips_[k] : 1;
-    const double away = sense * solution_.w[r], zero = sides_.zero_acceleration();
+    const double away = sense * solution_.w[r], zero = sides_.zero_acceleration(i);
     const bool others_hold =
         sides_.is_friction(i) && std::abs(away) <= zero && !independent(D_, solution_.held, r);
     if (rests_[k] || (away >= -zero && !others_hold)) return false;
@@ -245,7 +248,7 @@ class Change {
       for (Index r = 0; r < count(); ++r) {
         if (!rests_[static_cast<std::size_t>(r)] || !sides_.is_friction(side(r))) continue;
         if (solution_.held[static_cast<std::size_t>(r)] ||
-            std::abs(solution_.w[r]) <= sides_.zero_acceleration())
+            std::abs(solution_.w[r]) <= sides_.zero_acceleration(side(r)))
           continue;
         slide(r, solution_.w[r] > 0 ? 1 : -1);
         any = true;
@@ -277,7 +280,7 @@ class Change {
                           [&](Index r) { return sides_.is_friction(side(r)) && bears(r); });
     for (const Index r : order) {
       const auto k = static_cast<std::size_t>(r);
-      if (!rests_[k] || solution_.held[k] || !wants(r) || solution_.w[r] > sides_.zero_acceleration())
+      if (!rests_[k] || solution_.held[k] || !wants(r) || solution_.w[r] > sides_.zero_acceleration(side(r)))
         continue;
       if (independent(D_, solution_.held, r))
         solution_.held[k] = true;

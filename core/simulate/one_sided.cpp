@@ -239,7 +239,7 @@ void OneSided::tell(std::size_t i, std::size_t pad, Event& out) const {
 }
 
 bool OneSided::touches(std::size_t i, const System& system, const State& state) const {
-  return active_[i] || stops_.gap(i, system, state) - shift_[static_cast<Index>(i)] <= stops_.touching();
+  return active_[i] || stops_.gap(i, system, state) - shift_[static_cast<Index>(i)] <= touching(i);
 }
 
 void OneSided::touch(const System& system, const State& state) {
@@ -338,7 +338,7 @@ void OneSided::measure_friction(const VectorXd& q, const VectorXd& v, const Stat
   const Friction& f = friction(i);
   gradient_.resize(static_cast<Index>(f.function.stencil().size()));
   f.function.value_and_gradient(q.data(), gradient_.data(), near(i, state));
-  const double rate = f.function.rate(gradient_.data(), v.data()) / zero_rate();
+  const double rate = f.function.rate(gradient_.data(), v.data()) / zero_rate(i);
   probe.margins[static_cast<Index>(i)] = f.slip != 0 ? f.slip * rate : 2 - std::abs(rate);
 }
 
@@ -365,16 +365,17 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
       probe.margins[i] = room(motor, q, v, state) - motor.shift;
       continue;
     }
-    double rate = 0, margin = 0;
+    double rate = 0, margin = 0, zero = stops_.touching();
     if (i < stops) {
+      zero = touching(k);
       margin = stops_.gap(k, state, q, v, rate) - shift_[i];
     } else {
       const double sign = active_[k] ? 1.0 : -1.0;
       margin = sign * stretch(cables_[k - stops_.size()], state.t, q, v, rate);
       rate *= sign;
     }
-    probe.margins[i] = margin / stops_.touching();
-    probe.rates[i] = rate / stops_.touching();
+    probe.margins[i] = margin / zero;
+    probe.rates[i] = rate / zero;
   }
 }
 

@@ -93,9 +93,15 @@ class OneSided {
   void stick(std::size_t i, const System& system, const State& state);
   // Of those that stand by those that stick: c_ji of friction_hold.hpp, frictions by frictions.
   void set_shares(MatrixXd c) { shares_ = std::move(c); }
-  // What counts as zero, of rates and accelerations: what comes to a zero length in a step.
-  double zero_rate() const { return stops_.touching() / step_; }
-  double zero_acceleration() const { return zero_rate() / step_; }
+  // What counts as zero, of what a stop or friction acts along, of its rates and accelerations: what comes to
+  // a zero length, or angle, in a step.
+  double touching(std::size_t i) const { return stops_.touching(measure(i)); }
+  double zero_rate(std::size_t i) const { return touching(i) / step_; }
+  double zero_acceleration(std::size_t i) const { return zero_rate(i) / step_; }
+  // As fast as the fastest coordinate is [m/s], or as that turns [rad/s].
+  double fastest(std::size_t i, const State& state) const {
+    return state.w.lpNorm<Eigen::Infinity>() * touching(i) / stops_.touching();
+  }
 
   // Margins and their rates (NaN: not known) of a state of `model`, which must be that of the present modes.
   // Without `forces`, those of what is held are left NaN, which saves a factorisation.

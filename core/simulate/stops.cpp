@@ -18,7 +18,7 @@ std::string held_name(const StopSide& stop) {
 
 }  // namespace
 
-Stops::Stops(const Structure& structure) : touching_(1e-11 * reference_length(structure)) {
+Stops::Stops(const Structure& structure) : of_length_(of_angle * reference_length(structure)) {
   const std::vector<int> followed = followed_angles(structure).of_stop;
   for (std::size_t i = 0; i < structure.stops.size(); ++i) {
     const Stop& stop = structure.stops[i];

@@ -56,8 +56,9 @@ class Stops {
   // The same, of the state's node coordinates and velocities, with its rate.
   double gap(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v, double& rate) const;
   double gap_rate(std::size_t i, const System& system, const State& state) const;
-  // Gaps within this count as touching [m] or [rad].
-  double touching() const { return touching_; }
+  // Gaps within this count as touching: of lengths [m], and of a measure's values [m] or [rad].
+  double touching() const { return of_length_; }
+  double touching(const MeasureFunction& s) const { return s.is_angle() ? of_angle : of_length_; }
 
   // Turn the approach of stop i round; the energy lost [J]. NaN: the stop cannot be moved by any impulse.
   double rebound(std::size_t i, const System& system, State& state) const;
@@ -70,8 +71,9 @@ class Stops {
   double push(std::size_t i, const Model& model, const std::set<std::size_t>& held, const State& state) const;
 
  private:
+  static constexpr double of_angle = 1e-11;
   std::vector<StopSide> stops_;
-  double touching_;
+  double of_length_;
 };
 
 }  // namespace unfurl

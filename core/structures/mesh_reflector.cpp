@@ -86,7 +86,8 @@ Structure build_rim(const ParamSet& params) {
   for (const char* key : {"units", "post_length", "density", "section_area", "fold_angle", "mass"})
     rim.set(key, params.value(key));
   if (cable) {
-    for (const char* key : {"longeron_length", "cable_rate", "cable_ramp", "joint_damping", "gears"})
+    for (const char* key :
+         {"longeron_length", "cable_rate", "cable_ramp", "joint_damping", "gears", "diagonal_mass"})
       rim.set(key, params.value(key));
     return build_cable_ring(rim);
   }
@@ -242,6 +243,9 @@ const std::vector<ParamSpec>& mesh_reflector_params() {
       only_with(
           "hoop", {"cable_ring"},
           real_param("joint_damping", "N m s/rad", 2.0, 0.0, no_end, "of every longeron at its battens")),
+      only_with("hoop", {"cable_ring"},
+                real_param("diagonal_mass", "kg", 0.1, 0.0, no_end,
+                           "of a telescoping diagonal of the rim, shared by the corners of its bay")),
       only_with("hoop", {"cable_ring"}, boolean_param("gears", true, "synchronising gears at the battens")),
       only_with("hoop", {"hoop"},
                 real_param("hinge_force", "N", 20.0, -1e12, 1e12,

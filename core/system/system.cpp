@@ -162,6 +162,7 @@ void System::Data::build_forces(const Structure& structure) {
   gravity_force = node_mass * structure.gravity.replicate(coordinates / 3, 1);
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
     if (structure.nodes[i].ghost) gravity_force.segment<3>(3 * static_cast<Index>(i)).setZero();
+  find_integrators(structure);
 }
 
 void System::Data::find_constraint_rows(std::size_t constraints) {
@@ -397,45 +398,8 @@ SparseRows System::curvature(const ConstVec& q, const ConstVec& lambda) const {
   return SparseRows(data_->B.transpose() * K) * data_->B;
 }
 
-double System::kinetic_energy(const ConstVec& w) const {
-  return 0.5 * w.dot(data_->mass * w);
-}
-double System::potential_energy(const ConstVec& q) const {
-  double sum = -data_->gravity_force.dot(q);
-  for (const auto& block : data_->forces) sum += block->potential(moment(since_), q.data());
-  return sum;
-}
-double System::load_work(const ConstVec& q) const {
-  return data_->loads.dot(q - data_->start);
-}
-
 const std::vector<Drive>& System::drives() const {
   return data_->drives;
-}
-
-bool System::has_power(bool dissipative) const {
-  return std::any_of(data_->forces.begin(), data_->forces.end(), [&](const auto& block) {
-    return dissipative ? block->dissipates() : block->supplies();
-  });
-}
-
-double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v,
-                     const double* tension) const {
-  const Moment at = moment(t, tension);
-  double sum = 0;
-  for (const auto& block : data_->forces)
-    if ((dissipative ? block->dissipates() : block->supplies()) && !block->takes_by_pose()) {
-      const double taken = block->dissipation(at, q.data(), v.data());
-      sum += dissipative ? taken : block->power(at, q.data(), v.data()) - taken;
-    }
-  return sum;
-}
-
-double System::taken(const ConstVec& q) const {
-  double sum = 0;
-  for (const auto& block : data_->forces)
-    if (block->takes_by_pose()) sum += block->taken(moment(since_), q.data());
-  return sum;
 }
 
 void System::force_derivatives(double t, const ConstVec& q, const ConstVec& v, SparseRows& by_z,

@@ -20,6 +20,8 @@ struct System::Data {
   SparseRows node_mass, mass, B, B_transposed;
   VectorXd q0, start;
   std::vector<int> free_coordinates;
+  std::vector<Index>
+      integrators;  // solved coordinates that are integrals of controllers: they have no energy
   bool eliminated = false, rheonomic = false;
   Index coordinates = 0, rows = 0, linear_rows = 0;
   VectorXd lengths;
@@ -47,6 +49,7 @@ struct System::Data {
   void add_blocks(const Structure& structure, bool eliminate_linear);
   void build_coordinates();
   void build_forces(const Structure& structure);
+  void find_integrators(const Structure& structure);
   void build_jacobian_map();
   // Rows of G_z that are rounding alone, of entries of the node Jacobian that cancel, become zero: rows are
   // taken in units of their own size where they are solved for, and would hold what they do not touch.

@@ -126,13 +126,14 @@ TEST_CASE("the part of a motor's law that holds is the one that has room, and no
   for (const int times : held) CHECK(times > 20);
 }
 
-// The ghost that sums up the error, m (f' - s') on it, of the part of the motor's power and of its
-// derivatives.
+// The ghost that sums up the error, m (f' - s') on it, is part of the motor's derivatives, not of its power:
+// it has no energy.
 TEST_CASE("a motor and the ghost of its controller: power and derivatives agree with the force") {
   Structure structure = testing::table_structure();
   structure.forces = {motor_with(Motor::Control::position)};
   structure.forces[0].motor.limit = 1e3, structure.forces[0].motor.stall = 1e3;
   structure.forces[0].measure = {MeasureKind::length, {0, 1}, Vec3::Zero(), 0.0, {}};  // bends
+  structure.nodes[3].mass = 3e-6;
   const auto block = motor_block(structure, node_mass_matrix(structure));
   std::mt19937 random(12);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -146,13 +147,13 @@ TEST_CASE("a motor and the ghost of its controller: power and derivatives agree 
   };
   const Vec3 d = q.segment<3>(3) - q.segment<3>(0), w = v.segment<3>(3) - v.segment<3>(0);
   const Vec3 along = d.normalized();
-  const double rate = along.dot(w), command_rate = -0.2, mass = 1e-6;
+  const double rate = along.dot(w), command_rate = -0.2, mass = 3e-6;
   const double effort = effort_of(structure.forces[0].motor, d.norm(), rate, q[9]);
   VectorXd wanted = VectorXd::Zero(12);
   wanted.segment<3>(0) = -effort * along, wanted.segment<3>(3) = effort * along;
   wanted[9] = mass * (command_rate - rate);
   CHECK((force(q, v) - wanted).cwiseAbs().maxCoeff() <= 1e-14);
-  CHECK(block->power(t, q.data(), v.data()) == Approx(wanted.dot(v)).epsilon(1e-13));
+  CHECK(block->power(t, q.data(), v.data()) == Approx(wanted.head<9>().dot(v.head<9>())).epsilon(1e-13));
   ForceDerivative by_q, by_v;
   block->derivatives(t, q.data(), v.data(), by_q, by_v);
   SparseRows K(12, 12), D(12, 12);

@@ -9,6 +9,7 @@
 
 #include "core/integrators/integrator.hpp"
 #include "core/scene/elements.hpp"
+#include "tests/support/other_units.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -262,6 +263,22 @@ TEST_CASE("all methods give one motion under every kind of force") {
     if (kind.kind != "latch") CHECK(has_case(cases, kind.kind));  // waits for an event: latch_test
   }
   for (const Case& c : cases) check_agreement(c);
+}
+
+TEST_CASE("every kind of constraint and force moves alike in other units, to the last bit") {
+  // Keys without a unit of their own, in the cases above.
+  const testing::UnitsOfKeys more{{"kinetic", "N m"}, {"static", "N m"}, {"integral", "N m/rad/s"}};
+  std::vector<Case> cases = constraint_cases();
+  for (Case& c : force_cases()) cases.push_back(std::move(c));
+  for (const Case& c : cases) {
+    INFO(c.kind << ", " << c.what);
+    if (c.kind == "combination") continue;  // of metres and degrees: its coefficients do not say their units
+    // A rotor turns by an angle, whatever a metre is: among the coordinates it weighs another share.
+    const bool turns = c.kind == "motor" || c.kind == "winch";
+    for (const testing::OtherUnits& units :
+         {testing::OtherUnits{-10, 0, 0}, {0, -20, 0}, {0, 0, -7}, {7, 20, 5}})
+      testing::check_other_units(read_scene_text(c.text, "test.toml"), units, turns ? 1e-9 : 0, more);
+  }
 }
 
 }  // namespace methods_agree_test

@@ -127,7 +127,7 @@ TEST_CASE("walls on either side of what hardly moves agree to the rounding of it
   const MatrixXd D = (MatrixXd(2, 2) << 1, -1, -1, 1).finished();
   const Eigen::Vector2d b(-1e-4, 1e-4 - 1e-15), low(0, 0);
   const Eigen::Vector2d high = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
-  const auto found = solve_box(D, b, low, high, 1e-14);
+  const auto found = solve_box(D, b, low, high, VectorXd::Constant(2, 1e-14));
   REQUIRE(found.has_value());
   CHECK(found->x[0] - found->x[1] == Approx(1e-4).margin(1e-14));
   CHECK(found->w.lpNorm<Eigen::Infinity>() <= 1e-14);

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Energies and powers of a System.
+#include <algorithm>
+
+#include "core/system/system_data.hpp"
+
+namespace unfurl {
+
+void System::Data::find_integrators(const Structure& structure) {
+  for (const Force& force : structure.forces) {
+    if (force.motor.integrator < 0) continue;
+    const auto at = std::ranges::find(free_coordinates, 3 * force.motor.integrator);
+    if (at != free_coordinates.end()) integrators.push_back(at - free_coordinates.begin());
+  }
+}
+
+double System::kinetic_energy(const ConstVec& w) const {
+  double twice = w.dot(data_->mass * w);
+  for (const Index k : data_->integrators) twice -= data_->mass.coeff(k, k) * w[k] * w[k];
+  return 0.5 * twice;
+}
+double System::potential_energy(const ConstVec& q) const {
+  double sum = -data_->gravity_force.dot(q);
+  for (const auto& block : data_->forces) sum += block->potential(moment(since_), q.data());
+  return sum;
+}
+double System::load_work(const ConstVec& q) const {
+  return data_->loads.dot(q - data_->start);
+}
+
+bool System::has_power(bool dissipative) const {
+  return std::any_of(data_->forces.begin(), data_->forces.end(), [&](const auto& block) {
+    return dissipative ? block->dissipates() : block->supplies();
+  });
+}
+
+double System::power(bool dissipative, double t, const ConstVec& q, const ConstVec& v,
+                     const double* tension) const {
+  const Moment at = moment(t, tension);
+  double sum = 0;
+  for (const auto& block : data_->forces)
+    if ((dissipative ? block->dissipates() : block->supplies()) && !block->takes_by_pose()) {
+      const double taken = block->dissipation(at, q.data(), v.data());
+      sum += dissipative ? taken : block->power(at, q.data(), v.data()) - taken;
+    }
+  return sum;
+}
+
+double System::taken(const ConstVec& q) const {
+  double sum = 0;
+  for (const auto& block : data_->forces)
+    if (block->takes_by_pose()) sum += block->taken(moment(since_), q.data());
+  return sum;
+}
+
+}  // namespace unfurl

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Small and large, light and heavy, fast and slow: scenes in other units of length, mass and time. A limit
+// without a unit would tell a mechanism of a millimetre from one of a metre.
+#include "tests/support/other_units.hpp"
+
+#include "core/integrators/integrator.hpp"
+#include "core/scene/library.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace other_units_test {
+
+namespace {
+
+constexpr OtherUnits all_units[] = {{-10, 0, 0}, {0, -20, 0}, {0, 0, -7}, {7, 20, 5}, {-17, -40, -12}};
+
+// A scene of the library with changes, and the units of keys that have one or another.
+struct Case {
+  const char* scene;
+  std::vector<std::string> changes;
+  UnitsOfKeys more = {};
+};
+
+}  // namespace
+
+TEST_CASE("every scene of the library moves alike in other units, to the last bit") {
+  for (const LibraryScene& entry : library_scenes()) {
+    INFO(entry.name);
+    Scene scene = read_scene_file(entry.path, {});
+    scene.solver.end_time = std::min(scene.solver.end_time, 120 * scene.solver.step);
+    for (const OtherUnits& units : all_units) check_other_units(scene, units);
+  }
+}
+
+TEST_CASE("every method moves alike in other units, to the last bit") {
+  for (const Method& method : methods())
+    for (const char* name : {"double_pendulum", "hoop6_sector"}) {
+      INFO(method.name << ", " << name);
+      Scene scene = read_scene_file(find_scene(name), {"solver.method=\"" + std::string(method.name) + "\""});
+      scene.solver.end_time = 40 * scene.solver.step;
+      for (const OtherUnits& units : all_units) check_other_units(scene, units);
+    }
+}
+
+TEST_CASE("events come at the same times in other units, to the last bit") {
+  const std::string elbow = R"(nodes=["pivot","elbow","tip"])";
+  const Case cases[] = {
+      {"hoop6", {}},
+      {"hoop6_sector", {R"(solver.at_deployed="latch")"}},
+      {"hoop6_sector", {"solver.adaptive=true", "solver.step=0.1"}},
+      {"scissor_mast", {}},
+      {"double_pendulum",
+       {"constraints[0]={kind=\"angle_stop\"," + elbow + ",min=60,max=120,restitution=0.5}",
+        "solver.end_time=2"}},
+      {"double_pendulum",
+       {"constraints[0]={kind=\"angle_stop\"," + elbow + ",max=110,rest_speed=100,restitution=0.3}",
+        "forces[0]={kind=\"friction\"," + elbow + ",kinetic=1.5,static=2}", "solver.end_time=2"},
+       {{"kinetic", "N m"}, {"static", "N m"}}},
+      {"double_pendulum",
+       {R"(constraints[0]={kind="length_stop",nodes=["pivot","tip"],max=1.45,restitution=0.7})",
+        R"(constraints[1]={kind="coordinate_stop",nodes=["elbow"],direction=[0,0,1],min=-0.9,restitution=0})",
+        "solver.end_time=2"}},
+      {"double_pendulum",
+       {R"(forces[0]={kind="spring",nodes=["pivot","tip"],stiffness=300,free_length=1.4,tension_only=true})",
+        R"(forces[1]={kind="drag",nodes=["tip"],damping=0.4})",
+        R"(forces[2]={kind="load_over_time",nodes=["elbow"],force=[3,-2,5],times=[0.113,0.127,0.141],values=[0,9,0]})",
+        "solver.end_time=2"}},
+      {"four_bar",
+       {R"(constraints[0]={kind="length_stop",nodes=["B","D"],max=3.5,restitution=0.7})",
+        "solver.end_time=2"}},
+      {"pendulum",
+       {R"(forces[0]={kind="friction",nodes=["bob"],direction=[1,0,0],kinetic=4,static=30})",
+        "solver.end_time=3"},
+       {{"kinetic", "N"}, {"static", "N"}}},
+  };
+  for (const Case& one : cases) {
+    INFO(one.scene << " " << (one.changes.empty() ? "" : one.changes.front()));
+    const Scene scene = read_scene_file(find_scene(one.scene), one.changes);
+    CHECK(static_cast<int>(simulate(build_model(scene), scene.solver).events.size()) > 0);
+    for (const OtherUnits& units : all_units) check_other_units(scene, units, 0, one.more);
+  }
+}
+
+}  // namespace other_units_test
