@@ -64,7 +64,7 @@ class ClearanceScan {
       return axis_distance(a, b);
     };
     const double golden = 0.5 * (std::sqrt(5.0) - 1);
-    for (int k = 0; k < 60 && hi - lo > 1e-12 * std::max(1.0, std::abs(hi)); ++k) {
+    for (int k = 0; k < 60 && hi - lo > 1e-12 * (hi - trajectory_.start_time()); ++k) {
       const double left = hi - golden * (hi - lo), right = lo + golden * (hi - lo);
       if (axes(left) <= axes(right))
         hi = right;

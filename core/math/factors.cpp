@@ -15,16 +15,22 @@ Index pivots_above(const PivotedQr& qr, double least) {
 
 }  // namespace
 
+// Eigen's decompositions take no matrix without rows or columns (a structure without constraints has one):
+// what is to be said of those is said here.
+
 SymmetricEigen symmetric_eigen(const MatrixXd& A) {
+  if (A.size() == 0) return {VectorXd(0), MatrixXd(0, 0)};
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(A);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 VectorXd symmetric_eigenvalues(const MatrixXd& A) {
+  if (A.size() == 0) return VectorXd(0);
   return Eigen::SelfAdjointEigenSolver<MatrixXd>(A, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
 ComplexEigen complex_eigen(const MatrixXd& A) {
+  if (A.size() == 0) return {Eigen::VectorXcd(0), Eigen::MatrixXcd(0, 0), Eigen::MatrixXcd(0, 0)};
   const Eigen::EigenSolver<MatrixXd> solver(A);
   ComplexEigen out{solver.eigenvalues(), solver.eigenvectors(), {}};
   out.inverse = out.vectors.inverse();
@@ -40,6 +46,7 @@ VectorXd least_squares(const MatrixXd& A, const VectorXd& b) {
 }
 
 MatrixXd fitted_columns(const MatrixXd& A, const MatrixXd& B) {
+  if (A.size() == 0) return MatrixXd::Zero(A.cols(), B.cols());
   const Eigen::CompleteOrthogonalDecomposition<MatrixXd> factors(A);
   MatrixXd x(A.cols(), B.cols());
   for (Index k = 0; k < B.cols(); ++k) x.col(k) = factors.solve(VectorXd(B.col(k)));
@@ -47,22 +54,26 @@ MatrixXd fitted_columns(const MatrixXd& A, const MatrixXd& B) {
 }
 
 Index rank_of(const MatrixXd& A, double threshold) {
+  if (A.size() == 0) return 0;
   PivotedQr qr(A);
   if (threshold >= 0) qr.setThreshold(threshold);
   return qr.rank();
 }
 
 MatrixXd column_space(const MatrixXd& A, double least) {
+  if (A.size() == 0) return {A.rows(), 0};
   const PivotedQr qr(A);
   return qr.householderQ() * MatrixXd::Identity(A.rows(), pivots_above(qr, least));
 }
 
 MatrixXd orthonormal_columns(const MatrixXd& A) {
+  if (A.size() == 0) return MatrixXd::Identity(A.rows(), A.cols());
   const PivotedQr qr(A);
   return qr.householderQ() * MatrixXd::Identity(A.rows(), A.cols());
 }
 
 MatrixXd column_complement(const MatrixXd& A, double least) {
+  if (A.size() == 0) return MatrixXd::Identity(A.rows(), A.rows());
   const PivotedQr qr(A);
   const Index left = A.rows() - pivots_above(qr, least);
   MatrixXd last = MatrixXd::Zero(A.rows(), left);

@@ -253,4 +253,17 @@ TEST_CASE("what a drive holds has no modes") {
   CHECK(std::isnan(held.lowest_elastic()));
 }
 
+// A mass on a rod that gives, and no constraint that is not eliminated: f = sqrt(E A / l m) / 2 pi, and two
+// ways to swing.
+TEST_CASE("a structure whose rods all give and that nothing else holds has modes") {
+  const Vibration v = at_start(read_scene_text(R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "P", position = [1.5, 0, 0], mass = 2}]
+rods = [{nodes = ["O", "P"], mass = 0, area = 1e-4, youngs_modulus = 1.1e6, elastic = true}]
+)",
+                                               "s.toml"));
+  CHECK(v.mechanism_motions == 2);
+  CHECK(v.lowest_elastic() == Approx(std::sqrt(1.1e6 * 1e-4 / (1.5 * 2)) / (2 * pi)).epsilon(1e-12));
+}
+
 }  // namespace vibration_test
