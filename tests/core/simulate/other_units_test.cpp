@@ -3,6 +3,7 @@
 // without a unit would tell a mechanism of a millimetre from one of a metre.
 #include "tests/support/other_units.hpp"
 
+#include "core/diagnostics/clearance.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/scene/library.hpp"
 
@@ -79,6 +80,22 @@ TEST_CASE("events come at the same times in other units, to the last bit") {
     const Scene scene = read_scene_file(find_scene(one.scene), one.changes);
     CHECK(static_cast<int>(simulate(build_model(scene), scene.solver).events.size()) > 0);
     for (const OtherUnits& units : all_units) check_other_units(scene, units, 0, one.more);
+  }
+}
+
+TEST_CASE("the nearest pair of rods is that of other units, to the last bit") {
+  const Scene scene = read_scene_file(find_scene("four_bar"), {});
+  const auto nearest = [&](const OtherUnits& units) {
+    const Scene other = read_scene_text(in_other_units(scene, units, {}), "s.toml");
+    const Simulation run = simulate(build_model(other), other.solver);
+    return least_clearance(run.trajectory, run.trajectory.size()).value();
+  };
+  const Clearance here = nearest({});
+  CHECK(here.t > 0);  // between states, of a run of 6 s
+  for (const OtherUnits& units : all_units) {
+    const Clearance there = nearest(units);
+    CHECK(there.t == here.t * units.factor("s"));
+    CHECK(there.axes == here.axes * units.factor("m"));
   }
 }
 
