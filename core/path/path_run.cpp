@@ -17,6 +17,7 @@
 #include "core/simulate/one_sided.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/singular_poses.hpp"
+#include "core/simulate/stretched.hpp"
 #include "core/simulate/time_grid.hpp"
 
 namespace unfurl {
@@ -482,6 +483,7 @@ Simulation simulate_on_path(const std::shared_ptr<const Model>& model, const Sol
   const double begin = thread_cpu_seconds();
   Simulation run = PathRun(model, options, hooks).run();
   run.cpu_s = thread_cpu_seconds() - begin;
+  if (model->structure.quasi_static) add_stretch(run.trajectory);
   return run;
 }
 

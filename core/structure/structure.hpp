@@ -262,7 +262,7 @@ struct Structure {
   Vec3 gravity = Vec3::Zero();  // acceleration [m/s^2]
   bool lumped_mass = false;     // true: half of a rod's mass at each node instead of the consistent matrix
   // The motion is that of rigid rods; what rods with a modulus give is added to what is shown of it
-  // (diagnostics/stretched.hpp).
+  // (simulate/stretched.hpp).
   bool quasi_static = false;
   Deployment deployment;
   std::vector<ReportedLength> lengths;
