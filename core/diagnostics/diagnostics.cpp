@@ -291,6 +291,8 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
 }
 
 enum class Look { energies, books, states, all };
+// What a pose next to a singular one does not tell better is not called unique; of the largest multiplier.
+constexpr double told = 1e-4;
 
 // The columns of a run, filled state by state.
 class StateTable {
@@ -298,6 +300,7 @@ class StateTable {
   // `uniqueness`: where it is known already; null: it is asked for only at the end.
   StateTable(const Simulation& run, Look look, const ForceUniqueness* uniqueness, const KnownAhead& ahead)
       : run_(run),
+        look_(look),
         books_(look == Look::books || look == Look::energies),
         uniqueness_(uniqueness),
         used_(columns(run, books_, out_)),
@@ -356,7 +359,7 @@ class StateTable {
   }
 
   Diagnostics finish(const ForceUniqueness* uniqueness) {
-    if (uniqueness) mark_unique(run_.trajectory, *uniqueness, out_);
+    if (uniqueness) mark_unique(run_.trajectory, *uniqueness, doubtful_, out_);
     leave_open(run_.trajectory, out_);
     for (Series& column : out_.columns)
       if (column.unit == "J")
@@ -387,19 +390,28 @@ class StateTable {
     velocity_phi_.resize(lengths_.size());
   }
 
-  // Of rods; returns the multipliers.
+  // Of rods; returns the multipliers. A state that is looked at by itself, between those of a run, has none
+  // where its round-off says what they are.
   VectorXd find_forces(std::size_t i, const VectorXd& q, const VectorXd& v) {
     const State& state = run_.trajectory.state(i);
     VectorXd lambda = forces_.multipliers(i, acceleration_);
+    const double most = told * lambda.lpNorm<Eigen::Infinity>();
+    const VectorXd& doubt = forces_.doubt();
     sharing_->share(state.t, q, run_.trajectory.report(i).singular_event, lambda);
+    if (doubt.size() > 0 && doubt.maxCoeff() > most) {
+      if (look_ == Look::states) lambda.setConstant(nan), acceleration_.setConstant(nan);
+      doubtful_[i] = (doubt.array() > most).select(doubt, 0.0);
+    }
     axial_forces(*model_, state, q, v, lambda, force_);
     if (force_.size() > 0) out_.axial_force.row(static_cast<Index>(i)) = force_.transpose();
     return lambda;
   }
 
   const Simulation& run_;
+  Look look_;
   bool books_;
   const ForceUniqueness* uniqueness_;
+  DoubtfulStates doubtful_;
   Diagnostics out_;
   std::vector<const Row*> used_;
   std::optional<DriveColumns> drives_;

@@ -122,24 +122,32 @@ std::vector<double>* values_of(Diagnostics& d, std::string_view name) {
   return nullptr;
 }
 
-// waves[i], 1: they change forces of state i.
-void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& d,
-               std::vector<char>& waves) {
+// open[i], 1: waves or round-off change forces of state i.
+void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
+               const DoubtfulStates& doubtful, Diagnostics& d, std::vector<char>& open) {
   std::vector<double>* const largest = values_of(d, "axial_force_max_unique");
   std::vector<double>* const smallest = values_of(d, "axial_force_min_unique");
   std::vector<char> unique(d.rod_unique.size(), 1);
   VectorXd force;
+  double largest_force = 0;  // of those that are known
+  for (Index i = 0; i < std::ssize(d.t); ++i)
+    for (const double f : d.axial_force.row(i))
+      largest_force = std::abs(f) > largest_force ? std::abs(f) : largest_force;
+  const double least = 1e-9 * largest_force;
   for (std::size_t i = 0; i < d.t.size(); ++i) {
     const std::vector<char>& rows = uniqueness.at(i);
     const std::vector<int>& row_of = trajectory.model(i).system.rod_rows();
     const bool regular = uniqueness.regular(i);
     force = d.axial_force.row(static_cast<Index>(i));
     const std::vector<char> followed = followed_forces(trajectory.model(i), trajectory.state(i), force);
-    waves[i] = followed.empty() ? 0 : 1;
+    const auto doubt = doubtful.find(i);
+    const bool doubted = doubt != doubtful.end() && doubt->second.maxCoeff() > least;
+    open[i] = followed.empty() && !doubted ? 0 : 1;
     for (std::size_t r = 0; r < unique.size(); ++r) {
       unique[r] = row_of[r] < 0 ? char{1} : rows[static_cast<std::size_t>(row_of[r])];
       if (regular) d.rod_unique[r] = static_cast<char>(d.rod_unique[r] & unique[r]);
       if (!followed.empty()) unique[r] = static_cast<char>(unique[r] & followed[r]);
+      if (doubted && row_of[r] >= 0 && doubt->second[row_of[r]] > least) unique[r] = 0;
       d.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
           unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);
     }
@@ -150,18 +158,19 @@ void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness, 
 
 }  // namespace
 
-void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& d) {
+void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
+                 const DoubtfulStates& doubtful, Diagnostics& d) {
   std::size_t most = 0;  // rows of any model
   for (std::size_t i = 0; i < d.t.size(); ++i) most = std::max(most, uniqueness.at(i).size());
   const std::vector<char> none(most, 0);
-  std::vector<char> waves(d.t.size(), 0);
-  mark_rods(trajectory, uniqueness, d, waves);
-  mark_reactions(trajectory, uniqueness, waves, d);
+  std::vector<char> open(d.t.size(), 0);
+  mark_rods(trajectory, uniqueness, doubtful, d, open);
+  mark_reactions(trajectory, uniqueness, open, d);
   for (const DriveChannel& drive : drive_channels(trajectory.model()))
     if (std::vector<double>* const column =
             values_of(d, drive.name() + (drive.angle() ? ".torque_unique" : ".force_unique")))
       for (std::size_t i = 0; i < column->size(); ++i)
-        (*column)[i] = drive.unique(trajectory.model(i), waves[i] ? none : uniqueness.at(i)) ? 1.0 : 0.0;
+        (*column)[i] = drive.unique(trajectory.model(i), open[i] ? none : uniqueness.at(i)) ? 1.0 : 0.0;
 }
 
 PeakForce peak_rod_force(const Diagnostics& d, Pull pull) {

@@ -60,9 +60,14 @@ class ForceUniqueness {
 // changed so much.
 std::vector<char> followed_forces(const Model& model, const State& state, const VectorXd& axial_force);
 
+// By state, where some of its multipliers are said by round-off of the pose, next to a singular one: how far
+// each may be off (StateForces::doubt), of all kept rows.
+using DoubtfulStates = std::map<std::size_t, VectorXd>;
+
 // Enters what is unique into diagnostics of the run's states that have everything else: flags of rods and
-// the columns that say so.
-void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness, Diagnostics& diagnostics);
+// the columns that say so. Doubt below 1e-9 of the run's largest force is none: something at rest.
+void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
+                 const DoubtfulStates& doubtful, Diagnostics& diagnostics);
 
 // The largest axial force among all rods and states: its magnitude, or of tensions or compressions alone.
 enum class Pull { either, tension, compression };

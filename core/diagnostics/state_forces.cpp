@@ -1,30 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/diagnostics/state_forces.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
 
 namespace unfurl {
+namespace {
 
-SolvedPoint StateForces::at(std::size_t i) {
-  if (ahead_ && i < ahead_->size()) return (*ahead_)[i];
-  if (trajectory_.report(i).singular_event) return {};
-  if (i < first_ || i >= behind_last_) solve_from(i);
-  const std::size_t k = i - first_;
-  if (!lanes_->ok(k)) return {};
-  return {lanes_->acceleration(k), lanes_->lambda(k), true};
+// Directions as weak as that, where the forces are not smooth, are looked into.
+constexpr double weak = 3, rough = 1e-7;
+// Doubt, of the largest multiplier: what is not worth a thought, and what is not worth poses beside it.
+constexpr double negligible = 1e-8, harmless = 1e-6;
+
+const SolvedPoint nothing_known{};
+
+// The weight of point a in the polynomial through all of them, at t.
+template <class TimeOf>
+double weight(std::size_t a, std::size_t points, double t, const TimeOf& time) {
+  double out = 1;
+  for (std::size_t b = 0; b < points; ++b)
+    if (b != a) out *= (t - time(b)) / (time(a) - time(b));
+  return out;
 }
 
-VectorXd StateForces::multipliers(std::size_t i, VectorXd& node_acceleration) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const System& system = trajectory_.model(i).system;
-  SolvedPoint here = at(i);
-  node_acceleration.resize(system.coordinates());
-  system.expand_rate(here.known ? here.acceleration : VectorXd::Constant(system.solved_coordinates(), nan),
-                     node_acceleration);
-  if (trajectory_.report(i).singular_event) return trajectory_.state(i).lambda;
-  return here.known ? std::move(here.lambda) : VectorXd::Constant(system.constraints(), nan);
+}  // namespace
+
+const SolvedPoint& StateForces::at(std::size_t i) {
+  if (ahead_ && i < ahead_->size()) return (*ahead_)[i];
+  if (trajectory_.report(i).singular_event) return nothing_known;
+  if (kept_[i % kept].i != i) solve_from(i);
+  return kept_[i % kept].point;
 }
 
 void StateForces::solve_from(std::size_t i) {
@@ -33,11 +41,130 @@ void StateForces::solve_from(std::size_t i) {
     lanes_.emplace(model_->system);
   }
   std::vector<const State*> states;
-  first_ = behind_last_ = i;
-  while (states.size() < SaddleLanes::lanes && behind_last_ < trajectory_.size() &&
-         &trajectory_.model(behind_last_) == model_ && !trajectory_.report(behind_last_).singular_event)
-    states.push_back(&trajectory_.state(behind_last_++));
+  for (std::size_t k = i; states.size() < SaddleLanes::lanes && k < trajectory_.size() &&
+                          &trajectory_.model(k) == model_ && !trajectory_.report(k).singular_event;
+       ++k)
+    states.push_back(&trajectory_.state(k));
   lanes_->evaluate(states);
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    Kept& to = kept_[(i + k) % kept];
+    to = {i + k, {}};
+    if (lanes_->ok(k)) to.point = {lanes_->acceleration(k), lanes_->lambda(k), true, lanes_->weakness(k)};
+  }
+}
+
+VectorXd StateForces::multipliers(std::size_t i, VectorXd& node_acceleration) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const System& system = trajectory_.model(i).system;
+  SolvedPoint here = at(i);
+  doubt_.resize(0);
+  if (here.known && here.weakness > weak && !smooth(i)) {
+    Close closer = look_closely(i, trajectory_.state(i));
+    if (closer.doubt.size() > 0) {
+      if (closer.doubt.maxCoeff() > harmless * closer.point.lambda.lpNorm<Eigen::Infinity>())
+        interpolate(i, closer);
+      here = std::move(closer.point);
+      doubt_ = std::move(closer.doubt);
+    }
+  }
+  node_acceleration.resize(system.coordinates());
+  system.expand_rate(here.known ? here.acceleration : VectorXd::Constant(system.solved_coordinates(), nan),
+                     node_acceleration);
+  if (trajectory_.report(i).singular_event) return trajectory_.state(i).lambda;
+  return here.known ? std::move(here.lambda) : VectorXd::Constant(system.constraints(), nan);
+}
+
+// Up to so many known states before or behind, the nearest first. Nothing is smooth across an impact, a jump
+// of what acts, a change of the model.
+std::vector<std::size_t> StateForces::beside(std::size_t i, int way, std::size_t most) const {
+  std::vector<std::size_t> out;
+  for (std::size_t j = i; out.size() < most;) {
+    if (way < 0 ? j == 0 : j + 1 == trajectory_.size()) break;
+    const std::size_t next = way < 0 ? j - 1 : j + 1;
+    if (&trajectory_.model(next) != &trajectory_.model(i) || trajectory_.report(next).singular_event ||
+        trajectory_.time(next) == trajectory_.time(j))
+      break;
+    out.push_back(j = next);
+  }
+  return out;
+}
+
+// False, too, where there are not two states on either side.
+bool StateForces::smooth(std::size_t i) {
+  std::vector<std::size_t> states = beside(i, -1, 2), behind = beside(i, +1, 2);
+  if (states.size() < 2 || behind.size() < 2) return false;
+  states.insert(states.end(), behind.begin(), behind.end());
+  for (const std::size_t k : states)
+    if (!at(k).known) return false;
+  const VectorXd lambda = at(i).lambda;
+  VectorXd off = lambda;
+  const auto time = [&](std::size_t k) { return trajectory_.time(states[k]); };
+  for (std::size_t k = 0; k < states.size(); ++k)
+    off -= weight(k, states.size(), trajectory_.time(i), time) * at(states[k]).lambda;
+  return off.lpNorm<Eigen::Infinity>() <= rough * lambda.lpNorm<Eigen::Infinity>();
+}
+
+// No doubt where it is negligible.
+StateForces::Close StateForces::look_closely(std::size_t model_of, const State& state) {
+  if (close_ != &trajectory_.model(model_of)) {
+    close_ = &trajectory_.model(model_of);
+    one_.reset();
+    system_ = std::make_unique<System>(close_->system);
+    one_ = std::make_unique<Index1>(*system_, true);
+  }
+  Close out;
+  out.t = state.t;
+  system_->follow(state);
+  out.point.known = one_->evaluate_closely(state, out.point.acceleration, out.point.lambda, out.doubt);
+  if (!out.point.known || out.doubt.size() == 0 ||
+      out.doubt.maxCoeff() <= negligible * out.point.lambda.lpNorm<Eigen::Infinity>())
+    out.doubt.resize(0);
+  return out;
+}
+
+// By the polynomial through three poses on either side, as near as they are in a thousandth of the doubt; its
+// error is what the outer ones change. Not through a pole: there what is odd about the pose falls away from
+// it, where the forces are smooth it grows.
+void StateForces::interpolate(std::size_t i, Close& here) {
+  const std::vector<std::size_t> before = beside(i, -1, 1), behind = beside(i, +1, 1);
+  if (before.empty() || behind.empty()) return;
+  const double t = trajectory_.time(i);
+  const double h = std::min(t - trajectory_.time(before.front()), trajectory_.time(behind.front()) - t);
+  const double own = here.doubt.maxCoeff();
+  constexpr double told = 0.1;  // less, and the poses may be too far apart for what happens between them
+  constexpr double many = 10;   // times as much: all of these poses have round-off
+  std::vector<Close> near;
+  const auto look = [&](double apart) {
+    for (const double side : {-apart, apart}) {
+      near.push_back(look_closely(i, trajectory_.state_at(t + side)));
+      const Close& other = near.back();
+      if (!other.point.known || (other.doubt.size() > 0 && !(1000 * other.doubt.maxCoeff() <= own)))
+        return false;
+    }
+    return true;
+  };
+  double apart = h / 1024;
+  while (apart <= 0.5 * h && !look(apart)) {
+    near.clear();
+    apart *= 2;
+  }
+  if (near.empty() || !look(1.5 * apart) || !look(2 * apart)) return;
+  const auto time = [&](std::size_t k) { return near[k].t; };
+  const auto through = [&](std::size_t points, VectorXd SolvedPoint::*what) {
+    VectorXd out = VectorXd::Zero((here.point.*what).size());
+    for (std::size_t k = 0; k < points; ++k) out += weight(k, points, t, time) * (near[k].point.*what);
+    return out;
+  };
+  const auto odd = [&](std::size_t k) {
+    return (near[k].point.lambda - near[k + 1].point.lambda).lpNorm<Eigen::Infinity>();
+  };
+  if (odd(0) > 0.75 * odd(4) + 0.01 * own) return;
+  VectorXd lambda = through(near.size(), &SolvedPoint::lambda);
+  VectorXd doubt = many * (lambda - through(near.size() - 2, &SolvedPoint::lambda)).cwiseAbs();
+  if (!(doubt.maxCoeff() < told * own)) return;
+  here.point.acceleration = through(near.size(), &SolvedPoint::acceleration);
+  here.point.lambda = std::move(lambda);
+  here.doubt = std::move(doubt);
 }
 
 }  // namespace unfurl

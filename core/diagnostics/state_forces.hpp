@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,7 +14,8 @@ namespace unfurl {
 // What the index-1 equations say at a state, in solved coordinates.
 struct SolvedPoint {
   VectorXd acceleration, lambda;
-  bool known = false;  // false: nothing
+  bool known = false;   // false: nothing
+  double weakness = 0;  // Index1Lanes::weakness
 };
 
 // What the index-1 equations say at the states of a run, which are best asked for in their order: those that
@@ -25,19 +28,44 @@ class StateForces {
 
   // Multipliers of state i, least-norm where rows are redundant; NaN where the equations have no solution. At
   // an event in a singular pose they are the extrapolated ones that the state holds. Accelerations are those
-  // of the nodes, NaN where they are not known [m/s^2].
+  // of the nodes, NaN where they are not known [m/s^2]. Where a pose is so near to a singular one that its
+  // round-off changes them, both are those of the nearest pose that fulfils the constraints, or interpolated
+  // between the nearest ones before and behind that tell more.
   VectorXd multipliers(std::size_t i, VectorXd& node_acceleration);
+  // By how much each of the multipliers that were asked for last may be off for that; empty: it is none of
+  // those poses.
+  const VectorXd& doubt() const { return doubt_; }
   // The same as the equations give it: not known at an event in a singular pose.
-  SolvedPoint at(std::size_t i);
+  const SolvedPoint& at(std::size_t i);
 
  private:
   void solve_from(std::size_t i);
+  std::vector<std::size_t> beside(std::size_t i, int way, std::size_t most) const;
+  bool smooth(std::size_t i);
+  // A solution and its doubt.
+  struct Close {
+    double t = 0;
+    SolvedPoint point;
+    VectorXd doubt;
+  };
+  Close look_closely(std::size_t model_of, const State& state);
+  void interpolate(std::size_t i, Close& here);
 
+  // States whose solutions are kept: those around the one that is asked for.
+  static constexpr std::size_t kept = 16;
+  struct Kept {
+    std::size_t i = static_cast<std::size_t>(-1);
+    SolvedPoint point;
+  };
   const Trajectory& trajectory_;
   const std::vector<SolvedPoint>* ahead_;
   const Model* model_ = nullptr;
-  std::optional<Index1Lanes> lanes_;         // of that model
-  std::size_t first_ = 0, behind_last_ = 0;  // states that are solved
+  std::optional<Index1Lanes> lanes_;  // of that model
+  std::array<Kept, kept> kept_;       // state i at i % kept
+  std::unique_ptr<System> system_;    // of the model that was looked at closely last
+  std::unique_ptr<Index1> one_;
+  const Model* close_ = nullptr;  // that model
+  VectorXd doubt_;
 };
 
 }  // namespace unfurl

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/index1.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace unfurl {
 
 namespace {
@@ -84,9 +88,67 @@ bool Index1::correct(const State& state, std::span<VectorXd> lambdas) {
   return true;
 }
 
-Index1Lanes::Index1Lanes(const System& system) : system_(system), one_(system_, true), lanes_(one_.saddle_) {}
+// Onto the constraints' rates at its pose, which is placed then.
+void Index1::move_rates(State& state, VectorXd& rows, VectorXd& x, VectorXd& y) {
+  place(state.t, state.z, state.w, state.tension);
+  system_.target_rate(state.t, rows);
+  rows.noalias() -= G_ * state.w;
+  saddle_.solve(VectorXd::Zero(x.size()), rows, x, y, refinements_);
+  state.w += x;
+}
+
+bool Index1::evaluate_closely(State state, VectorXd& acceleration, VectorXd& lambda, VectorXd& doubt) {
+  constexpr double unit = std::numeric_limits<double>::epsilon();
+  constexpr int moves = 2;
+  const Index n = state.z.size(), m = bias_.size();
+  const VectorXd none = VectorXd::Zero(n);
+  VectorXd x(n), y(m), rows(m), force = none;
+  acceleration.resize(n);
+  lambda.resize(m);
+  if (!assemble(state.t, state.z, state.w, state.tension)) return false;
+  saddle_.weakest_pivot(weak_);
+  for (int k = 0; k < moves; ++k) {
+    system_.expand(state.z, q_);
+    system_.constraint(state.t, q_, phi_);
+    phi_ = -phi_;
+    saddle_.solve(none, phi_, x, y, refinements_);
+    state.z += x;
+  }
+  move_rates(state, rows, x, y);
+  if (!evaluate(state, acceleration, lambda)) return false;
+  // What redundant rows hold of each other's round-off is reached by nothing, and would come back over e.
+  const auto solve = [&] {
+    saddle_.solve(force, rows, x, y, refinements_);
+    rows.noalias() = G_ * x;
+    saddle_.solve(force, rows, x, y, refinements_);
+  };
+  system_.constraint(state.t, q_, phi_);
+  const double error = std::max(unit * q_.lpNorm<Eigen::Infinity>(), phi_.lpNorm<Eigen::Infinity>());
+  for (Index r = 0; r < m; ++r) rows[r] = std::cos(1.0 + static_cast<double>(r));
+  solve();
+  rows = y * (error / std::max(y.lpNorm<Eigen::Infinity>(), 1e-300));
+  saddle_.solve(none, rows, x, y, refinements_);
+  state.z += x;
+  move_rates(state, rows, x, y);
+  place(state.t, state.z, state.w, state.tension);
+  force.noalias() = force_ - G_.transpose() * lambda;
+  force.noalias() -= system_.mass() * acceleration;
+  rows.noalias() = bias_ - G_ * acceleration;
+  solve();
+  if (!y.allFinite()) y.setConstant(std::numeric_limits<double>::infinity());
+  doubt = y.cwiseAbs();
+  return true;
+}
+
+Index1Lanes::Index1Lanes(const System& system) : system_(system), one_(system_, true), lanes_(one_.saddle_) {
+  mixed_.resize(system.solved_coordinates());
+  for (Index i = 0; i < mixed_.size(); ++i) mixed_[i] = std::cos(1.0 + static_cast<double>(i));
+  none_ = VectorXd::Zero(mixed_.size());
+  size_ = mixed_.size() > 0 ? (system_.mass() * mixed_).lpNorm<Eigen::Infinity>() : 1.0;
+}
 
 void Index1Lanes::evaluate(std::span<const State* const> states) {
+  SaddleLanes::Vectors none, rows;
   for (std::size_t k = 0; k < ok_.size(); ++k) {
     force_[k].resize(0);
     if (k >= states.size()) continue;
@@ -96,6 +158,8 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
     lanes_.set(static_cast<int>(k), one_.G_);
     force_[k] = one_.force_;
     bias_[k] = one_.bias_;
+    none[k] = none_;
+    rows[k].noalias() = one_.G_ * mixed_;
   }
   lanes_.factorise();
   std::array<bool, SaddleLanes::lanes> alone{};
@@ -103,13 +167,22 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
   for (std::size_t k = 0; k < states.size(); ++k) {
     ok_[k] = lanes_.hand_over(static_cast<int>(k), one_.saddle_);
     if (!ok_[k]) continue;
-    one_.saddle_.weakest_pivot(one_.weak_);
+    const double pivot = one_.saddle_.weakest_pivot(one_.weak_);
     if (!(alone[k] = !one_.saddle_.in_first_order())) continue;
     own_acceleration[k].resize(force_[k].size());
     own_lambda[k].resize(bias_[k].size());
+    if (one_.saddle_.fine()) {
+      weakness_[k] = 1 / std::sqrt(pivot);
+    } else {
+      one_.saddle_.solve(none[k], rows[k], own_acceleration[k], own_lambda[k], -1);
+      weakness_[k] = own_lambda[k].lpNorm<Eigen::Infinity>() / size_;
+    }
     one_.saddle_.solve(force_[k], bias_[k], own_acceleration[k], own_lambda[k], one_.refinements_);
-    force_[k].resize(0);  // nothing is left to do
+    for (VectorXd* done : {&force_[k], &none[k]}) done->resize(0);
   }
+  lanes_.solve(none, rows, acceleration_, lambda_, -1);
+  for (std::size_t k = 0; k < states.size(); ++k)
+    if (ok_[k] && !alone[k]) weakness_[k] = lambda_[k].lpNorm<Eigen::Infinity>() / size_;
   lanes_.solve(force_, bias_, acceleration_, lambda_, one_.refinements_);
   for (std::size_t k = 0; k < states.size(); ++k) {
     if (alone[k]) acceleration_[k] = own_acceleration[k], lambda_[k] = own_lambda[k];

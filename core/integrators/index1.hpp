@@ -34,12 +34,18 @@ class Index1 {
   // Where G has lost rank: the multipliers that the equations determine, next to those given, of which the
   // rest is kept; for each of `lambdas`. Directions of singular values below some 1e-7 count as lost.
   bool correct(const State& state, std::span<VectorXd> lambdas);
+  // evaluate() at a state next to a pose where the rank falls, x from it, and how far each multiplier may be
+  // off. The state is moved onto the constraints first, as far as round-off lets it: what its step left there
+  // may be more. `doubt`, from above: the answer of the multipliers, to first order, to an error as large as
+  // round-off in the rows, all of which add up in the weakest direction; that is 1e-16 / x^3 of the forces.
+  bool evaluate_closely(State state, VectorXd& acceleration, VectorXd& lambda, VectorXd& doubt);
 
  private:
   friend class Index1Lanes;
   void place(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension);
   bool assemble(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension = {});
   bool solve(double t, const ConstVec& w, MutVec acceleration, MutVec lambda);
+  void move_rates(State& state, VectorXd& rows, VectorXd& x, VectorXd& y);
   const System& system_;
   SparseRows G_;
   std::vector<double> scratch_;
@@ -60,12 +66,18 @@ class Index1Lanes {
   bool ok(std::size_t k) const { return ok_[k]; }
   const VectorXd& acceleration(std::size_t k) const { return acceleration_[k]; }
   const VectorXd& lambda(std::size_t k) const { return lambda_[k]; }
+  // About 1 / s, s the smallest singular value but for those of redundant rows, or somewhat less: the
+  // multipliers that answer G x over M x, x of every direction something.
+  double weakness(std::size_t k) const { return weakness_[k]; }
 
  private:
   System system_;  // follows each state in turn
   Index1 one_;
   SaddleLanes lanes_;
+  VectorXd mixed_, none_;
+  double size_ = 0;  // of M times what is mixed
   std::array<bool, SaddleLanes::lanes> ok_{};
+  std::array<double, SaddleLanes::lanes> weakness_{};
   SaddleLanes::Vectors force_, bias_, acceleration_, lambda_;
 };
 

@@ -237,6 +237,7 @@ void SaddleLanes::solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors&
     with_widest([this](auto width) { solve_ordered<width()>(packed_.data()); });
     for (std::size_t i = 0; i < try_.size(); ++i) try_[i] += packed_[i];
   }
+  if (max_refinements < 0) best_ = try_;
   for (std::size_t c = 0; c < lane_count; ++c) {
     const bool known = f[c].size() > 0 && ok_[c] && std::isfinite(size[c]);
     x[c].setConstant(n, std::numeric_limits<double>::quiet_NaN());

@@ -165,6 +165,7 @@ double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVe
     in_use_->ldlt.solve_ordered(r, 1);
     for (Index i = 0; i < n_ + m_; ++i) try_[i] += r[i];
   }
+  if (max_refinements < 0) best_ = try_;
   for (Index i = 0; i < n_; ++i) x[i] = best_[coordinate[i]] * column_scale_[i];
   for (Index i = 0; i < m_; ++i) y[i] = best_[row[i]] * row_scale_[i];
   return best / size;

@@ -62,7 +62,8 @@ class SaddleSolver {
   void apply(double* f, double* g, int columns) const;
 
   // Solve to round-off with iterative refinement on the true system; x and y may not alias f and g.
-  // Returns the last residual, relative to the right-hand side and in the scaled norm. A right-hand side that
+  // Returns the last residual, relative to the right-hand side and in the scaled norm. max_refinements -1: as
+  // one application leaves it, with no residual looked at (1 is returned). A right-hand side that
   // is not finite, or whose norm overflows, gives NaN everywhere.
   double solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y, int max_refinements = 8) const;
 

@@ -239,9 +239,9 @@ TEST_CASE("behind the deployed pose the path goes on as the full model does") {
              1e-11);
 }
 
-// A multiplier off by 1e-9 of some 1e3 N moves what gives 1e-8 m/N at most by 1e-14 m. Next to the deployed pose
-// rods that push each other over give 1/x, x the angle that is left: 1e-4 m there, of which the last digits
-// of x tell four or so.
+// A multiplier off by 1e-9 of some 1e3 N moves what gives 1e-8 m/N at most by 1e-14 m. Next to the deployed
+// pose rods that push each other over give 1/x, x the angle that is left: 1e-4 m there, of which the last
+// digits of x tell four or so.
 TEST_CASE("what rods give in a quasi-static model is shown on the path as on the full model") {
   const std::vector<std::string> gives{"structure.youngs_modulus=7e10", "structure.rod_model=quasi-static"};
   const auto shown = [&](const char* name, std::vector<std::string> changes, double end) {
