@@ -150,9 +150,15 @@ Mat9x12 edges_by_nodes() {
 
 }  // namespace
 
+// Where b_1 or b_3 is nearly along b_2, products p_ij and w cancel: of planes at 5 degrees they leave 1e-14
+// of an angle that the coordinates tell to 1e-15. What is across b_2 is taken first then, a = b_2 x b_1, d =
+// b_2 x b_3: c = a . d, s = (a x d) . b_2 / |b_2|.
 double dihedral(const double* q, const std::vector<int>& stencil, double* gradient) {
   const Slopes b = edges(q, stencil);
-  const Slope s = sine(b), c = cosine(b);
+  Slope s = sine(b), c = cosine(b);
+  const Vec3 along = b.vector(1), a = along.cross(Vec3(b.vector(0))), d = along.cross(Vec3(b.vector(2)));
+  s.value = along.isZero(0.0) ? 0.0 : a.cross(d).dot(along) / along.norm();
+  c.value = a.dot(d);
   const double r2 = s.value * s.value + c.value * c.value;
   const Vec9 g = r2 > 0 ? Vec9((c.value * s.gradient - s.value * c.gradient) / r2) : Vec9(Vec9::Zero());
   Eigen::Map<Eigen::Matrix<double, 12, 1>> by_nodes(gradient);
