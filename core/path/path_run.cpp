@@ -424,14 +424,17 @@ class PathRun {
     const double t = motion_.t();
     run_.events.push_back({.name = "deployed", .t = t, .kind = "deployed"});
     if (options_.at_deployed == "pass") return;
-    // States so near to a singular pose have lost digits; the time loop has none there either.
-    while (run_.trajectory.size() > 1 && !watch_.clear(motion_, last().t))
-      run_.trajectory.pop_back(), --run_.steps;
     State event = state_at(t, motion_.s(), motion_.v());
-    const auto state = [this](double at, double s, double v) { return state_at(at, s, v); };
-    limit_multipliers(model().system.at(last()), watch_, motion_, options_.step, state, event);
     if (last().t >= t) run_.trajectory.pop_back();
-    append(std::move(event), StepReport{.singular_event = true});
+    const bool regular = regular_when_deployed(run_.trajectory, event);
+    if (!regular) {
+      // States so near to a singular pose have lost digits; the time loop has none there either.
+      while (run_.trajectory.size() > 1 && !watch_.clear(motion_, last().t))
+        run_.trajectory.pop_back(), --run_.steps;
+      const auto state = [this](double at, double s, double v) { return state_at(at, s, v); };
+      limit_multipliers(model().system.at(last()), watch_, motion_, options_.step, state, event);
+    }
+    append(std::move(event), StepReport{.singular_event = !regular});
     ++run_.steps;
     if (options_.at_deployed == "latch") return latch();
     run_.status = RunStatus::deployed;

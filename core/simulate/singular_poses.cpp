@@ -153,8 +153,7 @@ Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std
   return G.rows() - rank;
 }
 
-bool singular_at_end(const Trajectory& trajectory) {
-  constexpr double flat = 1e-6;  // deployed poses are located to 1e-9 or so
+bool singular_at_end(const Trajectory& trajectory, double flat) {
   const System& system = trajectory.last_model().system;
   if (std::max(system.constraints(), system.solved_coordinates()) > max_singular_size) return true;
   std::size_t last = trajectory.size() - 1, first = last;
@@ -166,6 +165,16 @@ bool singular_at_end(const Trajectory& trajectory) {
   const VectorXd values = singular_values(MatrixXd(G));
   const Index rank = values.size() ? (values.array() > flat * values[0]).count() : 0;
   return G.rows() - rank > structural_redundancy(trajectory, first, last);
+}
+
+bool regular_when_deployed(Trajectory& trajectory, const State& event) {
+  constexpr double next_to = 1e-3;  // of a dead centre [rad], and of the largest singular value
+  const Deployment& deployment = trajectory.structure().deployment;
+  if (deployment.folds() && std::abs(std::sin(deployment.deployed_fold_angle)) < next_to) return false;
+  trajectory.append(event, {});
+  const bool singular = singular_at_end(trajectory, next_to);
+  trajectory.pop_back();
+  return !singular;
 }
 
 namespace {

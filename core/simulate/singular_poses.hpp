@@ -47,9 +47,14 @@ class SmallestSingularValue {
 // singular for a moment does not count.
 Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last);
 
-// The last state's pose has less rank than usual in the run. Assumed where the Jacobian has more than
+// The last state's pose has less rank than usual in the run, singular values below `flat` of the largest
+// counting for nothing: deployed poses are located to 1e-9 or so. Assumed where the Jacobian has more than
 // max_singular_size rows or columns.
-bool singular_at_end(const Trajectory& trajectory);
+bool singular_at_end(const Trajectory& trajectory, double flat = 1e-6);
+
+// The deployed pose `event`, which follows the last state, is so far from singular ones that its equations
+// say what its forces are. No dead centre is: a fold angle of 0 or 180 degrees is not looked at.
+bool regular_when_deployed(Trajectory& trajectory, const State& event);
 
 // Adds an event "singular pose" to `run` for every time between two states at which sigma dips below a
 // hundredth of its largest value in the run and to a half of its heights before and after. The start and the

@@ -440,10 +440,10 @@ class Stepper::Loop {
     project(system(), event);
     while (run_.trajectory.size() > std::max<std::size_t>(1, new_) && run_.trajectory.end_time() >= event.t)
       run_.trajectory.pop_back();
+    regular_ = regular_ || regular_when_deployed(run_.trajectory, event);
     go_on(std::move(event), StepReport{.singular_event = !regular_});
     if (run_.options.at_deployed == "latch") return latch();
-    run_.status = RunStatus::deployed;
-    return false;
+    return run_.status = RunStatus::deployed, false;
   }
 
   // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
