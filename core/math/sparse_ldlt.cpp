@@ -118,10 +118,6 @@ bool SparseLdlt::factorise(const double* values, double most) {
   return true;
 }
 
-int SparseLdlt::negative_pivots() const {
-  return static_cast<int>(std::count_if(pivot_.begin(), pivot_.end(), [](double d) { return d < 0; }));
-}
-
 double SparseLdlt::largest_pivot() const {
   return pivot_.empty() ? 0.0 : *std::max_element(pivot_.begin(), pivot_.end());
 }

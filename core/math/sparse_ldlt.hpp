@@ -35,7 +35,6 @@ class SparseLdlt {
 
   Index size() const { return n_; }
   Index factor_nonzeros() const { return static_cast<Index>(row_index_.size()); }
-  int negative_pivots() const;
   double largest_pivot() const;
   double pivot(Index k) const { return pivot_[static_cast<std::size_t>(k)]; }  // of the row eliminated k-th
 

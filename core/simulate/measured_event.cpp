@@ -37,7 +37,7 @@ std::optional<State> step_to_zero(const State& from, double h,
 
 bool deploys_regularly(const Structure& structure) {
   return structure.deployment.measured ||
-         std::ranges::all_of(structure.rods, [](const Rod& rod) { return rod.elastic(); });
+         std::ranges::all_of(structure.rods, [](const Rod& rod) { return rod.gives; });
 }
 
 std::optional<State> step_to_deployed(const Model& model, Integrator& integrator, const State& from, double h,

@@ -119,6 +119,42 @@ TEST_CASE("forces that grow without bound next to a singular pose are not smooth
   CHECK(d.force_unique.row(i - 2).all());
 }
 
+// Nothing jumps in the last step before a deployed pose: the forces there continue those of the five states
+// before, as the polynomial of degree 4 tells them to 2e-3. A modulus of rigid rods changes how redundant
+// rods share them, and no motion.
+TEST_CASE("forces in a singular deployed pose are the limit of those before, with moduli and without") {
+  const std::vector<std::string> sheet{"structure.rows=2", "structure.columns=2",
+                                       "structure.deployed_angle=0"};
+  for (const auto& [name, changes] :
+       {std::pair{"reentrant_sheet", sheet},
+        std::pair{"hoop6", std::vector<std::string>{"structure.fold_angle=60"}}}) {
+    double deployed[2] = {};
+    for (const bool moduli : {false, true}) {
+      CAPTURE(name, moduli);
+      std::vector<std::string> all = changes;
+      if (moduli) all.push_back("structure.youngs_modulus=7e10");
+      const Simulation run = run_of(name, all, "0.002");
+      REQUIRE(run.status == RunStatus::deployed);
+      deployed[moduli] = run.trajectory.end_time();
+      const Diagnostics d = diagnose(run);
+      const Index last = d.axial_force.rows() - 1;
+      const double largest = d.axial_force.row(last).cwiseAbs().maxCoeff();
+      for (Index rod = 0; rod < d.axial_force.cols(); ++rod) {
+        double expected = 0;
+        for (int a = 1; a <= 5; ++a) {
+          double weight = 1;
+          const auto time = [&](int k) { return d.t[static_cast<std::size_t>(last - k)]; };
+          for (int b = 1; b <= 5; ++b)
+            if (b != a) weight *= (time(0) - time(b)) / (time(a) - time(b));
+          expected += weight * d.axial_force(last - a, rod);
+        }
+        CHECK(std::abs(d.axial_force(last, rod) - expected) <= 2e-3 * largest);
+      }
+    }
+    CHECK(std::abs(deployed[0] - deployed[1]) <= 1e-11);
+  }
+}
+
 // From above, to first order: poses of the ring at 1 to 0.05 degrees, each coordinate changed at random by
 // its round-off. The worst of many lies below the doubt, and above a five hundredth of it; clean multipliers
 // have up to some 1e-8 of their own.

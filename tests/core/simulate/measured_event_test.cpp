@@ -81,8 +81,10 @@ TEST_CASE("poses that a measure tells, or rods that give, are regular, flat ones
   Structure structure = testing::hoop_structure();
   CHECK_FALSE(deploys_regularly(structure));
   for (Rod& rod : structure.rods) rod.area = 1e-4, rod.youngs_modulus = 7e10;
+  CHECK_FALSE(deploys_regularly(structure));  // a modulus shares forces, and no more
+  for (Rod& rod : structure.rods) rod.gives = true;
   CHECK(deploys_regularly(structure));
-  structure.rods.back().youngs_modulus = std::numeric_limits<double>::infinity();
+  structure.rods.back().gives = false;
   CHECK_FALSE(deploys_regularly(structure));
   structure.deployment.measured = true;
   CHECK(deploys_regularly(structure));

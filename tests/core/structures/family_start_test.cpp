@@ -11,6 +11,10 @@ using namespace unfurl::testing;
 
 namespace family_start_test {
 
+TEST_CASE("every structure says of which family it is") {
+  for (const Family& family : families()) CHECK(family_structure(family.kind).kind == family.kind);
+}
+
 TEST_CASE("every family: a deployment begins at fraction 0, at the fold angle that it names") {
   int found = 0;
   for (const Family& family : families()) {
