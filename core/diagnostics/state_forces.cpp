@@ -11,7 +11,7 @@ namespace unfurl {
 namespace {
 
 // Directions as weak as that, where the forces are not smooth, are looked into.
-constexpr double weak = 3, rough = 1e-7;
+constexpr double weak = 3, rough = 1e-6, rough_at_end = 1e-4;
 // Doubt, of the largest multiplier: what is not worth a thought, and what is not worth poses beside it.
 constexpr double negligible = 1e-8, harmless = 1e-6;
 
@@ -89,11 +89,14 @@ std::vector<std::size_t> StateForces::beside(std::size_t i, int way, std::size_t
   return out;
 }
 
-// False, too, where there are not two states on either side.
+// Where there are not two states on either side, by those that there are, as far as three or more tell; false
+// where there are fewer.
 bool StateForces::smooth(std::size_t i) {
   std::vector<std::size_t> states = beside(i, -1, 2), behind = beside(i, +1, 2);
-  if (states.size() < 2 || behind.size() < 2) return false;
+  const bool inside = states.size() == 2 && behind.size() == 2;
+  if (!inside) states = beside(i, -1, 4), behind = beside(i, +1, 4);
   states.insert(states.end(), behind.begin(), behind.end());
+  if (states.size() < 3) return false;
   for (const std::size_t k : states)
     if (!at(k).known) return false;
   const VectorXd lambda = at(i).lambda;
@@ -101,7 +104,7 @@ bool StateForces::smooth(std::size_t i) {
   const auto time = [&](std::size_t k) { return trajectory_.time(states[k]); };
   for (std::size_t k = 0; k < states.size(); ++k)
     off -= weight(k, states.size(), trajectory_.time(i), time) * at(states[k]).lambda;
-  return off.lpNorm<Eigen::Infinity>() <= rough * lambda.lpNorm<Eigen::Infinity>();
+  return off.lpNorm<Eigen::Infinity>() <= (inside ? rough : rough_at_end) * lambda.lpNorm<Eigen::Infinity>();
 }
 
 // No doubt where it is negligible.
