@@ -250,8 +250,8 @@ class PathRun {
 
   double change_model(const std::shared_ptr<const Model>& next, bool first = false) {
     Handover after = hand_over(model(), last(), *next);
-    run_.trajectory.change_model(next);
     if (first) run_.trajectory.pop_back();
+    run_.trajectory.change_model(next);
     append(std::move(after.state));
     return after.energy_lost * structure().sectors;
   }

@@ -57,6 +57,13 @@ void check_same(const Both& run, double tolerance) {
     CHECK(run.path.events[e].energy_lost ==
           Approx(run.full.events[e].energy_lost).epsilon(1e-9).margin(1e-9));
   }
+  // What holds, slips or pulls from the start does so in the first state: no step lies before that.
+  const auto at_start = [](const Simulation& one) -> Eigen::RowVectorXd {
+    return diagnose(one).axial_force.row(0);
+  };
+  const Eigen::RowVectorXd forces = at_start(run.full);
+  CHECK((at_start(run.path) - forces).lpNorm<Eigen::Infinity>() <=
+        1e-8 * (1 + forces.lpNorm<Eigen::Infinity>()));
 }
 
 std::string refusal(const Scene& scene) {
