@@ -121,9 +121,9 @@ class Change {
     if (!any) return true;
     // Two stops on either side of what hardly moves: whether it leaves the one as fast as it meets the other
     // is known as well as its rates are.
-    VectorXd rounding(count());
-    for (Index r = 0; r < count(); ++r) rounding[r] = rate_rounding * sides_.fastest(side(r), out_.state);
-    const auto impulses = solve_box(D_, b, low, high, rounding);
+    VectorXd of_rates(count());
+    for (Index r = 0; r < count(); ++r) of_rates[r] = rate_rounding * sides_.fastest(side(r), out_.state);
+    const auto impulses = solve_box(D_, b, low, high, of_rates);
     if (!impulses) return fail_at(std::find(struck_.begin(), struck_.end(), true) - struck_.begin());
     responses.give(impulses->x, out_.state.w);
     const VectorXd after = responses.rates(out_.state.w);
