@@ -207,6 +207,34 @@ Diagnostics judge(Simulation& run, const std::function<bool()>& cancelled, const
   return d;
 }
 
+namespace {
+
+// Of a deployed pose whose multipliers are not finite; empty where all are bounded.
+std::string without_bound(const Trajectory& run) {
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    const State& state = run.state(i);
+    if (!run.report(i).singular_event || state.lambda.allFinite()) continue;
+    const std::vector<Rod>& rods = run.model(i).structure.rods;
+    const std::vector<int>& row_of = run.model(i).system.rod_rows();
+    std::string first;
+    std::size_t count = 0;
+    for (std::size_t r = 0; r < rods.size(); ++r)
+      if (row_of[r] >= 0 && !std::isfinite(state.lambda[row_of[r]]) && ++count == 1) first = rods[r].name;
+    std::ostringstream text;
+    text
+        << "forces" << (count > 0 ? " of rod " + first : std::string())
+        << (count > 1 ? " and " + std::to_string(count - 1) + " more" : std::string())
+        << " grow without bound towards the deployed pose at t = " << state.t
+        << " s, as rods in line need them to bear a load across: that state has none, and peaks are those of "
+           "states beside it; end with an angle_stop before that pose, or let rods give "
+           "(structure.rod_model)";
+    return text.str();
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string mistrust(const Simulation& run, const Diagnostics& d) {
   return good_part(run, d).text(d);
 }
@@ -249,6 +277,8 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
          << (dvm ? "" : ", or method dvm, which holds them");
     warnings.push_back(text.str());
   }
+  if (std::string text_of_forces = without_bound(run.trajectory); !text_of_forces.empty())
+    warnings.push_back(std::move(text_of_forces));
   return warnings;
 }
 

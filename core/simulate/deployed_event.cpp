@@ -338,9 +338,23 @@ class Locator {
 
 namespace {
 
-// The fit that changes least from the one of a degree less, by less than a share of `whole`; 0: none does.
-std::size_t settled_fit(const std::vector<VectorXd>& fits, double whole) {
-  double least = most_open * whole;
+// Nothing, and the values at zero of the polynomials through sine^power times the multipliers, by degrees.
+std::vector<VectorXd> multiplier_fits(const std::vector<NearDeployed>& samples, int power) {
+  const VectorXd none = VectorXd::Zero(samples.front().state.lambda.size());
+  std::vector<VectorXd> fits{none};
+  for (int degree = 0; degree < static_cast<int>(samples.size()); ++degree) {
+    const VectorXd shares = shares_at_zero(samples, degree);
+    VectorXd sum = none;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      sum += shares[static_cast<Index>(i)] * std::pow(samples[i].sine, power) * samples[i].state.lambda;
+    fits.push_back(std::move(sum));
+  }
+  return fits;
+}
+
+// The fit that changes least from the one of a degree less, by less than `most`; 0: none does.
+std::size_t settled_fit(const std::vector<VectorXd>& fits, double most) {
+  double least = most;
   std::size_t best = 0;
   for (std::size_t i = 2; i < fits.size(); ++i) {
     const double change = (fits[i] - fits[i - 1]).norm();
@@ -351,19 +365,38 @@ std::size_t settled_fit(const std::vector<VectorXd>& fits, double whole) {
   return best;
 }
 
+// c where multipliers grow like c / sine towards the pose, as where rods in line bear a load across them;
+// empty where they are bounded: there c is a small share of what sine times lambda is next to the pose.
+VectorXd pole(const std::vector<NearDeployed>& samples) {
+  constexpr double not_small = 1e-2, known = 1e-2;
+  const std::vector<VectorXd> fits = multiplier_fits(samples, 1);
+  const double beside = samples.back().sine * samples.back().state.lambda.norm();
+  const std::size_t best = settled_fit(fits, known * beside);
+  if (best == 0 || !(fits[best].norm() > not_small * beside)) return {};
+  return fits[best];
+}
+
 }  // namespace
 
 // What acts in the deployed pose itself may not be what acts just before it (dampers of hinges whose rods are
 // in line there, about no axis): where fits that settle by themselves say something else than those that the
-// equations have corrected, they are right.
-VectorXd multipliers_at_deployed(Index1& index1, const std::vector<NearDeployed>& samples, const State& at) {
-  constexpr double something_else = 1e-3;
-  std::vector<VectorXd> fits{VectorXd::Zero(at.lambda.size())};
-  for (int degree = 0; degree < static_cast<int>(samples.size()); ++degree)
-    fits.push_back(at_zero(samples, shares_at_zero(samples, degree), &State::lambda));
-  const std::vector<VectorXd> own = fits;
+// equations have corrected, they are right. Where multipliers grow without bound, the equations of the pose
+// lack what is left of them times a Jacobian that vanishes.
+VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at) {
+  constexpr double something_else = 1e-3, grows = 1e-4;
+  const VectorXd c = pole(samples);
+  if (c.size() > 0)
+    for (NearDeployed& sample : samples) sample.state.lambda -= c / sample.sine;
+  const std::vector<VectorXd> own = multiplier_fits(samples, 0);
+  const std::size_t by_itself = settled_fit(own, most_open * own.back().norm());
+  if (c.size() > 0) {
+    const double least = grows * c.lpNorm<Eigen::Infinity>();
+    const VectorXd& rest = by_itself > 0 ? own[by_itself] : own.back();
+    return (c.array().abs() > least).select(std::numeric_limits<double>::quiet_NaN(), rest);
+  }
+  std::vector<VectorXd> fits = own;
   index1.correct(at, fits);
-  const std::size_t best = settled_fit(fits, fits[0].norm()), by_itself = settled_fit(own, own.back().norm());
+  const std::size_t best = settled_fit(fits, most_open * fits[0].norm());
   const bool differ =
       by_itself > 0 && (fits[best] - own[by_itself]).norm() > something_else * own[by_itself].norm();
   return differ ? own[by_itself] : fits[best];

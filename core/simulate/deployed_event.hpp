@@ -28,6 +28,7 @@ struct NearDeployed {
 // that a fit of low degree is truer than interpolation where round-off, d / sine^4, is more than what the
 // degree leaves: the degree at which it changes least. Where even that is not known, what is left open is
 // chosen as for any multipliers that are not unique: least norm.
-VectorXd multipliers_at_deployed(Index1& index1, const std::vector<NearDeployed>& samples, const State& at);
+// NaN where they grow without bound towards the pose.
+VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at);
 
 }  // namespace unfurl

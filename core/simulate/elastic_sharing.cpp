@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/elastic_sharing.hpp"
 
+#include <limits>
+
 namespace unfurl {
 
 namespace {
@@ -25,7 +27,11 @@ ElasticSharing::ElasticSharing(const Model& model, bool all_determined) : system
 }
 
 void ElasticSharing::share(double t, const VectorXd& q, bool limit, VectorXd& lambda) {
-  if (!least_ || !lambda.allFinite()) return;
+  if (!least_) return;
+  if (!lambda.allFinite()) {  // nobody knows the others' shares of what has no bound
+    if (limit) lambda.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
   if (limit) {
     if (!last_.empty()) lambda += at_limit(t);
     return;
