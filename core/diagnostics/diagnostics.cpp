@@ -155,9 +155,11 @@ double poisson_ratio(const Instant& s) {
   const LinearForm& along = structure.lengths[static_cast<std::size_t>(structure.strain_along)].value;
   const LinearForm& across = structure.lengths[static_cast<std::size_t>(structure.strain_across)].value;
   const VectorXd& motion = s.v.isZero(0.0) ? s.acceleration : s.v;
-  const double stretch = along.rate(motion) / along(s.q);
-  return stretch == 0.0 ? std::numeric_limits<double>::quiet_NaN()
-                        : -(across.rate(motion) / across(s.q)) / stretch;
+  const double stretch = along.rate(motion) / along(s.q), widening = across.rate(motion) / across(s.q);
+  constexpr double turning =
+      1e-9;  // a length at its greatest, but for rounding: the ratio has no bound there
+  return std::abs(stretch) <= turning * std::abs(widening) ? std::numeric_limits<double>::quiet_NaN()
+                                                           : -widening / stretch;
 }
 
 // The columns that only this structure has, at the end.

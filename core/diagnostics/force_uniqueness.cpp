@@ -185,8 +185,8 @@ PeakForce peak_rod_force(const Diagnostics& d, Pull pull) {
       if (!std::isnan(force(i, r)) && (peak.rod < 0 || size(force(i, r)) > size(peak.force_N)))
         peak = {force(i, r), r, d.t[static_cast<std::size_t>(i)], true};
   const double most = size(peak.force_N);
-  for (Index k = 0; k < force.size(); ++k)
-    if (size(force.data()[k]) >= most - equal * std::abs(most) && !d.force_unique.data()[k])
+  for (Index k = 0; k < force.size(); ++k)  // what nobody knows may be larger
+    if (!(size(force.data()[k]) < most - equal * std::abs(most)) && !d.force_unique.data()[k])
       peak.unique = false;
   return peak;
 }

@@ -10,6 +10,7 @@
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/rod_strength.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/path/path_run.hpp"
 #include "core/scene/build.hpp"
@@ -203,6 +204,10 @@ TEST_CASE("a deployed pose that would need forces without bound has none, and th
         CHECK(std::abs(limit) == Approx(share).epsilon(2e-3));
       }
       CHECK(chords == 24);
+      // A peak that grows with every state nearer to the pose is not what the model determines.
+      CHECK_FALSE(peak_rod_force(d).unique);
+      CHECK_FALSE(peak_rod_force(d, Pull::compression).unique);
+      if (moduli) CHECK_FALSE(worst_rod(run.trajectory.structure(), d, axial_stress).unique);
       const std::vector<std::string> warnings = accuracy_warnings(run, d);
       REQUIRE(warnings.size() == 1);
       CHECK(warnings.front().find("of rod B0-Mb0 and " + std::string(moduli ? "" : "23 more")) !=

@@ -43,6 +43,18 @@ TEST_CASE("a re-entrant sheet widens as its energy quadrature says, with the Poi
   }
 }
 
+// Its length, the cosine of the fold angle, is greatest where that is zero: the widths still change there.
+TEST_CASE("a sheet that opens flat has no Poisson's ratio there") {
+  const Structure flat = family_structure("reentrant_sheet", {{"deployed_angle", 0.0}});
+  const Simulation run = simulate(make_model(flat), dvm_options(5, 0.005, 10));
+  REQUIRE(run.status == RunStatus::deployed);
+  const Diagnostics d = diagnose(run);
+  const auto& ratio = d.at("poisson_ratio").values;
+  CHECK(std::isnan(ratio.back()));
+  CHECK(std::abs(ratio[ratio.size() - 2]) < 1e4);
+  for (std::size_t i = 0; i + 1 < ratio.size(); ++i) CHECK_FALSE(std::isnan(ratio[i]));
+}
+
 TEST_CASE("a re-entrant sheet has one degree of freedom at every fold angle on its way") {
   for (const auto& [rows, columns] : {std::pair{1L, 1L}, {1L, 4L}, {4L, 1L}, {3L, 5L}})
     for (const double angle : {70.0, 40.0, 5.0}) {
