@@ -10,6 +10,7 @@
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
+#include "core/simulate/initial_state.hpp"
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
@@ -47,20 +48,28 @@ class Neighbourhood {
   double end() const { return run_.trajectory.time(last_); }
   bool empty() const { return first_ == last_; }
 
-  // Values at these times; NaN where the quintic is no motion of the structure.
+  // Values at these times; NaN where the quintic is no motion of the structure. It misses the constraints by
+  // its own error, and redundant rows that contradict each other by d, off their common surface by d, have
+  // multipliers of any size: states are moved onto the constraints first.
   std::vector<double> sample(const std::vector<double>& times, const StateValues& values) const {
     const Model& model = run_.trajectory.model(i_);
     const std::shared_ptr<const Model> shared(std::shared_ptr<const Model>(), &model);
     Simulation piece{.trajectory = Trajectory(shared), .options = run_.options};
-    for (const double t : times) piece.trajectory.append(state_at(t), StepReport{});
-    std::vector<double> out = values(piece);
     const VectorXd lengths = model.system.all_lengths();
-    VectorXd phi(lengths.size());
-    for (std::size_t k = 0; k < out.size(); ++k) {
-      model.system.all_constraint_values(times[k], piece.trajectory.node_positions(k), phi);
-      if (phi.size() && !(phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() <= good_constraint))
-        out[k] = std::numeric_limits<double>::quiet_NaN();
+    VectorXd phi(lengths.size()), q(model.system.coordinates());
+    std::vector<char> moves;
+    for (const double t : times) {
+      State state = state_at(t);
+      model.system.expand(state.z, q);
+      model.system.all_constraint_values(t, q, phi);
+      moves.push_back(phi.size() == 0 ||
+                      phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() <= good_constraint);
+      if (moves.back() && phi.size() > 0) project(model.system.at(state), state);
+      piece.trajectory.append(std::move(state), StepReport{});
     }
+    std::vector<double> out = values(piece);
+    for (std::size_t k = 0; k < out.size(); ++k)
+      if (!moves[k]) out[k] = std::numeric_limits<double>::quiet_NaN();
     return out;
   }
 
@@ -124,8 +133,8 @@ std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<dou
   return out;
 }
 
-// The largest value between two times: of 9 in all of it, 9 around the largest of those, and the parabola
-// there.
+// The largest value between two times: of 9 in all of it, 9 around the largest of those, and at the top of
+// the parabola there.
 double closer(const Neighbourhood& around, const StateValues& values, double best) {
   double begin = around.begin(), end = around.end();
   for (int round = 0; round < 2; ++round) {
@@ -137,9 +146,10 @@ double closer(const Neighbourhood& around, const StateValues& values, double bes
       if (!std::isnan(x[k]) && (at == x.size() || x[k] > x[at])) at = k;
     if (at == x.size()) return best;
     best = std::max(best, x[at]);
-    if (at > 0 && at + 1 < x.size() && std::isfinite(x[at - 1]) && std::isfinite(x[at + 1]) && round == 1)
-      best = std::max(best,
-                      vertex({times[at - 1], times[at], times[at + 1]}, {x[at - 1], x[at], x[at + 1]}).value);
+    if (at > 0 && at + 1 < x.size() && std::isfinite(x[at - 1]) && std::isfinite(x[at + 1]) && round == 1) {
+      const Vertex top = vertex({times[at - 1], times[at], times[at + 1]}, {x[at - 1], x[at], x[at + 1]});
+      if (const double there = around.sample({top.t}, values).front(); there > best) best = there;
+    }
     begin = times[at > 0 ? at - 1 : 0];
     end = times[std::min(at + 1, times.size() - 1)];
   }
