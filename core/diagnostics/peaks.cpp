@@ -148,7 +148,9 @@ double closer(const Neighbourhood& around, const StateValues& values, double bes
     best = std::max(best, x[at]);
     if (at > 0 && at + 1 < x.size() && std::isfinite(x[at - 1]) && std::isfinite(x[at + 1]) && round == 1) {
       const Vertex top = vertex({times[at - 1], times[at], times[at + 1]}, {x[at - 1], x[at], x[at + 1]});
-      if (const double there = around.sample({top.t}, values).front(); there > best) best = there;
+      const double there = around.sample({top.t}, values).front(), above = top.value - x[at];
+      // A corner has no parabola; next to a singular pose one state by itself may say anything.
+      best = std::max(best, std::abs(there - x[at]) <= 2 * above ? there : top.value);
     }
     begin = times[at > 0 ? at - 1 : 0];
     end = times[std::min(at + 1, times.size() - 1)];
