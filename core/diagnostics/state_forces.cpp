@@ -125,14 +125,18 @@ StateForces::Close StateForces::look_closely(std::size_t model_of, const State& 
   return out;
 }
 
-// By the polynomial through three poses on either side, as near as they are in a thousandth of the doubt; its
-// error is what the outer ones change. Not through a pole: there what is odd about the pose falls away from
-// it, where the forces are smooth it grows.
+// By the polynomial through three poses on either side, as near as they are in a thousandth of the doubt, or
+// farther where that says more; its error is what the outer ones change. Not through a pole: there what is
+// odd about the pose falls away from it, where the forces are smooth it grows.
 void StateForces::interpolate(std::size_t i, Close& here) {
-  const std::vector<std::size_t> before = beside(i, -1, 1), behind = beside(i, +1, 1);
+  constexpr std::size_t far = 8;  // states on either side: short steps are many in the round-off
+  const std::vector<std::size_t> before = beside(i, -1, far), behind = beside(i, +1, far);
   if (before.empty() || behind.empty()) return;
   const double t = trajectory_.time(i);
-  const double h = std::min(t - trajectory_.time(before.front()), trajectory_.time(behind.front()) - t);
+  const auto both = [&](std::size_t first, std::size_t last) {
+    return std::min(t - trajectory_.time(first), trajectory_.time(last) - t);
+  };
+  const double most = both(before.back(), behind.back());
   const double own = here.doubt.maxCoeff();
   constexpr double told = 0.1;  // less, and the poses may be too far apart for what happens between them
   constexpr double many = 10;   // times as much: all of these poses have round-off
@@ -141,17 +145,11 @@ void StateForces::interpolate(std::size_t i, Close& here) {
     for (const double side : {-apart, apart}) {
       near.push_back(look_closely(i, trajectory_.state_at(t + side)));
       const Close& other = near.back();
-      if (!other.point.known || (other.doubt.size() > 0 && !(1000 * other.doubt.maxCoeff() <= own)))
+      if (!other.point.known || (other.doubt.size() > 0 && !(1000 * other.doubt.maxCoeff() < own)))
         return false;
     }
     return true;
   };
-  double apart = h / 1024;
-  while (apart <= 0.5 * h && !look(apart)) {
-    near.clear();
-    apart *= 2;
-  }
-  if (near.empty() || !look(1.5 * apart) || !look(2 * apart)) return;
   const auto time = [&](std::size_t k) { return near[k].t; };
   const auto through = [&](std::size_t points, VectorXd SolvedPoint::*what) {
     VectorXd out = VectorXd::Zero((here.point.*what).size());
@@ -161,13 +159,20 @@ void StateForces::interpolate(std::size_t i, Close& here) {
   const auto odd = [&](std::size_t k) {
     return (near[k].point.lambda - near[k + 1].point.lambda).lpNorm<Eigen::Infinity>();
   };
-  if (odd(0) > 0.75 * odd(4) + 0.01 * own) return;
-  VectorXd lambda = through(near.size(), &SolvedPoint::lambda);
-  VectorXd doubt = many * (lambda - through(near.size() - 2, &SolvedPoint::lambda)).cwiseAbs();
-  if (!(doubt.maxCoeff() < told * own)) return;
-  here.point.acceleration = through(near.size(), &SolvedPoint::acceleration);
-  here.point.lambda = std::move(lambda);
-  here.doubt = std::move(doubt);
+  double least = told * own;
+  for (double apart = both(before.front(), behind.front()) / 1024; apart <= 0.5 * most; apart *= 2) {
+    near.clear();
+    if (!look(apart)) continue;
+    if (!look(1.5 * apart) || !look(2 * apart) || odd(0) > 0.75 * odd(4) + 0.01 * own) return;
+    VectorXd lambda = through(near.size(), &SolvedPoint::lambda);
+    VectorXd doubt = many * (lambda - through(near.size() - 2, &SolvedPoint::lambda)).cwiseAbs();
+    if (!(doubt.maxCoeff() < least)) return;
+    least = doubt.maxCoeff();
+    here.point.acceleration = through(near.size(), &SolvedPoint::acceleration);
+    here.point.lambda = std::move(lambda);
+    here.doubt = std::move(doubt);
+    if (least <= negligible * here.point.lambda.lpNorm<Eigen::Infinity>()) return;
+  }
 }
 
 }  // namespace unfurl

@@ -10,6 +10,7 @@ namespace unfurl {
 namespace {
 
 constexpr double clean_regularisation = 1e-7;
+constexpr double hidden = 30 * clean_regularisation;  // pivots below may be of redundant rows
 
 }  // namespace
 
@@ -105,6 +106,7 @@ bool Index1::evaluate_closely(State state, VectorXd& acceleration, VectorXd& lam
   VectorXd x(n), y(m), rows(m), force = none;
   acceleration.resize(n);
   lambda.resize(m);
+  weak_ = hidden;  // from now on
   if (!assemble(state.t, state.z, state.w, state.tension)) return false;
   saddle_.weakest_pivot(weak_);
   for (int k = 0; k < moves; ++k) {
@@ -162,12 +164,13 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
     rows[k].noalias() = one_.G_ * mixed_;
   }
   lanes_.factorise();
-  std::array<bool, SaddleLanes::lanes> alone{};
+  std::array<bool, SaddleLanes::lanes> alone{}, in_doubt{};
   SaddleLanes::Vectors own_acceleration, own_lambda;
   for (std::size_t k = 0; k < states.size(); ++k) {
     ok_[k] = lanes_.hand_over(static_cast<int>(k), one_.saddle_);
     if (!ok_[k]) continue;
     const double pivot = one_.saddle_.weakest_pivot(one_.weak_);
+    in_doubt[k] = !one_.saddle_.shows_none_below(hidden);
     if (!(alone[k] = !one_.saddle_.in_first_order())) continue;
     own_acceleration[k].resize(force_[k].size());
     own_lambda[k].resize(bias_[k].size());
@@ -186,6 +189,7 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
   lanes_.solve(force_, bias_, acceleration_, lambda_, one_.refinements_);
   for (std::size_t k = 0; k < states.size(); ++k) {
     if (alone[k]) acceleration_[k] = own_acceleration[k], lambda_[k] = own_lambda[k];
+    if (in_doubt[k]) weakness_[k] = std::numeric_limits<double>::infinity();
     ok_[k] = ok_[k] && acceleration_[k].allFinite() && lambda_[k].allFinite();
   }
 }

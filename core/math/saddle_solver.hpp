@@ -44,6 +44,9 @@ class SaddleSolver {
   // regularisation or round-off hide are found by factorise_finely, whose factors are then in use. The sparse
   // order is left where it cannot tell.
   double weakest_pivot(double bound);
+  // False where a row that is not known to be redundant may have a smaller one, by the factors in use. Of a
+  // row that depends on others, c of each, they have e (1 + |c|^2): in doubt, ask for many e.
+  bool shows_none_below(double bound) const;
 
   // The same matrix again in twice the digits and with e = 1e-23, which apply and solve use from then on
   // until the next factorise: L D L^T squares singular values, so doubles see none below sqrt(e) or 1e-8.
@@ -80,7 +83,6 @@ class SaddleSolver {
   const Factors& first() const { return sparse_ ? *sparse_ : safe_; }
   bool factorise_safely();
   bool first_serves(bool held);
-  bool shows_none_below(double bound) const;
   double residual_norm(const double* r) const;
   double pivot_of_row(Index r) const {
     return std::abs(in_use_->ldlt.pivot(in_use_->place[static_cast<std::size_t>(n_ + r)]));

@@ -78,7 +78,7 @@ TEST_CASE("a peak between states is that of the load at its own time") {
   }
   // The fine run's states are 1 ms apart: 0.5 T'' (0.5 ms)^2 = 1e-4 N of 80; interpolation as above.
   for (const double step : {0.11, 0.05})
-    CHECK(measured("peak_rod_force", swing(73, step, "dvm", growing)) == Approx(most).epsilon(2e-5));
+    CHECK(measured("peak_rod_force", swing(73, step, "dvm", growing)) == Approx(most).epsilon(1e-4));
 }
 
 TEST_CASE("a peak in a corner is that of the corner") {
@@ -167,6 +167,32 @@ TEST_CASE("peaks between states are those of the motion where rows are redundant
         const Diagnostics d = diagnose(run);
         CHECK(std::abs(largest_of_column(run, d, column) - *most) <= 1e-5 * size);
         CHECK(std::abs(smallest_of_column(run, d, column) - *least) <= 1e-5 * size);
+      }
+  }
+}
+
+// A sheet pulls most where it swings through its flat pose, in which it loses rank. In states as near to it
+// as 1e-5 rad, what round-off makes of the forces was called unique (275.7 for 90.42 N), and in short steps
+// all poses that such a state could be put right by were as near. States 1e-3 rad from the peak, which those
+// of a fine run are, miss it by 1e-5 of it; what is left of round-off was seen to be 8e-5.
+TEST_CASE("a peak in a singular pose is that of the motion through it") {
+  const auto swinging = [](double fold, double step, bool on_path) {
+    const Scene scene = read_scene_file(
+        find_scene("reentrant_sheet"),
+        {"structure.rows=1", "structure.columns=1", "structure.fold_angle=" + std::to_string(fold),
+         "structure.deployed_angle=11.5", "structure.stretch_force=27.16", "solver.at_deployed=pass",
+         "solver.stages=7", "solver.end_time=1", "solver.step=" + std::to_string(step)});
+    const auto model = build_model(scene);
+    return on_path ? simulate_on_path(model, scene.solver) : simulate(model, scene.solver);
+  };
+  for (const double fold : {45.0, 50.0, 60.67489, 63.97210322572671, 70.0}) {
+    const auto states = diagnose(swinging(fold, 0.0001, false)).at("axial_force_max_N").values;
+    const double most = *std::max_element(states.begin(), states.end());
+    for (const double step : {0.005, 0.0025, 0.00125, 0.000625})
+      for (const bool on_path : {false, true}) {
+        CAPTURE(fold, step, on_path);
+        const Simulation run = swinging(fold, step, on_path);
+        CHECK(largest_of_column(run, diagnose(run), "axial_force_max_N") == Approx(most).epsilon(1e-4));
       }
   }
 }
