@@ -2,6 +2,7 @@
 // Angles between planes whose sides lie nearly along their common edge, as those of folded rings do.
 #include "core/structure/dihedral.hpp"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
