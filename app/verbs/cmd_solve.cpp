@@ -100,7 +100,9 @@ int cmd_solve(const Arguments& arguments) {
   const Scene scene = source.read();
   const Target target = target_of(study.target, scene);
   const SolveOptions options = options_of(arguments, source, scene);
-  source.read({study.find + "=" + exact_number(options.low < options.high ? options.low : options.start)});
+  const bool between = options.low < options.high;
+  source.read({study.find + "=" + exact_number(between ? options.low : options.start)});
+  if (between) source.read({study.find + "=" + exact_number(options.high)});
 
   const OwnDirectory output(arguments.output, arguments.force, "solve");
 

@@ -79,13 +79,19 @@ void PathMotion::advance(PathLaw& law, double latest) {
     on_drive(t_, s_, v_);
     return;
   }
+  constexpr double unit = 1e-15;  // steps this short, as a share of the time, are not told from none
+  if (latest - t_ <= unit * std::abs(latest)) {
+    s_ += (latest - t_) * v_;
+    t_ = latest;
+    return;
+  }
   law.look_from(s_);
   if (!(h_ > 0)) h_ = 0.01 * (latest - t_);
   ScalarStep step;
   if (!scalar_step(law, t_, s_, v_, latest, h_, step))
     throw PathRefused("at t = " + seconds(t_) +
                       ": the path cannot be followed any further, or the motion on it not be resolved");
-  const bool last = step.end() >= latest - 1e-15 * std::abs(latest);
+  const bool last = step.end() >= latest - unit * std::abs(latest);
   t_ = last ? latest : step.end();
   step.at(step.end(), s_, v_);
   iterations_ += step.iterations;

@@ -423,7 +423,7 @@ class PathRun {
     watch_.deployed();
     const double t = motion_.t();
     run_.events.push_back({.name = "deployed", .t = t, .kind = "deployed"});
-    if (options_.at_deployed == "pass") return;
+    if (options_.at_deployed == "pass") return append_grid(t);
     State event = state_at(t, motion_.s(), motion_.v());
     if (last().t >= t) run_.trajectory.pop_back();
     const bool regular = regular_when_deployed(run_.trajectory, event);

@@ -160,9 +160,8 @@ TomlTree& step_into(TomlTree& tree, const Step& step, const std::string& so_far,
   return tree.entries.back().value;
 }
 
-void apply(TomlTree& root, std::string_view key, std::string_view text) {
-  const auto steps = parse_key(key);
-  TomlTree value = parse_value(text);
+// What stands at a key, made where nothing does.
+TomlTree& made_at(TomlTree& root, const std::vector<Step>& steps) {
   TomlTree* target = &root;
   std::string so_far;
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -171,10 +170,24 @@ void apply(TomlTree& root, std::string_view key, std::string_view text) {
     target = &step_into(*target, step, so_far, in_list);
     so_far += step.index ? "[" + std::to_string(*step.index) + "]" : (so_far.empty() ? "" : ".") + step.name;
   }
-  *target = std::move(value);
+  return *target;
+}
+
+void apply(TomlTree& root, std::string_view key, std::string_view text) {
+  const auto steps = parse_key(key);
+  TomlTree value = parse_value(text);
+  made_at(root, steps) = std::move(value);
 }
 
 }  // namespace
+
+TomlTree value_at(TomlTree root, const std::string& key) {
+  try {
+    return std::move(made_at(root, parse_key(key)));
+  } catch (const Refusal&) {
+    return made_here(TomlTree::Kind::table);
+  }
+}
 
 void apply_overrides(TomlTree& root, const std::vector<std::string>& overrides,
                      std::vector<SceneProblem>& problems) {

@@ -17,4 +17,7 @@ namespace unfurl {
 void apply_overrides(TomlTree& root, const std::vector<std::string>& overrides,
                      std::vector<SceneProblem>& problems);
 
+// What stands at such a key; an empty table where nothing does.
+TomlTree value_at(TomlTree root, const std::string& key);
+
 }  // namespace unfurl

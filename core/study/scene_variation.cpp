@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/scene/overrides.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/toml_tree.hpp"
 #include "core/scene/write.hpp"
@@ -33,31 +34,22 @@ SolverOptions study_solver(const Scene& scene, const std::vector<std::string>& v
 
 namespace {
 
-// What stands at a dotted key of the scene written out, where every parameter has the form of its kind.
-std::optional<TomlTree> value_at(const Scene& scene, const std::string& key) {
-  const TomlTree root = parse_toml(scene_text(scene), scene.name);
-  const TomlTree* at = &root;
-  for (std::size_t begin = 0; at && begin <= key.size();) {
-    const std::size_t end = std::min(key.find('.', begin), key.size());
-    at = at->kind == TomlTree::Kind::table ? at->find(std::string_view(key).substr(begin, end - begin))
-                                           : nullptr;
-    begin = end + 1;
-  }
-  return at ? std::optional(*at) : std::nullopt;
+// Written out, where every parameter has the form of its kind.
+TomlTree value_in(const Scene& scene, const std::string& key) {
+  return value_at(parse_toml(scene_text(scene), scene.name), key);
 }
 
 }  // namespace
 
 std::optional<double> scene_number(const Scene& scene, const std::string& key) {
-  const auto at = value_at(scene, key);
-  if (at && at->kind == TomlTree::Kind::real) return at->real;
-  if (at && at->kind == TomlTree::Kind::integer) return static_cast<double>(at->integer);
+  const TomlTree at = value_in(scene, key);
+  if (at.kind == TomlTree::Kind::real) return at.real;
+  if (at.kind == TomlTree::Kind::integer) return static_cast<double>(at.integer);
   return std::nullopt;
 }
 
 bool is_whole_number(const Scene& scene, const std::string& key) {
-  const auto at = value_at(scene, key);
-  return at && at->kind == TomlTree::Kind::integer;
+  return value_in(scene, key).kind == TomlTree::Kind::integer;
 }
 
 }  // namespace unfurl

@@ -57,6 +57,10 @@ class Search {
   void bracket_given() {
     a_ = at(o_.low);
     b_ = at(o_.high);
+    for (const Evaluation& end : {a_, b_}) {
+      if (!valid(end)) give_up("the measure is not there at an end of --between, " + short_number(end.x, 9));
+      if (exact(end)) return void(a_ = b_ = end);
+    }
     if (!opposite(a_, b_)) give_up("the target does not lie between the ends of --between");
   }
 
@@ -122,10 +126,14 @@ class Search {
     }
   }
 
-  // A bracket that closed on a jump holds no root.
+  // A bracket that closed on a jump holds no root. What is small is so beside the target, or where that is
+  // zero beside what else was met.
   void refuse_jump() const {
     const double jump = std::abs(b_.value - a_.value);
-    if (off(best_) <= 1e-6 * std::max(std::abs(target_), 1e-300) || jump < 1e-4 * std::abs(target_)) return;
+    double scale = std::abs(target_);
+    for (const Evaluation& e : seen_)
+      if (target_ == 0 && std::isfinite(e.value)) scale = std::max(scale, std::abs(e.value));
+    if (off(best_) <= 1e-6 * scale || jump < 1e-4 * scale) return;
     throw NotFound("the measure jumps over the target at " + short_number(b_.x, 9) + ", from " +
                    short_number(a_.value, 9) + " to " + short_number(b_.value, 9) +
                    (std::isinf(jump) ? "; a later solver.end_time may help" : ""));

@@ -286,6 +286,34 @@ TEST_CASE("solve begins with its directory, and keeps the answer of the last tar
   CHECK(refused.out == "");
 }
 
+TEST_CASE("solve finds numbers of forces, and says what is wrong with either end") {
+  const std::vector<std::string> scene{
+      "solve",    "four_bar",
+      "--set",    R"(forces[0]={kind="spring",name="s",nodes=["B","D"],stiffness=40})",
+      "--set",    "solver.end_time=0.5",
+      "--target", "end_time=0.5",
+      "--find"};
+  const auto solve = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = scene;
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  for (const char* key : {"forces[0].stiffness", "forces[s].stiffness"}) {
+    const ProgramResult r = solve({key});
+    CHECK(r.out == std::string(key) + " = 40\n");
+    CHECK(r.code == 0);
+  }
+  for (const char* ends : {"-3:5", "-9:-3"}) {
+    const ProgramResult r = solve({"forces[0].stiffness", "--between", ends});
+    CHECK(r.code == 3);
+    CHECK(r.err.find("forces[0].stiffness: must be") != std::string::npos);
+  }
+  const ProgramResult r = run_program({"solve", "hoop6", "--find", "structure.fold_angle", "--target",
+                                       "deploy_time=1", "--between", "50:102"});
+  CHECK(r.code == 3);
+  CHECK(r.err.find("structure.fold_angle: must be in [0, 90) deg; got 102") != std::string::npos);
+}
+
 TEST_CASE("options of other verbs are refused") {
   const ProgramResult r = run_program({"check", "hoop6", "--shard", "1/2"});
   CHECK(r.code == 2);

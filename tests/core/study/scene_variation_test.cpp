@@ -50,6 +50,25 @@ TEST_CASE("numbers of a scene are found where they stand or by default, and are 
     CHECK_FALSE(is_whole_number(scene, other));
 }
 
+TEST_CASE("numbers of forces, constraints and nodes are found by index and by name") {
+  const std::string text = R"(
+structure = {kind = "custom", nodes = [{name = "A", position = [0, 0, 0], fixed = true},
+             {name = "B", position = [1.5, 0, 0], mass = 2.5}], rods = [{nodes = ["A", "B"], mass = 1}]}
+forces = [{kind = "spring", nodes = ["A", "B"], stiffness = 40},
+          {kind = "drag", name = "air", nodes = ["B"], damping = 0.25}]
+)";
+  const Scene scene = SceneSource{"two.toml", {}, std::make_shared<const std::string>(text), ""}.read();
+  CHECK(scene_number(scene, "forces[0].stiffness") == 40.0);
+  for (const char* key : {"forces[1].damping", "forces[air].damping", "forces.air.damping"})
+    CHECK(scene_number(scene, key) == 0.25);
+  CHECK(scene_number(scene, "structure.nodes.B.mass") == 2.5);
+  CHECK(scene_number(scene, "structure.nodes[1].position[0]") == 1.5);
+  for (const char* none : {"forces[0]", "forces[2].stiffness", "forces[7].stiffness", "forces[fog].damping",
+                           "forces.stiffness", "forces[0", "structure.nodes[1].position[3]"})
+    CHECK_FALSE(scene_number(scene, none));
+  CHECK_FALSE(is_whole_number(scene, "forces[0].stiffness"));
+}
+
 TEST_CASE("many runs go by the model that costs least, unless the method itself is what is asked about") {
   const Scene scene = source().read();
   const auto model = [&](std::vector<std::string> varied, const char* measure) {

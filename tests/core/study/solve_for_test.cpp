@@ -33,6 +33,20 @@ TEST_CASE("a root between two ends is found on either side of where the scene st
   CHECK(exact.high == 2.5);
 }
 
+// No double is a root of these to the last bit; what is left of 3e-17 is no jump.
+TEST_CASE("a target of zero is met as well as any, and at an end that was given") {
+  const auto f = [](double x) { return std::sin(x) - 0.3 + 3e-17; };
+  CHECK(solve_for(f, 0, {.low = 0.1, .high = 1}, {}).x == Approx(std::asin(0.3)).epsilon(1e-11));
+  CHECK(solve_for(f, 0, {.start = 0.4}, {}).x == Approx(std::asin(0.3)).epsilon(1e-11));
+  CHECK_THROWS_WITH(solve_for([](double x) { return x < 2 ? -0.01 : 10.0; }, 0, {.low = 1, .high = 3}, {}),
+                    Catch::Contains("jumps over the target at 2"));
+  const auto twice = [](double x) { return 2 * x; };
+  for (const double end : {1.5, 3.5}) {
+    const Solved s = solve_for(twice, 2 * end, {.low = 1.5, .high = 3.5}, {});
+    CHECK((s.x == end && s.value == 2 * end && s.low == end && s.high == end));
+  }
+}
+
 TEST_CASE("the search approaches a wall behind which parameters are invalid") {
   // Like the deployment time near dead centre: it grows without end towards 90.
   const auto f = [](double x) { return x < 90 ? -std::log(90 - x) : none; };
@@ -138,6 +152,10 @@ TEST_CASE("walls on both sides are told, and a measure that ends between the end
       solve_for([](double x) { return x < 2 ? 1.5 : std::numeric_limits<double>::infinity(); }, 5,
                 {.low = 1, .high = 3}, {}),
       "the measure jumps over the target at 2, from 1.5 to inf; a later solver.end_time may help");
+  CHECK_THROWS_WITH(
+      solve_for(walled, 7, {.low = 2.5, .high = 3.5}, {}),
+      Catch::StartsWith("the measure is not there at an end of --between, 3.5; for parameters from "
+                        "2.5 to 2.5 the measure runs from 7.5 to 7.5"));
 }
 
 }  // namespace solve_for_test

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs that end where something happens, on the path and by the full model.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/path/path_run.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "core/study/reference.hpp"
+
+using namespace unfurl;
+
+namespace event_at_end_test {
+
+namespace {
+
+struct Case {
+  std::string scene;
+  std::vector<std::string> changes;
+};
+
+const std::vector<Case> cases{
+    {"hoop6_sector", {"solver.at_deployed=pass"}},
+    {"hoop6_sector", {"solver.at_deployed=latch"}},
+    {"hoop6_sector", {}},
+    {"scissor_mast", {"solver.at_deployed=pass"}},
+    {"scissor_ring", {"solver.at_deployed=pass"}},
+    {"hoop6", {R"(constraints[0]={kind="angle_stop",name="s",fold_angle=true,min=40,restitution=0.6})"}},
+    {"hoop6", {R"(constraints[0]={kind="angle_stop",name="s",fold_angle=true,min=40,restitution=0})"}},
+    {"hoop6",
+     {R"(forces[0]={kind="load_over_time",nodes=["B0"],force=[0,0,-400],times=[0,1.5,1.6],values=[0,0,1]})",
+      R"(constraints[0]={kind="angle_stop",name="s",fold_angle=true,min=40,restitution=0})"}},
+    {"four_bar", {R"(constraints[0]={kind="length_stop",nodes=["B","D"],max=3.5,restitution=0.7})"}},
+    {"four_bar", {R"(constraints[0]={kind="length_stop",nodes=["B","D"],max=3.5,restitution=0})"}},
+    {"four_bar",
+     {R"(forces[0]={kind="spring",nodes=["B","D"],stiffness=400,damping=5,tension_only=true,free_length=3.3})"}},
+    {"four_bar",
+     {R"(forces[0]={kind="friction",rods=["crank","coupler"],axis=[0,1,0],kinetic=14,static=19})"}},
+};
+
+}  // namespace
+
+// An event at the end, or as near to it as numbers of that size come: nothing is left out of the run, and
+// nothing is refused. Times of events are known to 1e-13 of a run, which may be behind its end by that.
+// Between events the motion is smooth, so that runs that end as near to each other end alike, to what
+// interpolation between states adds.
+TEST_CASE("a run ends where something happens, and steps do, by rounding") {
+  int tried = 0;
+  for (const Case& one : cases) {
+    CAPTURE(one.scene, one.changes);
+    const Scene scene = read_scene_file(find_scene(one.scene), one.changes);
+    const auto model = build_model(scene);
+    for (const bool on_path : {true, false}) {
+      CAPTURE(on_path);
+      const auto run_to = [&](double end, double step) {
+        SolverOptions options = scene.solver;
+        options.end_time = end;
+        options.step = step;
+        return on_path ? simulate_on_path(model, options) : simulate(model, options);
+      };
+      const Simulation longer = run_to(8.0, scene.solver.step);
+      REQUIRE(!longer.events.empty());
+      for (std::size_t e = 0; e < std::min<std::size_t>(longer.events.size(), 4); ++e) {
+        const double at = longer.events[e].t, unit = std::nextafter(at, 1e9) - at;
+        if (!(at > 0)) continue;
+        for (const double units : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
+          const double parts = std::ceil(at / scene.solver.step);
+          CAPTURE(longer.events[e].name, at, units);
+          const Trajectory run = run_to(at + 5.5 * scene.solver.step, (at + units * unit) / parts).trajectory;
+          for (std::size_t i = 1; i < run.size(); ++i) CHECK(run.time(i) >= run.time(i - 1));
+          CHECK(node_distance(run.positions(run.size() - 1),
+                              longer.trajectory.positions_at(run.end_time())) <= 1e-5);
+        }
+        for (const double units : {-400.0, -30.0, -5.0, -2.0, -1.0, 0.0, 1.0, 2.0, 5.0, 30.0, 400.0}) {
+          CAPTURE(longer.events[e].name, at, units);
+          const double end = at + units * unit;
+          const Simulation run = run_to(end, scene.solver.step);
+          ++tried;
+          CHECK(run.status != RunStatus::failed);
+          CHECK(run.trajectory.end_time() == Approx(end).epsilon(1e-12));
+          const std::size_t last = run.trajectory.size() - 1;
+          CHECK(node_distance(run.trajectory.positions(last), longer.trajectory.positions_at(end)) <= 1e-6);
+        }
+      }
+    }
+  }
+  CHECK(tried >= 300);
+}
+
+}  // namespace event_at_end_test
