@@ -313,6 +313,9 @@ class PathRun {
 
   void strike(std::size_t i) {
     if (drive_.there()) throw PathRefused("at t = " + seconds(motion_.t()) + ": a drive meets a stop");
+    for (std::size_t other = 0; other < sides_.stops().size(); ++other)
+      if (other != i && watch_.meets(motion_, other))
+        throw PathRefused("at t = " + seconds(motion_.t()) + ": two stops are met at once");
     const StopSide& stop = sides_.stops()[i];
     const double slope = watch_.gap_slope(i, motion_.s());
     const double approach = -slope * motion_.v(), flight = motion_.t() - last_touch_[i];

@@ -54,6 +54,13 @@ double PathWatch::gap_slope(std::size_t stop, double s) const {
   return sides_.stops()[stop].sign * law_->table().at(stop_columns_[stop], s).slope;
 }
 
+bool PathWatch::meets(const PathMotion& motion, std::size_t stop) const {
+  VectorXd margin, rates;
+  margins(motion, motion.t(), margin, rates);
+  const auto i = static_cast<Index>(stop);
+  return margin[i] <= 1 && rates[i] < 0;
+}
+
 // In units of what counts as zero, as OneSided has them; positive where nothing happens.
 void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out, VectorXd& rates) const {
   double s = 0, v = 0;

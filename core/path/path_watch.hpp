@@ -29,7 +29,9 @@ class PathWatch {
   // The deployed pose was further away than the margin at that time.
   bool clear(const PathMotion& motion, double t) const;
   double remaining(double s) const { return law_->table().at(deployed_column_, s).value; }  // sine
-  double gap_slope(std::size_t stop, double s) const;                                       // by s
+  // Whether the motion touches this stop, now, and goes on into it.
+  bool meets(const PathMotion& motion, std::size_t stop) const;
+  double gap_slope(std::size_t stop, double s) const;  // by s
   // Of what side i of friction acts on, by s.
   double friction_slope(std::size_t i, double s) const {
     return law_->table().at(friction_columns_[i - sides_.first_friction()], s).slope;

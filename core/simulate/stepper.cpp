@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/stepper.hpp"
 
+#include <algorithm>
+#include <functional>
+#include <limits>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/initial_state.hpp"
@@ -24,6 +28,105 @@ void Stepper::Loop::step_over(Probe& to, double& h) {
     to = std::move(longer), h *= length;
     return;
   }
+}
+
+namespace {
+
+// States of a step where none that ends there can be solved, next to a singular pose: on the polynomial
+// through those of the step's other lengths that can, on both sides of the pose.
+class AcrossPose {
+ public:
+  using Step = std::function<bool(State& state, double length)>;
+
+  AcrossPose(const State& from, double longest, const Step& step) {
+    constexpr int lengths = 32;
+    solved_.push_back(from);
+    for (int k = 1; k <= lengths; ++k) {
+      State state = from;
+      if (step(state, longest * k / lengths)) solved_.push_back(std::move(state));
+    }
+  }
+
+  bool at(const System& system, double t, State& out) const {
+    constexpr std::size_t points = 9;
+    const auto behind =
+        std::partition_point(solved_.begin(), solved_.end(), [&](const State& state) { return state.t < t; });
+    if (behind == solved_.begin() || behind == solved_.end() || solved_.size() < points) return false;
+    const auto before = static_cast<std::size_t>(behind - solved_.begin());
+    const std::size_t first = std::min(before - std::min(before, points / 2), solved_.size() - points);
+    out = solved_[before - 1];
+    if (out.tension.size() > 0) return false;
+    const State left = out;
+    out.t = t;
+    out.z.setZero();
+    out.w.setZero();
+    for (std::size_t a = first; a < first + points; ++a) {
+      double weight = 1;
+      for (std::size_t b = first; b < first + points; ++b)
+        if (b != a) weight *= (t - solved_[b].t) / (solved_[a].t - solved_[b].t);
+      out.z += weight * solved_[a].z;
+      out.w += weight * solved_[a].w;
+    }
+    project(system, out);
+    if (system.followed_angles() > 0) system.at(left).count_on(out);
+    return true;
+  }
+
+ private:
+  std::vector<State> solved_;  // in the order of time
+};
+
+}  // namespace
+
+// The first crossing up to `to`, in a step of size h.
+std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
+  sides_.measure(model(), to.state, true, to);
+  begin_.at = 0;
+  std::optional<AcrossPose> across;
+  double unsolved = std::numeric_limits<double>::infinity();
+  const auto step = [this](State& state, double length) {
+    if (!probing_) probing_ = fresh_integrator();
+    probing_->restart();
+    return take_step(*probing_, state, length);
+  };
+  const Solve solve = [&](double length, Probe& probe) {
+    probe.at = length;
+    probe.state = now();
+    probe.report = step(probe.state, length);
+    if (!probe.report.ok() && !deployment_.empty()) {
+      double longest = 1.5 * std::max(h, to.at);  // beyond the run's end, not beyond an edge of time
+      if (const double edge = grid_.next_edge(now().t); edge < grid_.end())
+        longest = std::min(longest, edge - now().t);
+      if (!across)
+        across.emplace(now(), longest, [&](State& state, double part) { return step(state, part).ok(); });
+      if (across->at(system(), now().t + length, probe.state))
+        probe.report = {};
+      else
+        unsolved = std::min(unsolved, length);
+    }
+    if (probe.report.ok()) sides_.measure(model(), probe.state, true, probe);
+    return probe.report.ok();
+  };
+  auto crossing = first_crossing(begin_, to, between(to), solve);
+  if (crossing && crossing->probe.at >= unsolved - 1e-6 * h)
+    run_.warnings.push_back(
+        "at t = " + seconds(now().t + crossing->probe.at) +
+        ": a stop, a cable or friction changes next to a singular pose, where no step can be solved; it does "
+        "so later by less than " +
+        seconds(to.at - crossing->probe.at));
+  return crossing;
+}
+
+// Margins on the cubic through the coordinates and rates of both ends of a step.
+MatrixXd Stepper::Loop::between(const Probe& to) {
+  MatrixXd margins(static_cast<Index>(sides_.size()), stepping::parts - 1);
+  Probe p;
+  for (int k = 1; k < stepping::parts; ++k) {
+    p.state = on_cubic(now(), to.state, now().t + to.at * k / stepping::parts);
+    sides_.measure(model(), p.state, 2 * k == stepping::parts, p);
+    margins.col(k - 1) = p.margins;
+  }
+  return margins;
 }
 
 Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& options)

@@ -143,8 +143,7 @@ class Stepper::Loop {
 
   // The rest of the step, of size h, or what comes before the first event on it. False where the run ends.
   bool part(double h) {
-    const bool watched = !sides_.empty() && now().t >= unwatched_until_;
-    if (watched) {
+    if (watched()) {
       begin();
       std::vector<std::size_t> over;
       for (Index i = 0; i < begin_.margins.size(); ++i)
@@ -156,10 +155,14 @@ class Stepper::Loop {
     std::optional<State> event;
     if (!find_deployed(to, h, event)) return false;
     if (!event && !to.report.ok()) step_over(to, h);
-    if (watched && to.report.ok())
-      if (auto crossing = find_crossing(to);
-          crossing && now().t + crossing->probe.at < latest(event, *crossing, h))
+    if (watched() && (event || to.report.ok())) {
+      Probe until = to;
+      if (!to.report.ok()) until = {.at = event->t - now().t, .state = *event};
+      auto crossing = find_crossing(until, h);
+      if (to.report.ok()) to = std::move(until);
+      if (crossing && now().t + crossing->probe.at < latest(event, *crossing, h))
         return go_to(std::move(*crossing));
+    }
     if (event) return deployed(*event, to, h);
     return accept(to, part_end_);
   }
@@ -228,6 +231,8 @@ class Stepper::Loop {
 
   // --- stops and cables ---
 
+  bool watched() const { return !sides_.empty() && now().t >= unwatched_until_; }
+
   // Margins of the present state, those of the last accepted one where they still hold.
   void begin() {
     if (have_begin_ && !(begin_.margins.minCoeff() < 0)) return;
@@ -241,32 +246,8 @@ class Stepper::Loop {
     return sides_.only_friction(crossing.which) ? event->t - stepping::straight * h : event->t;
   }
 
-  std::optional<Crossing> find_crossing(Probe& to) {
-    sides_.measure(model(), to.state, true, to);
-    begin_.at = 0;
-    const Solve solve = [this](double length, Probe& probe) {
-      if (!probing_) probing_ = fresh_integrator();
-      probing_->restart();
-      probe.at = length;
-      probe.state = now();
-      probe.report = take_step(*probing_, probe.state, length);
-      if (probe.report.ok()) sides_.measure(model(), probe.state, true, probe);
-      return probe.report.ok();
-    };
-    return first_crossing(begin_, to, between(to), solve);
-  }
-
-  // Margins on the cubic through the coordinates and rates of both ends of a step.
-  MatrixXd between(const Probe& to) {
-    MatrixXd margins(static_cast<Index>(sides_.size()), stepping::parts - 1);
-    Probe p;
-    for (int k = 1; k < stepping::parts; ++k) {
-      p.state = on_cubic(now(), to.state, now().t + to.at * k / stepping::parts);
-      sides_.measure(model(), p.state, 2 * k == stepping::parts, p);
-      margins.col(k - 1) = p.margins;
-    }
-    return margins;
-  }
+  std::optional<Crossing> find_crossing(Probe& to, double h);
+  MatrixXd between(const Probe& to);
 
   bool go_to(Crossing crossing) {
     if (const double t = now().t + crossing.probe.at; t > now().t) {
@@ -395,12 +376,15 @@ class Stepper::Loop {
     return fold(now()) > margin_ && fold(next) <= margin_;
   }
 
-  // Could the fold angle reach zero within a time? Where sine * rate is constant, after sine / (2 rate).
+  // Could the fold angle reach zero within a time? Where sine * rate is constant, after sine / (2 rate). Not
+  // where a stop has just thrown it back.
   bool may_cross(double within) {
     if (deployment_.empty() || deployed_) return false;
     const double sine = fold(now());
-    const double way = 2 * within * remaining_rate(model(), now());
-    return sine > 0 && (sine <= stepping::singular_margin || sine + way <= 0);
+    const double rate = remaining_rate(model(), now());
+    const std::size_t last = run_.trajectory.size() - 1;
+    const bool thrown_back = rate > 0 && last > 0 && run_.trajectory.time(last - 1) == now().t;
+    return sine > 0 && ((sine <= stepping::singular_margin && !thrown_back) || sine + 2 * within * rate <= 0);
   }
 
   std::optional<State> locate(double h, double latest) {
@@ -435,6 +419,10 @@ class Stepper::Loop {
     run_.events.push_back({.name = "deployed", .t = event.t, .kind = "deployed"});
     if (run_.options.at_deployed == "pass") {
       if (!to.report.ok() || std::abs(fold(to.state)) < margin_) step_over(to, h);
+      if (watched() && to.report.ok())
+        if (auto crossing = find_crossing(to, h);
+            crossing && now().t + crossing->probe.at >= 2 * event.t - latest(event, *crossing, h))
+          return go_to(std::move(*crossing));
       return accept(to, part_end_);
     }
     project(system(), event);

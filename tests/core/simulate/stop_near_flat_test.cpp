@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stops that a ring meets next to its flat pose, in which the constraints lose rank and no step can end.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/path/path_run.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/study/reference.hpp"
+
+using namespace unfurl;
+
+namespace stop_near_flat_test {
+
+namespace {
+
+// A ring that is flat at 0.160662 s; a load begins where a step ends, at 0.16 s, 0.134 degrees before.
+Scene ring(const std::vector<std::string>& changes) {
+  return read_scene_text(R"(
+[structure]
+kind = "hoop"
+units = 6
+post_length = 0.6655206096817609
+fold_angle = 14.185800626033622
+hinge_force = 414.4792355160152
+[solver]
+end_time = 0.2
+step = 0.01
+stages = 7
+[[constraints]]
+kind = "angle_stop"
+name = "s"
+fold_angle = true
+min = 0
+[[forces]]
+kind = "load_over_time"
+nodes = ["B3"]
+force = [-19, -28, -16]
+times = [0, 0.16, 0.26]
+values = [0, 0, 1]
+)",
+                         "ring.toml", changes);
+}
+
+std::string key(const char* name, double value) {
+  return name + std::to_string(value);
+}
+
+}  // namespace
+
+// The path knows nothing of steps: it passes flat poses like any other. Where a step did not end, the state
+// at the stop is on a polynomial through 9 of other lengths, known to some 1e-12 of the motion; behind a stop
+// at 1e-3 degrees the motion of 200 degrees/s has 1e-9 of that from round-off next to the pose.
+TEST_CASE("a stop next to the flat pose is met when the path meets it") {
+  int contacts = 0;
+  for (const char* at_deployed : {"stop", "latch", "pass"})
+    for (const double restitution : {0.0, 0.5, 1.0})
+      for (const double least : {0.3, 0.134, 0.1, 0.05, 0.001, -0.05, -0.3, -1.0})
+        for (const bool edge : {true, false}) {
+          if (!edge && (restitution == 0.5 || least < 0)) continue;  // flat again next to the end of a step
+          CAPTURE(at_deployed, restitution, least, edge);
+          const Scene scene =
+              ring({std::string("solver.at_deployed=") + at_deployed, key("constraints[0].min=", least),
+                    key("constraints[0].restitution=", restitution),
+                    edge ? "forces[0].values=[0,0,1]" : "forces[0].times=[0,0.1637,0.26]"});
+          const auto model = build_model(scene);
+          const Simulation full = simulate(model, scene.solver);
+          const Simulation path = simulate_on_path(model, scene.solver);
+          CHECK(full.status == path.status);
+          REQUIRE(full.events.size() == path.events.size());
+          for (std::size_t e = 0; e < full.events.size(); ++e) {
+            CHECK(full.events[e].kind == path.events[e].kind);
+            CHECK(std::abs(full.events[e].t - path.events[e].t) <= 1e-9);
+            contacts += full.events[e].kind == "contact" ? 1 : 0;
+          }
+          CHECK(node_distance(full.trajectory.positions(full.trajectory.size() - 1),
+                              path.trajectory.positions(path.trajectory.size() - 1)) <= 1e-8);
+        }
+  CHECK(contacts >= 80);
+}
+
+// Newton's law for both: no speed is less than each stop's share of the one before, so that the harder throws
+// back.
+TEST_CASE("of two stops that are met at once the harder throws back") {
+  for (const bool harder_first : {true, false}) {
+    const std::string first = harder_first ? "0.6" : "0", second = harder_first ? "0" : "0.6";
+    const Scene scene = ring(
+        {"constraints[0].min=7", "constraints[0].restitution=" + first,
+         R"(constraints[1]={kind="angle_stop",name="t",fold_angle=true,min=7,restitution=)" + second + "}"});
+    const auto model = build_model(scene);
+    const Simulation run = simulate(model, scene.solver);
+    const std::vector<double>& rate = diagnose(run).at("fold_rate_rad_s").values;
+    std::size_t after = 1;
+    while (run.trajectory.time(after) > run.trajectory.time(after - 1)) ++after;
+    CHECK(rate[after] == Approx(-0.6 * rate[after - 1]).epsilon(1e-9));
+    REQUIRE(run.events.size() >= 2);
+    CHECK(run.events[0].t == run.events[1].t);
+    CHECK_THROWS_WITH(simulate_on_path(model, scene.solver), Catch::Contains("two stops are met at once"));
+  }
+}
+
+}  // namespace stop_near_flat_test
