@@ -7,9 +7,9 @@
 namespace unfurl {
 namespace {
 
-// As the time loop has them (simulate/stepper.cpp): the deployed pose counts as reached anew from this sine
-// of the fold angle on.
-constexpr double singular_margin = 1e-4, deployed_already = 1e-12;
+// As the time loop has them (simulate/stepper_loop.hpp): the deployed pose counts as reached anew from this
+// sine of the fold angle on; what is met with it.
+constexpr double singular_margin = 1e-4, deployed_already = 1e-12, at_once = 1e-8;
 constexpr int samples = 24;  // within a step
 
 }  // namespace
@@ -122,7 +122,8 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
       }
       if (!below(i, left) || !(a[i] > left)) continue;
       const double t = zero_of(motion, i, t0, end);
-      if (t < first.first || first.second < 0) first = {t, static_cast<int>(i)};
+      const double tie = i == deployed ? at_once * step_ : 0;
+      if (t < first.first + tie || first.second < 0) first = {t, static_cast<int>(i)};
     }
     if (first.second >= 0) break;
     a = b;

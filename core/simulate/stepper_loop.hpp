@@ -160,8 +160,7 @@ class Stepper::Loop {
       if (!to.report.ok()) until = {.at = event->t - now().t, .state = *event};
       auto crossing = find_crossing(until, h);
       if (to.report.ok()) to = std::move(until);
-      if (crossing && now().t + crossing->probe.at < latest(event, *crossing, h))
-        return go_to(std::move(*crossing));
+      if (crossing && (!event || side(*crossing, *event, h) < 0)) return go_to(std::move(*crossing));
     }
     if (event) return deployed(*event, to, h);
     return accept(to, part_end_);
@@ -241,9 +240,19 @@ class Stepper::Loop {
     have_begin_ = true;
   }
 
-  double latest(const std::optional<State>& event, const Crossing& crossing, double h) const {
-    if (!event) return std::numeric_limits<double>::infinity();
-    return sides_.only_friction(crossing.which) ? event->t - stepping::straight * h : event->t;
+  // Before the deployed pose (-1), behind it (1), or at it, where friction turns round that is none of it.
+  // What is not passed in that pose, but for rounding, comes behind it.
+  int side(const Crossing& crossing, const State& event, double h) {
+    const double t = now().t + crossing.probe.at - event.t;
+    if (sides_.only_friction(crossing.which))
+      return std::abs(t) < stepping::straight * h ? 0 : (t < 0 ? -1 : 1);
+    if (t >= 0) return 1;
+    Probe there;
+    sides_.measure(model(), event, true, there);
+    return std::ranges::any_of(crossing.which,
+                               [&](std::size_t i) { return there.margins[static_cast<Index>(i)] < -1; })
+               ? -1
+               : 1;
   }
 
   std::optional<Crossing> find_crossing(Probe& to, double h);
@@ -420,9 +429,10 @@ class Stepper::Loop {
     if (run_.options.at_deployed == "pass") {
       if (!to.report.ok() || std::abs(fold(to.state)) < margin_) step_over(to, h);
       if (watched() && to.report.ok())
-        if (auto crossing = find_crossing(to, h);
-            crossing && now().t + crossing->probe.at >= 2 * event.t - latest(event, *crossing, h))
+        if (auto crossing = find_crossing(to, h); crossing && side(*crossing, event, h) > 0) {
+          run_.events.back().t = std::min(event.t, now().t + crossing->probe.at);
           return go_to(std::move(*crossing));
+        }
       return accept(to, part_end_);
     }
     project(system(), event);

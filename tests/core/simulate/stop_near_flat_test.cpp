@@ -7,6 +7,7 @@
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/path/path_run.hpp"
 #include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/study/reference.hpp"
 
@@ -79,6 +80,34 @@ TEST_CASE("a stop next to the flat pose is met when the path meets it") {
                               path.trajectory.positions(path.trajectory.size() - 1)) <= 1e-8);
         }
   CHECK(contacts >= 80);
+}
+
+// Rounding would say which is met first: the deployed pose is. The run ends there, or locks; one that passes
+// it is thrown back all the same.
+TEST_CASE("a stop in the deployed pose is met with it, which comes first") {
+  for (const char* scene_name : {"scissor_mast", "scissor_ring", "hoberman"})
+    for (const char* at_deployed : {"stop", "latch", "pass"})
+      for (const double step : {0.01, 0.007, 0.002}) {
+        CAPTURE(scene_name, at_deployed, step);
+        const Scene scene = read_scene_file(
+            find_scene(scene_name),
+            {"structure.deployed_angle=12.5", std::string("solver.at_deployed=") + at_deployed,
+             "solver.end_time=1.5", key("solver.step=", step),
+             R"(constraints[0]={kind="angle_stop",name="s",fold_angle=true,min=12.5,restitution=1})"});
+        const auto model = build_model(scene);
+        for (const Simulation& run : {simulate(model, scene.solver), simulate_on_path(model, scene.solver)}) {
+          REQUIRE(run.events.size() >= 1);
+          CHECK(run.events[0].kind == "deployed");
+          const bool passes = at_deployed == std::string("pass"),
+                     latches = at_deployed == std::string("latch");
+          CHECK(run.status == (passes || latches ? RunStatus::completed : RunStatus::deployed));
+          if (passes || latches) REQUIRE(run.events.size() >= 2);
+          if (passes || latches) CHECK(run.events[1].kind == (passes ? "contact" : "latch"));
+          for (std::size_t e = 1; e < run.events.size(); ++e) CHECK(run.events[e].t >= run.events[e - 1].t);
+          // What counts as touching is 1e-9 of the structure.
+          if (passes) CHECK(run.events[1].t == Approx(run.events[0].t).epsilon(1e-8));
+        }
+      }
 }
 
 // Newton's law for both: no speed is less than each stop's share of the one before, so that the harder throws
