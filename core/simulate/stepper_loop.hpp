@@ -156,10 +156,9 @@ class Stepper::Loop {
     if (!find_deployed(to, h, event)) return false;
     if (!event && !to.report.ok()) step_over(to, h);
     if (watched() && (event || to.report.ok())) {
-      Probe until = to;
-      if (!to.report.ok()) until = {.at = event->t - now().t, .state = *event};
-      auto crossing = find_crossing(until, h);
-      if (to.report.ok()) to = std::move(until);
+      Probe flat;
+      if (!to.report.ok()) flat = {.at = event->t - now().t, .state = *event};
+      auto crossing = find_crossing(to.report.ok() ? to : flat, h);
       if (crossing && (!event || side(*crossing, *event, h) < 0)) return go_to(std::move(*crossing));
     }
     if (event) return deployed(*event, to, h);
