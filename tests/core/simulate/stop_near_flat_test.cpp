@@ -82,6 +82,25 @@ TEST_CASE("a stop next to the flat pose is met when the path meets it") {
   CHECK(contacts >= 80);
 }
 
+// A load that begins right behind the flat pose leaves no steps beyond it to go by.
+TEST_CASE("a stop next to the flat pose that no step can tell of is met early, by less than a warning says") {
+  for (const double least : {0.001, 0.0005}) {
+    CAPTURE(least);
+    const Scene scene = ring({"forces[0].times=[0,0.16068,0.26]", key("constraints[0].min=", least)});
+    const auto model = build_model(scene);
+    const Simulation full = simulate(model, scene.solver), path = simulate_on_path(model, scene.solver);
+    REQUIRE(full.warnings.size() == 1);
+    CHECK(path.warnings.empty());
+    const std::string& warning = full.warnings.front();
+    CHECK(warning.find("next to a singular pose, where no step can be solved") != std::string::npos);
+    const double most = std::stod(warning.substr(warning.find("less than ") + 10));
+    const double early = path.events.at(0).t - full.events.at(0).t;
+    CHECK(early > 0);
+    CHECK(early <= most);
+    CHECK(most < 1e-4);
+  }
+}
+
 // Rounding would say which is met first: the deployed pose is. The run ends there, or locks; one that passes
 // it is thrown back all the same.
 TEST_CASE("a stop in the deployed pose is met with it, which comes first") {
