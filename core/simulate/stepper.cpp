@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/integrators/integrator.hpp"
+#include "core/math/barycentric.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/stepper_loop.hpp"
@@ -60,12 +61,12 @@ class AcrossPose {
     out.t = t;
     out.z.setZero();
     out.w.setZero();
-    for (std::size_t a = first; a < first + points; ++a) {
-      double weight = 1;
-      for (std::size_t b = first; b < first + points; ++b)
-        if (b != a) weight *= (t - solved_[b].t) / (solved_[a].t - solved_[b].t);
-      out.z += weight * solved_[a].z;
-      out.w += weight * solved_[a].w;
+    VectorXd away(static_cast<Index>(points));
+    for (std::size_t a = 0; a < points; ++a) away[static_cast<Index>(a)] = solved_[first + a].t - t;
+    const VectorXd weights = Barycentric(away).values(0.0);
+    for (std::size_t a = 0; a < points; ++a) {
+      out.z += weights[static_cast<Index>(a)] * solved_[first + a].z;
+      out.w += weights[static_cast<Index>(a)] * solved_[first + a].w;
     }
     project(system, out);
     if (system.followed_angles() > 0) system.at(left).count_on(out);
