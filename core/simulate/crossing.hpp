@@ -26,6 +26,7 @@ using Solve = std::function<bool(double length, Probe& probe)>;
 struct Crossing {
   Probe probe;                     // solved as a step of its own, up to the crossing
   std::vector<std::size_t> which;  // margins that are zero there and negative behind
+  double later = 0.0;              // by less than that, where no step behind the probe can be solved [s]
 };
 
 // `from`: the step's start; `to`: its end; `between`: margins at equal parts of the step, from some

@@ -109,13 +109,25 @@ std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
     return probe.report.ok();
   };
   auto crossing = first_crossing(begin_, to, between(to), solve);
-  if (crossing && crossing->probe.at >= unsolved - 1e-6 * h)
+  if (crossing && crossing->probe.at >= unsolved - 1e-6 * h) crossing->later = to.at - crossing->probe.at;
+  return crossing;
+}
+
+bool Stepper::Loop::go_to(Crossing crossing) {
+  const double t = now().t + crossing.probe.at;
+  if (crossing.later > 0)
     run_.warnings.push_back(
-        "at t = " + seconds(now().t + crossing->probe.at) +
+        "at t = " + seconds(t) +
         ": a stop, a cable or friction changes next to a singular pose, where no step can be solved; it does "
         "so later by less than " +
-        seconds(to.at - crossing->probe.at));
-  return crossing;
+        seconds(crossing.later));
+  if (t > now().t) {
+    crossing.probe.state.t = t;
+    go_on(std::move(crossing.probe.state), crossing.probe.report);
+    integrator_->restart();
+  }
+  have_begin_ = false;
+  return act(crossing.which);
 }
 
 // Margins on the cubic through the coordinates and rates of both ends of a step.

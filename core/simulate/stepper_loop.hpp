@@ -257,15 +257,7 @@ class Stepper::Loop {
   std::optional<Crossing> find_crossing(Probe& to, double h);
   MatrixXd between(const Probe& to);
 
-  bool go_to(Crossing crossing) {
-    if (const double t = now().t + crossing.probe.at; t > now().t) {
-      crossing.probe.state.t = t;
-      go_on(std::move(crossing.probe.state), crossing.probe.report);
-      integrator_->restart();
-    }
-    have_begin_ = false;
-    return act(crossing.which);
-  }
+  bool go_to(Crossing crossing);
 
   // What comes of it that these have crossed, now. False where the run ends.
   bool act(const std::vector<std::size_t>& which) {
