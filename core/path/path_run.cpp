@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/path/path_run.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -15,6 +13,7 @@
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/one_sided.hpp"
+#include "core/simulate/push_responses.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/simulate/stretched.hpp"
@@ -28,13 +27,7 @@ namespace {
 constexpr double accumulated = 1e-4;
 constexpr long most_switches = 100;  // at one time
 // Two solutions of one equation, next to a pose where it is nearly singular.
-constexpr double same_equations = 1e-7;
-
-double thread_cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+constexpr double same_equations = 1e-7, one_way = 1 - 1e-6;
 
 class PathRun {
  public:
@@ -321,6 +314,7 @@ class PathRun {
     const double approach = -slope * motion_.v(), flight = motion_.t() - last_touch_[i];
     last_touch_[i] = motion_.t();
     if (approach < 0) return;
+    refuse_branches(i);
     const bool series = stop.restitution < 1 && flight > 0 && flight <= accumulated * options_.step;
     if (series || stop.restitution * approach <= stop.rest_speed) {
       const double Q = law_->at(motion_.s(), 0.0, motion_.t()).Q;
@@ -346,6 +340,15 @@ class PathRun {
     add_event(impact(stop), taken);
     motion_.set_speed(-e * motion_.v());
     append(state_at(motion_.t(), motion_.s(), motion_.v()));
+  }
+
+  // An impulse of stop i takes the whole motion, or the pose has other ways to move, which it sets going.
+  void refuse_branches(std::size_t i) const {
+    const State here = state_at(motion_.t(), motion_.s(), motion_.v());
+    PushResponses responses(model().system, here);
+    responses.add(sides_.measure(i), sides_.sign(i), sides_.near(i, here), sides_.limit_motion(i, here.t));
+    if (!(responses.taken(0, here.w) > one_way))
+      throw PathRefused("at t = " + seconds(here.t) + ": a stop is met in a pose with other ways to move");
   }
 
   // Held by a stop, until what pushes against it pulls; by friction, until that gives way; or locked, until

@@ -51,6 +51,12 @@ VectorXd PushResponses::rates(const VectorXd& w) const {
   return out;
 }
 
+double PushResponses::taken(Index i, const VectorXd& w) const {
+  const Row& row = rows_[static_cast<std::size_t>(i)];
+  const double rate = rates(w)[i];
+  return rate * rate / (row.n.dot(row.a) * w.dot(system_.mass() * w));
+}
+
 void PushResponses::give(const VectorXd& P, VectorXd& w) const {
   for (Index i = 0; i < size(); ++i)
     if (P[i] != 0.0) w += P[i] * rows_[static_cast<std::size_t>(i)].a;

@@ -22,9 +22,12 @@ class PushResponses {
   void add(const MeasureFunction& s, double sign, double near, const LimitMotion& limit = {});
 
   Index size() const { return static_cast<Index>(rows_.size()); }
-  MatrixXd matrix() const;                          // D
-  bool movable(Index i) const;                      // by any push along it, as far as rounding tells
-  VectorXd rates(const VectorXd& w) const;          // sign_i s_i'
+  MatrixXd matrix() const;                  // D
+  bool movable(Index i) const;              // by any push along it, as far as rounding tells
+  VectorXd rates(const VectorXd& w) const;  // sign_i s_i'
+  // Of the kinetic energy of rates w what an impulse along measure i takes when it stops that: 1 where
+  // nothing else can move, as all rates follow from one.
+  double taken(Index i, const VectorXd& w) const;
   void give(const VectorXd& P, VectorXd& w) const;  // w += sum P_i a_i
   // sign_i s_i'' of a state at that pose, by the system's own forces; empty where they have no solution.
   VectorXd accelerations(const State& state) const;

@@ -30,6 +30,11 @@ inline const char* reason(StepStatus status) {
 // in a step of this size, another step. `step`: 0 where none ended it. May be empty.
 std::string cure(const Model& model, const State& state, bool latched, double step);
 
+// The same where a stop was met in a pose with more ways to move than elsewhere.
+inline const std::string beside_a_stop =
+    "; in this pose the structure has other ways to move, and rigid rods do not say which it takes when a "
+    "stop throws it back: place the stop before it";
+
 // "0.125 s"
 inline std::string seconds(double t) {
   char text[32];

@@ -63,4 +63,6 @@ SolvedAs solved_as(const Simulation& run);
 Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
                     const SimulationHooks& hooks = {});
 
+double thread_cpu_seconds();  // of the calling thread so far: what cpu_s is a difference of
+
 }  // namespace unfurl

@@ -200,8 +200,11 @@ class Stepper::Loop {
 
   bool fail(const std::string& why, bool in_a_step = false) {
     run_.status = RunStatus::failed;
-    run_.message = "at t = " + seconds(now().t) + ": " + why +
-                   cure(model(), now(), latched_, in_a_step ? run_.options.step : 0.0);
+    const bool at_stop = in_a_step && !run_.events.empty() && run_.events.back().kind == "contact" &&
+                         run_.events.back().t == now().t && singular_at_end(run_.trajectory);
+    run_.message =
+        "at t = " + seconds(now().t) + ": " + why +
+        (at_stop ? beside_a_stop : cure(model(), now(), latched_, in_a_step ? run_.options.step : 0.0));
     return false;
   }
 

@@ -46,7 +46,6 @@ MeasuredRun measure_run(const std::shared_ptr<const Model>& model, SolverOptions
                         const Reference& reference, const TimingOptions& timing, const StudyHooks& hooks);
 
 double deployment_time(const Simulation& run);  // of the event "deployed" [s]; NaN: there was none
-double thread_cpu_seconds();                    // of the calling thread so far
 
 // Errors that a run shows about itself, written into `out`; where they are beyond what judge() trusts, a good
 // outcome becomes "not trusted".

@@ -36,6 +36,12 @@ RELEASE = os.path.join(ROOT, "build", "release")  # where the tests were built
 EQUIVALENT = [
     ("dropped statement", r"\.(reserve|shrink_to_fit)\(", "only where memory comes from"),
     ("swap", r"(min|max|hypot|larger|dot)(<[\w:]+>)?\(unfurl_mutation::on\(@\) \?", "the order says nothing"),
+    ("factor 2", r"= std::numeric_limits<double>::infinity\(\), .*twice\(@\) \* -?\w+[,;]", "twice infinity"),
+    ("factor 2", r"twice\(@\) \* \w+::Zero\(", "twice nothing"),
+    ("sign", r"sign\(@\) \* \w+::Zero\(", "nothing, the other way round"),
+    ("factor 2", r"twice\(@\) \* (\de-(0?[89]|1\d)|nothing|round_off|rounding|tiny)\b", "twice a threshold of round-off"),
+    ("off by one", r"\bint (it|round|tries|halvings) = \(0 \+ .*; (it|round|tries|halvings) <=? ([89]|\d\d+|(most|max|fit)_\w+)\b", "a round less of those"),
+    ("boundary", r"edge\((it|round|tries|halvings)\) <=? ([89]|\d\d+|(most|max|fit)_\w+)\b", "a round more of those"),
 ]
 # Single ones, as (path, kind, changed line, why): found among the survivors, looked at one by one.
 ARGUED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "equivalent.tsv")
