@@ -10,6 +10,7 @@ namespace unfurl {
 namespace {
 
 constexpr double clean_regularisation = 1e-7;
+constexpr double unsettled = 1e-12;                   // a residual, of the right-hand side
 constexpr double hidden = 30 * clean_regularisation;  // pivots below may be of redundant rows
 
 }  // namespace
@@ -70,8 +71,16 @@ bool Index1::solve(double t, const ConstVec& w, MutVec acceleration, MutVec lamb
     system_.constraint(t, q_, phi_);
     bias_ -= alpha_ * alpha_ * phi_;
   }
-  saddle_.solve(force_, bias_, acceleration, lambda, refinements_);
+  settle(force_, bias_, acceleration, lambda);
   return acceleration.allFinite() && lambda.allFinite();
+}
+
+// A weak direction that the pivots do not show (they are up to as many times the square of its singular value
+// as it has rows) is one that refinement does not reach.
+void Index1::settle(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) {
+  if (saddle_.solve(f, g, x, y, refinements_) > unsettled && !saddle_.fine() && saddle_.left_a_direction() &&
+      saddle_.factorise_finely())
+    saddle_.solve(f, g, x, y, refinements_);
 }
 
 bool Index1::correct(const State& state, std::span<VectorXd> lambdas) {
@@ -80,10 +89,10 @@ bool Index1::correct(const State& state, std::span<VectorXd> lambdas) {
   VectorXd acceleration(n), change(m), force(n), rate(m);
   for (VectorXd& lambda : lambdas) {
     force.noalias() = force_ - G_.transpose() * lambda;
-    saddle_.solve(force, bias_, acceleration, change, refinements_);
+    settle(force, bias_, acceleration, change);
     // What no acceleration can reach is round-off of the velocities, and would come back over e.
     rate.noalias() = G_ * acceleration;
-    saddle_.solve(force, rate, acceleration, change, refinements_);
+    settle(force, rate, acceleration, change);
     lambda += change;
   }
   return true;
@@ -94,7 +103,7 @@ void Index1::move_rates(State& state, VectorXd& rows, VectorXd& x, VectorXd& y) 
   place(state.t, state.z, state.w, state.tension);
   system_.target_rate(state.t, rows);
   rows.noalias() -= G_ * state.w;
-  saddle_.solve(VectorXd::Zero(x.size()), rows, x, y, refinements_);
+  settle(VectorXd::Zero(x.size()), rows, x, y);
   state.w += x;
 }
 
@@ -113,23 +122,23 @@ bool Index1::evaluate_closely(State state, VectorXd& acceleration, VectorXd& lam
     system_.expand(state.z, q_);
     system_.constraint(state.t, q_, phi_);
     phi_ = -phi_;
-    saddle_.solve(none, phi_, x, y, refinements_);
+    settle(none, phi_, x, y);
     state.z += x;
   }
   move_rates(state, rows, x, y);
   if (!evaluate(state, acceleration, lambda)) return false;
   // What redundant rows hold of each other's round-off is reached by nothing, and would come back over e.
   const auto solve = [&] {
-    saddle_.solve(force, rows, x, y, refinements_);
+    settle(force, rows, x, y);
     rows.noalias() = G_ * x;
-    saddle_.solve(force, rows, x, y, refinements_);
+    settle(force, rows, x, y);
   };
   system_.constraint(state.t, q_, phi_);
   const double error = std::max(unit * q_.lpNorm<Eigen::Infinity>(), phi_.lpNorm<Eigen::Infinity>());
   for (Index r = 0; r < m; ++r) rows[r] = std::cos(1.0 + static_cast<double>(r));
   solve();
   rows = y * (error / std::max(y.lpNorm<Eigen::Infinity>(), 1e-300));
-  saddle_.solve(none, rows, x, y, refinements_);
+  settle(none, rows, x, y);
   state.z += x;
   move_rates(state, rows, x, y);
   place(state.t, state.z, state.w, state.tension);
@@ -171,23 +180,30 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
     if (!ok_[k]) continue;
     const double pivot = one_.saddle_.weakest_pivot(one_.weak_);
     in_doubt[k] = !one_.saddle_.shows_none_below(hidden);
-    if (!(alone[k] = !one_.saddle_.in_first_order())) continue;
     own_acceleration[k].resize(force_[k].size());
     own_lambda[k].resize(bias_[k].size());
+    if (!(alone[k] = !one_.saddle_.in_first_order())) continue;
     if (one_.saddle_.fine()) {
       weakness_[k] = 1 / std::sqrt(pivot);
     } else {
       one_.saddle_.solve(none[k], rows[k], own_acceleration[k], own_lambda[k], -1);
       weakness_[k] = own_lambda[k].lpNorm<Eigen::Infinity>() / size_;
     }
-    one_.saddle_.solve(force_[k], bias_[k], own_acceleration[k], own_lambda[k], one_.refinements_);
+    one_.settle(force_[k], bias_[k], own_acceleration[k], own_lambda[k]);
     for (VectorXd* done : {&force_[k], &none[k]}) done->resize(0);
   }
   lanes_.solve(none, rows, acceleration_, lambda_, -1);
   for (std::size_t k = 0; k < states.size(); ++k)
     if (ok_[k] && !alone[k]) weakness_[k] = lambda_[k].lpNorm<Eigen::Infinity>() / size_;
-  lanes_.solve(force_, bias_, acceleration_, lambda_, one_.refinements_);
+  const SaddleLanes::Norms left = lanes_.solve(force_, bias_, acceleration_, lambda_, one_.refinements_);
   for (std::size_t k = 0; k < states.size(); ++k) {
+    if (ok_[k] && !alone[k] && left[k] > unsettled && lanes_.hand_over(static_cast<int>(k), one_.saddle_)) {
+      one_.settle(force_[k], bias_[k], acceleration_[k], lambda_[k]);
+      if (one_.saddle_.fine()) {
+        one_.saddle_.solve(none[k], rows[k], own_acceleration[k], own_lambda[k]);
+        weakness_[k] = own_lambda[k].lpNorm<Eigen::Infinity>() / size_;
+      }
+    }
     if (alone[k]) acceleration_[k] = own_acceleration[k], lambda_[k] = own_lambda[k];
     if (in_doubt[k]) weakness_[k] = std::numeric_limits<double>::infinity();
     ok_[k] = ok_[k] && acceleration_[k].allFinite() && lambda_[k].allFinite();

@@ -45,6 +45,7 @@ class Index1 {
   void place(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension);
   bool assemble(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension = {});
   bool solve(double t, const ConstVec& w, MutVec acceleration, MutVec lambda);
+  void settle(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y);
   void move_rates(State& state, VectorXd& rows, VectorXd& x, VectorXd& y);
   const System& system_;
   SparseRows G_;

@@ -196,8 +196,8 @@ SaddleLanes::Norms SaddleLanes::residual_norms(const double* r) const {
   return of_f;
 }
 
-void SaddleLanes::solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors& y,
-                        int max_refinements) const {
+SaddleLanes::Norms SaddleLanes::solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors& y,
+                                      int max_refinements) const {
   const Index n = alone_.n_, m = alone_.m_;
   const int* const coordinate = place_;
   const int* const row = coordinate + n;
@@ -245,6 +245,8 @@ void SaddleLanes::solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors&
     for (Index i = 0; known && i < n; ++i) x[c][i] = entry(best_, coordinate[i], c) * alone_.column_scale_[i];
     for (Index i = 0; known && i < m; ++i) y[c][i] = entry(best_, row[i], c) * scale(i, c);
   }
+  for (std::size_t c = 0; c < lane_count; ++c) best[c] /= size[c];
+  return best;
 }
 
 }  // namespace unfurl

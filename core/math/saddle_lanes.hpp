@@ -25,11 +25,11 @@ class SaddleLanes {
   bool ok(int lane) const { return ok_[static_cast<std::size_t>(lane)]; }
   // `alone` becomes what it would be had it factorised the lane's matrix. False where that broke down.
   [[nodiscard]] bool hand_over(int lane, SaddleSolver& alone) const;
-  // SaddleSolver::solve in every lane, whose refinements end when its own are done.
-  void solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors& y, int max_refinements) const;
+  using Norms = std::array<double, lanes>;
+  // SaddleSolver::solve in every lane, whose refinements end when its own are done; the residuals.
+  Norms solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors& y, int max_refinements) const;
 
  private:
-  using Norms = std::array<double, lanes>;
   Norms residual_norms(const double* r) const;
   template <int width>
   void eliminate();

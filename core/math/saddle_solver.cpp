@@ -171,4 +171,19 @@ double SaddleSolver::solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVe
   return best / size;
 }
 
+// What no motion can bring about, r with G^T r = 0, stays; of others G^T r is seen down to round-off.
+bool SaddleSolver::left_a_direction() const {
+  constexpr double round_off = 1e-13;  // of the right-hand side
+  const int* const row = in_use_->place.data() + n_;
+  double* const r = packed_.data();
+  std::copy(rhs_.begin(), rhs_.end(), r);
+  in_use_->ldlt.subtract_product(values_.data(), best_.data(), r);
+  try_.setZero();
+  for (Index i = 0; i < m_; ++i) try_[row[i]] = r[row[i]] - regularisation_ * best_[row[i]];
+  std::fill(packed_.begin(), packed_.end(), 0.0);
+  in_use_->ldlt.subtract_product(values_.data(), try_.data(), r);
+  for (Index i = 0; i < m_; ++i) r[row[i]] = 0;
+  return residual_norm(r) > round_off * residual_norm(rhs_.data());
+}
+
 }  // namespace unfurl

@@ -70,6 +70,11 @@ class SaddleSolver {
   // is not finite, or whose norm overflows, gives NaN everywhere.
   double solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y, int max_refinements = 8) const;
 
+  // Whether what the last solve left is of a direction that the rows do reach: of a singular value below
+  // sqrt(e) refinement takes less than a half, and is given up, as it is where right-hand sides contradict
+  // each other.
+  bool left_a_direction() const;
+
   Index factor_nonzeros() const { return first().ldlt.factor_nonzeros(); }
   static constexpr double standard_regularisation = 1e-13;  // e, in the scaled unknowns
 
