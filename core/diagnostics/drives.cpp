@@ -64,8 +64,15 @@ DriveSample DriveChannel::sample(const Model& model, const System& system, doubl
   }
   const SpringLaw law = spring_law(force, t, q.data());
   const double s = measure.value_and_gradient(q.data(), gradient.data(), system.moment(t), followed_);
-  const SpringPull pull = spring_pull(force, law, s, measure.rate(gradient.data(), v.data()));
+  const SpringPull pull = spring_pull(force, law, s, measure.rate(gradient.data(), v.data()) - law.rest_rate);
   return {law.rest, -pull.tension, pull.reeling};
+}
+
+double DriveChannel::work(const Model& model, double t, const VectorXd& lambda,
+                          const std::function<double(const std::string&)>& of_reel) const {
+  if (!by_row()) return 0.0;
+  if (row(model) >= 0) return of_row(model, t, lambda).power;
+  return kind_ == Kind::reel ? of_reel(model.structure.stops[index_].name) : 0.0;
 }
 
 std::vector<DriveChannel> drive_channels(const Model& model) {

@@ -25,6 +25,9 @@ class DriveChannel {
   // At the node coordinates and velocities of a time; lambda: multipliers of the model's rows.
   DriveSample sample(const Model& model, const System& system, double t, const VectorXd& q, const VectorXd& v,
                      const VectorXd& lambda) const;
+  // What an impulse of the rows and of reeled cables, by name, puts in at that time [J].
+  double work(const Model& model, double t, const VectorXd& lambda,
+              const std::function<double(const std::string&)>& of_reel) const;
   // Whether the effort is: `rows` says it of the multipliers of the model's rows.
   bool unique(const Model& model, const std::vector<char>& rows) const;
 

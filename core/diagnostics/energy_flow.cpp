@@ -8,6 +8,9 @@
 
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/row_noise.hpp"
+#include "core/simulate/latch.hpp"
+#include "core/simulate/push_responses.hpp"
+#include "core/simulate/stops.hpp"
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
@@ -163,6 +166,56 @@ void RunEnergyFlow::meter_of(const Model& model) {
   };
 }
 
+// What drives put in by the impulse between two states of one time, P g' of each, g' half of its rates before
+// and after; what else the kinetic energy gained or lost is lost. False where nothing is driven, and where
+// the model's rows do not hold after it, as a winch's that a latch stops, or are, with the stops that are met
+// there, not all that acted.
+bool RunEnergyFlow::explain_impulse(const Model& rows, const State& a, const State& b, double gain) {
+  constexpr double near = 1e3;   // times what counts as touching
+  constexpr double held = 1e-4;  // of the fastest: drift of a method
+  const Stops stops(rows.structure);
+  bool reeled = false;
+  for (std::size_t i = 0; i < stops.size(); ++i) reeled = reeled || stops[i].reeled;
+  if (!rows.system.rheonomic() && !reeled) return false;
+  const System system = rows.system.at(a);
+  VectorXd q(system.coordinates()), v(q.size()), broken(system.all_constraints());
+  std::vector<double> scratch;
+  system.expand(b.z, q);
+  system.expand_rate(b.w, v);
+  system.all_constraint_rates(b.t, q, v, broken, scratch);
+  const double fastest = std::max(a.w.lpNorm<Eigen::Infinity>(), b.w.lpNorm<Eigen::Infinity>());
+  if (broken.size() > 0 && broken.lpNorm<Eigen::Infinity>() > held * fastest) return false;
+  PushResponses responses(system, a);
+  if (!responses.ok()) return false;
+  std::vector<std::size_t> met;
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (stops.gap(i, system, a) > near * stops.touching(stops[i].function)) continue;
+    responses.add(stops[i].function, stops[i].sign, stops[i].near(a));
+    met.push_back(i);
+  }
+  VectorXd lambda, rate(system.constraints());
+  double unexplained = 0;
+  const VectorXd P = responses.impulses_of(b.w - a.w, lambda, unexplained);
+  if (!(unexplained <= 1e-6)) return false;
+  double all = 0;
+  for (const double t : {a.t, b.t}) {
+    const auto of_reel = [&](const std::string& name) {
+      double sum = 0;
+      for (std::size_t k = 0; k < met.size(); ++k)
+        if (const StopSide& stop = stops[met[k]]; name.empty() || stop.name == name)
+          sum += P[static_cast<Index>(k)] * stop.sign * stop.rate(t);
+      return sum;
+    };
+    system.target_rate(t, rate);
+    all += 0.5 * (of_reel("") - lambda.dot(rate));
+    for (std::size_t d = 0; d < drives_.size(); ++d)
+      flow_.of_drives[d].back() += 0.5 * drives_[d].work(rows, t, lambda, of_reel);
+  }
+  flow_.drive_work.back() += all;
+  flow_.impact_loss.back() += all - gain;
+  return true;
+}
+
 void RunEnergyFlow::step_to(std::size_t i, StateForces* forces) {
   for (auto* list : {&flow_.load_work, &flow_.dissipated, &flow_.drive_work, &flow_.impact_loss})
     list->push_back(list->back());
@@ -173,7 +226,10 @@ void RunEnergyFlow::step_to(std::size_t i, StateForces* forces) {
   if (same_instant(a.t, b.t)) {  // an impulse; where time goes on a little, of a drive
     const System& before = trajectory_.model(i - 1).system;
     const double gain = model.system.kinetic_energy(b.w) - before.kinetic_energy(a.w);
-    (b.t > a.t ? flow_.drive_work : flow_.impact_loss).back() += b.t > a.t ? gain : -gain;
+    const Model& by = trajectory_.model(i - 1);
+    if (!explain_impulse(by, a, in_coordinates(model.system, b, before), gain) &&
+        !explain_impulse(model, in_coordinates(before, a, model.system), b, gain))
+      (b.t > a.t ? flow_.drive_work : flow_.impact_loss).back() += b.t > a.t ? gain : -gain;
     flow_.load_work.back() -= other_loads(before, model.system, b.z);
     if (meter_) meter_->jump();
     return;

@@ -73,6 +73,7 @@ class RunEnergyFlow {
 
  private:
   void meter_of(const Model& model);
+  bool explain_impulse(const Model& rows, const State& a, const State& b, double gain);
 
   const Trajectory& trajectory_;
   bool booked_;

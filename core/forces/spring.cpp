@@ -49,8 +49,8 @@ class Springs final : public ForceBlock {
     Gradient g(size_);
     for (const Spring& spring : springs_) {
       const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
-      const double rate = spring.law.damping > 0 ? spring.measure.rate(g.data(), v) : 0.0;
       const SpringLaw law = spring_law(spring.law, at.t, q);
+      const double rate = spring.law.damping > 0 ? spring.measure.rate(g.data(), v) - law.rest_rate : 0.0;
       if (law.drum >= 0) f[law.drum] -= scale * law.by_drum * pull_of(spring.law, s - law.rest).energy;
       const double pull = scale * spring_pull(spring.law, law, s, rate).tension;
       if (pull == 0.0) continue;
@@ -71,7 +71,7 @@ class Springs final : public ForceBlock {
   }
 
   double power(const Moment& at, const double* q, const double* v) const override {
-    return dissipation(at, q, v) + reeling(at, q);
+    return dissipation(at, q, v) + reeling(at, q, v);
   }
 
   double dissipation(const Moment& at, const double* q, const double* v) const override {
@@ -82,9 +82,10 @@ class Springs final : public ForceBlock {
       if (!(spring.law.damping > 0) && !spring.pulleys) continue;
       const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
       const SpringLaw law = spring_law(spring.law, at.t, q);
-      const double rate = spring.measure.rate(g.data(), v), n = spring_pull(spring.law, law, s, rate).tension;
+      const double rate = spring.measure.rate(g.data(), v), stretching = rate - law.rest_rate;
+      const double n = spring_pull(spring.law, law, s, stretching).tension;
       const double elastic = law.stiffness * pull_of(spring.law, s - law.rest).elastic;
-      sum -= (n - elastic) * rate;
+      sum -= (n - elastic) * stretching;
       if (!spring.pulleys) continue;
       spring.pulleys->weigh(v, g.data());
       sum -= n * (spring.measure.rate(g.data(), v) - rate);
@@ -101,7 +102,8 @@ class Springs final : public ForceBlock {
       g.resize(static_cast<Index>(stencil.size()));
       const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
       const SpringLaw law = spring_law(spring.law, at.t, q);
-      const double rate = spring.measure.rate(g.data(), v), n = spring_pull(spring.law, law, s, rate).tension;
+      const double rate = spring.measure.rate(g.data(), v) - law.rest_rate;
+      const double n = spring_pull(spring.law, law, s, rate).tension;
       const Pull pull = pull_of(spring.law, s - law.rest);
       if (spring.law.one_sided && n == 0.0) continue;
       if (spring.pulleys)
@@ -132,13 +134,15 @@ class Springs final : public ForceBlock {
   }
 
  private:
-  double reeling(const Moment& at, const double* q) const {
+  double reeling(const Moment& at, const double* q, const double* v) const {
+    Gradient g(size_);
     double sum = 0;
-    for (const Spring& spring : springs_)
-      if (spring.law.unstressed.moves())
-        sum += spring_pull(spring.law, spring_law(spring.law, at.t, q),
-                           spring.measure.value(q, at, spring.followed), 0.0)
-                   .reeling;
+    for (const Spring& spring : springs_) {
+      if (!spring.law.unstressed.moves()) continue;
+      const SpringLaw law = spring_law(spring.law, at.t, q);
+      const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
+      sum += spring_pull(spring.law, law, s, spring.measure.rate(g.data(), v) - law.rest_rate).reeling;
+    }
     return sum;
   }
 
@@ -203,14 +207,12 @@ SpringLaw spring_law(const Force& force, double t, const double* q) {
   return {k, length, -k * rate / length, rate};
 }
 
-// dV/dt at a fixed pose: k' V / k - N_e s_0'
-SpringPull spring_pull(const Force& force, const SpringLaw& law, double s, double rate) {
+// What comes in is what T + V gain beside what is dissipated, (N - N_e)(s' - s_0'): k' V / k - N s_0'
+SpringPull spring_pull(const Force& force, const SpringLaw& law, double s, double stretching) {
   const Pull pull = pull_of(force, s - law.rest);
-  const double elastic = law.stiffness * pull.elastic, n = elastic + force.damping * pull.share * rate;
-  return {force.slack       ? 0.0
-          : force.one_sided ? std::max(n, 0.0)
-                            : n,
-          law.stiffness_rate * pull.energy - elastic * law.rest_rate};
+  const double all = law.stiffness * pull.elastic + force.damping * pull.share * stretching;
+  const double n = force.slack ? 0.0 : force.one_sided ? std::max(all, 0.0) : all;
+  return {n, law.stiffness_rate * pull.energy - n * law.rest_rate};
 }
 
 std::unique_ptr<ForceBlock> spring_block(const std::vector<Force>& springs, const Deployment& deployment,

@@ -7,14 +7,14 @@
 
 namespace unfurl {
 
-// A spring and damper on a measure s(q) (core/structure/measure.hpp): with N = k (s - s_0) + c s',
+// A spring and damper on a measure s(q) (core/structure/measure.hpp): with N = k (s - s_0) + c (s' - s_0'),
 //
-//     F = -N ds/dq,     V = k/2 (s - s_0)^2,     dissipated power = c s'^2
+//     F = -N ds/dq,     V = k/2 (s - s_0)^2,     dissipated power = c (s' - s_0')^2
 //
 // One-sided (a cable): nothing where s <= s_0, and N = max(0, N) where s > s_0, so that it never pushes.
 // A cable: k = E A / L with the unstressed length L(t) = s_0, which a winch may change; V depends on t then,
-// and its winch puts in dV/dt. With the half width w it begins to pull by a smoothed law instead, for nets of
-// many: of the stretch e = s - s_0
+// and its winch puts in k' V / k - N s_0'. With the half width w it begins to pull by a smoothed law instead,
+// for nets of many: of the stretch e = s - s_0
 //
 //     N_e = k (e + w)^2 / (4 w),   V = k (e + w)^3 / (12 w)     |e| <= w
 //     N_e = k e,                   V = k (e^2 / 2 + w^2 / 6)    e >= w
@@ -38,11 +38,11 @@ struct SpringLaw {
 };
 SpringLaw spring_law(const Force& force, double t, const double* q);
 
-// N of a spring at its measure's value and rate, and the power dV/dt that what changes its length puts in.
+// N of a spring at its measure's value and s' - s_0', and the power that what changes its length puts in.
 struct SpringPull {
   double tension, reeling;
 };
-SpringPull spring_pull(const Force& force, const SpringLaw& law, double s, double rate);
+SpringPull spring_pull(const Force& force, const SpringLaw& law, double s, double stretching);
 
 std::unique_ptr<ForceBlock> cable_block(const Structure& structure, const SparseRows& node_mass);
 std::unique_ptr<ForceBlock> combination_block(const Structure& structure, const SparseRows& node_mass);

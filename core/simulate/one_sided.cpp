@@ -286,7 +286,7 @@ double OneSided::stretch(const Cable& cable, double t, const VectorXd& q, const 
   const double ds = cable.length.rate(gradient_.data(), v.data());
   const double stretching = ds - law.rest_rate;
   rate = damping > 0 ? unknown : stretching;
-  const double n = law.stiffness * s + damping * ds;
+  const double n = law.stiffness * s + damping * stretching;
   return damping > 0 ? std::min(s, n / (law.stiffness + damping / step_)) : s;
 }
 

@@ -43,6 +43,9 @@ class OneSided {
   bool empty() const { return active_.empty(); }
   std::size_t size() const { return active_.size(); }  // stops first, then cables, friction and motors
   bool is_stop(std::size_t i) const { return i < stops_.size(); }
+  bool is_cable(std::size_t i) const { return i >= stops_.size() && i < first_friction(); }
+  const Force& cable(std::size_t i) const { return cables_[i - stops_.size()].law; }
+  const MeasureFunction& cable_length(std::size_t i) const { return cables_[i - stops_.size()].length; }
   bool is_friction(std::size_t i) const { return i >= first_friction() && i < first_motor(); }
   bool is_motor(std::size_t i) const { return i >= first_motor(); }
   std::size_t first_friction() const { return stops_.size() + cables_.size(); }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/push_responses.hpp"
 
+#include <cmath>
+
 #include "core/integrators/index1.hpp"
+#include "core/math/factors.hpp"
 
 namespace unfurl {
 
@@ -19,10 +22,10 @@ void PushResponses::add(const MeasureFunction& s, double sign, double near, cons
   s.value_and_gradient(q_.data(), gradient.data(), near);
   for (std::size_t k = 0; k < stencil.size(); ++k)
     node_force[stencil[k]] += sign * gradient[static_cast<Index>(k)];
-  Row row{&s, sign, VectorXd(system_.solved_coordinates()), VectorXd(system_.solved_coordinates()), limit};
+  const Index n = system_.solved_coordinates();
+  Row row{&s, sign, VectorXd(n), VectorXd(n), VectorXd(system_.constraints()), limit};
   system_.reduce_force(node_force, row.n);
-  VectorXd mu(system_.constraints());
-  saddle_.solve(row.n, VectorXd::Zero(mu.size()), row.a, mu);
+  saddle_.solve(row.n, VectorXd::Zero(row.mu.size()), row.a, row.mu);
   rows_.push_back(std::move(row));
 }
 
@@ -60,6 +63,30 @@ double PushResponses::taken(Index i, const VectorXd& w) const {
 void PushResponses::give(const VectorXd& P, VectorXd& w) const {
   for (Index i = 0; i < size(); ++i)
     if (P[i] != 0.0) w += P[i] * rows_[static_cast<std::size_t>(i)].a;
+}
+
+VectorXd PushResponses::impulses_of(const VectorXd& dw, VectorXd& lambda, double& unexplained) const {
+  VectorXd x(dw.size()), P = VectorXd::Zero(size());
+  lambda.resize(system_.constraints());
+  saddle_.solve(VectorXd::Zero(dw.size()), G_ * dw, x, lambda);
+  VectorXd rest = dw - x;
+  std::vector<Index> rows;
+  for (Index i = 0; i < size(); ++i)
+    if (movable(i)) rows.push_back(i);
+  if (!rows.empty()) {
+    VectorXd rates(size());
+    for (Index i = 0; i < size(); ++i) rates[i] = rows_[static_cast<std::size_t>(i)].n.dot(rest);
+    const MatrixXd D = matrix();
+    P(rows) = least_squares(D(rows, rows), rates(rows));
+  }
+  for (const Index i : rows) {
+    const Row& row = rows_[static_cast<std::size_t>(i)];
+    rest -= P[i] * row.a;
+    lambda += P[i] * row.mu;
+  }
+  const double all = dw.dot(system_.mass() * dw);
+  unexplained = all > 0 ? std::sqrt(rest.dot(system_.mass() * rest) / all) : 0.0;
+  return P;
 }
 
 VectorXd PushResponses::accelerations(const State& state) const {

@@ -29,6 +29,10 @@ class PushResponses {
   // nothing else can move, as all rates follow from one.
   double taken(Index i, const VectorXd& w) const;
   void give(const VectorXd& P, VectorXd& w) const;  // w += sum P_i a_i
+  // The impulses P, and `lambda` of the constraints, that took rates w to w + dw,
+  //     M dw + G^T lambda = sum P_i n_i,
+  // of several the least; `unexplained`: the share of dw that none do, in the mass metric.
+  VectorXd impulses_of(const VectorXd& dw, VectorXd& lambda, double& unexplained) const;
   // sign_i s_i'' of a state at that pose, by the system's own forces; empty where they have no solution.
   VectorXd accelerations(const State& state) const;
 
@@ -36,7 +40,7 @@ class PushResponses {
   struct Row {
     const MeasureFunction* measure;
     double sign;
-    VectorXd n, a;
+    VectorXd n, a, mu;
     LimitMotion limit;  // of what s is bounded by: rates and accelerations are relative to it
   };
   const System& system_;

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What drives put in where something strikes what they lead: the impulse times the rate they hold.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/library.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace driven_impact_test {
+
+namespace {
+
+double last(const Diagnostics& d, const char* column) {
+  return d.at(column).values.back();
+}
+
+const char* const on_a_line = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "D", position = [0, 0, 1], fixed = true},
+         {name = "B", position = [1, 0, 0], mass = 2}]
+rods = [{nodes = ["A", "D"], mass = 1}]
+[[constraints]]
+kind = "line"
+nodes = ["B"]
+direction = [1, 0, 0]
+[solver]
+end_time = 1
+step = 0.01
+)";
+
+}  // namespace
+
+// 2 kg at rest take the 0.5 m/s of the winch at once: P = 1 N s, of whose work, 0.5 J, one half is lost.
+TEST_CASE("a winch that draws a slack cable taut does the work of the jerk") {
+  const Simulation run = testing::run_scene(
+      on_a_line,
+      {R"(constraints[1]={kind="cable",name="w",nodes=["A","B"],length=1.2,motion="rate",rate=-0.5})"});
+  const Diagnostics d = diagnose(run);
+  CHECK(last(d, "impact_loss_J") == Approx(0.25).epsilon(1e-9));
+  CHECK(last(d, "drive_work_J") == Approx(0.5).epsilon(1e-9));
+  CHECK(last(d, "w.energy_J") == Approx(0.5).epsilon(1e-9));
+  REQUIRE(run.events.size() >= 1);
+  CHECK(run.events[0].energy_lost == Approx(0.25).epsilon(1e-9));
+}
+
+// A slider led at v = 0.5 m/s strikes m = 1 kg at rest, which leaves it at (1 + e) v: the drive gives
+// m (1 + e) v^2, of which m v^2 (1 + e)^2 / 2 stays.
+TEST_CASE("a drive does the work of what its slider strikes, whatever the restitution") {
+  for (const double e : {0.0, 0.3, 1.0}) {
+    const Simulation run = testing::run_scene(
+        on_a_line, {R"(structure.nodes[3]={name="C",position=[2,0,0],mass=1})",
+                    "structure.nodes.B.velocity=[0.5,0,0]", R"(constraints[0].nodes=["B","C"])",
+                    R"(constraints[1]={kind="length",name="w",nodes=["A","B"],motion="rate",rate=0.5})",
+                    R"(constraints[2]={kind="length_stop",name="s",nodes=["B","C"],min=0.71,restitution=)" +
+                        std::to_string(e) + "}"});
+    const Diagnostics d = diagnose(run);
+    CHECK(last(d, "drive_work_J") == Approx((1 + e) * 0.25).epsilon(1e-9));
+    CHECK(last(d, "w.energy_J") == Approx((1 + e) * 0.25).epsilon(1e-9));
+    CHECK(last(d, "impact_loss_J") == Approx((1 - e * e) * 0.125).margin(1e-9));
+    REQUIRE(run.events.size() >= 1);
+    CHECK(run.events[0].energy_lost == Approx((1 - e * e) * 0.125).margin(1e-9));
+  }
+}
+
+// From rest to 0.5 m/s at once, an impulse at half that rate on average: nothing is lost.
+TEST_CASE("a drive whose velocity jumps puts in what moves then, by its own name too") {
+  const Simulation run = testing::run_scene(
+      on_a_line,
+      {R"(constraints[1]={kind="length",name="w",nodes=["A","B"],motion="rate",rate=0.5,start=0.305})"});
+  const Diagnostics d = diagnose(run);
+  CHECK(last(d, "drive_work_J") == Approx(0.25).epsilon(1e-9));
+  CHECK(last(d, "w.energy_J") == Approx(0.25).epsilon(1e-9));
+}
+
+// The library's ring: the cable draws it open, is overtaken, pulls with a jerk and is stopped by the latch.
+// What the winch gave is what the gears' dampers took and what both impacts lost, as the events say; nothing
+// moves at the end.
+TEST_CASE("all that a winch gives a ring has gone into its dampers and impacts at the end") {
+  const Scene scene = read_scene_file(find_scene("cable_ring"));
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics d = diagnose(run);
+  double lost = 0;
+  for (const Event& event : run.events) lost += event.energy_lost;
+  CHECK(lost > 0.05);
+  CHECK(last(d, "impact_loss_J") == Approx(lost).epsilon(1e-9));
+  CHECK(last(d, "cable.energy_J") == Approx(last(d, "dissipated_J") + lost).epsilon(1e-9));
+}
+
+// A cable that is drawn in as fast as what hangs on it comes along does not stretch, but for the 0.5 mm/s by
+// which it gets stiffer: its damper has nothing to do. 20 N s/m of drag at 0.5 m/s.
+TEST_CASE("a damped cable that tows at a steady speed is not damped") {
+  for (const double damping : {0.0, 300.0}) {
+    const Simulation run = testing::run_scene(
+        on_a_line,
+        {"structure.nodes.B.velocity=[-0.5,0,0]", "structure.nodes.B.position=[2,0,0]",
+         R"(forces[0]={kind="cable",name="w",nodes=["A","B"],axial_stiffness=1e4,motion="rate",rate=-0.5,damping=)" +
+             std::to_string(damping) + "}",
+         R"(forces[1]={kind="drag",nodes=["B"],damping=20})", "solver.end_time=2"});
+    const Diagnostics d = diagnose(run);
+    CHECK(last(d, "w.force_N") == Approx(-10).epsilon(3e-3));
+    CHECK(last(d, "w.power_W") == Approx(5).epsilon(3e-3));
+    CHECK(std::abs(last(d, "energy_balance_J")) < 1e-6);
+  }
+}
+
+}  // namespace driven_impact_test
