@@ -318,8 +318,9 @@ class Locator {
     if (system().constraints() == 0) return 0.0;
     VectorXd phi(system().constraints());
     q_.resize(system().coordinates());
-    system().expand(state.z, q_);
-    system().constraint(state.t, q_, phi);
+    const System near = system().at(state);
+    near.expand(state.z, q_);
+    near.constraint(state.t, q_, phi);
     return phi.cwiseQuotient(system().constraint_lengths()).lpNorm<Eigen::Infinity>();
   }
 

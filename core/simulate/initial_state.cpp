@@ -18,7 +18,8 @@ constexpr double weak_modes_left_alone = 1e-6;
 
 }  // namespace
 
-void project(const System& system, State& state) {
+void project(const System& any, State& state) {
+  const System system = any.at(state);
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   SaddleSolver saddle(system.mass(), G, 1, weak_modes_left_alone);

@@ -104,19 +104,20 @@ Handover hand_over(const Model& from, const State& state, const Model& to) {
   Handover out;
   State& s = out.state;
   s.t = state.t;
+  s.angles = state.angles;
   s.z = to.system.reduce(q);
+  s.w = to.system.reduce_rate(v);
+  const System near = to.system.at(s);
   VectorXd held(q.size());  // q but for what linear constraints that are new make them differ by
   to.system.expand(s.z, held);
   if ((held - q).lpNorm<Eigen::Infinity>() > settled * q.lpNorm<Eigen::Infinity>()) {
-    s.w = to.system.reduce_rate(v);
-    for (int it = 0; it < most_projections && constraint_error(to.system, s) > settled; ++it)
-      project(to.system, s);
+    for (int it = 0; it < most_projections && constraint_error(near, s) > settled; ++it)
+      project(near, s);
     to.system.expand(s.z, q);
   }
-  s.w = fitted_rates(to.system, s.t, q, v);
+  s.w = fitted_rates(near, s.t, q, v);
   s.lambda.setZero(to.system.constraints());
   VectorXd acceleration(s.z.size());
-  s.angles = state.angles;
   const System followed = to.system.at(s);
   Index1 index1(followed);
   if (!index1.evaluate(s, acceleration, s.lambda)) s.lambda.setZero();

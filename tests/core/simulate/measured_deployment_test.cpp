@@ -187,6 +187,49 @@ rate = -0.5
   }
 }
 
+// Two links geared 2 : 1, whose second hinge has turned more than half a turn when the first is deployed.
+TEST_CASE("a geared structure is deployed where it passes, whatever its hinges have turned by then") {
+  const auto geared = [](double deployed, const char* at_deployed) {
+    return run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "W", position = [0, -1, 0], fixed = true}, {name = "O", position = [0, 0, 0], fixed = true},
+         {name = "A", position = [1, 0, 0]}, {name = "B", position = [2, 0, 0]}]
+rods = [{nodes = ["O", "A"], mass = 1}, {nodes = ["A", "B"], mass = 1}]
+[[constraints]]
+kind = "plane"
+nodes = ["A", "B"]
+normal = [0, 0, 1]
+[[constraints]]
+kind = "gear"
+nodes = ["W", "O", "A", "O", "A", "B"]
+radii = [2, -1]
+axis = [0, 0, 1]
+[[loads]]
+nodes = ["A"]
+force = [0, 1, 0]
+[deployment]
+measure = "angle W O A about 0 0 1"
+deployed = 190
+[solver]
+end_time = 5
+)",
+                     {"deployment.deployed=" + std::to_string(deployed),
+                      std::string("solver.at_deployed=") + at_deployed});
+  };
+  for (const double deployed : {175.0, 190.0, 210.0}) {
+    const double t = time_of(geared(deployed, "pass"), "deployed");
+    REQUIRE(t > 0);
+    for (const char* at_deployed : {"stop", "latch"}) {
+      const Simulation run = geared(deployed, at_deployed);
+      INFO(deployed << ", " << at_deployed << ": " << run.message);
+      CHECK(run.status == (std::string("stop") == at_deployed ? RunStatus::deployed : RunStatus::completed));
+      CHECK(time_of(run, "deployed") == Approx(t).epsilon(1e-8));
+      CHECK(testing::largest(diagnose(run), "constraint_max_m") < 1e-10);
+    }
+  }
+}
+
 TEST_CASE("a deployment that cannot be says why") {
   // Angles count within a turn: 2 x is deployed at 720 degrees at most.
   CHECK(error_of(R"(
