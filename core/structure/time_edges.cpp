@@ -36,6 +36,9 @@ void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges)
       return;
     case TimeFunction::Kind::smooth:
       edges.push_back({f.start, false});
+      // Between two states at rest there would be nothing to see of it.
+      for (int part = 1; part < 4 && f.duration < 2 * step; ++part)
+        edges.push_back({f.start + 0.25 * part * f.duration, false});
       edges.push_back({f.start + f.duration, false});
       return;
     case TimeFunction::Kind::spline:
@@ -53,11 +56,14 @@ std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
   for (const Stop& stop : structure.stops) add_edges(stop.reel, step, edges);
   for (const Rod& rod : structure.rods)
     if (rod.expansion != 0) add_edges(rod.warming, step, edges);
-  const std::size_t rows = edges.size();
   for (const Force& f : structure.forces)
-    for (const TimeFunction* function : {&f.size, &f.unstressed, &f.motor.command})
+    for (const TimeFunction* function : {&f.size, &f.unstressed, &f.motor.command}) {
+      const std::size_t own = edges.size();
       add_edges(*function, step, edges);
-  for (std::size_t i = rows; i < edges.size(); ++i) edges[i].jump = false;  // a force drives no velocity
+      // A force that answers to rates jumps with them; none drives a velocity.
+      const bool by_rate = function == &f.motor.command || (function == &f.unstressed && f.damping > 0);
+      for (std::size_t i = own; i < edges.size(); ++i) edges[i].jump = edges[i].jump && by_rate;
+    }
   std::sort(edges.begin(), edges.end(), [](const TimeEdge& a, const TimeEdge& b) { return a.t < b.t; });
   // Times that differ by their rounding are one; it jumps if one of them does.
   std::vector<TimeEdge> distinct;

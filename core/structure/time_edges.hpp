@@ -12,8 +12,8 @@ namespace unfurl {
 
 struct TimeEdge {
   double t = 0.0;  // [s]
-  // A prescribed velocity jumps, an impact of the drive, or its acceleration does: steps that end there must
-  // not see what is behind. Otherwise something bends.
+  // A prescribed velocity jumps, an impact of the drive, or its acceleration does, or a force, as a motor's
+  // whose command is a rate: steps that end there must not see what is behind. Otherwise something bends.
   bool jump = false;
 };
 
@@ -33,7 +33,8 @@ inline bool same_instant(double before, double after) {
 //   load, linear     every point where the line bends: the force is continuous, its slope is not
 //   drive, rate      start: the velocity jumps (no ramp); otherwise start and start + ramp, where f''' jumps
 //                    and with it the slope of the forces that inertia takes
-//   drive, smooth    start and start + duration, for the same reason
+//   drive, smooth    start and start + duration, for the same reason; shorter than two steps, three times
+//                    between them too
 //   drive, spline    the ends, where the acceleration jumps; of the points between, where f''' jumps, those
 //   with both neighbours at least a `step` away. Points that lie closer
 //                    sample a motion finer than steps do: f''' jumps by f'''' times their distance there,

@@ -46,6 +46,7 @@ double spline_part(const TimeFunction& f, int order, double t) {
   const double h = f.times[i + 1] - f.times[i], b = (t - f.times[i]) / h, a = 1 - b;
   const double p = f.bends[i], q = f.bends[i + 1];
   if (order == 2) return a * p + b * q;
+  if (order == 1 && t == f.times.front()) return 0.0;  // clamped, without the rounding of the bends
   if (order == 1)
     return (f.values[i + 1] - f.values[i]) / h + h / 6 * ((1 - 3 * a * a) * p + (3 * b * b - 1) * q);
   return a * f.values[i] + b * f.values[i + 1] + h * h / 6 * (a * (a * a - 1) * p + b * (b * b - 1) * q);
