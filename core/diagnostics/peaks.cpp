@@ -16,9 +16,15 @@
 namespace unfurl {
 namespace {
 
-constexpr std::size_t most_candidates = 3;
+constexpr std::size_t most_candidates = 3, most_alone = 16;
 constexpr double good_constraint =
     1e-4;  // of a rod's length: beyond it the quintic is no motion of the structure
+
+// A step with a smooth motion leads from state a to state b.
+bool joined(const Trajectory& run, std::size_t a, std::size_t b) {
+  return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b) &&
+         !run.report(a).singular_event && !run.report(b).singular_event;
+}
 
 // The motion around state i: two steps at most, where they are smooth.
 class Neighbourhood {
@@ -26,8 +32,8 @@ class Neighbourhood {
   Neighbourhood(const Simulation& run, std::size_t i) : run_(run), i_(i), first_(i), last_(i) {
     const Trajectory& t = run.trajectory;
     const Model* model = &t.model(i);
-    if (i > 0 && joined(i - 1, i)) first_ = i - 1;
-    if (i + 1 < t.size() && joined(i, i + 1)) last_ = i + 1;
+    if (i > 0 && joined(t, i - 1, i)) first_ = i - 1;
+    if (i + 1 < t.size() && joined(t, i, i + 1)) last_ = i + 1;
     from_ = first_;
     System system = model->system;  // follows the states
     Index1 index1(system);
@@ -74,11 +80,6 @@ class Neighbourhood {
   }
 
  private:
-  bool joined(std::size_t a, std::size_t b) const {
-    const Trajectory& t = run_.trajectory;
-    return !same_instant(t.time(a), t.time(b)) && &t.model(a) == &t.model(b) && !t.report(a).singular_event &&
-           !t.report(b).singular_event;
-  }
   bool known(std::size_t k) const {
     return acceleration(k).size() > 0 || run_.trajectory.state(k).z.size() == 0;
   }
@@ -115,21 +116,35 @@ Vertex vertex(const std::array<double, 3>& t, const std::array<double, 3>& x) {
 }
 
 // States around which the motion may top `best`: local maxima whose parabola reaches it, the highest first.
+// What happened between two events within one step has no state to say how high it went: the longest of
+// these.
 std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<double>& x, double best) {
-  std::vector<std::pair<double, std::size_t>> found;
+  std::vector<std::pair<double, std::size_t>> found, alone;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const bool inner =
-        i > 0 && i + 1 < x.size() && run.time(i) > run.time(i - 1) && run.time(i + 1) > run.time(i);
-    if (std::isnan(x[i]) || (i > 0 && x[i - 1] > x[i]) || (i + 1 < x.size() && x[i + 1] > x[i])) continue;
+    if (std::isnan(x[i])) continue;
+    const bool from = i > 0 && joined(run, i - 1, i), on = i + 1 < x.size() && joined(run, i, i + 1);
+    if (!from && on && (i + 2 == x.size() || !joined(run, i + 1, i + 2)))
+      alone.push_back({run.time(i + 1) - run.time(i), i});
+    if ((from && x[i - 1] > x[i]) || (on && x[i + 1] > x[i])) continue;
+    const std::size_t middle = from && on ? i : on ? i + 1 : i - 1;  // of three
     double reach = x[i];
-    if (inner && std::isfinite(x[i - 1]) && std::isfinite(x[i + 1]))
-      reach = vertex({run.time(i - 1), run.time(i), run.time(i + 1)}, {x[i - 1], x[i], x[i + 1]}).value;
+    if ((from || on) && middle > 0 && middle + 1 < x.size() && joined(run, middle - 1, middle) &&
+        joined(run, middle, middle + 1) && std::isfinite(x[middle - 1]) && std::isfinite(x[middle]) &&
+        std::isfinite(x[middle + 1]))
+      reach = std::max(reach, vertex({run.time(middle - 1), run.time(middle), run.time(middle + 1)},
+                                     {x[middle - 1], x[middle], x[middle + 1]})
+                                  .value);
     if (reach >= best) found.push_back({reach, i});
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < std::min(found.size(), most_candidates); ++k) out.push_back(found[k].second);
+  const auto take = [&](std::vector<std::pair<double, std::size_t>>& from, std::size_t most) {
+    std::stable_sort(from.begin(), from.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (std::size_t k = 0; k < std::min(from.size(), most); ++k)
+      if (std::find(out.begin(), out.end(), from[k].second) == out.end()) out.push_back(from[k].second);
+  };
+  take(found, most_candidates);
+  take(alone, most_alone);
   return out;
 }
 

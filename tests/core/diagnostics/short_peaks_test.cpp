@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Peaks of what lasts less than a step, or begins where a step was cut.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/peaks.hpp"
+#include "core/path/path_run.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace short_peaks_test {
+
+namespace {
+
+constexpr double g = 9.81, free_length = 1.3, tip = 2, arm = 1;
+
+// An arm of 1 m falls from level into a cable from a point 1 m above its tip.
+std::string caught(double stiffness) {
+  return R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], mass = 2},
+         {name = "P", position = [1, 0, 1], fixed = true}]
+rods = [{name = "arm", nodes = ["A", "B"], mass = 1}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 1, 0]
+[gravity]
+acceleration = [0, 0, -9.81]
+[[forces]]
+kind = "spring"
+name = "cable"
+nodes = ["P", "B"]
+free_length = 1.3
+tension_only = true
+stiffness = )" +
+         std::to_string(stiffness) + "\n[solver]\nend_time = 0.4\nstep = 0.01\nstages = 7\n";
+}
+
+// Where the arm stands still in the cable all its energy is in it: with the angle a below the level,
+// k/2 (s(a) - s_0)^2 = (M + m/2) g sin a.
+double most_pull(double stiffness) {
+  const auto stretch = [](double a) { return std::hypot(1 - std::cos(a), 1 + std::sin(a)) - free_length; };
+  double low = 0.1, high = 1.2;
+  for (int it = 0; it < 200; ++it) {
+    const double a = 0.5 * (low + high), e = std::max(stretch(a), 0.0);
+    (0.5 * stiffness * e * e < (tip + 0.5 * arm) * g * std::sin(a) ? low : high) = a;
+  }
+  return stiffness * stretch(low);
+}
+
+}  // namespace
+
+// The cable pulls for 16 ms to 0.5 ms; steps take 10. What the quintic through two states makes of half a
+// sine is 2 % low.
+TEST_CASE("the peak of a contact that is shorter than a step is found") {
+  for (const double stiffness : {1e5, 1e6, 1e7, 1e8}) {
+    const auto model = testing::model_of(caught(stiffness));
+    const Simulation run = simulate_on_path(model, read_scene_text(caught(stiffness), "s.toml").solver);
+    REQUIRE(run.events.size() >= 2);
+    CHECK(largest_of_column(run, diagnose(run), "P.reaction_N") ==
+          Approx(most_pull(stiffness)).epsilon(0.025));
+  }
+}
+
+// The full model takes 10 ms steps through a contact of 1.6 ms, which is no answer, and says so; it has one
+// of 50 ms.
+TEST_CASE("a contact that steps do not resolve is warned of") {
+  for (const auto& [stiffness, warned] : {std::pair{1e7, true}, {1e3, false}}) {
+    const Simulation run = testing::run_scene(caught(stiffness));
+    const bool told = std::ranges::any_of(run.warnings, [](const std::string& w) {
+      return w.starts_with("what cable holds swings on it in ");
+    });
+    CHECK(told == warned);
+  }
+}
+
+// s = 10 u^3 - 15 u^4 + 6 u^5 of one degree in 40 ms, four steps: the inertia of 2 kg m^2 takes
+// P = 2 a^2 s' s'' / T^3, equal to the last digit at the states on both sides of the middle, and none of its
+// peaks is at a state.
+TEST_CASE("a peak between states of one value is found") {
+  double most = 0;
+  for (int k = 0; k <= 100000; ++k) {
+    const double u = k * 1e-5;
+    most = std::max(most, 30 * u * u * (1 - u) * (1 - u) * (60 * u - 180 * u * u + 120 * u * u * u));
+  }
+  const double a = pi / 180, T = 0.04;
+  for (const double start : {0.1, 0.05, 0.11, 0.12, 0.13, 0.07})
+    for (const double to : {181, 179}) {
+      const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], mass = 1},
+         {name = "C", position = [-1, 0, 0], fixed = true}]
+rods = [{nodes = ["A", "B"], mass = 3}, {nodes = ["A", "C"], mass = 1}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "angle"
+name = "kick"
+nodes = ["B", "A", "C"]
+axis = [0, 1, 0]
+motion = "smooth"
+to = )" + std::to_string(to) + "\nstart = " + std::to_string(start) +
+                                                "\nduration = 0.04\n[solver]\nend_time = 0.2\nstages = 4\n");
+      const Diagnostics d = diagnose(run);
+      CHECK(largest_of_column(run, d, "kick.power_W") ==
+            Approx(2 * a * a * most / (T * T * T)).epsilon(2e-3));
+      CHECK(smallest_of_column(run, d, "kick.power_W") ==
+            Approx(-2 * a * a * most / (T * T * T)).epsilon(2e-3));
+    }
+}
+
+// A drive that lasts 4 ms, of steps of 10: 67 J go in and come back between two of them, and round-off of 67
+// J is no error.
+TEST_CASE("a drive that begins and ends within a step is no energy out of nothing") {
+  const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], mass = 1},
+         {name = "C", position = [-1, 0, 0], fixed = true}]
+rods = [{nodes = ["A", "B"], mass = 3}, {nodes = ["A", "C"], mass = 1}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "angle"
+name = "kick"
+nodes = ["B", "A", "C"]
+axis = [0, 1, 0]
+motion = "smooth"
+to = 181
+start = 0.103
+duration = 0.004
+[solver]
+end_time = 0.3
+stages = 4
+)");
+  const Diagnostics d = diagnose(run);
+  // K at its peak, in the middle: 1/2 2 (1.875 a / T)^2.
+  const double rate = 1.875 * (pi / 180) / 0.004;
+  CHECK(largest_of_column(run, d, "kinetic_energy_J") == Approx(rate * rate).epsilon(1e-6));
+}
+
+}  // namespace short_peaks_test
