@@ -6,8 +6,11 @@
 #include <limits>
 #include <sstream>
 
+#include "core/forces/spring.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/math/saddle_solver.hpp"
+#include "core/simulate/one_sided.hpp"
+#include "core/simulate/push_responses.hpp"
 
 namespace unfurl {
 namespace {
@@ -70,6 +73,28 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
                : "")
        << "; to let them die out, structure.damping_ratio or solver.method = \"generalized_alpha\"; to leave "
           "them out, structure.rod_model = \"quasi-static\"";
+  return text.str();
+}
+
+std::string cable_step_warning(const OneSided& sides, std::size_t i, const System& system, const State& state,
+                               double step) {
+  PushResponses responses(system, state);
+  if (!responses.ok()) return {};
+  responses.add(sides.cable_length(i), 1.0, sides.cable_length(i).reference());
+  VectorXd q(system.coordinates());
+  system.expand(state.z, q);
+  const double k = spring_law(sides.cable(i), state.t, q.data()).stiffness, c = sides.cable(i).damping,
+               by_force = responses.matrix()(0, 0), square = k * by_force;
+  const double period = 2 * pi / std::sqrt(square);
+  if (!(step > followed_share * period) || c * by_force > 2 * std::sqrt(square)) return {};
+  std::ostringstream text;
+  text.precision(3);
+  text
+      << "what " << sides.cable(i).name << " holds swings on it in " << period << " s, which the step of "
+      << step
+      << " s does not resolve: how far it stretches, how long it pulls and what it throws back are not to be "
+         "trusted; solver.step = "
+      << followed_share * period << ", or solver.model = \"auto\" where the structure moves in one way only";
   return text.str();
 }
 

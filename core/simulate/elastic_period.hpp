@@ -4,9 +4,12 @@
 
 #include <string>
 
+#include "core/integrators/solver_options.hpp"
 #include "core/simulate/trajectory.hpp"
 
 namespace unfurl {
+
+class OneSided;
 
 // The shortest period of small motions about a state that rigid rows allow [s]; infinite where no rod gives
 // or bends. By the power method on M x'' + G^T y = (dF/dz) x, G x'' = 0, to about a percent.
@@ -15,5 +18,9 @@ double fastest_elastic_period(const Model& model, const State& state);
 // What is said where the steps of a run are longer than a quarter of that period, with both numbers and what
 // there is to choose; empty: nothing. Of a method that damps what it does not resolve, nothing.
 std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options);
+
+// The same of cable i, which begins to pull: of how what it holds back swings on it.
+std::string cable_step_warning(const OneSided& sides, std::size_t i, const System& system, const State& state,
+                               double step);
 
 }  // namespace unfurl

@@ -10,6 +10,7 @@
 
 #include "core/integrators/integrator.hpp"
 #include "core/math/barycentric.hpp"
+#include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/stepper_loop.hpp"
@@ -140,6 +141,14 @@ MatrixXd Stepper::Loop::between(const Probe& to) {
     margins.col(k - 1) = p.margins;
   }
   return margins;
+}
+
+// Of each once.
+void Stepper::Loop::warn_of_cable(std::size_t i, const State& state) {
+  const std::string begin = "what " + sides_.cable(i).name + " holds ";
+  if (std::ranges::any_of(run_.warnings, [&](const std::string& w) { return w.starts_with(begin); })) return;
+  std::string told = cable_step_warning(sides_, i, base_->system.at(state), state, run_.options.step);
+  if (!told.empty()) run_.warnings.push_back(std::move(told));
 }
 
 Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& options)

@@ -303,6 +303,8 @@ class Stepper::Loop {
     if (!change.failure.empty()) return fail(change.failure);
     record(change);
     for (const std::size_t i : change.turned)
+      if (sides_.is_cable(i) && sides_.active(i) && !run_.options.adaptive) warn_of_cable(i, change.state);
+    for (const std::size_t i : change.turned)
       if (std::ranges::find(change.impacts, i, &ModeChange::Impact::stop) == change.impacts.end())
         std::ranges::copy(sides_.events(i, change.state.t), std::back_inserter(run_.events));
     if (change.changed)
@@ -322,6 +324,7 @@ class Stepper::Loop {
     }
   }
 
+  void warn_of_cable(std::size_t i, const State& state);
   void warn_once(const char* what) {
     if (std::ranges::none_of(run_.warnings, [&](const std::string& w) { return w.ends_with(what); }))
       run_.warnings.push_back("at t = " + seconds(now().t) + what);
