@@ -49,6 +49,7 @@ class StateForces {
     VectorXd doubt;
   };
   Close look_closely(std::size_t model_of, const State& state);
+  Close limit_behind(std::size_t i) const;
   void interpolate(std::size_t i, Close& here);
 
   // States whose solutions are kept: those around the one that is asked for.
