@@ -203,10 +203,29 @@ int add_ghost(Structure& structure, const std::string& name, double mass, double
   return node;
 }
 
+namespace {
+
+// How fast the nodes' own velocities turn the joint.
+double joint_rate(const Structure& structure, const Measure& joint) {
+  const MeasureFunction measure(joint, structure.deployment);
+  const auto size = 3 * std::ssize(structure.nodes);
+  VectorXd q(size), v(size), gradient(std::ssize(measure.stencil()));
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i) {
+    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+    v.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].velocity;
+  }
+  measure.value_and_gradient(q.data(), gradient.data());
+  const double rate = measure.rate(gradient.data(), v.data());
+  return std::isfinite(rate) ? rate : 0.0;
+}
+
+}  // namespace
+
 void add_rotor(Structure& structure, double inertia, double initial) {
   const Force motor = structure.forces.back();
   const double n = motor.motor.gear_ratio;
-  const int rotor = add_ghost(structure, "rotor of " + motor.name, n * n * inertia, 0.0);
+  const int rotor =
+      add_ghost(structure, "rotor of " + motor.name, n * n * inertia, joint_rate(structure, motor.measure));
   Measure tie;
   tie.kind = MeasureKind::combination;
   tie.terms = motor.measure.terms;
