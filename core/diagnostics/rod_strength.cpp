@@ -15,7 +15,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 double euler_load(const Rod& rod) {
   if (!rod.elastic() || !(rod.second_moment > 0)) return std::numeric_limits<double>::infinity();
-  return pi * pi * rod.youngs_modulus * rod.second_moment / (rod.length * rod.length);
+  return pi * pi * rod.youngs_modulus * rod.second_moment / (rod.pinned_length() * rod.pinned_length());
 }
 
 double axial_stress(const Rod& rod, double force) {
@@ -46,7 +46,8 @@ WorstRod worst_rod(const Structure& structure, const Diagnostics& diagnostics,
   WorstRod worst;
   for (Index i = 0; i < values.rows(); ++i)
     for (Index r = 0; r < values.cols(); ++r)
-      if (!std::isnan(values(i, r)) && (worst.rod < 0 || std::abs(values(i, r)) > std::abs(worst.value)))
+      if (!std::isnan(values(i, r)) &&
+          (worst.rod < 0 || std::abs(values(i, r)) > std::abs(worst.value)))
         worst = {values(i, r), r, diagnostics.t[static_cast<std::size_t>(i)], diagnostics.force_unique(i, r)};
   if (diagnostics.axial_force.hasNaN()) worst.unique = false;  // what nobody knows may be larger
   return worst;

@@ -9,7 +9,7 @@
 namespace unfurl {
 
 // P = pi^2 E I / l^2: at which a straight rod with pinned ends buckles [N]; infinite where rigid or where the
-// second moment is not known.
+// second moment is not known. Of a part of a cut rod, that of the whole: parts are joined stiffly.
 double euler_load(const Rod& rod);
 
 // Of an axial force N, tension positive [N]; NaN for a rod without a modulus.

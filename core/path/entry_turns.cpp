@@ -132,12 +132,12 @@ bool same_entry(const Constraint& a, const Constraint& b) {
 
 bool same_entry(const Rod& x, const Rod& y) {
   const auto& [name, a, b, mass, length, group, radius, multiplicity, area, youngs_modulus, second_moment,
-               strength, gives, damping_time, free_length, expansion, warming] = x;
+               strength, gives, damping_time, free_length, expansion, warming, parts, whole] = x;
   return std::minmax(a, b) == std::minmax(y.a, y.b) && close_to(mass, y.mass) && close_to(length, y.length) &&
          multiplicity == y.multiplicity && area == y.area && youngs_modulus == y.youngs_modulus &&
          second_moment == y.second_moment && strength == y.strength && gives == y.gives &&
          damping_time == y.damping_time && close_to(free_length, y.free_length) && expansion == y.expansion &&
-         alike(warming, y.warming);
+         alike(warming, y.warming) && parts == y.parts;
 }
 
 bool same_form(const LinearForm& a, const LinearForm& b) {

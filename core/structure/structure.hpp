@@ -46,6 +46,9 @@ struct Rod {
   double free_length = 0.0;   // in place of length: it starts stretched; 0: not given [m]
   double expansion = 0.0;     // relative change of length per kelvin [1/K]
   TimeFunction warming = {};  // above the temperature at which it has its length [K]
+  // Of a rod that was cut to bend, one of so many equal parts (structures/segments.hpp).
+  int parts = 1;
+  std::string whole = {};  // that rod's name; empty: not cut
 
   // The change of its length over time, as a share of it, and the derivatives of that [1, 1/s, 1/s^2].
   double warmed(double t, int order = 0) const {
@@ -54,6 +57,8 @@ struct Rod {
   // Of a rod that gives, without force [m].
   double rest_length(double t) const { return natural_length() * (1 + warmed(t)); }
   double natural_length() const { return free_length > 0 ? free_length : length; }
+  // Between the pins at which it, or the rod that it is a part of, may turn [m].
+  double pinned_length() const { return parts * length; }
   bool elastic() const { return area > 0 && std::isfinite(youngs_modulus); }
   // Stretch per axial force, of all that it stands for together; 0: rigid [m/N].
   double compliance() const {

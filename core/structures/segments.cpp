@@ -56,6 +56,7 @@ class Cutter {
     for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
       Rod part = rod;
       part.name = rod.name + "." + std::to_string(k + 1);
+      part.whole = rod.name, part.parts = static_cast<int>(count);
       part.a = nodes[k], part.b = nodes[k + 1];
       part.mass /= static_cast<double>(count);
       part.length /= static_cast<double>(count);

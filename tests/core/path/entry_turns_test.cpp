@@ -66,6 +66,7 @@ void fields(Rod& x, const Seen& seen) {
   seen("youngs_modulus", x.youngs_modulus), seen("second_moment", x.second_moment);
   seen("strength", x.strength), seen("gives", x.gives), seen("damping_time", x.damping_time);
   seen("free_length", x.free_length), seen("expansion", x.expansion), seen("warming", x.warming);
+  seen("parts", x.parts), seen("whole", x.whole);
 }
 
 using Look = std::function<void(const std::string& changed)>;
@@ -168,7 +169,7 @@ TEST_CASE("entries are alike where all of their fields are, but for their names 
   every_field_counts(angle(), {}, 20);
   every_field_counts(force(), {".name", ".form.offset", ".form.coeff"}, 80);  // of no nodes
   every_field_counts(held(), {".name"}, 40);
-  every_field_counts(rod(), {".name", ".group", ".radius"}, 30);
+  every_field_counts(rod(), {".name", ".group", ".radius", ".whole"}, 30);
 }
 
 TEST_CASE("rounding makes no entries unlike, and what has no direction may be turned round") {
