@@ -79,8 +79,8 @@ Structure build_custom(const CustomSpec& spec) {
                                                          : 1);
   }
   show_as_solved(structure);
-  cut_rods(structure, segments);
   add_length_errors(structure, spec.material);
+  cut_rods(structure, segments);
   return structure;
 }
 

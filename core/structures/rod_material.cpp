@@ -154,8 +154,8 @@ void give_material(Structure& structure, double area, const RodMaterial& materia
     rod.damping_time = damping_time_of(material, rod);
     segments[r] = material.segments;
   }
-  cut_rods(structure, segments);
   add_length_errors(structure, material);
+  cut_rods(structure, segments);
 }
 
 }  // namespace unfurl

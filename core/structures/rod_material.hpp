@@ -50,7 +50,8 @@ double damping_time_of(const RodMaterial& material, const Rod& rod);
 void check_rod_model(const RodMaterial& material);
 
 // What rods get wrong when they are made: lengths off by normally distributed errors, the same for the same
-// seed on every machine. Throws StructureError in a sector model, whose symmetry they break.
+// seed on every machine. An error is that of a whole rod, before it is cut into segments. Throws
+// StructureError in a sector model, whose symmetry they break.
 void add_length_errors(Structure& structure, const RodMaterial& material);
 
 // Gives every rod that has a mass this area [m^2] and material; cuts them into segments.

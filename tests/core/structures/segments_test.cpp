@@ -173,4 +173,28 @@ TEST_CASE("a rod that is cut buckles at the load of the whole rod") {
   }
 }
 
+TEST_CASE("an error of length is that of a whole rod, however many parts it is cut into") {
+  const auto wholes = [](const char* segments, const char* error) {
+    const Structure s = build_structure(read_scene_text(
+        column, "s.toml",
+        {std::string("structure.segments=") + segments, std::string("structure.length_error=") + error}));
+    std::vector<double> sums;
+    for (std::size_t r = 0; r < s.rods.size(); ++r) {
+      if (r == 0 || s.rods[r].whole.empty() || s.rods[r].whole != s.rods[r - 1].whole) sums.push_back(0);
+      sums.back() += s.rods[r].length;
+    }
+    return sums;
+  };
+  const std::vector<double> once = wholes("1", "1e-3"), made = wholes("1", "0");
+  REQUIRE(once.size() == 2);
+  for (const char* segments : {"2", "4", "16"}) {
+    const std::vector<double> parts = wholes(segments, "1e-3");
+    REQUIRE(parts.size() == 2);
+    for (std::size_t r = 0; r < 2; ++r) {
+      CHECK(std::abs(once[r] - made[r]) > 1e-5);
+      CHECK(parts[r] == Approx(once[r]).epsilon(1e-14));  // a sum of 16 of them
+    }
+  }
+}
+
 }  // namespace segments_test
