@@ -15,8 +15,13 @@ double rod_mass(const CustomRod& rod, double length) {
   return rod.mass >= 0.0 ? rod.mass : rod.density * rod.area * length;
 }
 
+long segments_of(const RodMaterial& all, const CustomRod& entry, const Rod& rod) {
+  return entry.segments > 0 ? entry.segments : rod.elastic() ? all.segments : 1;
+}
+
 // Of a rod with an area: what it says itself, else what the list says of all rods.
-void give_section(const RodMaterial& all, const CustomRod& entry, Rod& rod) {
+void give_section(const CustomSpec& spec, const CustomRod& entry, Rod& rod) {
+  const RodMaterial& all = spec.material;
   const SectionShape shape = section_shape(all, entry.area);
   const auto own = [](double x, double of_all) { return std::isnan(x) ? of_all : x; };
   rod.area = entry.area;
@@ -27,7 +32,7 @@ void give_section(const RodMaterial& all, const CustomRod& entry, Rod& rod) {
   rod.gives = rod.elastic() && gives_in_motion(all, entry);
   if (!rod.gives) return;
   rod.free_length = entry.free_length;
-  rod.damping_time = damping_time_of(all, rod);
+  rod.damping_time = damping_time_of(all, rod, spec.lumped_mass, segments_of(all, entry, rod));
 }
 
 void add_nodes(const CustomSpec& spec, Structure& structure) {
@@ -73,10 +78,8 @@ Structure build_custom(const CustomSpec& spec) {
             .norm();
     const double length = entry.length > 0.0 ? entry.length : apart;
     structure.rods.push_back({rod_name(entry), a, b, rod_mass(entry, length), length, entry.group, 0.0, 1.0});
-    if (entry.area > 0.0) give_section(spec.material, entry, structure.rods.back());
-    segments.push_back(entry.segments > 0                ? entry.segments
-                       : structure.rods.back().elastic() ? spec.material.segments
-                                                         : 1);
+    if (entry.area > 0.0) give_section(spec, entry, structure.rods.back());
+    segments.push_back(segments_of(spec.material, entry, structure.rods.back()));
   }
   show_as_solved(structure);
   add_length_errors(structure, spec.material);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/structures/rod_material.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -92,10 +93,13 @@ SectionShape section_shape(const RodMaterial& material, double area) {
   return {pi / 64 * (std::pow(outer, 4) - std::pow(inner, 4)), outer / 2};
 }
 
-double damping_time_of(const RodMaterial& material, const Rod& rod) {
+double damping_time_of(const RodMaterial& material, const Rod& rod, bool lumped, long segments) {
   if (material.damping_ratio == 0 || !(rod.mass > 0)) return material.damping_time;
   const double k = rod.youngs_modulus * rod.area / rod.natural_length();
-  return 2 * material.damping_ratio / std::sqrt(12 * k / rod.mass);
+  const auto n = static_cast<double>(std::max(segments, 1L));
+  const double c = std::cos(pi / n),
+               w = n * std::sqrt(2 * (1 - c) * (lumped ? 1 : 3 / (2 + c)) * k / rod.mass);
+  return 2 * material.damping_ratio / w;
 }
 
 void check_rod_model(const RodMaterial& material) {
@@ -151,7 +155,7 @@ void give_material(Structure& structure, double area, const RodMaterial& materia
     rod.second_moment = shape.second_moment;
     if (material.section == "tube") rod.radius = shape.radius;
     rod.gives = material.rod_model == "elastic";
-    rod.damping_time = damping_time_of(material, rod);
+    rod.damping_time = damping_time_of(material, rod, structure.lumped_mass, material.segments);
     segments[r] = material.segments;
   }
   add_length_errors(structure, material);

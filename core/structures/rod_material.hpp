@@ -42,9 +42,13 @@ struct SectionShape {
 // Throws StructureError with "wall_thickness" where there is no such tube.
 SectionShape section_shape(const RodMaterial& material, double area);
 
-// The damping time of a rod that gives [s]. A free uniform rod of mass m and stiffness k = E A / l stretches
-// and shrinks, as one element, at w^2 = 12 k / m; the ratio is that of this motion, T = 2 ratio / w.
-double damping_time_of(const RodMaterial& material, const Rod& rod);
+// The damping time of a rod that gives [s]: the ratio is that of how the rod, free and alone, stretches and
+// shrinks, T = 2 ratio / w. Of mass m, stiffness k = E A / l and n segments, with c = cos(pi / n), its
+// slowest such motion as it is solved has
+//
+//     w^2 = 6 n^2 (1 - c) / (2 + c) k / m,   12 k / m of one element,
+//     w^2 = 2 n^2 (1 - c) k / m,              4 k / m,  where its mass is lumped at the nodes.
+double damping_time_of(const RodMaterial& material, const Rod& rod, bool lumped, long segments);
 
 // Throws StructureError where the model of the rods and what is known of them do not fit.
 void check_rod_model(const RodMaterial& material);
