@@ -33,13 +33,14 @@ struct Instant {
   const Simulation& run;
   std::size_t i;
   const State& state;
-  const VectorXd &q, &v;          // node coordinates, velocities
-  const VectorXd &phi, &lengths;  // of all constraints [m]
-  const VectorXd& velocity_phi;   // G v of all constraints [m/s]
-  const VectorXd& axial_force;    // of the solved rods [N]
-  const VectorXd& acceleration;   // of the nodes; NaN where the equations have no solution [m/s^2]
-  const System& equations;        // that the state belongs to, near its angles
-  double fold_angle;              // [rad]
+  const VectorXd &q, &v;           // node coordinates, velocities
+  const VectorXd &phi, &lengths;   // of all constraints [m]
+  const VectorXd& velocity_phi;    // G v of all constraints [m/s]
+  const VectorXd& axial_force;     // of the solved rods [N]
+  const std::vector<char>& shown;  // per solved rod
+  const VectorXd& acceleration;    // of the nodes; NaN where the equations have no solution [m/s^2]
+  const System& equations;         // that the state belongs to, near its angles
+  double fold_angle;               // [rad]
   const EnergyFlow& flow;
   double first_energy;  // kinetic + potential at t = 0 [J]
 
@@ -47,12 +48,23 @@ struct Instant {
   const Deployment& deployment() const { return run.trajectory.structure().deployment; }
   double work() const { return system().load_work(q) + flow.load_work[i]; }
   double kinetic() const { return system().kinetic_energy(state.w); }
+  // The largest sign * force of a rod that is shown; 0 of none, NaN where it is not known.
+  double most_force(double sign) const {
+    double most = -std::numeric_limits<double>::infinity();
+    for (Index r = 0; r < axial_force.size(); ++r) {
+      if (!shown[static_cast<std::size_t>(r)]) continue;
+      const double value = sign * axial_force[r];
+      if (std::isnan(value)) return value;
+      most = std::max(most, value);
+    }
+    return std::isinf(most) ? 0.0 : most;
+  }
   // The largest of sign * quantity; NaN where nothing is known of any rod, or of one that has a modulus.
   double most_of_rods(double sign, double (*quantity)(const Rod&, double)) const {
     double most = std::numeric_limits<double>::quiet_NaN();
     for (Index r = 0; r < axial_force.size(); ++r) {
       const Rod& rod = run.trajectory.structure().rods[static_cast<std::size_t>(r)];
-      if (!rod.elastic()) continue;
+      if (!rod.elastic() || !shown[static_cast<std::size_t>(r)]) continue;
       const double value = sign * quantity(rod, axial_force[r]);
       if (std::isnan(value)) return value;
       if (!(most >= value)) most = value;
@@ -118,9 +130,9 @@ const std::array rows{
     Row{"deployed_fraction", "deployed fraction", "", Needs::deployment,
         [](const Instant& s) { return s.deployment().fraction(s.q); }},
     Row{"axial_force_max_N", "largest axial force", "N", Needs::nothing,
-        [](const Instant& s) { return s.axial_force.size() ? s.axial_force.maxCoeff() : 0.0; }},
+        [](const Instant& s) { return s.most_force(1.0); }},
     Row{"axial_force_min_N", "smallest axial force", "N", Needs::nothing,
-        [](const Instant& s) { return s.axial_force.size() ? s.axial_force.minCoeff() : 0.0; }},
+        [](const Instant& s) { return 0.0 - s.most_force(-1.0); }},
     Row{"step_s", "step", "s", Needs::nothing,
         [](const Instant& s) { return s.i == 0 ? 0.0 : s.state.t - s.run.trajectory.time(s.i - 1); }},
     Row{"newton_iterations", "Newton iterations", "", Needs::nothing,
@@ -318,6 +330,7 @@ class StateTable {
     out_.axial_force.resize(static_cast<Index>(run.trajectory.size()), rods);
     out_.force_unique.resize(out_.axial_force.rows(), rods);
     out_.rod_unique.assign(static_cast<std::size_t>(rods), 1);
+    if (!books_) out_.rod_shown = shown_rods(run.trajectory.structure());
     force_.resize(rods);
   }
 
@@ -342,6 +355,7 @@ class StateTable {
                           lengths_,
                           velocity_phi_,
                           force_,
+                          out_.rod_shown,
                           acceleration_,
                           *system_,
                           angle,

@@ -30,8 +30,11 @@ struct Diagnostics {
   // The same shape: whether the rigid model determines that force (force_uniqueness.hpp).
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> force_unique;
   std::vector<char> rod_unique;  // per rod of the solved model: at every pose that is not singular
+  // The same: whether it is shown. Largest and smallest forces are those of such rods; empty: all are.
+  std::vector<char> rod_shown;
   const Series* find(std::string_view name) const;  // nullptr where the scene has no such column
   const Series& at(std::string_view name) const;    // throws std::out_of_range
+  bool shows(Index rod) const { return rod_shown.empty() || rod_shown[static_cast<std::size_t>(rod)] != 0; }
 };
 
 struct SolvedPoint;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "core/diagnostics/drives.hpp"
@@ -106,13 +107,15 @@ std::vector<char> followed_forces(const Model& model, const State& state, const 
 
 namespace {
 
-// Whether the force that is largest in this direction is unique; of no rods it is.
-double extreme_unique(const VectorXd& force, const std::vector<char>& unique, double sign) {
-  if (force.size() == 0) return 1.0;
-  const double most = (sign * force).maxCoeff();
-  const double close = 1e-9 * std::abs(most);  // equal ones differ by round-off
+// Whether the force that is largest in this direction, of the rods that are shown, is unique; of none it is.
+double extreme_unique(const Diagnostics& d, const VectorXd& force, const std::vector<char>& unique,
+                      double sign) {
+  double most = -std::numeric_limits<double>::infinity();
   for (Index r = 0; r < force.size(); ++r)
-    if (!(sign * force[r] < most - close) && !unique[static_cast<std::size_t>(r)]) return 0.0;
+    if (d.shows(r)) most = std::max(most, sign * force[r]);
+  const double close = std::isinf(most) ? 0.0 : 1e-9 * std::abs(most);  // equal ones differ by round-off
+  for (Index r = 0; r < force.size(); ++r)
+    if (d.shows(r) && !(sign * force[r] < most - close) && !unique[static_cast<std::size_t>(r)]) return 0.0;
   return 1.0;
 }
 
@@ -151,8 +154,8 @@ void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
       d.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
           unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);
     }
-    if (largest) (*largest)[i] = extreme_unique(force, unique, 1.0);
-    if (smallest) (*smallest)[i] = extreme_unique(force, unique, -1.0);
+    if (largest) (*largest)[i] = extreme_unique(d, force, unique, 1.0);
+    if (smallest) (*smallest)[i] = extreme_unique(d, force, unique, -1.0);
   }
 }
 
@@ -182,12 +185,12 @@ PeakForce peak_rod_force(const Diagnostics& d, Pull pull) {
   PeakForce peak;
   for (Index i = 0; i < force.rows(); ++i)
     for (Index r = 0; r < force.cols(); ++r)
-      if (!std::isnan(force(i, r)) && (peak.rod < 0 || size(force(i, r)) > size(peak.force_N)))
+      if (d.shows(r) && !std::isnan(force(i, r)) && (peak.rod < 0 || size(force(i, r)) > size(peak.force_N)))
         peak = {force(i, r), r, d.t[static_cast<std::size_t>(i)], true};
   const double most = size(peak.force_N);
-  for (Index k = 0; k < force.size(); ++k)  // what nobody knows may be larger
-    if (!(size(force.data()[k]) < most - equal * std::abs(most)) && !d.force_unique.data()[k])
-      peak.unique = false;
+  for (Index r = 0; r < force.cols(); ++r)  // what nobody knows may be larger
+    for (Index i = 0; d.shows(r) && i < force.rows(); ++i)
+      if (!(size(force(i, r)) < most - equal * std::abs(most)) && !d.force_unique(i, r)) peak.unique = false;
   return peak;
 }
 

@@ -69,7 +69,8 @@ using DoubtfulStates = std::map<std::size_t, VectorXd>;
 void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
                  const DoubtfulStates& doubtful, Diagnostics& diagnostics);
 
-// The largest axial force among all rods and states: its magnitude, or of tensions or compressions alone.
+// The largest axial force among all rods that are shown, and states: its magnitude, or of tensions or
+// compressions alone.
 enum class Pull { either, tension, compression };
 struct PeakForce {
   double force_N = 0.0;  // tension positive; 0 where there is no rod

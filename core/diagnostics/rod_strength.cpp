@@ -46,7 +46,7 @@ WorstRod worst_rod(const Structure& structure, const Diagnostics& diagnostics,
   WorstRod worst;
   for (Index i = 0; i < values.rows(); ++i)
     for (Index r = 0; r < values.cols(); ++r)
-      if (!std::isnan(values(i, r)) &&
+      if (diagnostics.shows(r) && !std::isnan(values(i, r)) &&
           (worst.rod < 0 || std::abs(values(i, r)) > std::abs(worst.value)))
         worst = {values(i, r), r, diagnostics.t[static_cast<std::size_t>(i)], diagnostics.force_unique(i, r)};
   if (diagnostics.axial_force.hasNaN()) worst.unique = false;  // what nobody knows may be larger

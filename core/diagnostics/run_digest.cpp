@@ -66,7 +66,7 @@ void add_rods(const Structure& structure, const Diagnostics& d, std::set<std::si
       Index row = -1;
       for (Index i = 0; i < d.axial_force.rows(); ++i)
         for (Index r = 0; r < d.axial_force.cols(); ++r) {
-          if (open_only && d.force_unique(i, r)) continue;
+          if (!d.shows(r) || (open_only && d.force_unique(i, r))) continue;
           const double x = size(structure.rods[static_cast<std::size_t>(r)], d.axial_force(i, r));
           if (x > most) most = x, row = i;
         }
@@ -163,7 +163,7 @@ Digest RunDigest::with_rows(const Digest& before, const Simulation& window, cons
   if (rows.columns.empty()) {
     rows.columns = d.columns;
     for (Series& column : rows.columns) column.values.clear();
-    rows.rod_unique = d.rod_unique;
+    rows.rod_unique = d.rod_unique, rows.rod_shown = d.rod_shown;
     rows.axial_force.resize(0, d.axial_force.cols());
     rows.force_unique.resize(0, d.force_unique.cols());
   }
@@ -218,7 +218,7 @@ Digest RunDigest::thinned(const Digest& all) const {
   out.run.events = all.run.events;
   out.diagnostics.columns = d.columns;
   for (Series& column : out.diagnostics.columns) column.values.clear();
-  out.diagnostics.rod_unique = d.rod_unique;
+  out.diagnostics.rod_unique = d.rod_unique, out.diagnostics.rod_shown = d.rod_shown;
   out.diagnostics.axial_force.resize(static_cast<Index>(rows.size()), d.axial_force.cols());
   out.diagnostics.force_unique.resize(static_cast<Index>(rows.size()), d.force_unique.cols());
   for (Index to = 0; const std::size_t i : rows) {
@@ -298,6 +298,7 @@ void RunDigest::archive_digest(Archive& archive, Digest& digest) const {
   archive(d.axial_force);
   archive(d.force_unique);
   archive(d.rod_unique);
+  d.rod_shown = shown_rods(model_->structure);
   archive_events(archive, digest.run.events);
 }
 

@@ -59,6 +59,12 @@ double Deployment::remaining_rate(const ConstVec& q, const ConstVec& v) const {
          std::sin(deployed_fold_angle) * fold_cosine.rate(v);
 }
 
+std::vector<char> shown_rods(const Structure& structure) {
+  std::vector<char> shown(structure.rods.size(), 0);
+  for (const RodCopy& copy : structure.rod_copies) shown[static_cast<std::size_t>(copy.source)] = 1;
+  return shown;
+}
+
 void show_as_solved(Structure& structure) {
   structure.node_copies.clear();
   structure.rod_copies.clear();

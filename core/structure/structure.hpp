@@ -285,6 +285,8 @@ struct Structure {
   double sectors = 1.0;  // how many times what is solved makes the whole: energies are reported of the whole
 };
 
+// Per solved rod: whether it is shown; helpers that only hold a shape are not.
+std::vector<char> shown_rods(const Structure& structure);
 // Fill the copies with the solved nodes, rods and loads themselves.
 void show_as_solved(Structure& structure);
 // Fill the lines with the spans of all cables.

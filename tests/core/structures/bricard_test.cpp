@@ -3,6 +3,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <nlohmann/json.hpp>
+
+#include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/measures.hpp"
+#include "core/export/summary.hpp"
 #include "core/system/mobility.hpp"
 #include "tests/support/bricard_exact.hpp"
 #include "tests/support/deployment_check.hpp"
@@ -65,4 +70,37 @@ TEST_CASE("a Bricard loop that cannot be closed is refused by the parameter at f
         "opening_angle: with twist_angle = 90 degrees the loop closes for an opening_angle above 60 degrees");
   CHECK(refusal("bricard", {{"opening_angle", 179.0}, {"deployed_angle", 20.0}})
             .starts_with("deployed_angle: "));
+}
+
+// The braces that hold a bar's pins apart are no rods of the loop: rod_forces.csv does not have them.
+TEST_CASE("the peak force of a Bricard loop is that of a rod that is shown") {
+  const Structure s = family_structure("bricard", {{"deployed_angle", 60.0}});
+  const Simulation run = simulate(make_model(s), dvm_options(3, 0.02, 2));
+  const Diagnostics d = diagnose(run);
+  double high = -1e300, low = 1e300, hidden = 0;
+  for (Index i = 0; i < d.axial_force.rows(); ++i) {
+    double most = -1e300, least = 1e300;
+    for (const RodCopy& copy : s.rod_copies) {
+      most = std::max(most, d.axial_force(i, copy.source));
+      least = std::min(least, d.axial_force(i, copy.source));
+    }
+    const auto at = static_cast<std::size_t>(i);
+    CHECK(d.at("axial_force_max_N").values[at] == most);
+    CHECK(d.at("axial_force_min_N").values[at] == least);
+    high = std::max(high, most), low = std::min(low, least);
+    hidden = std::max(hidden, d.axial_force.row(i).lpNorm<Eigen::Infinity>());
+  }
+  const double peak = std::max(high, -low);
+  REQUIRE(hidden > 1.01 * peak);  // a brace bears more
+  const PeakForce found = peak_rod_force(d);
+  CHECK(std::abs(found.force_N) == peak);
+  CHECK(s.rods[static_cast<std::size_t>(found.rod)].group != "brace");
+  // Between the states it may be a little more: steps of 0.02 s of a motion of seconds.
+  CHECK(find_measure("peak_rod_force").value(run, d) == Approx(peak).epsilon(0.01));
+  const auto forces = nlohmann::json::parse(summary_json(
+      "test", run, d,
+      analyse_mobility(run.trajectory.model().system, run.trajectory.node_positions(0))))["forces"];
+  CHECK(forces["peak_rod_force_N"].get<double>() == Approx(peak).epsilon(1e-12));
+  CHECK(forces.contains("peak_rod"));
+  CHECK(forces.contains("peak_t_s"));
 }
