@@ -47,6 +47,23 @@ Structure unloaded(const Structure& structure) {
   return bare;
 }
 
+// Where all lengths fit without force, there is the pose that rigid rods of these lengths have, whatever the
+// modulus is. Rods with a free_length stay out of it. True where there is such a pose near q.
+bool fits_without_force(const Structure& structure, bool eliminate_linear, VectorXd& q) {
+  constexpr double near = 0.2;  // of the longest rod, as of rigid rods (fit_lengths.cpp)
+  Structure rigid = unloaded(structure);
+  double longest = 0;
+  for (Rod& rod : rigid.rods) {
+    longest = std::max(longest, rod.length);
+    if (rod.gives && !(rod.free_length > 0)) rod.gives = false, rod.expansion = 0;
+  }
+  VectorXd fitted = q;
+  if (!solve_for_pose(System(rigid, eliminate_linear), fitted)) return false;
+  if (!((fitted - q).lpNorm<Eigen::Infinity>() <= near * longest)) return false;
+  q = fitted;
+  return true;
+}
+
 void add(std::vector<Eigen::Triplet<double>>& entries, const SparseRows& A, double scale) {
   for (int i = 0; i < A.outerSize(); ++i)
     for (SparseRows::InnerIterator it(A, i); it; ++it)
@@ -199,6 +216,23 @@ class Joint {
   VectorXd lambda_;
 };
 
+// Goes on from where the mechanism was held: before that, forces of lengths that only are not fitted yet are
+// all that there is to hold it. False, and q as it was, where no balance is found.
+bool find_balance(const System& system, const Structure& structure, VectorXd& q) {
+  VectorXd held = q;
+  if (!Joint(system, structure).find(held)) held = q;
+  if (!Balance(system).find(held)) return false;
+  q = held;
+  return true;
+}
+
+void note_fit(Structure& structure, double most) {
+  std::ostringstream note;
+  note << "nodes were moved by at most " << most
+       << " m to fit the lengths of elastic rods, without self-stress";
+  structure.notes.push_back(note.str());
+}
+
 void note_self_stress(Structure& structure, const System& system, const VectorXd& q, double most,
                       bool balanced) {
   VectorXd force(static_cast<Index>(system.giving_rods().size()));
@@ -237,8 +271,8 @@ void assemble_elastic(Structure& structure, bool eliminate_linear) {
   const System system(unloaded(structure), eliminate_linear);
   const VectorXd given = node_positions(structure);
   VectorXd q = given;
-  const bool balanced = Balance(system).find(q);
-  if (!balanced) q = given;
+  const bool fits = fits_without_force(structure, eliminate_linear, q);
+  const bool balanced = fits || find_balance(system, structure, q);
   if (!balanced && !Joint(system, structure).find(q))
     throw StructureError(key, off.str() + ", and no pose near the given one has the rods in balance");
   double most = 0;
@@ -247,7 +281,10 @@ void assemble_elastic(Structure& structure, bool eliminate_linear) {
     structure.nodes[i].position = q.segment<3>(at);
     most = std::max(most, (q - given).segment<3>(at).norm());
   }
-  note_self_stress(structure, system, q, most, balanced);
+  if (fits)
+    note_fit(structure, most);
+  else
+    note_self_stress(structure, system, q, most, balanced);
 }
 
 }  // namespace unfurl

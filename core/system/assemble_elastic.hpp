@@ -8,7 +8,9 @@ namespace unfurl {
 
 // Moves the nodes to where the rods that give are in balance among themselves, without loads, gravity and
 // springs, while rigid rods and constraints hold: what a person does who joins rods that do not quite fit.
-// With r the forces of these rods and K their derivatives, Newton's steps
+// Where all lengths fit without force (solve_for_pose, fit_lengths.hpp), that is all; else they go on from
+// where they fit best with the mechanism held. With r the forces of these rods and K their derivatives,
+// Newton's steps
 //
 //     [ K + e M   G^T ] [ dz     ]   [  r   ]
 //     [ G          0  ] [ lambda ] = [ -Phi ]

@@ -50,7 +50,8 @@ std::string length_key(std::size_t rod) {
   return "rods[" + std::to_string(rod) + "].length";
 }
 
-// True where Phi = 0 is reached to round-off; q is what was reached.
+}  // namespace
+
 bool solve_for_pose(const System& system, VectorXd& q) {
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
@@ -70,8 +71,6 @@ bool solve_for_pose(const System& system, VectorXd& q) {
   }
   return false;
 }
-
-}  // namespace
 
 void fit_lengths(Structure& structure, bool eliminate_linear) {
   if (std::all_of(structure.rods.begin(), structure.rods.end(), [](const Rod& rod) { return rod.gives; }))

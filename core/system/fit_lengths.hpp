@@ -9,6 +9,12 @@ namespace unfurl {
 // The most that a given length may differ from the distance of its nodes, as a share of it.
 inline constexpr double fitted_share = 0.01;
 
+class System;
+
+// Newton's method on Phi = 0 at t = 0, each step the shortest in the mass metric. True where it is reached to
+// round-off; q [3 n]: from there, and what was reached.
+bool solve_for_pose(const System& system, VectorXd& q);
+
 // Moves the nodes, in the mass metric, to where rods have their given lengths and all other constraints hold:
 // Newton's method on Phi = 0. A note of how far is added to `structure`; nothing happens where all lengths
 // fit. Throws StructureError that names rod, given length, distance and cure where a length is further off

@@ -6,6 +6,7 @@
 #include "core/scene/library.hpp"
 #include "core/structure/node_positions.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -121,6 +122,54 @@ TEST_CASE("assembly: rings whose self-stress drives their mechanism join rods th
     CHECK(force.lpNorm<Eigen::Infinity>() > 1e-4 * most);
     CHECK(force.lpNorm<Eigen::Infinity>() < most);
   }
+}
+
+// A mast is statically determinate: errors of its lengths stress nothing, and the pose is that of rigid rods,
+// whatever the modulus. Both are fitted to round-off of coordinates of some metres.
+TEST_CASE("assembly: a mast whose rods are off starts where it would with rigid rods") {
+  const std::vector<std::string> errors{"structure.length_error=1e-4", "structure.youngs_modulus=7e10"};
+  const auto rigid = build_model(read_scene_file(find_scene("scissor_mast"), errors));
+  const VectorXd wanted = node_positions(rigid->structure);
+  for (const char* modulus : {"7e10", "7e16"}) {
+    auto changes = errors;
+    changes.emplace_back("structure.rod_model=elastic");
+    changes.emplace_back(std::string("structure.youngs_modulus=") + modulus);
+    const auto model = build_model(read_scene_file(find_scene("scissor_mast"), changes));
+    const VectorXd q = node_positions(model->structure);
+    CHECK((q - wanted).lpNorm<Eigen::Infinity>() < 1e-11);
+    REQUIRE_FALSE(model->structure.notes.empty());
+    CHECK_THAT(model->structure.notes.back(), Catch::Contains("without self-stress"));
+  }
+}
+
+// The square with diagonals, of which one is 1e-5 m too long, carries a linkage of three more rods, one of
+// them off by as much: the self-stress does not reach it, and nothing throws it along its way to move. What
+// fits it turns the linkage by less than ten times the errors.
+TEST_CASE("assembly: self-stress beside a mechanism does not move it") {
+  const double error = 1e-5;
+  std::string text = square(error, "rod_model = 'elastic'\n");
+  const auto add = [&](const std::string& table, const std::string& mark) {
+    text.insert(text.find(mark), table);
+  };
+  add("[[structure.nodes]]\nname = '5'\nposition = [2.5, 0.4, 0]\nmass = 0.7\n"
+      "[[structure.nodes]]\nname = '6'\nposition = [2.3, 1.6, 0]\nmass = 0.7\n"
+      "[[structure.rods]]\nnodes = ['2', '5']\nmass = 0.2\narea = 2e-4\n"
+      "[[structure.rods]]\nnodes = ['3', '6']\nmass = 0.2\narea = 2e-4\n"
+      "[[structure.rods]]\nnodes = ['5', '6']\nmass = 0.2\narea = 2e-4\nlength = " +
+          testing::number(std::hypot(0.2, 1.2) + error) + "\n",
+      "[[structure.constraints]]");
+  text.replace(text.find("['1', '2', '3', '4']"), 20, "['*']");
+  const auto model = model_of(text);
+  const double at[] = {0, 0, 0, a, 0, 0, a, a, 0, 0, a, 0, 2.5, 0.4, 0, 2.3, 1.6, 0};
+  const VectorXd q = node_positions(model->structure);
+  double most = 0;
+  for (Index k = 0; k < 18; ++k) most = std::max(most, std::abs(q[k] - at[k]));
+  CHECK(most < 10 * error);
+  VectorXd force(static_cast<Index>(model->system.giving_rods().size()));
+  model->system.giving_rod_forces(0, q, VectorXd::Zero(q.size()), force);
+  const double X = -error * EA / (2 * a + 2 * std::sqrt(2.0) * a);
+  CHECK(force[4] == Approx(X).epsilon(2e-5));                           // as without the linkage
+  CHECK(force.tail(3).lpNorm<Eigen::Infinity>() < 1e-6 * std::abs(X));  // strains of round-off
 }
 
 TEST_CASE("temperature: a clamped elastic rod carries -E A alpha dT") {
