@@ -37,7 +37,13 @@ MatrixXd symmetric(const MatrixXd& A) {
 // The model at the pose, in solved coordinates.
 class AtPose {
  public:
-  // known: forces of rods that are given, NaN where they follow from the equations; empty: all follow.
+  // known: forces N_0 that elastic rods have now, NaN of others; empty: of none. At rest under the loads they
+  // have N_0 + N with
+  //
+  //     M a + G^T (lambda + N) = F - G^T N_0,   G a = 0
+  //
+  // and N of least energy: N_0 is kept where it is self-stress, and not where it is a load's that has yet to
+  // come, or that of a wave.
   AtPose(const Model& model, const State& pose, const VectorXd& known) : system_(model.system.at(pose)) {
     State rest = pose;
     rest.w.setZero(rest.z.size());
@@ -51,13 +57,16 @@ class AtPose {
     const std::vector<char> rigidly = determined_rows(G);
     const bool all = std::find(rigidly.begin(), rigidly.end(), 0) == rigidly.end();
     Index1 index1(system_, true);
+    const VectorXd given = rows_of(model, known, G.rows());
     VectorXd lambda = rest.lambda;
     lambda.setZero(G.rows());
-    if (!index1.evaluate(rest, acceleration, lambda)) lambda.setZero();
-    if (known.size() > 0)
-      take_known(model, q, G, known, rest.t, lambda);
-    else
+    if (index1.evaluate(rest, acceleration, lambda)) {
+      lambda -= given;
       ElasticSharing(model, all).share(rest.t, q, false, lambda);
+      lambda += given;
+    } else {
+      lambda = given;
+    }
     const std::vector<char> determined = all ? rigidly : determined_rows(G, compliance);
     for (const int row : model.system.rod_rows())
       unique = unique && determined[static_cast<std::size_t>(row)] != 0;
@@ -71,28 +80,11 @@ class AtPose {
   bool unique = true;
 
  private:
-  // M a + G_r^T lambda_r = F - G_e^T N, G_r a = 0 with the rows G_e of rods whose forces N are known.
-  void take_known(const Model& model, const VectorXd& q, const SparseRows& G, const VectorXd& known, double t,
-                  VectorXd& lambda) {
-    std::vector<Index> rest;
-    VectorXd given = VectorXd::Zero(G.rows()), force = VectorXd::Zero(q.size()), reduced(G.cols());
-    std::vector<char> is_given(static_cast<std::size_t>(G.rows()), 0);
-    for (std::size_t r = 0; r < model.system.rod_rows().size(); ++r) {
-      if (std::isnan(known[static_cast<Index>(r)])) continue;
-      const int row = model.system.rod_rows()[r];
-      given[row] = known[static_cast<Index>(r)];
-      is_given[static_cast<std::size_t>(row)] = 1;
-    }
-    for (Index row = 0; row < G.rows(); ++row)
-      if (!is_given[static_cast<std::size_t>(row)]) rest.push_back(row);
-    system_.add_applied_force(t, q, VectorXd::Zero(q.size()), 1.0, force);
-    system_.reduce_force(force, reduced);
-    reduced -= G.transpose() * given;
-    const MatrixXd Gr = MatrixXd(G)(rest, Eigen::all);
-    const Cholesky M((MatrixXd(system_.mass())));
-    const VectorXd held = least_squares(Gr * M.solve(MatrixXd(Gr.transpose())), Gr * M.solve(reduced));
-    lambda = given;
-    for (std::size_t k = 0; k < rest.size(); ++k) lambda[rest[k]] = held[static_cast<Index>(k)];
+  static VectorXd rows_of(const Model& model, const VectorXd& known, Index rows) {
+    VectorXd given = VectorXd::Zero(rows);
+    for (Index r = 0; r < known.size(); ++r)
+      if (!std::isnan(known[r])) given[model.system.rod_rows()[static_cast<std::size_t>(r)]] = known[r];
+    return given;
   }
 
   void take_stiffness(const Model& model, const VectorXd& q, const SparseRows& G, const VectorXd& compliance,
@@ -222,7 +214,8 @@ Vibration vibration_of(const Model& model, const State& pose, const VectorXd& kn
   return out;
 }
 
-// Of the mechanism that is left where rods that give are rigid, under the forces that they have.
+// Of the mechanism that is left where rods that give are rigid, with the self-stress that they have and what
+// the loads make of their forces at rest: at the start of a run they do not bear these yet.
 Vibration vibration_of_giving(const Model& model, const State& pose) {
   const System& system = model.system;
   VectorXd q(system.coordinates());

@@ -31,10 +31,10 @@ struct Vibration {
 //     G_r x = 0,    K = G_e^T C^-1 G_e + sum_k lambda_k Hess Phi_k - dF/dz
 //
 // with C the compliances of the elastic rods' rows G_e and lambda the forces at that pose at rest under its
-// loads, accelerations included. An elastic rod has the energy of its length, 1/2 (|d| - l_0)^2 / C with
-// tension lambda at |d| = l, while Phi = (|d|^2 - l^2) / 2 l: Hess |d| = Hess Phi - g g^T / l there. Drives,
-// latches and stops that hold are rows, and so locked. Velocities, dampers and the part of dF/dz that has no
-// potential are left out.
+// loads, accelerations included, and with the self-stress of rods that give. An elastic rod has the energy of
+// its length, 1/2 (|d| - l_0)^2 / C with tension lambda at |d| = l, while Phi = (|d|^2 - l^2) / 2 l: Hess |d|
+// = Hess Phi - g g^T / l there. Drives, latches and stops that hold are rows, and so locked. Velocities,
+// dampers and the part of dF/dz that has no potential are left out.
 //
 // Rods are much stiffer than what pulls a mechanism back, and a symmetric eigenvalue solver is right to
 // round-off of the largest eigenvalue only. So the null space of all rows, N_0, is solved for by itself, with
