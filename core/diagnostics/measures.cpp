@@ -38,6 +38,11 @@ double last_of(const Simulation&, const Diagnostics& d, std::string_view column)
   return series ? last(series->values) : no_value;
 }
 
+// Nothing is pulled where the largest tension is negative, nothing pressed where the largest compression is.
+double at_least_none(double force) {
+  return force <= 0 ? 0.0 : force;
+}
+
 double peak_force(const Simulation& run, const Diagnostics& d) {
   return larger(largest_of_column(run, d, "axial_force_max_N"),
                 -smallest_of_column(run, d, "axial_force_min_N"));
@@ -93,13 +98,14 @@ const std::array measure_table{
     NamedMeasure{"peak_rod_force", "peak rod force", "N",
                  "largest axial force of any rod, tension or compression; the mean over the rod's length",
                  peak_force},
-    NamedMeasure{"peak_tension", "peak tension", "N", "largest tension of any rod",
+    NamedMeasure{"peak_tension", "peak tension", "N", "largest tension of any rod; 0: none is pulled",
                  [](const Simulation& run, const Diagnostics& d) {
-                   return largest_of_column(run, d, "axial_force_max_N");
+                   return at_least_none(largest_of_column(run, d, "axial_force_max_N"));
                  }},
-    NamedMeasure{"peak_compression", "peak compression", "N", "largest compression of any rod",
+    NamedMeasure{"peak_compression", "peak compression", "N",
+                 "largest compression of any rod; 0: none is pressed",
                  [](const Simulation& run, const Diagnostics& d) {
-                   return -smallest_of_column(run, d, "axial_force_min_N");
+                   return at_least_none(-smallest_of_column(run, d, "axial_force_min_N"));
                  }},
     NamedMeasure{"peak_rod_force_unique", "peak rod force is unique", "",
                  "1: the model determines the peak rod force; 0: it is one choice of many (`unfurl check`)",

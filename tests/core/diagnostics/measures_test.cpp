@@ -141,4 +141,33 @@ TEST_CASE("a summary names the rod that bears most and when, of force, stress an
           Approx(d.at("constraint_relative_max").values[i] / 2.220446049250313e-16));
 }
 
+// A rod along a guide that its load pulls, or presses: to round-off of 40 N.
+TEST_CASE("where no rod is pressed the peak compression is none, where none is pulled the peak tension is") {
+  for (const double load : {40.0, -40.0}) {
+    const Simulation run = testing::run_scene(R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1.3, 0, 0]},
+         {name = "free", position = [0, 1, 0], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 0.4}]
+[[constraints]]
+kind = "line"
+nodes = ["B"]
+direction = [1, 0, 0]
+[[loads]]
+nodes = ["B"]
+force = [)" + std::to_string(load) + R"(, 0, 0]
+[solver]
+step = 0.01
+end_time = 0.02
+)");
+    const Diagnostics d = diagnose(run);
+    const auto measure = [&](const char* name) { return find_measure(name).value(run, d); };
+    CHECK(measure("peak_tension") == Approx(load > 0 ? 40 : 0).margin(1e-9));
+    CHECK(measure("peak_compression") == Approx(load > 0 ? 0 : 40).margin(1e-9));
+    CHECK((measure("peak_tension") >= 0 && measure("peak_compression") >= 0));
+    CHECK(measure("peak_rod_force") == Approx(40).margin(1e-9));
+    CHECK(d.at("axial_force_min_N").values.back() == Approx(load).margin(1e-9));  // with its sign
+  }
+}
+
 }  // namespace measures_test
