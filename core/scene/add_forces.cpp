@@ -53,8 +53,8 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
     case Members::rods:
       break;
     case Members::rod:
-      if (const Rod* rod = find.rod(e, 0)) {
-        one.nodes = {rod->a, rod->b};
+      if (const auto rod = find.rod(e, 0); rod.first) {
+        one.nodes = {rod.first->a, rod.last->b};
         forces.push_back(one);
       }
       break;

@@ -15,6 +15,32 @@ MemberFinder::MemberFinder(const Structure& structure)
     : structure_(structure), start_(node_positions(structure)) {
   for (const Node& node : structure.nodes) node_names_.add(node.name);
   for (const Rod& rod : structure.rods) rod_names_.add(rod.name);
+  for (std::size_t r = 0; r < structure.rods.size(); ++r)
+    if (const Rod& rod = structure.rods[r]; !rod.whole.empty()) {
+      if (parts_.empty() || parts_.back().whole != rod.whole)
+        parts_.push_back({rod.whole, static_cast<int>(r), static_cast<int>(r)});
+      parts_.back().last = static_cast<int>(r);
+    }
+}
+
+// Rods by their own names, and all parts of those that were cut.
+std::vector<int> MemberFinder::rods_matching(const std::string& pattern) const {
+  std::vector<int> found = rod_names_.matching(pattern);
+  for (const CutRod& cut : parts_) {
+    if (!glob_match(pattern, cut.whole)) continue;
+    for (int r = cut.first; r <= cut.last; ++r)
+      if (std::ranges::find(found, r) == found.end()) found.push_back(r);
+  }
+  return found;
+}
+
+// Of rods as the scene has them, not of parts that it does not know.
+std::string MemberFinder::similar_rod(const std::string& name) const {
+  std::vector<std::string_view> known;
+  for (std::size_t r = 0; r < structure_.rods.size(); ++r)
+    if (structure_.rods[r].whole.empty()) known.push_back(rod_names_.names()[r]);
+  for (const CutRod& cut : parts_) known.push_back(cut.whole);
+  return did_you_mean(name, known);
 }
 
 void MemberFinder::problem(const SceneElement& element, const std::string& key, std::string message) {
@@ -68,25 +94,26 @@ std::vector<int> MemberFinder::path(const SceneElement& element) {
   return good ? found : std::vector<int>{};
 }
 
-const Rod* MemberFinder::rod(const SceneElement& element, std::size_t index) {
+MemberFinder::RodParts MemberFinder::rod(const SceneElement& element, std::size_t index) {
   const std::string& name = element.rods[index];
-  const int found = rod_names_.find(name);
-  if (found >= 0) return &structure_.rods[static_cast<std::size_t>(found)];
+  const auto at = [&](int r) { return &structure_.rods[static_cast<std::size_t>(r)]; };
+  if (const int found = rod_names_.find(name); found >= 0) return {at(found), at(found)};
+  for (const CutRod& cut : parts_)
+    if (cut.whole == name) return {at(cut.first), at(cut.last)};
   problem(element, element.rods.size() == 1 ? "rod" : "rods",
-          "there is no rod " + in_quotes(name) + did_you_mean(name, rod_names_.names()));
-  return nullptr;
+          "there is no rod " + in_quotes(name) + similar_rod(name));
+  return {};
 }
 
 std::vector<int> MemberFinder::rods(const SceneElement& element) {
   std::vector<int> found;
   for (const auto& name : element.rods) {
-    std::vector<int> matches = rod_names_.matching(name);
+    std::vector<int> matches = rods_matching(name);
     if (matches.empty())
       for (std::size_t r = 0; r < structure_.rods.size(); ++r)
         if (glob_match(name, structure_.rods[r].group)) matches.push_back(static_cast<int>(r));
     if (matches.empty())
-      problem(element, "rods",
-              "there is no rod and no group " + in_quotes(name) + did_you_mean(name, rod_names_.names()));
+      problem(element, "rods", "there is no rod and no group " + in_quotes(name) + similar_rod(name));
     for (const int rod : matches)
       if (std::ranges::find(found, rod) == found.end()) found.push_back(rod);
   }
@@ -100,7 +127,8 @@ double MemberFinder::initial(const Measure& measure) const {
   return counts_turns(measure) && value < -pi + 1e-9 ? value + 2 * pi : value;
 }
 
-// Two rods that share a node open at it; others are taken from their first node to their second.
+// Two rods that share a node open at it; others are taken from their first node to their second. Of rods that
+// were cut to bend the parts at the shared node count.
 bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure& measure) {
   measure.kind = MeasureKind::angle;
   measure.axis = axis.isZero(0.0) ? axis : Vec3(axis.stableNormalized());
@@ -116,12 +144,17 @@ bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure&
     if (found.size() != 3) return false;
     measure.nodes = {found[1], found[0], found[1], found[2]};
   } else {
-    const Rod *r = rod(element, 0), *s = rod(element, 1);
-    if (!r || !s) return false;
-    measure.nodes = {r->a, r->b, s->a, s->b};
-    const bool from_end = r->b == s->a || r->b == s->b;
-    if (from_end) std::swap(measure.nodes[0], measure.nodes[1]);
-    if (measure.nodes[0] == s->b) std::swap(measure.nodes[2], measure.nodes[3]);
+    const RodParts r = rod(element, 0), s = rod(element, 1);
+    if (!r.first || !s.first) return false;
+    const int ra = r.first->a, rb = r.last->b, sa = s.first->a, sb = s.last->b;
+    measure.nodes = {ra, rb, sa, sb};
+    const bool from_end = rb == sa || rb == sb;
+    const int shared = from_end ? rb : ra;
+    const bool to_end = shared == sb;
+    if (from_end) measure.nodes[0] = rb, measure.nodes[1] = r.last->a;
+    if (to_end) measure.nodes[2] = sb, measure.nodes[3] = s.last->a;
+    if (!from_end && (to_end || shared == sa)) measure.nodes[1] = r.first->b;
+    if (!to_end && shared == sa) measure.nodes[3] = s.first->b;
   }
   if (measure.nodes[0] == measure.nodes[1] || measure.nodes[2] == measure.nodes[3]) {
     problem(element, "nodes", "an angle needs three different nodes");

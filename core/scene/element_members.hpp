@@ -27,8 +27,13 @@ class MemberFinder {
   // The same with nodes that come again: those of a path, or of several angles.
   std::vector<int> path(const SceneElement& element);
   int node(const SceneElement& element, const std::string& key, const std::string& name);  // -1: a problem
-  const Rod* rod(const SceneElement& element, std::size_t index);
-  std::vector<int> rods(const SceneElement& element);  // by their names, or the names of their groups
+  // First and last part of one rod, the same where it was not cut; null: a problem was noted.
+  struct RodParts {
+    const Rod *first = nullptr, *last = nullptr;
+  };
+  RodParts rod(const SceneElement& element, std::size_t index);
+  // By their names, or the names of their groups; the name of one that was cut is that of all its parts.
+  std::vector<int> rods(const SceneElement& element);
   // The angle that an entry names, with a sign where `axis` is not zero. False: a problem was noted.
   bool angle(const SceneElement& element, const Vec3& axis, Measure& measure);
 
@@ -39,8 +44,16 @@ class MemberFinder {
   void throw_problems();  // SceneError, where there are any
 
  private:
+  struct CutRod {
+    std::string whole;
+    int first, last;  // parts
+  };
+  std::vector<int> rods_matching(const std::string& pattern) const;
+  std::string similar_rod(const std::string& name) const;
+
   const Structure& structure_;
   NameIndex node_names_, rod_names_;
+  std::vector<CutRod> parts_;
   VectorXd start_;
   std::vector<SceneProblem> problems_;
 };

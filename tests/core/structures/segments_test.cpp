@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/structures/segments.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "core/diagnostics/measures.hpp"
@@ -195,6 +196,35 @@ TEST_CASE("an error of length is that of a whole rod, however many parts it is c
       CHECK(parts[r] == Approx(once[r]).epsilon(1e-14));  // a sum of 16 of them
     }
   }
+}
+
+TEST_CASE("the name of a rod that was cut names all of its parts") {
+  const auto warmed = [](const std::string& rods) {
+    const Structure s = build_structure(read_scene_text(
+        column +
+            "[[forces]]\nkind = 'temperature'\nexpansion = 2e-5\nchange = 30\ntimes = [0, 1]\n"
+            "values = [0, 1]\nrods = [" +
+            rods + "]\n",
+        "s.toml", {"structure.segments=3"}));
+    std::string names;
+    for (const Rod& rod : s.rods)
+      if (rod.expansion != 0) names += rod.name + " ";
+    return names;
+  };
+  CHECK(warmed("'A-B'") == "A-B.1 A-B.2 A-B.3 ");
+  CHECK(warmed("'*-C'") == "B-C.1 B-C.2 B-C.3 ");
+  CHECK(warmed("'A-B.2', 'B-C'") == "A-B.2 B-C.1 B-C.2 B-C.3 ");
+  CHECK_THROWS_WITH(warmed("'A-D'"), Catch::Contains("no group 'A-D'; did you mean 'A-B'?"));
+  // The angle between two rods is that of the parts at the node that they share.
+  const Structure s = build_structure(
+      read_scene_text(column + "[[forces]]\nkind = 'torsion_spring'\nstiffness = 5\nrods = ['A-B', 'B-C']\n",
+                      "s.toml", {"structure.segments=3"}));
+  const auto spring =
+      std::ranges::find_if(s.forces, [](const Force& f) { return f.kind == "torsion_spring"; });
+  REQUIRE(spring != s.forces.end());
+  std::vector<std::string> at;
+  for (const int node : spring->measure.nodes) at.push_back(s.nodes[static_cast<std::size_t>(node)].name);
+  CHECK(at == std::vector<std::string>{"B", "A-B.2", "B", "B-C.1"});
 }
 
 }  // namespace segments_test
