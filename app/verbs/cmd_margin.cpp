@@ -80,6 +80,22 @@ Table stuck_table(const Margin& margin, const std::vector<StuckHinge>& hinges) {
 
 using Json = nlohmann::ordered_json;
 
+std::string end_in_words(const Margin& margin) {
+  switch (margin.end) {
+    case MarginEnd::arrives:
+      return "arrives";
+    case MarginEnd::stalls:
+      return "stalls";
+    case MarginEnd::stopped:
+      return "end stop " + margin.stop;
+    case MarginEnd::time:
+      return "end time";
+    case MarginEnd::other_way:
+      return "sets out the other way";
+  }
+  return "";
+}
+
 Json sources_json(const Margin& margin) {
   Json sources = Json::array();
   for (std::size_t k = 0; k < margin.sources.size(); ++k) {
@@ -102,15 +118,18 @@ Json sources_json(const Margin& margin) {
 Json margin_json(const Scene& scene, const Margin& margin, const std::vector<StuckHinge>& hinges,
                  bool stuck) {
   const MarginReach& last = margin.motion.back();
-  Json json{{"scene", scene.name},
-            {"static_margin_min", margin.worst.margin},
-            {"static_margin_at", place(margin, margin.worst.fold_angle, margin.worst.s)},
-            {"dynamic_margin_min", margin.dynamic_min},
-            {"at_unit", folds(margin) ? "deg" : "m kg^1/2"},
-            {"arrives", margin.arrives},
-            {"stalls_at", margin.arrives ? Json() : Json(place(margin, last.fold_angle, last.s))},
-            {"force_unit", margin.unit},
-            {"sources", sources_json(margin)}};
+  Json json{
+      {"scene", scene.name},
+      {"static_margin_min", margin.worst.margin},
+      {"static_margin_at", place(margin, margin.worst.fold_angle, margin.worst.s)},
+      {"dynamic_margin_min", margin.dynamic_min},
+      {"at_unit", folds(margin) ? "deg" : "m kg^1/2"},
+      {"arrives", margin.arrives},
+      {"ends", end_in_words(margin)},
+      {"ends_at", place(margin, last.fold_angle, last.s)},
+      {"stalls_at", margin.end == MarginEnd::stalls ? Json(place(margin, last.fold_angle, last.s)) : Json()},
+      {"force_unit", margin.unit},
+      {"sources", sources_json(margin)}};
   if (!stuck) return json;
   json["stuck"] = Json::array();
   for (const StuckHinge& h : hinges)
@@ -123,6 +142,7 @@ Json margin_json(const Scene& scene, const Margin& margin, const std::vector<Stu
 }
 
 std::string words(double margin) {
+  if (std::isnan(margin)) return "none";
   return std::isfinite(margin) ? short_number(margin, 6) : "without bound";
 }
 
@@ -155,16 +175,29 @@ void print_hinges(const Margin& margin, const std::vector<StuckHinge>& hinges, c
               << short_number(place(margin, h.stall_fold, h.stall_at), 5) << unit << "\n";
 }
 
+std::string told_end(const Margin& margin, const std::string& place) {
+  switch (margin.end) {
+    case MarginEnd::arrives:
+      return "the motion arrives";
+    case MarginEnd::stalls:
+      return "the motion stalls at " + place;
+    case MarginEnd::stopped:
+      return "the motion ends at " + place + ", on the end stop " + margin.stop;
+    case MarginEnd::time:
+      return "the motion is at " + place + " when its time is up";
+    case MarginEnd::other_way:
+      return "the motion sets out the other way";
+  }
+  return "";
+}
+
 void print_margin(const Scene& scene, const Margin& margin, const std::vector<StuckHinge>& hinges) {
   const std::string unit = folds(margin) ? " deg" : " m kg^1/2";
   const MarginReach& last = margin.motion.back();
   std::cout << scene.name << ": static margin " << words(margin.worst.margin) << " at "
             << short_number(place(margin, margin.worst.fold_angle, margin.worst.s), 6) << unit
-            << ", dynamic margin " << words(margin.dynamic_min)
-            << (margin.arrives ? "; the motion arrives"
-                               : "; the motion ends at " +
-                                     short_number(place(margin, last.fold_angle, last.s), 6) + unit)
-            << "\n";
+            << ", dynamic margin " << words(margin.dynamic_min) << "; "
+            << told_end(margin, short_number(place(margin, last.fold_angle, last.s), 6) + unit) << "\n";
   print_sources(margin);
   if (!hinges.empty()) print_hinges(margin, hinges, unit);
 }
@@ -188,10 +221,7 @@ int cmd_margin(const Arguments& arguments) {
   }();
   constexpr std::size_t few = 12;  // hinges whose pairs are told too
   std::vector<StuckHinge> hinges;
-  if (arguments.study.stuck) {
-    hinges = stuck_hinges(model, margin, false);
-    if (hinges.size() <= few) hinges = stuck_hinges(model, margin, true);
-  }
+  if (arguments.study.stuck) hinges = stuck_hinges(model, scene.solver, margin, few);
   if (arguments.json)
     std::cout << margin_json(scene, margin, hinges, arguments.study.stuck).dump(2) << "\n";
   else

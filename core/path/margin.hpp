@@ -32,12 +32,21 @@ struct MarginPoint {
   double fold_angle = 0.0;  // [rad]; NaN: the structure has none
   VectorXd forces;          // of the sources; drives > 0 [Margin::unit]
   double margin = 0.0;      // static
+  double t = 0.0;           // of the loads over time
 };
 
 struct MarginReach {  // of the motion
   double s = 0.0, t = 0.0, fold_angle = 0.0;
   double kinetic = 0.0, driven = 0.0, resisted = 0.0;  // energies since the start, of the whole structure [J]
   double margin() const;
+};
+
+enum class MarginEnd {
+  arrives,    // at the end of the path that was looked at
+  stalls,     // its speed is used up, or it never sets out
+  stopped,    // an end stop bars the way
+  time,       // it is up
+  other_way,  // the motion sets out against the way, and is not followed
 };
 
 struct Margin {
@@ -49,10 +58,14 @@ struct Margin {
   double dynamic_min = std::numeric_limits<double>::infinity();
   double dynamic_at = 0.0;  // s
   bool arrives = false;     // the motion reaches the end of the path that was looked at
+  MarginEnd end = MarginEnd::stalls;
+  std::string stop;    // that bars the way, in the motion or, where it ends before, behind that
+  double sense = 1.0;  // s of the path by s here
 };
 
-// From the pose at the start to the deployed one; where there is none, as far as the motion goes in
-// options.end_time. Factors by the names of sources, 1 where not named; cables pull where they are stretched.
+// From the pose at the start to the deployed one, or to an end stop before it; where there is none, as far as
+// the motion goes in options.end_time. A structure at rest waits for loads over time that exceed what holds
+// it. Factors by the names of sources, 1 where not named; cables pull where they are stretched.
 // Throws PathRefused where there is no path or a drive prescribes the motion, StudyError for a factor of what
 // is not there.
 Margin margin_of(const std::shared_ptr<const Model>& model, const SolverOptions& options,
@@ -67,10 +80,11 @@ struct StuckHinge {
   double stall_fold = 0.0;     // its fold angle [rad]
   double turn = 0.0;           // of the hinge from the start to the end [rad]
 };
-// Every hinge that turns, then (pairs) every two of them, jammed alike. The stall follows from the energy of
-// the motion without the jam, K(s) = torque times the angle turned so far; dampers are taken as in that
-// motion.
-std::vector<StuckHinge> stuck_hinges(const std::shared_ptr<const Model>& model, const Margin& margin,
-                                     bool pairs);
+// Every hinge that turns, then, where they are no more than most_for_pairs, every two of them, jammed alike.
+// Where all that acts depends on the pose alone the stall follows from the energy of the motion without the
+// jam, K(s) = torque times the angle turned so far. Dampers, motors and loads over time act otherwise in a
+// slower motion: there it is the torque at which the motion with the jam comes to rest on its way.
+std::vector<StuckHinge> stuck_hinges(const std::shared_ptr<const Model>& model, const SolverOptions& options,
+                                     const Margin& margin, std::size_t most_for_pairs);
 
 }  // namespace unfurl

@@ -8,9 +8,9 @@
 
 namespace unfurl {
 
-PathLaw::PathLaw(const Path& path, const Structure& structure)
+PathLaw::PathLaw(const Path& path, const Structure& structure, bool separately)
     : path_(path),
-      forces_(structure, path.system(), false),
+      forces_(structure, path.system(), separately),
       pulling_(forces_.cables().size(), 0),
       slips_(forces_.frictions().size(), 0) {}
 
@@ -37,7 +37,7 @@ void PathLaw::look_from(double s) {
 
 ScalarLaw::Value PathLaw::at(double s, double v, double t) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const PathTable::Segment* here = s >= low_ && s <= high_ ? table_->segment(s) : nullptr;
+  const PathTable::Segment* here = in_reach(s);
   if (!here) return {nan, nan, nan, nan, nan};
   Value out;
   const auto add = [&](Index position, Index damping, double size) {

@@ -11,9 +11,10 @@
 namespace unfurl {
 
 // Everything that acts, tabulated along the path, and the law of motion that follows.
-class PathLaw final : public ScalarLaw {
+class PathLaw : public ScalarLaw {
  public:
-  PathLaw(const Path& path, const Structure& structure);
+  // separately: as PathForces has it.
+  PathLaw(const Path& path, const Structure& structure, bool separately = false);
 
   Value at(double s, double v, double t) const override;
   PathForces& forces() { return forces_; }
@@ -28,6 +29,12 @@ class PathLaw final : public ScalarLaw {
   bool timed() const;  // a load changes with time
   // Trial steps from s see no further than the pieces next to that of s, so that none is traced in vain.
   void look_from(double s);
+
+ protected:
+  const PathTable::Segment* in_reach(double s) const {
+    return s >= low_ && s <= high_ ? table_->segment(s) : nullptr;
+  }
+  bool pulls(std::size_t cable) const { return pulling_[cable] != 0; }
 
  private:
   const Path& path_;

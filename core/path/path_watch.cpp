@@ -14,9 +14,9 @@ constexpr int samples = 24;  // within a step
 
 }  // namespace
 
-PathWatch::PathWatch(const Structure& structure, const OneSided& sides, double step)
+PathWatch::PathWatch(const Structure& structure, const OneSided& sides, double step, bool deployed)
     : sides_(sides),
-      deploys_(!structure.deployment.empty()),
+      deploys_(deployed && !structure.deployment.empty()),
       step_(step),
       shift_(sides.stops().size(), 0.0),
       margin_(singular_margin) {
@@ -52,6 +52,12 @@ bool PathWatch::clear(const PathMotion& motion, double t) const {
 
 double PathWatch::gap_slope(std::size_t stop, double s) const {
   return sides_.stops()[stop].sign * law_->table().at(stop_columns_[stop], s).slope;
+}
+
+double PathWatch::gap(std::size_t stop, double s) const {
+  const StopSide& side = sides_.stops()[stop];
+  const double m = law_->table().at(stop_columns_[stop], s).value;
+  return (side.sign * (m - side.limit) - shift_[stop]) / sides_.touching(stop);
 }
 
 bool PathWatch::meets(const PathMotion& motion, std::size_t stop) const {

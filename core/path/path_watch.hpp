@@ -13,7 +13,8 @@ namespace unfurl {
 
 class PathWatch {
  public:
-  PathWatch(const Structure& structure, const OneSided& sides, double step);
+  // deployed: whether the deployed pose is watched for, too.
+  PathWatch(const Structure& structure, const OneSided& sides, double step, bool deployed = true);
 
   // Adds what is watched to the law's measures, which are then tabulated; again for every new law.
   void watch(PathLaw& law);
@@ -32,6 +33,8 @@ class PathWatch {
   // Whether the motion touches this stop, now, and goes on into it.
   bool meets(const PathMotion& motion, std::size_t stop) const;
   double gap_slope(std::size_t stop, double s) const;  // by s
+  // In units of what counts as zero: below -1 it has been passed.
+  double gap(std::size_t stop, double s) const;
   // Of what side i of friction acts on, by s.
   double friction_slope(std::size_t i, double s) const {
     return law_->table().at(friction_columns_[i - sides_.first_friction()], s).slope;

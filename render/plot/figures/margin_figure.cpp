@@ -78,7 +78,9 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
   figure.caption = "Least static margin " + words(margin.worst.margin) + " at " +
                    plot::format_number(along(margin, margin.worst.fold_angle, margin.worst.s), 4) +
                    (folds ? " deg" : "") + ", least dynamic margin " + words(margin.dynamic_min) + "; " +
-                   (margin.arrives ? "the motion arrives." : "the motion stalls on the way.");
+                   std::string(margin.arrives                    ? "the motion arrives."
+                               : margin.end == MarginEnd::stalls ? "the motion stalls on the way."
+                                                                 : "the motion does not arrive.");
   for (const MarginSource& source : margin.sources)
     if (source.factor != 1.0)
       figure.caption += " " + source.name + " times " + plot::format_number(source.factor, 4) + ".";

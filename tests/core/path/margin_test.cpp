@@ -218,7 +218,7 @@ TEST_CASE("where the dynamic margin is exactly zero at a known angle, the run st
 TEST_CASE("a jammed hinge stalls the motion where its energy is used up") {
   const Scene scene = ring(0);
   const auto model = build_model(scene);
-  const auto hinges = stuck_hinges(model, margin_of(model, scene.solver), false);
+  const auto hinges = stuck_hinges(model, scene.solver, margin_of(model, scene.solver), 0);
   REQUIRE_FALSE(hinges.empty());
   // The hinge in the middle of a chord turns by 2 (t_0 - t).
   double torque = 1e300;
@@ -248,7 +248,7 @@ TEST_CASE("a jammed hinge stalls the motion where its energy is used up") {
 TEST_CASE("hinges and pairs of them that jam stall where the spring has left least") {
   const double k = 0.96 * 2 * driven(0) / (start * start);
   const Scene scene = ring(k);
-  const auto hinges = stuck_hinges(build_model(scene), margin_in(scene), true);
+  const auto hinges = stuck_hinges(build_model(scene), scene.solver, margin_in(scene), 100);
   double stall = 1e300, stall_at = 0, weakest = 1e300;
   for (int i = 1; i <= 20000; ++i) {
     const double angle = start * (1 - i / 20000.0), way = start - angle;
@@ -288,7 +288,7 @@ TEST_CASE("a jammed hinge holds the structure at rest where it turns most for wh
   // Weakest at the end, where a tenth of the drive at 0 degrees is left, and twice the turn.
   const double k = 0.9 * 12 * f * l / start;
   const Scene scene = ring(k);
-  const auto hinges = stuck_hinges(build_model(scene), margin_in(scene), false);
+  const auto hinges = stuck_hinges(build_model(scene), scene.solver, margin_in(scene), 0);
   int halves = 0;
   for (const StuckHinge& h : hinges) {
     if (std::abs(h.turn - 2 * start) > 1e-6) continue;

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the motion of a margin begins and ends, against closed forms: loads over time, stops, friction, cables.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+#include "core/path/margin.hpp"
+#include "core/path/path.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+
+using namespace unfurl;
+
+namespace margin_motion_test {
+
+namespace {
+
+Margin margin_in(const std::string& text, const std::map<std::string, double>& factors = {}) {
+  const Scene scene = read_scene_text(text, "margin.toml");
+  return margin_of(build_model(scene), scene.solver, factors);
+}
+
+// 1 kg on a line along x, from 0 to where it is deployed.
+std::string slider(const std::string& more, double deployed = 1,
+                   const std::string& solver = "end_time = 60") {
+  return R"([structure]
+kind = "custom"
+nodes = [{name = "W", position = [-1, 0, 0], fixed = true}, {name = "A", position = [0, 0, 0], mass = 1}]
+[[constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [1, 0, 0]
+[deployment]
+measure = "coordinate A along 1 0 0"
+deployed = )" +
+         std::to_string(deployed) + "\n" + more + "[solver]\n" + solver + "\n";
+}
+
+std::string over_time(const std::string& name, double force, const std::string& times,
+                      const std::string& values) {
+  return "[[forces]]\nname = \"" + name + "\"\nkind = \"load_over_time\"\nnodes = [\"A\"]\nforce = [" +
+         std::to_string(force) + ", 0, 0]\ntimes = " + times + "\nvalues = " + values + "\n";
+}
+
+const std::string dry = R"([[forces]]
+name = "dry"
+kind = "friction"
+nodes = ["A"]
+direction = [1, 0, 0]
+)";
+
+// 1 kg on a rod of 1 m about the origin, in the plane z = 0, up to a height.
+std::string pendulum(const std::string& at, double deployed, const std::string& more) {
+  return R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "W", position = [-2, 0, 0], fixed = true},
+  {name = "A", mass = 1, )" +
+         at + R"(}]
+rods = [{nodes = ["O", "A"], mass = 0}]
+[[constraints]]
+kind = "plane"
+nodes = ["A"]
+normal = [0, 0, 1]
+[deployment]
+measure = "coordinate A along 0 1 0"
+deployed = )" +
+         std::to_string(deployed) + "\n" + more;
+}
+
+}  // namespace
+
+// Times and places follow from Taylor series of order 3 that the motion's steps hold exactly; places are
+// bisected to rounding.
+TEST_CASE("a structure waits at rest until a load over time exceeds what holds it") {
+  const std::string ramp = over_time("ramp", 1, "[0, 9]", "[0, 9]");
+  const Margin free = margin_in(slider(ramp));
+  CHECK(free.arrives);
+  CHECK(free.motion.back().t == Approx(std::cbrt(6.0)).epsilon(1e-10));  // x = t^3 / 6
+  const Margin delayed = margin_in(slider(over_time("ramp", 1, "[0, 0.5, 9.5]", "[0, 0, 9]")));
+  CHECK(delayed.arrives);
+  CHECK(delayed.motion.back().t == Approx(0.5 + std::cbrt(6.0)).epsilon(1e-10));
+  // It gives way at t = 0.3, where x'' = (t - 0.3) + 0.3 - 0.2 begins.
+  const Margin held = margin_in(slider(ramp + dry + "kinetic = 0.2\nstatic = 0.3\n"));
+  CHECK(held.arrives);
+  const double t = held.motion.back().t - 0.3;
+  CHECK(t * t * t / 6 + 0.05 * t * t == Approx(1).epsilon(1e-10));
+  // Of work done on the way: that of the friction is all that resists.
+  CHECK(held.motion.back().resisted == Approx(0.2).epsilon(1e-10));
+  // It never does.
+  const Margin never = margin_in(slider(ramp + dry + "kinetic = 70\n"));
+  CHECK(never.end == MarginEnd::stalls);
+  CHECK(never.motion.size() == 1);
+  // Pushed against a stop at first, let go of at t = 0.5, x'' = 2 (t - 0.5).
+  const Margin lies = margin_in(slider(over_time("turns", 1, "[0, 1]", "[-1, 1]") + R"([[constraints]]
+kind = "coordinate_stop"
+nodes = ["A"]
+direction = [1, 0, 0]
+min = 0
+)"));
+  CHECK(lies.arrives);
+  CHECK(lies.motion.front().t == 0);
+  // 1/24 + ... : at t = 1 x = 0.5^3 / 3 with v = 1/4, and 1 N from there on.
+  const double at_one = 0.125 / 3, rest = lies.motion.back().t - 1;
+  CHECK(at_one + 0.25 * rest + 0.5 * rest * rest == Approx(1).epsilon(1e-10));
+  // Without the stop it sets out the other way, and that is no stall.
+  CHECK(margin_in(slider(over_time("turns", 1, "[0, 1]", "[-1, 1]"))).end == MarginEnd::other_way);
+}
+
+TEST_CASE("the static margin has the loads over time of the moment at which the motion is in that pose") {
+  const Margin margin = margin_in(
+      slider(over_time("ramp", 1, "[0, 9]", "[0.5, 9.5]") + over_time("brake", -0.2, "[0, 9]", "[1, 1]")));
+  for (std::size_t i = 3; i < margin.points.size(); i += 31) {
+    const double t = margin.points[i].t;
+    CHECK(0.15 * t * t + t * t * t / 6 == Approx(margin.points[i].s).epsilon(1e-9));
+    CHECK(margin.points[i].margin == Approx((0.5 + t) / 0.2 - 1).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("an end stop bars the way: the path ends there, and so does the motion") {
+  const std::string push = "[[loads]]\nnodes = [\"A\"]\nforce = [1, 0, 0]\n";
+  const std::string stop =
+      "[[constraints]]\nname = \"bar\"\nkind = \"coordinate_stop\"\nnodes = [\"A\"]\ndirection = [1, 0, 0]\n";
+  const Margin margin = margin_in(slider(push + stop + "max = 0.4\n"));
+  CHECK_FALSE(margin.arrives);
+  CHECK(margin.end == MarginEnd::stopped);
+  CHECK(margin.stop == "bar");
+  CHECK(margin.points.back().s == Approx(0.4).epsilon(1e-10));
+  CHECK(margin.motion.back().s == Approx(0.4).epsilon(1e-10));
+  CHECK(margin.motion.back().kinetic == Approx(0.4).epsilon(1e-10));
+  // In the deployed pose a stop is where it belongs.
+  CHECK(margin_in(slider(push + stop + "max = 1\n")).arrives);
+  // Behind where the motion stalls, it still bounds the poses.
+  const std::string spring =
+      "[[forces]]\nkind = \"spring\"\nnodes = [\"W\", \"A\"]\nstiffness = 10\nfree_length = 1\n";
+  const Margin stalls = margin_in(slider(push + spring + stop + "max = 0.4\n"));
+  CHECK(stalls.end == MarginEnd::stalls);
+  CHECK(stalls.motion.back().s == Approx(0.2).epsilon(1e-9));  // x = 10 x^2 / 2
+  CHECK(stalls.points.back().s == Approx(0.4).epsilon(1e-10));
+}
+
+// x (1.5 - 1) - x^2 / 2 = kinetic x.
+TEST_CASE("a motion stalls by dry friction where its energy is used up") {
+  const std::string spring =
+      "[[forces]]\nkind = \"spring\"\nnodes = [\"W\", \"A\"]\nstiffness = 1\nfree_length = 1.5\n";
+  for (const double kinetic : {0.07, 0.2, 0.29}) {
+    const Margin margin =
+        margin_in(slider(spring + dry + "kinetic = " + std::to_string(kinetic) + "\nstatic = 0.3\n", 0.99));
+    INFO(kinetic);
+    CHECK(margin.end == MarginEnd::stalls);
+    CHECK(margin.motion.back().s == Approx(2 * (0.5 - kinetic)).epsilon(1e-9));
+    CHECK(std::abs(margin.dynamic_min) <= 1e-9);
+  }
+}
+
+TEST_CASE("a motion sees pulses of a load however short they are") {
+  const std::string push = "[[loads]]\nnodes = [\"A\"]\nforce = [0.02, 0, 0]\n";
+  const auto with = [&](double force) {
+    return margin_in(slider(push + over_time("pulse", force, "[5, 5.001, 5.002]", "[0, 1, 0]")));
+  };
+  // At t = 5 it is in 0.25 m at 0.1 m/s; the pulse takes 1e-3 s of its force from that.
+  const Margin stalls = with(-110);
+  CHECK(stalls.end == MarginEnd::stalls);
+  CHECK(stalls.motion.back().s > 0.25);
+  CHECK(stalls.motion.back().s < 0.2502);
+  const Margin passes = with(-55);
+  CHECK(passes.arrives);
+  // Behind it, of which the middle is at 5.001 s, as if it had been at once: 0.25 + 0.1 e + 0.01 e^2 there.
+  const double e = 1e-3, at = 0.25 + 0.1 * e + 0.01 * e * e, v = 0.1 + 0.02 * e - 0.055;
+  const double rest = passes.motion.back().t - 5 - e;
+  CHECK(at + v * rest + 0.01 * rest * rest == Approx(1).epsilon(1e-9));
+}
+
+// A tether of 2.9999 m to a point 3 m away from the farthest pose is stretched for a short time only, by 0.1
+// mm at most; the motion has 2 mJ.
+TEST_CASE("a motion sees cables that are stretched for a short time") {
+  const double angle = std::atan2(-0.9950041652780258, 0.09983341664682815);
+  const auto with = [&](double stiffness) {
+    return margin_in(
+        pendulum("position = [0.09983341664682815, -0.9950041652780258, 0], "
+                 "velocity = [0.06292958887266373, 0.006314019664010933, 0]",
+                 0.95,
+                 R"([[forces]]
+name = "tether"
+kind = "spring"
+nodes = ["W", "A"]
+free_length = 2.9999
+tension_only = true
+stiffness = )" + std::to_string(stiffness) +
+                     "\n[solver]\nend_time = 60\n"));
+  };
+  const Margin stalls = with(4.5e5);
+  CHECK(stalls.end == MarginEnd::stalls);
+  const double at = angle + stalls.motion.back().s;
+  const double stretch = std::hypot(2 + std::cos(at), std::sin(at)) - 2.9999;
+  // A length near its largest, of some 1e-12 by round-off, of 1e-4.
+  CHECK(0.5 * 4.5e5 * stretch * stretch == Approx(stalls.motion.front().kinetic).epsilon(1e-6));
+  // It takes at most 1 mJ of twice as much.
+  const Margin passes = with(2e5);
+  CHECK(passes.arrives);
+  CHECK(passes.dynamic_min == Approx(2 / 1.0 - 1).epsilon(1e-3));
+}
+
+TEST_CASE(
+    "all that one entry of a scene makes is one source, and names that mean two things have no factor") {
+  const std::string nodes = R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "P", position = [3, 0, 0], fixed = true},
+  {name = "A", position = [0, 1, 0], mass = 1}, {name = "B", position = [2, 2, 0], mass = 1}]
+rods = [{nodes = ["O", "A"], mass = 0.3}, {nodes = ["A", "B"], mass = 0.3}, {nodes = ["B", "P"], mass = 0.3}]
+[[constraints]]
+kind = "plane"
+nodes = ["A", "B"]
+normal = [0, 0, 1]
+[deployment]
+measure = "angle O A B"
+deployed = 130
+[solver]
+end_time = 60
+)";
+  const std::string brake = "[[forces]]\nkind = \"spring\"\nnodes = [\"O\", \"B\"]\nstiffness = 0.3\nname = ";
+  const std::string load = "nodes = [\"A\", \"B\"]\nforce = [1, -3, 0]\n";
+  const Margin over = margin_in(nodes + "[[forces]]\nkind = \"load_over_time\"\nname = \"wind\"\n" + load +
+                                "times = [0, 1]\nvalues = [1, 1]\n" + brake + "\"brake\"\n");
+  const Margin at_once = margin_in(nodes + "[[loads]]\n" + load + brake + "\"brake\"\n");
+  REQUIRE(over.sources.size() == 2);
+  CHECK(over.worst.margin == Approx(at_once.worst.margin).epsilon(1e-10));
+  CHECK(over.dynamic_min == Approx(at_once.dynamic_min).epsilon(1e-8));
+  const std::string two = nodes + "[[loads]]\n" + load + brake + "\"loads\"\n";
+  CHECK(margin_in(two).sources.size() == 2);
+  CHECK_THROWS_WITH(margin_in(two, {{"loads", 2.0}}), Catch::Contains("more than one thing that acts"));
+}
+
+// The height of a bob that hangs is least there: it says nothing of the way, the load does.
+TEST_CASE("where the deployed measure is stationary at the start, the way is that of the motion") {
+  for (const double side : {1.0, -1.0}) {
+    const Margin margin = margin_in(pendulum("position = [0, -1, 0]", 0.5,
+                                             "[[loads]]\nnodes = [\"A\"]\nforce = [" + std::to_string(side) +
+                                                 ", 0.5, 0]\n[solver]\nend_time = 20\n"));
+    CHECK(margin.arrives);
+    CHECK(margin.points.front().forces[0] == Approx(1).epsilon(1e-9));
+    // Of the load's work, up by 1.5 m and aside by cos(30 degrees).
+    CHECK(margin.motion.back().kinetic == Approx(0.75 + std::sqrt(0.75)).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a motion whose time is up has not stalled, nor one that sets out the other way") {
+  const Scene scene = read_scene_file(find_scene("hoop6"), {"solver.end_time=2"});
+  const Margin late = margin_of(build_model(scene), scene.solver);
+  CHECK_FALSE(late.arrives);
+  CHECK(late.end == MarginEnd::time);
+  const Margin wrong =
+      margin_in(pendulum("position = [1, 0, 0], velocity = [0, -0.5, 0]", 0.9,
+                         "[[loads]]\nnodes = [\"A\"]\nforce = [0, 1, 0]\n[solver]\nend_time = 9\n"));
+  CHECK(wrong.end == MarginEnd::other_way);
+  CHECK(std::isnan(wrong.dynamic_min));
+}
+
+}  // namespace margin_motion_test

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hinges that jam, against closed forms and runs with that friction.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/path/margin.hpp"
+#include "core/path/path.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/simulate/simulation.hpp"
+#include "core/study/table.hpp"
+
+using namespace unfurl;
+
+namespace stuck_hinges_test {
+
+namespace {
+
+// A four-bar linkage O A B P in the plane.
+std::string four_bar(const std::string& a, const std::string& b, const std::string& more) {
+  return R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "P", position = [3, 0, 0], fixed = true},
+  {name = "A", )" +
+         a + R"(}, {name = "B", )" + b + R"(}]
+rods = [{nodes = ["O", "A"], mass = 0.3}, {nodes = ["A", "B"], mass = 0.3}, {nodes = ["B", "P"], mass = 0.3}]
+[[constraints]]
+kind = "plane"
+nodes = ["A", "B"]
+normal = [0, 0, 1]
+)" + more;
+}
+
+const std::string node_a = "position = [0, 1, 0], mass = 1", node_b = "position = [2, 2, 0], mass = 1";
+
+std::vector<StuckHinge> stuck_in(const Scene& scene) {
+  const auto model = build_model(scene);
+  return stuck_hinges(model, scene.solver, margin_of(model, scene.solver), 0);
+}
+
+// Of hinge O-A / A-B in a run.
+std::vector<double> angles_at_a(const Simulation& run) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+    const VectorXd q = run.trajectory.node_positions(i);
+    const Vec3 a = q.segment<3>(0) - q.segment<3>(6), b = q.segment<3>(9) - q.segment<3>(6);
+    out.push_back(std::atan2(a.cross(b).norm(), a.dot(b)));
+  }
+  return out;
+}
+
+}  // namespace
+
+// A motor of the hinge itself, which gives 0.05 N m times its gear where it does not turn: a jam of that
+// torque holds it, and one that is less does not, however fast its speed is used up.
+TEST_CASE("a jam holds a motor in its hinge at the motor's stall torque") {
+  const Scene scene = read_scene_text(four_bar(node_a, node_b, R"([deployment]
+measure = "angle O A B"
+deployed = 150
+[[forces]]
+kind = "motor"
+nodes = ["O", "A", "B"]
+axis = [0, 0, 1]
+stall_torque = 0.05
+no_load_speed = 1800
+gear_ratio = 100
+inertia = 0
+[solver]
+end_time = 20
+)"),
+                                      "motor.toml");
+  const auto hinges = stuck_in(scene);
+  REQUIRE(hinges.size() == 2);
+  CHECK(hinges[0].static_torque == Approx(5).epsilon(1e-9));
+  // Bisected to 1e-7.
+  CHECK(hinges[0].stall_torque == Approx(5).epsilon(3e-7));
+  CHECK(hinges[0].stall_at <= 1e-6);
+}
+
+TEST_CASE("with dampers a jam stalls the motion where a run with that friction in the hinge stalls") {
+  const auto text = [](const std::string& friction) {
+    return four_bar(node_a, node_b, R"([[loads]]
+nodes = ["A"]
+force = [1, 0, 0]
+[[forces]]
+kind = "drag"
+nodes = ["A", "B"]
+damping = 5
+[deployment]
+measure = "angle O A B"
+deployed = 130
+[solver]
+end_time = 60
+)" + friction);
+  };
+  const auto hinges = stuck_in(read_scene_text(text(""), "drag.toml"));
+  REQUIRE(hinges.size() == 2);
+  // It creeps: what holds it at rest in the worst pose nearly stalls it.
+  CHECK(hinges[0].stall_torque == Approx(hinges[0].static_torque).epsilon(1e-3));
+  for (const double share : {0.99, 1.01}) {
+    const Scene scene = read_scene_text(
+        text("[[forces]]\nkind = \"friction\"\nnodes = [\"O\", \"A\", \"B\"]\naxis = [0, 0, 1]\nkinetic = " +
+             exact_number(share * hinges[0].stall_torque) + "\n"),
+        "friction.toml");
+    const Simulation run = simulate(build_model(scene), scene.solver);
+    INFO(share);
+    CHECK((run.status == RunStatus::deployed) == (share < 1));
+  }
+}
+
+TEST_CASE("what holds a hinge at rest is the rest force of a pose, not of a part of the way") {
+  const auto hinges = stuck_in(read_scene_text(four_bar(node_a, node_b, R"([[forces]]
+kind = "torsion_spring"
+nodes = ["O", "A", "B"]
+stiffness = 2
+free_angle = 140
+[deployment]
+measure = "angle O A B"
+deployed = 139.9
+[solver]
+end_time = 60
+)"),
+                                               "spring.toml"));
+  REQUIRE(hinges.size() == 2);
+  // In the deployed pose, a tenth of a degree before the spring is free: that is found to 1e-14 rad.
+  CHECK(hinges[0].static_torque == Approx(2 * 0.1 * radians_per_degree).epsilon(1e-9));
+}
+
+// Whichever way it goes, and where it turns back or passes in line: as in a run, whose sum over states is
+// short where the hinge passes in line between two of them, by less than its turn in a step: twice, 0.002
+// rad.
+TEST_CASE("a hinge turns as far as in a run, without a deployed pose too") {
+  const std::string solver = "[solver]\nend_time = ", steps = "\nstep = 0.001\nstages = 4\n";
+  const std::string push = "[[loads]]\nnodes = [\"A\"]\nforce = [";
+  for (const std::string& text : {four_bar(node_a, node_b, push + "1, 0, 0]\n" + solver + "0.8" + steps),
+                                  four_bar(node_a, node_b, push + "-1, 0, 0]\n" + solver + "0.8" + steps),
+                                  four_bar("position = [1, 0, 0], velocity = [0, 3, 0], mass = 1",
+                                           "position = [3, 2.2, 0]", solver + "2" + steps)}) {
+    const Scene scene = read_scene_text(text, "turns.toml");
+    const auto hinges = stuck_in(scene);
+    REQUIRE(hinges.size() == 2);
+    const std::vector<double> angle = angles_at_a(simulate(build_model(scene), scene.solver));
+    double turned = 0;
+    for (std::size_t i = 1; i < angle.size(); ++i) turned += std::abs(angle[i] - angle[i - 1]);
+    CHECK(hinges[0].turn == Approx(turned).margin(4e-3));
+    CHECK(hinges[0].turn >= turned - 1e-9);
+  }
+}
+
+}  // namespace stuck_hinges_test
