@@ -99,7 +99,8 @@ class PathRun {
     watch_.begin(last(), base_->system);
     if (sides_.empty()) return;
     sides_.find_laws(base_->system, last());
-    if (sides_.any_friction()) choose_slip();
+    if (const std::size_t i = sides_.first_friction(); sides_.any_friction())
+      watch_.friction_moves(i) ? choose_slip() : sides_.stand(i);
     tell_law();
     if (sides_.any_active()) change_model(sides_.model(*base_), true);
   }

@@ -10,7 +10,8 @@ namespace {
 // As the time loop has them (simulate/stepper_loop.hpp): the deployed pose counts as reached anew from this
 // sine of the fold angle on; what is met with it.
 constexpr double singular_margin = 1e-4, deployed_already = 1e-12, at_once = 1e-8;
-constexpr int samples = 24;  // within a step
+constexpr int samples = 24;            // within a step
+constexpr double never_moves = 1e-11;  // over a piece of the path, of a turn or of the structure's length
 
 }  // namespace
 
@@ -58,6 +59,17 @@ double PathWatch::gap(std::size_t stop, double s) const {
   const StopSide& side = sides_.stops()[stop];
   const double m = law_->table().at(stop_columns_[stop], s).value;
   return (side.sign * (m - side.limit) - shift_[stop]) / sides_.touching(stop);
+}
+
+// A slope of rounding has a sign, too; no friction slips by that.
+bool PathWatch::friction_moves(std::size_t i) const {
+  const PathTable::Segment* here = law_->table().segment(0.0);
+  if (!here) return true;
+  const Index column = friction_columns_[i - sides_.first_friction()];
+  const double least = never_moves * here->scale[column] / (here->b - here->a);
+  for (const double x : {0.0, 0.37, 0.81})
+    if (std::abs(here->at(column, here->a + x * (here->b - here->a)).slope) > least) return true;
+  return false;
 }
 
 bool PathWatch::meets(const PathMotion& motion, std::size_t stop) const {

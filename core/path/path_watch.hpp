@@ -39,6 +39,8 @@ class PathWatch {
   double friction_slope(std::size_t i, double s) const {
     return law_->table().at(friction_columns_[i - sides_.first_friction()], s).slope;
   }
+  // Whether what it acts on changes along the path at all.
+  bool friction_moves(std::size_t i) const;
 
  private:
   // With their rates where those follow from the pose and the speed, 0 otherwise.

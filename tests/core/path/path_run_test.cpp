@@ -412,4 +412,38 @@ TEST_CASE("what the path does not know is refused, and auto says why it took the
   CHECK(unknown_to_path(build_model(scene_with("four_bar", {}))->structure).empty());
 }
 
+// A triangle on a linkage: its corners are hinges that cannot turn. What friction they have does no work and
+// no rod feels it.
+TEST_CASE("friction in a hinge that cannot turn does not slip on the path") {
+  const auto largest = [](const char* kinetic) {
+    const Scene scene = read_scene_text(R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "P", position = [3, 0, 0], fixed = true},
+  {name = "A", position = [0, 1, 0], mass = 1}, {name = "B", position = [2, 2, 0], mass = 1},
+  {name = "C", position = [1, 3, 0], mass = 1}]
+rods = [{nodes = ["O", "A"], mass = 0.3}, {nodes = ["A", "B"], mass = 0.3}, {nodes = ["B", "P"], mass = 0.3},
+  {nodes = ["A", "C"], mass = 0.3}, {nodes = ["B", "C"], mass = 0.3}]
+[[constraints]]
+kind = "plane"
+nodes = ["A", "B", "C"]
+normal = [0, 0, 1]
+[[loads]]
+nodes = ["A"]
+force = [1, 0, 0]
+[[forces]]
+kind = "friction"
+nodes = ["B", "A", "C"]
+axis = [0, 0, 1]
+kinetic = )" + std::string(kinetic) + R"(
+[solver]
+end_time = 1
+)",
+                                        "triangle.toml");
+    return diagnose(simulate_on_path(build_model(scene), scene.solver, {})).axial_force.cwiseAbs().maxCoeff();
+  };
+  const double without = largest("1e-9");
+  CHECK(largest("1") == Approx(without).epsilon(1e-8));
+  CHECK(largest("5") == Approx(without).epsilon(1e-8));
+}
+
 }  // namespace path_run_test
