@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "core/integrators/index1.hpp"
 #include "core/math/determined_rows.hpp"
@@ -17,7 +20,8 @@ namespace {
 
 constexpr double no_rank = 1e-9;   // of a unit row, less what others hold of it: a direction that it does not
 constexpr double nothing = 1e-11;  // of what gravity, loads and tensions make of w^2
-constexpr double far_below = 1e-3;  // of the lowest elastic eigenvalue: solved for by itself
+constexpr double no_potential = 1e-10;  // of the stiffness without rods: asymmetry that is not rounding
+constexpr double far_below = 1e-3;      // of the lowest elastic eigenvalue: solved for by itself
 
 // Orthonormal columns that span the x with A x = 0; rows of A of unit length or zero.
 MatrixXd null_space(const MatrixXd& A) {
@@ -74,7 +78,8 @@ class AtPose {
     take_stiffness(model, q, G, compliance, lambda, rest);
   }
 
-  MatrixXd mass, elastic, geometric;  // K = elastic + geometric
+  MatrixXd mass, elastic, geometric;  // K = elastic + geometric + skew
+  MatrixXd skew;                      // of forces without a potential
   MatrixXd rigid_rows, rows;          // of unit length
   double pull = 0.0;                  // what the applied forces alone may give, of w^2 [1/s^2]
   bool unique = true;
@@ -103,6 +108,7 @@ class AtPose {
       elastic += (1 / compliance[row]) * g * g.transpose();
       geometric -= (lambda[row] / model.structure.rods[r].length) * g * g.transpose();
     }
+    skew = 0.5 * (geometric - geometric.transpose());
     geometric = symmetric(geometric);
     VectorXd force = VectorXd::Zero(q.size()), reduced(mass.rows());
     system_.add_applied_force(rest.t, q, VectorXd::Zero(q.size()), 1.0, force);
@@ -126,15 +132,50 @@ double largest_magnitude_of(const VectorXd& values) {
 
 // Eigenvalues w^2 and vectors in solved coordinates, mechanism motions first.
 struct Solved {
-  std::vector<double> squares;
+  std::vector<std::complex<double>> squares;  // in pairs where they are complex: two vectors span the motion
   MatrixXd vectors;
   Index mechanism = 0;
 };
+
+// Stiffness with a part that has no potential: K is not symmetric, and of a pair of complex w^2 the real and
+// the imaginary part of x are the vectors. N0, Z: orthonormal in the mass metric.
+Solved solve_general(const AtPose& at, const MatrixXd& N0, const MatrixXd& Z) {
+  const MatrixXd A = Z.transpose() * (at.elastic + at.geometric + at.skew) * Z;
+  const ComplexEigen all = complex_eigen(A);
+  const double zero = 1e-14 * A.norm();
+  std::vector<Index> order;
+  for (Index k = 0; k < all.values.size(); ++k) order.push_back(k);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return std::pair(all.values[a].real(), a) < std::pair(all.values[b].real(), b);
+  });
+  VectorXd share(all.values.size());
+  for (Index k = 0; k < share.size(); ++k)
+    share[k] =
+        (N0.transpose() * at.mass * Z * all.vectors.col(k)).squaredNorm() / all.vectors.col(k).squaredNorm();
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return share[a] > share[b]; });
+  const auto by_stiffness = [&](Index a, Index b) {
+    const std::complex<double> x = all.values[a], y = all.values[b];
+    return std::tuple(x.real(), std::abs(x.imag()), x.imag()) <
+           std::tuple(y.real(), std::abs(y.imag()), y.imag());
+  };
+  std::sort(order.begin(), order.begin() + N0.cols(), by_stiffness);
+  std::sort(order.begin() + N0.cols(), order.end(), by_stiffness);
+  Solved out{{}, MatrixXd(Z.rows(), Z.cols()), N0.cols()};
+  for (const Index k : order) {
+    const std::complex<double> square = all.values[k];
+    const Eigen::VectorXcd x = (square.imag() > 0 ? std::complex<double>(0, -1) : 1.0) * all.vectors.col(k);
+    out.vectors.col(std::ssize(out.squares)) = Z * x.real();
+    out.squares.push_back(std::abs(square) <= zero ? 0.0 : square);
+  }
+  return out;
+}
 
 Solved solve(const AtPose& at) {
   const MatrixXd N0 = orthonormal(null_space(at.rows), at.mass),
                  Z = orthonormal(null_space(at.rigid_rows), at.mass);
   if (Z.cols() == 0) return {};  // a drive holds all that could move
+  if ((Z.transpose() * at.skew * Z).norm() > no_potential * (Z.transpose() * at.geometric * Z).norm())
+    return solve_general(at, N0, Z);
   const MatrixXd K = at.elastic + at.geometric;
   const SymmetricEigen all = symmetric_eigen(symmetric(Z.transpose() * K * Z));
   const MatrixXd X = Z * all.vectors;
@@ -167,7 +208,7 @@ Solved solve(const AtPose& at) {
                                .solve_lower(MatrixXd::Identity(out.mechanism, out.mechanism));
   const SymmetricEigen own_motions =
       symmetric_eigen(symmetric(to_unit * symmetric(small) * to_unit.transpose()));
-  const double lowest = N1.cols() > 0 ? out.squares[static_cast<std::size_t>(out.mechanism)]
+  const double lowest = N1.cols() > 0 ? out.squares[static_cast<std::size_t>(out.mechanism)].real()
                                       : std::numeric_limits<double>::infinity();
   if (!(largest_magnitude_of(own_motions.values) < far_below * lowest)) return out;
   const VectorXd pulls = symmetric_eigenvalues(symmetric(Z.transpose() * at.geometric * Z));
@@ -200,8 +241,9 @@ Vibration vibration_of(const Model& model, const State& pose, const VectorXd& kn
   VectorXd v(model.system.coordinates());
   for (std::size_t k = 0; k < solved.squares.size(); ++k) {
     VibrationMode mode;
-    const double square = solved.squares[k];
-    (square < 0 ? mode.growth : mode.frequency) = std::sqrt(std::abs(square)) / (square < 0 ? 1.0 : 2 * pi);
+    const std::complex<double> rate = std::sqrt(-solved.squares[k]);  // x ~ exp(rate t)
+    mode.growth = std::abs(rate.real());
+    mode.frequency = std::abs(rate.imag()) / (2 * pi);
     mode.mechanism = static_cast<Index>(k) < solved.mechanism;
     model.system.expand_rate(solved.vectors.col(static_cast<Index>(k)), v);
     mode.shape = whole_velocities(model.structure, v);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <complex>
 
 #include "core/diagnostics/measures.hpp"
 #include "core/scene/build.hpp"
@@ -296,6 +297,63 @@ rods = [{nodes = ["O", "P"], mass = 0, area = 1e-4, youngs_modulus = 1.1e6, elas
                                                "s.toml"));
   CHECK(v.mechanism_motions == 2);
   CHECK(v.lowest_elastic() == Approx(std::sqrt(1.1e6 * 1e-4 / (1.5 * 2)) / (2 * pi)).epsilon(1e-12));
+}
+
+// Ziegler's column: rods of 1 m with 2 and 1 kg at their ends, hinges of 1 N m/rad, and a push P along the
+// last rod, which follows it (Ziegler 1952): 2 w^4 - (7 - 2 P) w^2 + 1 = 0.
+TEST_CASE("a follower makes stiffness that has no potential, and flutter beyond its limit") {
+  const auto column = [](const std::string& push, const std::string& modulus) {
+    return of_text("[structure]\nkind = 'custom'\n" + modulus + R"(
+nodes = [{name = "G", position = [-1, 0, 0], fixed = true}, {name = "O", position = [0, 0, 0], fixed = true},
+  {name = "A", position = [1, 0, 0], mass = 2}, {name = "B", position = [2, 0, 0], mass = 1}]
+rods = [{nodes = ["O", "A"], mass = 0, area = 1}, {name = "tip", nodes = ["A", "B"], mass = 0, area = 1}]
+[[constraints]]
+kind = "plane"
+nodes = ["A", "B"]
+normal = [0, 0, 1]
+[[forces]]
+kind = "torsion_spring"
+nodes = ["G", "O", "A"]
+axis = [0, 0, 1]
+stiffness = 1
+[[forces]]
+kind = "torsion_spring"
+nodes = ["O", "A", "B"]
+axis = [0, 0, 1]
+stiffness = 1
+[[forces]]
+kind = "follower"
+rod = "tip"
+force = -)" + push +
+                   R"(
+[solver]
+end_time = 1
+)");
+  };
+  // With rods of 1e8 N/m, general eigenvalues are right to 1e-16 of theirs, 1e-8, and rods give by 1e-8.
+  for (const std::string modulus : {"", "youngs_modulus = 1e8"}) {
+    const double tolerance = modulus.empty() ? 1e-12 : 1e-6;
+    for (const double P : {0.5, 2.0, 3.0, 3.1}) {
+      const Vibration v = column(std::to_string(P), modulus);
+      INFO(P << modulus);
+      REQUIRE(v.mechanism_motions == 2);
+      CHECK(v.modes.size() == (modulus.empty() ? 2u : 4u));
+      const double b = (7 - 2 * P) / 4, d = b * b - 0.5;
+      for (std::size_t k = 0; k < 2; ++k) {
+        CHECK(v.modes[k].mechanism);
+        if (d > 0) {
+          CHECK(v.modes[k].growth <= 1e-6);
+          const double square = b + (k == 0 ? -1 : 1) * std::sqrt(d);
+          CHECK(v.modes[k].frequency == Approx(std::sqrt(square) / (2 * pi)).epsilon(tolerance));
+        } else {
+          // w^2 = b +- i sqrt(-d): rates sqrt(-w^2).
+          const std::complex<double> rate = std::sqrt(-std::complex<double>(b, std::sqrt(-d)));
+          CHECK(v.modes[k].growth == Approx(std::abs(rate.real())).epsilon(tolerance));
+          CHECK(v.modes[k].frequency == Approx(std::abs(rate.imag()) / (2 * pi)).epsilon(tolerance));
+        }
+      }
+    }
+  }
 }
 
 }  // namespace vibration_test
