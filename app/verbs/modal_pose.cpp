@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/verbs/modal_pose.hpp"
 
+#include <algorithm>
+
 #include "app/verbs/scene_run.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/initial_state.hpp"
@@ -10,8 +12,21 @@ namespace unfurl {
 
 namespace {
 
+// Stops and friction may hold at the start: which of them do is what a run finds there.
+bool may_be_held(const Structure& structure) {
+  return !structure.stops.empty() ||
+         std::ranges::any_of(structure.forces, [](const Force& force) { return force.kind == "friction"; });
+}
+
 ModalPose at_start(const Scene& scene, const Arguments& arguments) {
   auto model = model_of(scene, arguments);
+  if (may_be_held(model->structure)) {
+    SolverOptions first = scene.solver;
+    first.end_time = std::min(first.end_time, first.step);
+    const auto run = std::make_shared<const Simulation>(simulate(model, first));
+    const std::size_t i = run->trajectory.state_before(run->trajectory.start_time());
+    return {{run, &run->trajectory.model(i)}, run->trajectory.state(i)};
+  }
   State state = initial_state(model->structure, model->system).state;
   return {std::move(model), std::move(state)};
 }

@@ -241,6 +241,23 @@ TEST_CASE("modes: the mechanism's own first, then those of elastic rods, a modul
   CHECK(check["unique_rods"] == 30);
 }
 
+// At 60 degrees the ring is driven to unfold: a stop there holds it, one behind it does not; friction that is
+// larger than the drive sticks, less does not.
+TEST_CASE("modes at the start: stops that hold and friction that sticks are locked") {
+  const auto motions = [](const std::string& entry) {
+    const ProgramResult r =
+        run_program({"modes", "hoop6", "--set", "structure.fold_angle=60", "--set", entry, "--json"});
+    REQUIRE(r.code == 0);
+    return nlohmann::json::parse(r.out)["mechanism_motions"].get<int>();
+  };
+  const std::string stop = R"(constraints=[{kind="angle_stop",fold_angle=true,)";
+  CHECK(motions(stop + "min=60}]") == 0);
+  CHECK(motions(stop + "max=60}]") == 1);
+  const std::string friction = R"(forces=[{kind="friction",fold_angle=true,kinetic=)";
+  CHECK(motions(friction + "1e6}]") == 0);
+  CHECK(motions(friction + "1}]") == 1);
+}
+
 TEST_CASE("lists") {
   CHECK(contains(run_program({"list", "structures"}).out, "fold_angle"));
   CHECK(contains(run_program({"list", "structures"}).out, "custom"));
