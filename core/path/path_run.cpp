@@ -9,6 +9,7 @@
 #include "core/path/path_deployed.hpp"
 #include "core/path/path_motion.hpp"
 #include "core/path/path_scope.hpp"
+#include "core/path/path_time.hpp"
 #include "core/path/path_watch.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
@@ -237,8 +238,20 @@ class PathRun {
   // Where an event ended what could be solved at once.
   void append_here(bool counted) {
     if (motion_.t() > last().t) {
+      if (!run_.events.empty() && run_.events.back().t == last().t) tell_between(last().t);
       append(state_at(motion_.t(), motion_.s(), motion_.v()));
       run_.steps += counted ? 1 : 0;
+    }
+  }
+
+  // From one event to another within one step: peaks are looked for between states.
+  void tell_between(double from) {
+    const double h = (motion_.t() - from) / 8;
+    if (!(h > accumulated * options_.step)) return;
+    for (int k = 1; k < 8; ++k) {
+      double s, v;
+      motion_.at(from + k * h, s, v);
+      append(state_at(from + k * h, s, v));
     }
   }
 
@@ -361,21 +374,8 @@ class PathRun {
       const auto pull = [&](double t) {
         return stuck_ ? excess(t) : held_slope_ * law_->at(motion_.s(), 0.0, t).Q;
       };
-      const double h = std::min(options_.step, (until - now) / 8);
-      const std::vector<TimeEdge> edges = time_edges(structure(), options_.step);
-      auto edge = edges.begin();
-      for (double a = now; a < grid_.end();) {
-        // A load is largest where its line bends.
-        while (edge != edges.end() && edge->t <= a) ++edge;
-        const double b = std::min({a + h, grid_.end(), edge != edges.end() ? edge->t : grid_.end()});
-        if (pull(b) > 0) {
-          double low = a, high = b;
-          for (int it = 0; it < 60; ++it) (pull(0.5 * (low + high)) > 0 ? high : low) = 0.5 * (low + high);
-          until = high;
-          break;
-        }
-        a = b;
-      }
+      until = first_time_above(pull, now, until, std::min(options_.step, (until - now) / 8),
+                               time_edges(structure(), options_.step));
     }
     append_grid(until < grid_.end() ? before(until) : until);
     motion_.rest(until);

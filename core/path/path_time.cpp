@@ -148,4 +148,20 @@ std::optional<double> deployed_pose(const Path& path, const Deployment& deployme
   return std::nullopt;
 }
 
+double first_time_above(const std::function<double(double t)>& f, double from, double until, double h,
+                        const std::vector<TimeEdge>& edges) {
+  auto edge = edges.begin();
+  for (double a = from; a < until;) {
+    while (edge != edges.end() && edge->t <= a) ++edge;
+    const double b = std::min({a + h, until, edge != edges.end() ? edge->t : until});
+    if (f(b) > 0) {
+      double low = a, high = b;
+      for (int it = 0; it < 60; ++it) (f(0.5 * (low + high)) > 0 ? high : low) = 0.5 * (low + high);
+      return high;
+    }
+    a = b;
+  }
+  return until;
+}
+
 }  // namespace unfurl

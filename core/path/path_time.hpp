@@ -9,7 +9,11 @@
 // integral, and nothing cancels (math/chebyshev.hpp).
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "core/path/path.hpp"
+#include "core/structure/time_edges.hpp"
 
 namespace unfurl {
 
@@ -21,5 +25,10 @@ double time_from_rest(const Path& path, const VectorXd& force, double from, doub
 // forwards or backwards, within so many pieces.
 std::optional<double> deployed_pose(const Path& path, const Deployment& deployment, bool forward,
                                     long most_pieces);
+
+// The first time behind `from` at which a function of time is above zero, looked for in steps of h that end
+// at edges, where a load is largest; `until` where there is none.
+double first_time_above(const std::function<double(double t)>& f, double from, double until, double h,
+                        const std::vector<TimeEdge>& edges);
 
 }  // namespace unfurl
