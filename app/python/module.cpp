@@ -158,6 +158,8 @@ void export_run(const Run& run, const std::string& format, const std::string& di
   const Scene& scene = run.scene();
   const std::string text = scene_text(scene);
   const ExportedLooks looks = exported_looks(scene, run.simulation().trajectory);
+  std::vector<std::string> about_text;
+  for (const SceneProblem& warning : scene.warnings) about_text.push_back(problem_text(warning));
   found->write({run.simulation(),
                 run.diagnostics(),
                 directory,
@@ -167,7 +169,8 @@ void export_run(const Run& run, const std::string& format, const std::string& di
                 scene.title,
                 text,
                 {},
-                &looks});
+                &looks,
+                about_text});
 }
 
 void write_figure_of(const Run& run, const std::string& name, const std::string& file,

@@ -5,10 +5,11 @@
 
 #include "app/output/command_line.hpp"
 #include "app/output/receipt.hpp"
-#include "core/diagnostics/accuracy.hpp"
+#include "app/verbs/scene_run.hpp"
 #include "core/diagnostics/ending.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/export/formats.hpp"
 #include "core/math/largest.hpp"
 #include "core/scene/write.hpp"
 #include "core/study/report.hpp"
@@ -76,8 +77,7 @@ void write_run_report(const fs::path& directory, const Scene& scene, const Simul
   report.heading("How it ended");
   report.add(outcome_of(run, diagnostics));
   if (const std::string note = ending_note(run, diagnostics); !note.empty()) report.paragraph(note);
-  std::vector<std::string> warnings = run.warnings;
-  for (const std::string& warning : accuracy_warnings(run, diagnostics)) warnings.push_back(warning);
+  const auto warnings = lasting_warnings(run, diagnostics, warnings_about_text(scene));
   report.heading("Warnings");
   if (warnings.empty()) report.paragraph("None.");
   for (const std::string& warning : warnings) report.paragraph(warning);

@@ -117,6 +117,12 @@ std::string write_data(const std::filesystem::path& directory, const Scene& scen
   return json;
 }
 
+std::vector<std::string> warnings_about_text(const Scene& scene) {
+  std::vector<std::string> texts;
+  for (const SceneProblem& warning : scene.warnings) texts.push_back(problem_text(warning));
+  return texts;
+}
+
 std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments) {
   std::vector<const ExportFormat*> formats;
   std::vector<std::string_view> known;
@@ -137,9 +143,12 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
       as_typed(command_of_result(arguments.words, arguments.names.front(), scene.name));
   const double interval = scene.render.speed / scene.render.fps;
   const ExportedLooks looks = exported_looks(scene, run.trajectory);
+  const std::vector<std::string> about_text = warnings_about_text(scene);
+  std::vector<std::string> said;
   for (const ExportFormat* format : formats)
     format->write({run, diagnostics, directory, scene.name, interval, scene.render.speed, scene.title, text,
-                   command, &looks});
+                   command, &looks, about_text, &said});
+  for (const std::string& warning : said) std::cerr << "unfurl: warning: " << warning << "\n";
 }
 
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {

@@ -34,6 +34,9 @@ std::string write_data(const std::filesystem::path& directory, const Scene& scen
 // The formats that --export names, in that order; throws UsageError with the nearest name of an unknown one.
 std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments);
 
+// What a run warns of that is about how the scene is written; pages, with the scene in them, leave it out.
+std::vector<std::string> warnings_about_text(const Scene& scene);
+
 // The run in these formats, beside the data in the directory.
 void write_exports(const std::vector<const ExportFormat*>& formats, const std::filesystem::path& directory,
                    const Scene& scene, const Simulation& run, const Diagnostics& diagnostics,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/diagnostics/accuracy.hpp"
 #include "core/export/atomic_file.hpp"
 
 namespace unfurl {
@@ -39,6 +40,16 @@ std::filesystem::path export_folder(const ExportJob& job, std::string_view folde
   std::filesystem::create_directories(path, error);
   if (error) throw FileError(path, error.value());
   return path;
+}
+
+std::vector<std::string> lasting_warnings(const Simulation& run, const Diagnostics& diagnostics,
+                                          std::span<const std::string> about_text) {
+  std::vector<std::string> warnings = run.warnings;
+  std::erase_if(warnings, [&](const std::string& warning) {
+    return std::ranges::find(about_text, warning) != about_text.end();
+  });
+  for (std::string& warning : accuracy_warnings(run, diagnostics)) warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 }  // namespace unfurl

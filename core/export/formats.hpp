@@ -46,6 +46,10 @@ struct ExportJob {
   double speed = 1.0;                // seconds of motion per second of animation
   std::string_view title = {}, scene = {}, command = {};  // what made the run, for pages that say it
   const ExportedLooks* looks = nullptr;                   // null: rods have their groups' colours
+  // Warnings of the run about how its scene is written, with a place in a file: not for pages, which have the
+  // scene with all of its keys in them.
+  std::span<const std::string> about_text = {};
+  std::vector<std::string>* said = nullptr;  // takes what a format could not show
 };
 
 struct ExportFormat {
@@ -59,6 +63,10 @@ const ExportFormat* find_export_format(std::string_view name);  // nullptr: ther
 
 // The job's directory / folder, made where it is missing; throws FileError.
 std::filesystem::path export_folder(const ExportJob& job, std::string_view folder);
+
+// What pages say against a run.
+std::vector<std::string> lasting_warnings(const Simulation& run, const Diagnostics& diagnostics,
+                                          std::span<const std::string> about_text);
 
 void export_vtk(const ExportJob& job);   // core/export/vtk.cpp
 void export_gltf(const ExportJob& job);  // core/export/gltf.cpp

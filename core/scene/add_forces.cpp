@@ -103,7 +103,7 @@ void add_force(const SceneElement& e, ElementAdder& to) {
   if (kind.members == Members::rods) return warm_rods(e, kind, to);
   if (e.kind == "offload" && to.structure.gravity.isZero(0.0))
     to.structure.notes.push_back(
-        problem_text({e.where, e.key, "does nothing without a weight: gravity.acceleration is 0"}));
+        problem_text({{}, e.key, "does nothing without a weight: gravity.acceleration is 0"}));
   for (Force& force : forces_on(e, kind.members, to.find)) {
     try {
       kind.fill(e.values, force);

@@ -87,7 +87,7 @@ void check_latches(const Scene& scene, Structure& structure) {
       throw SceneError({{force.where, force.key, "the structure has no deployed pose to latch in"}});
     if (scene.solver.at_deployed != "latch")
       structure.notes.push_back(
-          problem_text({force.where, force.key, "does nothing without solver.at_deployed = \"latch\""}));
+          problem_text({{}, force.key, "does nothing without solver.at_deployed = \"latch\""}));
   }
   if (!structure.deployment.measured || !structure.deployment.latches.empty()) return;
   for (Force& force : structure.forces)  // its angles count turns from the start

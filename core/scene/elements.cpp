@@ -2,6 +2,7 @@
 // The kinds of [[forces]] and [[constraints]] and how an entry is read.
 #include "core/scene/elements.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "core/scene/csv_table.hpp"
@@ -171,7 +172,8 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
   entry.warn_idle(kind->params(), element.values);
   if (element.values.has("stiffness") && !entry.has("stiffness") && !entry.has("damping"))
     entry.problem("stiffness", "is missing, and so is damping: it would do nothing");
-  if (element.fold_angle && entry.has("axis"))
+  if (element.fold_angle && entry.has("axis") &&
+      std::ranges::any_of(element.values.vector("axis"), [](double x) { return x != 0.0; }))
     notes.warnings.push_back({element.where, key + ".axis", "does nothing with fold_angle = true"});
   entry.finish();
   element.name = head.text("name");

@@ -70,6 +70,12 @@ bool overridden(const TomlTree& tree) {
   return tree.where.file == override_source || std::ranges::any_of(tree.items, overridden);
 }
 
+// A number that is not given is not a number, and equal to itself here.
+bool same_value(const ParamValue& a, const ParamValue& b) {
+  const auto *x = std::get_if<double>(&a), *y = std::get_if<double>(&b);
+  return a == b || (x && y && std::isnan(*x) && std::isnan(*y));
+}
+
 std::string mistyped(const ParamSpec& spec, const TomlTree& tree) {
   std::string got = tree.describe();
   if (tree.kind == Kind::text) got = "the text " + in_quotes(tree.text);
@@ -182,7 +188,9 @@ std::vector<const TomlTree*> TableReader::tables(std::string_view name) {
 void TableReader::warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values, Idle which) {
   for (const ParamSpec& spec : specs) {
     if (!has(spec.name) || means_something(spec, values)) continue;
-    if (which == Idle::from_command_line && !overridden(*table_->find(spec.name))) continue;
+    if (!overridden(*table_->find(spec.name)) &&
+        (which == Idle::from_command_line || same_value(values.value(spec.name), spec.fallback)))
+      continue;
     const std::string other(spec.only_with);
     std::string text = "does nothing with " + other + " = ";
     const bool* on = std::get_if<bool>(&values.value(other));

@@ -46,7 +46,8 @@ class TableReader {
   const TomlTree* table(std::string_view key);
   std::vector<const TomlTree*> tables(std::string_view key);
   void finish();
-  // Warns of every key that is given although it means nothing with the values that the others have.
+  // Warns of every key that is given although it means nothing with the values that the others have; not of
+  // one that a file gives its default, as every scene does that is written with all of its keys.
   void warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values, Idle which = Idle::all);
 
   std::string key(std::string_view name) const;  // dotted

@@ -6,6 +6,7 @@
 
 #include "core/integrators/integrator.hpp"
 #include "core/scene/library.hpp"
+#include "core/scene/write.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -255,6 +256,23 @@ TEST_CASE("what a structure's table gives and does nothing is warned of with its
         "s.toml:4:17: structure.damping_ratio: does nothing with rod_model = 'rigid'\n");
   CHECK(said("damping_ratio = 0.02\nrod_model = 'elastic'\n").empty());
   CHECK(said("arc_angle = 90\n") == "s.toml:4:13: structure.arc_angle: does nothing with closed = true\n");
+}
+
+TEST_CASE("a scene that is written with all of its keys is not warned of those at their defaults") {
+  for (const LibraryScene& library : library_scenes()) {
+    INFO(library.name);
+    const std::string text = scene_text(read_scene_file(library.path));
+    std::string said;
+    for (const SceneProblem& warning : read_scene_text(text, "s.toml").warnings)
+      said += problem_text(warning) + "\n";
+    CHECK(said == "");
+  }
+  const std::string torque =
+      "kind = 'torsion_spring'\nfold_angle = true\nstiffness = 1\naxis = [0, 0, 0]\n";  // none: what it is
+                                                                                        // without the key
+  for (const SceneProblem& warning :
+       read_scene_text("structure.kind = 'hoop'\n" + entry("forces", torque), "s.toml").warnings)
+    FAIL_CHECK(problem_text(warning));
 }
 
 TEST_CASE("what is set on the command line and does nothing is warned of in every table") {
