@@ -8,11 +8,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
+#include "core/export/motion_keys.hpp"
 #include "core/export/unit_shapes.hpp"
+#include "core/structure/shown_lines.hpp"
 #include "core/text/version.hpp"
 
 namespace unfurl {
@@ -86,16 +89,21 @@ std::vector<float> floats(std::initializer_list<double> values) {
   return out;
 }
 
+// 200 MB of numbers, and what a program that plays it bears.
+constexpr std::size_t most_animated = 50'000'000, most_keys = 20'000, fewest_keys = 400;
+
 class GltfWriter {
  public:
   explicit GltfWriter(const ExportJob& job)
       : job_(job), trajectory_(job.run.trajectory), structure_(job.run.trajectory.structure()) {
-    const double start = trajectory_.start_time(), span = trajectory_.end_time() - start;
-    const auto intervals = static_cast<long>(std::ceil(span / job.frame_interval - 1e-9));
-    for (long i = 0; i <= intervals; ++i)
-      times_.push_back(i == intervals ? trajectory_.end_time()
-                                      : start + job.frame_interval * static_cast<double>(i));
-    for (const double t : times_) poses_.push_back(trajectory_.positions_at(t));
+    const std::size_t numbers = 7 * structure_.rod_copies.size() + 3 * structure_.node_copies.size();
+    MotionKeys keys = motion_keys(
+        trajectory_, job.frame_interval,
+        std::clamp<std::size_t>(most_animated / std::max<std::size_t>(numbers, 1), fewest_keys, most_keys));
+    if (const std::string warning = too_few_keys(keys, "animation.glb"); !warning.empty() && job.said)
+      job.said->push_back(warning);
+    times_ = std::move(keys.times);
+    poses_ = std::move(keys.poses);
   }
 
   std::string file() {
@@ -106,6 +114,7 @@ class GltfWriter {
     for (std::size_t n = 0; n < structure_.node_copies.size(); ++n) add_joint(n);
     for (std::size_t r = 0; r < structure_.rod_copies.size(); ++r) add_fittings(r);
     for (const LoadCopy& load : structure_.load_copies) add_arrow(load);
+    add_lines();
     for (std::size_t i = 0; i < surfaces_.size(); ++i) add_surface(i);
     add_camera();
     if (times_.size() > 1) animate();
@@ -164,7 +173,12 @@ class GltfWriter {
     static const std::vector<std::vector<double>> palette = {
         {0.0, 0.113, 0.394, 1},   {0.75, 0.214, 0.002, 1},  {0.0, 0.265, 0.133, 1},
         {0.479, 0.119, 0.297, 1}, {0.051, 0.343, 0.694, 1}, {0.604, 0.073, 0.0, 1}};
-    return palette[group % palette.size()];
+    std::vector<double> shade = palette[group % palette.size()];
+    // Beyond the sixth the same again, darker and paler.
+    const std::size_t round = group / palette.size();
+    for (std::size_t k = 0; k < 3 && round > 0; ++k)
+      shade[k] = round % 2 == 1 ? 0.25 * shade[k] : 0.4 * shade[k] + 0.6 * 0.7;
+    return shade;
   }
 
   void add_mesh(const std::string& name, Json shape, const std::vector<double>& base, double metal = 0.35,
@@ -218,24 +232,36 @@ class GltfWriter {
     glb_.json["nodes"].push_back(std::move(node));
   }
 
-  void add_rod(const RodCopy& copy) {
-    const Rod& rod = structure_.rods[static_cast<std::size_t>(copy.source)];
-    // The shortest turn from each frame to the next: no spin about the rod's own axis between key frames.
+  struct Motion {
+    std::size_t node;
+    std::vector<float> translation, rotation, scale;
+  };
+
+  // A straight member between two nodes at all keys. The shortest turn from each key to the next: no spin
+  // about its own axis between them.
+  void follow(int a_node, int b_node, double radius, Motion& motion) const {
     Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
     Vec3 axis = Vec3::UnitY();
-    Motion motion{glb_.json["nodes"].size(), {}, {}, {}};
-    bool stretches = false;
     for (const VectorXd& pose : poses_) {
-      const Vec3 a = point(pose, copy.a), b = point(pose, copy.b), direction = (b - a).normalized();
+      const Vec3 a = point(pose, a_node), b = point(pose, b_node), middle = 0.5 * (a + b);
+      const double length = (b - a).norm();
+      const Vec3 direction = length > 0 ? Vec3((b - a) / length) : axis;
       turn = (Eigen::Quaterniond::FromTwoVectors(axis, direction) * turn).normalized();
       axis = direction;
-      const Vec3 middle = 0.5 * (a + b);
-      const double length = (b - a).norm();
       append(motion.translation, {middle[0], middle[1], middle[2]});
       append(motion.rotation, {turn.x(), turn.y(), turn.z(), turn.w()});
-      append(motion.scale, {radius(rod), length, radius(rod)});
-      stretches = stretches || std::abs(length - rod.length) > 1e-3 * rod.length;
+      append(motion.scale, {radius, length, radius});
     }
+  }
+
+  void add_rod(const RodCopy& copy) {
+    const Rod& rod = structure_.rods[static_cast<std::size_t>(copy.source)];
+    Motion motion{glb_.json["nodes"].size(), {}, {}, {}};
+    follow(copy.a, copy.b, radius(rod), motion);
+    bool stretches = false;
+    for (std::size_t k = 1; k < motion.scale.size(); k += 3)
+      stretches =
+          stretches || std::abs(static_cast<double>(motion.scale[k]) - rod.length) > 1e-3 * rod.length;
     add_node(copy.name, group_index(rod.group),
              {{"translation", last(motion.translation, 3)},
               {"rotation", last(motion.rotation, 4)},
@@ -246,6 +272,30 @@ class GltfWriter {
       joint_radius_.resize(structure_.node_copies.size(), 0.0);
       double& joint = joint_radius_[static_cast<std::size_t>(end)];
       joint = std::max(joint, 1.5 * radius(rod));
+    }
+  }
+
+  // Cables, nets and springs: as long as they are at each key.
+  void add_lines() {
+    const double thick = shown_line_radius(structure_, motion_size());
+    std::map<std::string, std::size_t> meshes;
+    for (const ShownLine& line : lines_with_springs(structure_)) {
+      if (!meshes.contains(line.group)) {
+        meshes[line.group] = glb_.json["meshes"].size();
+        const std::vector<double> tint = line.group == "cable" ? std::vector{0.579, 0.004, 0.036, 1.0}
+                                         : line.group == "net" ? std::vector{0.073, 0.09, 0.112, 1.0}
+                                                               : std::vector{0.147, 0.17, 0.214, 1.0};
+        add_mesh(line.group, primitive(unit_cylinder(8)), tint, 0.0, 0.5);
+      }
+      const double radius = (line.group == "net" ? 0.5 : 1) * thick;
+      Motion motion{glb_.json["nodes"].size(), {}, {}, {}};
+      const auto name = [&](int n) { return structure_.node_copies[static_cast<std::size_t>(n)].name; };
+      follow(line.a, line.b, radius, motion);
+      add_node(line.group + " " + name(line.a) + " " + name(line.b), meshes[line.group],
+               {{"translation", last(motion.translation, 3)},
+                {"rotation", last(motion.rotation, 4)},
+                {"scale", last(motion.scale, 3)}});
+      motions_.push_back(std::move(motion));
     }
   }
 
@@ -307,8 +357,8 @@ class GltfWriter {
 
   // At the poses that surfaces have keys at, the last of all among them.
   void find_surfaces() {
-    constexpr std::size_t most_keys = 25;
-    const std::size_t ends = times_.size() - 1, keys = std::min(most_keys, times_.size());
+    constexpr std::size_t most_shapes = 25;
+    const std::size_t ends = times_.size() - 1, keys = std::min(most_shapes, times_.size());
     for (std::size_t k = 0; k < keys; ++k) {
       const std::size_t at = keys > 1 ? ends * k / (keys - 1) : ends;
       surface_times_.push_back(times_[at]);
@@ -417,11 +467,6 @@ class GltfWriter {
     }
     glb_.json["animations"] = Json::array({std::move(animation)});
   }
-
-  struct Motion {
-    std::size_t node;
-    std::vector<float> translation, rotation, scale;
-  };
 
   static void append(std::vector<float>& keys, std::initializer_list<double> values) {
     const auto more = floats(values);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One self-contained page: the structure turning in a browser (WebGL 2, core/export/viewer.html), its curves,
-// its scene. Positions and forces are single precision at uniform times, curves double.
+// its scene. Positions and forces are single precision, at times between which straight lines are the motion;
+// times and curves are double.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,11 +9,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
+#include "core/export/motion_keys.hpp"
 #include "core/math/largest.hpp"
+#include "core/structure/shown_lines.hpp"
 #include "core/text/base64.hpp"
 #include "core/text/version.hpp"
 #include "core/text/xml_text.hpp"
@@ -25,7 +27,8 @@ namespace {
 
 using Page = nlohmann::ordered_json;
 
-constexpr std::size_t most_frames = 1500, most_numbers = 12'000'000;  // 48 MB, of one array
+constexpr std::size_t most_poses = 20'000, most_numbers = 12'000'000;  // 48 MB in single precision
+constexpr std::size_t most_points = 1500, parts_of_curves = 300;       // of curves
 
 std::string packed(const auto& values) {
   return base64(std::as_bytes(std::span(values)));
@@ -37,28 +40,21 @@ std::string short_text(double x) {
   return text.data();
 }
 
-// Uniform in time, as many as the film's frames, within what a browser bears.
-std::size_t frame_count(const ExportJob& job) {
-  const Trajectory& trajectory = job.run.trajectory;
-  const double span = trajectory.end_time() - trajectory.start_time();
-  const std::size_t numbers = 3 * trajectory.structure().node_copies.size();
-  const std::size_t bearable =
-      std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(numbers, 1), 2, most_frames);
-  const double asked = std::ceil(span / job.frame_interval) + 1;
-  return span > 0 ? static_cast<std::size_t>(std::clamp(asked, 2.0, static_cast<double>(bearable))) : 1;
+// Within what a browser bears.
+std::size_t bearable_poses(const Structure& structure) {
+  const std::size_t numbers = 3 * structure.node_copies.size() + structure.rod_copies.size();
+  return std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(numbers, 1), 2, most_poses);
 }
 
 void add_motion(const ExportJob& job, Page& page) {
   const Trajectory& trajectory = job.run.trajectory;
   const Structure& structure = trajectory.structure();
-  const double start = trajectory.start_time(), span = trajectory.end_time() - start;
-  const std::size_t frames = frame_count(job);
+  const MotionKeys keys = motion_keys(trajectory, job.frame_interval, bearable_poses(structure));
   std::vector<float> positions, forces;
-  for (std::size_t k = 0; k < frames; ++k) {
-    const double share = frames > 1 ? static_cast<double>(k) / static_cast<double>(frames - 1) : 0.0;
-    const double t = std::min(start + share * span, trajectory.end_time());
-    for (const double x : trajectory.positions_at(t)) positions.push_back(static_cast<float>(x));
+  for (std::size_t k = 0; k < keys.times.size(); ++k) {
+    for (const double x : keys.poses[k]) positions.push_back(static_cast<float>(x));
     // Between two states a force goes along a straight line.
+    const double t = keys.times[k];
     const std::size_t i = trajectory.state_before(t), next = std::min(i + 1, trajectory.size() - 1);
     const double gap = trajectory.time(next) - trajectory.time(i),
                  u = gap > 0 ? (t - trajectory.time(i)) / gap : 0;
@@ -69,12 +65,17 @@ void add_motion(const ExportJob& job, Page& page) {
       forces.push_back(static_cast<float>((1 - u) * force(i) + (u > 0 ? u * force(next) : 0.0)));
     }
   }
-  page["start"] = start;
+  page["start"] = trajectory.start_time();
   page["end"] = trajectory.end_time();
   page["speed"] = job.speed;
-  page["frames"] = frames;
+  page["frames"] = keys.times.size();
+  page["moments"] = packed(keys.times);
   page["positions"] = packed(positions);
   page["forces"] = packed(forces);
+  if (const std::string warning = too_few_keys(keys, "viewer.html"); !warning.empty()) {
+    page["warnings"].push_back(warning);
+    if (job.said) job.said->push_back(warning);
+  }
 }
 
 void add_members(const ExportJob& job, Page& page) {
@@ -94,12 +95,50 @@ void add_members(const ExportJob& job, Page& page) {
   }
 }
 
+// What is no rod and is drawn thinner than any.
+void add_lines(const ExportJob& job, Page& page) {
+  const Structure& structure = job.run.trajectory.structure();
+  page["lines"] = Page::array();
+  for (const ShownLine& line : lines_with_springs(structure))
+    page["lines"].push_back({line.a, line.b, line.group});
+  const VectorXd pose = job.run.trajectory.positions(0);
+  const Eigen::Map<const Eigen::Matrix3Xd> at(pose.data(), 3, pose.size() / 3);
+  const double size = at.cols() > 0 ? (at.rowwise().maxCoeff() - at.rowwise().minCoeff()).norm() : 0.0;
+  page["line_radius"] = shown_line_radius(structure, size);
+}
+
+// All states, or the first, the last, the least and the most of each curve in some hundred parts of the run:
+// a peak of a single state stays where it is.
+std::vector<std::size_t> states_of_curves(const Diagnostics& d) {
+  std::vector<std::size_t> chosen;
+  if (d.t.size() <= most_points) {
+    for (std::size_t i = 0; i < d.t.size(); ++i) chosen.push_back(i);
+    return chosen;
+  }
+  for (std::size_t part = 0; part < parts_of_curves; ++part) {
+    const std::size_t from = d.t.size() * part / parts_of_curves,
+                      to = d.t.size() * (part + 1) / parts_of_curves;
+    chosen.insert(chosen.end(), {from, to - 1});
+    for (const Series& column : d.columns) {
+      std::size_t least = to, most = to;
+      for (std::size_t i = from; i < to; ++i) {
+        const double y = column.values[i];
+        if (!std::isfinite(y)) continue;
+        if (least == to || y < column.values[least]) least = i;
+        if (most == to || y > column.values[most]) most = i;
+      }
+      if (least < to) chosen.insert(chosen.end(), {least, most});
+    }
+  }
+  std::ranges::sort(chosen);
+  const auto rest = std::ranges::unique(chosen);
+  chosen.erase(rest.begin(), rest.end());
+  return chosen;
+}
+
 void add_curves(const ExportJob& job, Page& page) {
   const Diagnostics& d = job.diagnostics;
-  std::vector<std::size_t> chosen;
-  const std::size_t stride = (d.t.size() + most_frames - 1) / most_frames;
-  for (std::size_t i = 0; i < d.t.size(); i += std::max<std::size_t>(stride, 1)) chosen.push_back(i);
-  if (!chosen.empty() && chosen.back() + 1 < d.t.size()) chosen.push_back(d.t.size() - 1);
+  const std::vector<std::size_t> chosen = states_of_curves(d);
   const auto thinned = [&](const std::vector<double>& values) {
     std::vector<double> out;  // single precision would show its steps on a curve that hardly changes
     for (const std::size_t i : chosen) out.push_back(values[i]);
@@ -150,8 +189,8 @@ void add_words(const ExportJob& job, Page& page) {
   facts("made by", "Unfurl " + version());
   page["events"] = page["warnings"] = Page::array();
   for (const Event& event : run.events) page["events"].push_back({{"name", event.name}, {"t", event.t}});
-  for (const auto& some : {run.warnings, accuracy_warnings(run, job.diagnostics)})
-    for (const auto& warning : some) page["warnings"].push_back(warning);
+  for (const std::string& warning : lasting_warnings(run, job.diagnostics, job.about_text))
+    page["warnings"].push_back(warning);
   page["scene"] = std::string(job.scene);
 }
 
@@ -174,6 +213,7 @@ void export_html(const ExportJob& job) {
   add_words(job, page);
   add_motion(job, page);
   add_members(job, page);
+  add_lines(job, page);
   add_curves(job, page);
   const std::string json = page.dump(-1, ' ', true, Page::error_handler_t::replace);
   const std::string titled = filled(viewer_page, "@TITLE@", xml_text(page["title"].get<std::string>()));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/system/self_stress.hpp"
+#include "core/structure/shown_lines.hpp"
 #include "core/system/rigid_twin.hpp"
 
 #include <algorithm>
@@ -14,8 +15,9 @@
 namespace unfurl {
 namespace {
 
-constexpr std::size_t most_states = 12;                           // that are drawn
-constexpr int tension = 0, compression = 1, other = 3, idle = 7;  // of the palette
+constexpr std::size_t most_states = 12;  // that are drawn
+// Of the palette; tension is red and compression blue, as in pictures.
+constexpr int tension = 1, compression = 0, other = 3, idle = 7;
 
 // A pose in the middle of what happens: nearest to half deployed, else half of the run's states.
 std::size_t chosen_state(const Diagnostics& d) {
@@ -83,6 +85,10 @@ class StatePainter {
                                     : idle,
                             width});
     }
+    for (const ShownLine& line : lines_with_springs(structure_)) {
+      const Vec3 a = at(line.a), b = at(line.b);
+      p.segments.push_back({a.x(), a.y(), b.x(), b.y(), (a.z() + b.z()) / 2 - 2e6, idle, 0.25f});
+    }
   }
 
   const Structure& structure_;
@@ -136,12 +142,13 @@ Figure self_stress_figure(const Simulation& run, const Diagnostics& diagnostics)
   const double wide = 150.0 / f.columns;
   f.height_mm =
       std::clamp(f.rows * (wide * painter.size().y() / painter.size().x() + 7.0) + 30.0, 60.0, 200.0);
-  f.caption = "Forces that balance each other without any load: any multiple of each of the " +
-              std::to_string(states) + " states" +
-              (drawn < states ? ", of which the first " + std::to_string(drawn) + " are drawn," : "") +
-              " may be added to the rod forces of the rigid model. The width of a line is the size of the "
-              "force, all signs of a state may be turned round. Pose at " +
-              plot::format_number(trajectory.time(i), 4) + " s.";
+  f.caption =
+      "Forces that balance each other without any load: any multiple of " +
+      (states == 1 ? std::string("the one state") : "each of the " + std::to_string(states) + " states") +
+      (drawn < states ? ", of which the first " + std::to_string(drawn) + " are drawn," : "") +
+      " may be added to the rod forces of the rigid model. The width of a line is the size of the "
+      "force, all signs of a state may be turned round. Pose at " +
+      plot::format_number(trajectory.time(i), 4) + " s.";
   return f;
 }
 

@@ -145,21 +145,27 @@ TEST_CASE(
   const Exported e("html");
   const std::string page = e.text("viewer.html");
   const auto data = data_of(page);
-  // 1 s of motion with a frame every 0.1 s; steps of 0.05 s, so that every frame is a state.
-  REQUIRE(data["frames"] == 11);
+  // 1 s of motion with steps of 0.05 s: every state is a key, and there are some in between.
+  const auto moments = unpacked<double>(data["moments"]);
   const auto positions = unpacked(data["positions"]), forces = unpacked(data["forces"]);
-  REQUIRE(positions.size() == 11 * 9);
-  REQUIRE(forces.size() == 11 * 2);
-  for (std::size_t k = 0; k < 11; ++k) {
-    const VectorXd x = e.run.trajectory.positions(2 * k);
+  REQUIRE(data["frames"] == moments.size());
+  REQUIRE(positions.size() == moments.size() * 9);
+  REQUIRE(forces.size() == moments.size() * 2);
+  std::size_t states = 0;
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    const VectorXd x = e.run.trajectory.positions_at(moments[k]);
     // 2^-24 of single precision, of coordinates up to 2 m.
     for (std::size_t i = 0; i < 9; ++i)
       CHECK(std::abs(positions[9 * k + i] - x[static_cast<Index>(i)]) < 2.4e-7);
+    const auto state = static_cast<Index>(std::lround(moments[k] / 0.05));
+    if (std::abs(moments[k] - 0.05 * static_cast<double>(state)) > 1e-9) continue;
+    ++states;
     for (std::size_t r = 0; r < 2; ++r) {
-      const double force = e.diagnostics.axial_force(static_cast<Index>(2 * k), static_cast<Index>(r));
+      const double force = e.diagnostics.axial_force(state, static_cast<Index>(r));
       CHECK(std::abs(forces[2 * k + r] - force) < 2e-7 * std::abs(force) + 1e-30);
     }
   }
+  CHECK(states == 21);
   CHECK(data["rods"][1][4] == "AB");
   CHECK(data["columns"].size() == e.diagnostics.columns.size());
   const auto times = unpacked<double>(data["times"]);
@@ -193,6 +199,34 @@ TEST_CASE("a page says why its peak is not unique") {
   CHECK(fact() == std::pair(true, false));
 }
 
+TEST_CASE("a page keeps a peak of one state among many, and no warning that names a file") {
+  Exported e("html");
+  Diagnostics d = e.diagnostics;
+  const std::size_t states = 30'001;
+  d.t.resize(states);
+  for (std::size_t i = 0; i < states; ++i) d.t[i] = static_cast<double>(i) / 30'000;
+  for (Series& column : d.columns) column.values.assign(states, 0.0);
+  d.columns.front().values[12'345] = 7;
+  d.columns.back().values[23'456] = -3;
+  e.run.warnings = {"/tmp/x/s.toml:3:4: structure.rod_model: does nothing", "the run's own"};
+  const std::vector<std::string> about_text = {e.run.warnings.front()};
+  find_export_format("html")->write(
+      {e.run, d, e.directory, "swing", 0.1, 2.0, {}, {}, {}, nullptr, about_text});
+  const std::string page = e.text("viewer.html");
+  const auto data = data_of(page);
+  const auto times = unpacked<double>(data["times"]);
+  CHECK(times.size() < 1500);
+  for (const auto& [column, at, value] :
+       {std::tuple{std::size_t{0}, 12'345, 7.0}, {d.columns.size() - 1, 23'456, -3.0}}) {
+    const auto values = unpacked<double>(data["columns"][column]["values"]);
+    const auto found = std::ranges::find(values, value);
+    REQUIRE(found != values.end());
+    CHECK(times[static_cast<std::size_t>(found - values.begin())] == d.t[static_cast<std::size_t>(at)]);
+  }
+  CHECK(page.find("/tmp/x") == std::string::npos);
+  CHECK(data["warnings"][0] == "the run's own");
+}
+
 TEST_CASE("words in a page cannot leave their place") {
   const Exported e("html");
   const std::string evil = "</script><script>alert(1)</script> & \xff";
@@ -222,16 +256,16 @@ TEST_CASE("glTF: keys put the ends of every rod on its nodes") {
   CHECK(head[2] == file.size());
   const Glb glb(file);
   const auto times = glb.times(1, "rotation");
-  REQUIRE(times.size() == 11);                     // 1 s of motion every 0.1 s
+  REQUIRE(times.size() >= 21);                     // 1 s of motion with a state every 0.05 s
   CHECK(times.back() == Approx(0.5));              // at double speed
   for (std::size_t node = 1; node <= 2; ++node) {  // the rods follow the root
     const auto& rod = e.run.trajectory.structure().rod_copies[node - 1];
     CHECK(glb.json["nodes"][node]["name"] == rod.name);
     const float length = glb.json["nodes"][node]["scale"][1];
     const auto p = glb.keys(node, "translation"), r = glb.keys(node, "rotation");
-    REQUIRE(r.size() == 44);
+    REQUIRE(r.size() == 4 * times.size());
     for (std::size_t i = 0; i < times.size(); ++i) {
-      const VectorXd x = e.run.trajectory.positions_at(0.1 * static_cast<double>(i));
+      const VectorXd x = e.run.trajectory.positions_at(2 * static_cast<double>(times[i]));
       const Eigen::Quaternionf turn(r[4 * i + 3], r[4 * i], r[4 * i + 1], r[4 * i + 2]);
       const Eigen::Vector3f end =
           Eigen::Vector3f(p[3 * i], p[3 * i + 1], p[3 * i + 2]) + turn * Eigen::Vector3f(0, 0.5f * length, 0);

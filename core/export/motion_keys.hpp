@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Moments of a run between which a straight line from pose to pose is its motion, for files that others play.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+
+struct MotionKeys {
+  std::vector<double> times;    // ascending, the run's start and end among them
+  std::vector<VectorXd> poses;  // all copied nodes at each [3 N]
+  double off = 0;               // what the lines are off by at most, of what they may be
+};
+
+// At most `interval` apart, about 200 of them at least where the run has as many states, and closer where the
+// straight lines would leave the motion by more than a thousandth of the structure's size or shorten a rod by
+// more than a hundredth of its length: a rod that turns far between two keys would be drawn short, or turning
+// backwards. No more than `most`, those where they matter most.
+MotionKeys motion_keys(const Trajectory& run, double interval, std::size_t most);
+
+// What a file says whose keys are too few; empty where they are enough.
+std::string too_few_keys(const MotionKeys& keys, std::string_view file);
+
+}  // namespace unfurl

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Between the keys of files that others play, straight lines are the motion.
+#include "core/export/motion_keys.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace motion_keys_test {
+
+namespace {
+
+// A rod of 1 m that turns about its end, as evenly as it began.
+std::string spun(double turns_per_s, double end, double step) {
+  return "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'O'\nposition = [0, 0, 0]\nfixed = true\n"
+         "[[structure.nodes]]\nname = 'A'\nposition = [1, 0, 0]\nvelocity = [0, 0, " +
+         std::to_string(2 * M_PI * turns_per_s) +
+         "]\n[[structure.rods]]\nname = 'OA'\nnodes = ['O', 'A']\nmass = 1\n"
+         "[solver]\nstep = " +
+         std::to_string(step) + "\nend_time = " + std::to_string(end) + "\n";
+}
+
+// The farthest that lines between keys are from where A is, and the shortest that the rod is drawn [m].
+struct Drawn {
+  double off = 0, shortest = 1;
+};
+
+Drawn drawn(const MotionKeys& keys, const Trajectory& run) {
+  Drawn worst;
+  for (std::size_t k = 0; k + 1 < keys.times.size(); ++k)
+    for (const double u : {0.1, 0.25, 0.5, 0.7, 0.95}) {
+      const double t = (1 - u) * keys.times[k] + u * keys.times[k + 1];
+      const Vec3 line = ((1 - u) * keys.poses[k] + u * keys.poses[k + 1]).segment<3>(3);
+      worst.off = std::max(worst.off, (line - run.positions_at(t).segment<3>(3)).norm());
+      worst.shortest = std::min(worst.shortest, line.norm());
+    }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("fast motion has keys as close as straight lines between them need") {
+  // Of 1 m, a thousandth; up to a tenth more between the places that are looked at. 120 turns a second are
+  // four from frame to frame: every frame of the film, its middle and its quarters show the same pose.
+  for (const double turns : {0.1, 20.0, 30.0, 60.0, 120.0}) {
+    INFO(turns << " turns a second");
+    const Simulation run = run_scene(spun(turns, 0.5, 0.05 / std::max(turns, 1.0)));
+    const MotionKeys keys = motion_keys(run.trajectory, 1.0 / 30, 20000);
+    const Drawn worst = drawn(keys, run.trajectory);
+    CHECK(worst.off < 1.1e-3);
+    CHECK(worst.shortest > 0.998);
+    CHECK(keys.times.front() == 0);
+    CHECK(keys.times.back() == Approx(0.5));
+    CHECK(std::ranges::is_sorted(keys.times));
+    CHECK(too_few_keys(keys, "viewer.html").empty());
+    // A chord of an arc of angle a is off by 1 - cos(a / 2) = a^2 / 8: no more keys than four times as many.
+    const double needed = 2 * M_PI * turns * 0.5 / std::sqrt(8e-3);
+    CHECK(static_cast<double>(keys.times.size()) < 4 * needed + 202);
+  }
+}
+
+TEST_CASE("a run much shorter than a frame of the film has keys, too") {
+  const Simulation run = run_scene(spun(1, 1e-3, 1e-6));
+  CHECK(motion_keys(run.trajectory, 1.0 / 30, 20000).times.size() == 201);  // of 1001 states
+  const Simulation few = run_scene(spun(1, 1e-3, 2.5e-4));
+  CHECK(motion_keys(few.trajectory, 1.0 / 30, 20000).times.size() == 5);  // of as many states, hardly curved
+}
+
+TEST_CASE("where keys must not be as many as they should, a warning says what that costs") {
+  const Simulation run = run_scene(spun(20, 1, 0.0025));
+  const MotionKeys keys = motion_keys(run.trajectory, 1.0 / 30, 100);
+  CHECK(keys.times.size() == 100);
+  const std::string warning = too_few_keys(keys, "animation.glb");
+  CHECK(warning.starts_with("animation.glb has 100 poses, too few for this motion: "));
+  // A fifth of a turn between two keys: off by 1 - cos(pi / 5) = 0.19 m where they are even.
+  CHECK(keys.off > 100);
+}
+
+TEST_CASE("what rests has its start and its end") {
+  const Simulation run = run_scene(spun(0, 1, 0.5));
+  const MotionKeys keys = motion_keys(run.trajectory, 0.25, 20000);
+  CHECK(keys.times.size() == 5);
+  CHECK(keys.off == 0);
+}
+
+}  // namespace motion_keys_test
