@@ -52,6 +52,7 @@ Extent data_extent(const Panel& panel, AxisOf which, bool log) {
 // With some air where two powers of ten or more remain inside; else, and always in y, whole decades, at least
 // one, and another one below where zeros sit on the floor.
 Limits log_limits(const Extent& e, AxisOf which, bool zeros_at_floor) {
+  if (e.empty() && e.zeros && zeros_at_floor) return {1e-17, 1e-15};  // errors of nothing, about round-off
   if (e.empty()) return {0.1, 10.0};
   if (which == AxisOf::x && e.lo > 1e-290) {
     const double air = std::pow(e.hi / e.lo, 0.03), lo = e.lo / air, hi = e.hi * air;

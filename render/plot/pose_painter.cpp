@@ -10,6 +10,8 @@ namespace unfurl::plot {
 namespace {
 
 constexpr double halo = 0.9;  // of white on each side of a rod where it passes in front of another [points]
+constexpr double least_halo = 0.2;      // below which it does not show
+constexpr double most_gap = 0.2;        // of the length of the shorter of two rods that cross
 constexpr float farthest = 0.45f;       // share of white in the colour of what lies farthest
 constexpr std::size_t most_rods = 600;  // crossings of more are not looked for: they are too small to see
 
@@ -33,10 +35,14 @@ void part(const Stroke& front, const Stroke& behind, Canvas& canvas) {
   if (sine < 0.2) return;
   const double wx = behind.a.x - front.a.x, wy = behind.a.y - front.a.y;
   const double u = (wx * ey - wy * ex) / cross, v = (wx * dy - wy * dx) / cross;
+  // A gap that would take much of a short rod says less than the rod.
+  const double shorter = std::min(length, std::hypot(ex, ey));
+  const double gap = std::min(halo, 0.5 * (most_gap * shorter * sine - front.width));
+  if (gap < least_halo) return;
   const double half = (behind.width / 2 + 0.3) / sine / length;
   if (u < half || u > 1 - half || v < 0.02 || v > 0.98) return;
   canvas.line({front.a.x + (u - half) * dx, front.a.y + (u - half) * dy},
-              {front.a.x + (u + half) * dx, front.a.y + (u + half) * dy}, {white, front.width + 2 * halo});
+              {front.a.x + (u + half) * dx, front.a.y + (u + half) * dy}, {white, front.width + 2 * gap});
 }
 
 }  // namespace

@@ -19,11 +19,18 @@ constexpr std::array<FigureColor, palette_size> colors{hex(0x0B5FA5), hex(0xC840
                                                        hex(0x8B2D6E), hex(0xB48B08), hex(0x3A98D6),
                                                        hex(0x222222), hex(0x6E6E6E)};
 
+// Shades of the same, for what comes after the eighth: darker ones of the light, paler ones of the dark.
+constexpr std::array<FigureColor, palette_size> shades{hex(0x06305A), hex(0x6B2206), hex(0x0A4A36),
+                                                       hex(0xC06AA3), hex(0x5E4904), hex(0x1C5C8A),
+                                                       hex(0x8A7F74), hex(0x3F4A52)};
+
 }  // namespace
 
 FigureColor palette(int i) {
-  const int k = (i % palette_size + palette_size) % palette_size;
-  return colors[static_cast<std::size_t>(k)];
+  constexpr int all = 2 * palette_size;
+  const int k = (i % all + all) % all;
+  return k < palette_size ? colors[static_cast<std::size_t>(k)]
+                          : shades[static_cast<std::size_t>(k - palette_size)];
 }
 
 FigureColor map_color(double u) {

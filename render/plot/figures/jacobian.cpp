@@ -41,7 +41,7 @@ Figure jacobian_figure(const Simulation& run, const Diagnostics&) {
   f.caption = "Jacobian G of all " + std::to_string(spectrum.constraints) + " constraints in " +
               std::to_string(spectrum.coordinates) + " coordinates, rows scaled to length 1, of rank " +
               std::to_string(spectrum.rank) + ", at " + std::to_string(spectrum.t.size()) +
-              " states of the run.";
+              (spectrum.t.size() == 1 ? " state of the run." : " states of the run.");
   if (!spectrum.smallest.empty()) {
     const std::vector<double>& least = spectrum.smallest.front();
     const auto at = std::min_element(least.begin(), least.end());

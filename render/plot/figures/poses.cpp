@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/structure/shown_lines.hpp"
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/pose_view.hpp"
 #include "render/plot/figures/rod_groups.hpp"
@@ -14,6 +15,12 @@ namespace {
 
 constexpr int rows = 2, columns = 3;
 constexpr std::size_t poses = rows * columns;
+
+// With as many decimals as tell a twentieth of the run.
+std::string time_text(double t, double span) {
+  const double fine = span > 0 ? std::ceil(-std::log10(span / 20)) : 0;
+  return plot::format_fixed(t, static_cast<int>(std::clamp(fine, 2.0, 12.0))) + " s";
+}
 
 struct Shot {
   double t;
@@ -37,7 +44,8 @@ std::vector<Shot> moments_of_deployment(const Diagnostics& d) {
     const double t = k == 0           ? d.t.front()
                      : k == poses - 1 ? d.t.back()
                                       : d.t[i - 1] + u * (d.t[i] - d.t[i - 1]);
-    moments.push_back({t, plot::format_fixed(t, 2) + " s, " + plot::format_fixed(100 * wanted, 0) + " %"});
+    moments.push_back(
+        {t, time_text(t, d.t.back() - d.t.front()) + ", " + plot::format_fixed(100 * wanted, 0) + " %"});
   }
   return moments;
 }
@@ -47,7 +55,7 @@ std::vector<Shot> equal_moments(const Trajectory& run) {
   for (std::size_t k = 0; k < poses; ++k) {
     const double t =
         run.start_time() + (run.end_time() - run.start_time()) * static_cast<double>(k) / (poses - 1);
-    moments.push_back({t, plot::format_fixed(t, 2) + " s"});
+    moments.push_back({t, time_text(t, run.end_time() - run.start_time())});
   }
   return moments;
 }
@@ -62,7 +70,8 @@ double bar_length(double width) {
 
 class PosePainter {
  public:
-  PosePainter(const Structure& s, const PoseView& view) : structure_(s), view_(view), groups_(rod_groups(s)) {
+  PosePainter(const Structure& s, const PoseView& view)
+      : structure_(s), lines_(lines_with_springs(s)), view_(view), groups_(rod_groups(s)) {
     const double many = std::sqrt(60.0 / static_cast<double>(std::max<std::size_t>(s.rod_copies.size(), 1)));
     width_ = static_cast<float>(std::clamp(1.3 * many, 0.4, 1.5));
     color_.assign(s.rods.size(), 0);
@@ -87,6 +96,11 @@ class PosePainter {
       for (const int n : {rod.a, rod.b})
         front[static_cast<std::size_t>(n)] = std::max(front[static_cast<std::size_t>(n)], depth);
     }
+    for (const ShownLine& line : lines_) {
+      const Vec3 a = project(pose_node(q, line.a)), b = project(pose_node(q, line.b));
+      p.segments.push_back(
+          {a.x(), a.y(), b.x(), b.y(), (a.z() + b.z()) / 2, line_color(line.group), 0.5f * width_});
+    }
     for (std::size_t i = 0; i < structure_.node_copies.size(); ++i) {
       const Vec3 at = project(pose_node(q, static_cast<int>(i)));
       const bool fixed = fixed_.count(structure_.node_copies[i].source) > 0;
@@ -95,20 +109,28 @@ class PosePainter {
     return p;
   }
 
-  // The legend, as curves without points; false where there is but one group.
+  // The legend, as curves without points; false where there is but one group of rods.
   bool name_groups(Panel& p) const {
-    if (groups_.size() < 2) return false;
-    for (const RodGroup& g : groups_) {
+    const auto name = [&](const std::string& label, int color, float width) {
       Curve c;
-      c.label = g.name;
-      c.color = g.color;
+      c.label = label;
+      c.color = color;
+      c.width = width;
       p.curves.push_back(std::move(c));
-    }
-    return true;
+    };
+    if (groups_.size() > 1 || !lines_.empty())
+      for (const RodGroup& g : groups_) name(g.name, g.color, Curve{}.width);
+    std::set<std::string> named;
+    for (const ShownLine& line : lines_)
+      if (named.insert(line.group).second) name(line.group, line_color(line.group), 0.6f);
+    return groups_.size() > 1;
   }
 
  private:
+  static int line_color(const std::string& group) { return group == "spring" ? 7 : 6; }
+
   const Structure& structure_;
+  std::vector<ShownLine> lines_;
   PoseView view_;
   std::vector<RodGroup> groups_;
   std::vector<int> color_;
@@ -148,10 +170,13 @@ Figure poses_figure(const Simulation& run, const Diagnostics& diagnostics) {
   }
   const bool colored = painter.name_groups(f.panels.front());
   Panel& corner = f.panels[columns];
-  corner.scale_bar = bar_length(size.x());
+  // Panels about 48 mm wide, as high as the motion is, with room for titles and caption; wider than a motion
+  // that is higher than this.
+  constexpr double wide = 48, rest = 25, title = 7;
+  f.height_mm = std::clamp(rows * (wide * size.y() / size.x() + title) + rest, 60.0, 130.0);
+  const double high = (f.height_mm - rest) / rows - title;
+  corner.scale_bar = bar_length(std::max(size.x(), size.y() * wide / high));
   corner.scale_bar_label = plot::format_number(corner.scale_bar, 2) + " m";
-  // Panels about 48 mm wide, as high as the motion is, with room for titles and caption.
-  f.height_mm = std::clamp(rows * (48.0 * size.y() / size.x() + 7.0) + 25.0, 60.0, 130.0);
   f.caption = view.flat ? "View of the plane of motion, drawn to one scale."
                         : "Axonometric view, drawn to one scale.";
   if (by_fraction) f.caption += " The poses are equal steps of the deployed fraction apart.";

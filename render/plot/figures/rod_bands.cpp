@@ -66,6 +66,8 @@ std::string rods_text(const RodGroup& g, const Part& part) {
 
 // Unique forces are solid or dash-dotted, others dashed or dotted: neighbours differ without their colours.
 Dash dash_of(bool unique, int color) {
+  if (color % (2 * palette_size) >= palette_size)  // whose colours are shades of the first
+    return unique ? Dash::long_dashed : Dash::dash_dot_dot;
   if (unique) return color % 2 == 0 ? Dash::solid : Dash::dash_dot;
   return color % 2 == 0 ? Dash::dashed : Dash::dotted;
 }
