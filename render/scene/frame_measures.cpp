@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "render/plot/text_metrics.hpp"
 #include "render/scene/frame_overlay.hpp"
 #include "render/scene/view.hpp"
 
@@ -42,7 +43,7 @@ Color clear_backing(const Look& look) {
 }  // namespace
 
 // As long as it is at the middle of the motion; in perspective what is nearer is larger, which it says.
-void FrameOverlay::add_scale_bar(DrawList& list) const {
+void FrameOverlay::add_scale_bar(Boxes& taken, DrawList& list) const {
   const Screen screen(list.camera);
   const Vec3f a = project(list.camera, style_.width, style_.height, list.center);
   const Vec3f b = project(list.camera, style_.width, style_.height, list.center + screen.right);
@@ -50,19 +51,28 @@ void FrameOverlay::add_scale_bar(DrawList& list) const {
   if (!(pixels > 0)) return;
   const double metres = round_length(0.16 * static_cast<double>(width_ / pixels));
   const auto length = pixels * static_cast<float>(metres);
-  const float x = 0.5f * (width_ - length), y = height_ - edge_, tick = 5 * unit_, thick = 2 * unit_;
+  char text[32];
+  std::snprintf(text, sizeof text, list.camera.parallel_height > 0 ? "%g m" : "%g m in the middle", metres);
+  const float x = 0.5f * (width_ - length), tick = 5 * unit_, thick = 2 * unit_;
+  const auto words = static_cast<float>(plot::text_width(text, static_cast<double>(small_)));
+  const float half = 0.5f * std::max(length, words);
+  Box box{0.5f * width_ - half, height_ - edge_ - 1.35f * small_, 0.5f * width_ + half,
+          height_ - edge_ + tick};
+  const float up = lifted(box, taken), y = height_ - edge_ - up;
+  box.y0 -= up, box.y1 -= up;
+  taken.push_back(box);
   list.lines.push_back({x, y, x + length, y, thick, look_.ink});
   for (const float end : {x, x + length})
     list.lines.push_back({end, y - tick, end, y + tick, thick, look_.ink});
-  char text[32];
-  std::snprintf(text, sizeof text, list.camera.parallel_height > 0 ? "%g m" : "%g m in the middle", metres);
   list.labels.push_back(quiet(list, {x + 0.5f * length, y - 1.35f * small_, small_, look_.ink, text, 0.5f}));
 }
 
-void FrameOverlay::add_axes(DrawList& list) const {
+void FrameOverlay::add_axes(Boxes& taken, DrawList& list) const {
   const Screen screen(list.camera);
-  const float length = 42 * unit_, line = std::round(0.8f * small_);
+  const float length = 42 * unit_, line = fine_ * std::round(0.8f * small_ / fine_);
   const float x = edge_ + 1.2f * length, y = height_ - edge_ - 2.2f * small_ - 1.2f * length;
+  const float reach = 1.28f * length + 0.5f * line;
+  taken.push_back({x - reach, y - reach, x + reach, y + reach});
   const Color colors[] = {{0.80f, 0.30f, 0.00f, 1}, {0.00f, 0.58f, 0.42f, 1}, {0.15f, 0.50f, 0.85f, 1}};
   const char* names[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {

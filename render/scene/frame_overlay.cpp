@@ -14,8 +14,11 @@ namespace unfurl {
 namespace {
 
 std::string time_text(double t, double span) {
+  // As many decimals as tell a two hundredth of the run.
+  const double fine = span > 0 && span < 0.5 ? std::ceil(-std::log10(span / 200)) : 2;
   char text[64];
-  std::snprintf(text, sizeof text, "t = %.*f s", span < 0.5 ? 4 : 2, t);
+  std::snprintf(text, sizeof text, "t = %.*f s",
+                static_cast<int>(std::clamp(fine, span < 0.5 ? 4.0 : 2.0, 12.0)), t);
   return text;
 }
 
@@ -74,10 +77,11 @@ FrameOverlay::FrameOverlay(const Trajectory& trajectory, const FrameStyle& style
       upright_(upright),
       width_(static_cast<float>(style.width)),
       height_(static_cast<float>(style.height)),
-      unit_(std::max(0.55f, std::min(height_ / 720.0f, width_ / 1280.0f))),
+      fine_(static_cast<float>(std::max(style.options.supersample, 1))),
+      unit_(std::max(0.55f * fine_, std::min(height_ / 720.0f, width_ / 1280.0f))),
       edge_(30 * unit_),
-      small_(std::round(21 * unit_)),
-      large_(std::round(28 * unit_)) {
+      small_(fine_ * std::round(21 * unit_ / fine_)),
+      large_(fine_ * std::round(28 * unit_ / fine_)) {
   prepare_inset();
 }
 
@@ -86,13 +90,12 @@ void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
   if (look_.dimensions || options.dimensions) add_dimensions(whole, list);
   add_names(whole, list);
   add_heading(t, list);
-  if (options.time) add_status(t, whole, list);
-  if (options.legend) {
-    if (field_) add_color_bar(list);
-    add_legend(list);
-  }
-  if (options.scale_bar) add_scale_bar(list);
-  if (options.axes) add_axes(list);
+  Boxes taken;
+  if (options.time) add_status(t, whole, taken, list);
+  if (options.axes) add_axes(taken, list);
+  if (options.legend && field_) add_color_bar(taken, list);
+  if (options.scale_bar) add_scale_bar(taken, list);
+  if (options.legend) add_legend(taken, list);
   add_inset(t, list);
 }
 
@@ -116,39 +119,69 @@ TextLabel FrameOverlay::quiet(const DrawList& list, TextLabel label) const {
   return label;
 }
 
+// Beside the inset. A title that is longer takes two lines, what is still longer ends in dots.
+void FrameOverlay::add_line_of_heading(float& y, float size, const std::string& text, bool title,
+                                       DrawList& list) const {
+  constexpr double bold = 1.12;  // of the bold face's width to that of the other
+  const double wide = static_cast<double>(size) / plot::line_height * (title ? bold : 1);
+  const auto room = static_cast<double>(width_ - 2 * edge_ - (inset_ ? 360 * unit_ : 0));
+  std::vector<std::string> lines = plot::wrap_text(text, wide, room);
+  if (!title || lines.size() > 2) {
+    const std::size_t first = title ? lines.front().size() + 1 : 0;
+    lines.resize(title ? 1 : 0);
+    lines.push_back(
+        plot::shorten_text(std::string_view(text).substr(std::min(first, text.size())), wide, room));
+  }
+  for (const std::string& line : lines) {
+    list.labels.push_back(quiet(list, {edge_, y, size, look_.ink, line, 0, title}));
+    y += (title ? 1.35f : 1.3f) * size;
+  }
+}
+
 void FrameOverlay::add_heading(double t, DrawList& list) const {
   float y = 0.8f * edge_;
-  if (!style_.title.empty() && style_.options.title) {
-    list.labels.push_back(quiet(list, {edge_, y, large_, look_.ink, style_.title, 0, true}));
-    y += 1.35f * large_;
-  }
-  const float line = std::round(0.85f * small_);
-  if (const std::string note = scale_text(looks_); !note.empty() && style_.options.legend) {
-    list.labels.push_back(quiet(list, {edge_, y, small_, look_.ink, note}));
-    y += 1.3f * small_;
-  }
+  if (!style_.title.empty() && style_.options.title) add_line_of_heading(y, large_, style_.title, true, list);
+  const float line = fine_ * std::round(0.85f * small_ / fine_);
+  if (const std::string note = scale_text(looks_); !note.empty() && style_.options.legend)
+    add_line_of_heading(y, small_, note, false, list);
   if (style_.options.method && style_.run) {
     const SolverOptions& solver = style_.run->options;
     std::string text = solver.method;
     if (solver.method == "dvm") text += ", s = " + std::to_string(solver.stages);
-    list.labels.push_back(
-        quiet(list, {edge_, y, line, look_.ink, text + ", h = " + number_text(solver.step) + " s"}));
-    y += 1.3f * line;
+    add_line_of_heading(y, line, text + ", h = " + number_text(solver.step) + " s", false, list);
   }
   if (style_.options.errors && style_.diagnostics) {
     const Diagnostics& d = *style_.diagnostics;
-    list.labels.push_back(quiet(
-        list, {edge_, y, line, look_.ink,
-               "so far: constraints " + number_text(largest_until(d, "constraint_max_m", t)) +
-                   " m, energy balance " + number_text(largest_until(d, "energy_balance_J", t)) + " J"}));
+    add_line_of_heading(y, line,
+                        "so far: constraints " + number_text(largest_until(d, "constraint_max_m", t)) +
+                            " m, energy balance " + number_text(largest_until(d, "energy_balance_J", t)) +
+                            " J",
+                        false, list);
   }
 }
 
-void FrameOverlay::add_status(double t, const VectorXd& whole, DrawList& list) const {
+float FrameOverlay::lifted(Box box, const Boxes& taken) const {
+  const float gap = 6 * unit_;
+  float up = 0;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const Box& other : taken) {
+      const Box here{box.x0 - gap, box.y0 - up - gap, box.x1 + gap, box.y1 - up + gap};
+      if (!here.overlaps(other)) continue;
+      up = box.y1 + 1.01f * gap - other.y0;
+      moved = true;
+    }
+  }
+  return up;
+}
+
+void FrameOverlay::add_status(double t, const VectorXd& whole, Boxes& taken, DrawList& list) const {
   std::string status = time_text(t, trajectory_.end_time() - trajectory_.start_time());
   const Deployment& deployment = trajectory_.structure().deployment;
   if (!deployment.empty()) status += "    " + deployed_text(deployment.fraction(solved(whole)));
-  list.labels.push_back(quiet(list, {edge_, height_ - edge_ - small_, small_, look_.ink, status}));
+  const float y = height_ - edge_ - small_;
+  list.labels.push_back(quiet(list, {edge_, y, small_, look_.ink, status}));
+  taken.push_back({edge_, y, edge_ + about_width(status, small_), y + small_});
 }
 
 // A square in the colour, framed in ink: a colour as light as the ground has an edge on it.
@@ -159,38 +192,75 @@ void FrameOverlay::add_swatch(DrawList& list, float x, float y, const Color& col
   list.areas.push_back({x + frame, top + frame, x + inside, top + inside, color});
 }
 
-// The name in ink, which can be read on any ground, behind a sign in the colour.
-void FrameOverlay::add_legend(DrawList& list) const {
-  struct Entry {
-    bool arrow;
-    std::string name;
-    Color color;
+std::vector<FrameOverlay::LegendEntry> FrameOverlay::legend_entries(const DrawList& list) const {
+  std::vector<LegendEntry> legend;
+  const auto add = [&](bool arrow, const std::string& name, const Color& color) {
+    const std::string text = plot::shorten_text(name, static_cast<double>(small_),
+                                                static_cast<double>(width_ - 2 * edge_ - 2 * small_));
+    const auto wide = static_cast<float>(plot::text_width(text, static_cast<double>(small_)));
+    legend.push_back({arrow, text, color, wide + 0.95f * small_});
   };
-  std::vector<Entry> legend;
   if (!field_ && looks_.groups.size() > 1)
-    for (std::size_t i = 0; i < looks_.groups.size(); ++i)
-      legend.push_back({false, looks_.groups[i], look_.group(i)});
+    for (std::size_t i = 0; i < looks_.groups.size(); ++i) add(false, looks_.groups[i], look_.group(i));
   std::set<std::string> lines;
   for (const ShownLine& line : trajectory_.structure().lines)
     if (lines.insert(line.group).second)
-      legend.push_back({false, line.group, look_.line_color(line.group, field_ && field_->diverging)});
-  if (!list.arrows.empty()) legend.push_back({true, "load", list.arrows.front().color});
-  if (!style_.trails.empty()) legend.push_back({false, "trail", look_.group(3)});
-  const float bar = field_ ? 4.1f * std::round(0.8f * small_) + 12 * unit_ : 0;  // with its texts
-  const float y = height_ - edge_ - small_ - bar, sign_width = 0.95f * small_;
-  float right = width_ - edge_;
-  for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry) {
-    const auto wide = static_cast<float>(plot::text_width(entry->name, static_cast<double>(small_)));
-    const TextLabel name = quiet(list, {right, y, small_, look_.ink, entry->name, 1});
-    const float left = right - wide - sign_width, room = 0.25f * small_;
-    if (name.backing.a > 0)
-      list.areas.push_back({left - room, y, right + room, y + small_, name.backing, room});
-    list.labels.push_back({left + sign_width, y, small_, look_.ink, entry->name, 0});
-    if (entry->arrow)
-      list.labels.push_back({left, y, small_, entry->color, "\u2192", 0});
-    else
-      add_swatch(list, left, y, entry->color);
-    right = left - 1.0f * small_;
+      add(false, line.group, look_.line_color(line.group, field_ && field_->diverging));
+  if (!list.arrows.empty()) add(true, "load", list.arrows.front().color);
+  if (!style_.trails.empty()) add(false, "trail", look_.group(3));
+  return legend;
+}
+
+// From the right to what is taken on the left, and from the last row up.
+std::vector<FrameOverlay::LegendRow> FrameOverlay::legend_rows(std::vector<LegendEntry> entries, float y,
+                                                               const Boxes& taken) const {
+  std::vector<LegendRow> rows;
+  for (; !entries.empty(); y -= 1.3f * small_) {
+    float room = width_ - 2 * edge_;
+    for (const Box& box : taken)
+      if (box.y0 < y + 1.2f * small_ && box.y1 > y - 0.2f * small_)
+        room = std::min(room, width_ - edge_ - (box.x1 + small_));
+    LegendRow row{y, {}};
+    while (!entries.empty() && (entries.back().width <= room || y < 0)) {
+      room -= entries.back().width + small_;
+      row.entries.push_back(std::move(entries.back()));
+      entries.pop_back();
+    }
+    if (!row.entries.empty()) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+// The name in ink, which can be read on any ground, behind a sign in the colour.
+void FrameOverlay::add_legend(Boxes& taken, DrawList& list) const {
+  const std::vector<LegendEntry> all = legend_entries(list);
+  const float y = height_ - edge_ - small_, highest = 0.6f * height_;
+  std::vector<LegendRow> rows = legend_rows(all, y, taken);
+  for (std::size_t shown = all.size(); shown-- > 1 && rows.back().y < highest;) {
+    std::vector<LegendEntry> some(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown));
+    const std::string rest = "and " + std::to_string(all.size() - shown) + " more";
+    some.push_back(
+        {false,
+         rest,
+         {0, 0, 0, 0},
+         static_cast<float>(plot::text_width(rest, static_cast<double>(small_))) + 0.95f * small_});
+    rows = legend_rows(std::move(some), y, taken);
+  }
+  const float sign_width = 0.95f * small_, room = 0.25f * small_;
+  for (const LegendRow& row : rows) {
+    float right = width_ - edge_;
+    for (const LegendEntry& entry : row.entries) {
+      const float left = right - entry.width;
+      const TextLabel name = quiet(list, {right, row.y, small_, look_.ink, entry.name, 1});
+      if (name.backing.a > 0)
+        list.areas.push_back({left - room, row.y, right + room, row.y + small_, name.backing, room});
+      list.labels.push_back({left + sign_width, row.y, small_, look_.ink, entry.name, 0});
+      if (entry.arrow)
+        list.labels.push_back({left, row.y, small_, entry.color, "\u2192", 0});
+      else if (entry.color.a > 0)
+        add_swatch(list, left, row.y, entry.color);
+      right = left - 1.0f * small_;
+    }
   }
 }
 
@@ -205,10 +275,26 @@ std::string end_mark(const RodField& field, double u) {
 
 }  // namespace
 
-void FrameOverlay::add_color_bar(DrawList& list) const {
+void FrameOverlay::add_color_bar(Boxes& taken, DrawList& list) const {
   constexpr int steps = 64;
-  const float length = 280 * unit_, thick = 12 * unit_, line = std::round(0.8f * small_);
-  const float x = width_ - edge_ - length, y = height_ - edge_ - 1.25f * line - thick;
+  const float length = 280 * unit_, thick = 12 * unit_, line = fine_ * std::round(0.8f * small_ / fine_);
+  const float label = about_width(field_->label, line), wide = std::max(length, label);
+  const bool longer = label > length;  // it then ends where the bar ends
+  const float x = width_ - edge_ - length;
+  if (!field_->known) {  // no scale of nothing
+    const std::string text =
+        plot::shorten_text(field_->label, static_cast<double>(line), static_cast<double>(width_ - 2 * edge_));
+    Box box{width_ - edge_ - std::min(label, width_ - 2 * edge_), height_ - edge_ - line, width_ - edge_,
+            height_ - edge_};
+    const float up = lifted(box, taken);
+    box.y0 -= up, box.y1 -= up;
+    list.labels.push_back(quiet(list, {box.x1, box.y0, line, look_.ink, text, 1}));
+    return taken.push_back(box);
+  }
+  Box box{width_ - edge_ - wide, height_ - edge_ - 2.6f * line - thick, width_ - edge_, height_ - edge_};
+  const float up = lifted(box, taken), y = height_ - edge_ - 1.25f * line - thick - up;
+  box.y0 -= up, box.y1 -= up;
+  taken.push_back(box);
   const double low = field_->low, high = field_->high;
   const auto value = [&](double u) {
     return field_->log ? low * std::pow(high / low, u) : low + u * (high - low);
@@ -224,7 +310,6 @@ void FrameOverlay::add_color_bar(DrawList& list) const {
     list.labels.push_back(quiet(list, {at, y + thick + 5 * unit_, line, look_.ink,
                                        end_mark(*field_, u) + number_text(value(u)), static_cast<float>(u)}));
   }
-  const bool longer = about_width(field_->label, line) > length;  // it then ends where the bar ends
   list.labels.push_back(quiet(list, {longer ? x + length : x, y - 1.35f * line, line, look_.ink,
                                      field_->label, longer ? 1.0f : 0.0f}));
 }

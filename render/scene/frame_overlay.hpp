@@ -24,17 +24,34 @@ class FrameOverlay {
     float x0, y0, x1, y1;
     bool overlaps(const Box& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
   };
+  using Boxes = std::vector<Box>;
+  struct LegendEntry {
+    bool arrow;
+    std::string name;
+    Color color;
+    float width;  // with its sign [pixels]
+  };
+  struct LegendRow {
+    float y;
+    std::vector<LegendEntry> entries;
+  };
+  // How far up a box has to go to be clear of those that are taken, all of them in the lower part.
+  float lifted(Box box, const Boxes& taken) const;
+  std::vector<LegendEntry> legend_entries(const DrawList& list) const;
+  std::vector<LegendRow> legend_rows(std::vector<LegendEntry> entries, float y, const Boxes& taken) const;
+  void add_line_of_heading(float& y, float size, const std::string& text, bool title, DrawList& list) const;
   VectorXd solved(const VectorXd& whole) const;
   void add_swatch(DrawList& list, float x, float y, const Color& color) const;
   // A text on ground as quiet as the background: what is behind shines through a little.
   TextLabel quiet(const DrawList& list, TextLabel label) const;
   void prepare_inset();
   void add_heading(double t, DrawList& list) const;
-  void add_status(double t, const VectorXd& whole, DrawList& list) const;
-  void add_legend(DrawList& list) const;
-  void add_color_bar(DrawList& list) const;
-  void add_scale_bar(DrawList& list) const;
-  void add_axes(DrawList& list) const;
+  // These take their places in the lower part one after the other, and none that is taken.
+  void add_status(double t, const VectorXd& whole, Boxes& taken, DrawList& list) const;
+  void add_axes(Boxes& taken, DrawList& list) const;
+  void add_color_bar(Boxes& taken, DrawList& list) const;
+  void add_scale_bar(Boxes& taken, DrawList& list) const;
+  void add_legend(Boxes& taken, DrawList& list) const;
   void add_dimensions(const VectorXd& whole, DrawList& list) const;
   float number_place(const Eigen::Vector2f& p, const Eigen::Vector2f& q, const Eigen::Vector2f& half,
                      const DrawList& list) const;
@@ -49,8 +66,9 @@ class FrameOverlay {
   const Appearance& looks_;
   const RodField* field_;
   const Mat3& upright_;
-  float width_, height_, unit_, edge_, small_, large_;  // [pixels]
-  std::shared_ptr<Figure> inset_;                       // of the whole run
+  // [pixels], of which supersampled pictures have more
+  float width_, height_, fine_, unit_, edge_, small_, large_;
+  std::shared_ptr<Figure> inset_;  // of the whole run
 };
 
 // How far dimension lines are from what they measure, in radii of the picture (DrawList::radius).

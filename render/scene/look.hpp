@@ -29,7 +29,13 @@ struct Look {
   bool transparent = false;
   float stars = 0, depth_fade = 0;
 
-  const Color& group(std::size_t index) const { return (*groups)[index % groups->size()]; }
+  // Beyond the sixth the same again in other shades: towards the ink, towards the ground, and on.
+  Color group(std::size_t index) const {
+    const std::size_t round = index / groups->size();
+    const Color& first = (*groups)[index % groups->size()];
+    if (round == 0) return first;
+    return mixed(first, round % 2 == 1 ? ink : background_bottom, round % 4 < 3 ? 0.5f : 0.75f);
+  }
   // Of loads, and of the group of a ShownLine: beside rods in colours from blue to red, where red is tension,
   // a load is green and a cable as the ink; the other colours have no red.
   Color load_color(bool diverging) const { return diverging ? group(2) : load; }

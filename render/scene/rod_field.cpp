@@ -58,8 +58,10 @@ double length_error(const VectorXd& q, const VectorXd&, const Rod& rod) {
 // The run's own range. Forces blow up for an instant where a mechanism is straight: what is rare saturates.
 void choose_range(RodField& field) {
   const double most = quantile(field.values, 1.0), usual = quantile(field.values, typical);
-  const double high = rounded_up(
-      std::max(most > 2 * usual && usual > 0 ? usual : most, std::numeric_limits<double>::min() * 1e20));
+  // Of nothing but zeros, or of nothing at all, any range will do.
+  const double high = most > std::numeric_limits<double>::min() * 1e20
+                          ? rounded_up(most > 2 * usual && usual > 0 ? usual : most)
+                          : 1.0;
   field.high =
       field.log ? std::max(std::pow(10.0, std::ceil(std::log10(std::max(most, 1e-16)))), 1e-15) : high;
   field.low = field.diverging ? -field.high : field.log ? 1e-4 * field.high : 0;
@@ -115,6 +117,7 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
   } else {
     throw std::invalid_argument("rod_field: no quantity '" + by + "'");
   }
+  field.known = (field.values.array().isFinite()).any();
   choose_range(field);
   if (range[0] < range[1] && (!field.log || range[0] > 0)) field.low = range[0], field.high = range[1];
   for (Index i = 0; i < field.values.size(); ++i) {

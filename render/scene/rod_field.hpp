@@ -17,6 +17,7 @@ struct RodField {
   MatrixXd values;        // [states x solved rods]; NaN where it is not known
   double low = 0, high = 1;
   bool below = false, above = false;  // some values lie outside of the range and have the colour of its end
+  bool known = true;                  // at least one value is
   bool diverging = false;             // around zero
   bool log = false;
 

@@ -8,6 +8,7 @@
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
 #include "core/simulate/simulation.hpp"
+#include "render/plot/text_metrics.hpp"
 #include "render/scene/color_map.hpp"
 #include "render/scene/film_style.hpp"
 #include "render/scene/look.hpp"
@@ -106,6 +107,118 @@ TEST_CASE("cables and nets are named, and no cable looks pulled or loaded beside
       for (const Color& other : {diverging_color(-1), diverging_color(1), look.load_color(true)})
         CHECK(distance(cable, other) >= told_apart(look));
     }
+}
+
+namespace {
+
+// A chain whose rods are groups of their own.
+std::string chain(int groups) {
+  std::string text =
+      "title = 'A title that is a good deal longer than a small picture is wide, as titles are'\n"
+      "[structure]\nkind = 'custom'\n";
+  for (int i = 0; i <= groups; ++i)
+    text += "[[structure.nodes]]\nname = 'N" + std::to_string(i) + "'\nposition = [" + std::to_string(i) +
+            ", 0, " + std::to_string(i % 2) + "]\n" + (i == 0 ? "fixed = true\n" : "");
+  for (int i = 0; i < groups; ++i)
+    text += "[[structure.rods]]\nnodes = ['N" + std::to_string(i) + "', 'N" + std::to_string(i + 1) +
+            "']\nmass = 1\ngroup = 'group number " + std::to_string(i) + "'\n";
+  return text + "[solver]\nstep = 0.1\nend_time = 0.1\n";
+}
+
+DrawList small_picture(const std::string& text, int width, int height, int fine = 1) {
+  const Scene scene = read_scene_text(text, "s.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics diagnostics = diagnose(run);
+  FrameStyle style = film_style(scene, run, diagnostics);
+  style.width = fine * width, style.height = fine * height;
+  style.options.supersample = fine;
+  return FrameBuilder(run.trajectory, style).build(0.1);
+}
+
+struct Rectangle {
+  double x0, y0, x1, y1;
+};
+
+// As wide as the layout takes it to be: glyphs are narrower, as a line is higher than its letters' size.
+Rectangle box_of(const TextLabel& l) {
+  const double wide = plot::text_width(l.text, static_cast<double>(l.height) / plot::line_height);
+  const double x = static_cast<double>(l.x - l.align * static_cast<float>(wide)),
+               y = static_cast<double>(l.y);
+  return {x, y, x + wide, y + static_cast<double>(l.height)};
+}
+
+void check_texts(const DrawList& list, int width, int height) {
+  for (const TextLabel& a : list.labels) {
+    const Rectangle p = box_of(a);
+    INFO(a.text);
+    CHECK(p.x0 >= 0);
+    CHECK(p.y0 >= 0);
+    CHECK(p.x1 <= width);
+    CHECK(p.y1 <= height);
+    for (const TextLabel& b : list.labels) {
+      if (&a == &b) continue;
+      const Rectangle q = box_of(b);
+      INFO(b.text);
+      CHECK_FALSE((p.x0 < q.x1 && q.x0 < p.x1 && p.y0 < q.y1 && q.y0 < p.y1));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("texts stay in the picture and apart, however small it is and whatever it names") {
+  const std::string all = "[render]\nscale_bar = true\naxes = true\nmethod = true\nerrors = true\n";
+  for (const int groups : {2, 9, 60})
+    for (const auto& [width, height] : {std::pair{1280, 720}, {480, 360}, {426, 360}, {300, 400}})
+      for (const char* by : {"group", "axial_force", "stress"}) {
+        INFO(groups << " groups, " << width << " x " << height << ", " << by);
+        const DrawList list =
+            small_picture(chain(groups) + all + "colour_by = '" + by + "'\n", width, height);
+        check_texts(list, width, height);
+        CHECK(label(list, " m in the middle"));
+        if (*by == 'g')
+          CHECK(label(list, groups > 9 ? " more" : "group number " + std::to_string(groups - 1)));
+      }
+  const std::string ring = "structure.kind = 'hoop'\nsolver.end_time = 0.2\n[render]\nscale_bar = true\n";
+  for (const auto& [width, height] : {std::pair{480, 360}, {426, 360}}) {
+    const DrawList list = small_picture(ring, width, height);
+    check_texts(list, width, height);
+    CHECK(label(list, "%"));
+  }
+}
+
+TEST_CASE("supersampling changes no size of what is written") {
+  const std::string text = chain(3) + "[render]\nscale_bar = true\n";
+  for (const auto& [width, height] : {std::pair{1280, 720}, {640, 360}, {426, 360}, {200, 150}}) {
+    const DrawList plain = small_picture(text, width, height);
+    for (const int fine : {2, 3}) {
+      const DrawList list = small_picture(text, width, height, fine);
+      REQUIRE(list.labels.size() == plain.labels.size());
+      for (std::size_t i = 0; i < list.labels.size(); ++i)
+        CHECK(list.labels[i].height == Approx(static_cast<float>(fine) * plain.labels[i].height));
+    }
+  }
+}
+
+TEST_CASE("the time of a short run has decimals that change") {
+  const DrawList list = small_picture(
+      chain(2).substr(0, chain(2).find("[solver]")) + "[solver]\nstep = 1e-6\nend_time = 2e-5\n", 640, 360);
+  CHECK(label(list, "t = 0.0000200 s"));  // a two hundredth of the run is 1e-7 s
+}
+
+TEST_CASE("a bar of colours has no numbers where nothing is known") {
+  const DrawList list = small_picture(chain(2) + "[render]\ncolour_by = 'stress'\n", 640, 360);
+  CHECK(label(list, "not known, no rod has a youngs_modulus"));
+  for (const TextLabel& l : list.labels) CHECK(l.text.find("e-") == std::string::npos);
+}
+
+TEST_CASE("the first eighteen groups have colours of their own in every look") {
+  for (const Look& look : looks())
+    for (std::size_t i = 0; i < 18; ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        INFO(look.name << ": " << i << ", " << j);
+        CHECK(distance(look.group(i), look.group(j)) > 0.05);
+      }
 }
 
 }  // namespace frame_overlay_test
