@@ -111,8 +111,7 @@ Handover hand_over(const Model& from, const State& state, const Model& to) {
   VectorXd held(q.size());  // q but for what linear constraints that are new make them differ by
   to.system.expand(s.z, held);
   if ((held - q).lpNorm<Eigen::Infinity>() > settled * q.lpNorm<Eigen::Infinity>()) {
-    for (int it = 0; it < most_projections && constraint_error(near, s) > settled; ++it)
-      project(near, s);
+    for (int it = 0; it < most_projections && constraint_error(near, s) > settled; ++it) project(near, s);
     to.system.expand(s.z, q);
   }
   s.w = fitted_rates(near, s.t, q, v);

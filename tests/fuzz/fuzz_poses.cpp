@@ -36,7 +36,8 @@ void unfurl::fuzz::try_text(std::string_view text) {
       require(std::isfinite(mode.frequency) && std::isfinite(mode.growth) && mode.shape.allFinite(),
               "a mode is finite");
     const Margin margin = margin_of(model, scene.solver);
-    for (const StuckHinge& hinge : stuck_hinges(model, scene.solver, margin, margin.sources.size() < 4 ? 12 : 0))
+    for (const StuckHinge& hinge :
+         stuck_hinges(model, scene.solver, margin, margin.sources.size() < 4 ? 12 : 0))
       require(!std::isnan(hinge.stall_torque), "a torque is a number");
   } catch (const Error&) {
   }

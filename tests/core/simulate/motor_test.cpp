@@ -71,7 +71,8 @@ TEST_CASE("a motor runs up along its torque-speed line, with its rotor behind th
 
 // 0.5 m/s at 0.5 m: 1 rad/s, which the rotor has as well, else it would take most of it at the start.
 TEST_CASE("a joint that turns at the start keeps its rate, whatever its motor's rotor weighs") {
-  const Simulation run = run_scene(crank, {"forces[0].inertia=6e-4", "structure.nodes.T.velocity=[-0.4,0.3,0]"});
+  const Simulation run =
+      run_scene(crank, {"forces[0].inertia=6e-4", "structure.nodes.T.velocity=[-0.4,0.3,0]"});
   CHECK(run.warnings.empty());
   // All of it turns as one rigid body.
   CHECK(diagnose(run).at("kinetic_energy_J").values.front() ==
