@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Binary glTF 2.0 (.glb): every rod an instance of one cylinder per group with a fitting at each end, every
 // joint of one sphere, every load of one arrow, moved by translation and rotation keys; surfaces of the scene
-// morph from pose to pose. At rest in the last pose, which a camera sees. glTF's y axis points up: one parent
-// node turns the structure's z axis to it.
+// morph from pose to pose. At rest in the last pose, which a camera sees. A parent node turns z to glTF's y.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
