@@ -73,8 +73,8 @@ TEST_CASE("colours differ for every kind of eye", "[palette]") {
 }
 
 TEST_CASE("palette indices go round", "[palette]") {
-  CHECK(palette(palette_size).r == palette(0).r);
-  CHECK(palette(-1).g == palette(palette_size - 1).g);
+  CHECK(palette(2 * palette_size).r == palette(0).r);
+  CHECK(palette(-1).g == palette(2 * palette_size - 1).g);
 }
 
 }  // namespace palette_test
