@@ -48,8 +48,9 @@ Strokes last_pose(const Figure& f) {
   return strokes;
 }
 
+// Its rods cross at half of a right angle.
 std::string mast(int bays) {
-  return "[structure]\nkind = 'scissor_mast'\ncells = " + std::to_string(bays) +
+  return "[structure]\nkind = 'scissor_mast'\nsides = 3\nfold_angle = 50\ncells = " + std::to_string(bays) +
          "\n[solver]\nstep = 0.02\nend_time = 0.04\n";
 }
 
