@@ -35,13 +35,16 @@ nlohmann::ordered_json modes_json(const Scene& scene, const Vibration& vibration
                               {"pose_t_s", vibration.t},
                               {"mechanism_motions", vibration.mechanism_motions},
                               {"prestress_unique", vibration.unique}};
-  for (const char* list : {"frequencies_Hz", "mechanism_frequencies_Hz", "growth_rates_1_s"})
+  for (const char* list :
+       {"frequencies_Hz", "mechanism_frequencies_Hz", "growth_rates_1_s", "growing_frequencies_Hz"})
     json[list] = nlohmann::ordered_json::array();
   for (const VibrationMode& mode : vibration.modes) {
-    if (mode.growth > 0)
+    if (mode.growth > 0) {
       json["growth_rates_1_s"].push_back(mode.growth);
-    else
+      json["growing_frequencies_Hz"].push_back(mode.frequency);
+    } else {
       json[mode.mechanism ? "mechanism_frequencies_Hz" : "frequencies_Hz"].push_back(mode.frequency);
+    }
   }
   return json;
 }
@@ -61,7 +64,10 @@ void print_modes(const Scene& scene, const Vibration& vibration, bool elastic) {
     const VibrationMode& mode = vibration.modes[k];
     const double shown = mode.growth > 0 ? mode.growth : mode.frequency;
     std::cout << std::setw(4) << k + 1 << std::setw(17) << short_number(shown, 7)
-              << (mode.growth > 0 ? " 1/s  " : "      ") << name_of(mode) << "\n";
+              << (mode.growth > 0 ? " 1/s  " : "      ") << name_of(mode);
+    if (mode.growth > 0 && mode.frequency > 0)
+      std::cout << " at " << short_number(mode.frequency, 7) << " Hz";
+    std::cout << "\n";
   }
   if (vibration.modes.size() > most)
     std::cout << "  and " << vibration.modes.size() - most << " more (modes.csv with -o, or --json)\n";

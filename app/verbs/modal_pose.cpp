@@ -73,7 +73,7 @@ Vibration vibration_of(const ModalPose& pose) {
 }
 
 std::string name_of(const VibrationMode& mode) {
-  if (mode.growth > 0) return "unstable";
+  if (mode.growth > 0) return mode.frequency > 0 ? "flutter" : "unstable";
   if (!mode.mechanism) return "elastic";
   return mode.frequency > 0 ? "mechanism, pulled back" : "mechanism, free";
 }
