@@ -22,6 +22,7 @@ Index1::Index1(const System& system, bool clean_multipliers)
       saddle_(system.mass(), G_, 1,
               clean_multipliers ? clean_regularisation : SaddleSolver::standard_regularisation,
               SaddleSolver::Order::sparse_first),
+      clean_(clean_multipliers),
       refinements_(clean_multipliers ? 40 : 8),
       weak_(clean_multipliers ? 3 * clean_regularisation : 100 * SaddleSolver::standard_regularisation),
       q_(system.coordinates()),
@@ -76,9 +77,11 @@ bool Index1::solve(double t, const ConstVec& w, MutVec acceleration, MutVec lamb
 }
 
 // A weak direction that the pivots do not show (they are up to as many times the square of its singular value
-// as it has rows) is one that refinement does not reach.
+// as it has rows) is one that refinement does not reach. With the small regularisation such a direction is
+// that of a singular pose next by, and all that there is of it is round-off.
 void Index1::settle(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) {
-  if (saddle_.solve(f, g, x, y, refinements_) > unsettled && !saddle_.fine() && saddle_.left_a_direction() &&
+  const double left = saddle_.solve(f, g, x, y, refinements_);
+  if (clean_ && left > unsettled && !saddle_.fine() && saddle_.left_a_direction() &&
       saddle_.factorise_finely())
     saddle_.solve(f, g, x, y, refinements_);
 }

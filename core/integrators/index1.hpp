@@ -51,6 +51,7 @@ class Index1 {
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
+  bool clean_;
   int refinements_;
   double weak_;  // pivots below this are solved for in twice the digits
   double alpha_ = 0;

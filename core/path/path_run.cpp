@@ -238,16 +238,16 @@ class PathRun {
   // Where an event ended what could be solved at once.
   void append_here(bool counted) {
     if (motion_.t() > last().t) {
-      if (!run_.events.empty() && run_.events.back().t == last().t) tell_between(last().t);
+      tell_pull(last().t);
       append(state_at(motion_.t(), motion_.s(), motion_.v()));
       run_.steps += counted ? 1 : 0;
     }
   }
 
-  // From one event to another within one step: peaks are looked for between states.
-  void tell_between(double from) {
+  // A cable that pulls for less than a step: peaks are looked for between states.
+  void tell_pull(double from) {
+    if (run_.events.empty() || run_.events.back().t != from || run_.events.back().kind != "taut") return;
     const double h = (motion_.t() - from) / 8;
-    if (!(h > accumulated * options_.step)) return;
     for (int k = 1; k < 8; ++k) {
       double s, v;
       motion_.at(from + k * h, s, v);

@@ -87,7 +87,7 @@ class StatePainter {
     }
     for (const ShownLine& line : lines_with_springs(structure_)) {
       const Vec3 a = at(line.a), b = at(line.b);
-      p.segments.push_back({a.x(), a.y(), b.x(), b.y(), (a.z() + b.z()) / 2 - 2e6, idle, 0.25f});
+      p.segments.push_back({a.x(), a.y(), b.x(), b.y(), (a.z() + b.z()) / 2 - 2e6, idle, 0.4f});
     }
   }
 
