@@ -19,7 +19,7 @@ struct CsvColumn {
   std::string_view unit;  // the header may carry it as a suffix: "x_m"
   bool number = false;
   bool required = false;
-  bool boolean = false;  // also true and false, as in TOML: 1 and 0
+  bool boolean = false;  // 1 or 0, also true or false, as in TOML
 };
 
 struct CsvRow {

@@ -51,10 +51,10 @@ void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
     notes.locations[key] = tree->where;
     TableReader entry(tree, key, tree->where, notes);
     const ParamSet values = entry.read(custom_rod_params());
-    CustomRod rod{values.text("name"),    entry.names("nodes"), values.real("mass"),
+    CustomRod rod{values.text("name"),    entry.names("nodes"), {},
                   values.real("density"), values.real("area"),  values.text("group")};
     entry.finish();
-    if (!entry.has("mass")) rod.mass = -1.0;
+    if (entry.has("mass")) rod.mass = values.real("mass");
     if (entry.has("mass") && entry.has("density")) entry.problem("density", mass_twice);
     if (entry.has("length")) rod.length = values.real("length");
     if (entry.has("youngs_modulus")) rod.youngs_modulus = values.real("youngs_modulus");
@@ -67,13 +67,21 @@ void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
   }
 }
 
-// "length" of a row, which must be a length where it is given; 0: it is not.
-double length_cell(const CsvRow& row, const std::string& key, SceneNotes& notes) {
-  const auto it = row.numbers.find("length");
-  if (it == row.numbers.end()) return 0.0;
-  if (!(it->second > 0))
-    notes.add(row.where, key + ".length", "must be > 0 m; leave it out for the distance of its nodes");
-  return it->second;
+// Numbers of a row outside the range of the keys that they stand for are noted, and left out.
+void keep_to_ranges(CsvRow& row, const std::string& key, const std::vector<ParamSpec>& specs,
+                    SceneNotes& notes) {
+  for (const ParamSpec& spec : specs) {
+    const auto it = row.numbers.find(spec.name);
+    if (it == row.numbers.end() || (spec.kind != ParamKind::real && spec.kind != ParamKind::integer))
+      continue;
+    ParamValue value = it->second;
+    if (spec.kind == ParamKind::integer)
+      if (const auto whole = as_whole_number(it->second)) value = *whole;
+    const std::string error = range_error(spec, value);
+    if (error.empty()) continue;
+    notes.add(row.where, key + "." + std::string(spec.name), error);
+    row.numbers.erase(it);
+  }
 }
 
 void read_constraints(TableReader& table, const std::string& folder, SceneNotes& notes,
@@ -85,9 +93,13 @@ void read_constraints(TableReader& table, const std::string& folder, SceneNotes&
   }
 }
 
-double cell(const CsvRow& row, std::string_view name, double fallback) {
+std::optional<double> cell(const CsvRow& row, std::string_view name) {
   const auto it = row.numbers.find(name);
-  return it == row.numbers.end() ? fallback : it->second;
+  return it == row.numbers.end() ? std::nullopt : std::optional(it->second);
+}
+
+double cell(const CsvRow& row, std::string_view name, double fallback) {
+  return cell(row, name).value_or(fallback);
 }
 
 std::string text_cell(const CsvRow& row, std::string_view name, std::string_view fallback) {
@@ -114,8 +126,10 @@ void read_nodes_file(TableReader& table, const std::string& name, const std::str
       {"name", "", false, true}, {"x", "m", true, true}, {"y", "m", true, true},
       {"z", "m", true, true},    {"vx", "m_s", true},    {"vy", "m_s", true},
       {"vz", "m_s", true},       {"mass", "kg", true},   {"fixed", "", true, false, true}};
-  for (const auto& row : file_rows(table, "nodes_file", name, folder, columns, notes)) {
-    notes.locations[entry_key("nodes", spec.nodes.size())] = row.where;
+  for (auto& row : file_rows(table, "nodes_file", name, folder, columns, notes)) {
+    const std::string key = entry_key("nodes", spec.nodes.size());
+    notes.locations[key] = row.where;
+    keep_to_ranges(row, key, custom_node_params(), notes);
     spec.nodes.push_back({text_cell(row, "name", ""),
                           {cell(row, "x", 0), cell(row, "y", 0), cell(row, "z", 0)},
                           {cell(row, "vx", 0), cell(row, "vy", 0), cell(row, "vz", 0)},
@@ -140,25 +154,26 @@ void read_rods_file(TableReader& table, const std::string& name, const std::stri
                                                  {"elastic", "", true, false, true},
                                                  {"segments", "", true},
                                                  {"free_length", "m", true}};
-  for (const auto& row : file_rows(table, "rods_file", name, folder, columns, notes)) {
+  for (auto& row : file_rows(table, "rods_file", name, folder, columns, notes)) {
     const std::string key = entry_key("rods", spec.rods.size());
     notes.locations[key] = row.where;
     if (row.numbers.contains("mass") && row.numbers.contains("density"))
       notes.add(row.where, key + ".density", mass_twice);
-    spec.rods.push_back(
-        {text_cell(row, "name", ""),
-         {text_cell(row, "a", ""), text_cell(row, "b", "")},
-         cell(row, "mass", -1.0),
-         cell(row, "density", 0.0),
-         cell(row, "area", 0.0),
-         text_cell(row, "group", "rod"),
-         length_cell(row, key, notes),
-         cell(row, "youngs_modulus", not_given),
-         cell(row, "strength", not_given),
-         cell(row, "second_moment", 0.0),
-         row.numbers.contains("elastic") ? std::optional(cell(row, "elastic", 0.0) != 0.0) : std::nullopt,
-         static_cast<long>(cell(row, "segments", 0.0)),
-         cell(row, "free_length", 0.0)});
+    keep_to_ranges(row, key, custom_rod_params(), notes);
+    const auto elastic = cell(row, "elastic");
+    spec.rods.push_back({text_cell(row, "name", ""),
+                         {text_cell(row, "a", ""), text_cell(row, "b", "")},
+                         cell(row, "mass"),
+                         cell(row, "density", 0.0),
+                         cell(row, "area", 0.0),
+                         text_cell(row, "group", "rod"),
+                         cell(row, "length", 0.0),
+                         cell(row, "youngs_modulus", not_given),
+                         cell(row, "strength", not_given),
+                         cell(row, "second_moment", 0.0),
+                         elastic ? std::optional(*elastic != 0.0) : std::nullopt,
+                         static_cast<long>(cell(row, "segments", 0.0)),
+                         cell(row, "free_length", 0.0)});
   }
 }
 

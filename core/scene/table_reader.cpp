@@ -22,11 +22,8 @@ std::optional<double> number(const TomlTree& tree) {
 
 // A whole number, also when written 3.0.
 std::optional<long> whole_number(const TomlTree& tree) {
-  constexpr double exact = 9007199254740992.0;  // 2^53: every whole number up to here is a double
   if (tree.kind == Kind::integer) return tree.integer;
-  if (tree.kind == Kind::real && std::abs(tree.real) <= exact && tree.real == std::floor(tree.real))
-    return static_cast<long>(tree.real);
-  return std::nullopt;
+  return tree.kind == Kind::real ? as_whole_number(tree.real) : std::nullopt;
 }
 
 std::optional<ParamValue> numbers(const TomlTree& tree) {
@@ -87,6 +84,12 @@ std::string mistyped(const ParamSpec& spec, const TomlTree& tree) {
 
 }  // namespace
 
+std::optional<long> as_whole_number(double x) {
+  constexpr double exact = 9007199254740992.0;  // 2^53: every whole number up to here is a double
+  if (!(std::abs(x) <= exact) || x != std::floor(x)) return std::nullopt;
+  return static_cast<long>(x);
+}
+
 void SceneNotes::add(const SourceLocation& where, std::string key, std::string message) {
   problems.push_back({where, std::move(key), std::move(message)});
 }
@@ -138,9 +141,8 @@ void TableReader::read_one(const ParamSpec& spec, ParamSet& values) {
   values.set(spec.name, std::move(*value));
 }
 
-std::vector<std::string> TableReader::names(std::string_view name) {
+std::vector<std::string> TableReader::names(std::string_view name, const std::string& wanted) {
   const TomlTree* tree = member(name);
-  const std::string wanted = "a list of node names";
   std::vector<std::string> values;
   if (!tree) {
     problem(name, "is missing; must be " + wanted);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,9 @@ struct SceneNotes {
   void add(const SourceLocation& where, std::string key, std::string message);
 };
 
+// That number where it is a whole one (3.0).
+std::optional<long> as_whole_number(double x);
+
 // Keys that do nothing: all, or those alone that --set gives. A table of a whole scene may keep what another
 // method or model would need.
 enum class Idle { all, from_command_line };
@@ -37,8 +41,9 @@ class TableReader {
   // noted and left at its default. A whole number is taken where a number is wanted, and 3.0 where a whole
   // number is.
   ParamSet read(const std::vector<ParamSpec>& specs);
-  // A list of texts; a single text counts as a list of one. Noted when it is missing or something else.
-  std::vector<std::string> names(std::string_view key);
+  // A list of texts; a single text counts as a list of one. Noted when it is missing or something else than
+  // what is wanted.
+  std::vector<std::string> names(std::string_view key, const std::string& wanted = "a list of node names");
   // A member that is read elsewhere; marks it as known.
   const TomlTree* member(std::string_view key);
   // A member that must be a table, or an array of tables; nullptr or empty when absent or wrong (which is

@@ -63,7 +63,7 @@ std::string rod_text(const CustomRod& rod) {
   std::string text = "\n[[structure.rods]]\n";
   if (!rod.name.empty()) text += line("name", toml_string(rod.name));
   text += line("nodes", names_text(rod.nodes));
-  if (rod.mass >= 0.0) text += line_of(specs, "mass", real_text(rod.mass));
+  if (rod.mass) text += line_of(specs, "mass", real_text(*rod.mass));
   if (rod.density != 0.0) text += line_of(specs, "density", real_text(rod.density));
   if (rod.area != 0.0) text += line_of(specs, "area", real_text(rod.area));
   if (rod.length != 0.0) text += line_of(specs, "length", real_text(rod.length));

@@ -12,7 +12,7 @@ namespace unfurl {
 namespace {
 
 double rod_mass(const CustomRod& rod, double length) {
-  return rod.mass >= 0.0 ? rod.mass : rod.density * rod.area * length;
+  return rod.mass.value_or(rod.density * rod.area * length);
 }
 
 long segments_of(const RodMaterial& all, const CustomRod& entry, const Rod& rod) {

@@ -23,11 +23,11 @@ struct CustomNode {
 };
 
 struct CustomRod {
-  std::string name;                // empty: "A-B" from its nodes
-  std::vector<std::string> nodes;  // two names
-  double mass = -1.0;              // [kg]; negative: density * area * length
-  double density = 0.0;            // [kg/m^3]
-  double area = 0.0;               // [m^2]
+  std::string name;                 // empty: "A-B" from its nodes
+  std::vector<std::string> nodes;   // two names
+  std::optional<double> mass = {};  // [kg]; none: density * area * length
+  double density = 0.0;             // [kg/m^3]
+  double area = 0.0;                // [m^2]
   std::string group = "rod";
   double length = 0.0;  // [m]; 0: the distance of its nodes
   // In place of those of all rods (RodMaterial); NaN: not given.

@@ -136,8 +136,9 @@ class Checker {
     check_rod_model_of(rod, i);
     if (rod.segments > 1 && !(rod.area > 0.0 && std::isfinite(modulus_of(rod))))
       add("rods", i, "segments", "a rod that bends needs its area, in m^2, and a youngs_modulus, in Pa");
-    const bool meant = std::isfinite(rod.youngs_modulus) ||
-                       (std::isnan(rod.youngs_modulus) && spec_.material.elastic() && rod.mass > 0.0);
+    const bool meant =
+        std::isfinite(rod.youngs_modulus) ||
+        (std::isnan(rod.youngs_modulus) && spec_.material.elastic() && rod.mass.value_or(0.0) > 0.0);
     if (meant && !(rod.area > 0.0))
       add("rods", i, "area", "a rod with a youngs_modulus needs its area, in m^2");
     if (!(rod.area > 0.0) || std::isinf(rod.area)) return;
@@ -165,9 +166,11 @@ class Checker {
 
   void check_rod_mass(const CustomRod& rod, std::size_t i) {
     const bool section = rod.density > 0.0 && rod.area > 0.0;
-    if (std::isnan(rod.mass) || std::isinf(rod.mass))
+    if (rod.mass && !std::isfinite(*rod.mass))
       add("rods", i, "mass", "must be finite");
-    else if (rod.mass < 0.0 && !section)
+    else if (rod.mass && *rod.mass < 0.0)
+      add("rods", i, "mass", "must be >= 0 kg");
+    else if (!rod.mass && !section)
       add("rods", i, "mass", "give mass (0: a pure distance constraint), or both density and area");
   }
 

@@ -48,8 +48,8 @@ std::string rod_text(const CustomRod& rod) {
     text += std::string(", ") + key + " = " + toml_value(value);
   };
   if (!rod.name.empty()) add("name", rod.name);
-  if (rod.mass >= 0) add("mass", rod.mass);
-  if (rod.mass < 0 && rod.density > 0) add("density", rod.density);
+  if (rod.mass) add("mass", *rod.mass);
+  if (!rod.mass && rod.density > 0) add("density", rod.density);
   if (rod.area > 0) add("area", rod.area);
   if (rod.group != "rod") add("group", rod.group);
   if (rod.length > 0) add("length", rod.length);

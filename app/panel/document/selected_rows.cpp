@@ -51,10 +51,10 @@ void add_rod_row(ParamSection& section, const std::string& key, const ParamSpec&
                  double distance) {
   ParamRow row{key + "." + std::string(spec.name), std::string(spec.name), spec, missing};
   if (spec.name == "mass") {
-    if (rod.mass >= 0) row.value = rod.mass;
+    if (rod.mass) row.value = *rod.mass;
     row.typical = 1.0;
   } else if (spec.name == "density" || spec.name == "area") {
-    if (rod.mass >= 0) return;  // the mass is given
+    if (rod.mass) return;  // the mass is given
     row.value = spec.name == "area" ? rod.area : rod.density;
   } else if (spec.name == "length") {
     if (rod.length > 0) row.value = rod.length;

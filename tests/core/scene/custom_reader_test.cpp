@@ -56,7 +56,7 @@ TEST_CASE("nodes, rods, constraints and loads are read") {
   CHECK(scene.custom.nodes[0].fixed);
   CHECK(scene.custom.nodes[1].velocity == Vec3(1, 0, 0));
   CHECK(scene.custom.nodes[1].mass == 3.0);
-  CHECK(scene.custom.rods[0].mass < 0.0);
+  CHECK_FALSE(scene.custom.rods[0].mass.has_value());
   const Structure s = build_structure(scene);
   CHECK(s.rods[0].mass == 12.0);  // 2 kg/m^3 * 3 m^2 * 2 m
   CHECK(s.constraints.size() == 2);
@@ -178,8 +178,39 @@ TEST_CASE("mistakes in CSV files carry file and line") {
   CHECK(error("name,x,y,z,mass\nA,0,0,0,1\nA,1,0,0,1\n") ==
         dir + "n.csv:3:1: structure.nodes[1].name: there is already a node 'A', entry 0");
   CHECK(error("name,x,y,z,mass\nA,0,0,0,-1\n") ==
-        dir + "n.csv:2:1: structure.nodes[0].mass: must be >= 0 kg");
+        dir + "n.csv:2:1: structure.nodes[0].mass: must be >= 0 kg; got -1");
   CHECK(error("name,x,y,z\n\xFF,0,0,0\n") == dir + "n.csv:2:1: not valid UTF-8");
+}
+
+// What the table [[structure.rods]] refuses, a column of the same name refuses in the same words.
+TEST_CASE("numbers in CSV files have the range of the keys they stand for") {
+  const Folder folder;
+  const std::string dir = folder.path.string() + "/";
+  const std::string nodes = "name,x,y,z,fixed\nA,0,0,0,1\nB,1,0,0,0\n";
+  folder.write("n.csv", nodes);
+  const auto scene = folder.write("s.toml", head + "nodes_file = 'n.csv'\nrods_file = 'r.csv'\n");
+  const auto error = [&](const std::string& column, const std::string& value) {
+    const bool mass = column == "mass";
+    folder.write("r.csv", std::string("a,b,area,youngs_modulus,") + (mass ? "mass" : "mass," + column) +
+                              "\nA,B,1e-4,1e9," + (mass ? value : "1," + value) + "\n");
+    const std::string said = file_error_of(scene), place = dir + "r.csv:2:1: ";
+    return said.starts_with(place) ? said.substr(place.size()) : said;
+  };
+  const std::string segments = "structure.rods[0].segments: must be a whole number in [1, 1000]; got ";
+  for (const char* wrong : {"2.5", "0", "-3", "1001"}) CHECK(error("segments", wrong) == segments + wrong);
+  for (const char* wrong : {"1e30", "1e10"}) CHECK(error("segments", wrong).starts_with(segments));
+  CHECK(error("mass", "-1") == "structure.rods[0].mass: must be >= 0 kg; got -1");
+  CHECK(error("length", "0") == "structure.rods[0].length: must be > 0 m; got 0");
+  CHECK(error("free_length", "-1").starts_with("structure.rods[0].free_length: must be > 0 m; got -1"));
+  CHECK(error("second_moment", "-1") == "structure.rods[0].second_moment: must be >= 0 m^4; got -1");
+  CHECK(error("strength", "0") == "structure.rods[0].strength: must be > 0 Pa; got 0");
+  CHECK(error("area", "-1").find("column 'area' appears twice") != std::string::npos);
+  for (const char* wrong : {"2", "0.5", "-1"})
+    CHECK(error("elastic", wrong) == std::string("elastic: must be true or false; got '") + wrong + "'");
+  for (const char* right : {"1", "0", "true", "false", "1.0", ""}) CHECK(error("elastic", right).empty());
+  for (const char* right : {"1", "1000", "3.0", ""}) CHECK(error("segments", right).empty());
+  folder.write("n.csv", "name,x,y,z,fixed\nA,0,0,0,2\nB,1,0,0,0\n");
+  CHECK(file_error_of(scene).starts_with(dir + "n.csv:2:1: fixed: must be true or false; got '2'"));
 }
 
 TEST_CASE("a list that is the name of a file is told which key names files") {

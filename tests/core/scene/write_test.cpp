@@ -95,8 +95,8 @@ Scene random_custom_scene(unsigned seed) {
     CustomRod rod;
     rod.name = random.pick(2) ? "r" + std::to_string(i) : "";
     rod.nodes = {scene.custom.nodes[i].name, scene.custom.nodes[i + 1].name};
-    rod.mass = random.pick(2) ? random.positive() : -1.0;
-    rod.density = rod.mass < 0 ? random.positive() : 0.0;
+    if (random.pick(2)) rod.mass = random.positive();
+    rod.density = rod.mass ? 0.0 : random.positive();
     rod.area = random.positive();
     rod.group = odd[random.pick(10)];
     scene.custom.rods.push_back(rod);

@@ -45,7 +45,7 @@ std::string problems_of(const CustomSpec& spec) {
 TEST_CASE("a list becomes a structure with measured rods") {
   CustomSpec spec = triangle();
   spec.nodes[0].fixed = true;
-  spec.rods[1].mass = -1.0;
+  spec.rods[1].mass.reset();
   spec.rods[1].density = 2.0;
   spec.rods[1].area = 0.5;
   const Structure s = build_custom(spec);
@@ -139,9 +139,13 @@ TEST_CASE("each mistake is found, with its place and its cure") {
           "rods[3].name: there is already a rod 'A-B', entry 0; give this one a name of its own\n");
   }
   SECTION("no mass") {
-    spec.rods[0].mass = -1;
+    spec.rods[0].mass.reset();
     CHECK(problems_of(spec) ==
           "rods[0].mass: give mass (0: a pure distance constraint), or both density and area\n");
+  }
+  SECTION("negative mass of a rod") {
+    spec.rods[0].mass = -1;
+    CHECK(problems_of(spec) == "rods[0].mass: must be >= 0 kg\n");
   }
   SECTION("negative mass of a node") {
     spec.nodes[0].mass = -1;
