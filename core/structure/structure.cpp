@@ -39,8 +39,11 @@ MeasureFunction function_of(const Deployment& deployment) {
 
 double Deployment::fraction(const ConstVec& q) const {
   if (measured) return (function_of(*this).value(q.data()) - stowed) / (deployed - stowed);
-  const double folded = std::cos(initial_fold_angle);
-  return (std::cos(fold_angle(q)) - folded) / (std::cos(deployed_fold_angle) - folded);
+  // cos a - cos b, which would cancel next to b: both are halved, and so is their quotient.
+  const auto beyond = [b = initial_fold_angle](double a) {
+    return std::sin(0.5 * (b + a)) * std::sin(0.5 * (b - a));
+  };
+  return beyond(fold_angle(q)) / beyond(deployed_fold_angle);
 }
 
 double Deployment::remaining(const ConstVec& q) const {

@@ -31,10 +31,17 @@ ParamSpec section_area_param(double fallback) {
   return positive_param("section_area", "m^2", fallback, "cross section of the rods");
 }
 
+bool unfolds(double fold_angle, double deployed_angle) {
+  return (fold_angle - deployed_angle) * radians_per_degree > 1e-9;
+}
+
 void require_unfolding(double fold_angle, double deployed_angle) {
-  if (!(deployed_angle < fold_angle))
-    throw StructureError("deployed_angle",
-                         "deployed_angle must be smaller than fold_angle, at which the motion starts");
+  if (unfolds(fold_angle, deployed_angle)) return;
+  if (deployed_angle == 0.0)  // of families without that key, too
+    throw StructureError("fold_angle",
+                         "fold_angle must be larger than 0 degrees, at which the structure is deployed");
+  throw StructureError("deployed_angle",
+                       "deployed_angle must be smaller than fold_angle, at which the motion starts");
 }
 
 void hide_braces(Structure& structure) {

@@ -22,7 +22,9 @@ ParamSpec below_max(ParamSpec spec);
 ParamSpec inside(ParamSpec spec);
 ParamSpec section_area_param(double fallback);  // fallback [m^2]
 
-// Throws StructureError unless deployed_angle < fold_angle [deg].
+// Whether a motion from fold_angle to deployed_angle [deg] is one: by more than 1e-9 rad.
+bool unfolds(double fold_angle, double deployed_angle);
+// Throws StructureError unless it is.
 void require_unfolding(double fold_angle, double deployed_angle);
 
 // Puts a structure together from its nodes at t = 0. Node arguments are indices; constraints hold what the

@@ -87,7 +87,7 @@ void set_deployment(Structure& out, const BricardShape& s, double deployed_degre
   d.initial_fold_angle = std::atan2(s.height() / s.L, s.S1);
   d.deployed_fold_angle = deployed_degrees * radians_per_degree;
   const double start = d.initial_fold_angle / radians_per_degree;
-  if (!(deployed_degrees < start))
+  if (!unfolds(start, deployed_degrees))
     refuse("deployed_angle",
            "deployed_angle = %.6g degrees must be smaller than the fold angle at the start, %.6g degrees",
            deployed_degrees, start);

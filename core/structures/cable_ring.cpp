@@ -33,7 +33,7 @@ CableRingShape shape_of(const ParamSet& params) {
   s.batten = params.real("post_length");
   s.fold = params.real("fold_angle") * radians_per_degree;
   s.deployed = params.real("deployed_angle") * radians_per_degree;
-  require_unfolding(s.fold, s.deployed);
+  require_unfolding(params.real("fold_angle"), params.real("deployed_angle"));
   return s;
 }
 

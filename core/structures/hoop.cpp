@@ -164,8 +164,8 @@ const std::vector<ParamSpec>& hoop_params() {
       positive_param("post_length", "m", 1.2, "length of a post"),
       positive_param("density", "kg/m^3", 3000.0, "density of the rods"),
       positive_param("section_area", "m^2", 9e-4, "cross section of the rods"),
-      below_max(real_param("fold_angle", "deg", 89.34053637766085, 0.0, 90.0,
-                           "fold angle at t = 0; 0 is fully deployed")),
+      inside(real_param("fold_angle", "deg", 89.34053637766085, 0.0, 90.0,
+                        "fold angle at t = 0; 0 is fully deployed")),
       real_param("hinge_force", "N", 200.0, -1e12, 1e12,
                  "the paper's f: -f along z on each bottom hinge, +f on each top hinge"),
       choice_param(

@@ -2,6 +2,7 @@
 #include "core/structures/hoop_shape.hpp"
 
 #include "core/structure/structure_error.hpp"
+#include "core/structures/assembly.hpp"
 
 namespace unfurl {
 
@@ -32,6 +33,7 @@ HoopShape hoop_shape(const ParamSet& p) {
   s.l1 = p.real("chord_rod_length");
   s.l2 = p.real("post_length");
   const double degrees = p.real("fold_angle");
+  require_unfolding(degrees, 0.0);
   s.sine = std::sin(degrees * radians_per_degree);
   s.cosine = std::sin((90.0 - degrees) * radians_per_degree);  // keeps its digits near 90 degrees
   const double per_length = p.real("density") * p.real("section_area");

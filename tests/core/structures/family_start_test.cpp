@@ -32,6 +32,36 @@ TEST_CASE("every family: a deployment begins at fraction 0, at the fold angle th
   CHECK(found >= 6);
 }
 
+TEST_CASE("no family starts within 1e-9 rad of its deployed pose; beyond, its fraction is a number") {
+  const std::string level =
+      "fold_angle: fold_angle must be larger than 0 degrees, at which the structure is deployed";
+  const std::string unlike =
+      "deployed_angle: deployed_angle must be smaller than fold_angle, at which the motion starts";
+  for (const char* model : {"full", "sector", "joints"})
+    for (const double fold : {0.0, 5e-10 / radians_per_degree})
+      CHECK(refusal("hoop", {{"fold_angle", fold}, {"model", std::string(model)}}) == level);
+  CHECK(refusal("cable_ring", {{"fold_angle", 5e-10 / radians_per_degree}}) == level);
+  for (const char* kind : {"cable_ring", "hoberman", "reentrant_sheet", "scissor_mast", "scissor_ring"}) {
+    INFO(kind);
+    const double near = 20.0 + 5e-10 / radians_per_degree;
+    CHECK(refusal(kind, {{"fold_angle", near}, {"deployed_angle", 20.0}}) == unlike);
+  }
+  // At 2e-9 rad the cosines of the folded and of the deployed pose are the same double. The fold angle itself
+  // is known to the rounding of node positions, some 1e-15 rad: 1e-6 of that way.
+  for (const char* kind : {"hoop", "cable_ring"}) {
+    INFO(kind);
+    const Structure structure = family_structure(kind, {{"fold_angle", 2e-9 / radians_per_degree}});
+    CHECK(structure.deployment.fraction(node_positions(structure)) == Approx(0).margin(1e-5));
+  }
+  Deployment
+      deployment;  // of a rod of length 1 in the plane x z, half way: 1 - cos is a quarter of the whole
+  deployment.fold_cosine = {{0}, {Vec3::UnitX()}, 0.0};
+  deployment.fold_sine = {{0}, {Vec3::UnitZ()}, 0.0};
+  deployment.initial_fold_angle = 2e-9;
+  const Vec3 half(1.0, 0.0, 1e-9);
+  CHECK(deployment.fraction(half) == Approx(0.75).epsilon(1e-12));
+}
+
 TEST_CASE("braces of every family are called so, by the nodes that they join") {
   int found = 0;
   for (const Family& family : families()) {

@@ -39,7 +39,14 @@ TEST_CASE("a ring of n units has 12 n coordinates and 13 n constraints of rank 1
     system.all_constraint_values(0.0, node_positions(s), phi);
     CHECK(phi.lpNorm<Eigen::Infinity>() <= 1e-14);  // coordinates of some 10 m: a few ulp
   }
-  const Structure deployed = hoop_structure({{"fold_angle", 0.0}});
+  // A motion starts folded: the deployed pose is the one at 60 degrees, its radii doubled, its hinges level
+  // with the ends of the posts.
+  Structure deployed = hoop_structure({{"fold_angle", 60.0}});
+  for (std::size_t i = 0; i < deployed.nodes.size(); ++i) {
+    Vec3& x = deployed.nodes[i].position;
+    x.head<2>() *= 2.0;
+    x[2] = i % 2 == 0 ? -0.6 : 0.6;
+  }
   CHECK(rank(scaled_jacobian(System(deployed, true), node_positions(deployed))) ==
         60);  // 10 n: a bifurcation
 }
