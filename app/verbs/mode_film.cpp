@@ -73,8 +73,9 @@ Scene shown_scene(const Scene& scene, std::string title, const Arguments& argume
 class Swing {
  public:
   Swing(const ModalPose& pose, const VibrationMode& mode)
-      : poses_(pose.model->structure), mechanism_(mode.mechanism), rest_(pose.model->system.coordinates()) {
-    pose.model->system.expand(pose.state.z, rest_);
+      : rest_(positions(pose)),
+        poses_(pose.model->structure, rest_, pose.state.angles),
+        mechanism_(mode.mechanism) {
     const auto& copies = pose.model->structure.node_copies;
     shape_ = VectorXd::Zero(rest_.size());
     for (std::size_t i = copies.size(); i-- > 0;)  // backwards: the first copy has the last word
@@ -90,9 +91,16 @@ class Swing {
   }
 
  private:
+  static VectorXd positions(const ModalPose& pose) {
+    VectorXd q(pose.model->system.coordinates());
+    pose.model->system.expand(pose.state.z, q);
+    return q;
+  }
+
+  VectorXd rest_;
   FreePoses poses_;
   bool mechanism_;
-  VectorXd rest_, shape_;
+  VectorXd shape_;
   double reach_ = 0;
 };
 

@@ -12,21 +12,44 @@
 #include <algorithm>
 
 #include "core/math/factors.hpp"
+#include "core/structure/measure.hpp"
+#include "core/structure/node_positions.hpp"
 
 namespace unfurl {
 
 namespace {
 
-constexpr double met = 1e-10;          // of a constraint, in units of the structure's size
-constexpr double at_rest = 1e-4;       // mu: of moving at all, where nothing speaks for more
-constexpr double kept = 1e4;           // W: of constraints
-constexpr double longest_step = 0.04;  // of a node, in units of the size
+constexpr double met = 1e-10;           // of a constraint, in units of the structure's size
+constexpr double least_damping = 1e-4;  // mu: of moving at all, where nothing speaks for more
+constexpr double kept = 1e4;            // W: of constraints
+constexpr double longest_step = 0.04;   // of a node, in units of the size
 constexpr int most_free_steps = 12, most_projections = 30;
 constexpr double free_value = 1e-12;  // eigenvalue of G^T G, in units of the largest
 
+// Gears, and whatever else holds a measure at a value, are no drives.
+bool drives(const Constraint& c) {
+  return c.kind == "measure" && c.target.moves();
+}
+
 Structure without_drives(Structure structure) {
-  std::erase_if(structure.constraints, [](const Constraint& c) { return c.kind == "measure"; });
+  std::erase_if(structure.constraints, drives);
   return structure;
+}
+
+// Of the angles that a structure follows, in its order, those that are followed without its drives.
+VectorXd without_drives(const Structure& structure, const VectorXd& angles) {
+  std::vector<char> leaves(followed_angles(structure).measures.size(), 0);
+  const std::vector<int> first = followed_angles(structure).of_constraint;
+  for (std::size_t c = 0; c < structure.constraints.size(); ++c) {
+    const Constraint& constraint = structure.constraints[c];
+    if (first[c] < 0 || !drives(constraint)) continue;
+    const auto own = std::ranges::count_if(constraint.measure.terms, counts_turns, &MeasureTerm::measure);
+    std::fill_n(leaves.begin() + first[c], own, 1);
+  }
+  std::vector<double> stay;
+  for (std::size_t i = 0; i < leaves.size() && static_cast<Index>(i) < angles.size(); ++i)
+    if (!leaves[i]) stay.push_back(angles[static_cast<Index>(i)]);
+  return Eigen::Map<const VectorXd>(stay.data(), static_cast<Index>(stay.size()));
 }
 
 double size_of_structure(const Structure& structure) {
@@ -65,8 +88,21 @@ MatrixXd orthonormal(const MatrixXd& A, double least) {
 
 }  // namespace
 
-FreePoses::FreePoses(const Structure& structure)
-    : system_(without_drives(structure), true), size_(size_of_structure(structure)) {}
+FreePoses::FreePoses(const Structure& structure) : FreePoses(structure, node_positions(structure), {}) {}
+
+FreePoses::FreePoses(const Structure& structure, const VectorXd& q, const VectorXd& angles)
+    : system_(without_drives(structure), true), size_(size_of_structure(structure)) {
+  State there = at_rest(system_.reduce(q));
+  there.angles = without_drives(structure, angles);
+  system_.follow(there);
+}
+
+State FreePoses::at_rest(VectorXd z) const {
+  State state;
+  state.w = VectorXd::Zero(z.size());
+  state.z = std::move(z);
+  return state;
+}
 
 SparseRows FreePoses::jacobian(const VectorXd& z, VectorXd& phi) const {
   VectorXd q(system_.coordinates());
@@ -122,9 +158,9 @@ VectorXd FreePoses::step_towards(const VectorXd& z, int node, const Vec3& way, d
   return solver.solve(right);
 }
 
-VectorXd FreePoses::pulled(const VectorXd& q, int node, const Vec3& target) const {
+VectorXd FreePoses::pulled(const VectorXd& q, int node, const Vec3& target) {
   VectorXd z = system_.reduce(q);
-  double away = (target - node_at(z, node)).norm(), damping = at_rest;
+  double away = (target - node_at(z, node)).norm(), damping = least_damping;
   for (int i = 0; i < most_free_steps && away > 1e-9 * size_; ++i) {
     Vec3 way = target - node_at(z, node);
     if (way.norm() > longest_step * size_) way *= longest_step * size_ / way.norm();
@@ -135,7 +171,10 @@ VectorXd FreePoses::pulled(const VectorXd& q, int node, const Vec3& target) cons
     if (left < away * (1 - 1e-6)) {
       z = std::move(next);
       away = left;
-      damping = std::max(0.1 * damping, at_rest);
+      State there = at_rest(z);  // each step is short: an angle goes to the nearest turn
+      system_.count_on(there);
+      system_.follow(there);
+      damping = std::max(0.1 * damping, least_damping);
     } else {
       // Near the end of the way, all but stretched, a node goes nowhere for small dz and back for large ones.
       damping *= 10;

@@ -20,8 +20,8 @@ void Hand::take(const std::shared_ptr<const LiveRun>& run, double t) {
   while (i + 1 < trajectory.size() && trajectory.time(i + 1) <= t + 1e-12) ++i;
   run_ = run;
   t_ = t;
-  poses_ = std::make_unique<FreePoses>(trajectory.model(i).structure);
   start_ = q_ = trajectory.node_positions(i);
+  poses_ = std::make_unique<FreePoses>(trajectory.model(i).structure, start_, trajectory.state(i).angles);
   wiggled_ = -1;
 }
 

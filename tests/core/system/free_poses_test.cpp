@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/system/free_poses.hpp"
+#include "core/structure/measure.hpp"
 #include "core/structure/node_positions.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
@@ -16,6 +19,15 @@ namespace {
 
 Structure structure_of(const std::string& text) {
   return build_structure(read_scene_text(text, "test", {}, "."));
+}
+
+// The angles that a structure counts, at its start.
+VectorXd followed_of(const Structure& structure) {
+  const FollowedAngles followed = followed_angles(structure);
+  VectorXd angles(static_cast<Index>(followed.measures.size()));
+  for (std::size_t i = 0; i < followed.measures.size(); ++i)
+    angles[static_cast<Index>(i)] = followed.measures[i].reference;
+  return angles;
 }
 
 // A bob on a rod of 1.3 m about a fixed point, and a second one on it of 0.8 m.
@@ -32,7 +44,7 @@ TEST_CASE("a bob that is pulled goes to the nearest point of its sphere") {
       "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'O'\nposition = [0, 0, 0]\nfixed = true\n"
       "[[structure.nodes]]\nname = 'P'\nposition = [1.3, 0, 0]\n[[structure.rods]]\nnodes = ['O', 'P']\nmass "
       "= 1\n");
-  const FreePoses poses(structure);
+  FreePoses poses(structure);
   VectorXd q = node_positions(structure);
   const Vec3 target(0.4, 1.1, -0.9);
   // A call goes a part of the way, as a frame of a drag does.
@@ -44,7 +56,7 @@ TEST_CASE("a bob that is pulled goes to the nearest point of its sphere") {
 
 TEST_CASE("what can be reached is reached, what cannot as near as the rods let it") {
   const Structure structure = structure_of(double_pendulum);
-  const FreePoses poses(structure);
+  FreePoses poses(structure);
   VectorXd q = node_positions(structure);
   const Vec3 near(0.7, 0.9, 0.6);  // 1.29 m from O, within 0.5 and 2.1 m
   for (int i = 0; i < 30; ++i) q = poses.pulled(q, 2, near);
@@ -85,6 +97,91 @@ TEST_CASE("a drive lets go of what is led by hand") {
   const Structure structure = build_structure(read_scene_file(find_scene("hoop6_motor")));
   const FreePoses poses(structure);
   CHECK(poses.motions(node_positions(structure)).cols() >= 1);
+}
+
+// Two links of 1 m in a plane; the second turns against the first by twice the angle of the first against the
+// ground: with the first at u, the second points along 3 u. A drive turns the first.
+const char* const geared =
+    "[structure]\nkind = 'custom'\nnodes = [{name = 'W', position = [-1, 0, 0], fixed = true},\n"
+    "{name = 'O', position = [0, 0, 0], fixed = true}, {name = 'A', position = [1, 0, 0]},\n"
+    "{name = 'B', position = [2, 0, 0]}]\n"
+    "rods = [{nodes = ['O', 'A'], mass = 1}, {nodes = ['A', 'B'], mass = 1}]\n"
+    "constraints = [{kind = 'plane', nodes = ['A', 'B'], normal = [0, 0, 1]},\n"
+    "{kind = 'gear', nodes = ['W', 'O', 'A', 'O', 'A', 'B'], radii = [2, -1], axis = [0, 0, 1]}]\n";
+
+TEST_CASE("a gear is kept by what is led by hand, also after turns") {
+  const Structure structure = structure_of(geared);
+  const auto pose = [&](double u) {
+    VectorXd q = node_positions(structure);
+    q.segment<3>(6) = Vec3(std::cos(u), std::sin(u), 0);
+    q.segment<3>(9) = q.segment<3>(6) + Vec3(std::cos(3 * u), std::sin(3 * u), 0);
+    return q;
+  };
+  const double tip_error = 1e-6;  // rows are met to 1e-10 of the size, squares of small steps of a hand aside
+  FreePoses poses(structure);
+  REQUIRE(poses.error(pose(0.4)) < 1e-12);
+  CHECK(poses.motions(pose(0.4)).cols() == 1);
+  // The tip of the first link is led around by small steps, one and a half turns: the second link, by 4.5.
+  VectorXd q = pose(0);
+  for (double u = 0.05; u < 3 * pi; u += 0.05) {
+    q = poses.pulled(q, 2, pose(u).segment<3>(6));
+    CHECK((q - pose(u)).norm() < tip_error);
+  }
+  // From there on, by the angles that a run has counted up to there: the first of the ground and the first
+  // link, at rest half a turn.
+  const double there = 7.1;
+  VectorXd angles = followed_of(structure);
+  REQUIRE(angles.size() == 2);
+  for (Index k = 0; k < 2; ++k) angles[k] += (k == 0 ? 1 : 2) * there;
+  const FreePoses late(structure, pose(there), angles);
+  CHECK(late.error(pose(there)) < 1e-12);
+  const MatrixXd motions = late.motions(pose(there));
+  REQUIRE(motions.cols() == 1);
+  const VectorXd on = late.moved(pose(there), motions.col(0), 0.1);
+  const double u = there + std::remainder(std::atan2(on[7], on[6]) - there, 2 * pi);
+  CHECK((on - pose(u)).norm() < tip_error);
+  CHECK(std::abs(u - there) > 0.01);
+}
+
+TEST_CASE("an array of panels with geared hinges has one free motion, with or without its drive") {
+  // Six panels in a plane: each has a degree of freedom, every hinge but the root is geared to it.
+  std::string text =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'W', position = [0, -1, 0], fixed = true},\n"
+      "{name = 'H0', position = [0, 0, 0], fixed = true},\n"
+      "{repeat = {i = '1:7'}, name = 'H{i}', position = ['=i*cos(1)', '=sin(1)*(i%2)', 0]}]\n"
+      "rods = [{repeat = {i = '0:6'}, nodes = ['H{i}', 'H{i+1}'], mass = 1}]\n"
+      "[[constraints]]\nkind = 'plane'\nnodes = ['H*']\nnormal = [0, 0, 1]\n"
+      "[[constraints]]\nrepeat = {i = '1:6'}\nkind = 'combination'\n"
+      "terms = ['2 angle W H0 H1 about 0 0 1', '{2*(i%2)-1} angle H{i-1} H{i} H{i+1} about 0 0 1']\n";
+  const auto motions = [](const Structure& structure) {
+    return FreePoses(structure).motions(node_positions(structure)).cols();
+  };
+  CHECK(motions(structure_of(text)) == 1);
+  text += "[[constraints]]\nkind = 'angle'\nnodes = ['W', 'H0', 'H1']\naxis = [0, 0, 1]\n";
+  CHECK(motions(structure_of(text)) == 0);  // held
+  CHECK(motions(structure_of(text + "motion = 'rate'\nrate = 10\n")) == 1);
+}
+
+TEST_CASE("a driven combination that lets go takes its angles out of those that are counted") {
+  const Structure structure =
+      structure_of(std::string(geared) +
+                   "[[constraints]]\nkind = 'combination'\nmotion = 'rate'\nrate = 10\n"
+                   "terms = ['angle W O A about 0 0 1', 'angle O A B about 0 0 1']\n");
+  // The drive stands first, so that its angles come before those of the gear.
+  Structure first = structure;
+  std::rotate(first.constraints.begin(), first.constraints.end() - 1, first.constraints.end());
+  const double u = 4.0;
+  VectorXd q = node_positions(structure);
+  q.segment<3>(6) = Vec3(std::cos(u), std::sin(u), 0);
+  q.segment<3>(9) = q.segment<3>(6) + Vec3(std::cos(3 * u), std::sin(3 * u), 0);
+  for (const Structure& each : {structure, first}) {
+    VectorXd angles = followed_of(each);
+    REQUIRE(angles.size() == 4);
+    for (Index k = 0; k < 4; ++k) angles[k] += (k % 2 == 0 ? 1 : 2) * u;
+    const FreePoses poses(each, q, angles);
+    CHECK(poses.error(q) < 1e-12);
+    CHECK(poses.motions(q).cols() == 1);
+  }
 }
 
 }  // namespace free_poses_test
