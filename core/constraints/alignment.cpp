@@ -71,6 +71,16 @@ class Collinear final : public Alignment {
   std::vector<int> stencil(int row) const override {
     return coordinates_of(entries_[static_cast<std::size_t>(row / 3)].nodes);
   }
+  // The row of the axis that is nearest to the line: e . (rows) = 0, with the largest coefficient.
+  std::vector<int> implied_rows(const double* q) const override {
+    std::vector<int> rows;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      Index nearest = 0;
+      line_of(entries_[i], q).cwiseAbs().maxCoeff(&nearest);
+      rows.push_back(static_cast<int>(3 * i) + static_cast<int>(nearest));
+    }
+    return rows;
+  }
   void value(const double* q, double* phi) const override {
     for (const Entry& e : entries_) {
       three(phi) = edge(e, 1, q).cross(edge(e, 2, q)) / length_;
@@ -122,9 +132,14 @@ class Collinear final : public Alignment {
   static Vec3 edge(const Entry& e, std::size_t k, const double* x) {
     return at(x, e.nodes[k]) - at(x, e.nodes[0]);
   }
-  // P, with the line along the longer of u and w.
+  // Along it: the longer of u and w.
+  static Vec3 line_of(const Entry& e, const double* q) {
+    const Vec3 u = edge(e, 1, q), w = edge(e, 2, q);
+    return u.squaredNorm() >= w.squaredNorm() ? u : w;
+  }
+  // P.
   static Mat3 across(const Entry& e, const double* q) {
-    const Vec3 u = edge(e, 1, q), w = edge(e, 2, q), along = u.squaredNorm() >= w.squaredNorm() ? u : w;
+    const Vec3 along = line_of(e, q);
     const double square = along.squaredNorm();
     if (!(square > 0)) return Mat3::Identity();
     return Mat3::Identity() - along * along.transpose() / square;

@@ -38,6 +38,10 @@ class ConstraintBlock {
   // Coordinates that row depends on, in the order used by jacobian and curvature.
   virtual std::vector<int> stencil(int row) const = 0;
 
+  // Rows that follow from the others of their own constraint in every pose, so that they are none of its
+  // equations: where three are kept of which two say everything, the one to leave out at q.
+  virtual std::vector<int> implied_rows(const double* /*q*/) const { return {}; }
+
   virtual void value(const double* q, double* phi) const = 0;
   // The same near the angles of a moment: of rows that sum up angles that count turns.
   virtual void value_at(const Moment& /*at*/, const double* q, double* phi) const { value(q, phi); }

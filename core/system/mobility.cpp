@@ -32,6 +32,26 @@ SparseRows unit_rows(const System& system, const ConstVec& q) {
   return G;
 }
 
+std::vector<int> counted_rows(const System& system, const ConstVec& q) {
+  std::vector<char> counts(static_cast<std::size_t>(system.all_constraints()), 1);
+  for (const int row : system.implied_rows(q)) counts[static_cast<std::size_t>(row)] = 0;
+  std::vector<int> rows;
+  for (std::size_t r = 0; r < counts.size(); ++r)
+    if (counts[r]) rows.push_back(static_cast<int>(r));
+  return rows;
+}
+
+SparseRows picked_rows(const SparseRows& A, const std::vector<int>& rows) {
+  if (static_cast<Index>(rows.size()) == A.rows()) return A;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (SparseRows::InnerIterator it(A, rows[r]); it; ++it)
+      entries.emplace_back(static_cast<int>(r), static_cast<int>(it.col()), it.value());
+  SparseRows out(static_cast<Index>(rows.size()), A.cols());
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
 namespace {
 
 // Gram-Schmidt over the rows from the first to the last, each row projected twice so that the basis stays
@@ -91,7 +111,8 @@ std::vector<int> dependent_rows(const MatrixXd& G, const VectorXd& values) {
 
 Mobility analyse_mobility(const System& system, const ConstVec& q) {
   Mobility mobility;
-  const SparseRows G = unit_rows(system, q);
+  const std::vector<int> counted = counted_rows(system, q);
+  const SparseRows G = picked_rows(unit_rows(system, q), counted);
   mobility.coordinates = G.cols();
   mobility.constraints = G.rows();
   mobility.smallest_singular_value = std::numeric_limits<double>::quiet_NaN();
@@ -107,8 +128,10 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
   mobility.count = mobility.coordinates - mobility.constraints;
   mobility.rigid_motions = rigid_motions(G, q);
   const auto names = system.all_names();
-  mobility.redundant_rows = dependent;
-  for (const int row : dependent) mobility.redundant.push_back(names[static_cast<std::size_t>(row)]);
+  for (const int row : dependent) {
+    mobility.redundant_rows.push_back(counted[static_cast<std::size_t>(row)]);
+    mobility.redundant.push_back(names[static_cast<std::size_t>(mobility.redundant_rows.back())]);
+  }
   if (dense && mobility.rank > 0) mobility.smallest_singular_value = values[mobility.rank - 1];
   return mobility;
 }

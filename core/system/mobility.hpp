@@ -11,7 +11,7 @@ namespace unfurl {
 
 struct Mobility {
   Index coordinates = 0;               // 3 n
-  Index constraints = 0;               // rows of G, eliminated linear ones included
+  Index constraints = 0;               // rows of G, eliminated linear ones included, implied ones not
   Index rank = 0;                      // of G
   std::vector<std::string> redundant;  // rows that follow from the rows before them, in order
   std::vector<int> redundant_rows;     // the same by number
@@ -25,6 +25,10 @@ struct Mobility {
 
 // The Jacobian of all constraints at the pose q [3 n], every row scaled to length 1; rows of zeros stay.
 SparseRows unit_rows(const System& system, const ConstVec& q);
+// The rows that are counted: all that are not implied by others of their own constraint.
+std::vector<int> counted_rows(const System& system, const ConstVec& q);
+// These rows alone, in ascending order.
+SparseRows picked_rows(const SparseRows& A, const std::vector<int>& rows);
 
 // At the pose q [3 n] of the solved nodes.
 Mobility analyse_mobility(const System& system, const ConstVec& q);

@@ -41,7 +41,12 @@ ForceBalance force_balance(const System& system, const ConstVec& q, const Mobili
   VectorXd compliance = VectorXd::Zero(rows.rows());
   for (std::size_t r = 0; r < rods.size(); ++r)
     compliance[rows.rows() - static_cast<Index>(rods.size() - r)] = rods[r].compliance();
-  out.determined = determined_rows(rows, compliance);
+  // A row that others of its constraint imply shares nothing with the rest: it is counted as having no force.
+  const std::vector<int> counted = counted_rows(system, q);
+  out.determined.assign(static_cast<std::size_t>(rows.rows()), 1);
+  const std::vector<char> unique = determined_rows(picked_rows(rows, counted), compliance(counted));
+  for (std::size_t k = 0; k < counted.size(); ++k)
+    out.determined[static_cast<std::size_t>(counted[k])] = unique[k];
   const std::vector<int>& dependent = mobility.redundant_rows;
   out.listed = dependent.empty() || rows.cols() <= max_listed_coordinates;
   if (dependent.empty() || !out.listed) return out;
@@ -49,7 +54,7 @@ ForceBalance force_balance(const System& system, const ConstVec& q, const Mobili
   for (Index r = 0; r < rows.rows(); ++r) norm[r] = rows.row(r).norm();
   const MatrixXd G(unit_rows(system, q));
   std::vector<int> basis;
-  for (int r = 0; r < static_cast<int>(G.rows()); ++r)
+  for (const int r : counted)
     if (std::find(dependent.begin(), dependent.end(), r) == dependent.end()) basis.push_back(r);
   const MatrixXd shares =
       fitted_columns(G(basis, Eigen::all).transpose(), G(dependent, Eigen::all).transpose());

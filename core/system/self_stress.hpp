@@ -21,8 +21,8 @@ struct SelfStress {
 
 struct ForceBalance {
   std::vector<SelfStress> states;  ///< a basis: one through every redundant row, the last of its members
-  std::vector<char> determined;    ///< per row of all constraints: the force is unique
-  bool listed = true;              ///< false: too large a structure, there are states but none is listed
+  std::vector<char> determined;  ///< per row of all constraints: the force is unique (implied rows have none)
+  bool listed = true;            ///< false: too large a structure, there are states but none is listed
 };
 
 /// Of the structure at the pose q [3 n]; `mobility` of the same pose.

@@ -446,6 +446,16 @@ std::vector<std::string> System::all_names() const {
   return names;
 }
 
+std::vector<int> System::implied_rows(const ConstVec& q) const {
+  std::vector<int> rows;
+  int first = 0;
+  for (const ConstraintBlock* block : data_->all) {
+    for (const int row : block->implied_rows(q.data())) rows.push_back(first + row);
+    first += block->rows();
+  }
+  return rows;
+}
+
 std::vector<int> System::all_sources() const {
   return sources_of(data_->all);
 }

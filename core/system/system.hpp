@@ -157,6 +157,8 @@ class System {
                             std::vector<double>& scratch) const;
   SparseRows all_jacobian(const ConstVec& q) const;  // of the node coordinates
   std::vector<std::string> all_names() const;
+  // Of them, those that follow from the others of their own constraint, whatever the pose: not to be counted.
+  std::vector<int> implied_rows(const ConstVec& q) const;
   std::vector<int> all_sources() const;  // indices in Structure::constraints, -1: a rod
   VectorXd all_lengths() const;
 

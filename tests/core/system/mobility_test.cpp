@@ -85,4 +85,65 @@ TEST_CASE("a constraint that is listed twice is redundant, the second time") {
   CHECK(m.smallest_singular_value > 0.1);
 }
 
+// Three coordinates a node; two equations keep a node on a line through two others, whichever way it points.
+TEST_CASE("a node on a line is counted as two constraints, and shares no force with itself") {
+  const auto on_line = [](const Vec3& along) {
+    std::string text = "[structure]\nkind = 'custom'\n";
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 x = Vec3(0.3, -0.2, 0.7) + (1.3 + 0.4 * i) * along;
+      text += "[[structure.nodes]]\nname = 'N" + std::to_string(i) + "'\nmass = 1\nposition = [" +
+              std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", " + std::to_string(x[2]) + "]\n";
+    }
+    text += "[[structure.constraints]]\nkind = 'collinear'\nnodes = ['N0', 'N1', 'N2']\n";
+    const auto model = build_model(read_scene_text(text, "x"));
+    return analyse_mobility(model->system, node_positions(model->structure));
+  };
+  for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(1, 2, 0), Vec3(-1, 0.5, 2)}) {
+    INFO(along.transpose());
+    const Mobility m = on_line(along);
+    CHECK(m.constraints == 2);
+    CHECK(m.rank == 2);
+    CHECK(m.redundant.empty());
+    CHECK(m.degrees_of_freedom == 7);
+    CHECK(m.count == 7);
+    CHECK(m.smallest_singular_value > 0.1);
+  }
+}
+
+TEST_CASE("an umbrella of any number of ribs has one freedom and nothing redundant, as its nodes count") {
+  // n ribs from the crown to T_i, on each a slider P_i at 0.3 m, stretchers to the runner on the axis. Of
+  // 3 (2 + 2 n) coordinates 3 are the crown's, 2 the runner's line, and a rib takes three lengths, a plane
+  // and the two of P_i on its line: 6 + 6 n - 5 - 6 n = 1. Beyond 900 coordinates the analysis is another
+  // one.
+  for (const int n : {3, 8, 160}) {
+    INFO(n);
+    const std::string ribs = std::to_string(n);
+    const Mobility m = [&] {
+      const auto model = build_model(read_scene_text(
+          "[variables]\nn = " + ribs +
+              "\nth = '=15*deg'\n[structure]\nkind = 'custom'\nnodes = [\n"
+              "{name = 'crown', position = [0, 0, 1], fixed = true},\n"
+              "{name = 'runner', position = [0, 0, '=1-0.3*cos(th)-sqrt(0.1225-(0.3*sin(th))^2)'], mass = "
+              "0.2},\n"
+              "{repeat = {i = '0:n'}, name = 'P{i}', position = ['=0.3*sin(th)*cos(2*pi*i/n)', "
+              "'=0.3*sin(th)*sin(2*pi*i/n)', '=1-0.3*cos(th)']},\n"
+              "{repeat = {i = '0:n'}, name = 'T{i}', position = ['=0.8*sin(th)*cos(2*pi*i/n)', "
+              "'=0.8*sin(th)*sin(2*pi*i/n)', '=1-0.8*cos(th)']}]\n"
+              "rods = [{repeat = {i = '0:n'}, nodes = ['crown', 'T{i}'], mass = 0.1},\n"
+              "{repeat = {i = '0:n'}, nodes = ['crown', 'P{i}'], mass = 0},\n"
+              "{repeat = {i = '0:n'}, nodes = ['runner', 'P{i}'], mass = 0.05}]\n"
+              "[[constraints]]\nrepeat = {i = '0:n'}\nkind = 'collinear'\nnodes = ['crown', 'T{i}', 'P{i}']\n"
+              "[[constraints]]\nrepeat = {i = '0:n'}\nkind = 'plane'\nnodes = ['T{i}']\n"
+              "normal = ['=-sin(2*pi*i/n)', '=cos(2*pi*i/n)', 0]\n"
+              "[[constraints]]\nkind = 'line'\nnodes = ['runner']\ndirection = [0, 0, 1]\n",
+          "x"));
+      return analyse_mobility(model->system, node_positions(model->structure));
+    }();
+    CHECK(m.constraints == 5 + 6 * n);
+    CHECK(m.degrees_of_freedom == 1);
+    CHECK(m.count == 1);
+    CHECK(m.redundant.empty());
+  }
+}
+
 }  // namespace mobility_test

@@ -117,6 +117,27 @@ TEST_CASE("a state of self-stress is in balance, and its members are what is not
   }
 }
 
+TEST_CASE("rows that keep a node on a line are no state of self-stress") {
+  // A rod A-B of 2 m, with C in its middle on two rods of 1 m: one state, the three rods against each other.
+  // The line stands askew, so that each of its three rows depends on the two others.
+  const Judged j = judged(read_scene_text(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true},\n"
+      "{name = 'B', position = [1.2, 1.6, 0], mass = 2}, {name = 'C', position = [0.6, 0.8, 0], mass = 1}]\n"
+      "rods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['A', 'C'], mass = 1}, {nodes = ['C', 'B'], mass = "
+      "1}]\n"
+      "[[constraints]]\nkind = 'collinear'\nnodes = ['A', 'B', 'C']\n",
+      "x"));
+  REQUIRE(j.balance.states.size() == 1);
+  REQUIRE(j.balance.states[0].members.size() == 3);
+  const auto names = j.model->system.all_names();
+  for (const auto& member : j.balance.states[0].members)
+    CHECK(names[static_cast<std::size_t>(member.row)].starts_with("rod "));
+  for (std::size_t r = 0; r < names.size(); ++r) {
+    INFO(names[r]);
+    CHECK(bool(j.balance.determined[r]) == !names[r].starts_with("rod "));
+  }
+}
+
 TEST_CASE("parallel rods share what none of them is known to carry") {
   const Judged j = judged(read_scene_text(parallel, "parallel.toml"));
   REQUIRE(j.balance.states.size() == 1);
