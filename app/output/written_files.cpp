@@ -256,9 +256,10 @@ void WrittenFiles::remove(const std::string& name) {
   }
 }
 
-void WrittenFiles::remove_all() {
+void WrittenFiles::remove_all(const std::string& but) {
   std::vector<std::string> names;
-  for (const auto& [name, lines] : lines_) names.push_back(name);
+  for (const auto& [name, lines] : lines_)
+    if (but.empty() || !name.starts_with(but + "/")) names.push_back(name);
   for (const std::string& name : names) remove(name);
   forget_missing();
 }

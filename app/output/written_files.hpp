@@ -39,8 +39,8 @@ class WrittenFiles final : public FileWatcher {
   // Has DIR/name a line of this owner, and is it a file with the checksum of one?
   bool ours(const std::string& name) const;
   // Removes what is ours, but nothing behind a link, and directories that are empty then. The list forgets
-  // it.
-  void remove_all();
+  // it. What lies in the folder `but` stays.
+  void remove_all(const std::string& but = "");
   // The same for this one.
   void remove(const std::string& name);
 

@@ -62,9 +62,11 @@ int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, O
   ahead.take(run.trajectory);
   const Diagnostics diagnostics = judged(run, ahead);
   ahead.leave_out(run.trajectory.size());
-  if (!directory.empty() && !film) output.written().remove_all();
+  // An earlier run's results stay until these are whole: the disk may be full.
   const std::string summary =
-      write_data(directory, scene, run, diagnostics, as_typed(arguments.words), ahead);
+      write_data(directory, scene, run, diagnostics, as_typed(arguments.words), ahead, true, [&] {
+        if (!film) output.written().remove_all();
+      });
   write_exports(export_formats_of(arguments), directory, scene, run, diagnostics, arguments);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary;

@@ -70,7 +70,8 @@ namespace {
 // The tables, the longer ones beside what is done meanwhile; all of them take their places together.
 std::string write_tables(const std::filesystem::path& directory, const std::string& scene,
                          const Simulation& run, const Diagnostics& diagnostics, RunAhead& ahead,
-                         const std::function<std::string()>& summary) {
+                         const std::function<std::string()>& summary,
+                         const std::function<void()>& make_room) {
   PendingFile text(directory / "scene.toml"), series(directory / "series.csv"),
       trajectory(directory / "trajectory.csv"), rod_forces(directory / "rod_forces.csv"),
       end(directory / "summary.json");
@@ -87,6 +88,7 @@ std::string write_tables(const std::filesystem::path& directory, const std::stri
   end.write(json);
   for (PendingFile* file : {&text, &series, &end}) file->complete();
   ahead.beside().finish();
+  if (make_room) make_room();
   commit_together(std::array{&text, &series, &trajectory, &rod_forces, &end});
   return json;
 }
@@ -95,7 +97,7 @@ std::string write_tables(const std::filesystem::path& directory, const std::stri
 
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
                        const Diagnostics& diagnostics, const std::string& command, RunAhead& ahead,
-                       bool tables) {
+                       bool tables, const std::function<void()>& make_room) {
   const std::string text = scene_text(scene);
   const auto summary = [&] {
     const Model& model = run.trajectory.model();
@@ -108,7 +110,7 @@ std::string write_data(const std::filesystem::path& directory, const Scene& scen
     return summary_json(scene.name, run, diagnostics, mobility, {command, hash.text(), wall});
   };
   if (directory.empty()) return summary();
-  if (tables) return write_tables(directory, text, run, diagnostics, ahead, summary);
+  if (tables) return write_tables(directory, text, run, diagnostics, ahead, summary, make_room);
   const std::string json = summary();
   PendingFile origin(directory / "scene.toml"), end(directory / "summary.json");
   origin.write(text);

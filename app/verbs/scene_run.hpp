@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -26,10 +27,11 @@ Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model
                           bool poses = true);
 
 // scene.toml, series.csv, trajectory.csv, rod_forces.csv and summary.json; returns the text of the latter. An
-// empty directory name writes nothing. command: what was typed, for the summary; tables: those in CSV, too.
+// empty directory name writes nothing. command: what was typed, for the summary; tables: those in CSV, too;
+// make_room: called when all bytes are on the disk, before the files get their names.
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
                        const Diagnostics& diagnostics, const std::string& command, RunAhead& ahead,
-                       bool tables = true);
+                       bool tables = true, const std::function<void()>& make_room = {});
 
 // The formats that --export names, in that order; throws UsageError with the nearest name of an unknown one.
 std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/verbs/unfinished_run.hpp"
 
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -93,13 +94,15 @@ void UnfinishedRun::keep_foreign_aside() {
   if (foreign) written_.keep_aside("unfinished");
 }
 
-// A run that was killed while its tables took their places left some of them there.
+// A run that was killed while its tables took their places left some of them there; where an earlier run's
+// summary still stands beside them they are that run's.
 void UnfinishedRun::take_back(const RunTables::Sizes& sizes) const {
   const std::uint64_t size[] = {sizes.series, sizes.trajectory, sizes.rod_forces};
+  std::error_code error;
+  const bool taken = alone_ && fs::exists(written_.directory() / "summary.json", error);
   for (std::size_t k = 0; k < std::size(tables); ++k) {
     const fs::path path = folder() / tables[k], place = written_.directory() / tables[k];
-    std::error_code error;
-    if (!fs::exists(path, error) && fs::exists(place, error)) fs::rename(place, path, error);
+    if (!taken && !fs::exists(path, error) && fs::exists(place, error)) fs::rename(place, path, error);
     const auto bytes = fs::file_size(path, error);
     if (error || bytes < size[k])
       throw FileError(path, "is shorter than the checkpoint beside it says; --force begins anew");
@@ -139,7 +142,6 @@ void UnfinishedRun::add(Simulation& window, std::size_t first, std::size_t last)
 void UnfinishedRun::take(Stepper::Window window, Stepper& stepper, TaskQueue& beside) {
   beside.finish();
   if (!any()) {
-    if (alone_) written_.remove_all();
     begin();
     tables_->cut({});
   }
@@ -190,6 +192,7 @@ Digest UnfinishedRun::finish(Simulation& rest, std::size_t first) {
   if (!digest_.all_trusted()) tables_->cut(good_);
   tables_->flush_to_disk();
   tables_.reset();
+  if (alone_) written_.remove_all("unfinished");
   for (const char* name : tables) move_into_place(folder() / name, written_.directory() / name);
   forget();
   return whole(rest);
@@ -202,14 +205,18 @@ Digest UnfinishedRun::interrupt(Simulation& rest, std::size_t first) {
   const RunTables::Sizes sizes = digest_.all_trusted() ? tables_->sizes() : good_;
   tables_->flush_to_disk();
   const std::uint64_t size[] = {sizes.series, sizes.trajectory, sizes.rod_forces};
+  PendingFile copies[] = {PendingFile(written_.directory() / tables[0]),
+                          PendingFile(written_.directory() / tables[1]),
+                          PendingFile(written_.directory() / tables[2])};
   for (std::size_t k = 0; k < std::size(tables); ++k) {
-    PendingFile copy(written_.directory() / tables[k]);
     std::error_code error;
-    fs::copy_file(folder() / tables[k], copy.name(), fs::copy_options::overwrite_existing, error);
-    if (!error) fs::resize_file(copy.name(), size[k], error);
-    if (error) throw FileError(written_.directory() / tables[k], error.value());
-    copy.commit();
+    fs::copy_file(folder() / tables[k], copies[k].name(), fs::copy_options::overwrite_existing, error);
+    if (!error) fs::resize_file(copies[k].name(), size[k], error);
+    if (error) throw FileError(copies[k].target(), error.value());
+    copies[k].complete();
   }
+  if (alone_) written_.remove_all("unfinished");
+  commit_together(std::array{&copies[0], &copies[1], &copies[2]});
   return whole(rest);
 }
 

@@ -21,8 +21,8 @@ namespace unfurl {
 // run of one part leaves no trace of it.
 class UnfinishedRun {
  public:
-  // seconds: between two checkpoints; alone: what else we wrote into the directory goes when the first part
-  // comes.
+  // seconds: between two checkpoints; alone: what else we wrote into the directory goes when the tables get
+  // their places.
   UnfinishedRun(WrittenFiles& written, const Scene& scene, std::shared_ptr<const Model> model, double seconds,
                 bool alone);
 

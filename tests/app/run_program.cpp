@@ -2,6 +2,7 @@
 #include "tests/app/run_program.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -39,7 +40,15 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
   const std::string out = options.out_file.empty() ? scratch / "out" : options.out_file,
                     err = scratch / "err";
   const pid_t child = ::fork();
-  if (child == 0) become(arguments, options.environment, out, err);
+  if (child == 0) {
+    if (options.largest_file >= 0) {
+      const rlimit limit{static_cast<rlim_t>(options.largest_file),
+                         static_cast<rlim_t>(options.largest_file)};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      ::signal(SIGXFSZ, SIG_IGN);  // a write says it
+    }
+    become(arguments, options.environment, out, err);
+  }
   for (int i = 0; i < 6000 && !options.first_wait_for.empty(); ++i) {
     siginfo_t ended{};
     ::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT);

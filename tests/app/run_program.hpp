@@ -18,6 +18,7 @@ struct ProgramOptions {
   double interrupt_after_s = -1.0;            // send the signal then; negative: never
   int signal = SIGINT;
   std::string first_wait_for = "";  // until this file is there, at most a minute, before those seconds
+  long largest_file = -1;           // [bytes] that it may write: as on a full disk; negative: any
   std::string out_file = "";        // standard output goes there instead
 };
 

@@ -237,6 +237,38 @@ TEST_CASE("a checkpoint of another run is refused with one sentence and left alo
   CHECK(run_program({"run", "hoop6", "-o", out, "--resume", "--quiet"}).code == 5);
 }
 
+// Where a file cannot grow any more a run ends with exit code 5, and all of what an earlier run wrote is
+// there.
+TEST_CASE("a run that finds the disk full leaves the results of an earlier one whole") {
+  const ScratchDirectory dir;
+  const std::string scene = dir.write("everything.toml", everything), out = dir / "out";
+  const std::vector<std::string> files{"series.csv", "trajectory.csv", "rod_forces.csv", "scene.toml",
+                                       "summary.json"};
+  REQUIRE(run_program(run_of(scene, out, {"solver.end_time=0.1"})).code == 0);
+  std::vector<std::string> before;
+  for (const std::string& name : files) before.push_back(file_text(out + "/" + name));
+  // Of one part, whose trajectory needs more than 100 kB; and in parts, whose tables need 10 MB.
+  for (const auto& [end, bytes] : {std::pair{"1", 100000L}, std::pair{"30", 2000000L}}) {
+    INFO(end);
+    const auto full =
+        run_program(run_of(scene, out, {std::string("solver.end_time=") + end}), {.largest_file = bytes});
+    CHECK(full.code == 5);
+    CHECK(full.err.find("file too large") != std::string::npos);
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      INFO(files[k]);
+      CHECK((file_text(out + "/" + files[k]) == before[k]));
+    }
+    for (const auto& entry : fs::directory_iterator(out))
+      CHECK_FALSE(entry.path().filename().string().ends_with(".part"));
+  }
+  // With room again it goes on, and nothing of the earlier run stays.
+  REQUIRE(run_program(run_of(scene, out, {})).code == 0);
+  REQUIRE(run_program(run_of(scene, dir / "whole", {})).code == 0);
+  check_same(dir / "whole", out);
+  CHECK_FALSE(fs::exists(out + "/unfinished"));
+  CHECK(run_program({"verify", out}).code == 0);
+}
+
 // The largest memory of the children so far [kB]: each run that is larger shows.
 TEST_CASE("ten times as many steps take the same memory") {
   const ScratchDirectory dir;
