@@ -3,10 +3,12 @@
 #include "app/cli.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "app/command.hpp"
 #include "app/help.hpp"
@@ -70,11 +72,22 @@ CLI::Validator within(double low, double high, bool whole) {
       "");
 }
 
-std::string words_of(const CLI::ParseError& error) {
-  const std::string text = error.what(), name = text.substr(0, text.find(':'));
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error))
-    return (name == "--output" ? "-o" : name) + " needs a value behind it";
-  return text;
+// How often an option, "-o" or "--fps", stands in what was typed.
+std::ptrdiff_t times_given(const std::string& name, const std::vector<std::string>& words) {
+  return std::ranges::count_if(words, [&](const std::string& word) {
+    if (name == "-o") return word.starts_with("-o") || word.substr(0, word.find('=')) == "--output";
+    return word.substr(0, word.find('=')) == name;
+  });
+}
+
+std::string words_of(const CLI::ParseError& error, const std::vector<std::string>& words) {
+  const std::string text = error.what(), given = text.substr(0, text.find(':'));
+  if (!dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return text;
+  const std::string name = given == "--output" ? "-o" : given;
+  // Options that repeat take any number of values: of those only the last one can lack its own.
+  if (text.find("received") != std::string::npos && times_given(name, words) > 1)
+    return name + " is given more than once; give it once";
+  return name + " needs a value behind it";
 }
 
 struct Parsed {
@@ -99,6 +112,14 @@ void refuse_foreign_options(const CLI::App& parser, const Command& command) {
   for (const OwnOption& own : own_options())
     if (parser.count(std::string(own.name)) > 0 && !takes(command, own.name))
       throw UsageError("unfurl " + std::string(command.name) + " has no option " + in_quotes(own.name));
+}
+
+// Those that say more of another option, without it.
+void refuse_lonely_options(const CLI::App& parser) {
+  constexpr std::pair<const char*, const char*> pairs[] = {{"--lease", "--join"}, {"--jobs", "--script"}};
+  for (const auto& [option, other] : pairs)
+    if (parser.count(option) > 0 && parser.count(other) == 0)
+      throw UsageError(std::string(option) + " is for " + other + "; add it, or leave " + option + " out");
 }
 
 // Those that are about files, where none are written.
@@ -155,11 +176,12 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
-    throw UsageError(words_of(error));
+    throw UsageError(words_of(error, words));
   }
   refuse_unknown_options(parser, command);
   refuse_foreign_options(parser, command);
   refuse_idle_options(parser, command, a);
+  refuse_lonely_options(parser);
   refuse_doubled_keys(parser, a.overrides);
   a.overrides.insert(a.overrides.end(), short_keys.begin(), short_keys.end());
   for (const auto& word : parser.remaining()) a.names.push_back(word);

@@ -129,6 +129,9 @@ int cmd_run(const Arguments& arguments) {
     throw UsageError("-o DIR is missing (or --json, for the summary alone)");
   export_formats_of(arguments);  // refuses unknown ones before any work
   const Scene scene = scene_of(arguments);
+  if (arguments.plan && arguments.resume &&
+      !(in_parts(scene, arguments) && UnfinishedRun::lies_in(arguments.output)))
+    refuse_to_resume(arguments.output);
   if (arguments.plan) return show_plan(scene, arguments, false);
   Scene built = scene;
   if (in_parts(scene, arguments))

@@ -57,6 +57,21 @@ std::string not_unique(const SweepPlan& plan, const Sweep& sweep) {
   return text;
 }
 
+// Which measures are no number in points that were run: the scene has no such thing.
+std::string not_there(const SweepPlan& plan, const Sweep& sweep) {
+  const std::size_t outcome = plan.axes.size();
+  std::string text;
+  for (std::size_t m = 0; m < plan.measures.size(); ++m) {
+    const auto lacking = std::ranges::count_if(sweep.table.rows, [&](const auto& row) {
+      return row[outcome] != "failed" && row[outcome] != "invalid" && row[outcome + 1 + m] == "nan";
+    });
+    if (lacking == 0) continue;
+    text += "; " + plan.measures[m].name + " has no value in " + std::to_string(lacking) + " of them";
+    if (plan.measures[m].name == "deploy_time") text += " (nothing deploys: [deployment] says what does)";
+  }
+  return text;
+}
+
 std::string journal_name(const Shard& shard) {
   if (shard.count == 1) return "sweep.csv";
   return "sweep_" + std::to_string(shard.index) + "_of_" + std::to_string(shard.count) + ".csv";
@@ -138,6 +153,8 @@ std::optional<Sweep> compute(const SweepPlan& plan, const StudySession& session,
 int cmd_sweep(const Arguments& arguments) {
   if (arguments.join && (!arguments.study.shard.empty() || !arguments.study.merge.empty()))
     throw UsageError("--join shares the points by itself; leave out --shard and --merge");
+  if (!arguments.study.script.empty() && !arguments.study.merge.empty())
+    throw UsageError("--script prints a job that computes and then merges by itself; leave out --merge");
   const SweepPlan plan = plan_of(arguments);
   if (!arguments.study.script.empty()) {
     std::cout << job_script(arguments);
@@ -157,7 +174,7 @@ int cmd_sweep(const Arguments& arguments) {
   const std::string count = std::to_string(sweep.table.rows.size()) + " points in " +
                             (session.directory() / journal_name(plan.shard)).string() +
                             (bad > 0 ? ", " + std::to_string(bad) + " of them without an answer" : "") +
-                            not_unique(plan, sweep);
+                            not_unique(plan, sweep) + not_there(plan, sweep);
   if (plan.shard.count > 1) return finish(sweep.missing.empty(), arguments, count);
   std::vector<std::string> pictures;
   for (const Figure& figure : sweep_figures(plan, sweep, title_of(scene, plan)))

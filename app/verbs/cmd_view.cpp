@@ -50,10 +50,18 @@ struct OffscreenPanel {
   ControlPanel panel;
 };
 
+// Beyond the end of the run the window would stand at its end.
+void require_time_of_run(double t, const LiveRun* run) {
+  if (!run || t <= run->simulation.trajectory.end_time()) return;
+  throw UsageError("--at takes a time from 0 to " + short_number(run->simulation.trajectory.end_time(), 6) +
+                   " s; got " + short_number(t, 6));
+}
+
 int draw_picture(SceneDocument document, const Scene& scene, const Arguments& arguments) {
   require_writable_png(arguments.view.picture, "a picture of the window");
   OffscreenPanel offscreen(std::move(document), arguments, scene.render.width, scene.render.height);
   offscreen.panel.settle();
+  require_time_of_run(start_of(arguments), offscreen.panel.state().shown.get());
   write_png(arguments.view.picture, offscreen.panel.picture().read());
   return exit_ok;
 }
@@ -79,9 +87,28 @@ int bench_offscreen(SceneDocument document, const Arguments& arguments) {
   return exit_ok;
 }
 
+// What one way to use the window has no use for.
+void refuse_contradictions(const Arguments& arguments) {
+  const ViewArguments& view = arguments.view;
+  const auto refuse = [](const char* option, const char* beside, const char* why) {
+    throw UsageError(std::string(option) + " beside " + beside + ": " + why + "; leave one of them out");
+  };
+  if (!view.record.empty() && !view.picture.empty())
+    refuse("--record", "--picture", "there is no window whose session could be recorded");
+  if (!view.record.empty() && view.bench)
+    refuse("--record", "--bench", "nobody acts in the window that is measured");
+  if (!view.record.empty() && !view.replay.empty())
+    refuse("--record", "--replay", "what is played is a record already");
+  if (view.bench && !view.picture.empty()) refuse("--bench", "--picture", "a picture is not measured");
+  if (view.bench && !view.replay.empty()) refuse("--bench", "--replay", "what is played is not measured");
+  if (!arguments.at.empty() && !view.replay.empty())
+    refuse("--at", "--replay", "a session begins where it was recorded");
+}
+
 }  // namespace
 
 int cmd_view(const Arguments& arguments) {
+  refuse_contradictions(arguments);
   if (!arguments.view.replay.empty()) return replay(arguments);
   const std::string name = arguments.names.empty() ? "hoop6" : arguments.names.front();
   SceneDocument document = open_document(name, arguments.overrides);

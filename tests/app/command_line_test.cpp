@@ -258,6 +258,52 @@ TEST_CASE("modes at the start: stops that hold and friction that sticks are lock
   CHECK(motions(friction + "1}]") == 1);
 }
 
+TEST_CASE("options that would do nothing, or contradict each other, are refused") {
+  const ScratchDirectory dir;
+  const std::string png = dir / "p.png", record = dir / "r.jsonl";
+  check_error(
+      {"view", "hoop6", "--picture", png, "--record", record}, 2,
+      "unfurl: --record beside --picture: there is no window whose session could be recorded; leave one of "
+      "them out");
+  CHECK(run_program({"view", "hoop6", "--bench", "--record", record}).code == 2);
+  CHECK(run_program({"view", "--replay", record, "--record", record}).code == 2);
+  CHECK(run_program({"view", "hoop6", "--bench", "--picture", png}).code == 2);
+  CHECK(run_program({"view", "--replay", record, "--at", "1"}).code == 2);
+  const std::vector<std::string> sweep{"sweep",     "hoop6_sector", "--vary", "structure.fold_angle=40:80:3",
+                                       "--measure", "deploy_time",  "-o",     dir / "out"};
+  const auto with = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  check_error(with(sweep, {"--lease", "5"}), 2,
+              "unfurl: --lease is for --join; add it, or leave --lease out");
+  check_error({"render", "hoop6", "-o", dir / "out", "--lease", "5"}, 2,
+              "unfurl: --lease is for --join; add it, or leave --lease out");
+  check_error(with(sweep, {"--jobs", "3"}), 2, "unfurl: --jobs is for --script; add it, or leave --jobs out");
+  check_error(with(sweep, {"--script", "slurm", "--merge", dir / "a"}), 2,
+              "unfurl: --script prints a job that computes and then merges by itself; leave out --merge");
+  CHECK(run_program({"run", "hoop6", "-o", dir / "out", "--plan", "--resume"}).code == 5);
+  CHECK_FALSE(std::filesystem::exists(dir / "out"));
+  check_error({"run", "hoop6", "-o", "a", "-o", "b"}, 2, "unfurl: -o is given more than once; give it once");
+  check_error({"figure", "hoop6", "energy", "-o", "x.png", "--dpi", "90", "--dpi=91"}, 2,
+              "unfurl: --dpi is given more than once; give it once");
+  check_error({"render", "hoop6", "-o", "x", "--fps", "9", "--fps"}, 2,
+              "unfurl: --fps needs a value behind it");
+}
+
+TEST_CASE("names in [render] are looked up before the work") {
+  const ScratchDirectory dir;
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"check", "hoop6"},
+                                                {"render", "hoop6", "-o", dir / "out"},
+                                                {"poster", "hoop6", "-o", dir / "p.png"}}) {
+    std::vector<std::string> typed = words;
+    typed.insert(typed.end(), {"--set", "render.trails=Tt0", "--set", "solver.step=1e-6"});
+    const ProgramResult r = run_program(typed);
+    CHECK(r.code == 3);
+    CHECK(contains(r.err, "render.trails: no node matches 'Tt0'; did you mean"));
+  }
+}
+
 TEST_CASE("lists") {
   CHECK(contains(run_program({"list", "structures"}).out, "fold_angle"));
   CHECK(contains(run_program({"list", "structures"}).out, "custom"));
