@@ -57,7 +57,8 @@ void check_motion(TableReader& entry, const ParamSet& values) {
 void read_members(TableReader& entry, Members members, SceneElement& element) {
   const auto wants = [&](const char* key, const std::vector<std::string>& names, std::size_t count) {
     if (!names.empty() && names.size() != count)
-      entry.problem(key, "must be " + std::to_string(count) + " names; got " + std::to_string(names.size()));
+      entry.problem(key, "must be " + std::to_string(count) + (count == 1 ? " name" : " names") + "; got " +
+                             std::to_string(names.size()));
   };
   switch (members) {
     case Members::none:
@@ -68,7 +69,7 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
       element.nodes = entry.names("nodes");
       return;
     case Members::terms:
-      element.terms = entry.names("terms");
+      element.terms = entry.names("terms", terms_wanted);
       return;
     case Members::two_nodes:
       element.nodes = entry.names("nodes");
@@ -77,17 +78,17 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
       element.nodes = entry.names("nodes");
       return wants("nodes", element.nodes, 3);
     case Members::rods:
-      element.rods = entry.names("rods");
+      element.rods = entry.names("rods", "a list of names or globs of rods or groups");
       return;
     case Members::rod:
-      element.rods = entry.names("rod");
+      element.rods = entry.names("rod", "the name of one rod");
       return wants("rod", element.rods, 1);
     case Members::angle:
     case Members::measure:
       break;
   }
   element.fold_angle = entry.read({boolean_param("fold_angle", false, "")}).boolean("fold_angle");
-  if (entry.has("rods")) element.rods = entry.names("rods");
+  if (entry.has("rods")) element.rods = entry.names("rods", "a list of rod names");
   if (entry.has("nodes")) element.nodes = entry.names("nodes");
   wants("rods", element.rods, 2);
   if (members == Members::angle) wants("nodes", element.nodes, 3);

@@ -46,6 +46,9 @@ const std::vector<ElementKind>&
 scene_constraints();  // kinds of [[constraints]] and [[structure.constraints]]
 const ElementKind* find_kind(const std::vector<ElementKind>& kinds, std::string_view kind);
 
+// What a list of terms is, for TableReader::names.
+inline constexpr const char* terms_wanted = "a list of terms such as \"2.5 length A B\"";
+
 // Every entry of [[loads]], [[forces]] and [[constraints]] has it.
 const ParamSpec& enabled_param();
 

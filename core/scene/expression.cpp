@@ -168,7 +168,8 @@ class Parser {
     for (const auto& [variable, value] : variables_) known.push_back(variable);
     for (const auto& f : functions) known.push_back(f.name);
     at_ = begin;
-    fail("no variable " + in_quotes(name) + did_you_mean(name, known));
+    throw ExpressionError("no variable " + in_quotes(name) + did_you_mean(name, known), at_ + 1,
+                          std::string(name));
   }
 
   double call(const MathFunction& f) {

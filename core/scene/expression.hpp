@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/text/error.hpp"
 
@@ -12,10 +13,12 @@ namespace unfurl {
 
 using Variables = std::map<std::string, double, std::less<>>;
 
-// What is wrong with an expression, and at which of its characters (from 1).
+// What is wrong with an expression, at which of its characters (from 1), and the name that is no variable.
 struct ExpressionError : Error {
-  ExpressionError(const std::string& message, std::size_t character) : Error(message), place(character) {}
+  ExpressionError(const std::string& message, std::size_t character, std::string name = "")
+      : Error(message), place(character), unknown(std::move(name)) {}
   std::size_t place;
+  std::string unknown;
 };
 
 // The value of

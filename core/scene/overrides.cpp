@@ -181,6 +181,24 @@ void apply(TomlTree& root, std::string_view key, std::string_view text) {
 
 }  // namespace
 
+std::vector<std::string> place_of_key(TomlTree root, const std::string& key) {
+  std::vector<std::string> place;
+  try {
+    const std::vector<Step> steps = parse_key(key);
+    TomlTree* target = &root;
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      TomlTree* const parent = target;
+      const bool in_list = k + 1 < steps.size() && (steps[k + 1].index || steps[k + 1].entry);
+      target = &step_into(*parent, steps[k], "", in_list);
+      const bool entry = parent->kind == TomlTree::Kind::array;
+      place.push_back(entry ? std::to_string(target - parent->items.data()) : steps[k].name);
+    }
+  } catch (const Refusal&) {
+    return {key};
+  }
+  return place;
+}
+
 TomlTree value_at(TomlTree root, const std::string& key) {
   try {
     return std::move(made_at(root, parse_key(key)));

@@ -17,6 +17,9 @@ namespace unfurl {
 void apply_overrides(TomlTree& root, const std::vector<std::string>& overrides,
                      std::vector<SceneProblem>& problems);
 
+// Where such a key leads, part by part, entries by their index; the same for all of its names.
+std::vector<std::string> place_of_key(TomlTree root, const std::string& key);
+
 // What stands at such a key; an empty table where nothing does.
 TomlTree value_at(TomlTree root, const std::string& key);
 

@@ -111,7 +111,7 @@ void read_deployment(TableReader& root, const TomlTree& tree, Scene& scene, Scen
   SceneElement& element = scene.deployment;
   element.kind = element.key = "deployment";
   element.where = table.where();
-  element.terms = table.names("measure");
+  element.terms = table.names("measure", terms_wanted);
   element.values = table.read(deployment_params());
   table.finish();
   element.places = table.places();
@@ -225,10 +225,10 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   TomlTree own = parse_toml(text, name);
   TomlTree tree = own;
   SceneNotes notes;
-  if (!apply_overrides_and_expand(tree, overrides, notes.problems)) refuse(notes.problems);
+  Scene scene;
+  if (!apply_overrides_and_expand(tree, overrides, notes.problems, &scene.variables)) refuse(notes.problems);
   std::vector<SceneProblem> told_already;
   apply_overrides_and_expand(own, {}, told_already);
-  Scene scene;
   scene.name = std::filesystem::path(name).stem().string();
   TableReader root(&tree, "", tree.where, notes);
   read_title(root, tree, own, scene);

@@ -38,6 +38,7 @@ struct Scene {
   std::vector<SceneSurface> surfaces;  // shown only
   SolverOptions solver;
   RenderOptions render;
+  std::map<std::string, double> variables;          // [variables], worked out
   std::vector<SceneProblem> warnings;               // what is given and does nothing
   std::map<std::string, SourceLocation> locations;  // dotted key -> where it was given, for later messages
   std::map<std::string, std::string> units;         // of the keys that overrides change: dotted key -> unit

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/scene/expression.hpp"
@@ -40,15 +41,22 @@ class Expansion {
     TomlTree* table = root.find("variables");
     if (!table) return;
     braces_ = true;
-    if (table->kind == Kind::table)
-      for (const auto& [name, value] : table->entries) read_variable(name, value);
-    else
+    if (table->kind == Kind::table) {
+      for (const auto& [name, value] : table->entries) below_.insert(name);
+      for (const auto& [name, value] : table->entries) {
+        below_.erase(name);
+        read_variable(name, value);
+      }
+    } else {
       note(*table, "variables", "must be a table, [variables]; got " + table->describe());
+    }
     std::erase_if(root.entries, [](const auto& entry) { return entry.key == "variables"; });
   }
 
   // What is filled in by overrides afterwards has expressions, but no braces.
   void leave_braces() { braces_ = false; }
+
+  const Variables& variables() const { return variables_; }
 
   void expand(TomlTree& tree, const std::string& key) {
     if (key == "title") return;  // its braces are parameters of the structure (title.hpp)
@@ -86,9 +94,13 @@ class Expansion {
     try {
       return evaluate(text, variables_);
     } catch (const ExpressionError& error) {
-      note(at, key,
-           "in the expression " + in_quotes(text) + ", character " + std::to_string(error.place) + ": " +
-               error.what());
+      const std::string why = below_.contains(error.unknown)
+                                  ? in_quotes(error.unknown) +
+                                        " stands below: a variable may use those above it; move one of them"
+                                  : error.what();
+      note(
+          at, key,
+          "in the expression " + in_quotes(text) + ", character " + std::to_string(error.place) + ": " + why);
       return std::nullopt;
     }
   }
@@ -200,6 +212,7 @@ class Expansion {
 
   std::vector<SceneProblem>& problems_;
   Variables variables_;
+  std::set<std::string, std::less<>> below_;  // variables that are not worked out yet
   bool braces_ = false;
   std::size_t turns_ = 0;
 };
@@ -225,7 +238,8 @@ void refuse_unknown_variable(const TomlTree& root, const std::string& override_t
 }  // namespace
 
 bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& overrides,
-                                std::vector<SceneProblem>& problems) {
+                                std::vector<SceneProblem>& problems,
+                                std::map<std::string, double>* variables) {
   std::vector<std::string> first, then;
   for (const auto& text : overrides) (text.starts_with(of_variables) ? first : then).push_back(text);
   for (const auto& text : first) refuse_unknown_variable(root, text, problems);
@@ -233,6 +247,7 @@ bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& 
   apply_overrides(root, first, problems);
   Expansion expansion(problems);
   expansion.read_variables(root);
+  if (variables) variables->insert(expansion.variables().begin(), expansion.variables().end());
   expansion.expand(root, "");
   if (!problems.empty()) return false;
   apply_overrides(root, then, problems);

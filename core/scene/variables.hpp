@@ -15,6 +15,7 @@
 // is left has neither variables nor expressions.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,9 @@ namespace unfurl {
 // Overrides of the variables are applied first ("variables.n=20", which must be there), then the variables
 // are worked out and the tree expanded, then all other overrides applied (overrides.hpp). What is wrong is
 // added to `problems`. False: variables, expressions or repeats are wrong, and what else may be told of the
-// tree would only follow from that.
+// tree would only follow from that. `variables`: to be filled with what they are worked out to.
 bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& overrides,
-                                std::vector<SceneProblem>& problems);
+                                std::vector<SceneProblem>& problems,
+                                std::map<std::string, double>* variables = nullptr);
 
 }  // namespace unfurl

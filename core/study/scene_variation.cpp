@@ -41,7 +41,19 @@ TomlTree value_in(const Scene& scene, const std::string& key) {
 
 }  // namespace
 
+bool keys_overlap(const Scene& scene, const std::string& a, const std::string& b) {
+  const TomlTree tree = parse_toml(scene_text(scene), scene.name);
+  const auto one = place_of_key(tree, a), two = place_of_key(tree, b);
+  return std::equal(one.begin(), one.begin() + static_cast<std::ptrdiff_t>(std::min(one.size(), two.size())),
+                    two.begin());
+}
+
 std::optional<double> scene_number(const Scene& scene, const std::string& key) {
+  constexpr std::string_view of_variables = "variables.";
+  if (key.starts_with(of_variables)) {
+    const auto found = scene.variables.find(key.substr(of_variables.size()));
+    return found == scene.variables.end() ? std::nullopt : std::optional(found->second);
+  }
   const TomlTree at = value_in(scene, key);
   if (at.kind == TomlTree::Kind::real) return at.real;
   if (at.kind == TomlTree::Kind::integer) return static_cast<double>(at.integer);

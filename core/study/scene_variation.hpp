@@ -30,8 +30,11 @@ struct SceneSource {
 SolverOptions study_solver(const Scene& scene, const std::vector<std::string>& varied,
                            const std::vector<RunMeasure>& measures);
 
-// The number at a dotted key, written out in the scene or a default; nothing where there is none.
+// The number at a dotted key, written out in the scene or a default, or of a variable; nothing where there is
+// none.
 std::optional<double> scene_number(const Scene& scene, const std::string& key);
+// Do two keys lead to the same place, by whatever name, or one of them into the other?
+bool keys_overlap(const Scene& scene, const std::string& a, const std::string& b);
 // Is that a parameter of whole numbers (which cannot be searched, nor lie between two of them)?
 bool is_whole_number(const Scene& scene, const std::string& key);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <map>
@@ -108,12 +109,19 @@ SweepAxis parse_axis(const std::string& text) {
   }
   if (parts.size() != 1) refuse(text, "a range is FROM:TO:COUNT");
   axis.values = split(values, ',');
+  if (axis.values[0].starts_with('[') || axis.values[0].starts_with('{'))
+    refuse(text, "lists and tables cannot be varied; vary one of their entries, " + axis.key + "[2]=A,B,C");
   for (const auto& value : axis.values) {
     if (value.empty()) refuse(text, "the list has an empty entry");
     if (std::count(axis.values.begin(), axis.values.end(), value) > 1)
       refuse(text, in_quotes(value) + " is there twice");
     axis.numbers.push_back(number_of(value));
   }
+  for (std::size_t i = 0; i < axis.numbers.size(); ++i)
+    if (const auto first = std::find(axis.numbers.begin(), axis.numbers.end(), axis.numbers[i]);
+        first < axis.numbers.begin() + static_cast<std::ptrdiff_t>(i))  // nan is like no other
+      refuse(text, in_quotes(axis.values[static_cast<std::size_t>(first - axis.numbers.begin())]) + " and " +
+                       in_quotes(axis.values[i]) + " are the same number");
   for (const double x : axis.numbers)
     if (!std::isfinite(x)) {
       axis.numbers.clear();
@@ -180,11 +188,15 @@ void check_plan(SweepPlan& plan) {
   if (plan.measures.empty()) throw StudyError("nothing to measure; give --measure NAME,...");
   add_uniqueness(plan.measures);
   if (plan.points() > max_points) throw StudyError("the grid has more than 1e7 points");
-  for (std::size_t a = 0; a < plan.axes.size(); ++a)
-    for (std::size_t b = 0; b < a; ++b)
-      if (plan.axes[a].key == plan.axes[b].key)
-        throw StudyError("the key " + in_quotes(plan.axes[a].key) + " is varied twice");
   const Scene scene = plan.source.read();
+  for (std::size_t a = 0; a < plan.axes.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      const std::string &key = plan.axes[a].key, &other = plan.axes[b].key;
+      if (key == other) throw StudyError("the key " + in_quotes(key) + " is varied twice");
+      if (keys_overlap(scene, key, other))
+        throw StudyError(in_quotes(other) + " and " + in_quotes(key) +
+                         " are names of the same thing, or one is part of the other: vary one of them");
+    }
   const auto& known = scene.units;
   for (const SweepAxis& axis : plan.axes)
     for (std::size_t i = 0; i < axis.numbers.size(); ++i)

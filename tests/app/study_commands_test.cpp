@@ -180,6 +180,35 @@ TEST_CASE("a sweep says how many of its points have no answer") {
   CHECK(file_text(dir / "out/sweep.csv").find("failed,nan") != std::string::npos);
 }
 
+TEST_CASE("a sweep says which measure its scene does not have") {
+  const ScratchDirectory dir;
+  const ProgramResult r =
+      run_program({"sweep", "double_pendulum", "--set", "solver.end_time=0.1", "--vary",
+                   "solver.step=0.01,0.02", "--measure", "deploy_time,peak_energy", "-o", dir / "out"});
+  CHECK(r.code == 0);
+  CHECK(
+      r.err.find("; deploy_time has no value in 2 of them (nothing deploys: [deployment] says what does)") !=
+      std::string::npos);
+  CHECK(r.err.find("peak_energy has no value") == std::string::npos);
+}
+
+TEST_CASE("solve begins at what a variable is worked out to") {
+  // A uniform rod that hangs and falls from the horizontal: its energies scale with its length.
+  const ScratchDirectory dir;
+  const std::string scene =
+      dir.write("rod.toml",
+                "[variables]\nL = '=3/4'\n[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, "
+                "0, 0], fixed = "
+                "true},\n{name = 'B', position = ['=L', 0, 0]}]\nrods = [{nodes = ['A', 'B'], mass = 2}]\n"
+                "[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nstep = 0.01\nend_time = 1\n");
+  // At its lowest it has fallen by L/2: the largest kinetic energy is m g L / 2, here of L = 0.9.
+  const ProgramResult r = run_program(
+      {"solve", scene, "--find", "variables.L", "--target", "max:kinetic_energy_J=8.829", "--json"});
+  INFO(r.err);
+  REQUIRE(r.code == 0);
+  CHECK(nlohmann::json::parse(r.out)["value"].get<double>() == Approx(0.9).epsilon(1e-6));
+}
+
 TEST_CASE("whole numbers are neither searched nor swept in between") {
   const ScratchDirectory dir;
   const ProgramResult sweep = run_program({"sweep", "hoop6_sector", "--vary", "structure.units=3:40:3",

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "render/plot/contours.hpp"
 #include "render/plot/figures/run_facts.hpp"
@@ -83,6 +84,15 @@ std::string heading(const std::string& label) {
   return text;
 }
 
+// A list may be given in any order; a curve runs from the left to the right.
+std::vector<std::size_t> in_order(const std::vector<double>& numbers) {
+  std::vector<std::size_t> order(numbers.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; });
+  return order;
+}
+
 // Curves over axis `across`, one per value of the other axis where there is one.
 Panel curve_panel(const SweepPlan& plan, const Sweep& sweep, std::size_t measure, std::size_t across) {
   constexpr std::array markers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond};
@@ -97,7 +107,7 @@ Panel curve_panel(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
     c.color = static_cast<int>(f);
     c.marker = markers[f % markers.size()];
     if (families > 1) c.label = plan.axes[1 - across].title(f);
-    for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    for (const std::size_t i : in_order(axis.numbers)) {
       const auto row = std::find_if(sweep.table.rows.begin(), sweep.table.rows.end(), [&](const auto& r) {
         return r[across] == axis.values[i] &&
                (families == 1 || r[1 - across] == plan.axes[1 - across].values[f]);

@@ -146,6 +146,15 @@ TEST_CASE("mistakes in variables and repeats have a place") {
         std::string::npos);
   CHECK(mistakes(with(polygon, "n = 5", "n = true")).find("variables.n: must be a finite number") !=
         std::string::npos);
+  // The order matters, and is named; a variable that is nowhere, or the one itself, is none.
+  const std::string order = "variables.radius: in the expression '1 + 1/k', character 7: ";
+  CHECK(mistakes(with(polygon, "radius = \"=1 + 1/4\"", "radius = \"=1 + 1/k\"\nk = 4"))
+            .find(order + "'k' stands below: a variable may use those above it; move one of them") !=
+        std::string::npos);
+  CHECK(mistakes(with(polygon, "radius = \"=1 + 1/4\"", "radius = \"=1 + 1/k\""))
+            .find(order + "no variable 'k'") != std::string::npos);
+  CHECK(mistakes(with(polygon, "radius = \"=1 + 1/4\"", "k = \"=1 + k\"\nradius = 1"))
+            .find("no variable 'k'") != std::string::npos);
   // One mistake in an entry that stands many times is told once.
   const std::string twice = mistakes(with(polygon, "mass = \"=(i+1)/8\"", "mas = 1"));
   CHECK(twice.find("unknown key") == twice.rfind("unknown key"));

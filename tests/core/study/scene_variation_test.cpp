@@ -50,6 +50,24 @@ TEST_CASE("numbers of a scene are found where they stand or by default, and are 
     CHECK_FALSE(is_whole_number(scene, other));
 }
 
+TEST_CASE("variables are numbers of a scene, worked out") {
+  const std::string text = R"(
+[variables]
+n = 3
+L = "=n/8"
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = ["=L", 0, 0], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 1}]
+)";
+  const SceneSource variable{"v.toml", {}, std::make_shared<const std::string>(text), ""};
+  CHECK(scene_number(variable.read(), "variables.L") == 0.375);
+  CHECK(scene_number(variable.read({"variables.n=4"}), "variables.L") == 0.5);
+  CHECK(scene_number(variable.read({"variables.L=0.7"}), "variables.L") == 0.7);
+  CHECK_FALSE(scene_number(variable.read(), "variables.x"));
+  CHECK_FALSE(scene_number(variable.read(), "variables"));
+}
+
 TEST_CASE("numbers of forces, constraints and nodes are found by index and by name") {
   const std::string text = R"(
 structure = {kind = "custom", nodes = [{name = "A", position = [0, 0, 0], fixed = true},

@@ -67,22 +67,26 @@ TEST_CASE("ranges run evenly from end to end, log ranges by equal factors") {
 TEST_CASE("what is no axis is told why") {
   const struct {
     const char *axis, *why;
-  } rows[] = {{"a", "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C"},
-              {"=1:2:3", "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C"},
-              {"a=", "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C"},
-              {"a=1:2", "a range is FROM:TO:COUNT"},
-              {"a=1:2:3:log:5", "a range is FROM:TO:COUNT"},
-              {"a=1:inf:3", "a range runs from one finite number to another"},
-              {"a=x:2:3", "a range runs from one finite number to another"},
-              {"a=1:2:0", "the count must be a whole number from 1 to 1000000; got '0'"},
-              {"a=1:2:2.5", "the count must be a whole number from 1 to 1000000; got '2.5'"},
-              {"a=1:2:1000001", "the count must be a whole number from 1 to 1000000; got '1000001'"},
-              {"a=1:2:3:lin", "only 'log' may follow the count"},
-              {"a=0:2:3:log", "a log range needs numbers > 0"},
-              {"a=2:-1:3:log", "a log range needs numbers > 0"},
-              {"a=2:2:3", "the range is empty; its ends are equal"},
-              {"a=1,,2", "the list has an empty entry"},
-              {"a=1,2,1", "'1' is there twice"}};
+  } rows[] = {
+      {"a", "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C"},
+      {"=1:2:3", "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C"},
+      {"a=", "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C"},
+      {"a=1:2", "a range is FROM:TO:COUNT"},
+      {"a=1:2:3:log:5", "a range is FROM:TO:COUNT"},
+      {"a=1:inf:3", "a range runs from one finite number to another"},
+      {"a=x:2:3", "a range runs from one finite number to another"},
+      {"a=1:2:0", "the count must be a whole number from 1 to 1000000; got '0'"},
+      {"a=1:2:2.5", "the count must be a whole number from 1 to 1000000; got '2.5'"},
+      {"a=1:2:1000001", "the count must be a whole number from 1 to 1000000; got '1000001'"},
+      {"a=1:2:3:lin", "only 'log' may follow the count"},
+      {"a=0:2:3:log", "a log range needs numbers > 0"},
+      {"a=2:-1:3:log", "a log range needs numbers > 0"},
+      {"a=2:2:3", "the range is empty; its ends are equal"},
+      {"a=1,,2", "the list has an empty entry"},
+      {"a=1,2,1", "'1' is there twice"},
+      {"a=2,30,30.0", "'30' and '30.0' are the same number"},
+      {"a=1e1,10", "'1e1' and '10' are the same number"},
+      {"a=[0,0,-9.81],[0,0,0]", "lists and tables cannot be varied; vary one of their entries, a[2]=A,B,C"}};
   for (const auto& row : rows)
     CHECK_THROWS_WITH(parse_axis(row.axis), "'" + std::string(row.axis) + "': " + row.why);
   CHECK(parse_axis("a=2:2:1").numbers == std::vector<double>{2});
@@ -137,6 +141,26 @@ TEST_CASE("a plan is refused with its reason, and says which forces are unique")
         "the grid has more than 1e7 points");
   CHECK(refusal(angle, {"peak_tension", "deploy_time"}) == "peak_tension deploy_time peak_tension_unique ");
   CHECK(refusal(angle, {"peak_tension_unique", "peak_tension"}) == "peak_tension_unique peak_tension ");
+}
+
+TEST_CASE("two names of one thing are not varied together, two things are") {
+  const auto said = [](const char* scene, const char* first, const char* second) -> std::string {
+    SweepPlan plan{{find_scene(scene), {}}, {parse_axis(first), parse_axis(second)}, {}, {}};
+    plan.measures = {find_measure("peak_energy")};
+    try {
+      check_plan(plan);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string same = " are names of the same thing, or one is part of the other: vary one of them";
+  CHECK(said("double_pendulum", "structure.nodes.tip.mass=0,1", "structure.nodes[2].mass=2,3") ==
+        "'structure.nodes.tip.mass' and 'structure.nodes[2].mass'" + same);
+  CHECK(said("double_pendulum", "structure.nodes['tip'].mass=0,1", "structure.nodes[tip].mass=2,3")
+            .ends_with(same));
+  CHECK(said("double_pendulum", "structure.nodes.tip.mass=0,1", "structure.nodes[1].mass=2,3").empty());
+  CHECK(said("double_pendulum", "gravity.acceleration[2]=-9,-8", "gravity.acceleration[1]=1,2").empty());
 }
 
 TEST_CASE("shards part the points and nothing else is one") {

@@ -136,6 +136,18 @@ TEST_CASE("a sweep over decades is drawn on a log axis, and its axes tell their 
   for (const Figure& figure : figures) CHECK(figure.panels[0].x.label == "solver step (s)");
 }
 
+TEST_CASE("a list in any order is drawn as a curve from the left to the right", "[figures]") {
+  SweepPlan plan{{find_scene("hoop6_sector"), {}}, {parse_axis("structure.fold_angle=50,80,40,60")}, {}, {}};
+  plan.measures = {find_measure("deploy_time")};
+  check_plan(plan);
+  Sweep sweep{{plan.columns(), {}}};
+  for (const std::string& angle : plan.axes[0].values)
+    sweep.table.rows.push_back({angle, "deployed", angle + ".5"});
+  const Curve curve = sweep_figures(plan, sweep, "Ring").front().panels[0].curves.at(0);
+  CHECK(curve.x == std::vector<double>{40, 50, 60, 80});
+  CHECK(curve.y == std::vector<double>{40.5, 50.5, 60.5, 80.5});
+}
+
 TEST_CASE("a sweep's figure says how many runs never get there, and names thirds shortly", "[figures]") {
   SweepPlan plan{{find_scene("hoop6_sector"), {}},
                  {parse_axis("structure.post_length=1:2:5"), parse_axis("structure.chord_rod_length=2:3:4")},
