@@ -95,8 +95,9 @@ Replay replay_session(GlContext& context, const std::string& path) {
       else
         throw FileError(path, "is no session that this unfurl can play");
     }
-  } catch (const json::exception& error) {
-    throw FileError(path, "line " + std::to_string(number) + ": " + error.what());
+  } catch (const json::exception&) {
+    throw FileError(path, player ? "line " + std::to_string(number) + " is damaged or cut short"
+                                 : "is no session; unfurl view --record FILE writes one");
   } catch (const std::out_of_range& error) {  // a widget that is not there
     throw FileError(path, "line " + std::to_string(number) + ": " + error.what());
   }

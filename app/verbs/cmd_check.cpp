@@ -17,6 +17,7 @@
 #include "core/system/mobility.hpp"
 #include "core/system/rigid_twin.hpp"
 #include "core/system/self_stress.hpp"
+#include "render/scene/film_style.hpp"
 
 namespace unfurl {
 
@@ -227,6 +228,7 @@ Mobility mobility_of(const Model& model, const Arguments& arguments) {
 int cmd_check(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   const auto model = model_of(scene, arguments);
+  check_film_names(scene, model->structure);
   const VectorXd start = start_positions(model->structure);
   // Of rods that give, the mechanism is judged, and the forces that they share.
   Structure rods = rigid_twin(model->structure, start);

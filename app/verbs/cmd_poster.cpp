@@ -55,6 +55,7 @@ int cmd_poster(const Arguments& arguments) {
   require_writable_png(output, "a poster");
   const Scene scene = scene_of(arguments);
   auto model = model_of(scene, arguments);
+  check_film_names(scene, model->structure);
   const auto context = make_offscreen_context({arguments.threads, arguments.gpu});
 
   const InterruptGuard guard;

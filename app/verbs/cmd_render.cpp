@@ -16,6 +16,7 @@
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/team_work.hpp"
 #include "core/export/atomic_file.hpp"
+#include "render/scene/film_style.hpp"
 
 namespace unfurl {
 
@@ -28,6 +29,7 @@ int cmd_render(const Arguments& arguments) {
   check_film(scene);
   if (arguments.plan) return show_plan(scene, arguments, true);
   auto model = model_of(scene, arguments);
+  check_film_names(scene, model->structure);
   if (arguments.join && (arguments.force || !arguments.frames.empty()))
     throw UsageError(
         "--join shares the frames by itself and replaces nothing; leave out --frames and --force");

@@ -146,6 +146,12 @@ std::optional<MeasureTerm> bad_term(const SceneElement& e, MemberFinder& find, c
   return {};
 }
 
+std::string near_kind(const std::string& word) {
+  const std::array known{term_kinds[0].name, term_kinds[1].name, term_kinds[2].name, term_kinds[3].name};
+  const std::string_view near = nearest_name(word, {known.begin(), known.end()});
+  return near.empty() ? "" : " (did you mean " + in_quotes(near) + "?)";
+}
+
 std::optional<MeasureTerm> term_of(const SceneElement& e, MemberFinder& find, const std::string& given,
                                    const std::string& key) {
   const bool bare = std::any_of(term_kinds.begin(), term_kinds.end(),
@@ -153,28 +159,33 @@ std::optional<MeasureTerm> term_of(const SceneElement& e, MemberFinder& find, co
   const std::string text = (bare ? "1 " : "") + given;
   Words words(text);
   MeasureTerm term;
-  if (!words.number(term.coefficient)) return bad_term(e, find, key, text, "does not begin with a number");
+  if (!words.number(term.coefficient)) {
+    const std::string first = Words(given).word(), near = near_kind(first);
+    return bad_term(e, find, key, given,
+                    near.empty() ? "does not begin with a number" : "measures nothing that is known" + near);
+  }
   if (term.coefficient == 0.0)
-    return bad_term(e, find, key, text, "has the coefficient 0, which says nothing");
+    return bad_term(e, find, key, given, "has the coefficient 0, which says nothing");
   const std::string name = words.word();
   const auto* const kind =
       std::find_if(term_kinds.begin(), term_kinds.end(), [&](const TermKind& k) { return k.name == name; });
-  if (kind == term_kinds.end()) return bad_term(e, find, key, text, "measures nothing that is known");
+  if (kind == term_kinds.end())
+    return bad_term(e, find, key, given, "measures nothing that is known" + near_kind(name));
   std::vector<int> nodes;
   Vec3 direction = Vec3::Zero();
   for (std::string word = words.word(); !word.empty(); word = words.word()) {
     if (word == kind->ending) {
       if (!words.direction(direction) || !words.word().empty())
-        return bad_term(e, find, key, text, "must end in three numbers of a direction");
+        return bad_term(e, find, key, given, "must end in three numbers of a direction");
       break;
     }
     nodes.push_back(find.node(e, key, word));
     if (nodes.back() < 0) return {};
   }
   if (nodes.size() < kind->least || nodes.size() > kind->most)
-    return bad_term(e, find, key, text, "names " + std::to_string(nodes.size()) + " nodes");
+    return bad_term(e, find, key, given, "names " + std::to_string(nodes.size()) + " nodes");
   for (std::size_t i = 0; i + 1 < nodes.size(); ++i)
-    if (nodes[i] == nodes[i + 1]) return bad_term(e, find, key, text, "names a node twice");
+    if (nodes[i] == nodes[i + 1]) return bad_term(e, find, key, given, "names a node twice");
   if (kind->kind == MeasureKind::angle) {
     const auto angle = angle_at(e, find, nodes, direction, key);
     if (!angle) return {};
@@ -182,7 +193,7 @@ std::optional<MeasureTerm> term_of(const SceneElement& e, MemberFinder& find, co
     return term;
   }
   if (kind->kind == MeasureKind::coordinate && direction.isZero(0.0))
-    return bad_term(e, find, key, text, "has no direction");
+    return bad_term(e, find, key, given, "has no direction");
   term.measure = {kind->kind, std::move(nodes), unit_of(direction), 0.0, {}};
   if (kind->kind == MeasureKind::dihedral) term.measure.reference = find.initial(term.measure);
   return term;

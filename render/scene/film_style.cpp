@@ -41,6 +41,11 @@ std::vector<int> trail_nodes(const Scene& scene, const Structure& structure) {
 
 }  // namespace
 
+void check_film_names(const Scene& scene, const Structure& structure) {
+  trail_nodes(scene, structure);
+  shown_surfaces(scene, structure);
+}
+
 std::vector<ShownSurface> shown_surfaces(const Scene& scene, const Structure& structure) {
   std::vector<ShownSurface> shown;
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i)

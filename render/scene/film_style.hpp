@@ -12,6 +12,9 @@ namespace unfurl {
 // SceneError where a name in it is none of this run's.
 FrameStyle film_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics);
 
+// Throws SceneError where a name that needs no run to be looked up is none of this structure's.
+void check_film_names(const Scene& scene, const Structure& structure);
+
 // The scene's surfaces that are shown, with their nodes. Throws SceneError.
 std::vector<ShownSurface> shown_surfaces(const Scene& scene, const Structure& structure);
 

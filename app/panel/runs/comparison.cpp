@@ -43,11 +43,13 @@ double last(const LiveRun& run, std::string_view column) {
 // The columns of either run's drives, each once.
 std::vector<const Series*> drive_columns(const LiveRun& a, const LiveRun& b) {
   std::vector<const Series*> found;
+  const auto there = [&](const Series& column) {
+    return std::ranges::any_of(found, [&](const Series* have) { return have->name == column.name; });
+  };
   for (const LiveRun* run : {&a, &b})
     for (const Series& column : run->diagnostics.columns)
       for (const std::string_view end : {".torque_N_m", ".force_N", ".power_W", ".energy_J"})
-        if (column.name.ends_with(end) && (run == &a || a.diagnostics.find(column.name) == nullptr))
-          found.push_back(&column);
+        if (column.name.ends_with(end) && !there(column)) found.push_back(&column);
   return found;
 }
 

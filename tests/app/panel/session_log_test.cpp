@@ -115,6 +115,7 @@ TEST_CASE("a file that is no session is refused in a line") {
     const ProgramResult result = run_program({"view", "--replay", scratch.write("s.jsonl", text)});
     CHECK(result.code == 5);
     CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+    CHECK(result.err.find("json.exception") == std::string::npos);
   }
   CHECK(run_program({"view", "--replay", scratch / "missing.jsonl"}).code == 5);
   CHECK(run_program({"view", "hoop6", "--replay", scratch / "missing.jsonl"}).code == 2);

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
 
 #include "app/panel/runs/comparison.hpp"
 #include "render/plot/ticks.hpp"
@@ -116,6 +117,10 @@ TEST_CASE("a comparison has what each drive gave") {
   PanelDriver panel(PanelDriver::small(), "hoop6_motor");
   panel.settle();
   panel.key(Key::p);
+  std::set<std::string> labels;  // of a run beside itself: each row once
+  for (const auto& row : compare(*panel.state().pinned, *panel.state().shown))
+    CHECK(labels.insert(row.label).second);
+  CHECK(labels.contains("peak motor torque"));
   const auto change = [&](const std::string& key, double value) {
     panel.state().history.edit(key, value);
     panel.settle();

@@ -353,4 +353,40 @@ TEST_CASE("the angle of two rods opens at the node that they share, whichever wa
   CHECK(said("['P', 'Q']", "['Q', 'R']", "['one', 'far']").substr(0, 3) == "149");
 }
 
+TEST_CASE("a hoop that is deployed as it starts has nothing to run to") {
+  const std::string hoop = "[structure]\nkind = 'hoop'\nmodel = 'sector'\nfold_angle = ";
+  CHECK(refused(hoop + "0\n", "s.toml:4:14: structure.fold_angle: must be in (0, 90) deg; got 0"));
+  CHECK(refused(hoop + "3e-8\n",  // 5e-10 rad
+                "s.toml:4:14: structure.fold_angle: fold_angle must be larger than 0 degrees, at which the "
+                "structure is deployed"));
+  CHECK(error_of(hoop + "1e-6\n").empty());
+}
+
+TEST_CASE("what is missing is asked for by what it is: nodes, rods, the name of one rod") {
+  CHECK(refused(force("kind = 'follower'\nforce = 1"),
+                "forces[0].rod: is missing; must be the name of one rod"));
+  CHECK(refused(force("kind = 'follower'\nrod = ['O-A', 'A-B']\nforce = 1"),
+                "forces[0].rod: must be 1 name; got 2"));
+  CHECK(refused(force("kind = 'temperature'\nexpansion = 1e-5"),
+                "forces[0].rods: is missing; must be a list of names or globs of rods or groups"));
+  CHECK(refused(force("kind = 'drag'\ndamping = 1"),
+                "forces[0].nodes: is missing; must be a list of node names"));
+}
+
+TEST_CASE("a rigid rod that is warm at t = 0 already is named with what warms it and the cure") {
+  const std::string warm = "kind = 'temperature'\nrods = ['O-A']\nexpansion = 2e-5\n";
+  const std::string why =
+      "warms the rigid rod 'O-A' at t = 0 already, where its nodes stand as they are given: give times and "
+      "values "
+      "that begin with 0, or let the rod give (elastic = true)";
+  CHECK(refused(force(warm + "change = 60"), "s.toml:19:10: forces[0].change: " + why));
+  CHECK(refused(force(warm + "change = 60\ntimes = [0, 1]\nvalues = [0.5, 1]"), "forces[0].values: " + why));
+  CHECK(error_of(force(warm + "change = 60\ntimes = [0, 1]\nvalues = [0, 1]")).empty());
+  // What has nothing to do with it is told as before.
+  const std::string apart =
+      arms + entry("constraints", "kind = 'plane'\nnodes = ['A']\nnormal = [0, 0, 1]\noffset = 3");
+  CHECK(error_of(apart + entry("forces", warm + "change = 60\nenabled = false")).find("warms") ==
+        std::string::npos);
+}
+
 }  // namespace refusals_test

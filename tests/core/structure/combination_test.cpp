@@ -266,6 +266,16 @@ TEST_CASE("combinations that cannot be say what is wrong and where") {
         std::string::npos);
   CHECK(with("kind = 'combination'\nterms = ['2 lenght A P']\n").find("measures nothing that is known") !=
         std::string::npos);
+  for (const char* mistyped : {"2 lenght A P", "lenght A P", "lengths A P"}) {
+    const std::string said = with(std::string("kind = 'combination'\nterms = ['") + mistyped + "']\n");
+    INFO(said);
+    CHECK(said.find(std::string("\"") + mistyped +
+                    "\" measures nothing that is known (did you mean 'length'?)") != std::string::npos);
+  }
+  CHECK(with("kind = 'combination'\nterms = ['banana A P']\n")
+            .find("\"banana A P\" does not begin with a number") != std::string::npos);
+  CHECK(with("kind = 'combination'\n").find("terms: is missing; must be a list of terms such as") !=
+        std::string::npos);
   CHECK(with("kind = 'combination'\nterms = ['0 length A P']\n").find("coefficient 0") != std::string::npos);
   CHECK(with("kind = 'combination'\nterms = ['1 length A X']\n").find("there is no node 'X'") !=
         std::string::npos);
