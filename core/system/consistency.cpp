@@ -50,7 +50,6 @@ class Checker {
  public:
   Checker(const Structure& structure, const System& system)
       : system_(system),
-        rods_(structure.rods),
         names_(system.all_names()),
         sources_(system.all_sources()),
         q_(node_positions(structure)),
@@ -81,20 +80,6 @@ class Checker {
     return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
   }
 
-  // Rigid rods that are warm before anything has moved do not have the distances of their nodes.
-  std::string warm_at_first() const {
-    const auto warm = std::find_if(rods_.begin(), rods_.end(),
-                                   [](const Rod& rod) { return !rod.gives && rod.warmed(0.0) != 0; });
-    if (warm == rods_.end()) return "";
-    std::ostringstream text;
-    text << "; the temperature of rigid rod " << warm->name << " makes it "
-         << warm->length * warm->warmed(0.0)
-         << " m longer than the distance of its nodes at once: let the change begin at 0 (times and values), "
-            "or "
-            "give positions and lengths of the warm structure";
-    return text.str();
-  }
-
   void check_positions() const {
     VectorXd phi(system_.all_constraints());
     system_.all_constraint_values(0.0, q_, phi);
@@ -110,8 +95,7 @@ class Checker {
     if (wrong.empty()) return;
     std::ostringstream text;
     text << "the structure cannot be assembled as given: " << listed(wrong)
-         << (wrong.size() == 1 ? " is" : " are") << " violated at t = 0, by up to " << worst << " m"
-         << warm_at_first();
+         << (wrong.size() == 1 ? " is" : " are") << " violated at t = 0, by up to " << worst << " m";
     throw StructureError("", text.str());
   }
 
@@ -206,7 +190,6 @@ class Checker {
   }
 
   const System& system_;
-  const std::vector<Rod>& rods_;
   std::vector<std::string> names_;
   std::vector<int> sources_;
   VectorXd q_;

@@ -172,17 +172,6 @@ TEST_CASE("assembly: self-stress beside a mechanism does not move it") {
   CHECK(force.tail(3).lpNorm<Eigen::Infinity>() < 1e-6 * std::abs(X));  // strains of round-off
 }
 
-TEST_CASE("temperature: rigid rods that are warm from the start are refused by that name") {
-  const std::string scene =
-      "[structure]\nkind = 'custom'\n"
-      "[[structure.nodes]]\nname = 'A'\nposition = [0.1, 0.2, 0]\nfixed = true\n"
-      "[[structure.nodes]]\nname = 'B'\nposition = [1.4, 0.2, 0]\n"
-      "[[structure.rods]]\nnodes = ['A', 'B']\nmass = 0.1\n"
-      "[[forces]]\nkind = 'temperature'\nrods = ['A-B']\nexpansion = 2e-5\nchange = 50\n";
-  CHECK_THAT(error_of(scene), Catch::Contains("the temperature of rigid rod A-B makes it 0.0013 m longer"));
-  CHECK(error_of(scene + "times = [0, 1]\nvalues = [0, 1]\n").empty());
-}
-
 TEST_CASE("temperature: a clamped elastic rod carries -E A alpha dT") {
   const std::string scene =
       "[structure]\nkind = 'custom'\nyoungs_modulus = 7e10\nrod_model = 'elastic'\ndamping_time = 1e-4\n"
