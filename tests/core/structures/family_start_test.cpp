@@ -32,7 +32,7 @@ TEST_CASE("every family: a deployment begins at fraction 0, at the fold angle th
   CHECK(found >= 6);
 }
 
-TEST_CASE("no family starts within 1e-9 rad of its deployed pose; beyond, its fraction is a number") {
+TEST_CASE("no family starts within 1e-9 rad of its deployed pose, and beyond its fraction is a number") {
   const std::string level =
       "fold_angle: fold_angle must be larger than 0 degrees, at which the structure is deployed";
   const std::string unlike =
