@@ -340,7 +340,7 @@ TEST_CASE("solve finds numbers of forces, and says what is wrong with either end
   const ProgramResult r = run_program({"solve", "hoop6", "--find", "structure.fold_angle", "--target",
                                        "deploy_time=1", "--between", "50:102"});
   CHECK(r.code == 3);
-  CHECK(r.err.find("structure.fold_angle: must be in [0, 90) deg; got 102") != std::string::npos);
+  CHECK(r.err.find("structure.fold_angle: must be in (0, 90) deg; got 102") != std::string::npos);
 }
 
 TEST_CASE("options of other verbs are refused") {
