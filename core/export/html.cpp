@@ -131,8 +131,7 @@ std::vector<std::size_t> states_of_curves(const Diagnostics& d) {
     }
   }
   std::ranges::sort(chosen);
-  const auto rest = std::ranges::unique(chosen);
-  chosen.erase(rest.begin(), rest.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   return chosen;
 }
 
