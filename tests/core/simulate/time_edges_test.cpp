@@ -260,9 +260,8 @@ end_time = 0.5
 )";
   const VectorXd right = end_positions(run_scene(motor, {"solver.stages=6", "solver.step=0.0025"}));
   for (const auto& [method, order] : {std::pair{"rk4", 4}, {"rk4_projected", 4}, {"generalized_alpha", 2}}) {
-    const auto error = [&](const char* step) {
-      const std::vector<std::string> with = {std::string("solver.method=") + method,
-                                             std::string("solver.step=") + step};
+    const auto error = [&, by = std::string(method)](const char* step) {
+      const std::vector<std::string> with = {"solver.method=" + by, std::string("solver.step=") + step};
       return (end_positions(run_scene(motor, with)) - right).norm();
     };
     INFO(method);
