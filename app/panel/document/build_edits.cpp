@@ -23,10 +23,14 @@ Scene built_scene(const SceneDocument& document) {
   return scene;
 }
 
-std::vector<double> rounded(const Vec3& v) {
-  std::vector<double> numbers;
-  for (Index i = 0; i < 3; ++i) numbers.push_back(std::round(v[i] * 1e9) / 1e9 + 0.0);
-  return numbers;
+std::vector<double> numbers(const Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
+
+// A place that was pointed at.
+Vec3 rounded(Vec3 v) {
+  for (double& x : v) x = std::round(x * 1e9) / 1e9 + 0.0;
+  return v;
 }
 
 std::string node_key(std::size_t i) {
@@ -35,8 +39,8 @@ std::string node_key(std::size_t i) {
 
 std::string node_text(const CustomNode& node) {
   std::string text =
-      "{name = " + toml_string(node.name) + ", position = " + toml_value(rounded(node.position));
-  if (node.velocity != Vec3::Zero()) text += ", velocity = " + toml_value(rounded(node.velocity));
+      "{name = " + toml_string(node.name) + ", position = " + toml_value(numbers(node.position));
+  if (node.velocity != Vec3::Zero()) text += ", velocity = " + toml_value(numbers(node.velocity));
   if (node.mass > 0) text += ", mass = " + toml_value(node.mass);
   if (node.fixed) text += ", fixed = true";
   return text + "}";
@@ -56,6 +60,9 @@ std::string rod_text(const CustomRod& rod) {
   if (std::isfinite(rod.youngs_modulus)) add("youngs_modulus", rod.youngs_modulus);
   if (std::isfinite(rod.strength)) add("strength", rod.strength);
   if (rod.second_moment > 0) add("second_moment", rod.second_moment);
+  if (rod.elastic) add("elastic", *rod.elastic);
+  if (rod.segments > 0) add("segments", rod.segments);
+  if (rod.free_length > 0) add("free_length", rod.free_length);
   return text + "}";
 }
 
@@ -104,7 +111,7 @@ SceneDocument with_node(const SceneDocument& document, const Vec3& position, std
   SceneDocument with = document;
   CustomNode node;
   node.name = name;
-  node.position = position;
+  node.position = rounded(position);
   node.mass = 1;  // what hangs on nothing must have some
   with.added.push_back(node_key(scene.custom.nodes.size()) + "=" + node_text(node));
   return with;
@@ -131,7 +138,7 @@ SceneDocument with_positions(const SceneDocument& document, const std::vector<No
     for (std::size_t i = 0; i < nodes.size(); ++i)
       if (nodes[i].name == place.name) {
         nodes[i].position = place.position;
-        with.edits[node_key(i) + ".position"] = rounded(place.position);
+        with.edits[node_key(i) + ".position"] = numbers(rounded(place.position));
       }
   for (std::size_t i = 0; follow && i < scene.custom.rods.size(); ++i) {
     const CustomRod& rod = scene.custom.rods[i];

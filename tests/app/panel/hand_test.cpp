@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A hand on the structure: pulling nodes, wiggling, building.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "app/panel/document/build_edits.hpp"
 #include "core/scene/build.hpp"
@@ -112,6 +113,52 @@ TEST_CASE("nodes and rods are added, moved, connected and deleted as lines of TO
   while (driver.state().history.undo()) {
   }
   CHECK(driver.state().history.now() == start);
+}
+
+// What is left is written anew: every key of it, to the last digit.
+TEST_CASE("a part that is deleted changes nothing of the others") {
+  const std::string text = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0.1234567890123, 0, 0], fixed = true},
+         {name = "B", position = [1.1, 0.2, 1e-10], velocity = [0, 1e-11, 2], mass = 0.3},
+         {name = "C", position = [2, 0, 1], mass = 1}]
+rods = [{nodes = ["A", "B"], name = "r", density = 2700, area = 1e-4, group = "g", length = 1.0, youngs_modulus = 7e10,
+         strength = 1e8, second_moment = 1e-9, elastic = true, free_length = 0.99},
+        {nodes = ["B", "C"], mass = 0, segments = 3, youngs_modulus = 5e9, area = 2e-4}, {nodes = ["A", "C"], mass = 1}]
+)";
+  SceneDocument document;
+  document.name = "untitled";
+  document.text = std::make_shared<const std::string>(text);
+  const CustomSpec before = read_document(document).custom,
+                   after = read_document(without_part(document, {Selection::Kind::rod, "A-C"})).custom;
+  REQUIRE(after.nodes.size() == 3);
+  REQUIRE(after.rods.size() == 2);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const CustomNode &a = before.nodes[i], &b = after.nodes[i];
+    CHECK(a.name == b.name);
+    CHECK(a.position == b.position);
+    CHECK(a.velocity == b.velocity);
+    CHECK(a.mass == b.mass);
+    CHECK(a.fixed == b.fixed);
+  }
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  for (std::size_t i = 0; i < 2; ++i) {
+    const CustomRod &a = before.rods[i], &b = after.rods[i];
+    CHECK(a.name == b.name);
+    CHECK(a.nodes == b.nodes);
+    CHECK(a.mass == b.mass);
+    CHECK(a.density == b.density);
+    CHECK(a.area == b.area);
+    CHECK(a.group == b.group);
+    CHECK(a.length == b.length);
+    CHECK(same(a.youngs_modulus, b.youngs_modulus));
+    CHECK(same(a.strength, b.strength));
+    CHECK(a.second_moment == b.second_moment);
+    CHECK(a.elastic == b.elastic);
+    CHECK(a.segments == b.segments);
+    CHECK(a.free_length == b.free_length);
+  }
 }
 
 TEST_CASE("building has a mirror, a saved scene has what was built, and a family refuses in words") {
