@@ -23,10 +23,6 @@ Scene built_scene(const SceneDocument& document) {
   return scene;
 }
 
-std::vector<double> numbers(const Vec3& v) {
-  return {v[0], v[1], v[2]};
-}
-
 // A place that was pointed at.
 Vec3 rounded(Vec3 v) {
   for (double& x : v) x = std::round(x * 1e9) / 1e9 + 0.0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/panel/document/scene_document.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/custom_reader.hpp"
 #include "core/structures/family.hpp"
@@ -38,10 +39,6 @@ std::vector<ParamRow> structure_rows(const Scene& base) {
   ParamSet values = rod_material_values(base.custom.material);
   values.set("mass", std::string(base.custom.lumped_mass ? "lumped" : "consistent"));
   return rows_of("structure.", custom_params(), values);
-}
-
-std::vector<double> numbers(const Vec3& v) {
-  return {v[0], v[1], v[2]};
 }
 
 std::string joined(const std::vector<std::string>& names) {

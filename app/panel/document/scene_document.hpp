@@ -11,6 +11,10 @@
 
 namespace unfurl {
 
+inline std::vector<double> numbers(const Vec3& v) {  // as an edit has them
+  return {v[0], v[1], v[2]};
+}
+
 // Plain data; two that are equal mean the same scene.
 struct SceneDocument {
   std::string path;    // of the file; empty: it was never saved
