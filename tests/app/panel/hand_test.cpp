@@ -123,9 +123,27 @@ kind = "custom"
 nodes = [{name = "A", position = [0.1234567890123, 0, 0], fixed = true},
          {name = "B", position = [1.1, 0.2, 1e-10], velocity = [0, 1e-11, 2], mass = 0.3},
          {name = "C", position = [2, 0, 1], mass = 1}]
-rods = [{nodes = ["A", "B"], name = "r", density = 2700, area = 1e-4, group = "g", length = 1.0, youngs_modulus = 7e10,
-         strength = 1e8, second_moment = 1e-9, elastic = true, free_length = 0.99},
-        {nodes = ["B", "C"], mass = 0, segments = 3, youngs_modulus = 5e9, area = 2e-4}, {nodes = ["A", "C"], mass = 1}]
+[[structure.rods]]
+nodes = ["A", "B"]
+name = "r"
+density = 2700
+area = 1e-4
+group = "g"
+youngs_modulus = 7e10
+strength = 1e8
+second_moment = 1e-9
+elastic = true
+free_length = 0.99
+[[structure.rods]]
+nodes = ["B", "C"]
+mass = 0.25
+length = 1.5
+segments = 3
+youngs_modulus = 5e9
+area = 2e-4
+[[structure.rods]]
+nodes = ["A", "C"]
+mass = 1
 )";
   SceneDocument document;
   document.name = "untitled";
