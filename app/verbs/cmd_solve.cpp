@@ -85,8 +85,9 @@ void write_results(const std::filesystem::path& directory, const std::string& ke
   Table table{{key, target.measure.column}, {}};
   for (const Evaluation& e : solved.evaluations)
     table.rows.push_back({exact_number(e.x), exact_number(e.value)});
-  write_file_atomically(directory / "scene.toml",
-                        scene_text(source.read({key + "=" + exact_number(solved.x)})));
+  Scene found = source.read({key + "=" + exact_number(solved.x)});
+  found.solver = study_solver(found, {key}, {target.measure});
+  write_file_atomically(directory / "scene.toml", scene_text(found));
   write_file_atomically(directory / "solve.csv", csv_text(table));
 }
 

@@ -160,7 +160,11 @@ int cmd_sweep(const Arguments& arguments) {
     std::cout << job_script(arguments);
     return exit_ok;
   }
-  const Scene scene = scene_of(arguments);
+  Scene scene = scene_of(arguments);
+  std::vector<std::string> varied;
+  for (const SweepAxis& axis : plan.axes) varied.push_back(axis.key);
+  scene.solver = study_solver(scene, varied, plan.measures);
+  receipt_scene(scene.name, scene_text(scene));
   const InterruptGuard guard;
   const std::string name = identity(scene, plan);
   StudySession session(arguments, "sweeping", name, journal_name(plan.shard));

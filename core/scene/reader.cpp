@@ -226,7 +226,10 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   TomlTree tree = own;
   SceneNotes notes;
   Scene scene;
-  if (!apply_overrides_and_expand(tree, overrides, notes.problems, &scene.variables)) refuse(notes.problems);
+  WorkedOut worked_out;
+  if (!apply_overrides_and_expand(tree, overrides, notes.problems, &worked_out)) refuse(notes.problems);
+  scene.variables = std::move(worked_out.variables);
+  scene.worked_out = std::move(worked_out.keys);
   std::vector<SceneProblem> told_already;
   apply_overrides_and_expand(own, {}, told_already);
   scene.name = std::filesystem::path(name).stem().string();

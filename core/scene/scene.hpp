@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct Scene {
   SolverOptions solver;
   RenderOptions render;
   std::map<std::string, double> variables;          // [variables], worked out
+  std::set<std::string> worked_out;                 // dotted keys whose values come of expressions or braces
   std::vector<SceneProblem> warnings;               // what is given and does nothing
   std::map<std::string, SourceLocation> locations;  // dotted key -> where it was given, for later messages
   std::map<std::string, std::string> units;         // of the keys that overrides change: dotted key -> unit

@@ -57,10 +57,12 @@ class Expansion {
   void leave_braces() { braces_ = false; }
 
   const Variables& variables() const { return variables_; }
+  const std::set<std::string>& keys() const { return keys_; }
 
   void expand(TomlTree& tree, const std::string& key) {
     if (key == "title") return;  // its braces are parameters of the structure (title.hpp)
     if (is_expression(tree)) {
+      keys_.insert(key);
       if (const auto value = value_of(tree, key)) become(tree, *value);
     } else if (tree.kind == Kind::text && braces_) {
       fill_braces(tree, key);
@@ -129,6 +131,7 @@ class Expansion {
       const auto value = evaluated(tree, text.substr(i + 1, end - i - 1), key);
       if (!value) return;
       filled += plain_number(*value);
+      keys_.insert(key);
       i = end;
     }
     tree.text = std::move(filled);
@@ -212,6 +215,7 @@ class Expansion {
 
   std::vector<SceneProblem>& problems_;
   Variables variables_;
+  std::set<std::string> keys_;
   std::set<std::string, std::less<>> below_;  // variables that are not worked out yet
   bool braces_ = false;
   std::size_t turns_ = 0;
@@ -238,8 +242,7 @@ void refuse_unknown_variable(const TomlTree& root, const std::string& override_t
 }  // namespace
 
 bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& overrides,
-                                std::vector<SceneProblem>& problems,
-                                std::map<std::string, double>* variables) {
+                                std::vector<SceneProblem>& problems, WorkedOut* worked_out) {
   std::vector<std::string> first, then;
   for (const auto& text : overrides) (text.starts_with(of_variables) ? first : then).push_back(text);
   for (const auto& text : first) refuse_unknown_variable(root, text, problems);
@@ -247,13 +250,14 @@ bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& 
   apply_overrides(root, first, problems);
   Expansion expansion(problems);
   expansion.read_variables(root);
-  if (variables) variables->insert(expansion.variables().begin(), expansion.variables().end());
+  if (worked_out) worked_out->variables.insert(expansion.variables().begin(), expansion.variables().end());
   expansion.expand(root, "");
   if (!problems.empty()) return false;
   apply_overrides(root, then, problems);
   const std::size_t before = problems.size();
   expansion.leave_braces();
   expansion.expand(root, "");
+  if (worked_out) worked_out->keys = expansion.keys();
   return problems.size() == before;
 }
 

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,16 @@
 
 namespace unfurl {
 
+struct WorkedOut {
+  std::map<std::string, double> variables;
+  std::set<std::string> keys;  // dotted keys whose values come of an expression or of braces
+};
+
 // Overrides of the variables are applied first ("variables.n=20", which must be there), then the variables
 // are worked out and the tree expanded, then all other overrides applied (overrides.hpp). What is wrong is
 // added to `problems`. False: variables, expressions or repeats are wrong, and what else may be told of the
-// tree would only follow from that. `variables`: to be filled with what they are worked out to.
+// tree would only follow from that. `worked_out`: to be filled.
 bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& overrides,
-                                std::vector<SceneProblem>& problems,
-                                std::map<std::string, double>* variables = nullptr);
+                                std::vector<SceneProblem>& problems, WorkedOut* worked_out = nullptr);
 
 }  // namespace unfurl

@@ -9,6 +9,11 @@
 #include "core/scene/write.hpp"
 
 namespace unfurl {
+namespace {
+
+constexpr std::string_view of_variables = "variables.";
+
+}  // namespace
 
 Scene SceneSource::read(const std::vector<std::string>& changes) const {
   std::vector<std::string> all = overrides;
@@ -19,11 +24,14 @@ Scene SceneSource::read(const std::vector<std::string>& changes) const {
 SolverOptions study_solver(const Scene& scene, const std::vector<std::string>& varied,
                            const std::vector<RunMeasure>& measures) {
   SolverOptions options = scene.solver;
-  if (scene.locations.contains("solver.model")) return options;
+  if (scene.locations.contains("solver.model") && options.model != "auto") return options;
+  const auto of_method = [](const std::string& key) {
+    return key.starts_with("solver.") && key != "solver.end_time" && key != "solver.at_deployed";
+  };
+  const bool by_variables = std::ranges::any_of(scene.worked_out, of_method);
   const bool method = std::any_of(varied.begin(), varied.end(),
-                                  [](const std::string& key) {
-                                    return key.starts_with("solver.") && key != "solver.end_time" &&
-                                           key != "solver.at_deployed";
+                                  [&](const std::string& key) {
+                                    return of_method(key) || (by_variables && key.starts_with(of_variables));
                                   }) ||
                       std::any_of(measures.begin(), measures.end(), [](const RunMeasure& measure) {
                         return measure.needs == MeasureNeeds::method;
@@ -49,7 +57,6 @@ bool keys_overlap(const Scene& scene, const std::string& a, const std::string& b
 }
 
 std::optional<double> scene_number(const Scene& scene, const std::string& key) {
-  constexpr std::string_view of_variables = "variables.";
   if (key.starts_with(of_variables)) {
     const auto found = scene.variables.find(key.substr(of_variables.size()));
     return found == scene.variables.end() ? std::nullopt : std::optional(found->second);

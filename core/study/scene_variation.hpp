@@ -25,8 +25,9 @@ struct SceneSource {
   Scene read(const std::vector<std::string>& changes = {}) const;
 };
 
-// The solver of a scene of which many are run: its model is "auto" where the scene does not say, but "full"
-// where a key that is varied, or a measure, is about the method itself.
+// The solver of a scene of which many are run: its model is "auto" where the scene says that or nothing, but
+// "full" where a key that is varied, or a measure, is about the method itself. Written out with the scene it
+// makes the same numbers again.
 SolverOptions study_solver(const Scene& scene, const std::vector<std::string>& varied,
                            const std::vector<RunMeasure>& measures);
 

@@ -42,8 +42,9 @@ void fill_range(const std::string& text, const std::vector<std::string>& parts, 
   if (axis.log && (!(from > 0) || !(to > 0))) refuse(text, "a log range needs numbers > 0");
   if (count > 1 && from == to) refuse(text, "the range is empty; its ends are equal");
   for (long i = 0; i < static_cast<long>(count); ++i) {
-    const double u = count > 1 ? static_cast<double>(i) / (count - 1) : 0.0;
-    double x = axis.log ? from * std::pow(to / from, u) : from + (to - from) * u;
+    const double n = static_cast<double>(i), last = std::max(count - 1, 1.0);
+    // Multiplied before it is divided: whole numbers are met exactly.
+    double x = axis.log ? from * std::pow(to / from, n / last) : from + (to - from) * n / last;
     if (i + 1 == static_cast<long>(count) && i > 0) x = to;
     axis.numbers.push_back(x);
     axis.values.push_back(exact_number(x));

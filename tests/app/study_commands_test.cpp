@@ -271,6 +271,21 @@ TEST_CASE("points of another sweep are neither joined nor merged") {
         std::string::npos);
 }
 
+TEST_CASE("which model solved a sweep is part of it, and makes its figures again") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> command = {"sweep",     "pendulum",
+                                            "--vary",    "structure.length=0.8,1.2",
+                                            "--set",     "solver.end_time=0.2",
+                                            "--measure", "end_time,peak_speed",
+                                            "-o",        dir / "out"};
+  REQUIRE(run_program(command).code == 0);
+  CHECK(file_text(dir / "out/scene.toml").find("model = \"auto\"") != std::string::npos);
+  CHECK(run_program({"reproduce", dir / "out/figures/sweep_peak_speed.png"}).code == 0);
+  const ProgramResult other = run_program(command + std::vector<std::string>{"--set", "solver.model=full"});
+  CHECK(other.code == 5);
+  CHECK(other.err.find("holds results of another scene or other settings") != std::string::npos);
+}
+
 TEST_CASE("sweep refuses what cannot be swept") {
   const ScratchDirectory dir;
   const auto refused = [&](const std::string& vary, const std::string& measure, int code,

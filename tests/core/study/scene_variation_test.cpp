@@ -103,7 +103,30 @@ TEST_CASE("many runs go by the model that costs least, unless the method itself 
     CHECK(study_solver(asked, {"solver.step"}, {}).model == given);
     CHECK(study_solver(asked, {"structure.units"}, {}).model == given);
   }
+  const Scene automatic = source({"solver.model=auto"}).read();
+  CHECK(study_solver(automatic, {"solver.step"}, {}).model == "full");
+  CHECK(study_solver(automatic, {"structure.units"}, {}).model == "auto");
   CHECK(study_solver(scene, {}, {}).step == 0.02);
+}
+
+TEST_CASE("a variable of which a key of the method is worked out is about the method") {
+  const auto model = [](const std::string& solver, const std::string& key) {
+    const std::string text = R"([variables]
+h = 0.01
+n = 6
+[structure]
+kind = "hoop"
+units = "=n"
+[solver]
+)" + solver;
+    const Scene scene = SceneSource{"x", {}, std::make_shared<const std::string>(text)}.read();
+    return study_solver(scene, {key}, {find_measure("deploy_time")}).model;
+  };
+  CHECK(model("step = 0.01\nend_time = \"=100*h\"", "variables.h") == "auto");
+  CHECK(model("step = 0.01", "variables.n") == "auto");
+  CHECK(model("step = \"=h\"", "variables.h") == "full");
+  CHECK(model("step = \"=h\"", "structure.fold_angle") == "auto");
+  CHECK(model("method = \"rk{n - 2}\"", "variables.n") == "full");
 }
 
 }  // namespace scene_variation_test

@@ -24,6 +24,13 @@ SweepPlan ring_plan() {
 
 }  // namespace
 
+TEST_CASE("a range meets the whole numbers between its ends") {
+  const SweepAxis axis = parse_axis("structure.cells=1:50:50");
+  REQUIRE(axis.numbers.size() == 50);
+  for (int i = 0; i < 50; ++i) CHECK(axis.numbers[static_cast<std::size_t>(i)] == i + 1);
+  CHECK(parse_axis("x=-7:993:1001").numbers[777] == 770);
+}
+
 TEST_CASE("axes are ranges, log ranges or lists") {
   CHECK(parse_axis("a.b=1:3:5").numbers == std::vector<double>{1, 1.5, 2, 2.5, 3});
   CHECK(parse_axis("a=1:100:3:log").numbers == std::vector<double>{1, 10, 100});
