@@ -149,14 +149,26 @@ TomlTree& step_into_array(TomlTree& array, const Step& step, std::string_view so
                 (names.empty() ? first : did_you_mean(step.name, {names.begin(), names.end()}))};
 }
 
-// `in_list`: what follows is an entry of a list.
-TomlTree& step_into(TomlTree& tree, const Step& step, const std::string& so_far, bool in_list) {
+// A vector that the scene leaves out, of which one component is given: all vectors of three that may be left
+// out are zero by default. Of a longer list it is not known how long it should be.
+TomlTree zero_vector() {
+  TomlTree made = made_here(TomlTree::Kind::array), zero = made_here(TomlTree::Kind::integer);
+  made.items.assign(3, zero);
+  return made;
+}
+
+// `next`: the step behind this one; null: there is none.
+TomlTree& step_into(TomlTree& tree, const Step& step, const std::string& so_far, const Step* next) {
   if (tree.kind == TomlTree::Kind::array) return step_into_array(tree, step, so_far);
   if (tree.kind != TomlTree::Kind::table) throw Refusal{so_far + " is " + tree.describe() + ", not a table"};
   if (step.index || step.entry) throw Refusal{so_far + " is not a list"};
   if (TomlTree* found = tree.find(step.name)) return *found;
+  const bool in_list = next && (next->index || next->entry);
   const bool list = in_list && grows((so_far.empty() ? "" : so_far + ".") + step.name);
-  tree.entries.push_back({step.name, made_here(list ? TomlTree::Kind::array : TomlTree::Kind::table)});
+  const bool vector =
+      in_list && !list && next->index && *next->index < 3 && step.name != "times" && step.name != "values";
+  tree.entries.push_back(
+      {step.name, vector ? zero_vector() : made_here(list ? TomlTree::Kind::array : TomlTree::Kind::table)});
   return tree.entries.back().value;
 }
 
@@ -166,8 +178,7 @@ TomlTree& made_at(TomlTree& root, const std::vector<Step>& steps) {
   std::string so_far;
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const Step& step = steps[k];
-    const bool in_list = k + 1 < steps.size() && (steps[k + 1].index || steps[k + 1].entry);
-    target = &step_into(*target, step, so_far, in_list);
+    target = &step_into(*target, step, so_far, k + 1 < steps.size() ? &steps[k + 1] : nullptr);
     so_far += step.index ? "[" + std::to_string(*step.index) + "]" : (so_far.empty() ? "" : ".") + step.name;
   }
   return *target;
@@ -188,8 +199,7 @@ std::vector<std::string> place_of_key(TomlTree root, const std::string& key) {
     TomlTree* target = &root;
     for (std::size_t k = 0; k < steps.size(); ++k) {
       TomlTree* const parent = target;
-      const bool in_list = k + 1 < steps.size() && (steps[k + 1].index || steps[k + 1].entry);
-      target = &step_into(*parent, steps[k], "", in_list);
+      target = &step_into(*parent, steps[k], "", k + 1 < steps.size() ? &steps[k + 1] : nullptr);
       const bool entry = parent->kind == TomlTree::Kind::array;
       place.push_back(entry ? std::to_string(target - parent->items.data()) : steps[k].name);
     }

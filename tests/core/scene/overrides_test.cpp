@@ -94,6 +94,20 @@ TEST_CASE("entries of lists that a scene does not have yet, and names with brack
         "--set forces[pull].damping: forces has no entry named 'pull'; the first is [0]\n");
 }
 
+TEST_CASE("one component of a vector that the scene leaves out") {
+  const Result r = with({"gravity.acceleration[2]=-1.5", "structure.nodes[1].velocity[0]=2"});
+  CHECK(r.problems == "");
+  const TomlTree* g = r.tree.find("gravity")->find("acceleration");
+  REQUIRE(g->items.size() == 3);
+  CHECK(g->items[0].integer == 0);
+  CHECK(g->items[2].real == -1.5);
+  const TomlTree* v = r.tree.find("structure")->find("nodes")->items[1].find("velocity");
+  REQUIRE(v->items.size() == 3);
+  CHECK(v->items[0].integer == 2);
+  CHECK(with({"gravity.acceleration[3]=1"}).problems ==
+        "--set gravity.acceleration[3]: gravity.acceleration is not a list\n");
+}
+
 TEST_CASE("overrides that cannot be applied say why") {
   CHECK(with({"solver.step"}).problems == "--set solver.step: must be key=value\n");
   CHECK(with({"solver.step="}).problems == "--set solver.step: has no value\n");
