@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/measures.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
 #include "core/export/motion_keys.hpp"
@@ -183,7 +184,9 @@ void add_words(const ExportJob& job, Page& page) {
   facts("constraint error", largest("constraint_max_m") + " m");
   facts("energy balance", "off by " + largest("energy_balance_J") + " J at most");
   if (const PeakForce peak = peak_rod_force(job.diagnostics); peak.rod >= 0)
-    facts("peak rod force", short_text(peak.force_N) + " N" + doubt_about(peak, job.diagnostics));
+    facts("peak rod force", short_text(std::copysign(
+                                find_measure("peak_rod_force").value(run, job.diagnostics), peak.force_N)) +
+                                " N" + doubt_about(peak, job.diagnostics));
   if (!job.command.empty()) facts("command", std::string(job.command));
   facts("made by", "Unfurl " + version());
   page["events"] = page["warnings"] = Page::array();

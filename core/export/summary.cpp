@@ -82,14 +82,16 @@ Json final_json(const Trajectory& trajectory) {
           {"velocities_m_s", by_node(trajectory.structure(), trajectory.velocities(last))}};
 }
 
-// The rod that carries the peak by the name of its first copy.
-Json forces_json(const Structure& structure, const Diagnostics& diagnostics) {
+// Peaks are those of the motion, as in the measures; which rod and when, as the states show it. The rod that
+// carries the peak by the name of its first copy.
+Json forces_json(const Simulation& run, const Diagnostics& diagnostics) {
+  const Structure& structure = run.trajectory.structure();
   const PeakForce peak = peak_rod_force(diagnostics);
   const auto shown = std::find_if(structure.rod_copies.begin(), structure.rod_copies.end(),
                                   [&](const RodCopy& copy) { return copy.source == peak.rod; });
   Json forces = {{"rods", structure.rod_copies.size()}, {"unique_rods", unique_rods(structure, diagnostics)}};
   if (shown == structure.rod_copies.end()) return forces;
-  forces["peak_rod_force_N"] = std::abs(peak.force_N);
+  forces["peak_rod_force_N"] = find_measure("peak_rod_force").value(run, diagnostics);
   forces["peak_rod"] = shown->name;
   forces["peak_t_s"] = peak.t;
   forces["peak_unique"] = peak.unique;
@@ -106,25 +108,28 @@ Json reactions_json(const Structure& structure, const Diagnostics& diagnostics) 
 }
 
 // What the rods that have a modulus bear; a margin is null where nothing is borne.
-Json strength_json(const Structure& structure, const Diagnostics& diagnostics) {
+Json strength_json(const Simulation& run, const Diagnostics& diagnostics) {
+  const Structure& structure = run.trajectory.structure();
   Json strength;
-  const auto add = [&](const char* name, double (*quantity)(const Rod&, double), auto&& values) {
+  const auto add = [&](const char* name, double (*quantity)(const Rod&, double), double peak, auto&& values) {
     const WorstRod worst = worst_rod(structure, diagnostics, quantity);
     Json& entry = strength[name];
-    values(entry, std::abs(worst.value));
+    values(entry, peak);
     const auto shown = std::find_if(structure.rod_copies.begin(), structure.rod_copies.end(),
                                     [&](const RodCopy& copy) { return copy.source == worst.rod; });
     entry["rod"] = shown == structure.rod_copies.end() ? Json() : Json(shown->name);
     entry["t_s"] = worst.t;
     entry["unique"] = worst.unique;
   };
-  add("axial_stress", axial_stress, [](Json& entry, double value) { entry["peak_Pa"] = value; });
+  add("axial_stress", axial_stress, find_measure("peak_stress").value(run, diagnostics),
+      [](Json& entry, double value) { entry["peak_Pa"] = value; });
   const auto with_margin = [](Json& entry, double ratio) {
     entry["peak_ratio"] = ratio;
     entry["margin"] = margin_of(ratio);
   };
-  if (any_strength(structure)) add("stress", stress_ratio, with_margin);
-  add("buckling", buckling_ratio, with_margin);
+  const auto largest = [&](const char* column) { return largest_of_column(run, diagnostics, column); };
+  if (any_strength(structure)) add("stress", stress_ratio, largest("stress_ratio_max"), with_margin);
+  add("buckling", buckling_ratio, largest("buckling_ratio_max"), with_margin);
   return strength;
 }
 
@@ -152,13 +157,13 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
     summary["errors"][name] = max_abs(diagnostics, name);
   summary["errors"]["energy_balance_max_J"] = max_abs(diagnostics, "energy_balance_J");
   if (!std::isnan(run.position_estimate)) summary["errors"]["position_estimate_m"] = run.position_estimate;
-  summary["forces"] = forces_json(model.structure, diagnostics);
+  summary["forces"] = forces_json(run, diagnostics);
   for (const auto& [column, key] : {std::pair("latch_force_max_N", "peak_latch_force_N"),
                                     std::pair("latch_torque_max_N_m", "peak_latch_torque_N_m")})
     if (diagnostics.find(column)) summary["forces"][key] = largest_of_column(run, diagnostics, column);
   if (Json supports = reactions_json(model.structure, diagnostics); !supports.empty())
     summary["reactions"] = std::move(supports);
-  if (any_elastic(model.structure)) summary["strength"] = strength_json(model.structure, diagnostics);
+  if (any_elastic(model.structure)) summary["strength"] = strength_json(run, diagnostics);
   summary["events"] = Json::array();
   for (const auto& event : run.events) {
     summary["events"].push_back({{"name", event.name}, {"t_s", event.t}, {"text", event.name}});
