@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/simulate/simulation.hpp"
 #include "core/study/table.hpp"
 
 namespace unfurl {
@@ -29,13 +30,18 @@ class Search {
     if (hooks_.stopped()) throw Cancelled();
     if (static_cast<int>(seen_.size()) >= o_.most)
       give_up("no answer after " + std::to_string(o_.most) + " runs");
+    const double begin = now();
     const Evaluation e{x, f_(x)};
+    took_ = now() - begin;
+    if (seen_.empty()) first_took_ = took_;
     seen_.push_back(e);
     if (!std::isnan(e.value) && (seen_.size() == 1 || off(e) < off(best_) || std::isnan(best_.value)))
       best_ = e;
     return e;
   }
   double off(const Evaluation& e) const { return std::abs(e.value - target_); }
+  double now() const { return o_.clock ? o_.clock() : thread_cpu_seconds(); }
+  bool took_too_long() const { return took_ > o_.patience_s && took_ > o_.patience_of_first * first_took_; }
   bool valid(const Evaluation& e) const { return !std::isnan(e.value); }
   bool exact(const Evaluation& e) const { return e.value == target_; }
   bool opposite(const Evaluation& a, const Evaluation& b) const {
@@ -74,7 +80,10 @@ class Search {
     Side up{start, first}, down{start, -first};
     while (up.open || down.open)
       if (advance(up) || advance(down)) return;
-    give_up("the target is not reached on either side of " + short_number(o_.start, 9));
+    give_up("the target is not reached on either side of " + short_number(o_.start, 9) +
+            (too_long_.empty()
+                 ? ""
+                 : "; at " + too_long_ + " a run takes too long to look further (--between does)"));
   }
 
   struct Side {
@@ -86,6 +95,11 @@ class Search {
   bool advance(Side& side) {
     if (!side.open) return false;
     const Evaluation next = at(side.last.x + side.stride);
+    if (took_too_long() && !opposite(side.last, next)) {
+      too_long_ = short_number(next.x, 9);
+      side.open = false;
+      return false;
+    }
     if (!valid(next)) {
       side.walled = true;
       side.stride /= 2;
@@ -146,6 +160,8 @@ class Search {
   Evaluation a_, b_, best_;
   std::vector<Evaluation> seen_;
   int slow_ = 0;
+  double took_ = 0, first_took_ = 0;  // [s]
+  std::string too_long_;
 };
 
 }  // namespace

@@ -18,6 +18,10 @@ struct SolveOptions {
   double low = 0, high = 0;    // --between; equal: not given, the search looks around `start`
   double x_tolerance = 1e-12;  // relative
   int most = 200;              // evaluations
+  // Looking around, a side is given up where one evaluation takes longer than both: towards a step of zero
+  // runs grow without end.
+  double patience_s = 20, patience_of_first = 30;  // [s], times the first one
+  std::function<double()> clock = nullptr;         // [s]; by default the CPU time of this thread
 };
 
 struct Evaluation {

@@ -33,6 +33,24 @@ TEST_CASE("a root between two ends is found on either side of where the scene st
   CHECK(exact.high == 2.5);
 }
 
+// As of a step that goes to zero: 1/x runs' time at x, for a target that is nowhere.
+TEST_CASE("a search gives a side up where runs take longer and longer") {
+  double time = 0;
+  SolveOptions options{.start = 0.02};
+  options.clock = [&] { return time; };
+  const auto f = [&](double x) {
+    if (!(x > 0)) return none;
+    time += 0.02 / x;  // [s]
+    return 4.92;
+  };
+  CHECK_THROWS_WITH(solve_for(f, 5, options, {}), Catch::Contains("a run takes too long to look further"));
+  // Each run may take up to twice as long as the one before: in sum twice the last, which may be twice 30 s.
+  CHECK(time < 200);
+  time = 0;
+  const auto reached = [&](double x) { return f(x) + (x < 1e-3 ? 1 : 0); };  // before that
+  CHECK(solve_for(reached, 5.92, options, {}).value == 5.92);
+}
+
 // No double is a root of these to the last bit; what is left of 3e-17 is no jump.
 TEST_CASE("a target of zero is met as well as any, and at an end that was given") {
   const auto f = [](double x) { return std::sin(x) - 0.3 + 3e-17; };
