@@ -74,6 +74,11 @@ int report_failure(std::ostream& out) {
     return code;
   } catch (const std::bad_alloc&) {
     out << "unfurl: out of memory\n";
+  } catch (const std::system_error& error) {
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    out << (no_thread ? "unfurl: no thread can be started (a limit on processes?): "
+                      : "unfurl: internal error: ")
+        << error.what() << "\n";
   } catch (const std::exception& error) {
     out << "unfurl: internal error: " << error.what() << "\n";
   } catch (...) {

@@ -73,6 +73,10 @@ void end_on_signals() {
   handle(SIGALRM, on_alarm);
   handle(SIGINT, on_signal);
   handle(SIGTERM, on_signal);
+  struct sigaction of_hangup {};
+  ::sigaction(SIGHUP, nullptr, &of_hangup);
+  if (of_hangup.sa_handler != SIG_IGN) handle(SIGHUP, on_signal);  // else it was started by nohup
+  handle(SIGXFSZ, SIG_IGN);  // a limit on files: write() tells, as of a full disk
 }
 
 InterruptGuard::InterruptGuard() {

@@ -5,8 +5,9 @@
 
 namespace unfurl {
 
-// From now on SIGINT and SIGTERM end the program, and the programs that it started, at once; while an
-// InterruptGuard lives, they raise a flag first.
+// From now on SIGINT, SIGTERM and the terminal's SIGHUP end the program, and the programs that it started, at
+// once; while an InterruptGuard lives, they raise a flag first. A limit on the size of files does not: it is
+// an error of writing.
 void end_on_signals();
 
 // While one lives, a first signal raises the flag, for what takes no long time to come to an end by itself;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iostream>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "app/output/interrupt.hpp"
@@ -85,15 +86,19 @@ void Progress::print(double fraction, const std::string& counts) {
 
 Waiting::Waiting(std::string task, bool quiet) {
   if (quiet || !isatty(STDERR_FILENO)) return;
-  thread_ = std::thread([this, words = std::move(task)] {
-    std::unique_lock lock(mutex_);
-    for (int seconds = 1; !changed_.wait_for(lock, std::chrono::seconds(1), [this] { return over_; });
-         ++seconds) {
-      bar_is_shown(true);
-      send_to_terminal("\r" + words + ", " + std::to_string(seconds) + " s");
-      shown_ = true;
-    }
-  });
+  try {
+    thread_ = std::thread([this, words = std::move(task)] {
+      std::unique_lock lock(mutex_);
+      for (int seconds = 1; !changed_.wait_for(lock, std::chrono::seconds(1), [this] { return over_; });
+           ++seconds) {
+        bar_is_shown(true);
+        send_to_terminal("\r" + words + ", " + std::to_string(seconds) + " s");
+        shown_ = true;
+      }
+    });
+  } catch (const std::system_error&) {
+    // No thread to be had: it waits without words.
+  }
 }
 
 Waiting::~Waiting() {

@@ -146,7 +146,9 @@ class Mp4Film final : public FilmEncoder {
 // Takes frames in order and feeds every film side by side.
 class FilmEncoders {
  public:
-  explicit FilmEncoders(bool parallel) : policy_(parallel ? std::launch::async : std::launch::deferred) {}
+  // One after the other where no thread can be started.
+  static constexpr std::launch at_once = std::launch::async | std::launch::deferred;
+  explicit FilmEncoders(bool parallel) : policy_(parallel ? at_once : std::launch::deferred) {}
 
   void begin(std::unique_ptr<FilmEncoder> film) { films_.push_back(std::move(film)); }
   bool wants_samples() const {

@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace unfurl {
 
-// job(0) .. job(count - 1), each once, on so many threads at most, this one among them. The first exception
+// job(0) .. job(count - 1), each once, on so many threads at most, as many as the system gives,
+// this one among them. The first exception
 // of a job keeps those from starting that have not, and is thrown here when all threads have ended.
 template <class Job>
 void parallel_for(std::size_t count, int threads, const Job& job) {
@@ -28,7 +30,11 @@ void parallel_for(std::size_t count, int threads, const Job& job) {
   };
   {
     std::vector<std::jthread> team;
-    for (int i = 1; i < threads && static_cast<std::size_t>(i) < count; ++i) team.emplace_back(work);
+    try {
+      for (int i = 1; i < threads && static_cast<std::size_t>(i) < count; ++i) team.emplace_back(work);
+    } catch (const std::system_error&) {
+      // No more threads may be started: those that there are do it.
+    }
     work();
   }
   if (failure) std::rethrow_exception(failure);

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/image/task_queue.hpp"
 
+#include <system_error>
 #include <utility>
 
 namespace unfurl {
 
 TaskQueue::TaskQueue(int threads) {
-  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+  try {
+    for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+  } catch (const std::system_error&) {
+    // No more threads may be started: those that there are do it, or add().
+  }
 }
 
 TaskQueue::~TaskQueue() {

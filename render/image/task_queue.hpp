@@ -15,7 +15,7 @@ namespace unfurl {
 // finish(); tasks that have not begun by then are dropped.
 class TaskQueue {
  public:
-  explicit TaskQueue(int threads);  // 0: a task runs inside add()
+  explicit TaskQueue(int threads);  // at most; with none a task runs inside add()
   ~TaskQueue();                     // waits for the tasks that have begun
   TaskQueue(const TaskQueue&) = delete;
   TaskQueue& operator=(const TaskQueue&) = delete;
