@@ -18,6 +18,7 @@
 #include "app/output/receipt.hpp"
 #include "app/output/written_report.hpp"
 #include "app/own_options.hpp"
+#include "core/export/atomic_file.hpp"
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
 #include "core/text/version.hpp"
@@ -222,7 +223,8 @@ int dispatch(const std::vector<std::string>& words) {
   }
   check_count(command, parsed.arguments);
   parsed.arguments.words = words;
-  const Arguments& a = parsed.arguments;
+  Arguments& a = parsed.arguments;
+  for (std::string* file : {&a.output, &a.view.picture, &a.view.record}) *file = behind_links(*file).string();
   std::optional<ReceiptWriter> receipts;
   if (shows(command, "-o")) receipts.emplace(words, a.names.empty() ? "" : a.names.front(), a.output);
   const WrittenReport report(a.view.picture.empty() ? a.output : a.view.picture);

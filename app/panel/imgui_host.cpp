@@ -105,9 +105,17 @@ void ImguiHost::apply(const InputEvent& event) const {
       io.KeyShift = event.shift;
       io.KeyAlt = event.alt;
       break;
-    case Kind::text:
-      io.AddInputCharactersUTF8(event.text.c_str());
+    case Kind::text: {
+      // In a number a comma is a point, as on half of the keyboards; a box for numbers would drop it.
+      const ImGuiInputTextState* typed = ImGui::GetInputTextState(ImGui::GetActiveID());
+      const bool number =
+          typed &&
+          (typed->Flags & (ImGuiInputTextFlags_CharsDecimal | ImGuiInputTextFlags_CharsScientific)) != 0;
+      std::string text = event.text;
+      if (number) std::replace(text.begin(), text.end(), ',', '.');
+      io.AddInputCharactersUTF8(text.c_str());
       break;
+    }
     case Kind::drop:
     case Kind::close:
       break;

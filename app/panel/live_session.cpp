@@ -10,6 +10,7 @@
 #include "app/panel/document/scene_entries.hpp"
 #include "app/panel/view/film_camera.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/scene/text_file.hpp"
 #include "render/image/png.hpp"
 
 namespace unfurl {
@@ -231,17 +232,30 @@ void LiveSession::open_folder() {
   state_.message = error == 0 ? "opened " + folder : "there is no xdg-open; the folder is " + folder;
 }
 
+// Does the scene's own file hold something else than what was read from it or saved last? An editor beside
+// the window may have changed it. In a replay nothing is saved, so that nothing can be told.
+bool LiveSession::changed_by_others(const std::string& path) const {
+  std::error_code unknown;
+  if (options_.replayed || !std::filesystem::is_regular_file(path, unknown)) return false;
+  const TextFile there = read_text_file(path);
+  const SceneDocument& now = state_.history.now();
+  return there.error.empty() && there.text != *now.text && !(saved_ && there.text == *saved_->text);
+}
+
 void LiveSession::save(const std::string& path) {
   std::error_code unknown;
-  if (path == state_.history.now().path || !std::filesystem::exists(path, unknown)) return save_now(path);
-  state_.question = {absolute(path) + " exists. Replace it?",
+  const bool own = path == state_.history.now().path;
+  if (own ? !changed_by_others(path) : !std::filesystem::exists(path, unknown)) return save_now(path);
+  const char* why =
+      own ? " was changed by another program since it was opened. Replace it?" : " exists. Replace it?";
+  state_.question = {absolute(path) + why,
                      {{"Replace", [path](LiveSession& s) { s.save_now(path); }}, {"Cancel", {}}}};
 }
 
 void LiveSession::save_now(const std::string& path) {
   bool anew = false;
   const SceneDocument saved = saved_document(state_.history.now(), path, anew);
-  if (!options_.replayed) write_file_atomically(path, *saved.text);
+  if (!options_.replayed) write_file_atomically(behind_links(path), *saved.text);
   state_.history.saved(saved);
   saved_ = saved;
   state_.message = "saved " + absolute(path) + (anew ? ", written anew" : ", comments kept");
@@ -251,7 +265,7 @@ void LiveSession::save_now(const std::string& path) {
 
 void LiveSession::save_or_ask() {
   const std::string& path = state_.history.now().path;
-  if (!path.empty() && !of_library(path)) return save_now(path);
+  if (!path.empty() && !of_library(path)) return save(path);
   state_.export_open = true;
   state_.message = "a name for the scene's own file, then Save as";
 }

@@ -59,7 +59,7 @@ class LiveSession {
   void stop_study() { study_.stop(); }
   void start_export(bool replace = false);  // asks where something would be replaced
   void open_folder();                       // of the last export, in the desktop's own way
-  void save(const std::string& path);       // asks likewise
+  void save(const std::string& path);       // asks likewise, and where others changed the scene's own file
   void save_now(const std::string& path);
   void save_or_ask();  // into its own file, or where to
   void add_entry(const ElementOffer& offer);
@@ -83,6 +83,7 @@ class LiveSession {
   void take_run(const SimulationOutcome& outcome);
   void judge_run();  // a point of speed against accuracy
   void remember(const std::string& path);
+  bool changed_by_others(const std::string& path) const;
   void show_hand();
   void build(const std::string& gesture, SceneDocument document);
   void describe();

@@ -133,6 +133,20 @@ void remove_abandoned(const std::filesystem::path& unfinished) {
   ::close(file);
 }
 
+std::filesystem::path behind_links(const std::filesystem::path& path) {
+  namespace fs = std::filesystem;
+  constexpr int most = 40;  // as the system follows
+  std::error_code error;
+  fs::path at = path;
+  for (int i = 0; i < most && fs::is_symlink(fs::symlink_status(at, error)); ++i) {
+    const fs::path to = fs::read_symlink(at, error);
+    if (error) return path;
+    at = to.is_absolute() ? to : at.parent_path() / to;
+  }
+  const bool file = !fs::is_symlink(fs::symlink_status(at, error)) && !fs::is_directory(at, error);
+  return file && at.extension() == path.extension() ? at : path;
+}
+
 PendingFile::PendingFile(std::filesystem::path target) : target_(std::move(target)) {
   if (!target_.has_filename()) throw FileError(target_, EISDIR);
   while (file_ < 0) {
@@ -171,6 +185,9 @@ void PendingFile::complete(Flush flush) {
 }
 
 void PendingFile::take_place() {
+  struct stat before {};
+  if (::lstat(target_.c_str(), &before) == 0 && S_ISREG(before.st_mode))
+    ::fchmod(file_, before.st_mode & 0777);  // where that may not be, it has those of a new file
   if (FileWatcher* watcher = file_watcher; watcher)
     watcher->before_file(target_, checksum_.empty() ? checksum_of_file(temporary_) : checksum_);
   // Some file systems report a full disk only at close.

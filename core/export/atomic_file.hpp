@@ -29,11 +29,16 @@ class FileError : public Error {
 // which are checked when they are used again; one flush_files() at the end of them costs as much as one.
 enum class Flush { at_once, later };
 
-// Replace `path` by a file with these bytes. Throws FileError and leaves what was there before.
+// Replace `path` by a file with these bytes and the permissions of the file that was there. A link is
+// replaced too, not what it leads to. Throws FileError and leaves what was there before.
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes,
                            Flush flush = Flush::at_once);
 void write_file_atomically(const std::filesystem::path& path, std::string_view text,
                            Flush flush = Flush::at_once);
+
+// Of a file that a person names, who means what links lead to: where it lies. Links to directories, and those
+// to a file of another kind (by its suffix), stay as they are.
+std::filesystem::path behind_links(const std::filesystem::path& path);
 
 // Wait until what was written to the file system of this directory is on its disk.
 void flush_files(const std::filesystem::path& directory);

@@ -153,6 +153,39 @@ TEST_CASE("a file and a folder that are there are replaced only after a question
   CHECK_FALSE(driver.state().exporting.running);
 }
 
+TEST_CASE("what another program changed in the scene's file is replaced only after a question") {
+  const ScratchDirectory scratch;
+  const std::string text = pendulum, file = scratch.write("own.toml", text);
+  std::filesystem::create_symlink("own.toml", scratch / "link.toml");
+  PanelDriver driver(tall());
+  LiveSession& session = driver.panel().session();
+  session.open_file(scratch / "link.toml");
+  const auto save_with = [&](double end_time) {
+    SceneDocument changed = session.state().history.now();
+    changed.edits["solver.end_time"] = end_time;
+    driver.state().history.replace(changed);
+    driver.key(Key::s, true);
+    driver.frame();
+  };
+  save_with(0.25);
+  save_with(0.125);
+  CHECK(driver.state().question.text.empty());
+  CHECK(file_text(file).find("end_time = 0.125") != std::string::npos);  // behind the link, which stays
+  CHECK(std::filesystem::is_symlink(scratch / "link.toml"));
+  scratch.write("own.toml", text + "# mine\n");
+  save_with(0.0625);
+  REQUIRE(driver.panel().has_place("answer Replace"));
+  CHECK(file_text(file) == text + "# mine\n");
+  driver.click("answer Cancel");
+  driver.frame();
+  CHECK(file_text(file) == text + "# mine\n");
+  driver.key(Key::s, true);
+  driver.frame();
+  driver.click("answer Replace");
+  driver.frame();
+  CHECK(file_text(file).find("end_time = 0.0625") != std::string::npos);
+}
+
 TEST_CASE("the view that was turned by hand is the film's, and its command line says so") {
   PanelDriver driver(tall());
   driver.key(Key::end);

@@ -143,6 +143,38 @@ TEST_CASE("a link in the place of a file is replaced, what it leads to stays") {
   CHECK_FALSE(fs::is_symlink(scratch.path / "out.svg"));
 }
 
+TEST_CASE("behind the links of a name lies the file that is meant") {
+  const ScratchFolder scratch;
+  const fs::path& in = scratch.path;
+  fs::create_directory(in / "store");
+  write_file_atomically(in / "store" / "real.toml", "mine");
+  fs::create_symlink("store/real.toml", in / "one.toml");
+  fs::create_symlink(in / "one.toml", in / "two.toml");
+  fs::create_symlink("store/new.toml", in / "ahead.toml");  // is not there yet
+  fs::create_directory_symlink("store", in / "folder");
+  fs::create_symlink("store/real.toml", in / "picture.png");
+  fs::create_symlink("round.toml", in / "round.toml");
+  CHECK(behind_links(in / "two.toml") == in / "store/real.toml");
+  CHECK(behind_links(in / "ahead.toml") == in / "store/new.toml");
+  for (const char* itself : {"store/real.toml", "nothing.toml", "folder", "picture.png", "round.toml"})
+    CHECK(behind_links(in / itself) == in / itself);
+  CHECK(behind_links("").empty());
+}
+
+TEST_CASE("a file that is replaced keeps its permissions") {
+  const ScratchFolder scratch;
+  const fs::path file = scratch.path / "a.toml";
+  write_file_atomically(file, "open");
+  const auto anew = fs::status(file).permissions();
+  const auto own = fs::perms::owner_read | fs::perms::owner_write;
+  fs::permissions(file, own);
+  write_file_atomically(file, "private");
+  CHECK(fs::status(file).permissions() == own);
+  fs::create_symlink("a.toml", scratch.path / "b.toml");
+  write_file_atomically(scratch.path / "b.toml", "another");
+  CHECK(fs::status(scratch.path / "b.toml").permissions() == anew);
+}
+
 TEST_CASE("an unfinished file is abandoned only when nobody writes it any more") {
   const ScratchFolder scratch;
   const PendingFile writing(scratch.path / "a.txt");
