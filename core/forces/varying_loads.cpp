@@ -72,7 +72,10 @@ class Followers final : public ForceBlock {
 };
 
 ParamSpec times_param() {
-  return vector_param("times", "s", {}, "with values: the size over time, straight lines between the points");
+  return vector_param(
+      "times", "s", {},
+      "with values: the size over time, straight lines between the points; a time that stands twice is a "
+      "jump");
 }
 ParamSpec values_param() {
   return vector_param("values", "", {}, "factors of the load at the times");

@@ -328,7 +328,7 @@ class PathRun {
     const double approach = -slope * motion_.v(), flight = motion_.t() - last_touch_[i];
     last_touch_[i] = motion_.t();
     if (approach < 0) return;
-    refuse_branches(i);
+    if (motion_.v() != 0) refuse_branches(i);
     const bool series = stop.restitution < 1 && flight > 0 && flight <= accumulated * options_.step;
     if (series || stop.restitution * approach <= stop.rest_speed) {
       const double Q = law_->at(motion_.s(), 0.0, motion_.t()).Q;

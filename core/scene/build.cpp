@@ -250,6 +250,26 @@ void refuse_endless_runs(const Scene& scene, const Model& model) {
   if (!problem.empty()) throw SceneError({{location_of(scene, "solver.step"), "solver.step", problem}});
 }
 
+// Points of a load's table that no step tells apart are a jump: steps end on either side of it. Three of them
+// may be a blow, of which nothing would be left.
+void find_jumps(const Scene& scene, Structure& structure) {
+  const double near = 1e-7 * scene.solver.step;
+  MemberFinder find(structure);
+  for (const SceneElement& e : scene.forces) {
+    if (!e.enabled || (e.kind != "load_over_time" && e.kind != "follower")) continue;
+    const std::vector<double>& t = e.values.vector("times");
+    for (std::size_t i = 2; i < t.size(); ++i)
+      if (t[i] - t[i - 2] < near) {
+        find.problem(e, e.table.empty() ? "times" : "table",
+                     "has three points within 1e-7 of solver.step: no step follows so short a blow; draw it "
+                     "out");
+        break;
+      }
+  }
+  find.throw_problems();
+  for (Force& f : structure.forces) make_jumps(f.size, near);
+}
+
 }  // namespace
 
 Structure build_structure(const Scene& scene) {
@@ -259,6 +279,7 @@ Structure build_structure(const Scene& scene) {
   if (is_sector(structure)) refuse_elements(scene);
   add_elements(scene.forces, scene_forces(), scene.solver.end_time, structure);
   add_elements(scene.constraints, scene_constraints(), scene.solver.end_time, structure);
+  find_jumps(scene, structure);
   find_flat(structure);
   add_deployment(scene, structure);
   check_latches(scene, structure);

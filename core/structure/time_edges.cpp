@@ -11,6 +11,10 @@ void add_bends_of_line(const TimeFunction& f, std::vector<TimeEdge>& edges) {
   const std::vector<double>&x = f.times, &y = f.values;
   const auto slope = [&](std::size_t i) { return (y[i + 1] - y[i]) / (x[i + 1] - x[i]); };
   for (std::size_t i = 0; i < x.size(); ++i) {
+    if (i + 1 < x.size() && x[i] == x[i + 1]) {
+      edges.push_back({x[i++], true});
+      continue;
+    }
     const double before = i > 0 ? slope(i - 1) : 0.0, after = i + 1 < x.size() ? slope(i) : 0.0;
     // Points of one straight line, up to their rounding, do not bend it.
     if (std::abs(after - before) > 1e-9 * std::max(std::abs(before), std::abs(after)))
@@ -20,7 +24,7 @@ void add_bends_of_line(const TimeFunction& f, std::vector<TimeEdge>& edges) {
 
 void add_points_of_spline(const TimeFunction& f, double step, std::vector<TimeEdge>& edges) {
   const std::vector<double>& x = f.times;
-  for (const double end : {x.front(), x.back()}) edges.push_back({end, true});
+  for (const double end : {x.front(), x.back()}) edges.push_back({end, true, true});
   const double near = (1 - 1e-9) * step;
   for (std::size_t i = 1; i + 1 < x.size(); ++i)
     if (x[i] - x[i - 1] >= near && x[i + 1] - x[i] >= near) edges.push_back({x[i], false});
@@ -31,7 +35,7 @@ void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges)
     case TimeFunction::Kind::constant:
       return;
     case TimeFunction::Kind::rate:
-      edges.push_back({f.start, f.ramp == 0 && f.rate != 0});
+      edges.push_back({f.start, f.ramp == 0 && f.rate != 0, f.ramp == 0 && f.rate != 0});
       if (f.ramp > 0) edges.push_back({f.start + f.ramp, false});
       return;
     case TimeFunction::Kind::smooth:
@@ -62,7 +66,10 @@ std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
       add_edges(*function, step, edges);
       // A force that answers to rates jumps with them; none drives a velocity.
       const bool by_rate = function == &f.motor.command || (function == &f.unstressed && f.damping > 0);
-      for (std::size_t i = own; i < edges.size(); ++i) edges[i].jump = edges[i].jump && by_rate;
+      for (std::size_t i = own; i < edges.size(); ++i) {
+        edges[i].jump = edges[i].jump && (by_rate || function->kind == TimeFunction::Kind::linear);
+        edges[i].impact = false;
+      }
     }
   std::sort(edges.begin(), edges.end(), [](const TimeEdge& a, const TimeEdge& b) { return a.t < b.t; });
   // Times that differ by their rounding are one; it jumps if one of them does.
@@ -71,7 +78,7 @@ std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
     if (distinct.empty() || edge.t - distinct.back().t > 4e-16 * std::abs(edge.t))
       distinct.push_back(edge);
     else
-      distinct.back().jump = distinct.back().jump || edge.jump;
+      distinct.back().jump = distinct.back().jump || edge.jump, distinct.back().impact |= edge.impact;
   }
   return distinct;
 }

@@ -15,6 +15,7 @@ struct TimeEdge {
   // A prescribed velocity jumps, an impact of the drive, or its acceleration does, or a force, as a motor's
   // whose command is a rate: steps that end there must not see what is behind. Otherwise something bends.
   bool jump = false;
+  bool impact = false;  // of these, a prescribed velocity or acceleration jumps
 };
 
 // The time of a state before a jump at t: so little earlier that the sum of a step and its start does not
@@ -30,7 +31,8 @@ inline bool same_instant(double before, double after) {
 // The times that no step may straddle, ascending, each once: a step of any method takes what it integrates
 // for a polynomial, and over a bend of a force or of an acceleration it is of order 2, whatever it claims.
 //
-//   load, linear     every point where the line bends: the force is continuous, its slope is not
+//   load, linear     every point where the line bends: the force is continuous, its slope is not; where a
+//                    time stands twice it jumps
 //   drive, rate      start: the velocity jumps (no ramp); otherwise start and start + ramp, where f''' jumps
 //                    and with it the slope of the forces that inertia takes
 //   drive, smooth    start and start + duration, for the same reason; shorter than two steps, three times

@@ -32,7 +32,10 @@ std::size_t interval(const std::vector<double>& x, double t) {
 
 double linear_part(const TimeFunction& f, int order, double t) {
   const double inside = std::clamp(t, f.times.front(), f.times.back());
+  if (order == 0 && t >= f.times.back()) return f.values.back();
+  if (order == 0 && t < f.times.front()) return f.values.front();
   const std::size_t i = interval(f.times, inside);
+  if (f.times[i] == f.times[i + 1]) return 0.0;  // the slope at a jump at an end
   const double slope = (f.values[i + 1] - f.values[i]) / (f.times[i + 1] - f.times[i]);
   if (order == 0) return f.values[i] + slope * (inside - f.times[i]);
   return order == 1 && inside == t ? slope : 0.0;
@@ -69,6 +72,12 @@ double TimeFunction::derivative(int order, double t) const {
       return base + linear_part(*this, order, t);
   }
   return base;
+}
+
+void make_jumps(TimeFunction& f, double near) {
+  if (f.kind != TimeFunction::Kind::linear) return;
+  for (std::size_t i = 1; i < f.times.size(); ++i)
+    if (f.times[i] - f.times[i - 1] < near) f.times[i] = f.times[i - 1] = 0.5 * (f.times[i - 1] + f.times[i]);
 }
 
 // Clamped spline: the bends f'' from the tridiagonal system of continuous slopes, which are zero at both

@@ -15,8 +15,8 @@ namespace unfurl {
 //   spline    clamped cubic spline through the points (times, values): at rest at its ends, held beyond them,
 //   twice
 //             continuously differentiable between them
-//   linear    straight lines through the points, held beyond its ends: for loads; not for drives, whose
-//             velocity must not jump
+//   linear    straight lines through the points, held beyond its ends; a time that stands twice is a jump, f
+//             there is that behind it. For loads; not for drives, whose velocity must not jump
 struct TimeFunction {
   enum class Kind { constant, rate, smooth, spline, linear };
 
@@ -34,6 +34,10 @@ struct TimeFunction {
   double derivative(int order, double t) const;  // order 0, 1, 2
   bool moves() const { return kind != Kind::constant; }
 };
+
+// Two points of a linear function that are nearer than this to each other become a jump half way between
+// them.
+void make_jumps(TimeFunction& f, double near);
 
 // times ascending, at least two; as many values.
 TimeFunction make_spline(std::vector<double> times, std::vector<double> values);

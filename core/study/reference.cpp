@@ -10,6 +10,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/structure/time_edges.hpp"
 #include "core/study/extrapolation.hpp"
 #include "core/study/table.hpp"
@@ -48,7 +49,9 @@ Solution solve(const Model& model, const Stepper& step, double end, int interval
   for (int i = 0; i < intervals; ++i) {
     for (const double target : step_ends(H * i, H * (i + 1), parts, edges)) {
       if (hooks.stopped()) throw Cancelled();
-      if (!step(state, target - state.t)) return std::nullopt;
+      const bool jump = std::ranges::any_of(
+          edges, [&](const TimeEdge& e) { return e.jump && same_instant(target, e.t) && target <= e.t; });
+      if (!step(state, (jump ? before_jump(target) : target) - state.t)) return std::nullopt;
       state.t = target;
     }
     model.system.expand(state.z, q);
@@ -57,9 +60,10 @@ Solution solve(const Model& model, const Stepper& step, double end, int interval
   return out;
 }
 
-double difference(const std::vector<VectorXd>& a, const std::vector<VectorXd>& b) {
+double difference(const std::vector<VectorXd>& a, const std::vector<VectorXd>& b, Index in_space) {
   double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = larger(largest, node_distance(a[i], b[i]));
+  for (std::size_t i = 0; i < a.size(); ++i)
+    largest = larger(largest, node_distance(a[i].head(in_space), b[i].head(in_space)));
   return largest;
 }
 
@@ -67,6 +71,7 @@ double difference(const std::vector<VectorXd>& a, const std::vector<VectorXd>& b
 struct Ladder {
   std::function<Solution(int level)> solve;
   int levels;
+  Index in_space;  // coordinates that are compared
 };
 
 struct Best {
@@ -82,7 +87,7 @@ Best tighten(const Ladder& ladder, double goal) {
   for (int level = 1; level < ladder.levels && worse < 2; ++level) {
     Solution next = ladder.solve(level);
     if (last && next) {
-      const double apart = difference(*last, *next);
+      const double apart = difference(*last, *next, ladder.in_space);
       worse = apart < best.uncertainty ? 0 : worse + 1;
       if (apart < best.uncertainty) best = {next, apart, level};
       if (apart <= goal) break;
@@ -99,7 +104,7 @@ Ladder extrapolated(const Model& model, double end, int intervals, const StudyHo
                 model, [&](State& s, double h) { return method.step(s, h); }, end, intervals, 1 << level,
                 hooks);
           },
-          7};
+          7, space_coordinates(model.structure)};
 }
 
 // Odd levels with 7 nodes, even ones with 8, so that neighbours differ in more than the step.
@@ -112,7 +117,7 @@ Ladder variational(const Model& model, double end, int intervals, const StudyHoo
                 model, [&](State& s, double h) { return method->step(s, h).ok(); }, end, intervals,
                 2 << level, hooks);
           },
-          6};
+          6, space_coordinates(model.structure)};
 }
 
 // How near a second method comes to a solution, with finer and finer steps until that is enough or it comes
@@ -122,7 +127,8 @@ double distance_of_other(const Ladder& other, const std::vector<VectorXd>& solut
   int worse = 0;
   for (int level = 0; level < other.levels && worse < 2 && nearest > enough; ++level) {
     const Solution next = other.solve(level);
-    const double apart = next ? difference(*next, solution) : std::numeric_limits<double>::quiet_NaN();
+    const double apart =
+        next ? difference(*next, solution, other.in_space) : std::numeric_limits<double>::quiet_NaN();
     worse = std::isinf(nearest) || apart < 0.5 * nearest ? 0 : worse + 1;
     if (apart < nearest) nearest = apart;
   }
@@ -142,6 +148,7 @@ double node_distance(const ConstVec& a, const ConstVec& b) {
 double structure_size(const Model& model) {
   Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
   for (const Node& node : model.structure.nodes) {
+    if (node.ghost) continue;
     lo = lo.cwiseMin(node.position);
     hi = hi.cwiseMax(node.position);
   }
@@ -151,8 +158,9 @@ double structure_size(const Model& model) {
 Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
                           const StudyHooks& hooks, double goal) {
   const double size = structure_size(*model);
+  const Index in_space = space_coordinates(model->structure);
   for (const TimeEdge& edge : time_edges(model->structure, end / intervals))
-    if (edge.jump && edge.t > 0 && edge.t < end)
+    if (edge.impact && edge.t > 0 && edge.t < end)
       throw ReferenceError(
           "there is no reference across the time of " + short_number(edge.t, 6) +
           " s, where the velocity of a drive jumps; an earlier solver.end_time, or a ramp, helps");
@@ -164,7 +172,7 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
             std::to_string(intervals << best.level) + " basic steps";
   if (!(best.uncertainty <= std::max(goal, 1e-9 * size))) {
     Best other = tighten(variational(*model, end, intervals, hooks), goal);
-    if (best.solution && other.solution) apart = difference(*best.solution, *other.solution);
+    if (best.solution && other.solution) apart = difference(*best.solution, *other.solution, in_space);
     if (other.uncertainty < best.uncertainty) {
       best = std::move(other);
       out.how = "dvm with " + std::string(best.level % 2 ? "7" : "8") + " nodes and " +
@@ -176,7 +184,9 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
                               std::max(goal, best.uncertainty));
   }
   // Of one node alone the way that it goes is the size.
-  const double way = best.solution ? node_distance(best.solution->back(), best.solution->front()) : 0.0,
+  const double way = best.solution ? node_distance(best.solution->back().head(in_space),
+                                                   best.solution->front().head(in_space))
+                                   : 0.0,
                least = 1e-6 * std::max(size, way);
   if (!(best.uncertainty <= least))
     throw ReferenceError(

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/integrators/integrator.hpp"
+#include "core/path/path_run.hpp"
 #include "core/structure/time_edges.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -53,6 +54,121 @@ values = [0, 1, 1, 0]
       const double impulse = 2000 * 0.0011, x = 0.2 + 0.3 * 2 + impulse / 1.5 * (2 - 0.5037);
       CHECK(end_positions(run)[0] == Approx(x).epsilon(method.name == "generalized_alpha" ? 2e-4 : 1e-11));
     }
+}
+
+TEST_CASE("a load that jumps does so between two steps, with every method and on the path") {
+  // 30 N from 0.1 to 0.2037 s on 1.5 kg: as a time that stands twice, and as points that no step tells apart.
+  const double x = 0.2 + 0.3 * 0.7 + 30 * 0.1037 / 1.5 * (0.7 - 0.15185);
+  for (const char* times : {"[0.1, 0.1, 0.2037, 0.2037]", "[0.1, 0.1000000000001, 0.2037, 0.20370000000001]",
+                            "[0.0999999999999, 0.1, 0.2036999999, 0.2037000001]"}) {
+    const std::string load = mass + R"(
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [30, 0, 0]
+values = [0, 1, 1, 0]
+times = )" + times;
+    for (const char* step : {"0.01", "0.1", "0.03"})
+      for (const Method& method : methods())
+        for (const bool adaptive : {false, true}) {
+          std::vector<std::string> options = with_method(method.name, adaptive);
+          options.insert(options.end(), {std::string("solver.step=") + step, "solver.end_time=0.7"});
+          const Simulation run = run_scene(load, options);
+          INFO(times << " " << step << " " << method.name << (adaptive ? " adaptive" : ""));
+          REQUIRE(run.status == RunStatus::completed);
+          CHECK(run.warnings.empty());
+          // A constant force is exact within each step; midpoints of points stand for the jump to 1e-13 s.
+          CHECK(end_positions(run)[0] == Approx(x).epsilon(1e-11));
+        }
+  }
+}
+
+TEST_CASE("what sticks or rests lets go when the load jumps, not a step later") {
+  // 5 N on 1 kg that 1 N of friction holds: 4 m/s^2 for 0.1 s, then -1 m/s^2.
+  const std::string sticks = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [1, 0, 0], mass = 1}]
+[[constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [1, 0, 0]
+[[forces]]
+kind = "friction"
+nodes = ["A"]
+direction = [1, 0, 0]
+kinetic = 1
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [5, 0, 0]
+times = [0.1, 0.1, 0.2, 0.2]
+values = [0, 1, 1, 0]
+[solver]
+end_time = 0.5
+)";
+  // 10 m/s^2 down on a stop, 30 N up on 1 kg for 0.1 s: 20 m/s^2, then -10.
+  const std::string rests = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 1], mass = 1}]
+[gravity]
+acceleration = [0, 0, -10]
+[[constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [0, 0, 1]
+[[constraints]]
+kind = "coordinate_stop"
+nodes = ["A"]
+direction = [0, 0, 1]
+min = 1
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [0, 0, 30]
+times = [0.1, 0.1, 0.2, 0.2]
+values = [0, 1, 1, 0]
+[solver]
+end_time = 0.5
+)";
+  for (const char* model : {"full", "path"})
+    for (const char* step : {"0.01", "0.1"})
+      for (const char* method : {"dvm", "rk4", "generalized_alpha"}) {
+        const std::vector<std::string> options = {std::string("solver.step=") + step,
+                                                  std::string("solver.method=") + method};
+        INFO(model << " " << step << " " << method);
+        const bool path = std::string(model) == "path";
+        if (path && std::string(method) != "dvm") continue;
+        const auto run_of = [&](const std::string& text) {
+          const Scene scene = read_scene_text(text, "s.toml", options);
+          return path ? simulate_on_path(build_model(scene), scene.solver)
+                      : simulate(build_model(scene), scene.solver);
+        };
+        const Simulation slips = run_of(sticks), leaves = run_of(rests);
+        // Constant forces are exact within each step; events are located to 1e-12 of one.
+        CHECK(end_positions(slips)[0] == Approx(1 + 0.02 + 0.4 * 0.3 - 0.045).epsilon(1e-9));
+        CHECK(end_positions(leaves)[2] == Approx(1 + 0.1 + 2 * 0.3 - 0.45).epsilon(1e-9));
+        for (const Simulation* run : {&slips, &leaves}) {
+          CHECK(run->warnings.empty());
+          const auto moves = std::ranges::find_if(run->events, [](const Event& e) { return e.t > 0; });
+          REQUIRE(moves != run->events.end());
+          CHECK(moves->t == Approx(0.1).epsilon(1e-9));
+        }
+      }
+}
+
+TEST_CASE("a blow of which no step would see anything is refused") {
+  CHECK_THROWS_WITH(run_scene(mass + R"(
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [1, 0, 0]
+times = [0.1, 0.1000000000001, 0.1000000000002]
+values = [0, 1e13, 0]
+)",
+                              {}),
+                    Catch::Contains("no step follows so short a blow"));
 }
 
 TEST_CASE("the paper's order holds over the bends of a load") {
