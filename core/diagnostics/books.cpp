@@ -20,6 +20,10 @@ std::vector<double> energy_round_off(const Simulation& run) {
     force.setZero(q.size());
     system.add_applied_force(trajectory.time(i), q, v, 1.0, force);
     if (q.size()) grow(reach, q.lpNorm<Eigen::Infinity>());
+    // What rests at the origin has coordinates of rounding alone: of the way that its forces make in a step.
+    const VectorXd mass = system.node_mass().diagonal();
+    for (Index k = 0; k < std::min(mass.size(), force.size()); ++k)
+      if (mass[k] > 0) grow(reach, std::abs(force[k]) / mass[k] * run.options.step * run.options.step);
     grow(work,
          force.lpNorm<1>() * reach + std::abs(system.potential_energy(q)) + std::abs(system.load_work(q)));
     // So far: a run that is not kept whole has made more than it has states.

@@ -177,6 +177,36 @@ TEST_CASE("a run is good up to where its books are off for good, and says why") 
   CHECK(warnings(j) == Texts{open.str()});
 }
 
+TEST_CASE("what rests at the origin is right, whatever rounding leaves of its energy") {
+  for (const char* method : {"dvm", "rk4", "rk4_projected", "generalized_alpha"}) {
+    Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "M", position = [0, 0, 0], mass = 1}]
+[[constraints]]
+kind = "line"
+nodes = ["M"]
+direction = [0, 0, 1]
+[[constraints]]
+kind = "coordinate_stop"
+nodes = ["M"]
+direction = [0, 0, 1]
+min = 0
+[gravity]
+acceleration = [0, 0, -10]
+[solver]
+end_time = 0.1
+)",
+                                        {std::string("solver.method=") + method});
+    INFO(method);
+    const std::size_t states = run.trajectory.size();
+    judge(run);
+    CHECK(run.status == RunStatus::completed);
+    CHECK(run.trajectory.size() == states);
+    CHECK(run.trajectory.positions(states - 1).lpNorm<Eigen::Infinity>() <= 1e-20);
+  }
+}
+
 TEST_CASE("what is kept of a run is its beginning, in all that belongs to it") {
   Judged j = six_states();
   const double t2 = j.d.t[2];
