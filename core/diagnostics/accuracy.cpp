@@ -10,6 +10,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/integrators/stage_equations.hpp"
 #include "core/math/largest.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/structures/hoop_joints.hpp"
 
 namespace unfurl {
@@ -68,13 +69,14 @@ class BalanceError {
 bool moves(const Simulation& run) {
   constexpr double noise = 16 * std::numeric_limits<double>::epsilon();
   const Trajectory& trajectory = run.trajectory;
-  const VectorXd start = trajectory.node_positions(0);
+  const Index in_space = space_coordinates(trajectory.structure());
+  const VectorXd start = trajectory.node_positions(0).head(in_space);
   if (start.size() == 0) return false;
   const Eigen::Map<const Eigen::Matrix3Xd> nodes(start.data(), 3, start.size() / 3);
   const double extent = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).maxCoeff();
   const double least = std::max(1e-6 * extent, noise * start.lpNorm<Eigen::Infinity>());
   for (std::size_t i = 1; i < trajectory.size(); ++i)
-    if ((trajectory.node_positions(i) - start).lpNorm<Eigen::Infinity>() > least) return true;
+    if ((trajectory.node_positions(i).head(in_space) - start).lpNorm<Eigen::Infinity>() > least) return true;
   return false;
 }
 

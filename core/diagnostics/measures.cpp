@@ -12,6 +12,7 @@
 #include "core/diagnostics/vibration.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/text/error.hpp"
 #include "core/text/nearest_name.hpp"
 
@@ -79,10 +80,11 @@ double largest_magnitude_of(const Diagnostics& d, std::string_view column) {
 // Of every state.
 std::vector<double> speeds(const Simulation& run) {
   std::vector<double> fastest;
+  const Index in_space = space_coordinates(run.trajectory.structure());
   for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
     const VectorXd v = run.trajectory.node_velocities(i);
     fastest.push_back(0);
-    for (Index k = 0; k + 2 < v.size(); k += 3)
+    for (Index k = 0; k + 2 < in_space; k += 3)
       fastest.back() = larger(fastest.back(), v.segment<3>(k).norm());
   }
   return fastest;

@@ -14,6 +14,7 @@
 #include "core/diagnostics/rod_strength.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/singular_poses.hpp"
+#include "core/structure/node_positions.hpp"
 
 namespace unfurl {
 namespace {
@@ -45,8 +46,9 @@ std::size_t row_of_largest(const std::vector<double>& values, double sign) {
 
 double fastest(const Trajectory& trajectory, std::size_t i) {
   const VectorXd v = trajectory.node_velocities(i);
+  const Index in_space = space_coordinates(trajectory.structure());
   double most = 0;
-  for (Index k = 0; k + 2 < v.size(); k += 3) most = std::max(most, v.segment<3>(k).norm());
+  for (Index k = 0; k + 2 < in_space; k += 3) most = std::max(most, v.segment<3>(k).norm());
   return most;
 }
 

@@ -351,7 +351,7 @@ bool is_linear(const Constraint& constraint) {
 }
 
 Symmetry find_symmetry(const Structure& structure, const System& system) {
-  if (structure.node_copies.size() != structure.nodes.size()) throw SectorRefused("it is a sector already");
+  if (structure.node_copies.size() > structure.nodes.size()) throw SectorRefused("it is a sector already");
   if (!structure.stops.empty())
     throw SectorRefused("stops and cables that are paid out are not known to sectors");
   Vec3 mean = Vec3::Zero();

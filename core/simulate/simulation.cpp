@@ -62,7 +62,7 @@ std::string_view to_string(RunStatus status) {
 SolvedAs solved_as(const Simulation& run) {
   SolvedAs out = run.solved_as;
   const Structure& structure = run.trajectory.structure();
-  const bool sector = structure.node_copies.size() != structure.nodes.size();
+  const bool sector = structure.node_copies.size() > structure.nodes.size();
   if (out.name.empty()) out.name = sector ? "sector" : "full";
   if (out.why.empty())
     out.why = sector ? "structure.model = \"sector\"" : "solver.model = \"" + run.options.model + "\"";

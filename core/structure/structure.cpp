@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/structure/structure.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/structure/measure.hpp"
@@ -114,6 +115,10 @@ double ReportedSurface::rms(const ConstVec& q) const {
   for (const int node : nodes) mean += off(node) / static_cast<double>(nodes.size());
   for (const int node : nodes) sum += (off(node) - mean) * (off(node) - mean);
   return std::sqrt(sum / static_cast<double>(nodes.size()));
+}
+
+Index space_coordinates(const Structure& structure) {
+  return 3 * std::ranges::count_if(structure.nodes, [](const Node& node) { return !node.ghost; });
 }
 
 VectorXd node_positions(const Structure& structure) {

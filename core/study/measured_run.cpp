@@ -8,6 +8,7 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/books.hpp"
 #include "core/math/largest.hpp"
+#include "core/structure/node_positions.hpp"
 
 namespace unfurl {
 namespace {
@@ -60,13 +61,15 @@ void measure_invariants(const Simulation& run, MeasuredRun& out) {
 }
 
 double position_error(const Trajectory& trajectory, const Reference& reference) {
+  const Index in_space = space_coordinates(trajectory.structure());
   double largest = 0;
   std::size_t i = 0;
   const double near = 1e-9 * reference.t.back();
   for (std::size_t k = 0; k < reference.t.size(); ++k) {
     while (i < trajectory.size() && trajectory.time(i) < reference.t[k] - near) ++i;
     if (i == trajectory.size() || trajectory.time(i) > reference.t[k] + near) return nan;
-    largest = larger(largest, node_distance(trajectory.node_positions(i), reference.q[k]));
+    largest = larger(
+        largest, node_distance(trajectory.node_positions(i).head(in_space), reference.q[k].head(in_space)));
   }
   return largest;
 }

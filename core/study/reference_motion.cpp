@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/math/largest.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/study/measured_run.hpp"
 #include "core/study/table.hpp"
 
@@ -134,10 +135,11 @@ JudgedSpan judged_span(const Simulation& run) {
 
 ReferenceMotion::ReferenceMotion(const Trajectory& trajectory) {
   if (trajectory.size() < 2 * window) throw ReferenceError("too few states to interpolate");
+  const Index in_space = space_coordinates(trajectory.structure());
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     t_.push_back(trajectory.time(i));
-    q_.push_back(trajectory.node_positions(i));
-    v_.push_back(trajectory.node_velocities(i));
+    q_.push_back(trajectory.node_positions(i).head(in_space));
+    v_.push_back(trajectory.node_velocities(i).head(in_space));
   }
 }
 
@@ -198,10 +200,11 @@ double position_error(const Simulation& run, const ReferenceMotion& reference) {
   const bool whole = trajectory.end_time() >= reference.end() * (1 - 1e-12);
   // One that deploys too early has an answer, if a wrong one.
   if (!whole && run.status != RunStatus::deployed) return nan;
+  const Index in_space = space_coordinates(trajectory.structure());
   double largest = 0;
   for (std::size_t i = 0; i < trajectory.size() && trajectory.time(i) <= reference.end(); ++i)
-    largest =
-        larger(largest, node_distance(reference.positions(trajectory.time(i)), trajectory.node_positions(i)));
+    largest = larger(largest, node_distance(reference.positions(trajectory.time(i)),
+                                            trajectory.node_positions(i).head(in_space)));
   return largest;
 }
 

@@ -11,6 +11,7 @@
 #include "core/math/largest.hpp"
 #include "core/path/path_run.hpp"
 #include "core/path/sector.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/table.hpp"
 
@@ -48,17 +49,21 @@ double distance(const Simulation& a, const Simulation& b) {
   if (a.status == RunStatus::failed || b.status == RunStatus::failed || a.status != b.status)
     return std::numeric_limits<double>::infinity();
   const double near = 1e-9 * a.options.step;
+  const Index in_space = space_coordinates(a.trajectory.structure());
+  const auto apart = [&](std::size_t i, std::size_t k) {
+    return node_distance(a.trajectory.node_positions(i).head(in_space),
+                         b.trajectory.node_positions(k).head(in_space));
+  };
   double largest = 0;
   std::size_t k = 0;
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
     while (k < b.trajectory.size() && b.trajectory.time(k) < a.trajectory.time(i) - near) ++k;
     if (k == b.trajectory.size()) break;
     if (b.trajectory.time(k) > a.trajectory.time(i) + near) continue;
-    largest = larger(largest, node_distance(a.trajectory.node_positions(i), b.trajectory.node_positions(k)));
+    largest = larger(largest, apart(i, k));
   }
   if (a.status == RunStatus::deployed)
-    largest = larger(largest, node_distance(a.trajectory.node_positions(a.trajectory.size() - 1),
-                                            b.trajectory.node_positions(b.trajectory.size() - 1)));
+    largest = larger(largest, apart(a.trajectory.size() - 1, b.trajectory.size() - 1));
   return largest;
 }
 
@@ -243,7 +248,7 @@ Simulation without_path(const std::shared_ptr<const Model>& model, const SolverO
     run.solved_as.why += (why.empty() ? "" : "; " + why);
     return run;
   } catch (const SectorRefused& refused) {
-    const bool sector = model->structure.node_copies.size() != model->structure.nodes.size();
+    const bool sector = model->structure.node_copies.size() > model->structure.nodes.size();
     if (options.model == "sector" && !sector)
       throw SectorRefused("solver.model = \"sector\": " + std::string(refused.what()) +
                           "; \"auto\" takes the full model where sectors are not alike");

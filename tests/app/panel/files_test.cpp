@@ -158,10 +158,11 @@ TEST_CASE("what another program changed in the scene's file is replaced only aft
   const std::string text = pendulum, file = scratch.write("own.toml", text);
   std::filesystem::create_symlink("own.toml", scratch / "link.toml");
   PanelDriver driver(tall());
-  LiveSession& session = driver.panel().session();
-  session.open_file(scratch / "link.toml");
+  driver.state().intents.emplace_back(
+      [path = scratch / "link.toml"](LiveSession& session) { session.open_file(path); });
+  driver.frame();
   const auto save_with = [&](double end_time) {
-    SceneDocument changed = session.state().history.now();
+    SceneDocument changed = driver.state().history.now();
     changed.edits["solver.end_time"] = end_time;
     driver.state().history.replace(changed);
     driver.key(Key::s, true);
