@@ -5,6 +5,7 @@
 
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
+#include "core/text/utf8.hpp"
 #include "core/text/version.hpp"
 
 namespace unfurl {
@@ -34,13 +35,14 @@ class MatFile {
     add(array(name, mx_uint8 | logical_flag, shape, element(mi_uint8, bytes_of(values))));
   }
 
-  // A column of cells with a row of characters each.
+  // A column of cells with a row of characters each, which MATLAB has in UTF-16.
   void names(const std::string& name, const std::vector<std::string>& texts) {
     std::string cells;
     for (const std::string& text : texts) {
-      const std::vector<std::uint16_t> characters(text.begin(), text.end());
+      const std::u16string units = utf16(text);
+      const std::vector<std::uint16_t> characters(units.begin(), units.end());
       cells +=
-          element(mi_matrix, array("", mx_char, {1, text.size()}, element(mi_uint16, bytes_of(characters))));
+          element(mi_matrix, array("", mx_char, {1, units.size()}, element(mi_uint16, bytes_of(characters))));
     }
     add(array(name, mx_cell, {texts.size(), 1}, cells));
   }

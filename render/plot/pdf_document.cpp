@@ -76,14 +76,7 @@ std::string hex4(unsigned v) {
 
 std::string pdf_string(std::string_view utf8) {
   std::string out = "<FEFF";
-  for (std::size_t at = 0; at < utf8.size();) {
-    const char32_t c = next_code_point(utf8, at);
-    if (c > 0xFFFF)
-      out += hex4(0xD800 + static_cast<unsigned>((c - 0x10000) >> 10)) +
-             hex4(0xDC00 + static_cast<unsigned>((c - 0x10000) & 0x3FF));
-    else
-      out += hex4(static_cast<unsigned>(c));
-  }
+  for (const char16_t unit : utf16(utf8)) out += hex4(unit);
   return out + ">";
 }
 

@@ -76,4 +76,15 @@ TEST_CASE("every code point is read back, and no other three bytes are one", "[t
   CHECK(found == three);
 }
 
+// RFC 2781, section 5, and the ends of what one unit and what two hold.
+TEST_CASE("UTF-16 has a unit for what is below U+10000, and surrogates beyond", "[text]") {
+  CHECK(utf16("Fu\xC3\x9F \xE4\xB8\xAD") == u"Fu\u00DF \u4E2D");
+  CHECK(utf16("\xEF\xBF\xBF") == u"\uFFFF");
+  CHECK(utf16("\xF0\x90\x80\x80") == std::u16string{0xD800, 0xDC00});
+  CHECK(utf16("\xF0\x92\x8D\x85=Ra") == std::u16string{0xD808, 0xDF45, u'=', u'R', u'a'});
+  CHECK(utf16("\xF4\x8F\xBF\xBF") == std::u16string{0xDBFF, 0xDFFF});
+  CHECK(utf16("a\xFFz") == u"a\uFFFDz");
+  CHECK(utf16("").empty());
+}
+
 }  // namespace unfurl::utf8_test
