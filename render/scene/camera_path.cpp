@@ -162,13 +162,29 @@ CameraPath::CameraPath(std::vector<std::vector<Vec3>> poses, std::vector<double>
   const bool turning = !keys_.empty() || orbit_ != 0 || turntable_;
   if (follow_) turning ? prepare_turning_follow() : prepare_follow();
   if (!turning) return;
-  std::vector<double> elevations{start_.elevation};
-  for (const CameraKey& key : keys_) elevations.push_back(key.elevation * radians_per_degree);
-  for (const double elevation : elevations)
+  for (const double elevation : elevations(times_.front(), times_.back()))
     for (int k = 0; k < directions; ++k)
       distance_ = std::max(
           distance_, centered_distance(all, bounds_.center,
                                        {start_.azimuth + 2 * pi * k / directions, elevation}, framing_));
+}
+
+// At each angle over the floor there is one view that needs most room; between two angles 2 d apart, no view
+// needs more than 1 / cos d of what they need: here 2 % more, which the margins have.
+std::vector<double> CameraPath::elevations(double from, double to) const {
+  if (keys_.empty()) return {start_.elevation};
+  constexpr int samples = 64;
+  constexpr double apart = 22.5 * radians_per_degree;
+  double low = elevation(from), high = low;
+  const auto pass = [&](double t) { low = std::min(low, elevation(t)), high = std::max(high, elevation(t)); };
+  for (int k = 1; k <= samples; ++k) pass(from + (to - from) * k / samples);
+  for (const CameraKey& key : keys_)
+    if (key.time > from && key.time < to) pass(key.time);
+  std::vector<double> passed;
+  const int steps = static_cast<int>(std::ceil((high - low) / apart));
+  for (int k = 0; k < steps; ++k) passed.push_back(low + (high - low) * k / steps);
+  passed.push_back(high);
+  return passed;
 }
 
 // Each sample frames all that moves within the window around it. A moment's camera is the mean of those whose
@@ -203,8 +219,6 @@ void CameraPath::prepare_follow() {
 void CameraPath::prepare_turning_follow() {
   const double start = times_.front(), span = times_.back() - start;
   std::vector<Place> fitted;
-  double elevation = start_.elevation;
-  for (const CameraKey& key : keys_) elevation = std::max(elevation, key.elevation * radians_per_degree);
   for (int k = 0; k < follow_samples; ++k) {
     const auto time = [&](int i) {
       return start + span * std::clamp(i, 0, follow_samples - 1) / (follow_samples - 1);
@@ -218,10 +232,11 @@ void CameraPath::prepare_turning_follow() {
       for (const Vec3& p : poses_[end - 1]) visit(p);
     };
     Place place{motion_bounds(window).center, 0};
-    for (int i = 0; i < directions; ++i)
-      place.distance =
-          std::max(place.distance,
-                   centered_distance(window, place.center, {2 * pi * i / directions, elevation}, framing_));
+    for (const double elevation : elevations(time(k - follow_window), time(k + follow_window)))
+      for (int i = 0; i < directions; ++i)
+        place.distance =
+            std::max(place.distance,
+                     centered_distance(window, place.center, {2 * pi * i / directions, elevation}, framing_));
     fitted.push_back(place);
   }
   for (int k = 0; k < follow_samples; ++k) {
@@ -249,12 +264,15 @@ Camera CameraPath::following(double t) const {
   return mixed(follow_path_[i], follow_path_[i + 1], static_cast<float>(at - static_cast<double>(i)));
 }
 
+double CameraPath::elevation(double t) const {
+  return std::clamp(between(keys_, &CameraKey::elevation, t), -90.0, 90.0) * radians_per_degree;
+}
+
 ViewAngles CameraPath::angles(const Shot& shot) const {
   ViewAngles view = start_;
   if (!keys_.empty()) {
     view.azimuth = between(keys_, &CameraKey::azimuth, shot.t) * radians_per_degree;
-    view.elevation =
-        std::clamp(between(keys_, &CameraKey::elevation, shot.t), -90.0, 90.0) * radians_per_degree;
+    view.elevation = elevation(shot.t);
   }
   view.azimuth += orbit_ * shot.progress + 2 * pi * shot.turn;
   return view;

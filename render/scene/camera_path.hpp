@@ -46,7 +46,9 @@ class CameraPath {
 
  private:
   ViewAngles angles(const Shot& shot) const;
-  double zoom(double t) const;
+  double elevation(double t) const;  // of the keys [rad]
+  std::vector<double> elevations(double from,
+                                 double to) const;  // to be tried for what is seen between two times
   void prepare_follow();
   Camera following(double t) const;
   void prepare_turning_follow();

@@ -221,4 +221,35 @@ TEST_CASE("a camera that follows while it turns has every pose in the picture, l
   for (const double share : {0.3, 0.7, 0.9, 1.0}) size_at(frames, share * run.trajectory.end_time());
 }
 
+TEST_CASE("whatever heights camera keys pass, all is in the picture") {
+  // A mast is small from above and tall from beside it; a rod that leans by 45 degrees is longest from there.
+  const std::string
+      mast =
+          "[structure]\nkind = 'scissor_mast'\ncells = 12\nsides = 4\nfold_angle = 60\n[solver]\n"
+          "end_time = 3\nstep = 0.02\n",
+      leaning =
+          "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'A'\nposition = [0, -2, -2]\n"
+          "fixed = true\n[[structure.nodes]]\nname = 'B'\nposition = [0, 2, 2]\n"
+          "velocity = [0.1, 0, 0]\n[[structure.rods]]\nnodes = ['A', 'B']\nmass = 1\n[solver]\n"
+          "end_time = 3\nstep = 0.02\n";
+  for (const std::string& text : {mast, leaning}) {
+    const Scene scene = read_scene_text(text, "keys.toml");
+    const Simulation run = simulate(build_model(scene), scene.solver);
+    const double end = run.trajectory.end_time();
+    RenderOptions options;
+    options.loads = false;
+    options.camera_keys = {{0, -90, 0, 1}, {end, -90, 90, 1}};
+    for (const char* projection : {"perspective", "orthographic"})
+      for (const bool follow : {false, true}) {
+        options.projection = projection;
+        options.follow = follow;
+        const FrameBuilder frames = builder(run, options);
+        for (double u = 0; u <= 1; u += 0.05) {
+          CAPTURE(text, projection, follow, u);
+          CHECK(margin(frames.build(u * end)) > 0.02 * height);
+        }
+      }
+  }
+}
+
 }  // namespace camera_path_test
