@@ -29,11 +29,21 @@ Image exposed(Renderer& renderer, const FrameBuilder& builder, const Shot& shot,
           wide * (static_cast<float>(std::cos(angle)) * right + static_cast<float>(std::sin(angle)) * up);
     }
     image = renderer.draw(list);
-    sum.resize(image.rgba.size(), static_cast<std::uint32_t>(count) / 2);
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += image.rgba[k];
+    sum.resize(image.rgba.size(), 0);
+    for (std::size_t k = 0; k < sum.size(); k += 4) {
+      const std::uint32_t alpha = image.rgba[k + 3];
+      for (std::size_t c = k; c < k + 3; ++c) sum[c] += alpha * image.rgba[c];
+      sum[k + 3] += alpha;
+    }
   }
-  for (std::size_t k = 0; k < sum.size(); ++k)
-    image.rgba[k] = static_cast<std::uint8_t>(sum[k] / static_cast<std::uint32_t>(count));
+  // A colour counts by how much of the ground it covers.
+  for (std::size_t k = 0; k < sum.size(); k += 4) {
+    const std::uint32_t alpha = sum[k + 3];
+    for (std::size_t c = k; c < k + 3; ++c)
+      image.rgba[c] = static_cast<std::uint8_t>(alpha > 0 ? (sum[c] + alpha / 2) / alpha : 0);
+    image.rgba[k + 3] = static_cast<std::uint8_t>((alpha + static_cast<std::uint32_t>(count) / 2) /
+                                                  static_cast<std::uint32_t>(count));
+  }
   return image;
 }
 
