@@ -166,6 +166,13 @@ void read_render(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
   if (size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]))
     table.problem("size", "must be whole numbers of pixels");
   scene.render = render_options(values);
+  const auto& range = scene.render.colour_range;
+  if (range[0] != 0 || range[1] != 0) {
+    if (!(range[0] < range[1]))
+      table.problem("colour_range", "must be two numbers of which the second is larger, or [0, 0]");
+    else if (scene.render.colour_by == "constraint_error" && !(range[0] > 0))
+      table.problem("colour_range", "must begin above 0: colours of constraint_error are logarithmic");
+  }
   read_camera_keys(keys, scene.render, notes);
   read_materials(materials, scene.render, notes);
 }
