@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/length_error.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "render/scene/color_map.hpp"
 
@@ -35,24 +36,24 @@ double quantile(const MatrixXd& values, double share) {
   return *at;
 }
 
-template <class Value>  // of the nodes' positions, their velocities, and a rod
+template <class Value>  // of the nodes' positions, their velocities, a rod and the time
 MatrixXd over_run(const Trajectory& run, Value value) {
   const std::vector<Rod>& rods = run.structure().rods;
   MatrixXd out(static_cast<Index>(run.size()), static_cast<Index>(rods.size()));
   for (std::size_t i = 0; i < run.size(); ++i) {
     const VectorXd q = run.node_positions(i), v = run.node_velocities(i);
     for (std::size_t r = 0; r < rods.size(); ++r)
-      out(static_cast<Index>(i), static_cast<Index>(r)) = value(q, v, rods[r]);
+      out(static_cast<Index>(i), static_cast<Index>(r)) = value(q, v, rods[r], run.time(i));
   }
   return out;
 }
 
-double middle_speed(const VectorXd&, const VectorXd& v, const Rod& rod) {
+double middle_speed(const VectorXd&, const VectorXd& v, const Rod& rod, double) {
   return 0.5 * (v.segment<3>(3 * rod.a) + v.segment<3>(3 * rod.b)).norm();
 }
 
-double length_error(const VectorXd& q, const VectorXd&, const Rod& rod) {
-  return std::abs((q.segment<3>(3 * rod.b) - q.segment<3>(3 * rod.a)).norm() - rod.length);
+double size_of_length_error(const VectorXd& q, const VectorXd&, const Rod& rod, double t) {
+  return std::abs(length_error(rod, q, t));
 }
 
 // The run's own range. Forces blow up for an instant where a mechanism is straight: what is rare saturates.
@@ -74,8 +75,11 @@ double RodField::at(double time, int rod) const {
   if (after == t.begin()) return values(0, rod);
   if (after == t.end()) return values(values.rows() - 1, rod);
   const auto i = after - t.begin() - 1;
-  const double u = (time - *(after - 1)) / (*after - *(after - 1));
-  return (1 - u) * values(i, rod) + u * values(i + 1, rod);
+  const double u = (time - *(after - 1)) / (*after - *(after - 1)), a = values(i, rod),
+               b = values(i + 1, rod);
+  // Up to a state at which it is not known, and from there on, it is what is known next to it.
+  if (u == 0 || !std::isfinite(b)) return a;
+  return std::isfinite(a) ? (1 - u) * a + u * b : b;
 }
 
 double RodField::position(double value) const {
@@ -84,8 +88,13 @@ double RodField::position(double value) const {
 }
 
 Color RodField::color(double value) const {
-  if (!std::isfinite(value)) return {0.5f, 0.5f, 0.5f, 1};
-  return diverging ? diverging_color(2 * position(value) - 1) : sequential_color(position(value));
+  // Grey is 0 among colours around zero.
+  if (!std::isfinite(value)) return diverging ? Color{0.07f, 0.07f, 0.07f, 1} : Color{0.5f, 0.5f, 0.5f, 1};
+  if (!diverging) return sequential_color(position(value));
+  // Grey at 0, or at the end that is nearest to it.
+  if (low >= 0) return diverging_color(position(value));
+  if (high <= 0) return diverging_color(position(value) - 1);
+  return diverging_color(std::clamp(value < 0 ? -value / low : value / high, -1.0, 1.0));
 }
 
 RodField rod_field(const std::string& by, std::array<double, 2> range, const Simulation& run,
@@ -112,7 +121,10 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
     field.values = over_run(run.trajectory, middle_speed);
   } else if (by == "constraint_error") {
     field.label = "error of length (m)";
-    field.values = over_run(run.trajectory, length_error);
+    const std::vector<Rod>& rods = run.trajectory.structure().rods;
+    if (std::ranges::all_of(rods, &Rod::gives)) field.label += ": none, all rods are elastic";
+    field.unknown = "elastic, without one";
+    field.values = over_run(run.trajectory, size_of_length_error);
     field.log = true;
   } else {
     throw std::invalid_argument("rod_field: no quantity '" + by + "'");

@@ -12,23 +12,26 @@
 namespace unfurl {
 
 struct RodField {
-  std::string label;      // with its unit: "axial force (N), tension > 0"
-  std::vector<double> t;  // of the rows [s]
-  MatrixXd values;        // [states x solved rods]; NaN where it is not known
+  std::string label;                  // with its unit: "axial force (N), tension > 0"
+  std::vector<double> t;              // of the rows [s]
+  MatrixXd values;                    // [states x solved rods]; NaN where it is not known
+  std::string unknown = "not known";  // what the colour of NaN stands for
   double low = 0, high = 1;
   bool below = false, above = false;  // some values lie outside of the range and have the colour of its end
   bool known = true;                  // at least one value is
   bool diverging = false;             // around zero
   bool log = false;
 
-  double at(double time, int rod) const;  // linear between the states
-  Color color(double value) const;        // grey where it is not finite
-  double position(double value) const;    // along the colour bar, 0..1
+  // Linear between the states; NaN at a state where it is not known, and between two of them.
+  double at(double time, int rod) const;
+  Color color(double value) const;      // where it is not finite one that no value has
+  double position(double value) const;  // along the colour bar, 0..1
 };
 
-// by: "axial_force", "stress", "buckling" (grey where a rod has no modulus), "speed" (of the rod's middle) or
-// "constraint_error" (|distance of the ends - length|). range: low and high, or equal ends for the run's own
-// range. Throws std::invalid_argument for another name.
+// by: "axial_force", "stress", "buckling" (not known where a rod has no modulus), "speed" (of the rod's
+// middle) or "constraint_error" (|distance of the ends - length that it is held at|, not known where a rod is
+// elastic). range: low and high, or equal ends for the run's own range. Throws std::invalid_argument for
+// another name.
 RodField rod_field(const std::string& by, std::array<double, 2> range, const Simulation& run,
                    const Diagnostics& diagnostics);
 

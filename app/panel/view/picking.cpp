@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/diagnostics/length_error.hpp"
 #include "render/plot/ticks.hpp"
 #include "render/scene/view.hpp"
 
@@ -13,7 +14,7 @@ namespace unfurl {
 namespace {
 
 Vec3f in_picture(const VectorXd& whole, int node, const PickView& view) {
-  const Vec3 at = view.upright * whole.segment<3>(3 * node);
+  const Vec3 at = view.upright * (whole.segment<3>(3 * node) - view.origin);
   return project(view.camera, view.width, view.height, at.cast<float>());
 }
 
@@ -60,12 +61,11 @@ std::vector<Reading> rod_readings(int index, const LiveRun& run, double t) {
   const auto at = between(trajectory, t);
   // The length error is of solved states: between them it would be the interpolation's.
   const std::size_t nearest = at.share < 0.5 ? at.i : at.j;
-  const VectorXd solved = trajectory.positions(nearest);
-  const double length = (solved.segment<3>(3 * copy.b) - solved.segment<3>(3 * copy.a)).norm();
+  const double error = length_error(rod, trajectory.node_positions(nearest), trajectory.time(nearest));
   std::vector<Reading> rows{
       {"length", quantity((whole.segment<3>(3 * copy.b) - whole.segment<3>(3 * copy.a)).norm(), "m")},
-      {"length error", quantity(length - rod.length, "m")},
       {"mass", quantity(rod.mass, "kg")}};
+  if (!std::isnan(error)) rows.insert(rows.begin() + 1, {"length error", quantity(error, "m")});
   const MatrixXd& force = run.diagnostics.axial_force;
   if (force.rows() > static_cast<Index>(at.j) && force.cols() > copy.source) {
     const double f = (1 - at.share) * force(static_cast<Index>(at.i), copy.source) +

@@ -14,7 +14,8 @@ namespace unfurl {
 struct PickView {
   Camera camera;
   int width = 0, height = 0;        // [pixels]
-  Mat3 upright = Mat3::Identity();  // scene -> picture
+  Mat3 upright = Mat3::Identity();  // scene -> picture: of x - origin
+  Vec3 origin = Vec3::Zero();       // [m of the scene]
 };
 
 // The node, or else the rod, whose picture is nearest to a pixel and within `reach` pixels.
@@ -33,7 +34,8 @@ PickedPlace place_of(const Selection& selection, const LiveRun& run, double t, c
 struct Reading {
   std::string label, value;
 };
-// Length, axial force, length error of a rod; position and speed of a node; at time t.
+// Length, axial force, length error (not of an elastic one) of a rod; position and speed of a node; at time
+// t.
 std::vector<Reading> readings(const Selection& selection, const LiveRun& run, double t);
 
 }  // namespace unfurl

@@ -109,4 +109,29 @@ TEST_CASE("every rod and node is found where it is drawn, and reads its own numb
   CHECK(pick(*run, t, view, -500, -500, 6).kind == Selection::Kind::none);
 }
 
+TEST_CASE(
+    "a rod's error of length is that of its constraint: not what it gives, and none of an elastic one") {
+  LiveRun run{.id = 1,
+              .document = {},
+              .scene = read_scene_text(
+                  "[structure]\nkind = 'custom'\nyoungs_modulus = 1e7\n"
+                  "[[structure.nodes]]\nname = 'P'\nposition = [0, 0, 0]\nfixed = true\n"
+                  "[[structure.nodes]]\nname = 'E'\nposition = [2, 0, 0]\nvelocity = [0, 10, 0]\n"
+                  "[[structure.rods]]\nnodes = ['P', 'E']\nmass = 3\narea = 1e-4\n"
+                  "[solver]\nstep = 0.01\nend_time = 0.2\n",
+                  "spin.toml", {GENERATE("structure.rod_model=quasi-static", "structure.rod_model=elastic")}),
+              .motion = {},
+              .simulation = simulate(build_model(run.scene), run.scene.solver),
+              .diagnostics = diagnose(run.simulation),
+              .warnings = {}};
+  const bool elastic = run.simulation.trajectory.structure().rods[0].gives;
+  bool has = false;
+  for (const Reading& row : readings({Selection::Kind::rod, "P-E"}, run, 0.1)) {
+    if (row.label != "length error") continue;
+    has = true;
+    CHECK(std::abs(std::stod(row.value)) < 1e-13);  // some round-offs of 2 m; it stretches by 0.1 m
+  }
+  CHECK(has == !elastic);
+}
+
 }  // namespace camera_test

@@ -162,4 +162,81 @@ TEST_CASE("stress and buckling colour rods that have a modulus, others are grey 
   CHECK(unknown.label.find("no rod has a youngs_modulus") != std::string::npos);
 }
 
+TEST_CASE("an error of length is off the length that is asked for, and an elastic rod has none") {
+  const auto field_of = [](const std::string& more) {
+    std::string text = spinning;
+    text.replace(text.find("mass = 3.0"), 10, "mass = 3.0\n" + more);
+    const Scene scene = read_scene_text(text, "spin.toml");
+    const Simulation run = simulate(build_model(scene), scene.solver);
+    return rod_field("constraint_error", {0, 0}, run, diagnose(run));
+  };
+  // It stretches by F l / E A = 50 N * 2 m / (1e7 Pa * 1e-4 m^2) = 0.1 m.
+  const RodField elastic = field_of("area = 1e-4\nelastic = true\nyoungs_modulus = 1e7");
+  CHECK_FALSE(elastic.known);
+  CHECK(std::isnan(elastic.at(0.25, 0)));
+  CHECK_THAT(elastic.label, Catch::Contains("all rods are elastic"));
+  // It grows by 0.2 m as is asked for; errors are some round-offs of 2 m.
+  const RodField warm = field_of(
+      "[[forces]]\nkind = 'temperature'\nrods = ['P-E']\nexpansion = 1e-3\nchange = 100\ntimes = [0, 0.25, "
+      "0.5]\n"
+      "values = [0, 0.5, 1]\n");
+  CHECK(warm.known);
+  for (const double t : {0.0, 0.2, 0.5}) CHECK(warm.at(t, 0) < 1e-13);
+}
+
+TEST_CASE("what is not known has a colour that no value has, and reaches no further than its state") {
+  RodField field;
+  field.t = {0, 1, 2, 3};
+  field.values.resize(4, 1);
+  field.values << 2, 4, std::nan(""), 6;
+  CHECK(field.at(1, 0) == 4);
+  CHECK(field.at(1.75, 0) == 4);
+  CHECK(std::isnan(field.at(2, 0)));
+  CHECK(field.at(2.25, 0) == 6);
+  CHECK(field.at(3, 0) == 6);
+  field.low = -1, field.high = 1;
+  for (const bool diverging : {false, true}) {
+    field.diverging = diverging;
+    const Color unknown = field.color(std::nan(""));
+    for (double x = -1; x <= 1; x += 0.01) {
+      const Color c = field.color(x);
+      // As far apart as dark and pale grey at least: a third of the way from black to white.
+      CHECK(std::hypot(c.r - unknown.r, c.g - unknown.g, c.b - unknown.b) > 0.3f);
+    }
+  }
+}
+
+TEST_CASE("the picture says that something is not known, while it is not") {
+  Run r;
+  r.diagnostics.axial_force(r.diagnostics.axial_force.rows() - 1, 0) = std::nan("");
+  FrameStyle style;
+  style.options.colour_by = "axial_force";
+  style.run = &r.run;
+  style.diagnostics = &r.diagnostics;
+  const FrameBuilder builder(r.run.trajectory, style);
+  for (const double t : {0.25, 0.499, 0.5}) {
+    const DrawList list = builder.build(t);
+    CHECK(std::ranges::any_of(list.labels, [](const TextLabel& l) { return l.text == "not known"; }) ==
+          (t == 0.5));
+  }
+}
+
+TEST_CASE("around zero the colour tells the sign, whatever the range") {
+  RodField field;
+  field.diverging = true;
+  const auto blue = [&](double x) { return field.color(x).b - field.color(x).r; };
+  for (const auto& [low, high] :
+       {std::pair{0.0, 0.5}, {-1.0, 3.0}, {1234.0, 1240.0}, {-8.0, -2.0}, {-3.0, 0.0}}) {
+    field.low = low, field.high = high;
+    CAPTURE(low, high);
+    for (double x = low; x <= high; x += (high - low) / 64) {
+      if (x > 0) CHECK(blue(x) < 0.02f);
+      if (x < 0) CHECK(blue(x) > -0.02f);
+    }
+    if (high > 0) CHECK(blue(high) < -0.3f);
+    if (low < 0) CHECK(blue(low) > 0.3f);
+    if (low <= 0 && high >= 0) CHECK(std::abs(blue(0)) < 0.02f);
+  }
+}
+
 }  // namespace rod_field_test
