@@ -23,7 +23,7 @@ std::vector<ShownLine> lines_with_springs(const Structure& structure) {
 double shown_line_radius(const Structure& structure, double size) {
   double radius = size > 0 ? 0.004 * size : 0.004;
   for (const Rod& rod : structure.rods)
-    radius = std::min(radius, rod.radius > 0 ? rod.radius : rod.length / 60);
+    radius = std::min(radius, rod.radius > 0 ? rod.radius : rod.pinned_length() / 60);
   return 0.4 * radius;
 }
 

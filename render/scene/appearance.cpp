@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/structure/shown_lines.hpp"
 #include "render/scene/look.hpp"
 
 namespace unfurl {
@@ -14,9 +15,18 @@ constexpr double visible_radius = 0.0065;  // of the motion's radius: some six p
 constexpr double slender = 1.0 / 20.0;     // a rod is never drawn thicker than this part of its length
 constexpr double unknown_radius = 1.0 / 60.0;  // of the median length, for rods that have none
 
+// The rods that there are before some are cut to bend: of those the first part.
+std::vector<const Rod*> whole_rods(const Structure& s) {
+  std::vector<const Rod*> out;
+  for (std::size_t i = 0; i < s.rods.size(); ++i)
+    if (s.rods[i].whole.empty() || i == 0 || s.rods[i - 1].whole != s.rods[i].whole)
+      out.push_back(&s.rods[i]);
+  return out;
+}
+
 double median_length(const Structure& s) {
   std::vector<double> lengths;
-  for (const Rod& rod : s.rods) lengths.push_back(rod.length);
+  for (const Rod* rod : whole_rods(s)) lengths.push_back(rod->pinned_length());
   if (lengths.empty()) return 0;
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());
@@ -26,7 +36,7 @@ double median_length(const Structure& s) {
 double drawn_radius(const Rod& rod, double median, double size, double rod_scale) {
   const double wanted = rod.radius > 0 ? rod.radius : unknown_radius * median;
   if (rod_scale > 0) return rod_scale * wanted;
-  return std::max(wanted, std::min(visible_radius * size, slender * rod.length));
+  return std::max(wanted, std::min(visible_radius * size, slender * rod.pinned_length()));
 }
 
 void note_scale(const Structure& s, Appearance& looks) {
@@ -59,11 +69,34 @@ void add_pins(const Structure& s, Appearance& looks) {
       looks.joint_radius[i] = 1.5 * thickest * on_rods[static_cast<std::size_t>(s.node_copies[i].source)];
 }
 
+// Nodes at which no rod ends but that are something: held, a mass, what cables and springs hang on or pull
+// at. As large as the middle one of all joints, or as can be seen.
+void add_bare_nodes(const Structure& s, Appearance& looks) {
+  std::vector<double> known;
+  for (const double r : looks.joint_radius)
+    if (r > 0) known.push_back(r);
+  double usual = 1.75 * looks.bare_radius;
+  if (!known.empty()) {
+    const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+    std::nth_element(known.begin(), middle, known.end());
+    usual = *middle;
+  }
+  looks.bare.assign(s.node_copies.size(), false);
+  const auto mark = [&](std::size_t i) { looks.bare[i] = looks.joint_radius[i] <= 0; };
+  for (const ShownLine& line : lines_with_springs(s))
+    for (const int end : {line.a, line.b}) mark(static_cast<std::size_t>(end));
+  for (std::size_t i = 0; i < s.node_copies.size(); ++i)
+    if (looks.fixed[i] || s.nodes[static_cast<std::size_t>(s.node_copies[i].source)].mass > 0) mark(i);
+  for (std::size_t i = 0; i < s.node_copies.size(); ++i)
+    if (looks.bare[i]) looks.joint_radius[i] = usual;
+}
+
 // Nodes with a mass of their own, bobs and payloads, have larger balls: by the cube root of it, up to two and
 // a half times.
 void enlarge_masses(const Structure& s, Appearance& looks) {
   double rods = 0;
-  for (const Rod& rod : s.rods) rods += rod.mass / static_cast<double>(s.rods.size());
+  const std::vector<const Rod*> wholes = whole_rods(s);
+  for (const Rod* rod : wholes) rods += rod->parts * rod->mass / static_cast<double>(wholes.size());
   for (std::size_t i = 0; i < s.node_copies.size(); ++i) {
     const double mass = s.nodes[static_cast<std::size_t>(s.node_copies[i].source)].mass;
     if (mass > 0) looks.joint_radius[i] *= 1.0 + std::min(1.5, std::cbrt(mass / std::max(rods, 1e-3 * mass)));
@@ -74,6 +107,10 @@ void enlarge_masses(const Structure& s, Appearance& looks) {
 
 Color group_color(std::size_t index) {
   return looks().front().group(index);
+}
+
+Color trail_color(const Look& look, const Appearance& looks) {
+  return look.group(std::max<std::size_t>(looks.groups.size(), 3));
 }
 
 Appearance appearance_of(const Structure& s, double size, double rod_scale) {
@@ -97,13 +134,14 @@ Appearance appearance_of(const Structure& s, double size, double rod_scale) {
     }
   }
   add_pins(s, out);
-  enlarge_masses(s, out);
   std::vector<bool> held(s.nodes.size(), false);
   for (const Constraint& c : s.constraints) {
     if (c.kind != "fixed") continue;
     for (const int node : c.nodes) held[static_cast<std::size_t>(node)] = true;
   }
   for (const NodeCopy& copy : s.node_copies) out.fixed.push_back(held[static_cast<std::size_t>(copy.source)]);
+  add_bare_nodes(s, out);
+  enlarge_masses(s, out);
   for (const LoadCopy& load : s.load_copies)
     out.largest_force = std::max(out.largest_force, load.force.norm());
   out.arrow_length = median > 0 ? std::min(0.16 * size, 0.3 * median) : 0.16 * size;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/text/wrapped.hpp"
 #include "render/plot/text_metrics.hpp"
 #include "render/scene/frame_overlay.hpp"
 #include "render/scene/view.hpp"
@@ -19,9 +20,10 @@ double round_length(double x) {
 
 namespace {
 
+// To three digits, or to a tenth of a metre.
 std::string length_text(double metres) {
   char text[32];
-  std::snprintf(text, sizeof text, metres < 0.01 ? "%.2g m" : metres < 10 ? "%.2f m" : "%.1f m", metres);
+  std::snprintf(text, sizeof text, metres < 10 ? "%#.3g m" : "%.1f m", metres);
   return text;
 }
 
@@ -197,7 +199,21 @@ void FrameOverlay::add_names(const VectorXd& whole, DrawList& list) const {
     for (std::size_t i = 0; i < s.node_copies.size(); ++i)
       names.emplace_back(&s.node_copies[i].name, node(static_cast<int>(i)));
   if (style_.options.rod_labels)
-    for (const RodCopy& rod : s.rod_copies) names.emplace_back(&rod.name, 0.5 * (node(rod.a) + node(rod.b)));
+    for (std::size_t i = 0; i < s.rod_copies.size(); ++i) {
+      const RodCopy& copy = s.rod_copies[i];
+      const Rod& rod = s.rods[static_cast<std::size_t>(copy.source)];
+      if (rod.whole.empty()) {
+        names.emplace_back(&copy.name, 0.5 * (node(copy.a) + node(copy.b)));
+        continue;
+      }
+      // One that was cut has its name once, in the middle; its parts stand in a row.
+      std::size_t first = i;
+      while (first > 0 && s.rods[static_cast<std::size_t>(s.rod_copies[first - 1].source)].whole == rod.whole)
+        --first;
+      if (i - first != static_cast<std::size_t>(rod.parts / 2)) continue;
+      names.emplace_back(&rod.whole,
+                         rod.parts % 2 == 0 ? node(copy.a) : Vec3(0.5 * (node(copy.a) + node(copy.b))));
+    }
   // What is nearer chooses its place first.
   const Vec3 back = (list.camera.eye - list.camera.target).cast<double>();
   std::stable_sort(names.begin(), names.end(),
@@ -211,7 +227,8 @@ void FrameOverlay::add_names(const VectorXd& whole, DrawList& list) const {
 void FrameOverlay::add_name(const std::string& name, const Vec3& at, std::vector<Box>& taken,
                             DrawList& list) const {
   const Vec3f p = project(list.camera, style_.width, style_.height, at.cast<float>());
-  const float line = std::round(0.72f * small_), wide = 0.66f * line * static_cast<float>(name.size());
+  const float line = std::round(0.72f * small_),
+              wide = 0.66f * line * static_cast<float>(characters_in(name));
   if (p.z() <= 0) return;
   for (const float reach : {14 * unit_, 26 * unit_}) {
     for (int k = 0; k < 8; ++k) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/structure/seams.hpp"
 #include "core/text/name_index.hpp"
 
 namespace unfurl {
@@ -66,6 +67,7 @@ Hardware::Hardware(const Structure& structure, const Appearance& looks, const Lo
       joints_(std::move(joints)),
       upright_(upright),
       detailed_(detailed),
+      seams_(seams(structure)),
       support_(structure.node_copies.size(), Vec3::Zero()),
       copy_of_(structure.nodes.size(), -1) {
   for (const RodCopy& rod : structure_.rod_copies)
@@ -152,6 +154,15 @@ RodCoat Hardware::coat(int group, const Color* field) const {
   return {color, own, finish, Finish::anodised};  // the fittings tell the group
 }
 
+bool Hardware::seam(const RodEnd& end) const {
+  const RodCopy& rod = structure_.rod_copies[static_cast<std::size_t>(end.rod)];
+  return seams_[static_cast<std::size_t>(end.end == 0 ? rod.a : rod.b)];
+}
+
+double Hardware::whole_length(std::size_t rod, double length) const {
+  return length * structure_.rods[static_cast<std::size_t>(structure_.rod_copies[rod].source)].parts;
+}
+
 Vec3 Hardware::offset(std::size_t rod, double t) const {
   if (!detailed_) return Vec3::Zero();
   return side_gap * radius(rod) * joints_->side(static_cast<int>(rod), t);
@@ -167,14 +178,15 @@ double Hardware::trimmed(const RodEnd& end, double length) const {
   const auto i = static_cast<std::size_t>(end.rod);
   const RodCopy& rod = structure_.rod_copies[i];
   const JointKind kind = joints_->kind(end.end == 0 ? rod.a : rod.b);
-  if (!detailed_ || kind == JointKind::ball || cable(i)) return 0;
-  return std::min(0.8 * lug_reach * radius(i), 0.11 * length);
+  if (!detailed_ || kind == JointKind::ball || cable(i) || seam(end)) return 0;
+  return std::min({0.8 * lug_reach * radius(i), 0.11 * whole_length(i, length), 0.9 * length});
 }
 
 void Hardware::add_end(const RodEnd& end, double t, const Vec3& node, const Vec3& along, double length,
                        const RodCoat& coat, DrawList& list) const {
   const auto i = static_cast<std::size_t>(end.rod);
-  const double r = radius(i), fitted = std::min(fitting_reach * r, 0.2 * length), cut = trimmed(end, length);
+  const double r = radius(i), fitted = std::min(fitting_reach * r, 0.2 * whole_length(i, length)),
+               cut = trimmed(end, length);
   list.sleeves.push_back({f(node + 0.7 * cut * along), f(node + fitted * along),
                           static_cast<float>(fitting_radius * r), coat.fitting, coat.fitting_finish});
   if (cut <= 0) return;
@@ -207,8 +219,11 @@ void Hardware::add_rod(std::size_t i, double t, const std::vector<Vec3>& at, con
   list.tubes.push_back({f(a + trimmed(ends[0], length) * along), f(b - trimmed(ends[1], length) * along),
                         thick, coat.rod, coat.rod_finish});
   if (cable(i)) return;
-  add_end(ends[0], t, a, along, length, coat, list);
-  add_end(ends[1], t, b, -along, length, coat, list);
+  if (!seam(ends[0])) add_end(ends[0], t, a, along, length, coat, list);
+  if (seam(ends[1]))  // fills the bend
+    list.balls.push_back({f(b), thick, coat.rod, coat.rod_finish});
+  else
+    add_end(ends[1], t, b, -along, length, coat, list);
 }
 
 // A bolt.
@@ -243,14 +258,16 @@ void Hardware::add_joint(std::size_t n, double t, const std::vector<Vec3>& at, D
   const JointKind kind = joints_->kind(static_cast<int>(n));
   const bool held = looks_.fixed[n],
              pinned = detailed_ && (kind == JointKind::hinge || kind == JointKind::hub);
+  const bool payload = structure_.nodes[static_cast<std::size_t>(structure_.node_copies[n].source)].mass > 0;
+  if (seams_[n] && !held && !payload) return;
   if (pinned) add_pins(n, t, at[n], list);
   if (!support_[n].isZero()) add_support(n, at[n], list);
-  const bool payload = structure_.nodes[static_cast<std::size_t>(structure_.node_copies[n].source)].mass > 0;
   // A pulley stands for what its node weighs.
   const bool pulley =
       std::ranges::any_of(pulleys_, [n](const Triple& p) { return p[1] == static_cast<int>(n); });
-  if (payload && !held && pinned && !pulley) return add_payload(n, at[n], list);
-  if (detailed_ && (kind == JointKind::hinge || kind == JointKind::none)) return;
+  if (payload && !held && (pinned || (detailed_ && looks_.bare[n])) && !pulley)
+    return add_payload(n, at[n], list);
+  if (detailed_ && (kind == JointKind::hinge || (kind == JointKind::none && !looks_.bare[n]))) return;
   const double scale = held && !detailed_ ? 1.5 : kind == JointKind::hub && detailed_ ? 0.86 : 1.0;
   list.balls.push_back({f(at[n]), static_cast<float>(scale * r), held ? look_.anchor : look_.joint,
                         held ? Finish::paint : Finish::metal});

@@ -84,7 +84,9 @@ class Hardware {
   void add_payload(std::size_t node, const Vec3& at, DrawList& list) const;
   void add_forces(const std::vector<Vec3>& at, DrawList& list) const;
   bool cable(std::size_t rod) const { return cables_[rod]; }
-  double radius(std::size_t rod) const;  // as drawn [m]
+  bool seam(const RodEnd& end) const;                         // of two parts of one rod, which goes on there
+  double whole_length(std::size_t rod, double length) const;  // of the rod that it is a part of [m]
+  double radius(std::size_t rod) const;                       // as drawn [m]
   Vec3 axis_of(const RodEnd& end, double t, const Vec3& along) const;
 
   const Structure& structure_;
@@ -95,6 +97,7 @@ class Hardware {
   Mat3 upright_;
   bool detailed_;
   std::vector<bool> cables_;            // per copied rod
+  std::vector<bool> seams_;             // per copied node
   std::vector<std::string> materials_;  // per group
   std::vector<Vec3> support_;           // per copied node: from it to its plate [m]; zero: none
   std::vector<int> copy_of_;            // a copy of each solved node

@@ -165,7 +165,8 @@ void Joints::find_layers(int node) {
 
 // At three moments, those whose axes come nearer than their thickness well inside both; found by sweeping
 // along x.
-void Joints::find_crossings(const Structure&, const std::vector<double>& radius) {
+// Parts of a rod that bends pass straight: aside of their neighbours they would break off.
+void Joints::find_crossings(const Structure& structure, const std::vector<double>& radius) {
   std::vector<bool> found(rods_.size() * (rods_.size() < 512 ? rods_.size() : 0), false);
   for (const std::size_t k : {times_.size() / 4, times_.size() / 2, 3 * times_.size() / 4}) {
     const std::vector<Vec3>& x = poses_[k];
@@ -174,6 +175,9 @@ void Joints::find_crossings(const Structure&, const std::vector<double>& radius)
     };
     const auto b = [&](int i) -> const Vec3& {
       return x[static_cast<std::size_t>(rods_[static_cast<std::size_t>(i)].b)];
+    };
+    const auto cut = [&](std::size_t i) {
+      return structure.rods[static_cast<std::size_t>(rods_[i].source)].parts > 1;
     };
     std::vector<int> order(rods_.size());
     std::iota(order.begin(), order.end(), 0);
@@ -186,6 +190,7 @@ void Joints::find_crossings(const Structure&, const std::vector<double>& radius)
         const double reach = radius[ui] + radius[uj];
         if (low(order[q]) > std::max(a(order[p]).x(), b(order[p]).x()) + reach) break;
         if (share_a_node(rods_[ui], rods_[uj])) continue;
+        if (cut(ui) || cut(uj)) continue;
         const Vec3 along = (b(i) - a(i)).normalized(), other = (b(j) - a(j)).normalized();
         if (!(along.cross(other).norm() > 3 * least_sine)) continue;
         const Nearest n = nearest(a(i), b(i), a(j), b(j));

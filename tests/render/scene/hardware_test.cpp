@@ -172,4 +172,87 @@ TEST_CASE("a line drawing has plain joints") {
   CHECK(list.balls.size() == 24);
 }
 
+TEST_CASE("a picture of a rod does not depend on how finely it is cut") {
+  const auto cantilever = [](int segments) {
+    const Scene scene = read_scene_text(
+        "[structure]\nkind = 'custom'\nyoungs_modulus = 7e10\nrod_model = 'elastic'\nsegments = " +
+            std::to_string(segments) +
+            "\n[[structure.nodes]]\nname = 'A'\nposition = [0, 0, 0]\nfixed = true\n"
+            "[[structure.nodes]]\nname = 'B'\nposition = [10, 0, 0]\n"
+            "[[structure.nodes]]\nname = 'C'\nposition = [10, 4, 0]\nfixed = true\n"
+            "[[structure.rods]]\nnodes = ['A', 'B']\nmass = 1\narea = 1e-4\n"
+            "[[structure.rods]]\nnodes = ['B', 'C']\nmass = 1\narea = 1e-4\nsegments = 1\n"
+            "[[loads]]\nnodes = ['B']\nforce = [0, 0, -0.1]\n[solver]\nend_time = 0.01\nstep = 0.001\n",
+        "c.toml");
+    const Simulation simulation = simulate(build_model(scene), scene.solver);
+    FrameStyle style;
+    style.options.rod_labels = true;
+    return FrameBuilder(simulation.trajectory, style).build(0.01);
+  };
+  const DrawList whole = cantilever(1);
+  REQUIRE(whole.arrows.size() == 1);
+  for (const int segments : {2, 5, 40}) {
+    CAPTURE(segments);
+    const DrawList cut = cantilever(segments);
+    CHECK(cut.sleeves.size() == whole.sleeves.size());
+    CHECK(cut.plates.size() == whole.plates.size());
+    REQUIRE(cut.tubes.size() == whole.tubes.size() + static_cast<std::size_t>(segments - 1));
+    // It bends by far less than a thousandth of its length in so short a time.
+    float length = 0, all = 0;
+    for (const Tube& tube : cut.tubes) {
+      length += (tube.b - tube.a).norm();
+      CHECK(tube.radius == Approx(whole.tubes.front().radius).epsilon(1e-3));
+    }
+    for (const Tube& tube : whole.tubes) all += (tube.b - tube.a).norm();
+    CHECK(length == Approx(all).epsilon(1e-3));
+    CHECK((cut.arrows[0].head - cut.arrows[0].tail).norm() ==
+          Approx((whole.arrows[0].head - whole.arrows[0].tail).norm()).epsilon(1e-3));
+    const auto names = [](const DrawList& list) {
+      std::vector<std::string> out;
+      for (const TextLabel& l : list.labels)
+        if (l.text.starts_with("A-B") || l.text.starts_with("B-C")) out.push_back(l.text);
+      std::ranges::sort(out);
+      return out;
+    };
+    CHECK(names(cut) == names(whole));
+  }
+}
+
+TEST_CASE("masses and supports are there where no rod ends, too") {
+  const Scene scene = read_scene_text(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true},\n"
+      "{name = 'B', position = [0, 0, -1], mass = 5}, {name = 'C', position = [1, 0, 0], fixed = true},\n"
+      "{name = 'D', position = [1, 0, -1], mass = 5}, {name = 'E', position = [2, 0, 0], fixed = true},\n"
+      "{name = 'F', position = [2, 0, -1], mass = 5}]\nrods = [{nodes = ['E', 'F'], mass = 0.1}]\n"
+      "[[forces]]\nkind = 'spring'\nnodes = ['A', 'B']\nstiffness = 200\n"
+      "[[forces]]\nkind = 'cable'\nnodes = ['C', 'D']\naxial_stiffness = 1000\n"
+      "[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nend_time = 0.1\nstep = 0.005\n",
+      "hang.toml");
+  const Simulation simulation = simulate(build_model(scene), scene.solver);
+  const DrawList list = FrameBuilder(simulation.trajectory, {}).build(0);
+  // Something solid within a hand's breadth of each, as large for the two as for the one on the rod.
+  std::vector<float> sizes;
+  for (const float x : {0.0f, 1.0f, 2.0f})
+    for (const float z : {0.0f, -1.0f}) {
+      float widest = 0;
+      for (const Sleeve& sleeve : list.sleeves)
+        if ((0.5f * (sleeve.a + sleeve.b) - Vec3f(x, 0, z)).norm() < 0.2f)
+          widest = std::max(widest, sleeve.radius);
+      for (const Ball& ball : list.balls)
+        if ((ball.center - Vec3f(x, 0, z)).norm() < 0.1f) widest = std::max(widest, ball.radius);
+      CHECK(widest > 0.01f);
+      sizes.push_back(widest);
+    }
+  CHECK(sizes[1] == Approx(sizes[5]));
+  CHECK(sizes[3] == Approx(sizes[5]));
+  const Scene thrown = read_scene_text(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], velocity = [3, 0, 4], mass "
+      "= 2}]\n"
+      "[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nend_time = 0.5\nstep = 0.01\n",
+      "thrown.toml");
+  const Simulation flight = simulate(build_model(thrown), thrown.solver);
+  const DrawList stone = FrameBuilder(flight.trajectory, {}).build(0.2);
+  CHECK(stone.sleeves.size() + stone.balls.size() > 0);
+}
+
 }  // namespace hardware_test
