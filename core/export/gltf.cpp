@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Binary glTF 2.0 (.glb): every rod an instance of one cylinder per group with a fitting at each end, every
 // joint of one sphere, every load of one arrow, moved by translation and rotation keys; surfaces of the scene
-// morph from pose to pose. At rest in the last pose, which a camera sees. A parent node turns z to glTF's y.
+// morph from pose to pose. At rest in the last pose, which a camera sees. A parent node turns what is up (z
+// without gravity) to glTF's y.
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
+#include "core/export/glb_file.hpp"
 #include "core/export/motion_keys.hpp"
 #include "core/export/unit_shapes.hpp"
+#include "core/math/drawing_origin.hpp"
+#include "core/structure/seams.hpp"
 #include "core/structure/shown_lines.hpp"
-#include "core/text/version.hpp"
+#include "core/structure/upright.hpp"
 
 namespace unfurl {
 namespace {
@@ -23,64 +25,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int float_type = 5126, ushort_type = 5123, uint_type = 5125, vertex_target = 34962,
               index_target = 34963;
-
-// The document and its one buffer.
-class Glb {
- public:
-  Json json;
-
-  Glb() {
-    json["asset"] = {{"version", "2.0"}, {"generator", "Unfurl " + version()}};
-    json["scene"] = 0;
-    for (const char* key : {"scenes", "nodes", "materials", "meshes"}) json[key] = Json::array();
-    for (const char* key : {"accessors", "bufferViews"}) json[key] = Json::array();
-  }
-
-  // An accessor of `width` numbers an element; bounds where glTF wants them. Returns its index.
-  template <class T>
-  std::size_t add(const std::vector<T>& values, std::size_t width, int component, int target, bool bounds) {
-    static constexpr const char* types[] = {"", "SCALAR", "", "VEC3", "VEC4"};
-    buffer_.resize((buffer_.size() + 3) / 4 * 4, 0);
-    Json view = {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", values.size() * sizeof(T)}};
-    if (target) view["target"] = target;
-    const auto* bytes = reinterpret_cast<const char*>(values.data());
-    buffer_.append(bytes, values.size() * sizeof(T));
-    Json accessor = {{"bufferView", json["bufferViews"].size()},
-                     {"componentType", component},
-                     {"count", values.size() / width},
-                     {"type", types[width]}};
-    for (std::size_t k = 0; bounds && k < width; ++k) {
-      T low = values[k], high = values[k];
-      for (std::size_t i = k; i < values.size(); i += width) {
-        low = std::min(low, values[i]);
-        high = std::max(high, values[i]);
-      }
-      accessor["min"].push_back(low);
-      accessor["max"].push_back(high);
-    }
-    json["bufferViews"].push_back(std::move(view));
-    json["accessors"].push_back(std::move(accessor));
-    return json["accessors"].size() - 1;
-  }
-
-  std::string file() {
-    buffer_.resize((buffer_.size() + 3) / 4 * 4, 0);
-    json["buffers"] = {{{"byteLength", buffer_.size()}}};
-    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    std::string out = "glTF" + word(2) + word(12 + 8 + text.size() + 8 + buffer_.size());
-    out += word(text.size()) + "JSON" + text;
-    return out + word(buffer_.size()) + std::string("BIN\0", 4) + buffer_;
-  }
-
- private:
-  static std::string word(std::size_t value) {
-    static_assert(std::endian::native == std::endian::little);
-    const auto x = static_cast<std::uint32_t>(value);
-    return {reinterpret_cast<const char*>(&x), sizeof x};
-  }
-  std::string buffer_;
-};
 
 std::vector<float> floats(std::initializer_list<double> values) {
   std::vector<float> out;
@@ -94,7 +38,11 @@ constexpr std::size_t most_animated = 50'000'000, most_keys = 20'000, fewest_key
 class GltfWriter {
  public:
   explicit GltfWriter(const ExportJob& job)
-      : job_(job), trajectory_(job.run.trajectory), structure_(job.run.trajectory.structure()) {
+      : job_(job),
+        trajectory_(job.run.trajectory),
+        structure_(job.run.trajectory.structure()),
+        upright_(upright_rotation(structure_.gravity)),
+        seams_(seams(structure_)) {
     const std::size_t numbers = 7 * structure_.rod_copies.size() + 3 * structure_.node_copies.size();
     MotionKeys keys = motion_keys(
         trajectory_, job.frame_interval,
@@ -103,6 +51,7 @@ class GltfWriter {
       job.said->push_back(warning);
     times_ = std::move(keys.times);
     poses_ = std::move(keys.poses);
+    find_origin();
   }
 
   std::string file() {
@@ -121,12 +70,30 @@ class GltfWriter {
   }
 
  private:
+  // Keys are in single precision: they count from a place near by, to which the parent node moves them.
+  void find_origin() {
+    if (poses_.front().size() == 0) return;
+    Vec3 low = point(poses_.front(), 0), high = low;
+    for (const VectorXd& pose : poses_)
+      for (Index n = 0; n < pose.size() / 3; ++n) {
+        low = low.cwiseMin(pose.segment<3>(3 * n));
+        high = high.cwiseMax(pose.segment<3>(3 * n));
+      }
+    origin_ = drawing_origin(0.5 * (low + high), 0.5 * (high - low).norm());
+    for (VectorXd& pose : poses_)
+      for (Index n = 0; n < pose.size() / 3; ++n) pose.segment<3>(3 * n) -= origin_;
+  }
+
   void add_root() {
     glb_.json["scenes"].push_back({{"name", std::string(job_.name)}, {"nodes", {0}}});
-    const double half = std::sqrt(0.5);
+    const Eigen::Quaterniond z_to_y(std::sqrt(0.5), -std::sqrt(0.5), 0, 0),
+        turn = z_to_y * Eigen::Quaterniond(upright_);
     glb_.json["nodes"].push_back({{"name", std::string(job_.name)},
-                                  {"rotation", {-half, 0.0, 0.0, half}},
+                                  {"rotation", {turn.x(), turn.y(), turn.z(), turn.w()}},
                                   {"children", Json::array()}});
+    if (origin_.isZero()) return;
+    const Vec3 at = upright_ * origin_;
+    glb_.json["nodes"].back()["translation"] = {at.x(), at.z(), -at.y()};
   }
 
   void add_meshes() {
@@ -195,7 +162,7 @@ class GltfWriter {
   }
 
   // A rod's own radius where it has one, a sixtieth of its length where not.
-  static double radius(const Rod& rod) { return rod.radius > 0 ? rod.radius : rod.length / 60; }
+  static double radius(const Rod& rod) { return rod.radius > 0 ? rod.radius : rod.pinned_length() / 60; }
 
   // Of a node at which no rod ends, a payload or a pin: the middle one of all joints, else a hundredth of the
   // motion's size.
@@ -304,6 +271,13 @@ class GltfWriter {
       const Vec3 p = point(pose, static_cast<int>(n));
       append(motion.translation, {p[0], p[1], p[2]});
     }
+    if (seams_[n]) {  // a point of a rod: there by its name
+      glb_.json["nodes"][0]["children"].push_back(motion.node);
+      glb_.json["nodes"].push_back(
+          {{"name", structure_.node_copies[n].name}, {"translation", last(motion.translation, 3)}});
+      motions_.push_back(std::move(motion));
+      return;
+    }
     const double r = n < joint_radius_.size() && joint_radius_[n] > 0.0 ? joint_radius_[n] : point_radius();
     add_node(structure_.node_copies[n].name, groups_.size() + 1,
              {{"translation", last(motion.translation, 3)}, {"scale", {r, r, r}}});
@@ -313,9 +287,12 @@ class GltfWriter {
   // In the frame of the rod, which is as wide as its radius and from -1/2 to 1/2 long.
   void add_fittings(std::size_t r) {
     const Rod& rod = structure_.rods[static_cast<std::size_t>(structure_.rod_copies[r].source)];
-    const double share = rod.length > 0 ? std::min(6.5 * radius(rod) / rod.length, 0.2) : 0.2;
-    Json& children = glb_.json["nodes"][1 + r]["children"] = Json::array();
+    const double share =
+        rod.length > 0 ? std::min({6.5 * radius(rod) / rod.length, 0.2 * rod.parts, 1.0}) : 0.2;
     for (const double sign : {-1.0, 1.0}) {
+      const RodCopy& copy = structure_.rod_copies[r];
+      if (seams_[static_cast<std::size_t>(sign < 0 ? copy.a : copy.b)]) continue;
+      Json& children = glb_.json["nodes"][1 + r]["children"];
       children.push_back(glb_.json["nodes"].size());
       glb_.json["nodes"].push_back({{"name", structure_.rod_copies[r].name + " fitting"},
                                     {"mesh", groups_.size()},
@@ -400,8 +377,9 @@ class GltfWriter {
     const VectorXd& pose = poses_.back();
     if (pose.size() == 0) return;
     const int count = static_cast<int>(structure_.node_copies.size());
-    Vec3 low = point(pose, 0), high = low;
-    for (int n = 0; n < count; ++n) low = low.cwiseMin(point(pose, n)), high = high.cwiseMax(point(pose, n));
+    const auto at = [&](int n) { return Vec3(upright_ * point(pose, n)); };
+    Vec3 low = at(0), high = low;
+    for (int n = 0; n < count; ++n) low = low.cwiseMin(at(n)), high = high.cwiseMax(at(n));
     constexpr double azimuth = -62 * radians_per_degree, elevation = 24 * radians_per_degree,
                      field = 28 * radians_per_degree, aspect = 16.0 / 9.0, filled = 0.85;
     const Vec3 back(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
@@ -412,12 +390,12 @@ class GltfWriter {
     // A point at (x, y, z) in these axes is seen where |y| and |x| / aspect <= (distance - z) tan(field / 2).
     double distance = 8 * point_radius();  // of one point
     for (int n = 0; n < count; ++n) {
-      const Vec3 at = axes.transpose() * (point(pose, n) - middle);
-      const double across = std::max(std::abs(at.y()), std::abs(at.x()) / aspect);
-      distance = std::max(distance, at.z() + across / (filled * std::tan(0.5 * field)));
+      const Vec3 seen = axes.transpose() * (at(n) - middle);
+      const double across = std::max(std::abs(seen.y()), std::abs(seen.x()) / aspect);
+      distance = std::max(distance, seen.z() + across / (filled * std::tan(0.5 * field)));
     }
-    const Vec3 eye = middle + distance * back;
-    const Eigen::Quaterniond turn(axes);
+    const Vec3 eye = upright_.transpose() * (middle + distance * back);
+    const Eigen::Quaterniond turn(Mat3(upright_.transpose() * axes));
     glb_.json["cameras"] = Json::array({{{"type", "perspective"},
                                          {"perspective",
                                           {{"yfov", field},
@@ -478,11 +456,14 @@ class GltfWriter {
   const ExportJob& job_;
   const Trajectory& trajectory_;
   const Structure& structure_;
+  Mat3 upright_;  // gravity points down
   std::vector<double> times_;
-  std::vector<VectorXd> poses_;
-  Glb glb_;
+  std::vector<VectorXd> poses_;  // counted from the origin
+  Vec3 origin_ = Vec3::Zero();   // in the scene [m]
+  GlbFile glb_;
   std::vector<std::string> groups_;
   std::vector<double> joint_radius_;
+  std::vector<bool> seams_;  // per copied node
   std::vector<Motion> motions_;
   double largest_force_ = 0;    // [N]
   std::size_t arrow_mesh_ = 0;  // the shaft's; the next one is the head's

@@ -14,8 +14,11 @@
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
 #include "core/export/motion_keys.hpp"
+#include "core/math/drawing_origin.hpp"
 #include "core/math/largest.hpp"
+#include "core/structure/seams.hpp"
 #include "core/structure/shown_lines.hpp"
+#include "core/structure/upright.hpp"
 #include "core/text/base64.hpp"
 #include "core/text/version.hpp"
 #include "core/text/xml_text.hpp"
@@ -51,10 +54,20 @@ void add_motion(const ExportJob& job, Page& page) {
   const Trajectory& trajectory = job.run.trajectory;
   const Structure& structure = trajectory.structure();
   const MotionKeys keys = motion_keys(trajectory, job.frame_interval, bearable_poses(structure));
+  Vec3 low = Vec3::Constant(1e300), high = -low;
+  for (const VectorXd& pose : keys.poses)
+    for (Index n = 0; n < pose.size() / 3; ++n) {
+      low = low.cwiseMin(pose.segment<3>(3 * n));
+      high = high.cwiseMax(pose.segment<3>(3 * n));
+    }
+  const Vec3 origin = drawing_origin(0.5 * (low + high), 0.5 * (high - low).norm());
+  const Mat3 upright = upright_rotation(structure.gravity);
   std::vector<float> positions, forces;
   for (std::size_t k = 0; k < keys.times.size(); ++k) {
-    for (const double x : keys.poses[k]) positions.push_back(static_cast<float>(x));
-    // Between two states a force goes along a straight line.
+    for (Index n = 0; n < keys.poses[k].size() / 3; ++n)
+      for (const double x : Vec3(upright * (keys.poses[k].segment<3>(3 * n) - origin)))
+        positions.push_back(static_cast<float>(x));
+    // Between two states a force goes along a straight line; next to one at which it is not known it stays.
     const double t = keys.times[k];
     const std::size_t i = trajectory.state_before(t), next = std::min(i + 1, trajectory.size() - 1);
     const double gap = trajectory.time(next) - trajectory.time(i),
@@ -63,7 +76,11 @@ void add_motion(const ExportJob& job, Page& page) {
       const auto force = [&](std::size_t at) {
         return job.diagnostics.axial_force(static_cast<Index>(at), rod.source);
       };
-      forces.push_back(static_cast<float>((1 - u) * force(i) + (u > 0 ? u * force(next) : 0.0)));
+      const double before = force(i), after = force(next);
+      const bool between = u > 0 && std::isfinite(after);
+      forces.push_back(static_cast<float>(between && std::isfinite(before) ? (1 - u) * before + u * after
+                                          : between                        ? after
+                                                                           : before));
     }
   }
   page["start"] = trajectory.start_time();
@@ -71,6 +88,8 @@ void add_motion(const ExportJob& job, Page& page) {
   page["speed"] = job.speed;
   page["frames"] = keys.times.size();
   page["moments"] = packed(keys.times);
+  page["origin"] = {origin.x(), origin.y(), origin.z()};
+  for (const double x : upright.reshaped()) page["upright"].push_back(x);  // by columns
   page["positions"] = packed(positions);
   page["forces"] = packed(forces);
   if (const std::string warning = too_few_keys(keys, "viewer.html"); !warning.empty()) {
@@ -81,8 +100,11 @@ void add_motion(const ExportJob& job, Page& page) {
 
 void add_members(const ExportJob& job, Page& page) {
   const Structure& structure = job.run.trajectory.structure();
-  page["nodes"] = page["rods"] = page["groups"] = page["unique"] = Page::array();
+  page["nodes"] = page["rods"] = page["groups"] = page["unique"] = page["seams"] = Page::array();
   for (const NodeCopy& node : structure.node_copies) page["nodes"].push_back(node.name);
+  const std::vector<bool> between = seams(structure);
+  for (std::size_t n = 0; n < between.size(); ++n)
+    if (between[n]) page["seams"].push_back(n);
   std::map<std::string, std::size_t> groups;
   for (const RodCopy& copy : structure.rod_copies) {
     const auto source = static_cast<std::size_t>(copy.source);
@@ -90,7 +112,7 @@ void add_members(const ExportJob& job, Page& page) {
     const auto [group, added] = groups.try_emplace(rod.group, groups.size());
     if (added) page["groups"].push_back(rod.group.empty() ? "rods" : rod.group);
     page["rods"].push_back(
-        {copy.a, copy.b, group->second, rod.radius > 0 ? rod.radius : rod.length / 60, copy.name});
+        {copy.a, copy.b, group->second, rod.radius > 0 ? rod.radius : rod.pinned_length() / 60, copy.name});
     page["unique"].push_back(
         source < job.diagnostics.rod_unique.size() && job.diagnostics.rod_unique[source] ? 1 : 0);
   }
@@ -203,9 +225,13 @@ std::string inside_script(std::string json) {
   return out;
 }
 
-std::string filled(std::string_view page, std::string_view mark, const std::string& text) {
-  const std::size_t at = page.find(mark);
-  return std::string(page.substr(0, at)) + text + std::string(page.substr(at + mark.size()));
+// Both marks of the page are found before either is filled: what they are filled with may look like one.
+std::string filled(std::string_view page, const std::string& title, const std::string& data) {
+  constexpr std::string_view title_mark = "@TITLE@", data_mark = "@DATA@";
+  const std::size_t first = page.find(title_mark), second = page.find(data_mark);
+  const std::size_t between = first + title_mark.size();
+  return std::string(page.substr(0, first)) + title + std::string(page.substr(between, second - between)) +
+         data + std::string(page.substr(second + data_mark.size()));
 }
 
 }  // namespace
@@ -218,8 +244,8 @@ void export_html(const ExportJob& job) {
   add_lines(job, page);
   add_curves(job, page);
   const std::string json = page.dump(-1, ' ', true, Page::error_handler_t::replace);
-  const std::string titled = filled(viewer_page, "@TITLE@", xml_text(page["title"].get<std::string>()));
-  write_file_atomically(job.directory / "viewer.html", filled(titled, "@DATA@", inside_script(json)));
+  write_file_atomically(job.directory / "viewer.html",
+                        filled(viewer_page, xml_text(page["title"].get<std::string>()), inside_script(json)));
 }
 
 }  // namespace unfurl

@@ -52,7 +52,7 @@ Figure mode_shapes_figure(const Structure& structure, const VectorXd& positions,
     moved.push_back(positions + amplitude * vibration.modes[k].shape);
     for (int i = 0; i < positions.size() / 3; ++i) space.add(pose_node(moved.back(), i));
   }
-  const PoseView view = pose_view(space.size());
+  const PoseView view = pose_view(space.size(), structure.gravity);
   PoseBox page;
   moved.push_back(positions);
   for (const VectorXd& x : moved)

@@ -21,8 +21,8 @@ struct PoseBox {
   Vec3 size() const { return hi - lo; }
 };
 
-// Of what has this extent: along its thin axis, else axonometric.
-PoseView pose_view(const Vec3& extent);
+// Of what has this extent: along its thin axis, else axonometric. Gravity points down on the page.
+PoseView pose_view(const Vec3& extent, const Vec3& gravity);
 
 inline Vec3 pose_node(const VectorXd& q, int i) {
   return q.segment<3>(3 * i);

@@ -151,7 +151,7 @@ Figure poses_figure(const Simulation& run, const Diagnostics& diagnostics) {
     q.push_back(run.trajectory.positions_at(m.t));
     for (int i = 0; i < q.back().size() / 3; ++i) space.add(pose_node(q.back(), i));
   }
-  const PoseView view = pose_view(space.size());
+  const PoseView view = pose_view(space.size(), structure.gravity);
   const PosePainter painter(structure, view);
   PoseBox page;
   for (const VectorXd& pose : q)

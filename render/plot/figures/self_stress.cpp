@@ -36,7 +36,7 @@ class StatePainter {
     PoseBox space, page;
     const auto nodes = static_cast<int>(structure_.node_copies.size());
     for (int i = 0; i < nodes; ++i) space.add(pose_node(whole_, i));
-    view_ = pose_view(space.size());
+    view_ = pose_view(space.size(), structure_.gravity);
     for (int i = 0; i < nodes; ++i) page.add(at(i));
     size_ = page.size().cwiseMax(1e-3 * std::max(page.size().maxCoeff(), 1e-9));
     low_ = page.lo;

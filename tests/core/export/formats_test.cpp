@@ -237,6 +237,15 @@ TEST_CASE("words in a page cannot leave their place") {
   CHECK(data_of(page)["scene"].get<std::string>().starts_with("</script><script>alert(1)</script> & "));
 }
 
+TEST_CASE("a title that looks like the page's own marks is a title") {
+  const Exported e("html");
+  const std::string title = "@DATA@ and @TITLE@";
+  find_export_format("html")->write({e.run, e.diagnostics, e.directory, "swing", 0.1, 2.0, title});
+  const std::string page = e.text("viewer.html");
+  CHECK(page.find("<title>" + title + "</title>") != std::string::npos);
+  CHECK(data_of(page)["title"] == title);
+}
+
 TEST_CASE("long tables have a row per state and member") {
   const Exported e("csv");
   const std::string nodes = e.text("csv/nodes.csv"), rods = e.text("csv/rods.csv");
