@@ -49,17 +49,17 @@ ExportedLooks exported_looks(const Scene& scene, const Trajectory& run) {
   looks.loads = scene.render.loads;
   const Structure& structure = run.structure();
   for (const Rod& rod : structure.rods) looks.materials.push_back(exported_material(scene.render, rod.group));
-  std::vector<ShownSurface> shown = shown_surfaces(scene, structure);
-  if (shown.empty()) return looks;
-  FrameStyle style;  // which way is up in pictures
+  FrameStyle style;
+  style.surfaces = shown_surfaces(scene, structure);
+  if (style.surfaces.empty()) return looks;
   style.options.inset.clear();
-  const Mat3 up = FrameBuilder(run, style).upright();
-  looks.surfaces = [shown = std::move(shown), up](const VectorXd& pose) {
+  const FrameBuilder frames(run, style);  // which way is up in pictures, and what is a surface's front
+  looks.surfaces = [shown = frames.surfaces(), up = frames.upright()](const VectorXd& pose) {
     std::vector<ExportedSurface> surfaces;
     for (const ShownSurface& s : shown) {
       std::vector<Vec3> edge;
       for (const int n : s.nodes) edge.push_back(up * pose.segment<3>(3 * n));
-      Skin skin = skin_of(s.surface, edge);
+      Skin skin = skin_of(s.surface, edge, s.turned);
       const Eigen::Matrix3f back = up.transpose().cast<float>();
       for (SkinVertex& v : skin.vertices) v.at = back * v.at, v.normal = back * v.normal;
       surfaces.push_back(exported_surface(skin, s.surface.kind));

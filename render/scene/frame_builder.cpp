@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/math/drawing_origin.hpp"
+#include "core/structure/upright.hpp"
 #include "render/plot/text_metrics.hpp"
 #include "render/scene/frame_overlay.hpp"
 #include "render/scene/pose_times.hpp"
@@ -14,12 +16,6 @@ namespace unfurl {
 namespace {
 
 constexpr std::size_t trail_points = 160;  // of a trail at most
-
-// The rotation that turns gravity downwards; none without gravity.
-Mat3 upright_rotation(const Vec3& gravity) {
-  if (gravity.isZero()) return Mat3::Identity();
-  return Eigen::Quaterniond::FromTwoVectors(-gravity, Vec3::UnitZ()).toRotationMatrix();
-}
 
 // Where dimension lines may end: beside the corners of the box around a pose.
 void add_dimension_ends(std::vector<Vec3>& pose, double gap) {
@@ -42,13 +38,18 @@ MotionBounds bounds_of(const std::vector<std::vector<Vec3>>& poses) {
   });
 }
 
+std::vector<Vec3> edge_of(const ShownSurface& shown, const std::vector<Vec3>& pose) {
+  std::vector<Vec3> edge;
+  for (const int n : shown.nodes) edge.push_back(pose[static_cast<std::size_t>(n)]);
+  return edge;
+}
+
 // What reaches beyond the nodes: the bottom of a dish, the foot of a support.
 void add_shown(std::vector<Vec3>& pose, const std::vector<ShownSurface>& surfaces, double support_depth,
                const Appearance& looks) {
   for (const ShownSurface& shown : surfaces) {
-    std::vector<Vec3> edge;
-    for (const int n : shown.nodes) edge.push_back(pose[static_cast<std::size_t>(n)]);
-    pose.push_back(skin_of(shown.surface, edge).vertices.front().at.cast<double>());
+    const std::vector<Vec3> edge = edge_of(shown, pose);
+    pose.push_back(skin_of(shown.surface, edge, shown.turned).vertices.front().at.cast<double>());
   }
   for (std::size_t n = 0; support_depth > 0 && n < looks.fixed.size(); ++n)
     if (looks.fixed[n] && looks.joint_radius[n] > 0) pose.push_back(pose[n] - support_depth * Vec3::UnitZ());
@@ -65,6 +66,7 @@ FrameBuilder::FrameBuilder(const Trajectory& trajectory, FrameStyle style)
   if (options.colour_by != "group" && style_.run && style_.diagnostics)
     field_ = std::make_unique<RodField>(
         rod_field(options.colour_by, options.colour_range, *style_.run, *style_.diagnostics));
+  choose_origin();
   prepare_still(prepare_camera());
   prepare_ghosts();
   prepare_trails();
@@ -73,16 +75,36 @@ FrameBuilder::FrameBuilder(const Trajectory& trajectory, FrameStyle style)
 FrameBuilder::~FrameBuilder() = default;
 FrameBuilder::FrameBuilder(FrameBuilder&&) noexcept = default;
 
+VectorXd FrameBuilder::placed(VectorXd whole) const {
+  if (!style_.origin.isZero())
+    for (Index k = 0; k < whole.size() / 3; ++k) whole.segment<3>(3 * k) -= style_.origin;
+  return whole;
+}
+
+// All that is drawn is in single precision.
+void FrameBuilder::choose_origin() {
+  const MotionBounds bounds = motion_bounds([this](const std::function<void(const Vec3&)>& visit) {
+    for (std::size_t i = 0; i < trajectory_.size(); ++i) {
+      const VectorXd whole = trajectory_.positions(i);
+      for (Index k = 0; k < whole.size() / 3; ++k) visit(node(whole, static_cast<int>(k)));
+    }
+  });
+  style_.origin =
+      upright_.transpose() * drawing_origin(bounds.center, bounds.radius, upright_ * style_.origin);
+}
+
 double FrameBuilder::prepare_camera() {
   const Structure& s = trajectory_.structure();
   std::vector<std::vector<Vec3>> poses;
   std::vector<double> times;
   for (std::size_t i = 0; i < trajectory_.size(); ++i) {
-    const VectorXd whole = trajectory_.positions(i);
+    const VectorXd whole = placed(trajectory_.positions(i));
     poses.emplace_back();
     for (Index k = 0; k < whole.size() / 3; ++k) poses.back().push_back(node(whole, static_cast<int>(k)));
     times.push_back(trajectory_.time(i));
   }
+  for (ShownSurface& shown : style_.surfaces)
+    shown.turned = is_turned(edge_of(shown, poses.front()), edge_of(shown, poses.back()));
   bounds_ = bounds_of(poses);
   if (bounds_.radius <= 0) bounds_.radius = 1;  // a single node that rests
   looks_ = appearance_of(s, bounds_.radius, style_.options.rod_scale);
@@ -128,6 +150,7 @@ void FrameBuilder::prepare_hardware(const std::vector<std::vector<Vec3>>& poses,
     radius.push_back(looks_.rod_radius[static_cast<std::size_t>(rod.source)]);
     thickest = std::max(thickest, radius.back());
   }
+  if (s.rod_copies.empty()) thickest = looks_.bare_radius;
   const double pixels = thickest / bounds_.radius * 0.45 * std::min(style_.width, style_.height);
   const bool lit = look_->shading == Shading::studio || look_->shading == Shading::space;
   auto joints = std::make_unique<const Joints>(s, std::move(sample_times), samples, radius, bounds_.center,
@@ -177,14 +200,14 @@ void FrameBuilder::prepare_still(double thickest) {
 void FrameBuilder::prepare_ghosts() {
   if (style_.options.ghosts <= 0) return;
   for (const std::size_t i : equal_steps(trajectory_, static_cast<std::size_t>(style_.options.ghosts)))
-    ghosts_.push_back({trajectory_.time(i), trajectory_.positions(i)});
+    ghosts_.push_back({trajectory_.time(i), placed(trajectory_.positions(i))});
 }
 
 void FrameBuilder::prepare_trails() {
   if (style_.trails.empty()) return;
   for (const int k : style_.trails) trails_.push_back({k, {}, {}});
   for (const std::size_t i : equal_steps(trajectory_, trail_points)) {
-    const VectorXd whole = trajectory_.positions(i);
+    const VectorXd whole = placed(trajectory_.positions(i));
     for (Trail& trail : trails_) {
       trail.t.push_back(trajectory_.time(i));
       trail.points.push_back(node(whole, trail.node));
@@ -200,7 +223,7 @@ DrawList FrameBuilder::build(double t) const {
 
 DrawList FrameBuilder::build(const Shot& shot) const {
   const double inside = std::clamp(shot.t, trajectory_.start_time(), trajectory_.end_time());
-  const VectorXd whole = trajectory_.positions_at(inside);
+  const VectorXd whole = placed(trajectory_.positions_at(inside));
   DrawList list = still_;
   list.camera = path_->at({inside, shot.progress, shot.turn});
   if (shot.card) {
@@ -215,6 +238,14 @@ DrawList FrameBuilder::build(const Shot& shot) const {
   add_ghosts(inside, list);
   add_trails(inside, whole, list);
   if (style_.labels) overlay_->add(inside, whole, list);
+  return list;
+}
+
+DrawList FrameBuilder::key(double t) const {
+  DrawList list = still_;
+  list.arrows = build(t).arrows;  // tell that there are some
+  overlay_->add_key(t, list);
+  list.arrows.clear();
   return list;
 }
 
@@ -254,9 +285,8 @@ void FrameBuilder::add_bodies(double t, const std::vector<Vec3>& at, DrawList& l
     for (const RodCopy& rod : trajectory_.structure().rod_copies) colors.push_back(rod_color(t, rod));
   hardware_->add(t, at, colors, list);
   for (const ShownSurface& shown : style_.surfaces) {
-    std::vector<Vec3> edge;
-    for (const int n : shown.nodes) edge.push_back(at[static_cast<std::size_t>(n)]);
-    list.skins.push_back(skin_of(shown.surface, edge));
+    const std::vector<Vec3> edge = edge_of(shown, at);
+    list.skins.push_back(skin_of(shown.surface, edge, shown.turned));
   }
 }
 
@@ -307,7 +337,7 @@ void FrameBuilder::add_trails(double t, const VectorXd& whole, DrawList& list) c
   for (const Trail& trail : trails_) {
     const double joint = looks_.joint_radius[static_cast<std::size_t>(trail.node)];
     const auto thick = static_cast<float>(0.3 * (joint > 0 ? joint : 0.01 * bounds_.radius));
-    Color color = look_->group(3);
+    Color color = trail_color(*look_, looks_);
     color.a = 0.85f;
     Vec3 last = trail.points.front();
     for (std::size_t i = 1; i <= trail.points.size(); ++i) {

@@ -30,6 +30,9 @@ struct FrameStyle {
   const Diagnostics* diagnostics = nullptr;
   std::vector<int> trails = {};  // the copied nodes that leave one (options.trails is their pattern)
   std::vector<ShownSurface> surfaces = {};
+  // Where pictures have their zero [m of the scene]; where the motion is far away from it, a point beside
+  // that.
+  Vec3 origin = Vec3::Zero();
 };
 
 class FrameOverlay;
@@ -47,15 +50,23 @@ class FrameBuilder {
   // At any time [s]; outside the run its nearest end.
   DrawList build(double t) const;
   DrawList build(const Shot& shot) const;
+  // What sizes, colours and signs of the picture at a time stand for, alone: for a place beside pictures
+  // without.
+  DrawList key(double t) const;
   const Camera& camera() const { return still_.camera; }  // of the first picture
   // Width over height of the picture that the whole motion fills, within reason: 2/5 to 5/2.
   double fitting_aspect() const { return fitting_aspect_; }
-  // The scene's coordinates to the picture's (a rotation; z is up in the picture).
+  // The scene's coordinates x to the picture's: upright() (x - origin()), a rotation (z is up in the
+  // picture).
   const Mat3& upright() const { return upright_; }
+  const Vec3& origin() const { return style_.origin; }
+  const std::vector<ShownSurface>& surfaces() const { return style_.surfaces; }  // with their fronts
 
  private:
+  VectorXd placed(VectorXd whole) const;  // counted from the origin, as is what functions below are given
   Vec3 node(const VectorXd& whole, int i) const { return upright_ * whole.segment<3>(3 * i); }
   void add_card(DrawList& list) const;
+  void choose_origin();
   double prepare_camera();                     // returns the radius of the thickest joint [m]
   double still_radius(double thickest) const;  // of a sphere around all that is drawn [m]
   void prepare_still(double thickest);

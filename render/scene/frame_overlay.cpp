@@ -3,11 +3,13 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <set>
 
 #include "render/plot/text_metrics.hpp"
+#include "render/plot/ticks.hpp"
 #include "render/scene/view.hpp"
 
 namespace unfurl {
@@ -95,8 +97,17 @@ void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
   if (options.axes) add_axes(taken, list);
   if (options.legend && field_) add_color_bar(taken, list);
   if (options.scale_bar) add_scale_bar(taken, list);
-  if (options.legend) add_legend(taken, list);
+  if (options.legend) add_legend(t, taken, list);
   add_inset(t, list);
+}
+
+void FrameOverlay::add_key(double t, DrawList& list) const {
+  float y = 0.8f * edge_;
+  if (const std::string note = scale_text(looks_); !note.empty())
+    add_line_of_heading(y, small_, note, false, list);
+  Boxes taken;
+  if (field_) add_color_bar(taken, list);
+  add_legend(t, taken, list);
 }
 
 // The solved nodes' coordinates, read off any of their copies.
@@ -176,12 +187,25 @@ float FrameOverlay::lifted(Box box, const Boxes& taken) const {
 }
 
 void FrameOverlay::add_status(double t, const VectorXd& whole, Boxes& taken, DrawList& list) const {
-  std::string status = time_text(t, trajectory_.end_time() - trajectory_.start_time());
+  std::vector<std::string> lines{time_text(t, trajectory_.end_time() - trajectory_.start_time())};
   const Deployment& deployment = trajectory_.structure().deployment;
-  if (!deployment.empty()) status += "    " + deployed_text(deployment.fraction(solved(whole)));
-  const float y = height_ - edge_ - small_;
-  list.labels.push_back(quiet(list, {edge_, y, small_, look_.ink, status}));
-  taken.push_back({edge_, y, edge_ + about_width(status, small_), y + small_});
+  if (!deployment.empty()) lines.push_back(deployed_text(deployment.fraction(solved(whole))));
+  // In one line where there is room, each in its own where there is not, smaller where one has none.
+  const float room = width_ - 2 * edge_;
+  const auto width = [&](const std::string& text) {
+    return static_cast<float>(plot::text_width(text, static_cast<double>(small_)));
+  };
+  if (lines.size() == 2)
+    if (const std::string both = lines[0] + "    " + lines[1]; width(both) <= room) lines = {both};
+  float widest = 0;
+  for (const std::string& line : lines) widest = std::max(widest, width(line));
+  const float size = widest > room ? fine_ * std::floor(small_ * room / widest / fine_) : small_;
+  float y = height_ - edge_ - size - 1.2f * size * static_cast<float>(lines.size() - 1);
+  for (const std::string& line : lines) {
+    list.labels.push_back(quiet(list, {edge_, y, size, look_.ink, line}));
+    taken.push_back({edge_, y, edge_ + about_width(line, size), y + size});
+    y += 1.2f * size;
+  }
 }
 
 // A square in the colour, framed in ink: a colour as light as the ground has an edge on it.
@@ -192,7 +216,7 @@ void FrameOverlay::add_swatch(DrawList& list, float x, float y, const Color& col
   list.areas.push_back({x + frame, top + frame, x + inside, top + inside, color});
 }
 
-std::vector<FrameOverlay::LegendEntry> FrameOverlay::legend_entries(const DrawList& list) const {
+std::vector<FrameOverlay::LegendEntry> FrameOverlay::legend_entries(double t, const DrawList& list) const {
   std::vector<LegendEntry> legend;
   const auto add = [&](bool arrow, const std::string& name, const Color& color) {
     const std::string text = plot::shorten_text(name, static_cast<double>(small_),
@@ -202,12 +226,16 @@ std::vector<FrameOverlay::LegendEntry> FrameOverlay::legend_entries(const DrawLi
   };
   if (!field_ && looks_.groups.size() > 1)
     for (std::size_t i = 0; i < looks_.groups.size(); ++i) add(false, looks_.groups[i], look_.group(i));
+  if (field_ && field_->known)
+    if (std::ranges::any_of(trajectory_.structure().rod_copies,
+                            [&](const RodCopy& rod) { return !std::isfinite(field_->at(t, rod.source)); }))
+      add(false, field_->unknown, field_->color(std::nan("")));
   std::set<std::string> lines;
   for (const ShownLine& line : trajectory_.structure().lines)
     if (lines.insert(line.group).second)
       add(false, line.group, look_.line_color(line.group, field_ && field_->diverging));
   if (!list.arrows.empty()) add(true, "load", list.arrows.front().color);
-  if (!style_.trails.empty()) add(false, "trail", look_.group(3));
+  if (!style_.trails.empty()) add(false, "trail", trail_color(look_, looks_));
   return legend;
 }
 
@@ -232,8 +260,8 @@ std::vector<FrameOverlay::LegendRow> FrameOverlay::legend_rows(std::vector<Legen
 }
 
 // The name in ink, which can be read on any ground, behind a sign in the colour.
-void FrameOverlay::add_legend(Boxes& taken, DrawList& list) const {
-  const std::vector<LegendEntry> all = legend_entries(list);
+void FrameOverlay::add_legend(double t, Boxes& taken, DrawList& list) const {
+  const std::vector<LegendEntry> all = legend_entries(t, list);
   const float y = height_ - edge_ - small_, highest = 0.6f * height_;
   std::vector<LegendRow> rows = legend_rows(all, y, taken);
   for (std::size_t shown = all.size(); shown-- > 1 && rows.back().y < highest;) {
@@ -266,6 +294,17 @@ void FrameOverlay::add_legend(Boxes& taken, DrawList& list) const {
 
 namespace {
 
+// Three numbers in so many digits that they stay apart by what they are apart, of three at least.
+std::array<std::string, 3> bar_numbers(const std::array<double, 3>& values) {
+  const double least = std::min(values[1] - values[0], values[2] - values[1]),
+               most = std::max(std::abs(values[0]), std::abs(values[2]));
+  const double beyond = least > 0 ? std::floor(std::log10(most / least)) : 0;  // digits that they share
+  const int digits = static_cast<int>(std::clamp(beyond + 2, 3.0, 15.0));
+  std::array<std::string, 3> out;
+  for (std::size_t k = 0; k < 3; ++k) out[k] = plot::format_number(values[k], digits);
+  return out;
+}
+
 // Where the colours end before the values do.
 std::string end_mark(const RodField& field, double u) {
   if (u == 0.0 && field.below) return "\u2264 ";
@@ -278,20 +317,31 @@ std::string end_mark(const RodField& field, double u) {
 void FrameOverlay::add_color_bar(Boxes& taken, DrawList& list) const {
   constexpr int steps = 64;
   const float length = 280 * unit_, thick = 12 * unit_, line = fine_ * std::round(0.8f * small_ / fine_);
-  const float label = about_width(field_->label, line), wide = std::max(length, label);
+  const std::vector<std::string> words =
+      plot::wrap_text(field_->label, static_cast<double>(line), static_cast<double>(width_ - 2 * edge_));
+  float label = 0;
+  for (const std::string& text : words) label = std::max(label, about_width(text, line));
+  const float wide = std::max(length, label), tall = 1.35f * line * static_cast<float>(words.size());
   const bool longer = label > length;  // it then ends where the bar ends
   const float x = width_ - edge_ - length;
+  // The last line a little above a place.
+  const auto add_words = [&](float right, float left, float below) {
+    float y = below - tall;
+    for (const std::string& text : words) {
+      list.labels.push_back(
+          quiet(list, {longer ? right : left, y, line, look_.ink, text, longer ? 1.0f : 0.0f}));
+      y += 1.35f * line;
+    }
+  };
   if (!field_->known) {  // no scale of nothing
-    const std::string text =
-        plot::shorten_text(field_->label, static_cast<double>(line), static_cast<double>(width_ - 2 * edge_));
-    Box box{width_ - edge_ - std::min(label, width_ - 2 * edge_), height_ - edge_ - line, width_ - edge_,
-            height_ - edge_};
+    Box box{width_ - edge_ - wide, height_ - edge_ - tall, width_ - edge_, height_ - edge_};
     const float up = lifted(box, taken);
     box.y0 -= up, box.y1 -= up;
-    list.labels.push_back(quiet(list, {box.x1, box.y0, line, look_.ink, text, 1}));
+    add_words(box.x1, box.x0, box.y1 + 0.35f * line);
     return taken.push_back(box);
   }
-  Box box{width_ - edge_ - wide, height_ - edge_ - 2.6f * line - thick, width_ - edge_, height_ - edge_};
+  Box box{width_ - edge_ - wide, height_ - edge_ - 1.25f * line - thick - tall, width_ - edge_,
+          height_ - edge_};
   const float up = lifted(box, taken), y = height_ - edge_ - 1.25f * line - thick - up;
   box.y0 -= up, box.y1 -= up;
   taken.push_back(box);
@@ -304,14 +354,15 @@ void FrameOverlay::add_color_bar(Boxes& taken, DrawList& list) const {
                 b = x + length * static_cast<float>(k + 1) / steps;
     list.areas.push_back({a, y, b, y + thick, field_->color(value((k + 0.5) / steps))});
   }
-  for (const double u : {0.0, 0.5, 1.0}) {
+  const std::array<std::string, 3> numbers = bar_numbers({value(0), value(0.5), value(1)});
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double u = 0.5 * static_cast<double>(k);
     const float at = x + length * static_cast<float>(u);
     list.lines.push_back({at, y + thick, at, y + thick + 4 * unit_, 1.5f * unit_, look_.ink});
     list.labels.push_back(quiet(list, {at, y + thick + 5 * unit_, line, look_.ink,
-                                       end_mark(*field_, u) + number_text(value(u)), static_cast<float>(u)}));
+                                       end_mark(*field_, u) + numbers[k], static_cast<float>(u)}));
   }
-  list.labels.push_back(quiet(list, {longer ? x + length : x, y - 1.35f * line, line, look_.ink,
-                                     field_->label, longer ? 1.0f : 0.0f}));
+  add_words(x + length, x, y);
 }
 
 }  // namespace unfurl

@@ -18,6 +18,7 @@ class FrameOverlay {
 
   // whole: the positions of all nodes at the time t.
   void add(double t, const VectorXd& whole, DrawList& list) const;
+  void add_key(double t, DrawList& list) const;  // what sizes, colours and signs of a picture stand for
 
  private:
   struct Box {  // a place that is taken [pixels]
@@ -37,7 +38,7 @@ class FrameOverlay {
   };
   // How far up a box has to go to be clear of those that are taken, all of them in the lower part.
   float lifted(Box box, const Boxes& taken) const;
-  std::vector<LegendEntry> legend_entries(const DrawList& list) const;
+  std::vector<LegendEntry> legend_entries(double t, const DrawList& list) const;
   std::vector<LegendRow> legend_rows(std::vector<LegendEntry> entries, float y, const Boxes& taken) const;
   void add_line_of_heading(float& y, float size, const std::string& text, bool title, DrawList& list) const;
   VectorXd solved(const VectorXd& whole) const;
@@ -51,7 +52,7 @@ class FrameOverlay {
   void add_axes(Boxes& taken, DrawList& list) const;
   void add_color_bar(Boxes& taken, DrawList& list) const;
   void add_scale_bar(Boxes& taken, DrawList& list) const;
-  void add_legend(Boxes& taken, DrawList& list) const;
+  void add_legend(double t, Boxes& taken, DrawList& list) const;
   void add_dimensions(const VectorXd& whole, DrawList& list) const;
   float number_place(const Eigen::Vector2f& p, const Eigen::Vector2f& q, const Eigen::Vector2f& half,
                      const DrawList& list) const;

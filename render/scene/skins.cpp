@@ -26,6 +26,12 @@ Coat coat_of(const SceneSurface& s) {
   return {Weave::mesh, gold, gold, 0.34f};
 }
 
+Vec3 middle_of(const std::vector<Vec3>& edge) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : edge) middle += p / static_cast<double>(edge.size());
+  return middle;
+}
+
 // Area vector of a polygon around its middle.
 Vec3 area_of(const std::vector<Vec3>& edge, const Vec3& middle) {
   Vec3 area = Vec3::Zero();
@@ -96,17 +102,26 @@ void find_normals(Skin& skin) {
 
 }  // namespace
 
-Skin skin_of(const SceneSurface& surface, const std::vector<Vec3>& given) {
+bool is_turned(const std::vector<Vec3>& edge) {
+  const Vec3 area = area_of(edge, middle_of(edge));
+  return area.z() < -0.05 * area.norm();
+}
+
+bool is_turned(const std::vector<Vec3>& first, const std::vector<Vec3>& last) {
+  const double at_first = area_of(first, middle_of(first)).norm(),
+               at_last = area_of(last, middle_of(last)).norm();
+  return is_turned(at_last < 0.5 * at_first ? first : last);
+}
+
+Skin skin_of(const SceneSurface& surface, const std::vector<Vec3>& given, bool turned) {
   Skin skin;
   const Coat coat = coat_of(surface);
   skin.weave = coat.weave, skin.front = coat.front, skin.back = coat.back;
   skin.opacity = surface.opacity > 0 ? static_cast<float>(surface.opacity) : coat.opacity;
   if (given.size() < 3) return skin;
   std::vector<Vec3> edge = given;
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& p : edge) middle += p / static_cast<double>(edge.size());
-  Vec3 area = area_of(edge, middle);
-  if (area.z() < -0.05 * area.norm()) std::reverse(edge.begin(), edge.end()), area = -area;
+  if (turned) std::ranges::reverse(edge);
+  const Vec3 middle = middle_of(edge), area = area_of(edge, middle);
   double diameter = 0;
   for (const Vec3& p : edge) diameter += 2 * (p - middle).norm() / static_cast<double>(edge.size());
   Vec3 down = Vec3::Zero();

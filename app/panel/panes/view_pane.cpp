@@ -51,7 +51,7 @@ std::optional<Vec3> point_in_plane(const PanelState& state, const SceneView& vie
     along = forward;
   }
   const Mat3 back = pick.upright.transpose();
-  const Vec3 from = back * eye.cast<double>(), way = back * along.cast<double>();
+  const Vec3 from = back * eye.cast<double>() + pick.origin, way = back * along.cast<double>();
   const Vec3 normal = axis < 0 ? Vec3(back * forward.cast<double>()) : Vec3(Vec3::Unit(axis));
   const double slope = way.dot(normal);
   if (std::abs(slope) < 1e-3) return std::nullopt;
@@ -129,7 +129,7 @@ void draw_pose(const Ui& ui, const PanelState& state, const SceneView& view, con
   list.AddRectFilled(frame.low, {frame.low.x + frame.size.x, frame.low.y + frame.size.y},
                      ui.color(ui.theme.window, 0.55f));
   const auto at = [&](int node) {
-    const Vec3 place = pick.upright * state.pose->segment<3>(3 * node);
+    const Vec3 place = pick.upright * (state.pose->segment<3>(3 * node) - pick.origin);
     return project(pick.camera, pick.width, pick.height, place.cast<float>());
   };
   for (const RodCopy& rod : structure.rod_copies) {

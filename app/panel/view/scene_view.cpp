@@ -10,10 +10,12 @@ namespace unfurl {
 
 namespace {
 
-// The other run: thinner, all in one pale colour, so that nobody takes it for the present one.
-void add_ghost(const DrawList& other, DrawList& list) {
+// The other run, which counts `from` another origin: thinner, all in one pale colour, so that nobody takes it
+// for the present one.
+void add_ghost(const DrawList& other, const Vec3f& from, DrawList& list) {
   const Color pale = mixed({0.48f, 0.31f, 0.64f, 1}, list.background_top, 0.45f);
   for (Tube tube : other.tubes) {
+    tube.a += from, tube.b += from;
     tube.color = pale;
     tube.radius *= 0.55f;
     list.tubes.push_back(tube);
@@ -88,6 +90,7 @@ void SceneView::rebuild(PanelState& state) {
   style.width = width_;
   style.height = height_;
   style.loads = style.loads && options_.loads;
+  if (builder_) style.origin = builder_->origin();  // the eye stays where it is
   builder_ = std::make_unique<FrameBuilder>(run_->simulation.trajectory, style);
   ghost_.reset();
   if (ghost_run_) {
@@ -95,6 +98,7 @@ void SceneView::rebuild(PanelState& state) {
     plain.width = width_;
     plain.height = height_;
     plain.labels = plain.loads = false;
+    plain.origin = builder_->origin();
     ghost_ = std::make_unique<FrameBuilder>(ghost_run_->simulation.trajectory, plain);
   }
   list_ = builder_->build(state.playback.t);
@@ -133,7 +137,7 @@ Camera SceneView::camera(const PanelState& state) const {
 }
 
 PickView SceneView::pick_view(const PanelState& state) const {
-  return {camera(state), width_, height_, builder_->upright()};
+  return {camera(state), width_, height_, builder_->upright(), builder_->origin()};
 }
 
 namespace {
@@ -158,7 +162,9 @@ DrawList SceneView::decorated(const PanelState& state) const {
     list.background_top = list.background_bottom = {1, 1, 1, 1};
   }
   if (dark_ && picture_.look == "studio") darken(list);
-  if (ghost_) add_ghost(ghost_->build(state.playback.t), list);
+  if (ghost_)
+    add_ghost(ghost_->build(state.playback.t),
+              (builder_->upright() * (ghost_->origin() - builder_->origin())).cast<float>(), list);
   return list;
 }
 

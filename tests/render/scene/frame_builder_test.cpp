@@ -306,4 +306,52 @@ TEST_CASE("arrows of loads stay apart where they crowd") {
   CHECK(frames.build(0).arrows[0].radius < 0.5f * open[0].radius);  // stowed, millimetres apart
 }
 
+TEST_CASE("a picture of what is far from the origin is that of the same beside it") {
+  // The motions differ by the round-off of coordinates of 2e6 m, 2e-10 m; single precision by 6e-6 of the
+  // size, some hundredths of a pixel at most.
+  const auto fallen = [](const std::string& at) {
+    return run(
+        replaced(replaced(replaced(replaced(pendulum, "VELOCITY", "[0, 0.7, 0]"), "GRAVITY", "[0, -1, -9]"),
+                          "[0, 0, 0]", at.empty() ? "[0, 0, 0]" : "[1e6, 2e6, -3e5]"),
+                 "[1, 0, 0]", at.empty() ? "[1, 0, 0]" : "[1000001, 2e6, -3e5]"));
+  };
+  const Simulation near = fallen(""), far = fallen("far");
+  FrameStyle style;
+  style.options.dimensions = style.options.node_labels = true;
+  style.options.ghosts = 3;
+  style.options.projection = GENERATE("perspective", "orthographic");
+  style.trails = {1};
+  const FrameBuilder there(far.trajectory, style), here(near.trajectory, style);
+  CHECK(here.origin().isZero());
+  CHECK((there.origin() - Vec3(1e6, 2e6, -3e5)).norm() < 100);
+  for (const double t : {0.0, 0.31, 2.0}) {
+    const DrawList a = here.build(t), b = there.build(t);
+    const auto same = [&](const Vec3f& p, const Vec3f& q) {
+      const Vec3f x = project(a.camera, 1280, 720, p), y = project(b.camera, 1280, 720, q);
+      return (x - y).head<2>().norm() < 0.05f;
+    };
+    REQUIRE(a.tubes.size() == b.tubes.size());
+    REQUIRE(a.ghosts.size() == b.ghosts.size());
+    REQUIRE(a.labels.size() == b.labels.size());
+    for (std::size_t k = 0; k < a.tubes.size(); ++k)
+      CHECK((same(a.tubes[k].a, b.tubes[k].a) && same(a.tubes[k].b, b.tubes[k].b)));
+    for (std::size_t k = 0; k < a.ghosts.size(); ++k) CHECK(same(a.ghosts[k].b, b.ghosts[k].b));
+    for (std::size_t k = 0; k < a.labels.size(); ++k) CHECK(a.labels[k].text == b.labels[k].text);
+  }
+}
+
+TEST_CASE("a dimension line says its length to three digits, however small it is") {
+  const double size = GENERATE(1.0, 1e-2, 1e-4);
+  const Simulation r =
+      run(replaced(replaced(replaced(pendulum, "VELOCITY", "[0, 0, 0]"), "GRAVITY", "[0, 0, 0]"), "[1, 0, 0]",
+                   "[" + std::to_string(1.44 * size) + ", 0, 0]"));
+  FrameStyle style;
+  style.options.dimensions = true;
+  std::string text;
+  for (const TextLabel& label : FrameBuilder(r.trajectory, style).build(0).labels)
+    if (label.text.ends_with(" m")) text = label.text;
+  INFO(text);
+  CHECK(std::stod("0" + text) == Approx(1.44 * size).epsilon(1e-9));
+}
+
 }  // namespace frame_builder_test

@@ -221,4 +221,29 @@ TEST_CASE("the first eighteen groups have colours of their own in every look") {
       }
 }
 
+TEST_CASE("the numbers of a bar of colours tell its ends and its middle apart") {
+  const auto numbers = [](const std::string& range) {
+    const DrawList list = small_picture(
+        chain(2) + "[render]\ncolour_by = 'axial_force'\ncolour_range = " + range + "\n", 1280, 720);
+    std::string all = "|";
+    for (const TextLabel& l : list.labels) all += l.text + "|";
+    return all;
+  };
+  CHECK_THAT(numbers("[1234, 1240]"), Catch::Contains("1234|1237|1240|") || Catch::Contains("1234|1237|"));
+  CHECK_THAT(numbers("[-2000, 2000]"), Catch::Contains("|\u22122000|0|2000|"));
+  CHECK_THAT(numbers("[0, 0.5]"), Catch::Contains("|0.25|0.5|"));
+}
+
+TEST_CASE("time and deployed fraction are whole in the panels of a small poster") {
+  const std::string ring = "structure.kind = 'hoop'\nsolver.end_time = 0.2\n[render]\nlegend = false\n";
+  for (const auto& [width, height] : {std::pair{213, 180}, {100, 100}, {66, 75}})
+    for (const int fine : {1, 2}) {
+      CAPTURE(width, height, fine);
+      const DrawList list = small_picture(ring, width, height, fine);
+      check_texts(list, fine * width, fine * height);
+      CHECK(label(list, "%"));
+      CHECK(label(list, width > 200 ? "%" : " s"));
+    }
+}
+
 }  // namespace frame_overlay_test

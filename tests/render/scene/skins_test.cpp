@@ -33,7 +33,8 @@ TEST_CASE("a paraboloid has its focus where its ratio says") {
   SceneSurface surface;
   surface.kind = "paraboloid", surface.shape = "paraboloid", surface.focal_ratio = ratio;
   // 48 nodes: every point of the fan lies on a ray from the middle to a node.
-  const Skin skin = skin_of(surface, ring(48, radius, center));
+  const std::vector<Vec3> edge = ring(48, radius, center);
+  const Skin skin = skin_of(surface, edge, is_turned(edge));
   REQUIRE(skin.vertices.size() > 400);
   double lowest = 1e9;
   for (const SkinVertex& v : skin.vertices) lowest = std::min(lowest, static_cast<double>(v.at.z()));
@@ -49,7 +50,8 @@ TEST_CASE("a panel is spanned between its edges, whichever way its nodes go arou
   SceneSurface surface;
   surface.kind = "solar_panel";
   const std::vector<Vec3> back(edge.rbegin(), edge.rend());
-  for (const Skin& skin : {skin_of(surface, edge), skin_of(surface, back)}) {
+  for (const Skin& skin :
+       {skin_of(surface, edge, is_turned(edge)), skin_of(surface, back, is_turned(back))}) {
     for (const SkinVertex& v : skin.vertices) {
       const double x = static_cast<double>(v.at.x()) / 2, y = static_cast<double>(v.at.y());
       const double z = (1 - y) * ((1 - x) * 1 + x * 1.3) + y * ((1 - x) * 0.8 + x * 1);
@@ -131,12 +133,52 @@ TEST_CASE("a mesh lets light through and shades the floor, a panel does not") {
     SceneSurface surface;
     surface.kind = kind;
     // High above: its shadow is below it, the camera sees the floor past it.
-    list.skins = {skin_of(surface, {{-1.5, -1.5, 3.0}, {1.5, -1.5, 3.0}, {1.5, 1.5, 3.0}, {-1.5, 1.5, 3.0}})};
+    list.skins = {
+        skin_of(surface, {{-1.5, -1.5, 3.0}, {1.5, -1.5, 3.0}, {1.5, 1.5, 3.0}, {-1.5, 1.5, 3.0}}, false)};
     return brightness(renderer.draw(list), seen);
   };
   const int mesh = with("mesh"), panel = with("solar_panel");
   CHECK(mesh < bare - 30);
   CHECK(panel < mesh - 30);
+}
+
+TEST_CASE("a surface keeps its front while it is turned over") {
+  // A panel that turns by 180 degrees about A-B, and nothing else: every point of its surface keeps its
+  // distance from A, B and C; single precision at 2 m.
+  const std::string panel =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true},\n"
+      "{name = 'B', position = [0, 1, 0], fixed = true},\n"
+      "{name = 'C', position = [1.3, 1, 0], velocity = [0, 0, 4.084], mass = 1},\n"
+      "{name = 'D', position = [1.3, 0, 0], velocity = [0, 0, 4.084], mass = 1}]\n"
+      "rods = [{nodes = ['A', 'D'], mass = 0.1}, {nodes = ['B', 'C'], mass = 0.1}, {nodes = ['C', 'D'], mass "
+      "= 0.1},\n"
+      "{nodes = ['A', 'C'], mass = 0.1}]\n[solver]\nend_time = 1\nstep = 0.01\n[[surfaces]]\n"
+      "nodes = ['A', 'D', 'C', 'B']\nkind = ";
+  for (const std::string kind : {"'solar_panel'", "'paraboloid'\nshape = 'paraboloid'"}) {
+    const Scene scene = read_scene_text(panel + kind + "\n", "panel.toml");
+    const Simulation run = simulate(build_model(scene), scene.solver);
+    const Diagnostics diagnostics = diagnose(run);
+    const FrameBuilder frames(run.trajectory, film_style(scene, run, diagnostics));
+    const auto distances = [&](double t) {
+      const DrawList list = frames.build(t);
+      const VectorXd q = run.trajectory.positions_at(t);
+      std::vector<float> out;
+      for (const SkinVertex& v : list.skins.at(0).vertices)
+        for (const Index n : {0, 1, 2}) out.push_back((v.at - q.segment<3>(3 * n).cast<float>()).norm());
+      return out;
+    };
+    const std::vector<float> first = distances(0);
+    for (const double t : {0.3, 0.49, 0.52, 0.8, 1.0}) {
+      const std::vector<float> now = distances(t);
+      REQUIRE(now.size() == first.size());
+      float off = 0;
+      for (std::size_t i = 0; i < now.size(); ++i) off = std::max(off, std::abs(now[i] - first[i]));
+      CAPTURE(kind, t);
+      CHECK(off < 1e-5f);
+    }
+    // At the end the front is above, as in a run that ends where the structure is deployed.
+    CHECK(frames.build(1.0).skins.at(0).vertices[0].normal.z() > 0.9f);
+  }
 }
 
 }  // namespace skins_test
