@@ -20,7 +20,8 @@ namespace unfurl {
 
 namespace {
 
-// Each pose is a third as wide and half as high as a frame of the film, and all are drawn to one scale.
+// Each pose is a third as wide and half as high as a frame of the film, and all are drawn to one scale. What
+// colours of a quantity stand for has a place as large beside the last one.
 FrameStyle panel_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
   FrameStyle style = film_style(scene, run, diagnostics);
   style.title.clear();
@@ -30,21 +31,27 @@ FrameStyle panel_style(const Scene& scene, const Simulation& run, const Diagnost
   style.options.inset.clear();
   style.options.orbit = style.options.turntable = 0;
   style.options.follow = false;
+  // From where a moving camera begins to look.
+  std::vector<CameraKey>& keys = style.options.camera_keys;
+  if (!keys.empty()) keys = {{0, keys.front().azimuth, keys.front().elevation, 1}};
   return style;
 }
 
-Image draw_poses(const FrameStyle& style, const Trajectory& run, std::size_t poses, int supersample,
+Image draw_poses(const FrameStyle& style, bool key, const Trajectory& run, std::size_t poses, int supersample,
                  GlContext& context) {
   const FrameBuilder builder(run, style);
   Renderer renderer(context, style.width, style.height);
   std::vector<Image> images;
-  for (const double t : pose_times(run, poses)) {
-    throw_if_interrupted();
-    DrawList list = builder.build(t);
+  const auto add = [&](DrawList list) {
     list.ground.grid = false;  // its lines would break where two poses meet
     list.stars = 0;
     images.push_back(scaled_down(renderer.draw(list), style.width / supersample, style.height / supersample));
+  };
+  for (const double t : pose_times(run, poses)) {
+    throw_if_interrupted();
+    add(builder.build(t));
   }
+  if (key) add(builder.key(run.end_time()));
   return side_by_side(images);
 }
 
@@ -63,7 +70,8 @@ int cmd_poster(const Arguments& arguments) {
   throw_if_interrupted();
   const Diagnostics diagnostics = judge_run(run);
   const FrameStyle style = panel_style(scene, run, diagnostics);
-  const Image poster = draw_poses(style, run.trajectory, static_cast<std::size_t>(arguments.poses),
+  const bool key = scene.render.legend && scene.render.colour_by != "group";
+  const Image poster = draw_poses(style, key, run.trajectory, static_cast<std::size_t>(arguments.poses),
                                   scene.render.supersample, *context);
   write_png(output, poster, has_alpha(scene.render));
   report_run(run, diagnostics, arguments);

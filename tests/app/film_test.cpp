@@ -225,6 +225,29 @@ TEST_CASE("a poster is its poses side by side") {
         "unfurl: a poster is written as .png, not '.jpg'\n");
 }
 
+TEST_CASE("a poster says what its colours stand for, and has one scale whatever camera keys do") {
+  const ScratchDirectory dir;
+  const auto poster = [&](const std::string& name, const std::vector<std::string>& changes) {
+    std::vector<std::string> words = {"poster",  "hoop6_sector", "--size",
+                                      "480x200", "--quiet",      "--poses",
+                                      "2",       "-o",           dir / (name + ".png")};
+    for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
+    CHECK(run_program(words).code == 0);
+    return file_text(dir / (name + ".png"));
+  };
+  const std::string by = "render.colour_by=axial_force";
+  const auto width = [](const std::string& png) {
+    return static_cast<unsigned char>(png.at(18)) * 256 + static_cast<unsigned char>(png.at(19));
+  };
+  CHECK(width(poster("with", {by})) == 3 * 160);  // two poses, and what colours stand for
+  CHECK(width(poster("without", {by, "render.legend=false"})) == 2 * 160);
+  const auto keys = [&](const std::string& last) {
+    return poster(
+        "keys", {"render.camera_keys=[{time=0, azimuth=-60, elevation=20, zoom=1}, {time=4, " + last + "}]"});
+  };
+  CHECK(keys("azimuth=-60, elevation=20, zoom=1") == keys("azimuth=10, elevation=50, zoom=3"));
+}
+
 TEST_CASE("a mode's film is whole periods of it, and is mixed with no other film") {
   const ScratchDirectory dir;
   const std::string out = dir / "mode";
