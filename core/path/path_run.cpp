@@ -279,14 +279,12 @@ class PathRun {
   void move() {
     const double from = motion_.t();
     motion_.advance(*law_, latest());
-    const auto [t, which] = watch_.first_event(motion_, from, motion_.t());
+    const auto [t, which] =
+        watch_.first_event(motion_, from, motion_.t(), drive_.there() && grid_.next(from).edge);
     if (which < 0) return append_grid(motion_.t());
     motion_.cut(t);
     append_grid(before(t));
-    if (which == static_cast<int>(sides_.size()))
-      deployed();
-    else
-      turn(static_cast<std::size_t>(which));
+    which == static_cast<int>(sides_.size()) ? deployed() : turn(static_cast<std::size_t>(which));
   }
 
   // The grid's times that lie before an event.

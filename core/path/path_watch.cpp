@@ -117,7 +117,7 @@ double PathWatch::margin(const PathMotion& motion, double t, Index i) const {
   return out[i];
 }
 
-std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double from, double to) {
+std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double from, double to, bool edge) {
   VectorXd a, b, rates_a, rates_b;
   margins(motion, from, a, rates_a);
   const Index deployed = a.size() - 1;
@@ -147,6 +147,13 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
     a = b;
     rates_a = rates_b;
     t0 = t1;
+  }
+  // A drive that ends in the deployed pose stays within rounding of it, whose sign is no event.
+  if (edge && armed_ && (first.second < 0 || first.second == deployed)) {
+    constexpr double nothing = 1e-9;
+    margins(motion, to, b, rates_b);
+    if (std::abs(b[deployed]) <= nothing && std::abs(rates_b[deployed]) * step_ <= nothing)
+      first = {to, static_cast<int>(deployed)};
   }
   return first;
 }

@@ -24,7 +24,8 @@ class PathWatch {
 
   // The first margin that falls below zero in (from, to], and when; -1: none. Stops and cables in their
   // order, then the deployed pose.
-  std::pair<double, int> first_event(const PathMotion& motion, double from, double to);
+  // `edge`: a drive has an edge at `to`.
+  std::pair<double, int> first_event(const PathMotion& motion, double from, double to, bool edge = false);
   void deployed() { deployed_ = true; }
 
   // The deployed pose was further away than the margin at that time.

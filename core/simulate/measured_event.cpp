@@ -54,6 +54,40 @@ std::optional<State> step_to_deployed(const Model& model, Integrator& integrator
   });
 }
 
+std::optional<double> step_to_dip(const Model& model, Integrator& integrator, const State& from,
+                                  const State& to, double h, double margin) {
+  if (!deploys_regularly(model.structure)) return std::nullopt;
+  struct At {
+    double length, left, rate;
+  };
+  VectorXd q(model.system.coordinates());
+  const auto at = [&](double length, const State& state) {
+    model.system.expand(state.z, q);
+    return At{length, model.structure.deployment.remaining(q) - margin, remaining_rate(model, state)};
+  };
+  // Above the crossing of both tangents, as any motion is that bends one way.
+  const auto may_dip = [](const At& a, const At& b) {
+    if (!(a.left > 0 && b.left > 0 && a.rate < 0 && b.rate > 0)) return false;
+    const double dx = (b.left - a.left - b.rate * (b.length - a.length)) / (a.rate - b.rate);
+    return a.left + a.rate * dx <= 0;
+  };
+  At low = at(0, from), high = at(h, to);
+  constexpr int most = 60;
+  for (int i = 0; i < most && may_dip(low, high); ++i) {
+    // The rate's zero by its secant, and every third time by halves.
+    const double secant = low.length - low.rate * (high.length - low.length) / (high.rate - low.rate);
+    const double length = i % 3 == 2 ? 0.5 * (low.length + high.length) : secant;
+    State state = from;
+    integrator.restart();
+    if (!(length > low.length && length < high.length) || !integrator.step(state, length).ok())
+      return std::nullopt;
+    const At middle = at(length, state);
+    if (middle.left <= 0) return length;
+    (middle.rate < 0 ? low : high) = middle;
+  }
+  return std::nullopt;
+}
+
 double remaining_rate(const Model& model, const State& state) {
   VectorXd q(model.system.coordinates()), v(q.size());
   model.system.expand(state.z, q);

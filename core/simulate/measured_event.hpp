@@ -25,6 +25,12 @@ bool deploys_regularly(const Structure& structure);
 std::optional<State> step_to_deployed(const Model& model, Integrator& integrator, const State& from, double h,
                                       double margin);
 
+// Where a step of size h leads from one side of the deployed pose to the same side, `to`, but may have been
+// beyond it in between: the length of a step that ends there. Nothing where it was not, or the pose is not
+// regular.
+std::optional<double> step_to_dip(const Model& model, Integrator& integrator, const State& from,
+                                  const State& to, double h, double margin);
+
 // The rate of Deployment::remaining at a state [1/s].
 double remaining_rate(const Model& model, const State& state);
 

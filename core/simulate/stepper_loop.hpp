@@ -127,6 +127,7 @@ class Stepper::Loop {
 
   bool go(const TimeGrid::Target& target) try {
     target_ = target.t;
+    edge_ = target.edge;
     double h = target.h;
     in_step_ = 0;
     while (now().t < target_) {
@@ -397,75 +398,11 @@ class Stepper::Loop {
     return sine > 0 && ((sine <= stepping::singular_margin && !thrown_back) || sine + 2 * within * rate <= 0);
   }
 
-  std::optional<State> locate(double h, double latest) {
-    std::optional<State> reached = step_to_deployed(model(), *fresh_integrator(), now(), h, margin_);
-    if (regular_ = reached.has_value(); regular_) return reached;
-    const bool dvm = run_.options.method == "dvm";
-    const auto fresh = (dvm ? careful_dvm() : *find_method(run_.options.method)).make(system(), run_.options);
-    std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
-    if (event && event->t > latest) event.reset();
-    return event;
-  }
-
-  // The deployed pose where this step reaches it; a step that failed without that is tried in parts. False
-  // where the run ends.
-  bool find_deployed(Probe& to, double h, std::optional<State>& event) {
-    if (!to.report.ok() && may_cross(1.5 * h)) event = locate(h, now().t + 1.05 * h);
-    if (!event && !to.report.ok()) {
-      to.state = now();
-      to.report = step_in_parts(*integrator_, to.state, h, [this](State& state, double length) {
-        return take_step(*integrator_, state, length);
-      });
-    }
-    if (!event && !to.report.ok() && may_cross(stepping::near_deployed * h))
-      event = locate(h, now().t + 2 * stepping::near_deployed * h);
-    if (event || !to.report.ok() || !crosses(to.state)) return true;
-    event = locate(h, std::numeric_limits<double>::infinity());
-    return event || fail("the deployed pose was passed but its time could not be located");
-  }
-
-  bool deployed(State& event, Probe& to, double h) {
-    deployed_ = true;
-    run_.events.push_back({.name = "deployed", .t = event.t, .kind = "deployed"});
-    if (run_.options.at_deployed == "pass") {
-      if (!to.report.ok() || std::abs(fold(to.state)) < margin_) step_over(to, h);
-      if (watched() && to.report.ok())
-        if (auto crossing = find_crossing(to, h); crossing && side(*crossing, event, h) > 0) {
-          run_.events.back().t = std::min(event.t, now().t + crossing->probe.at);
-          return go_to(std::move(*crossing));
-        }
-      return accept(to, part_end_);
-    }
-    project(system(), event);
-    while (run_.trajectory.size() > std::max<std::size_t>(1, new_) && run_.trajectory.end_time() >= event.t)
-      run_.trajectory.pop_back();
-    regular_ = regular_ || regular_when_deployed(run_.trajectory, event);
-    go_on(std::move(event), StepReport{.singular_event = !regular_});
-    if (run_.options.at_deployed == "latch") return latch();
-    return run_.status = RunStatus::deployed, false;
-  }
-
-  // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
-  // on a stop is locked there.
-  bool latch() {
-    if (sides_.any_held() || sides_.any_reeled()) lock_held();
-    const bool gives = latch_gives(base_->structure);
-    if (gives && singular_at_end(run_.trajectory))
-      return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
-    base_ = latched_model(*base_, run_.options.eliminate_linear);
-    latched_ = true;
-    const double before = system().kinetic_energy(now().w);
-    ModeChange change{.state = hand_over(model(), now(), *base_).state};
-    if (!sides_.empty()) change = modes_after(change.state);
-    if (!change.failure.empty()) return fail(change.failure);
-    record(change);
-    set_model(sides_.any_active() ? sides_.model(*base_) : base_, change.state, true);
-    const double taken = (before - system().kinetic_energy(now().w)) * run_.trajectory.structure().sectors;
-    run_.events.push_back(
-        {.name = "latched", .t = now().t, .energy_lost = gives ? 0.0 : taken, .kind = "latch"});
-    return true;
-  }
-
+  std::optional<State> locate(double h, double latest);
+  bool arrives(const Probe& to);
+  bool find_deployed(Probe& to, double h, std::optional<State>& event);
+  bool deployed(State& event, Probe& to, double h);
+  bool latch();
   void step_over(Probe& to, double& h);
 
   Simulation& run_;
@@ -478,6 +415,7 @@ class Stepper::Loop {
   double start_;
   TimeGrid grid_;
   double target_ = 0, part_end_ = 0;  // of the present step, and of what is solved of it at once
+  bool edge_ = false;                 // time has an edge at target_
   std::unique_ptr<Integrator> integrator_, probing_;
   std::optional<StepControl> control_;
   const System* controlled_ = nullptr;

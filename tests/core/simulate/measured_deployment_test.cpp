@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/diagnostics/measures.hpp"
+#include "core/integrators/integrator.hpp"
+#include "core/path/path_run.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -251,6 +253,97 @@ deployed = 940
         std::string::npos);
   CHECK(error_of("[structure]\nkind = 'hoop'\n[deployment]\nmeasure = 'length B0 T0'\ndeployed = 1\n")
             .find("is for structures that do not say themselves") != std::string::npos);
+}
+
+TEST_CASE("a deployed pose that is met and left again within one step is not missed") {
+  // A bob at 1 m, let go from the horizontal; deployed just above the lowest point. t = int_0^f df / sqrt(2 g
+  // sin f), with f = u^2.
+  const std::string swing = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], mass = 2}]
+rods = [{nodes = ["A", "B"], mass = 0}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 1, 0]
+[gravity]
+acceleration = [0, 0, -9.81]
+[deployment]
+measure = "1 coordinate B along 0 0 1"
+deployed = -0.9999
+[solver]
+stages = 5
+end_time = 3
+)";
+  for (const double z : {0.9999, 0.99999}) {
+    const double end = std::sqrt(std::asin(z));
+    const auto f = [](double u) { return 2 * u / std::sqrt(2 * 9.81 * std::sin(u * u)); };
+    constexpr int n = 4000;  // Simpson: h^4 = 1e-14
+    double t = std::sqrt(2 / 9.81) + f(end);
+    for (int k = 1; k < n; ++k) t += (k % 2 ? 4 : 2) * f(end * k / n);
+    t *= end / n / 3;
+    for (const char* step : {"0.01", "0.05"})
+      for (const char* then : {"stop", "latch", "pass"}) {
+        const Simulation run =
+            run_scene(swing, {std::string("solver.step=") + step, std::string("solver.at_deployed=") + then,
+                              "deployment.deployed=" + std::to_string(-z)});
+        INFO(z << " " << step << " " << then);
+        // Order 10 in steps of 0.05 s at 4.4 rad/s; the rate there is sqrt(1 - z^2) of the speed, 0.004.
+        CHECK(time_of(run, "deployed") == Approx(t).epsilon(1e-7));
+      }
+  }
+}
+
+TEST_CASE("a drive that ends in the deployed pose deploys it then, with every method and on the path") {
+  const std::string driven = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "G", position = [1, 0, 0], fixed = true},
+         {name = "B", position = [1, 0, 0], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 1}]
+[[constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "angle"
+name = "d"
+nodes = ["G", "A", "B"]
+axis = [0, 1, 0]
+motion = "smooth"
+to = 90
+duration = 0.7
+[deployment]
+measure = "angle G A B about 0 1 0"
+deployed = 90
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+step = 0.01
+end_time = 1
+)";
+  for (const auto& [duration, to] :
+       {std::pair(0.7, 90.0), std::pair(0.333, 77.7), std::pair(0.9, 90.0), std::pair(0.45, 141.3)})
+    for (const char* then : {"stop", "latch", "pass"}) {
+      const std::string angle = std::to_string(to);
+      const std::vector<std::string> options = {"constraints[d].duration=" + std::to_string(duration),
+                                                "constraints[d].to=" + angle, "deployment.deployed=" + angle,
+                                                std::string("solver.at_deployed=") + then};
+      INFO(duration << " s to " << to << ", " << then);
+      for (const Method& method : methods()) {
+        auto all = options;
+        all.push_back("solver.method=" + std::string(method.name));
+        const Simulation run = run_scene(driven, all);
+        INFO(method.name << ": " << run.message);
+        CHECK(run.status == (std::string(then) == "stop" ? RunStatus::deployed : RunStatus::completed));
+        CHECK(time_of(run, "deployed") == Approx(duration).epsilon(1e-12));
+      }
+      if (std::string(then) == "latch") continue;  // the path does not do that with a drive
+      const Scene scene = read_scene_text(driven, "s.toml", options);
+      const Simulation path = simulate_on_path(build_model(scene), scene.solver);
+      CHECK(time_of(path, "deployed") == Approx(duration).epsilon(1e-12));
+    }
 }
 
 }  // namespace measured_deployment_test

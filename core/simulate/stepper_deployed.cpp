@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A step of a run and the deployed pose.
+#include <algorithm>
+#include <limits>
+
+#include "core/integrators/integrator.hpp"
+#include "core/simulate/initial_state.hpp"
+#include "core/simulate/stepper_loop.hpp"
+
+namespace unfurl {
+
+// A drive comes to its end in the deployed pose: from then on what is left is zero but for rounding, and for
+// what the method drifts from the drive, and whose sign that has says nothing.
+bool Stepper::Loop::arrives(const Probe& to) {
+  constexpr double nothing = 1e-9, at_rest = 1e-4;  // rates are off by what a method makes of them
+  if (!edge_ || part_end_ != target_ || !deploys_regularly(model().structure) || fold(now()) <= margin_)
+    return false;
+  const VectorXd& lengths = system().constraint_lengths();
+  VectorXd phi(lengths.size());
+  system().expand(to.state.z, q_);
+  system().constraint(part_end_, q_, phi);
+  const double drift = phi.size() > 0 ? phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() : 0.0;
+  return std::abs(fold(to.state)) <= nothing + 2 * drift &&
+         std::abs(remaining_rate(model(), to.state)) * run_.options.step <= at_rest;
+}
+
+std::optional<State> Stepper::Loop::locate(double h, double latest) {
+  std::optional<State> reached = step_to_deployed(model(), *fresh_integrator(), now(), h, margin_);
+  if (regular_ = reached.has_value(); regular_) return reached;
+  const bool dvm = run_.options.method == "dvm";
+  const auto fresh = (dvm ? careful_dvm() : *find_method(run_.options.method)).make(system(), run_.options);
+  std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
+  if (event && event->t > latest) event.reset();
+  return event;
+}
+
+// The deployed pose where this step reaches it; a step that failed without that is tried in parts. False
+// where the run ends.
+bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& event) {
+  if (!to.report.ok() && may_cross(1.5 * h)) event = locate(h, now().t + 1.05 * h);
+  if (!event && !to.report.ok()) {
+    to.state = now();
+    to.report = step_in_parts(*integrator_, to.state, h, [this](State& state, double length) {
+      return take_step(*integrator_, state, length);
+    });
+  }
+  if (!event && !to.report.ok() && may_cross(stepping::near_deployed * h))
+    event = locate(h, now().t + 2 * stepping::near_deployed * h);
+  if (event || !to.report.ok() || deployment_.empty() || deployed_) return true;
+  if (arrives(to)) {
+    event = to.state;
+    event->t = part_end_;
+    return regular_ = true;
+  }
+  double within = h;
+  if (!crosses(to.state)) {
+    const auto bottom = step_to_dip(model(), *fresh_integrator(), now(), to.state, h, margin_);
+    if (!bottom) return true;
+    within = *bottom;
+  }
+  event = locate(within, std::numeric_limits<double>::infinity());
+  return event || fail("the deployed pose was passed but its time could not be located");
+}
+
+bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
+  deployed_ = true;
+  run_.events.push_back({.name = "deployed", .t = event.t, .kind = "deployed"});
+  if (run_.options.at_deployed == "pass") {
+    if (!to.report.ok() || (!regular_ && std::abs(fold(to.state)) < margin_)) step_over(to, h);
+    if (watched() && to.report.ok())
+      if (auto crossing = find_crossing(to, h); crossing && side(*crossing, event, h) > 0) {
+        run_.events.back().t = std::min(event.t, now().t + crossing->probe.at);
+        return go_to(std::move(*crossing));
+      }
+    return accept(to, part_end_);
+  }
+  project(system(), event);
+  while (run_.trajectory.size() > std::max<std::size_t>(1, new_) && run_.trajectory.end_time() >= event.t)
+    run_.trajectory.pop_back();
+  regular_ = regular_ || regular_when_deployed(run_.trajectory, event);
+  go_on(std::move(event), StepReport{.singular_event = !regular_});
+  if (run_.options.at_deployed == "latch") return latch();
+  return run_.status = RunStatus::deployed, false;
+}
+
+// Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
+// on a stop is locked there.
+bool Stepper::Loop::latch() {
+  if (sides_.any_held() || sides_.any_reeled()) lock_held();
+  const bool gives = latch_gives(base_->structure);
+  if (gives && singular_at_end(run_.trajectory))
+    return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
+  base_ = latched_model(*base_, run_.options.eliminate_linear);
+  latched_ = true;
+  const double before = system().kinetic_energy(now().w);
+  ModeChange change{.state = hand_over(model(), now(), *base_).state};
+  if (!sides_.empty()) change = modes_after(change.state);
+  if (!change.failure.empty()) return fail(change.failure);
+  record(change);
+  set_model(sides_.any_active() ? sides_.model(*base_) : base_, change.state, true);
+  const double taken = (before - system().kinetic_energy(now().w)) * run_.trajectory.structure().sectors;
+  run_.events.push_back(
+      {.name = "latched", .t = now().t, .energy_lost = gives ? 0.0 : taken, .kind = "latch"});
+  return true;
+}
+
+}  // namespace unfurl
