@@ -80,6 +80,40 @@ void refuse_elements(const Scene& scene) {
 }
 
 // Latches that give need something to latch.
+// Of the elements those that say where the nodes are at t = 0: what is held or driven, and what warms rods.
+std::vector<SceneElement> placing(const std::vector<SceneElement>& elements,
+                                  const std::vector<ElementKind>& kinds, bool forces) {
+  std::vector<SceneElement> found;
+  for (const SceneElement& e : elements) {
+    const ElementKind& kind = *find_kind(kinds, e.kind);
+    if (forces ? kind.members == Members::rods : !kind.bounds) found.push_back(e);
+  }
+  return found;
+}
+
+// Moves the nodes to where they are at t = 0, which given lengths of rods say; what follows that is "as at
+// t = 0" (rest lengths, limits, stowed values, ...) is taken there. Notes of what was moved.
+std::vector<std::string> place_nodes(const Scene& scene, Structure& structure) {
+  if (lengths_fit(structure)) return {};
+  Structure placed = structure;
+  placed.notes.clear();
+  add_elements(placing(scene.forces, scene_forces(), true), scene_forces(), scene.solver.end_time, placed);
+  add_elements(placing(scene.constraints, scene_constraints(), false), scene_constraints(),
+               scene.solver.end_time, placed);
+  placed.notes.clear();
+  try {
+    fit_lengths(placed, scene.solver.eliminate_linear);
+    assemble_elastic(placed, scene.solver.eliminate_linear);
+  } catch (const StructureError& error) {
+    refuse(scene, error);
+  }
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    structure.nodes[i].position = placed.nodes[i].position;
+  if (Deployment& d = structure.deployment; d.folds())
+    d.initial_fold_angle = d.fold_angle(node_positions(structure));
+  return placed.notes;
+}
+
 void check_latches(const Scene& scene, Structure& structure) {
   for (const SceneElement& force : scene.forces) {
     if (force.kind != "latch" || !force.enabled) continue;
@@ -322,10 +356,9 @@ void refuse_warm_start(const Scene& scene, const Structure& structure) {
 std::shared_ptr<const Model> build_model(const Scene& scene) {
   Structure structure = build_structure(scene);
   try {
-    fit_lengths(structure, scene.solver.eliminate_linear);
-    assemble_elastic(structure, scene.solver.eliminate_linear);
     System system(structure, scene.solver.eliminate_linear);
     try {
+  const std::vector<std::string> moves = place_nodes(scene, structure);
       check_consistency(structure, system);
     } catch (const StructureError&) {
       refuse_warm_start(scene, structure);
@@ -339,6 +372,7 @@ std::shared_ptr<const Model> build_model(const Scene& scene) {
   } catch (const StructureError& error) {
     refuse(scene, error);
   }
+  structure.notes.insert(structure.notes.end(), moves.begin(), moves.end());
 }
 
 }  // namespace unfurl

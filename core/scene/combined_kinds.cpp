@@ -397,7 +397,7 @@ void give_deployment(const Scene& scene, Structure& structure) {
 const std::vector<ElementKind>& combined_kinds() {
   static const std::vector<ElementKind> kinds = {
       {"cable", "a cable over nodes in order, which runs freely: elastic, or paid out and drawn in",
-       Members::path, cable_row_params, add_cable, path_of},
+       Members::path, cable_row_params, add_cable, path_of, true},
       {"gear", "two wheels that mesh: r1 th1 + r2 th2 stays as it is", Members::path, gear_params, add_gear,
        gear_of},
       {"rack", "a pinion that drives a rack: x - r th stays as it is", Members::path, rack_params, add_rack,

@@ -40,6 +40,8 @@ struct ElementKind {
   void (&add)(const SceneElement&, ElementAdder&);  // a reference: a row without one does not compile
   // What it measures, its branch that of t = 0; none: a problem was noted. nullptr: it measures nothing.
   std::optional<Measure> (*measure)(const SceneElement&, MemberFinder&) = nullptr;
+  // Bounds the pose at t = 0 and does not say what it is: stops, play, cables.
+  bool bounds = false;
 };
 const std::vector<ElementKind>& scene_forces();  // kinds of [[forces]]
 const std::vector<ElementKind>&

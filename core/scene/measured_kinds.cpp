@@ -205,13 +205,13 @@ const std::vector<ElementKind>& measured_kinds() {
       {"angle", "the angle between two rods, or the fold angle, is held or driven by a motor", Members::angle,
        angle_params, add_drive<driven_angle>, angle_of},
       {"length_stop", "end stop: the distance of two nodes stays within limits", Members::two_nodes,
-       length_stop_params, add_stop<length_of>, length_of},
+       length_stop_params, add_stop<length_of>, length_of, true},
       {"coordinate_stop", "end stop: a node's coordinate, or the difference of two, stays within limits",
-       Members::node_list, coordinate_stop_params, add_stop<coordinate_of>, coordinate_of},
+       Members::node_list, coordinate_stop_params, add_stop<coordinate_of>, coordinate_of, true},
       {"angle_stop", "end stop: the angle between two rods, or the fold angle, stays within limits",
-       Members::angle, angle_stop_params, add_stop<driven_angle>, angle_of},
+       Members::angle, angle_stop_params, add_stop<driven_angle>, angle_of, true},
       {"clearance", "a pin with play: two nodes stay within a distance of each other", Members::two_nodes,
-       clearance_params, add_clearance},
+       clearance_params, add_clearance, nullptr, true},
   };
   return kinds;
 }

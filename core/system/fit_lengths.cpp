@@ -52,6 +52,13 @@ std::string length_key(std::size_t rod) {
 
 }  // namespace
 
+bool lengths_fit(const Structure& structure) {
+  return std::ranges::all_of(structure.rods, [&](const Rod& rod) {
+    const bool stretched = rod.gives && rod.free_length > 0;
+    return stretched || std::abs(node_distance_of(structure, rod) / rod.length - 1) <= fits;
+  });
+}
+
 bool solve_for_pose(const System& system, VectorXd& q) {
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;

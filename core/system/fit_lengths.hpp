@@ -9,6 +9,9 @@ namespace unfurl {
 // The most that a given length may differ from the distance of its nodes, as a share of it.
 inline constexpr double fitted_share = 0.01;
 
+// Are the nodes as far apart as all given lengths of rods say, but of those that start stretched?
+bool lengths_fit(const Structure& structure);
+
 class System;
 
 // Newton's method on Phi = 0 at t = 0, each step the shortest in the mass metric. True where it is reached to
