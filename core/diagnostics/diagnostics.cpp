@@ -128,7 +128,7 @@ const std::array rows{
     Row{"fold_rate_rad_s", "fold rate", "rad/s", Needs::fold,
         [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v); }},
     Row{"deployed_fraction", "deployed fraction", "", Needs::deployment,
-        [](const Instant& s) { return s.deployment().fraction(s.q); }},
+        [](const Instant& s) { return s.deployment().fraction(s.q, s.state.angles); }},
     Row{"axial_force_max_N", "largest axial force", "N", Needs::nothing,
         [](const Instant& s) { return s.most_force(1.0); }},
     Row{"axial_force_min_N", "smallest axial force", "N", Needs::nothing,

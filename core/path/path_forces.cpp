@@ -171,6 +171,8 @@ Index PathForces::add_measure(const Measure& measure) {
 }
 
 Index PathForces::add_remaining() {
+  remaining_angles_ = angle_count_;
+  angle_count_ += structure_.deployment.first_angles().size();
   return remaining_ = columns_++;
 }
 
@@ -181,6 +183,10 @@ VectorXd PathForces::first_angles() const {
       angles[term.first_angle + static_cast<Index>(i)] = term.angles[i].reference();
   for (const Tracked& tracked : measures_)
     if (tracked.angle >= 0) angles[tracked.angle] = tracked.measure.reference();
+  if (remaining_ >= 0) {
+    const VectorXd own = structure_.deployment.first_angles();
+    angles.segment(remaining_angles_, own.size()) = own;
+  }
   return angles;
 }
 
@@ -220,7 +226,10 @@ void PathForces::evaluate(const VectorXd& q, const VectorXd& dq, VectorXd& angle
     scale[tracked.column] = tracked.measure.is_angle() ? pi : length_;
   }
   if (remaining_ < 0) return;
-  value[remaining_] = structure_.deployment.remaining(q);
+  VectorXd own = angles.segment(remaining_angles_, structure_.deployment.first_angles().size());
+  structure_.deployment.count_on(q, own);
+  angles.segment(remaining_angles_, own.size()) = own;
+  value[remaining_] = structure_.deployment.remaining(q, own);
   scale[remaining_] = 1.0;
 }
 

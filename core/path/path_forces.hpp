@@ -81,7 +81,7 @@ class PathForces final : public PathFunctions {
   std::vector<Friction> frictions_;
   std::vector<Term> terms_;
   std::vector<Tracked> measures_;
-  Index remaining_ = -1;
+  Index remaining_ = -1, remaining_angles_ = 0;
 };
 
 }  // namespace unfurl

@@ -128,12 +128,17 @@ double time_from_rest(const Path& path, const VectorXd& force, double from, doub
 std::optional<double> deployed_pose(const Path& path, const Deployment& deployment, bool forward,
                                     long most_pieces) {
   const VectorXd x = chebyshev_points(Path::degree);
+  VectorXd angles = deployment.first_angles();
   bool armed = false;
   for (long k = 0; k < most_pieces; ++k) {
     const PathPiece* piece = path.piece(forward ? k : -k - 1);
     if (!piece) return std::nullopt;
     VectorXd values(x.size());
-    for (Index i = 0; i < x.size(); ++i) values[i] = deployment.remaining(piece->q.col(i));
+    for (Index i = 0; i < x.size(); ++i) {
+      const Index at = forward ? i : x.size() - 1 - i;
+      deployment.count_on(piece->q.col(at), angles);
+      values[at] = deployment.remaining(piece->q.col(at), angles);
+    }
     const VectorXd c = (values.transpose() * chebyshev_transform(Path::degree)).transpose();
     for (Index i = 0; i < x.size(); ++i) {
       const Index at = forward ? i : x.size() - 1 - i, before = forward ? at - 1 : at + 1;

@@ -372,13 +372,17 @@ void give_deployment(const Scene& scene, Structure& structure) {
     const Measure only = measure->terms[0].measure;
     measure = only;
   }
-  const double unit = is_angle(*measure) ? radians_per_degree : 1.0, initial = find.initial(*measure);
+  const double unit = is_angle(*measure) ? radians_per_degree : 1.0;
+  double initial = find.initial(*measure);
   Deployment& d = structure.deployment;
   d.measured = true;
-  d.measure = *measure;
   d.deployed = unit * e.values.real("deployed");
   d.stowed = unit * e.values.real("stowed");
-  if (std::isnan(d.stowed)) d.stowed = initial;
+  if (std::isnan(d.stowed))
+    d.stowed = initial;
+  else if (counts_turns(*measure))  // the turn on which it begins is that of the values given
+    measure->reference = initial -= 2 * pi * std::round((initial - 0.5 * (d.stowed + d.deployed)) / (2 * pi));
+  d.measure = *measure;
   const double way = d.deployed - d.stowed;
   double factors = measure->kind == MeasureKind::combination ? 0.0 : 1.0;
   for (const MeasureTerm& term : measure->terms) factors += std::abs(term.coefficient);

@@ -178,7 +178,7 @@ class Locator {
   double sine(const State& s) {
     q_.resize(system().coordinates());
     system().expand(s.z, q_);
-    return trajectory_.structure().deployment.remaining(q_);
+    return trajectory_.structure().deployment.remaining(q_, s.angles);
   }
   double sine_rate(const State& s) {
     q_.resize(system().coordinates());

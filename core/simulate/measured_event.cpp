@@ -46,7 +46,7 @@ std::optional<State> step_to_deployed(const Model& model, Integrator& integrator
   VectorXd q(model.system.coordinates());
   const auto left = [&](const State& state) {
     model.system.expand(state.z, q);
-    return model.structure.deployment.remaining(q) - margin;
+    return model.structure.deployment.remaining(q, state.angles) - margin;
   };
   return step_to_zero(from, h, left, [&](double length, State& state) {
     integrator.restart();

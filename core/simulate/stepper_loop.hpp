@@ -379,7 +379,7 @@ class Stepper::Loop {
   double fold(const State& state) {
     q_.resize(system().coordinates());
     system().expand(state.z, q_);
-    return deployment_.remaining(q_);
+    return deployment_.remaining(q_, state.angles);
   }
 
   bool crosses(const State& next) {

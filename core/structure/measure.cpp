@@ -68,17 +68,22 @@ bool is_angle(const Measure& measure) {
   return measure.kind != MeasureKind::coordinate && measure.kind != MeasureKind::length;
 }
 
+std::vector<Measure> turning_angles(const Measure& measure) {
+  std::vector<Measure> out;
+  if (counts_turns(measure)) out.push_back(measure);
+  for (const MeasureTerm& term : measure.terms)
+    if (counts_turns(term.measure)) out.push_back(term.measure);
+  return out;
+}
+
 FollowedAngles followed_angles(const Structure& structure) {
   FollowedAngles out;
-  const auto add = [&](const Measure& measure) {
-    if (counts_turns(measure)) out.measures.push_back(measure);
-  };
   const auto index = [&](const Measure& measure) {
     const std::size_t first = out.measures.size();
-    add(measure);
-    for (const MeasureTerm& term : measure.terms) add(term.measure);
+    for (Measure& angle : turning_angles(measure)) out.measures.push_back(std::move(angle));
     return out.measures.size() > first ? static_cast<int>(first) : -1;
   };
+  if (structure.deployment.measured) index(structure.deployment.measure);
   for (const Force& force : structure.forces) out.of_force.push_back(index(force.measure));
   for (const Stop& stop : structure.stops) out.of_stop.push_back(index(stop.measure));
   for (const Constraint& c : structure.constraints)

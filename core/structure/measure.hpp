@@ -86,10 +86,14 @@ bool counts_turns(const Measure& measure);
 // In radians: angles, and combinations of nothing else.
 bool is_angle(const Measure& measure);
 
-// The angles of a structure that count on from state to state: those with a sign that springs and stops act
-// on, and those in combinations that are held or driven. (A row of one angle is taken to the nearest turn.)
+// The angles with a sign in a measure, in its order: its own, or those of its terms.
+std::vector<Measure> turning_angles(const Measure& measure);
+
+// The angles of a structure that count on from state to state: those with a sign that tell how far it is
+// deployed, that springs and stops act on, and those in combinations that are held or driven. (A row of one
+// angle is taken to the nearest turn.)
 struct FollowedAngles {
-  std::vector<Measure> measures;
+  std::vector<Measure> measures;  // those of the deployment's measure come first
   // For each of Structure::forces, stops and constraints the index in `measures` of its first angle; -1: none
   std::vector<int> of_force, of_stop, of_constraint;
 };

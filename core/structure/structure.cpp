@@ -31,15 +31,40 @@ double Deployment::fold_rate(const ConstVec& q, const ConstVec& v) const {
 namespace {
 
 MeasureFunction function_of(const Deployment& deployment) {
-  Measure measure = deployment.measure;
-  measure.reference = 0.5 * (deployment.stowed + deployment.deployed);
-  return {measure, deployment};
+  return {deployment.measure, deployment};
+}
+
+double measured_value(const Deployment& deployment, const ConstVec& q, const VectorXd& angles) {
+  const MeasureFunction function = function_of(deployment);
+  if (angles.size() == 0)
+    return function.wraps() ? function.value(q.data(), 0.5 * (deployment.stowed + deployment.deployed))
+                            : function.value(q.data());
+  const VectorXd at_rest = VectorXd::Zero(angles.size());
+  Moment at(0.0);
+  at.angles = angles.data(), at.rates = at_rest.data();
+  return function.value(q.data(), at, 0);
 }
 
 }  // namespace
 
-double Deployment::fraction(const ConstVec& q) const {
-  if (measured) return (function_of(*this).value(q.data()) - stowed) / (deployed - stowed);
+VectorXd Deployment::first_angles() const {
+  const std::vector<Measure> own = measured ? turning_angles(measure) : std::vector<Measure>();
+  VectorXd angles(static_cast<Index>(own.size()));
+  for (std::size_t i = 0; i < own.size(); ++i) angles[static_cast<Index>(i)] = own[i].reference;
+  return angles;
+}
+
+void Deployment::count_on(const ConstVec& q, VectorXd& angles) const {
+  if (!measured) return;
+  Index i = 0;
+  for (const Measure& angle : turning_angles(measure)) {
+    angles[i] = MeasureFunction(angle, *this).value(q.data(), angles[i]);
+    ++i;
+  }
+}
+
+double Deployment::fraction(const ConstVec& q, const VectorXd& angles) const {
+  if (measured) return (measured_value(*this, q, angles) - stowed) / (deployed - stowed);
   // cos a - cos b, which would cancel next to b: both are halved, and so is their quotient.
   const auto beyond = [b = initial_fold_angle](double a) {
     return std::sin(0.5 * (b + a)) * std::sin(0.5 * (b - a));
@@ -47,8 +72,8 @@ double Deployment::fraction(const ConstVec& q) const {
   return beyond(fold_angle(q)) / beyond(deployed_fold_angle);
 }
 
-double Deployment::remaining(const ConstVec& q) const {
-  if (measured) return (deployed - function_of(*this).value(q.data())) / (deployed - stowed);
+double Deployment::remaining(const ConstVec& q, const VectorXd& angles) const {
+  if (measured) return (deployed - measured_value(*this, q, angles)) / (deployed - stowed);
   return std::cos(deployed_fold_angle) * fold_sine(q) - std::sin(deployed_fold_angle) * fold_cosine(q);
 }
 

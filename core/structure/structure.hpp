@@ -191,7 +191,7 @@ struct Deployment {
   // own in the deployed pose, each needs one.
   std::vector<LinearForm> latches = {};
 
-  // In place of a fold angle. Angles lie within half a turn of the middle of both values.
+  // In place of a fold angle. Its angles with a sign count their turns (FollowedAngles, measure.hpp).
   bool measured = false;
   Measure measure = {};
   double stowed = 0.0, deployed = 0.0;  // [m] or [rad]
@@ -201,12 +201,17 @@ struct Deployment {
   double fold_angle(const ConstVec& q) const;                    // [rad]
   double fold_rate(const ConstVec& q, const ConstVec& v) const;  // [rad/s]
   // (cos fold - cos initial) / (cos deployed - cos initial), or that of the measure's values: 0 folded, 1
-  // deployed.
-  double fraction(const ConstVec& q) const;
+  // deployed. `angles`: those of a measure near which its own are taken, as State::angles begin; none: the
+  // pose is taken to be within half a turn of the middle of both values.
+  double fraction(const ConstVec& q, const VectorXd& angles = {}) const;
   // sin(fold - deployed), or 1 - fraction of a measure, of which the deployed event is the zero, and its rate
   // [1/s]; the sine is linear.
-  double remaining(const ConstVec& q) const;
+  double remaining(const ConstVec& q, const VectorXd& angles = {}) const;
   double remaining_rate(const ConstVec& q, const ConstVec& v) const;
+  // The measure's angles that count turns: those at t = 0, and in a pose from those of one that is less than
+  // half a turn away.
+  VectorXd first_angles() const;
+  void count_on(const ConstVec& q, VectorXd& angles) const;
 };
 
 // A length of the whole that is reported where a structure has it: `name` with its unit is a column of the

@@ -77,7 +77,7 @@ class Pace {
     const Deployment& deployment = run.structure().deployment;
     const auto measure = [&](std::size_t i) -> VectorXd {
       if (deployment.empty()) return run.positions(i);
-      return VectorXd::Constant(1, deployment.fraction(run.node_positions(i)));
+      return VectorXd::Constant(1, deployment.fraction(run.node_positions(i), run.state(i).angles));
     };
     VectorXd last = measure(0);
     for (std::size_t i = 0; i < run.size(); ++i) {

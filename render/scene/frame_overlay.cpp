@@ -189,7 +189,8 @@ float FrameOverlay::lifted(Box box, const Boxes& taken) const {
 void FrameOverlay::add_status(double t, const VectorXd& whole, Boxes& taken, DrawList& list) const {
   std::vector<std::string> lines{time_text(t, trajectory_.end_time() - trajectory_.start_time())};
   const Deployment& deployment = trajectory_.structure().deployment;
-  if (!deployment.empty()) lines.push_back(deployed_text(deployment.fraction(solved(whole))));
+  const VectorXd angles = deployment.measured ? trajectory_.state_at(t).angles : VectorXd();
+  if (!deployment.empty()) lines.push_back(deployed_text(deployment.fraction(solved(whole), angles)));
   // In one line where there is room, each in its own where there is not, smaller where one has none.
   const float room = width_ - 2 * edge_;
   const auto width = [&](const std::string& text) {

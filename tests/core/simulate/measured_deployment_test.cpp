@@ -232,6 +232,68 @@ end_time = 5
   }
 }
 
+// A point mass on a rod about O that nothing acts on: it turns evenly, at 1 m/s / (1.01 m), from
+// atan(0.1) = 5.7 degrees to the downside.
+std::string turning(const std::string& measure, double deployed) {
+  return R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "R", position = [1, 0, 0], fixed = true},
+         {name = "P", position = [1, 0, 0.1], mass = 1, velocity = [0, 0, -1]}]
+rods = [{nodes = ["O", "P"], mass = 0}]
+[[constraints]]
+kind = "plane"
+nodes = ["P"]
+normal = [0, 1, 0]
+[solver]
+end_time = 7
+[deployment]
+measure = )" +
+         measure + "\ndeployed = " + std::to_string(deployed) + "\n";
+}
+
+TEST_CASE("a deployment by angles counts turns: what turns the wrong way is never deployed") {
+  const double rate = 1 / 1.01, first = std::atan(0.1);
+  for (const char* method : {"dvm", "rk4"})
+    for (const char* measure : {"'angle R O P about 0 -1 0'", "['1 angle R O P about 0 -1 0']",
+                                "['0.5 angle R O P about 0 -1 0', '-0.5 angle R O P about 0 1 0']"}) {
+      INFO(method << ", " << measure);
+      const Simulation run = run_scene(turning(measure, 90), {std::string("solver.method=") + method});
+      CHECK(run.status == RunStatus::completed);
+      CHECK(time_of(run, "deployed") < 0);
+      const auto& fraction = diagnose(run).at("deployed_fraction").values;
+      for (std::size_t i = 0; i < fraction.size(); ++i)  // to the error of the methods
+        CHECK(fraction[i] == Approx(-rate * run.trajectory.time(i) / (pi / 2 - first)).margin(1e-6));
+    }
+}
+
+TEST_CASE("sums of angles are deployed where they pass, whatever each has turned by then") {
+  const double rate = 1 / 1.01, first = std::atan(0.1), t = (250 * radians_per_degree + first) / rate;
+  for (const char* model : {"full", "auto"})
+    for (const char* at_deployed : {"stop", "latch"})
+      for (const auto& [measure, deployed] :
+           {std::pair("'angle R O P about 0 1 0'", 250.0), std::pair("['2 angle R O P about 0 1 0']", 500.0),
+            std::pair("['1 angle R O P about 0 1 0', '1 angle R O P about 0 1 0']", 500.0),
+            std::pair("['3 angle R O P about 0 1 0', '1 angle R O P about 0 -1 0']", 500.0)}) {
+        INFO(measure << ", " << at_deployed << ", " << model);
+        const Simulation run = run_scene(
+            turning(measure, deployed),
+            {std::string("solver.at_deployed=") + at_deployed, std::string("solver.model=") + model});
+        CHECK(time_of(run, "deployed") == Approx(t).epsilon(1e-7));
+        CHECK(run.status ==
+              (std::string("stop") == at_deployed ? RunStatus::deployed : RunStatus::completed));
+        CHECK(diagnose(run).at("deployed_fraction").values.back() == Approx(1).epsilon(1e-9));
+      }
+}
+
+TEST_CASE("a deployment begins on the turn of the values that it is given") {
+  // From -5.7 degrees, which is 354.3 of the way from 350 to 420.
+  const Simulation run = run_scene(turning("'angle R O P about 0 1 0'", 420), {"deployment.stowed=350"});
+  const double first = std::atan(0.1) / radians_per_degree;
+  CHECK(diagnose(run).at("deployed_fraction").values.front() == Approx((10 - first) / 70).epsilon(1e-12));
+  CHECK(time_of(run, "deployed") == Approx((60 + first) * radians_per_degree * 1.01).epsilon(1e-7));
+}
+
 TEST_CASE("a deployment that cannot be says why") {
   // Angles count within a turn: 2 x is deployed at 720 degrees at most.
   CHECK(error_of(R"(
