@@ -12,6 +12,7 @@
 #include "core/math/determined_rows.hpp"
 #include "core/scene/element_members.hpp"
 #include "core/scene/size_limits.hpp"
+#include "core/structure/measure.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/structures/family.hpp"
@@ -79,7 +80,6 @@ void refuse_elements(const Scene& scene) {
                            "cannot be used with a sector model; set structure.model to \"full\""}});
 }
 
-// Latches that give need something to latch.
 // Of the elements those that say where the nodes are at t = 0: what is held or driven, and what warms rods.
 std::vector<SceneElement> placing(const std::vector<SceneElement>& elements,
                                   const std::vector<ElementKind>& kinds, bool forces) {
@@ -114,6 +114,7 @@ std::vector<std::string> place_nodes(const Scene& scene, Structure& structure) {
   return placed.notes;
 }
 
+// Latches that give need something to latch.
 void check_latches(const Scene& scene, Structure& structure) {
   for (const SceneElement& force : scene.forces) {
     if (force.kind != "latch" || !force.enabled) continue;
@@ -245,20 +246,70 @@ void check_pins(const Scene& scene, const Structure& structure, const System& sy
 }
 
 // Does nothing push the structure out of the plane through `at`, in which all ends of its rods lie?
-bool flat_by(const Structure& structure, const Vec3& normal, const Vec3& at) {
-  const auto across = [&](const Vec3& x) { return std::abs(normal.dot(x)) > 1e-12 * x.norm(); };
-  for (const Rod& rod : structure.rods)
-    for (const int node : {rod.a, rod.b})
-      if (across(structure.nodes[static_cast<std::size_t>(node)].position - at)) return false;
-  for (const auto& load : structure.loads)
-    if (across(load.force)) return false;
-  for (const Force& force : structure.forces)
-    if (force.kind == "load_over_time" || force.kind == "follower" || force.kind == "offload") return false;
-  return !across(structure.gravity);
-}
+class FlatBy {
+ public:
+  FlatBy(const Structure& structure, const Vec3& normal, const Vec3& at)
+      : structure_(structure), normal_(normal), at_(at), q_(node_positions(structure)) {}
+
+  bool holds(bool latches) const {
+    const Structure& s = structure_;
+    const Deployment& d = s.deployment;
+    return !across(s.gravity) &&
+           std::ranges::all_of(s.rods,
+                               [&](const Rod& rod) {
+                                 return inside({rod.a, rod.b});
+                               }) &&
+           std::ranges::none_of(s.loads, [&](const Load& load) { return across(load.force); }) &&
+           std::ranges::all_of(s.forces, [&](const Force& f) { return stays(f); }) &&
+           std::ranges::all_of(s.stops, [&](const Stop& stop) { return along(stop.measure); }) &&
+           std::ranges::all_of(s.constraints, [&](const Constraint& c) { return stays(c); }) &&
+           !(latches && d.measured && !along(d.measure));
+  }
+
+ private:
+  bool across(const Vec3& x) const { return std::abs(normal_.dot(x)) > 1e-12 * x.norm(); }
+  bool inside(const std::vector<int>& nodes) const {
+    return std::ranges::none_of(nodes, [&](int i) {
+      const Node& node = structure_.nodes[static_cast<std::size_t>(i)];
+      return !node.ghost && across(node.position - at_);
+    });
+  }
+  bool stays(const Force& f) const {
+    if (f.kind == "load_over_time" || f.kind == "follower" || f.kind == "offload") return false;
+    return along(f.measure);
+  }
+  // One of a single node acts on that alone; one of several hands on what lies off the plane.
+  bool stays(const Constraint& c) const {
+    return (c.nodes.size() < 2 || inside(c.nodes)) && (c.kind != "measure" || along(c.measure));
+  }
+  // Does what acts on the measure act within the plane?
+  bool along(const Measure& measure) const {
+    if (measure.kind == MeasureKind::combination)
+      return std::ranges::all_of(measure.terms, [&](const MeasureTerm& term) { return along(term.measure); });
+    if (measure.kind == MeasureKind::fold) return true;  // a family's own, which is flat by itself
+    if (measure.nodes.empty()) return true;
+    // In a pose like this one it may turn within the plane; in others an axis that is not across it does not.
+    if (measure.kind == MeasureKind::dihedral) return false;
+    if (measure.kind == MeasureKind::angle && !measure.axis.cross(normal_).isZero(1e-12) &&
+        !measure.axis.isZero(0.0))
+      return false;
+    const MeasureFunction function(measure, structure_.deployment);
+    std::vector<double> gradient(function.stencil().size());
+    function.value_and_gradient(q_.data(), gradient.data());
+    for (std::size_t i = 0; i < measure.nodes.size(); ++i)
+      if (!structure_.nodes[static_cast<std::size_t>(measure.nodes[i])].ghost &&
+          across(Eigen::Map<const Vec3>(gradient.data() + 3 * i)))
+        return false;
+    return inside(measure.nodes);
+  }
+
+  const Structure& structure_;
+  Vec3 normal_, at_;
+  VectorXd q_;
+};
 
 // Planes that only say that a structure is flat are no supports.
-void find_flat(Structure& structure) {
+void find_flat(Structure& structure, bool latches) {
   std::set<int> ends;
   for (const Rod& rod : structure.rods) ends.insert({rod.a, rod.b});
   for (const Constraint& c : structure.constraints)
@@ -271,8 +322,8 @@ void find_flat(Structure& structure) {
   });
   if (first == structure.constraints.end()) return;
   const Vec3 normal = first->vectors.front();
-  if (!flat_by(structure, normal, structure.nodes[static_cast<std::size_t>(first->nodes.front())].position))
-    return;
+  const Vec3 at = structure.nodes[static_cast<std::size_t>(first->nodes.front())].position;
+  if (!FlatBy(structure, normal, at).holds(latches)) return;
   for (Constraint& c : structure.constraints)
     if (plane_of(c, normal)) ends.erase(c.nodes.front());
   if (!ends.empty()) return;
@@ -308,20 +359,22 @@ void find_jumps(const Scene& scene, Structure& structure) {
 
 Structure build_structure(const Scene& scene) {
   Structure structure = bare_structure(scene);
+  const std::vector<std::string> moves = place_nodes(scene, structure);
   add_gravity(scene, structure);
   add_loads(scene, structure);
   if (is_sector(structure)) refuse_elements(scene);
   add_elements(scene.forces, scene_forces(), scene.solver.end_time, structure);
   add_elements(scene.constraints, scene_constraints(), scene.solver.end_time, structure);
   find_jumps(scene, structure);
-  find_flat(structure);
   add_deployment(scene, structure);
   check_latches(scene, structure);
+  find_flat(structure, scene.solver.at_deployed == "latch");
   show_cables(structure);
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
     if (scene.surfaces[i].enabled)
       surface_nodes(scene.surfaces[i], "surfaces[" + std::to_string(i) + "].nodes", structure);
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
+  structure.notes.insert(structure.notes.end(), moves.begin(), moves.end());
   return structure;
 }
 
@@ -358,7 +411,6 @@ std::shared_ptr<const Model> build_model(const Scene& scene) {
   try {
     System system(structure, scene.solver.eliminate_linear);
     try {
-  const std::vector<std::string> moves = place_nodes(scene, structure);
       check_consistency(structure, system);
     } catch (const StructureError&) {
       refuse_warm_start(scene, structure);
@@ -372,7 +424,6 @@ std::shared_ptr<const Model> build_model(const Scene& scene) {
   } catch (const StructureError& error) {
     refuse(scene, error);
   }
-  structure.notes.insert(structure.notes.end(), moves.begin(), moves.end());
 }
 
 }  // namespace unfurl

@@ -176,6 +176,16 @@ TEST_CASE("what holds a node twice over is unique as their sum") {
   }
 }
 
+TEST_CASE("a plane that holds a node against a spring beside it bears what the spring pulls") {
+  const Diagnostics d = diagnose(
+      run_scene(custom + node("A", Vec3(0, 0, 0), "fixed = true") + node("B", Vec3(1, 0, 0), "mass = 1") +
+                node("P", Vec3(1, 0.8, 0), "fixed = true") + rod("A", "B", "mass = 1") +
+                "[[constraints]]\nkind = 'plane'\nnodes = ['B']\nnormal = [0, 1, 0]\n"
+                "[[forces]]\nkind = 'spring'\nnodes = ['B', 'P']\nstiffness = 100\nfree_length = 0.5\n"
+                "[solver]\nend_time = 0.01\n"));
+  CHECK((reaction(d, "B", 0) - Vec3(0, -100 * (0.8 - 0.5), 0)).norm() < 1e-10);
+}
+
 TEST_CASE("planes that say that a structure is flat, and the rotor of a motor, are no supports") {
   const auto flat = [](const std::string& held, double y = 0) {
     return custom + node("O", Vec3(0, y, 0), "fixed = true") + node("A", Vec3(1, y, 0), "mass = 1") +
@@ -196,6 +206,29 @@ TEST_CASE("planes that say that a structure is flat, and the rotor of a motor, a
         "forces[1]={kind='load_over_time',nodes=['B'],force=[1,0,0],times=[0,1],values=[0,1]}"}) {
     INFO(across);
     CHECK(supports(testing::model_of(flat("['A', 'B']"), {across})->structure) == std::vector<int>{0, 1, 2});
+  }
+  // What is fixed beside the plane pulls out of it, within it it does not.
+  for (const double y : {0.0, 0.3})
+    for (const char* pull :
+         {"forces[1]={kind='spring',nodes=['B','P'],stiffness=100,free_length=0.5}",
+          "forces[1]={kind='cable',nodes=['O','P','B'],axial_stiffness=100}",
+          "forces[1]={kind='combination',terms=['length B P'],stiffness=100}",
+          "forces[1]={kind='friction',nodes=['B','P'],kinetic=1}",
+          "forces[1]={kind='winch',nodes=['B','P'],drum_radius=0.1,stall_torque=1,no_load_speed=9,inertia=1}",
+          "constraints=[{kind='length',nodes=['B','P']}]",
+          "constraints=[{kind='length_stop',nodes=['B','P'],max=9}]",
+          "constraints=[{kind='combination',terms=['length B P','length A P']}]",
+          "constraints=[{kind='cable',nodes=['O','P','B']}]"}) {
+      INFO(pull << " at " << y);
+      CHECK(
+          supports(testing::model_of(flat("['A', 'B']") + node("P", Vec3(2.2, y, 1), "fixed = true"), {pull})
+                       ->structure) == (y == 0 ? std::vector<int>{0, 3} : std::vector<int>{0, 1, 2, 3}));
+    }
+  for (const char* turn : {"[0, 1, 0]", "[0.1, 1, 0]"}) {
+    const auto model = testing::model_of(
+        flat("['A', 'B']"),
+        {std::string("forces[1]={kind='torsion_spring',nodes=['O','A','B'],stiffness=1,axis=") + turn + "}"});
+    CHECK(supports(model->structure).size() == (std::string(turn) == "[0, 1, 0]" ? 1 : 3));
   }
   // What bears something across: a table under its weight, a guide below a tripod.
   const std::vector<std::string> weight{"gravity.acceleration=[0,-9.81,0]"};
