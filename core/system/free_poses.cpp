@@ -68,16 +68,22 @@ SparseColumns identity(Index n, double value) {
   return value * I;
 }
 
-// Velocities of a rigid body at the pose q: three translations, three rotations about the middle.
-MatrixXd rigid_motions(const VectorXd& q) {
-  MatrixXd R = MatrixXd::Zero(q.size(), 6);
-  Vec3 middle = Vec3::Zero();
-  for (Index i = 0; i < q.size(); i += 3) middle += q.segment<3>(i) / (static_cast<double>(q.size()) / 3);
+// Velocities of a rigid body at the pose q: three translations, three rotations about the middle; behind them
+// those of the numbers of drives, which are nowhere in space and follow as they must.
+MatrixXd rigid_motions(const VectorXd& q, const std::vector<int>& ghosts) {
+  MatrixXd R = MatrixXd::Zero(q.size(), 6 + 3 * std::ssize(ghosts));
+  std::vector<Index> in_space;
   for (Index i = 0; i < q.size(); i += 3)
+    if (std::ranges::find(ghosts, static_cast<int>(i / 3)) == ghosts.end()) in_space.push_back(i);
+  Vec3 middle = Vec3::Zero();
+  for (const Index i : in_space) middle += q.segment<3>(i) / static_cast<double>(in_space.size());
+  for (const Index i : in_space)
     for (Index k = 0; k < 3; ++k) {
       R(i + k, k) = 1;
       R.block<3, 1>(i, 3 + k) = Vec3::Unit(k).cross(q.segment<3>(i) - middle);
     }
+  for (std::size_t g = 0; g < ghosts.size(); ++g)
+    R.block<3, 3>(3 * ghosts[g], 6 + static_cast<Index>(3 * g)).setIdentity();
   return R;
 }
 
@@ -206,7 +212,7 @@ MatrixXd FreePoses::motions(const VectorXd& q) const {
   }
   V = orthonormal(V, 1e-9);
   // Rigid motions that are free, and what is left without them.
-  const MatrixXd R = orthonormal(rigid_motions(q), 1e-9 * std::max(1.0, size_));
+  const MatrixXd R = orthonormal(rigid_motions(q, system_.ghosts()), 1e-9 * std::max(1.0, size_));
   const MatrixXd rest = R - V * (V.transpose() * R);
   // Squares of singular values, ascending.
   const SymmetricEigen left = symmetric_eigen(rest.transpose() * rest);

@@ -223,6 +223,8 @@ System::System(const Structure& structure, bool eliminate_linear) {
   auto data = std::make_unique<Data>();
   data->coordinates = 3 * static_cast<Index>(structure.nodes.size());
   data->start = node_positions(structure);
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    if (structure.nodes[i].ghost) data->ghosts.push_back(static_cast<int>(i));
   data->node_mass = node_mass_matrix(structure);
   data->build_blocks(structure, eliminate_linear);
   data->build_coordinates();
@@ -251,6 +253,9 @@ System::System(System&&) noexcept = default;
 
 Index System::coordinates() const {
   return data_->coordinates;
+}
+const std::vector<int>& System::ghosts() const {
+  return data_->ghosts;
 }
 Index System::solved_coordinates() const {
   return data_->B.cols();

@@ -19,7 +19,7 @@ struct System::Data {
   VectorXd loads, gravity_force;                    // its parts, for energies
   SparseRows node_mass, mass, B, B_transposed;
   VectorXd q0, start;
-  std::vector<int> free_coordinates;
+  std::vector<int> free_coordinates, ghosts;
   std::vector<Index>
       integrators;  // solved coordinates that are integrals of controllers: they have no energy
   bool eliminated = false, rheonomic = false;

@@ -93,6 +93,23 @@ TEST_CASE("free motions are as many as the degrees of freedom, keep the constrai
   }
 }
 
+TEST_CASE(
+    "a rotor is no body: what a motor turns is a free motion, what the whole does as one body is none") {
+  for (const double x : {0.0, 7.0})
+    for (const char* inertia : {"0", "0.1"}) {
+      const Structure structure = structure_of(
+          "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [" + std::to_string(x) +
+          ", 0, 0]}, {name = 'B', position = [" + std::to_string(x + 1) +
+          ", 0.2, 0]}, {name = 'C', position = [" + std::to_string(x + 1.3) +
+          ", 1, 0]}]\nrods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], mass = 1}]\n"
+          "[[forces]]\nkind = 'motor'\nnodes = ['A', 'B', 'C']\naxis = [0, 0, 1]\nstall_torque = 1\n"
+          "no_load_speed = 60\ninertia = " +
+          inertia + "\n");
+      // Two rods in a row have seven degrees of freedom; six are those of a body.
+      CHECK(FreePoses(structure).motions(node_positions(structure)).cols() == 1);
+    }
+}
+
 TEST_CASE("a drive lets go of what is led by hand") {
   const Structure structure = build_structure(read_scene_file(find_scene("hoop6_motor")));
   const FreePoses poses(structure);

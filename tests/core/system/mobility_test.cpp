@@ -8,6 +8,7 @@
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/structure/node_positions.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -36,6 +37,30 @@ TEST_CASE("the ring of n units has 13 n constraints of rank 12 n - 1 and one deg
     CHECK(m.degrees_of_freedom == 1);
     CHECK(std::set<std::string>(m.redundant.begin(), m.redundant.end()).size() == m.redundant.size());
   }
+}
+
+TEST_CASE("a rotor, a drum and a controller are no bodies: where a scene lies, it moves as rigidly") {
+  for (const double x : {0.0, 5.0, -300.0})
+    for (const char* force :
+         {"",
+          "kind = 'motor'\nnodes = ['A', 'B', 'C']\nstall_torque = 0.1\nno_load_speed = 3000\ninertia = "
+          "1e-4\n",
+          "kind = 'motor'\nnodes = ['A', 'B', 'C']\nstall_torque = 0.1\nno_load_speed = 3000\ninertia = "
+          "1e-4\n"
+          "control = 'position'\nproportional = 1\nintegral = 1\n",
+          "kind = 'winch'\nnodes = ['A', 'C']\ndrum_radius = 0.1\nstall_torque = 1\nno_load_speed = 9\n"
+          "inertia = 1e-4\n"})
+      for (const char* fixed : {"", ", fixed = true"}) {
+        INFO(x << fixed << "\n" << force);
+        const auto model = testing::model_of(
+            std::string("[variables]\nx = ") + std::to_string(x) +
+            "\n[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = ['=x', 0, 0]" + fixed +
+            "}, {name = 'B', position = ['=x+1', 0, 0]}, {name = 'C', position = ['=x+1', 1, 0]}]\n"
+            "rods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], mass = 1}]\n" +
+            (*force ? "[[forces]]\n" : "") + force);
+        const Mobility m = analyse_mobility(model->system, node_positions(model->structure));
+        CHECK(m.rigid_motions == (*fixed ? 3 : 6));
+      }
 }
 
 TEST_CASE("the sparse analysis of large rings agrees with the count") {
