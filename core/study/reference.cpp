@@ -60,6 +60,13 @@ Solution solve(const Model& model, const Stepper& step, double end, int interval
   return out;
 }
 
+double farthest(const std::vector<VectorXd>& q, Index in_space) {  // from the start
+  double way = 0;
+  for (const VectorXd& now : q)
+    way = larger(way, node_distance(now.head(in_space), q.front().head(in_space)));
+  return way;
+}
+
 double difference(const std::vector<VectorXd>& a, const std::vector<VectorXd>& b, Index in_space) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
@@ -155,9 +162,16 @@ double structure_size(const Model& model) {
   return model.structure.nodes.empty() ? 0.0 : (hi - lo).maxCoeff();
 }
 
+double size_of_motion(const Model& model, const Trajectory& trajectory) {
+  double size = structure_size(model);
+  for (std::size_t i = 0; !(structure_size(model) > 0) && i < trajectory.size(); ++i)
+    size = larger(size, node_distance(trajectory.positions(i), trajectory.positions(0)));
+  return size;
+}
+
 Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
                           const StudyHooks& hooks, double goal) {
-  const double size = structure_size(*model);
+  double size = structure_size(*model);
   const Index in_space = space_coordinates(model->structure);
   for (const TimeEdge& edge : time_edges(model->structure, end / intervals))
     if (edge.impact && edge.t > 0 && edge.t < end)
@@ -166,6 +180,7 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
           " s, where the velocity of a drive jumps; an earlier solver.end_time, or a ramp, helps");
   goal = std::max(goal, 64 * std::numeric_limits<double>::epsilon() * size);
   Best best = tighten(extrapolated(*model, end, intervals, hooks), goal);
+  if (best.solution && !(size > 0)) size = farthest(*best.solution);
   double apart = std::numeric_limits<double>::infinity();
   Reference out;
   out.how = "Bulirsch-Stoer extrapolation of order 16 on the index-1 equations with " +
@@ -183,10 +198,7 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
     apart = distance_of_other(variational(*model, end, intervals, hooks), *best.solution,
                               std::max(goal, best.uncertainty));
   }
-  // Of one node alone the way that it goes is the size.
-  const double way = best.solution ? node_distance(best.solution->back().head(in_space),
-                                                   best.solution->front().head(in_space))
-                                   : 0.0,
+  const double way = best.solution ? farthest(*best.solution, in_space) : 0.0,
                least = 1e-6 * std::max(size, way);
   if (!(best.uncertainty <= least))
     throw ReferenceError(
@@ -198,6 +210,7 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
     throw ReferenceError("there is no reference: two methods, each of which agrees with itself to " +
                          short_number(best.uncertainty) + " m, differ by " + short_number(apart) + " m");
   out.confirmed = !std::isinf(apart);
+  out.size = size > 0 ? size : way;
   for (int i = 0; i <= intervals; ++i) out.t.push_back(end * i / intervals);
   out.q = std::move(*best.solution);
   out.uncertainty = out.confirmed ? std::max(best.uncertainty, apart) : best.uncertainty;

@@ -43,6 +43,7 @@ struct Reference {
   // Largest distance of a node between the last two solutions and, where there is one, from that of a second
   // method [m].
   double uncertainty = 0;
+  double size = 0;         // size_of_motion() [m]
   bool confirmed = false;  // by a second method; if not, the one only agrees with itself
   std::string how;         // "Bulirsch-Stoer extrapolation of order 16 with 120 steps"
 };
@@ -60,5 +61,8 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
 double node_distance(const ConstVec& a, const ConstVec& b);
 // Largest distance between two nodes' coordinates along an axis at the start: what "size" means [m].
 double structure_size(const Model& model);
+// What errors are measured by [m]: the structure's size, and where all nodes are in one place, as one alone
+// is, the farthest that a node goes from its start.
+double size_of_motion(const Model& model, const Trajectory& trajectory);
 
 }  // namespace unfurl

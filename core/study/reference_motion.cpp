@@ -187,7 +187,7 @@ ReferenceMotion solve_reference_motion(const std::shared_ptr<const Model>& model
     throw ReferenceError("no reference runs through: " + probe->message);
   const double end = judged_span(*probe).end;
   if (!(end > 0)) throw ReferenceError("the motion begins at an end stop");
-  const double size = structure_size(*model);
+  const double size = size_of_motion(*model, probe->trajectory);
   const auto best = tightest(solver, end, 64 * std::numeric_limits<double>::epsilon() * size);
   if (best && best->uncertainty() < 1e-6 * size) return *best;
   if (solver.out_of_time()) throw too_long;

@@ -188,7 +188,7 @@ bool fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mute
       if (hooks.stopped()) throw Cancelled();
       StressCell cell{key[0], site.value, setting.name, steps, {}, {}};
       cell.run = measure_run(site.model, setting.options, steps, *site.reference, once, hooks);
-      cell.verdict = judge(cell.run, structure_size(*site.model), plan.limits);
+      cell.verdict = judge(cell.run, site.reference->size, plan.limits);
       const std::lock_guard lock(mutex);
       journal.append(cells_of(cell_columns, cell));
     }

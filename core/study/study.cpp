@@ -130,8 +130,10 @@ Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks
       study.reference = reference->how;
       study.reference_uncertainty = reference->uncertainty;
       study.reference_confirmed = reference->confirmed;
+      study.size = reference->size;
     };
-    if (!hooks.team) solve();  // a worker of a team may find all its work done
+    // A worker of a team may find all its work done.
+    if (!hooks.team || !(study.size > 0)) solve();
     double done = 0;
     double all = 0;
     for (const long steps : plan.ladder.steps)

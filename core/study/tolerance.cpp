@@ -75,7 +75,6 @@ class Picker {
         options_(options),
         hooks_(hooks),
         method_(*find_method(options.method)),
-        size_(structure_size(*model)),
         unknowns_(static_cast<double>(model->system.solved_coordinates() + model->system.constraints())) {
     quiet_.cancelled = hooks.cancelled;
     options_.adaptive = false;
@@ -178,7 +177,8 @@ class Picker {
       const double estimate = judged->estimate, share = estimate / options_.tolerance;
       const double work = judged->work, all_work = judged->all_work;
       if (share > most && steps > before && estimate > 0.7 * last) ++stalls;
-      const bool hopeless = stalls > 1 || (stalls > 0 && estimate < 1e-6 * size_);
+      const bool hopeless =
+          stalls > 1 || (stalls > 0 && estimate < 1e-6 * size_of_motion(*model_, judged->run.trajectory));
       const double ratio = before > 0 ? static_cast<double>(steps) / static_cast<double>(before) : 1.0;
       const double seen = std::log(last / estimate) / std::log(ratio);
       const double order = std::isfinite(seen) ? std::clamp(seen, 0.5, claimed) : claimed;
@@ -216,7 +216,6 @@ class Picker {
   const SimulationHooks& hooks_;
   SimulationHooks quiet_;
   const Method& method_;
-  double size_;  // of the structure [m]
   double unknowns_;
   double spent_ = 0;  // of most_work
   std::optional<Judged> best_;
@@ -267,7 +266,7 @@ Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const So
   try {
     Simulation run = simulate_on_path(model, options, hooks);
     run.solved_as = {"path", "one degree of freedom; solver.model = \"" + options.model + "\""};
-    if (options.tolerance > 0) run.position_estimate = path_share * structure_size(*model);
+    if (options.tolerance > 0) run.position_estimate = path_share * size_of_motion(*model, run.trajectory);
     return run;
   } catch (const PathRefused& refused) {
     if (options.model == "path")

@@ -38,6 +38,17 @@ TEST_CASE("one node alone has a reference, moving or at rest") {
   CHECK(rest.q.back().isZero(0.0));
   CHECK(fall.q.back().z() == Approx(-0.5 * 9.81 * 0.01).epsilon(1e-14));
   CHECK(fall.uncertainty <= 1e-15);
+  CHECK(rest.size == 0);
+  CHECK(fall.size == Approx(0.5 * 9.81 * 0.01).epsilon(1e-14));
+  // Thrown up it comes back to its start after 0.1 s, whose way is v^2 / (2 g) = 12 mm.
+  const Reference thrown = solve_reference(
+      build_model(read_scene_text("[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], "
+                                  "velocity = [0, 0, 0.4905], mass = 2}]\n"
+                                  "[gravity]\nacceleration = [0, 0, -9.81]\n",
+                                  "thrown.toml")),
+      0.1, 4, {});
+  CHECK(thrown.size == Approx(0.4905 * 0.4905 / (2 * 9.81)).epsilon(1e-12));
+  CHECK(thrown.how.starts_with("Bulirsch"));
 }
 
 TEST_CASE("references of a whole ring, in which errors grow, are certain to round-off at every step") {
