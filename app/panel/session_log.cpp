@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/panel/session_log.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -126,8 +128,20 @@ json described_state(const PanelState& s) {
   return out;
 }
 
+void require_recordable(const std::string& path) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown) || std::filesystem::file_size(path, unknown) == 0)
+    return;
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  if (file.peek() == '{') std::getline(file, line);
+  const json first = json::parse(line, nullptr, false);
+  if (!first.is_object() || !first.contains("unfurl_session"))
+    throw FileError(path, "is there and no session: --record would replace it; name another file");
+}
+
 SessionRecorder::SessionRecorder(const std::string& path, const SessionStart& start)
-    : path_(path),
+    : path_((require_recordable(path), path)),
       file_(path, std::ios::binary | std::ios::trunc),
       line_(std::make_unique<json>(json::object())),
       state_(std::make_unique<json>()) {

@@ -38,9 +38,13 @@ struct SessionStart {
 // What a person can see and has decided, as JSON: equal for equal sessions.
 nlohmann::json described_state(const PanelState& state);
 
+// Throws FileError where the file holds something else than a session, which a record would destroy.
+void require_recordable(const std::string& path);
+
 class SessionRecorder {
  public:
-  // Replaces the file. Throws FileError, also later where it can no longer be written.
+  // Replaces a session that is there, and nothing else. Throws FileError, also later where it can no longer
+  // be written.
   SessionRecorder(const std::string& path, const SessionStart& start);
   ~SessionRecorder();
 

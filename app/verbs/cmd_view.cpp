@@ -122,6 +122,7 @@ int cmd_view(const Arguments& arguments) {
   options.at = start_of(arguments);
   options.bench = arguments.view.bench;
   options.record = arguments.view.record;
+  if (!options.record.empty()) require_recordable(options.record);  // likewise
   return show_window(std::move(document), options);
 }
 

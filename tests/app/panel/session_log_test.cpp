@@ -121,6 +121,29 @@ TEST_CASE("a file that is no session is refused in a line") {
   CHECK(run_program({"view", "hoop6", "--replay", scratch / "missing.jsonl"}).code == 2);
 }
 
+TEST_CASE("a record replaces a session that is there, and nothing else") {
+  const ScratchDirectory scratch;
+  SessionStart start;
+  start.document = blank_document();
+  for (const char* text :
+       {"title = \"Mine\"\n", "mine\n", "{}\n", "{\"a\": 1}\n", "\n", "[1, 2]\n", "{\"unfurl_se"}) {
+    INFO(text);
+    const std::string file = scratch.write("mine.toml", text);
+    CHECK_THROWS_AS(SessionRecorder(file, start), FileError);
+    const ProgramResult result =
+        run_program({"view", "hoop6", "--record", file}, {.environment = {"DISPLAY="}});
+    CHECK(result.code == 5);  // before a display is looked for
+    CHECK(result.err.find("--record would replace it") != std::string::npos);
+    CHECK(file_text(file) == text);
+  }
+  for (const char* name : {"new.jsonl", "new.jsonl", "empty.jsonl"}) {
+    INFO(name);
+    if (std::string(name) == "empty.jsonl") scratch.write(name, "");
+    { const SessionRecorder recorder(scratch / name, start); }
+    CHECK(lines_of(file_text(scratch / name)).size() == 1);
+  }
+}
+
 TEST_CASE("every key has a name of its own") {
   for (int i = 0; i < static_cast<int>(Key::count); ++i)
     CHECK(key_named(name_of(static_cast<Key>(i))) == static_cast<Key>(i));
