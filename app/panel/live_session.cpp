@@ -10,7 +10,6 @@
 #include "app/panel/document/scene_entries.hpp"
 #include "app/panel/view/film_camera.hpp"
 #include "core/export/atomic_file.hpp"
-#include "core/scene/text_file.hpp"
 #include "render/image/png.hpp"
 
 namespace unfurl {
@@ -22,6 +21,17 @@ constexpr std::size_t most_trade_points = 200;
 template <class Job>
 JobState state_of(const Job& job) {
   return {job.busy(), job.progress(), job.doing()};
+}
+
+bool holds_files(const std::string& folder) {
+  std::error_code unknown;
+  return std::filesystem::is_directory(folder, unknown) && !std::filesystem::is_empty(folder, unknown);
+}
+
+std::string absolute(const std::string& path) {
+  std::error_code unknown;
+  const auto whole = std::filesystem::absolute(path, unknown);
+  return unknown ? path : whole.lexically_normal().string();
 }
 
 }  // namespace
@@ -57,6 +67,7 @@ void LiveSession::collect() {
     arrived_.simulation.late = simulator_.late(options_.moment);
     arrived_.studying = state_of(study_);
     arrived_.exporting = state_of(export_);
+    arrived_.own_file = own_file_.look(state_.history.now(), last_saved());
     return;
   }
   const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
@@ -81,7 +92,8 @@ bool LiveSession::take_results() {
   collect();
   const bool other = state_.simulation.late != arrived_.simulation.late ||
                      state_.studying.running != arrived_.studying.running ||
-                     state_.exporting.running != arrived_.exporting.running;
+                     state_.exporting.running != arrived_.exporting.running ||
+                     state_.own_file != arrived_.own_file;
   if (outcome_) take_run(*outcome_);
   for (const RunError& error : arrived_.errors) {
     note_error(state_.trade, error);
@@ -90,6 +102,10 @@ bool LiveSession::take_results() {
   state_.simulation = arrived_.simulation;
   state_.studying = arrived_.studying;
   state_.exporting = arrived_.exporting;
+  if (arrived_.own_file == OwnFile::changed && state_.own_file != OwnFile::changed)
+    state_.message =
+        absolute(state_.history.now().path) + " was changed by another program since it was opened";
+  state_.own_file = arrived_.own_file;
   errors_.hold(state_.simulation.running || outcome_);  // the next run, and showing it, come first
   if (!arrived_.report.empty()) {
     state_.message = arrived_.report;
@@ -196,33 +212,28 @@ void LiveSession::start_study() {
   if (!study_.busy()) study_.submit({state_.study, simulated_part(state_.history.now())});
 }
 
-namespace {
-
-bool holds_files(const std::string& folder) {
-  std::error_code unknown;
-  return std::filesystem::is_directory(folder, unknown) && !std::filesystem::is_empty(folder, unknown);
-}
-
-std::string absolute(const std::string& path) {
-  std::error_code unknown;
-  const auto whole = std::filesystem::absolute(path, unknown);
-  return unknown ? path : whole.lexically_normal().string();
-}
-
-}  // namespace
-
-void LiveSession::start_export(bool replace) {
+void LiveSession::start_export(bool replace, bool as_shown) {
   const std::string output = state_.export_output;
+  const SceneDocument& now = state_.history.now();
+  if (!as_shown && own_file_now() == OwnFile::changed) {
+    state_.question = {
+        absolute(now.path) + " was changed by another program since it was opened.",
+        {{"Export what is shown", [replace](LiveSession& s) { s.start_export(replace, true); }},
+         {"Open it again", [path = now.path](LiveSession& s) { s.open_file(path); }},
+         {"Cancel", {}}}};
+    return;
+  }
   if (!replace && holds_files(output)) {
-    state_.question = {absolute(output) + " holds files. Replace those of the same names?",
-                       {{"Replace", [](LiveSession& s) { s.start_export(true); }}, {"Cancel", {}}}};
+    state_.question = {
+        absolute(output) + " holds files. Replace those of the same names?",
+        {{"Replace", [as_shown](LiveSession& s) { s.start_export(true, as_shown); }}, {"Cancel", {}}}};
     return;
   }
   const ExportKind& kind = export_kinds()[state_.export_kind];
   exporting_to_ = absolute(output);
   state_.message = "exporting to " + exporting_to_ + " \u2026";
   if (options_.replayed) return;
-  export_.submit({own_program(), export_words(state_.history.now(), kind, output, replace)});
+  export_.submit({own_program(), export_words(now, kind, output, replace)});
 }
 
 void LiveSession::open_folder() {
@@ -232,20 +243,16 @@ void LiveSession::open_folder() {
   state_.message = error == 0 ? "opened " + folder : "there is no xdg-open; the folder is " + folder;
 }
 
-// Does the scene's own file hold something else than what was read from it or saved last? An editor beside
-// the window may have changed it. In a replay nothing is saved, so that nothing can be told.
-bool LiveSession::changed_by_others(const std::string& path) const {
-  std::error_code unknown;
-  if (options_.replayed || !std::filesystem::is_regular_file(path, unknown)) return false;
-  const TextFile there = read_text_file(path);
-  const SceneDocument& now = state_.history.now();
-  return there.error.empty() && there.text != *now.text && !(saved_ && there.text == *saved_->text);
+// Read anew: it is about to be replaced or run. In a replay, which writes nothing, as it was recorded.
+OwnFile LiveSession::own_file_now() const {
+  return options_.replayed ? state_.own_file : own_file(state_.history.now(), last_saved());
 }
 
 void LiveSession::save(const std::string& path) {
   std::error_code unknown;
   const bool own = path == state_.history.now().path;
-  if (own ? !changed_by_others(path) : !std::filesystem::exists(path, unknown)) return save_now(path);
+  if (own ? own_file_now() != OwnFile::changed : !std::filesystem::exists(path, unknown))
+    return save_now(path);
   const char* why =
       own ? " was changed by another program since it was opened. Replace it?" : " exists. Replace it?";
   state_.question = {absolute(path) + why,
@@ -294,7 +301,7 @@ void LiveSession::open_file(const std::string& path) {
 void LiveSession::remember(const std::string& path) {
   constexpr std::size_t most = 12;
   const std::string whole = absolute(path);
-  if (of_library(path)) return;
+  if (path.empty() || of_library(path)) return;
   std::erase(state_.recent, whole);
   state_.recent.insert(state_.recent.begin(), whole);
   if (state_.recent.size() > most) state_.recent.resize(most);
@@ -311,15 +318,30 @@ void LiveSession::use_view(bool only) {
   state_.message = only ? "this is the film's view" : "a camera key at the present time";
 }
 
+// Undone behind a save, what is shown is in no file either.
+bool LiveSession::has_unsaved() const {
+  const SceneDocument& now = state_.history.now();
+  return is_edited(now) || (saved_ && saved_->path == now.path && *saved_->text != *now.text);
+}
+
 void LiveSession::ask_to_close() {
-  if (!is_edited(state_.history.now())) {
+  if (state_.exporting.running) {
+    state_.question = {"The export to " + exporting_to_ + " is not done yet; closing the window stops it.",
+                       {{"Stop it", [](LiveSession& s) { s.close_or_ask(); }}, {"Cancel", {}}}};
+    return;
+  }
+  close_or_ask();
+}
+
+void LiveSession::close_or_ask() {
+  if (!has_unsaved()) {
     state_.closed = true;
     return;
   }
   const std::string name = std::filesystem::path(state_.history.now().name).filename().string();
   const auto save = [](LiveSession& s) {
     s.save_or_ask();
-    s.state().closed = !is_edited(s.state().history.now());
+    s.state().closed = !s.has_unsaved();
   };
   state_.question = {
       name + " has changes that are in no file.",

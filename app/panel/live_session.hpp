@@ -29,6 +29,7 @@ struct Arrivals {
   std::vector<RunError> errors;
   bool study = false;
   std::string report;  // of an export
+  OwnFile own_file = OwnFile::same;
   JobState simulation, studying, exporting;
 };
 
@@ -57,14 +58,16 @@ class LiveSession {
   void stop_simulation() { simulator_.cancel(); }
   void start_study();
   void stop_study() { study_.stop(); }
-  void start_export(bool replace = false);  // asks where something would be replaced
-  void open_folder();                       // of the last export, in the desktop's own way
-  void save(const std::string& path);       // asks likewise, and where others changed the scene's own file
+  // Asks where something would be replaced, and where the scene's file is no longer what is shown.
+  void start_export(bool replace = false, bool as_shown = false);
+  void open_folder();                  // of the last export, in the desktop's own way
+  void save(const std::string& path);  // asks likewise, and where others changed the scene's own file
   void save_now(const std::string& path);
   void save_or_ask();  // into its own file, or where to
   void add_entry(const ElementOffer& offer);
   void open(const SceneDocument& document);
   void open_file(const std::string& path);
+  void build_from_nothing();
   void use_view(bool only);  // the camera as a key of the film at the present time; `only`: for all of it
   void ask_to_close();
   void take_tool(Tool tool);                               // again: put it away
@@ -83,8 +86,12 @@ class LiveSession {
   void take_run(const SimulationOutcome& outcome);
   void judge_run();  // a point of speed against accuracy
   void remember(const std::string& path);
-  bool changed_by_others(const std::string& path) const;
+  const SceneDocument* last_saved() const { return saved_ ? &*saved_ : nullptr; }
+  OwnFile own_file_now() const;
+  bool has_unsaved() const;
+  void close_or_ask();  // of changes
   void show_hand();
+  void begin_build(const std::vector<Vec3>& places);
   void build(const std::string& gesture, SceneDocument document);
   void describe();
   void update_picture();
@@ -96,6 +103,7 @@ class LiveSession {
   std::optional<SimulationOutcome> outcome_;
   std::string exporting_to_;
   std::optional<SceneDocument> saved_;  // the last one that was
+  OwnFileWatch own_file_;
   ChildProcess folder_;
   Hand hand_;
   ExportProcess export_;

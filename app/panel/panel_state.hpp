@@ -12,6 +12,7 @@
 
 #include "app/panel/document/build_edits.hpp"
 #include "app/panel/document/edit_history.hpp"
+#include "app/panel/document/own_file.hpp"
 #include "app/panel/document/param_rows.hpp"
 #include "app/panel/runs/simulator.hpp"
 #include "app/panel/runs/study_job.hpp"
@@ -57,6 +58,7 @@ struct PanelState {
   explicit PanelState(SceneDocument document) : history(std::move(document)) {}
 
   EditHistory history;
+  OwnFile own_file = OwnFile::same;    // of the document
   Scene base;                          // the scene without edits
   Selection described;                 // what sections were made for
   std::vector<ParamSection> sections;  // of the scene without edits
@@ -76,7 +78,8 @@ struct PanelState {
   Playback playback;
   double frames_per_second = 0;  // while it plays, smoothed
   ViewOptions view;
-  std::optional<OrbitCamera> orbit;  // none: the camera that frames the motion
+  std::optional<OrbitCamera> orbit;       // none: the camera that frames the motion
+  std::optional<OrbitCamera> build_view;  // that Build began with, which frames the start
   Selection selected, hovered;
 
   bool dark = false;

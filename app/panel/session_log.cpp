@@ -192,6 +192,7 @@ void SessionRecorder::frame(double seconds, bool visible, const LiveSession& ses
   if (now.simulation != before_.simulation) line["simulation"] = json_of(now.simulation);
   if (now.studying != before_.studying) line["studying"] = json_of(now.studying);
   if (now.exporting != before_.exporting) line["exporting"] = json_of(now.exporting);
+  if (now.own_file != before_.own_file) line["own_file"] = static_cast<int>(now.own_file);
   before_ = now;
   json state = described_state(session.state());
   if (state != *state_) line["state"] = *state_ = std::move(state);
@@ -274,6 +275,8 @@ Arrivals arrivals_of(const json& line, const Arrivals& before) {
   now.simulation = before.simulation;
   now.studying = before.studying;
   now.exporting = before.exporting;
+  const int file = line.value("own_file", static_cast<int>(before.own_file));
+  now.own_file = static_cast<OwnFile>(std::clamp(file, 0, static_cast<int>(OwnFile::changed)));
   read_job(line, "simulation", now.simulation);
   read_job(line, "studying", now.studying);
   read_job(line, "exporting", now.exporting);

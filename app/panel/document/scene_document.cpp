@@ -21,6 +21,9 @@ SceneDocument open_document(const std::string& scene, std::vector<std::string> o
   document.folder = std::filesystem::path(document.path).parent_path().string();
   if (document.folder.empty()) document.folder = ".";
   document.overrides = std::move(overrides);
+  // What came through a pipe cannot be read again, and nothing can be saved there.
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(document.path, unknown)) document.path.clear();
   return document;
 }
 
@@ -97,8 +100,13 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
+std::string proposed_file(const SceneDocument& document) {
+  if (!document.path.empty() && !of_library(document.path)) return document.path;
+  return std::filesystem::path(document.name).stem().string() + ".toml";
+}
+
 std::string command_line(const SceneDocument& document, const std::string& verb, const std::string& output) {
-  std::string scene = document.path.empty() ? "scene.toml" : document.path;
+  std::string scene = document.path.empty() ? proposed_file(document) : document.path;
   for (const LibraryScene& row : library_scenes())  // by its name, which works everywhere
     if (row.path == document.path) scene = row.name;
   std::string line = "unfurl " + verb + " " + shell_word(scene) + " -o " + shell_word(output);

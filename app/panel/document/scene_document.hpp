@@ -17,7 +17,7 @@ inline std::vector<double> numbers(const Vec3& v) {  // as an edit has them
 
 // Plain data; two that are equal mean the same scene.
 struct SceneDocument {
-  std::string path;    // of the file; empty: it was never saved
+  std::string path;    // of the file; empty: it was never saved, or came through a pipe
   std::string name;    // what messages call it: the path, or "untitled"
   std::string folder;  // where files that the scene names lie
   std::shared_ptr<const std::string> text;
@@ -54,7 +54,10 @@ Scene read_document(const SceneDocument& document);
 // edited. Throws SceneError.
 Scene base_scene(const SceneDocument& document);
 
-// "unfurl render hoop6 -o out --set solver.step=0.02", quoted for a shell.
+// The name of a file of its own that is proposed for a document: "untitled.toml".
+std::string proposed_file(const SceneDocument& document);
+// "unfurl render hoop6 -o out --set solver.step=0.02", quoted for a shell; without a file as if the proposed
+// one were there.
 std::string command_line(const SceneDocument& document, const std::string& verb, const std::string& output);
 std::string shell_word(const std::string& word);
 

@@ -54,19 +54,19 @@ void export_files(Ui& ui, PanelState& state, const Box& box) {
 
 void draw_export(Ui& ui, PanelState& state) {
   if (!state.export_open) return;
-  if (state.export_path.empty()) {
-    const SceneDocument& now = state.history.now();
-    state.export_path = now.path.empty() || of_library(now.path)
-                            ? std::filesystem::path(now.name).stem().string() + ".toml"
-                            : now.path;
-  }
+  const SceneDocument& now = state.history.now();
+  if (state.export_path.empty()) state.export_path = proposed_file(now);
   const Box box(ui, "export", 600);
   save_as(ui, state, box);
   export_files(ui, state, box);
   box.heading("Command line");
+  const bool in_file = !now.path.empty() && state.own_file == OwnFile::same;
   const std::string line =
-      export_command(state.history.now(), export_kinds()[state.export_kind], state.export_output);
+      export_command(now, export_kinds()[state.export_kind], state.export_output, in_file);
   wrapped(ui.theme.text, line);
+  if (!in_file)
+    wrapped(ui.theme.dim, "Export writes the scene that is shown to " +
+                              exported_scene(now, state.export_output, in_file) + " first: no file holds it");
   if (button(ui, "copy", "Copy", "to the clipboard")) ImGui::SetClipboardText(line.c_str());
   ImGui::SameLine();
   if (button(ui, "open folder", "Open folder", "of what was exported last", !state.exported.empty()))

@@ -145,7 +145,13 @@ void draw_start(Ui& ui, PanelState& state) {
   const std::string line = study_command(state.study, state.history.now());
   ImGui::SameLine(0, state.studying.running ? 0 : ui.px(8));
   if (!state.studying.running) {
-    if (button(ui, "copy study", "Copy command", line)) ImGui::SetClipboardText(line.c_str());
+    if (button(ui, "copy study", "Copy command", line)) {
+      ImGui::SetClipboardText(line.c_str());
+      const SceneDocument& now = state.history.now();
+      if (now.path.empty() || state.own_file != OwnFile::same)
+        state.message =
+            "copied; save the scene that is shown as " + proposed_file(now) + " before: no file holds it";
+    }
   } else {
     ImGui::NewLine();
   }

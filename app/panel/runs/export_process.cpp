@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/panel/document/own_file.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write_back.hpp"
@@ -40,6 +41,7 @@ std::string size_of_folder(const std::string& folder) {
        it.increment(unknown)) {
     if (unknown) break;
     if (!it->is_regular_file(unknown)) continue;
+    if (it->path().filename().string().starts_with('.')) continue;  // the list of its files
     ++files;
     bytes += static_cast<double>(it->file_size(unknown));
   }
@@ -76,13 +78,17 @@ std::vector<std::string> words_behind(const ExportKind& kind, const std::string&
 
 }  // namespace
 
+std::string exported_scene(const SceneDocument& document, const std::string& output, bool in_file) {
+  if (in_file) return document.path;
+  return free_name(document.path.empty() ? output : fs::path(document.path).replace_extension().string(),
+                   *document.text);
+}
+
 std::vector<std::string> export_words(const SceneDocument& document, const ExportKind& kind,
                                       const std::string& output, bool replace) {
-  std::string scene = document.path;
-  if (scene.empty()) {
-    scene = free_name(output, *document.text);
-    write_file_atomically(scene, *document.text);
-  }
+  const bool in_file = !document.path.empty() && own_file(document, nullptr) == OwnFile::same;
+  const std::string scene = exported_scene(document, output, in_file);
+  if (!in_file) write_file_atomically(scene, *document.text);
   std::vector<std::string> words{std::string(kind.verb), scene};
   for (std::string& word : words_behind(kind, output, replace)) words.push_back(std::move(word));
   for (std::string& text : overrides_of(document)) {
@@ -92,8 +98,11 @@ std::vector<std::string> export_words(const SceneDocument& document, const Expor
   return words;
 }
 
-std::string export_command(const SceneDocument& document, const ExportKind& kind, const std::string& output) {
-  std::string verb(kind.verb), line = command_line(document, verb, output);
+std::string export_command(const SceneDocument& document, const ExportKind& kind, const std::string& output,
+                           bool in_file) {
+  SceneDocument named = document;
+  named.path = exported_scene(document, output, in_file);
+  std::string verb(kind.verb), line = command_line(named, verb, output);
   const std::string plain = " -o " + shell_word(output);
   std::string behind;
   for (const std::string& word : words_behind(kind, output, false)) behind += " " + shell_word(word);

@@ -18,12 +18,17 @@ struct ExportKind {
 };
 std::span<const ExportKind> export_kinds();
 
-// The words of "unfurl VERB SCENE -o OUTPUT --set ..." for a document; a scene without a file is written to
-// one beside the output. `replace`: what is there. Throws FileError.
+// The file that is exported. `in_file`: the document's own, which holds its text; else one to be written,
+// beside that (where the files lie that a scene names) or beside the output.
+std::string exported_scene(const SceneDocument& document, const std::string& output, bool in_file);
+
+// The words of "unfurl VERB SCENE -o OUTPUT --set ..." for a document; where no file holds its text it is
+// written to exported_scene(). `replace`: what is there. Throws FileError.
 std::vector<std::string> export_words(const SceneDocument& document, const ExportKind& kind,
                                       const std::string& output, bool replace = false);
 // The same as a person would type it; writes nothing.
-std::string export_command(const SceneDocument& document, const ExportKind& kind, const std::string& output);
+std::string export_command(const SceneDocument& document, const ExportKind& kind, const std::string& output,
+                           bool in_file);
 
 // The document with its changes in the text, comments kept, as a file of that path would hold it. Throws
 // SceneError. `anew`: the text had to be written anew.

@@ -2,7 +2,9 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "app/panel/document/own_file.hpp"
 #include "app/panel/runs/export_process.hpp"
+#include "app/panel/runs/study_job.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
 #include "tests/app/panel/panel_driver.hpp"
@@ -36,12 +38,47 @@ TEST_CASE("an export from the panel is what the command line makes") {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   // What, where, how much.
-  const auto files = std::distance(std::filesystem::directory_iterator(scratch / "panel"),
-                                   std::filesystem::directory_iterator());
+  const auto files = std::count_if(
+      std::filesystem::directory_iterator(scratch / "panel"), std::filesystem::directory_iterator(),
+      [](const auto& entry) { return !entry.path().filename().string().starts_with('.'); });
   CHECK(report.starts_with("exported to " + (scratch / "panel") + ": " + std::to_string(files) + " files, "));
   REQUIRE(run_program({"run", "hoop6", "-o", scratch / "shell", "--set", "solver.step=0.05"}).code == 0);
   CHECK(file_text(scratch / "panel/trajectory.csv") == file_text(scratch / "shell/trajectory.csv"));
   CHECK_FALSE(file_text(scratch / "panel/trajectory.csv").empty());
+}
+
+TEST_CASE("the command line of a scene without a file names the file that an export writes") {
+  const ScratchDirectory scratch;
+  const SceneDocument document = blank_document();
+  const std::string output = scratch / "out",
+                    line = export_command(document, export_kinds()[2], output, false);
+  CHECK(line.starts_with("unfurl run " + output + ".toml -o " + output));
+  CHECK_FALSE(std::filesystem::exists(output + ".toml"));  // it writes nothing
+  CHECK(export_words(document, export_kinds()[2], output)[1] == output + ".toml");
+  CHECK(file_text(output + ".toml") == *document.text);
+  CHECK(export_command(document, export_kinds()[2], output, false) == line);  // it is there now
+  CHECK(study_command({}, document).starts_with("unfurl study untitled.toml "));
+}
+
+TEST_CASE("what is shown is exported, whatever its file holds by now") {
+  const ScratchDirectory scratch;
+  const std::string text = *blank_document().text, file = scratch.write("mine.toml", text);
+  SceneDocument document = open_document(file, {});
+  const auto exported = [&] { return export_words(document, export_kinds()[2], scratch / "out")[1]; };
+  CHECK(exported() == file);
+  scratch.write("mine.toml", text + "# by another\n");
+  CHECK(own_file(document, nullptr) == OwnFile::changed);
+  CHECK(exported() == scratch / "mine-2.toml");  // beside it, where the files lie that a scene names
+  CHECK(file_text(scratch / "mine-2.toml") == text);
+  CHECK(file_text(file) == text + "# by another\n");
+  CHECK(exported() == scratch / "mine-2.toml");
+  SceneDocument saved = document;
+  saved.text = std::make_shared<const std::string>(text + "# by another\n");
+  CHECK(own_file(document, &saved) == OwnFile::other);  // that was saved from here, and undone
+  CHECK(own_file(saved, nullptr) == OwnFile::same);
+  std::filesystem::remove(file);
+  CHECK(own_file(document, nullptr) == OwnFile::other);
+  CHECK(own_file(blank_document(), nullptr) == OwnFile::same);
 }
 
 TEST_CASE("an export that fails says why in one line") {
@@ -60,7 +97,7 @@ TEST_CASE("an export that fails says why in one line") {
 TEST_CASE("every kind of export has a command line that its verb takes") {
   const SceneDocument document = open_document("hoop6", {"solver.step=0.05"});
   for (const ExportKind& kind : export_kinds()) {
-    const std::string line = export_command(document, kind, "my out");
+    const std::string line = export_command(document, kind, "my out", true);
     INFO(line);
     CHECK(line.starts_with("unfurl " + std::string(kind.verb) + " hoop6"));
     CHECK(line.find(" -o 'my out'") != std::string::npos);

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Opening, beginning anew, saving, leaving: nothing is lost unasked.
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
+#include <thread>
 
 #include "app/panel/document/file_list.hpp"
 #include "app/panel/view/film_camera.hpp"
@@ -87,6 +91,7 @@ TEST_CASE("a new scene comes from a family or from nothing") {
   driver.click("new bricard");
   driver.settle();
   CHECK(driver.state().shown->scene.kind == "bricard");
+  driver.key(Key::end);
   driver.click("open");
   driver.frame();
   driver.click("new from nothing");
@@ -94,6 +99,8 @@ TEST_CASE("a new scene comes from a family or from nothing") {
   CHECK(driver.state().shown->scene.kind == "custom");
   CHECK(driver.state().history.now().path.empty());
   CHECK(driver.state().tool == Tool::build);
+  CHECK(driver.state().playback.t == 0);
+  CHECK(driver.state().grid.plane == 1);  // upright, and seen from the front
 }
 
 TEST_CASE("leaving with changes asks, and without it does not") {
@@ -185,6 +192,75 @@ TEST_CASE("what another program changed in the scene's file is replaced only aft
   driver.click("answer Replace");
   driver.frame();
   CHECK(file_text(file).find("end_time = 0.0625") != std::string::npos);
+}
+
+TEST_CASE("a scene that another program changed is told of, and exported after a question") {
+  const ScratchDirectory scratch;
+  const std::string text = pendulum, file = scratch.write("own.toml", text);
+  PanelDriver driver(tall(), open_document(file, {}));
+  CHECK(driver.state().own_file == OwnFile::same);
+  scratch.write("own.toml", text + "# mine\n");
+  driver.frame();
+  CHECK(driver.state().own_file == OwnFile::changed);
+  CHECK(driver.state().message.find("own.toml was changed by another program") != std::string::npos);
+  driver.state().export_output = scratch / "out";
+  driver.state().export_open = true;
+  driver.frame();
+  driver.click("start export");
+  driver.frame();
+  REQUIRE(driver.panel().has_place("answer Export what is shown"));
+  CHECK_FALSE(driver.state().exporting.running);
+  driver.click("answer Open it again");
+  driver.settle();
+  CHECK(driver.state().own_file == OwnFile::same);
+  CHECK(*driver.state().history.now().text == text + "# mine\n");
+}
+
+TEST_CASE("what was undone behind a save is in no file, and leaving asks") {
+  const ScratchDirectory scratch;
+  PanelDriver driver(tall(), open_document(scratch.write("own.toml", pendulum), {}));
+  driver.state().history.edit("solver.end_time", 0.25);
+  driver.key(Key::s, true);
+  driver.settle();
+  CHECK(driver.state().own_file == OwnFile::same);
+  driver.key(Key::z, true);
+  driver.settle();
+  CHECK_FALSE(is_edited(driver.state().history.now()));
+  CHECK(driver.state().own_file == OwnFile::other);
+  driver.key(Key::q, true);
+  driver.frame();
+  CHECK_FALSE(driver.state().closed);
+  driver.click("answer Save");
+  driver.frame();
+  CHECK(driver.state().closed);
+  CHECK(file_text(scratch / "own.toml") == pendulum);
+}
+
+TEST_CASE("leaving while something is exported asks") {
+  PanelDriver driver(tall());
+  LiveSession session(open_document("hoop6", {}), {});
+  session.state().exporting.running = true;
+  session.ask_to_close();
+  CHECK_FALSE(session.state().closed);
+  driver.state().question = session.state().question;
+  driver.frame();
+  driver.frame();
+  REQUIRE(driver.panel().has_place("answer Cancel"));
+  driver.click("answer Stop it");
+  driver.frame();
+  CHECK(driver.state().closed);
+}
+
+TEST_CASE("a scene that came through a pipe has no file") {
+  const ScratchDirectory scratch;
+  const std::string pipe = scratch / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  std::thread writer([&] { std::ofstream(pipe) << pendulum; });
+  const SceneDocument document = open_document(pipe, {});
+  writer.join();
+  CHECK(document.path.empty());
+  CHECK(document.name == pipe);
+  CHECK(*document.text == pendulum);
 }
 
 TEST_CASE("the view that was turned by hand is the film's, and its command line says so") {
