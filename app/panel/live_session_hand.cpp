@@ -17,15 +17,30 @@ void LiveSession::take_tool(Tool tool) {
   let_go();
   state_.tool = state_.tool == tool ? Tool::read : tool;
   if (state_.tool != Tool::build || !state_.shown) return;
+  std::vector<Vec3> places;
+  for (const Node& node : state_.shown->simulation.trajectory.structure().nodes)
+    places.push_back(node.position);
+  begin_build(places);
+}
+
+// At the start, which is what is built; a plane mechanism is built on in its plane.
+void LiveSession::begin_build(const std::vector<Vec3>& places) {
   state_.playback.playing = false;
-  state_.playback.t = state_.shown->simulation.trajectory.start_time();
-  // A plane mechanism is built on in its plane.
-  const auto& nodes = state_.shown->simulation.trajectory.structure().nodes;
+  if (state_.shown) state_.playback.t = state_.shown->simulation.trajectory.start_time();
   for (const int axis : {2, 0, 1})  // of a line's planes the upright one that is seen from the front
-    if (std::all_of(nodes.begin(), nodes.end(), [&](const Node& node) {
-          return std::abs(node.position[axis] - nodes.front().position[axis]) < 1e-9;
-        }))
+    if (std::all_of(places.begin(), places.end(),
+                    [&](const Vec3& place) { return std::abs(place[axis] - places.front()[axis]) < 1e-9; }))
       state_.grid.plane = axis;
+}
+
+void LiveSession::build_from_nothing() {
+  open(blank_document());
+  let_go();
+  state_.tool = Tool::build;
+  std::vector<Vec3> places;
+  for (const CustomNode& node : read_document(state_.history.now()).custom.nodes)
+    places.push_back(node.position);
+  begin_build(places);
 }
 
 void LiveSession::pull(const std::string& node, const Vec3& target) {
@@ -66,6 +81,12 @@ void LiveSession::advance(double seconds) {
   const double t = state_.playback.t;
   state_.playback = advanced(state_.playback, seconds, trajectory.start_time(), trajectory.end_time());
   if (state_.pose && t != state_.playback.t) let_go();
+  // A place that is pointed at in a later pose is none of the start, which is what is built.
+  if (state_.tool != Tool::build ||
+      (!state_.playback.playing && state_.playback.t == trajectory.start_time()))
+    return;
+  state_.tool = Tool::read;
+  state_.message = "Build is put away: it is of the start (B takes it again, there)";
 }
 
 // What cannot be simulated is no step of building: it is refused in words.

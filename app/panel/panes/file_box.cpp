@@ -73,10 +73,7 @@ void draw_known(Ui& ui, PanelState& state) {
 void draw_new(Ui& ui, PanelState& state, const Box& box) {
   box.heading("New");
   if (button(ui, "new from nothing", "From nothing", "two nodes and a rod, to build on by hand"))
-    state.intents.emplace_back([](LiveSession& s) {
-      s.open(blank_document());
-      s.state().tool = Tool::build;
-    });
+    state.intents.emplace_back(&LiveSession::build_from_nothing);
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
   for (const Family& family : families()) {
     const std::string kind(family.kind);

@@ -172,6 +172,37 @@ void mark(const Ui& ui, const PanelState& state, const SceneView& view, const Fr
   list.AddCircle(b, ui.px(7), color, 0, ui.px(2));
 }
 
+// Where nodes are, those too from which no rod begins yet: what a builder points at.
+void mark_nodes(const Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame) {
+  if (state.tool != Tool::build || state.pose) return;
+  const Trajectory& trajectory = state.shown->simulation.trajectory;
+  const auto& copies = trajectory.structure().node_copies;
+  const auto& nodes = state.shown->scene.custom.nodes;  // before those within rods that are cut
+  const VectorXd whole = trajectory.positions_at(state.playback.t);
+  const PickView pick = view.pick_view(state);
+  for (std::size_t i = 0; i < std::min(nodes.size(), copies.size()); ++i) {
+    if (copies[i].name != nodes[i].name) continue;
+    const Vec3 place = pick.upright * whole.segment<3>(3 * static_cast<Index>(i));
+    const Vec3f at = project(pick.camera, pick.width, pick.height, place.cast<float>());
+    if (at.z() <= 0) continue;
+    const ImVec2 center(frame.low.x + at.x(), frame.low.y + at.y());
+    ImDrawList& list = *ImGui::GetWindowDrawList();  // seen on what is dark and on what is light
+    list.AddCircleFilled(center, ui.px(4), ui.color(ui.theme.window));
+    list.AddCircle(center, ui.px(4), ui.color(ui.theme.text), 0, ui.px(1.5f));
+  }
+}
+
+// What is built is framed at its start, and then stays where it is while parts are added.
+void frame_for_building(PanelState& state, const SceneView& view) {
+  if (state.tool == Tool::build && state.base.kind == "custom") {
+    if (!state.orbit && simulated_part(state.shown->document) == simulated_part(state.history.now()))
+      state.orbit = state.build_view = view.framed_start();
+  } else if (state.build_view) {
+    if (state.orbit == state.build_view) state.orbit.reset();
+    state.build_view.reset();
+  }
+}
+
 // Lines of text on a ground of their own, right-aligned values, in the upper right corner of the view; in the
 // lower one where it would lie over the part that it is about.
 void draw_box(const Ui& ui, const std::string& title, const std::vector<Reading>& rows, const Frame& frame,
@@ -440,6 +471,7 @@ void draw_view_pane(Ui& ui, PanelState& state, SceneView& view) {
                              ImGuiButtonFlags_MouseButtonMiddle);
   ImGui::SetItemAllowOverlap();
   ui.note("view");
+  frame_for_building(state, view);
   point_at(ui, state, view, frame);
   lead_node(state, view, frame);
   steer(state, view, frame);
@@ -451,6 +483,7 @@ void draw_view_pane(Ui& ui, PanelState& state, SceneView& view) {
   name_hovered(ui, state);
   draw_readings(ui, state, view, frame);
   draw_state_line(ui, state, view, frame);
+  mark_nodes(ui, state, view, frame);
   draw_comparison(ui, state, frame);
   draw_view_buttons(ui, state, view, frame);
   draw_tool(ui, state, frame);

@@ -13,6 +13,8 @@ struct OrbitCamera {
   float distance = 10;                        // of the eye from the target [m]
   float azimuth = -1.08f, elevation = 0.42f;  // of the eye as seen from the target [rad]
   float field_of_view = 0.5f;                 // vertical [rad]
+
+  bool operator==(const OrbitCamera&) const = default;
 };
 
 OrbitCamera orbit_of(const Camera& camera);

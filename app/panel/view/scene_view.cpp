@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/scene/film_style.hpp"
 
@@ -134,6 +135,26 @@ Camera SceneView::camera(const PanelState& state) const {
   if (list_.camera.parallel_height > 0)
     camera.parallel_height = 2 * state.orbit->distance * std::tan(0.5f * state.orbit->field_of_view);
   return camera;
+}
+
+OrbitCamera SceneView::framed_start() const {
+  const Trajectory& trajectory = run_->simulation.trajectory;
+  const VectorXd whole = trajectory.positions_at(trajectory.start_time());
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (Index i = 0; i + 2 < whole.size(); i += 3) {
+    const Vec3 at = builder_->upright() * whole.segment<3>(i);
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+  }
+  OrbitCamera orbit = framed();
+  const auto radius = static_cast<float>((high - low).norm() / 2);
+  if (!(radius > 0)) return orbit;  // a point has no size
+  orbit.target = ((low + high) / 2).cast<float>();
+  const float half_height = orbit.field_of_view / 2,
+              aspect = static_cast<float>(width_) / static_cast<float>(std::max(1, height_));
+  constexpr float room = 2.5f;  // for what is built beside it
+  orbit.distance = room * radius / std::sin(std::min(half_height, std::atan(aspect * std::tan(half_height))));
+  return orbit;
 }
 
 PickView SceneView::pick_view(const PanelState& state) const {

@@ -28,6 +28,8 @@ class SceneView {
 
   Camera camera(const PanelState& state) const;
   OrbitCamera framed() const { return orbit_of(list_.camera); }  // the film's own camera
+  // Sees the pose at the start whole, from where the film's camera sees the motion.
+  OrbitCamera framed_start() const;
   PickView pick_view(const PanelState& state) const;
   // What is not to scale in the picture, which the film writes where the panel has its buttons.
   std::string scale_note() const;

@@ -20,14 +20,15 @@ PanelOptions quick() {
   return options;
 }
 
-// Where a node of the shown run is in the window, by the camera that frames the motion.
+// Where a node of the shown run is in the window, by the camera that frames the motion or is led by hand.
 Eigen::Vector2d pixel_of(PanelDriver& driver, const std::string& node) {
   const plot::Rect view = driver.panel().place("view");
   FrameStyle style;
   style.width = static_cast<int>(view.width());
   style.height = static_cast<int>(view.height());
   const FrameBuilder builder(driver.state().shown->simulation.trajectory, style);
-  const PickView pick{builder.camera(), style.width, style.height, builder.upright()};
+  PickView pick{builder.camera(), style.width, style.height, builder.upright()};
+  if (const auto& orbit = driver.state().orbit) pick.camera = camera_of(*orbit, Vec3f::Zero(), 100);
   const PickedPlace at =
       place_of({Selection::Kind::node, node}, *driver.state().shown, driver.state().playback.t, pick);
   REQUIRE(at.found);
@@ -113,6 +114,63 @@ TEST_CASE("nodes and rods are added, moved, connected and deleted as lines of TO
   while (driver.state().history.undo()) {
   }
   CHECK(driver.state().history.now() == start);
+}
+
+TEST_CASE("Build is of the start: it is framed, every node is seen, and the timeline puts Build away") {
+  PanelDriver driver(quick(), blank_document());
+  driver.key(Key::end);
+  driver.key(Key::b);
+  driver.frame();
+  CHECK(driver.state().playback.t == 0);
+  REQUIRE(driver.state().orbit);
+  const OrbitCamera begun = *driver.state().orbit;
+  driver.state().intents.emplace_back([](LiveSession& s) { s.add_node({0.5, 0, 1}); });
+  driver.settle();
+  CHECK(*driver.state().orbit == begun);  // though the new node falls for 20 m
+  // The rod of 1 m is seen as long, and what is built beside it has room.
+  const double seen = (pixel_of(driver, "B") - pixel_of(driver, "A")).norm(),
+               high = driver.panel().place("view").height();
+  CHECK(seen > 0.15 * high);
+  CHECK(seen < 0.6 * high);
+  driver.state().selected = {};
+  driver.frame();
+  // From N1 no rod begins: the pixels around it are of its mark alone.
+  const Eigen::Vector2d at = pixel_of(driver, "N1");
+  const plot::Rect view = driver.panel().place("view");
+  CHECK(at.y() > view.y0 + 20);
+  CHECK(at.y() < view.y1 - 20);
+  const Image built = driver.picture();
+  const OrbitCamera led = zoomed(begun, 0.01f, {0, 0, 0});  // by hand: it stays
+  driver.state().orbit = led;
+  driver.state().tool = Tool::read;
+  driver.settle();
+  CHECK(*driver.state().orbit == led);
+  const Image plain = driver.picture();
+  int ring = 0;
+  for (int y = -8; y <= 8; ++y)
+    for (int x = -8; x <= 8; ++x) {
+      const auto pixel = 4 * (static_cast<std::size_t>(at.y() + y) * static_cast<std::size_t>(plain.width) +
+                              static_cast<std::size_t>(at.x() + x));
+      ring += std::abs(built.rgba[pixel] - plain.rgba[pixel]) > 40;
+    }
+  CHECK(ring > 10);  // the circle of 3 pixels is over the card with the title, too
+  driver.key(Key::b);
+  driver.drag("timeline", 0.3, 0.6);
+  CHECK(driver.state().tool == Tool::read);
+  CHECK(driver.state().message.find("Build") == 0);
+  CHECK(driver.state().playback.t > 0.5);
+  driver.key(Key::b);
+  CHECK(driver.state().tool == Tool::build);
+  driver.key(Key::space);
+  CHECK(driver.state().tool == Tool::read);
+  // A view that nobody led by hand is given back.
+  driver.state().orbit.reset();
+  driver.key(Key::b);
+  driver.frame();
+  CHECK(driver.state().orbit);
+  driver.key(Key::b);
+  driver.frame();
+  CHECK_FALSE(driver.state().orbit);
 }
 
 // What is left is written anew: every key of it, to the last digit.

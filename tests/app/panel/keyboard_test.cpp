@@ -61,7 +61,7 @@ TEST_CASE("the palette finds actions and parameters, and Enter does them") {
   driver.key(Key::enter);
   for (int i = 0; i < 3; ++i) driver.frame();
   CHECK(driver.state().reveal.empty());  // it was drawn, and has the keyboard
-  driver.type("1,75");  // the comma of a keyboard's numbers
+  driver.type("1,75");                   // the comma of a keyboard's numbers
   driver.key(Key::enter);
   driver.settle();
   CHECK(std::get<double>(driver.state().history.now().edits.at("structure.post_length")) == 1.75);
