@@ -271,14 +271,8 @@ class GltfWriter {
       const Vec3 p = point(pose, static_cast<int>(n));
       append(motion.translation, {p[0], p[1], p[2]});
     }
-    if (seams_[n]) {  // a point of a rod: there by its name
-      glb_.json["nodes"][0]["children"].push_back(motion.node);
-      glb_.json["nodes"].push_back(
-          {{"name", structure_.node_copies[n].name}, {"translation", last(motion.translation, 3)}});
-      motions_.push_back(std::move(motion));
-      return;
-    }
-    const double r = n < joint_radius_.size() && joint_radius_[n] > 0.0 ? joint_radius_[n] : point_radius();
+    double r = n < joint_radius_.size() && joint_radius_[n] > 0.0 ? joint_radius_[n] : point_radius();
+    if (seams_[n]) r *= 0.95 / 1.5;  // a point of a rod, inside of it: fills the bend
     add_node(structure_.node_copies[n].name, groups_.size() + 1,
              {{"translation", last(motion.translation, 3)}, {"scale", {r, r, r}}});
     motions_.push_back(std::move(motion));

@@ -17,6 +17,7 @@
 #include "core/text/base64.hpp"
 #include "tests/support/glb.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 using namespace unfurl::testing;
@@ -377,6 +378,42 @@ TEST_CASE("glTF: what accessors say of the buffer is so") {
     }
   }
   CHECK(bounded >= 2);  // positions of shapes, times of keys
+}
+
+TEST_CASE(
+    "a rod that is cut to bend has fittings at its ends alone, and nothing thicker than it in between") {
+  const std::string cantilever =
+      "[structure]\nkind = 'custom'\nyoungs_modulus = 7e10\nsegments = 5\n[[structure.nodes]]\nname = 'A'\n"
+      "position = [0, 0, 0]\nfixed = true\n[[structure.nodes]]\nname = 'B'\nposition = [3, 0, 0]\n"
+      "velocity = [0, 0.1, 0]\n[[structure.rods]]\nnodes = ['A', 'B']\nmass = 1\narea = 1e-4\n[solver]\n"
+      "step = 1e-3\nend_time = 5e-3\n";
+  const Simulation run = run_scene(cantilever, {"structure.rod_model=elastic"});
+  const Diagnostics diagnostics = diagnose(run);
+  const fs::path directory = fs::temp_directory_path() / ("unfurl_cut_" + std::to_string(::getpid()));
+  fs::create_directories(directory);
+  for (const char* format : {"gltf", "html"})
+    find_export_format(format)->write({run, diagnostics, directory, "cut", 0.1, 1.0});
+  const auto text = [&](const char* name) {
+    std::ostringstream file;
+    file << std::ifstream(directory / name, std::ios::binary).rdbuf();
+    return file.str();
+  };
+  const nlohmann::json json = Glb(text("animation.glb")).json;
+  const auto page = data_of(text("viewer.html"));
+  fs::remove_all(directory);
+  const double radius = run.trajectory.structure().rods[0].radius;
+  REQUIRE(radius > 0);
+  int fittings = 0, between = 0;
+  for (const auto& node : json["nodes"]) {
+    const auto name = node["name"].get<std::string>();
+    if (name.ends_with(" fitting")) ++fittings;
+    if (!name.starts_with("A-B.") || node.contains("rotation") || name.ends_with("fitting")) continue;
+    ++between;
+    CHECK(node["scale"][0].get<double>() < radius);
+  }
+  CHECK(fittings == 2);
+  CHECK(between == 4);
+  CHECK(page["seams"] == nlohmann::json({2, 3, 4, 5}));
 }
 
 }  // namespace formats_test
