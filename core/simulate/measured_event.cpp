@@ -63,7 +63,8 @@ std::optional<double> step_to_dip(const Model& model, Integrator& integrator, co
   VectorXd q(model.system.coordinates());
   const auto at = [&](double length, const State& state) {
     model.system.expand(state.z, q);
-    return At{length, model.structure.deployment.remaining(q) - margin, remaining_rate(model, state)};
+    return At{length, model.structure.deployment.remaining(q, state.angles) - margin,
+              remaining_rate(model, state)};
   };
   // Above the crossing of both tangents, as any motion is that bends one way.
   const auto may_dip = [](const At& a, const At& b) {
