@@ -180,7 +180,7 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
           " s, where the velocity of a drive jumps; an earlier solver.end_time, or a ramp, helps");
   goal = std::max(goal, 64 * std::numeric_limits<double>::epsilon() * size);
   Best best = tighten(extrapolated(*model, end, intervals, hooks), goal);
-  if (best.solution && !(size > 0)) size = farthest(*best.solution);
+  if (best.solution && !(size > 0)) size = farthest(*best.solution, in_space);
   double apart = std::numeric_limits<double>::infinity();
   Reference out;
   out.how = "Bulirsch-Stoer extrapolation of order 16 on the index-1 equations with " +
