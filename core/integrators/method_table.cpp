@@ -4,6 +4,7 @@
 
 #include "core/integrators/dvm.hpp"
 #include "core/integrators/generalized_alpha.hpp"
+#include "core/integrators/index1.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/integrators/rk4.hpp"
 #include "core/integrators/rk4_baumgarte.hpp"
@@ -73,9 +74,36 @@ class Following final : public Integrator {
   std::unique_ptr<Integrator> plain_;
 };
 
+// Without a coordinate to solve for, time goes by and forces change with it: no method does more.
+class Still final : public Integrator {
+ public:
+  explicit Still(const System& system) : system_(system), index1_(system), none_(0) {}
+  StepReport step(State& state, double h) override {
+    StepReport report;
+    VectorXd lambda(system_.constraints()), phi(system_.constraints()), q(system_.coordinates());
+    if (!index1_.evaluate(state.t + h, none_, none_, none_, lambda)) {
+      report.status = StepStatus::not_finite;
+      return report;
+    }
+    state.t += h;
+    state.lambda = lambda;
+    system_.expand(none_, q);
+    system_.constraint(state.t, q, phi);
+    if (phi.size() > 0) report.constraint_norm = phi.lpNorm<Eigen::Infinity>();
+    return report;
+  }
+  void restart() override {}
+
+ private:
+  const System& system_;
+  Index1 index1_;
+  VectorXd none_;
+};
+
 }  // namespace
 
 std::unique_ptr<Integrator> Method::make(const System& system, const SolverOptions& options) const {
+  if (system.solved_coordinates() == 0) return std::make_unique<Still>(system);
   if (system.followed_angles() == 0) return plain(system, options);
   return std::make_unique<Following>(*this, system, options);
 }

@@ -37,6 +37,7 @@ namespace {
 
 SparseRows unit_rows(const SparseRows& G) {
   SparseRows unit = G;
+  if (unit.cols() == 0) return unit;
   for (Index r = 0; r < unit.rows(); ++r)
     if (const double norm = unit.row(r).norm(); norm > 0) unit.row(r) /= norm;
   return unit;
@@ -46,6 +47,7 @@ SparseRows unit_rows(const SparseRows& G) {
 MatrixXd null_vectors(const SparseRows& unit) {
   MatrixXd out = MatrixXd::Zero(unit.rows(), trials);
   if (unit.rows() == 0) return out;
+  if (unit.cols() == 0) return out.setOnes();  // nothing asks for anything
   const SparseRows across = without_round_off_transposed(unit);
   SparseRows identity(unit.rows(), unit.rows());
   identity.setIdentity();

@@ -43,6 +43,11 @@ LeastEnergy::LeastEnergy(const SparseRows& G, VectorXd compliance)
 
 // Guides are taken in rows of unit length, forces on them accordingly.
 bool LeastEnergy::share(const SparseRows& G, MutVec y) {
+  if (G.cols() == 0) {  // no equation asks for a force
+    for (Index i = 0; i < y.size(); ++i)
+      if (compliance_[i] > 0) y[i] = 0;
+    return true;
+  }
   SparseRows unit = G;
   for (Index i = 0; i < unit.rows(); ++i)
     if (const double norm = unit.row(i).norm(); norm > 0 && compliance_[i] == 0) {

@@ -41,6 +41,7 @@ MatrixXd PushResponses::matrix() const {
 
 bool PushResponses::movable(Index i) const {
   const Row& row = rows_[static_cast<std::size_t>(i)];
+  if (row.n.size() == 0) return false;
   const double free = row.n.cwiseAbs2().maxCoeff() / system_.mass().diagonal().maxCoeff();
   return row.n.dot(row.a) > 1e-12 * free;
 }

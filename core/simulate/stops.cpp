@@ -75,6 +75,7 @@ double Stops::rebound(std::size_t i, const System& system, State& state) const {
   for (std::size_t k = 0; k < stencil.size(); ++k)
     n[stencil[k]] += stop.sign * gradient[static_cast<Index>(k)];
   system.reduce_force(n, n_z);
+  if (n_z.size() == 0) return std::numeric_limits<double>::quiet_NaN();  // nothing can move
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   system.jacobian(q, G, scratch);
