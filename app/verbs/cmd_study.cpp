@@ -83,9 +83,11 @@ int cmd_study(const Arguments& arguments) {
   auto model = model_of(scene, arguments);
   const InterruptGuard guard;
   const int repeats = arguments.study.repeats > 0 ? arguments.study.repeats : TimingOptions{}.repeats;
-  StudySession session(arguments, "measuring",
-                       study_identity("A study with " + std::to_string(repeats) + " repeats", scene),
-                       "study.csv");
+  // Errors of another largest step are of other times, and go into no curve with these.
+  const std::string asked = "A study from steps of " +
+                            exact_number(largest_step(scene.solver.step, range.from)) + " s with " +
+                            std::to_string(repeats) + " repeats";
+  StudySession session(arguments, "measuring", study_identity(asked, scene), "study.csv");
   const StudyHooks hooks = session.hooks();
   StudyPlan plan = plan_study(std::move(model), scene.solver, range.from, range.to, hooks);
   keep_methods(plan, arguments.study.methods);

@@ -64,10 +64,14 @@ void require_identity(const fs::path& directory, const std::string& identity, co
     return text.substr(std::min(text.find('\n'), text.size()));
   };
   const bool same_scene = below_heading(scene.text) == below_heading(identity);
-  throw FileError(directory,
-                  std::string(same_scene ? "holds results of another version of unfurl or other --repeats; "
-                                         : "holds results of another scene or other settings; ") +
-                      cure);
+  throw FileError(
+      directory,
+      std::string(
+          same_scene
+              ? "holds results of another version of unfurl or other --repeats or, of a study, another "
+                "largest step; "
+              : "holds results of another scene or other settings; ") +
+          cure);
 }
 
 StudySession::StudySession(const Arguments& arguments, std::string task, const std::string& identity,

@@ -29,6 +29,9 @@ struct StepLadder {
   std::vector<long> steps;
 };
 
+// The largest step of a study [s], after which the times are spaced at which it compares: `given` (> 0), or
+// eight times the scene's.
+double largest_step(double scene_step, double given);
 // From the largest step to the smallest [s], each halved; 0: eight times the scene's step, to a sixteenth of
 // it. Throws StudyError where there is none.
 StepLadder make_ladder(double end, double scene_step, double largest, double smallest);

@@ -68,12 +68,14 @@ std::vector<Setting> study_settings(const SolverOptions& base) {
   return out;
 }
 
+double largest_step(double scene_step, double given) {
+  return given > 0 ? given : 8 * scene_step;
+}
+
 StepLadder make_ladder(double end, double scene_step, double largest, double smallest) {
   const bool given = largest > 0;
-  if (!given) {
-    largest = 8 * scene_step;
-    smallest = scene_step / 16;
-  }
+  largest = largest_step(scene_step, largest);
+  if (!given) smallest = scene_step / 16;
   if (!(smallest > 0) || !(largest > smallest))
     throw StudyError("a ladder of steps falls from a larger to a smaller step, both > 0 s");
   if (given && largest > end / 2)

@@ -48,6 +48,16 @@ TEST_CASE("study writes points, a report and figures, and goes on where it stopp
   CHECK(repeated.code == 5);
   CHECK(repeated.err.find("holds results of another version of unfurl or other --repeats") !=
         std::string::npos);
+  // Errors are compared at times that are spaced as the largest step says: none of others come in between.
+  auto finer = command;
+  finer[5] = "0.02:0.01";
+  const ProgramResult spaced = run_program(finer);
+  CHECK(spaced.code == 5);
+  CHECK(spaced.err.find("another largest step") != std::string::npos);
+  CHECK(file_text(dir / "out/study.csv") == points);
+  finer[5] = "0.05:0.005";  // the same times, one step more
+  CHECK(run_program(finer).code == 0);
+  CHECK(lines(file_text(dir / "out/study.csv")) > lines(points));
   const ProgramResult other =
       run_program(command + std::vector<std::string>{"--set", "gravity.acceleration=[0,0,-1]"});
   CHECK(other.code == 5);
@@ -189,6 +199,11 @@ TEST_CASE("a sweep says which measure its scene does not have") {
   CHECK(
       r.err.find("; deploy_time has no value in 2 of them (nothing deploys: [deployment] says what does)") !=
       std::string::npos);
+  const ProgramResult rigid =
+      run_program({"sweep", "hoop6_sector", "--set", "solver.end_time=0.1", "--vary",
+                   "structure.hinge_force=100,200", "--measure", "stress_margin", "-o", dir / "rigid"});
+  CHECK(rigid.err.find("stress_margin has no value in 2 of them (no rod has a structure.youngs_modulus)") !=
+        std::string::npos);
   CHECK(r.err.find("peak_energy has no value") == std::string::npos);
 }
 
@@ -217,6 +232,10 @@ TEST_CASE("whole numbers are neither searched nor swept in between") {
   CHECK(sweep.err.find("'structure.units' takes whole numbers; 21.5 is none") != std::string::npos);
   const ProgramResult solve =
       run_program({"solve", "hoop6_sector", "--find", "structure.units", "--target", "deploy_time=8"});
+  const ProgramResult rigid = run_program(
+      {"solve", "hoop6_sector", "--find", "structure.youngs_modulus", "--target", "deploy_time=4"});
+  CHECK(rigid.code == 2);  // rigid rods have an infinite one
+  CHECK(rigid.err.find("--between LOW:HIGH") != std::string::npos);
   CHECK(solve.code == 2);
   CHECK(solve.err.find("takes whole numbers, which cannot be searched") != std::string::npos);
 }
