@@ -62,6 +62,9 @@ SolveOptions options_of(const Arguments& arguments, const SceneSource& source, c
   if (!start)
     throw UsageError(in_quotes(study.find) +
                      " is no number of this scene; --between LOW:HIGH says where to look");
+  if (!std::isfinite(*start))
+    throw UsageError(in_quotes(study.find) +
+                     " is not finite in this scene; --between LOW:HIGH says where to look");
   options.start = *start;
   return options;
 }

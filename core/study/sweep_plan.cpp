@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <iomanip>
 #include <map>
 #include <numeric>
@@ -182,6 +183,22 @@ void add_uniqueness(std::vector<RunMeasure>& measures) {
   }
 }
 
+// From the first value that a scene takes; values that none takes are rows of their own. Throws what is wrong
+// with the first where none of these is taken: then it is the key.
+std::string unit_of_axis(const SweepPlan& plan, const SweepAxis& axis,
+                         const std::map<std::string, std::string>& known) {
+  constexpr std::size_t most = 24;  // of a long list those that lie alike far apart
+  const std::size_t count = std::min(axis.values.size(), most);
+  std::exception_ptr first;
+  for (std::size_t i = 0; i < count; ++i) try {
+      const std::size_t at = count > 1 ? i * (axis.values.size() - 1) / (count - 1) : 0;
+      return unit_of(axis.key, plan.source.read({axis.key + "=" + axis.values[at]}).units, known);
+    } catch (const SceneError&) {
+      if (!first) first = std::current_exception();
+    }
+  std::rethrow_exception(first);
+}
+
 }  // namespace
 
 void check_plan(SweepPlan& plan) {
@@ -204,9 +221,7 @@ void check_plan(SweepPlan& plan) {
       if (axis.numbers[i] != std::floor(axis.numbers[i]) && is_whole_number(scene, axis.key))
         throw StudyError(in_quotes(axis.key) + " takes whole numbers; " + axis.values[i] +
                          " is none: give a COUNT that leads to some, or list them (" + axis.key + "=4,6,12)");
-  for (SweepAxis& axis : plan.axes)
-    for (const auto* value : {&axis.values.front(), &axis.values.back()})
-      axis.unit = unit_of(axis.key, plan.source.read({axis.key + "=" + *value}).units, known);
+  for (SweepAxis& axis : plan.axes) axis.unit = unit_of_axis(plan, axis, known);
 }
 
 }  // namespace unfurl

@@ -254,6 +254,27 @@ TEST_CASE("axes of figures are called by words and units") {
         "nodes B mass (kg)");
 }
 
+TEST_CASE("a value that no scene takes is a row of its own wherever it stands in the list") {
+  const auto unit = [](const std::string& axis) {
+    SweepPlan plan{{find_scene("hoop6_sector"), {}}, {parse_axis(axis)}, {find_measure("deploy_time")}, {}};
+    check_plan(plan);
+    return plan.axes[0].unit;
+  };
+  for (const char* values : {"30,0,60", "0,30,60", "30,60,0", "0,-1,60"}) {
+    INFO(values);
+    CHECK(unit(std::string("structure.fold_angle=") + values) == "deg");
+  }
+  CHECK_THROWS_WITH(unit("structure.fold_angle=0,-1"), Catch::Contains("fold_angle"));
+  SweepPlan plan{{find_scene("hoop6_sector"), {}}, {parse_axis("structure.fold_angle=0,60")}, {}, {}};
+  plan.measures.push_back(find_measure("end_time"));
+  check_plan(plan);
+  Journal journal({}, plan.columns(), plan.axes.size());
+  const Sweep sweep = run_sweep(plan, journal, {});
+  REQUIRE(sweep.table.rows.size() == 2);
+  CHECK(sweep.table.rows[0][1] == "invalid");
+  CHECK(sweep.table.rows[1][1] != "invalid");
+}
+
 TEST_CASE("unknown measures and keys are named") {
   CHECK_THROWS_WITH(find_measure("deploytime"), Catch::Contains("did you mean 'deploy_time'"));
   CHECK_THROWS_WITH(find_measure("max:kinetic_energy"), Catch::Contains("did you mean 'kinetic_energy_J'"));
