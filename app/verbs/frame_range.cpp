@@ -16,7 +16,7 @@ std::size_t number(const std::string& part, const std::string& text) {
   const char* end = part.data() + part.size();
   const auto result = std::from_chars(part.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end)
-    throw UsageError("--frames must be FIRST:END, two whole numbers (END itself is left out); got " +
+    throw UsageError("--frames must be FIRST:END, two whole numbers (END itself is left out), or one; got " +
                      in_quotes(text));
   return value;
 }

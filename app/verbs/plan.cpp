@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "app/output/interrupt.hpp"
 #include "app/verbs/film.hpp"
+#include "app/verbs/frame_range.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/simulation.hpp"
@@ -38,6 +40,7 @@ double since(Clock::time_point start) {
 struct Plan {
   std::vector<std::string> files;
   std::size_t frames = 0;
+  bool drawn = true;     // the frames; else films are made of those that are there
   bool at_most = false;  // the run may end earlier than its end_time
   int width = 0, height = 0;
   double simulate_s = 0, draw_s = 0, encode_s = 0, figures_s = 0;
@@ -59,11 +62,9 @@ Simulation trial(const Scene& scene, std::shared_ptr<const Model> model, Plan& p
   return run;
 }
 
-void plan_film(const Scene& scene, const Simulation& run, const Arguments& arguments, Plan& plan) {
+// How long it takes to draw them, from one.
+void plan_frames(const Scene& scene, const Simulation& run, const Arguments& arguments, Plan& plan) {
   const RenderOptions& options = scene.render;
-  plan.width = options.width, plan.height = options.height;
-  plan.frames = plan.at_most ? static_cast<std::size_t>(std::ceil(most_shots(scene.solver.end_time, options)))
-                             : film_shots(run.trajectory, options).size();
   const auto context = make_offscreen_context({arguments.threads, arguments.gpu});
   const Diagnostics diagnostics = diagnose(run);
   const FrameStyle style = film_style(scene, run, diagnostics);
@@ -76,8 +77,10 @@ void plan_film(const Scene& scene, const Simulation& run, const Arguments& argum
                      options.depth_of_field),
              false);
   plan.draw_s = since(start) * static_cast<double>(plan.frames);
+}
+
+void plan_animations(const RenderOptions& options, Plan& plan) {
   const double megapixels = 1e-6 * options.width * options.height * static_cast<double>(plan.frames);
-  plan.files.push_back("frames/frame_00000.png");
   for (const auto& [wanted, name, cost] :
        {std::tuple(options.webp, "animation.webp", webp_s), std::tuple(options.gif, "animation.gif", gif_s),
         std::tuple(options.mp4 && ffmpeg_available(), "animation.mp4", mp4_s)}) {
@@ -85,8 +88,28 @@ void plan_film(const Scene& scene, const Simulation& run, const Arguments& argum
     plan.files.emplace_back(name);
     plan.encode_s = std::max(plan.encode_s, cost * megapixels);  // side by side
   }
+}
+
+void plan_film(const Scene& scene, const Simulation& run, const Arguments& arguments, Plan& plan) {
+  const RenderOptions& options = scene.render;
+  plan.width = options.width, plan.height = options.height;
+  plan.frames = plan.at_most ? static_cast<std::size_t>(std::ceil(most_shots(scene.solver.end_time, options)))
+                             : film_shots(run.trajectory, options).size();
+  const std::size_t film = plan.frames;
+  const FrameRange range = frame_range(arguments.encode_only ? "" : arguments.frames, film);
+  plan.frames = range.end - range.first;
+  plan.drawn = !arguments.encode_only;
+  if (plan.drawn) {
+    plan_frames(scene, run, arguments, plan);
+    char name[32];
+    std::snprintf(name, sizeof name, "frames/frame_%05zu.png", range.first);
+    plan.files.emplace_back(name);
+  }
+  if (plan.frames == film) plan_animations(options, plan);  // else there are others to be drawn
   plan.files.emplace_back("film.json");
+  if (!plan.drawn) return;
   plan.files.emplace_back("figures/");
+  plan.files.emplace_back("report.html");
   plan.figures_s = figure_s * static_cast<double>(figure_kinds().size());
 }
 
@@ -110,8 +133,9 @@ void print(const Plan& plan, const Arguments& arguments) {
   std::cout << "would write" << (arguments.output.empty() ? "" : " into " + arguments.output) << ":\n";
   for (const std::string& file : plan.files) std::cout << "  " << file << "\n";
   if (plan.frames > 0)
-    std::cout << (plan.at_most ? "at most " : "") << plan.frames << " frames of " << plan.width << " x "
-              << plan.height << "\n";
+    std::cout << (plan.drawn ? "" : "films of ") << (plan.at_most ? "at most " : "") << plan.frames
+              << (plan.frames == 1 ? " frame" : " frames") << " of " << plan.width << " x " << plan.height
+              << "\n";
   std::cout << "expected time: " << rounded(plan.simulate_s) << " s to simulate";
   if (plan.frames > 0)
     std::cout << ", " << rounded(plan.draw_s) << " s to draw, " << rounded(plan.encode_s) << " s to encode, "

@@ -52,6 +52,35 @@ TEST_CASE("slices share one film, and the last one makes the animations") {
   CHECK(fs::exists(out + "/animation.webp"));
 }
 
+TEST_CASE("a plan is of the part that is asked for") {
+  const ScratchDirectory dir;
+  const auto plan = [&](std::vector<std::string> more) {
+    more.emplace_back("--plan");
+    const ProgramResult result = run_program(film(dir / "out", more));
+    CHECK(result.code == 0);
+    return result.out;
+  };
+  const auto has = [](const std::string& text, const char* what) {
+    return text.find(what) != std::string::npos;
+  };
+  const std::string whole = plan({}), part = plan({"--frames", "2:4"}), one = plan({"--frames", "3"}),
+                    films = plan({"--encode-only"});
+  CHECK(has(whole, "\n5 frames of 96 x 64\n"));
+  CHECK(has(whole, "frame_00000.png"));
+  CHECK(has(whole, "animation.gif"));
+  CHECK(has(part, "\n2 frames of 96 x 64\n"));
+  CHECK(has(part, "frame_00002.png"));
+  CHECK_FALSE(has(part, "animation"));
+  CHECK(has(one, "\n1 frame of 96 x 64\n"));
+  CHECK(has(one, "frame_00003.png"));
+  CHECK(has(films, "films of 5 frames"));
+  CHECK(has(films, "animation.gif"));
+  CHECK_FALSE(has(films, "frame_0"));
+  CHECK_FALSE(has(films, "figures/\n"));
+  CHECK(run_program(film(dir / "out", {"--plan", "--frames", "9"})).code == 2);
+  CHECK_FALSE(fs::exists(dir / "out"));
+}
+
 TEST_CASE("data of the same motion leave its film alone, data of another replace it when told to") {
   const ScratchDirectory dir;
   const std::string out = dir / "out";
@@ -201,8 +230,9 @@ TEST_CASE("options of pictures that are wrong say so") {
   const ScratchDirectory dir;
   const std::string out = dir / "out";
   const auto error = [&](const std::vector<std::string>& more) { return run_program(film(out, more)); };
-  CHECK(error({"--frames", "3-4"}).err ==
-        "unfurl: --frames must be FIRST:END, two whole numbers (END itself is left out); got '3-4'\n");
+  CHECK(
+      error({"--frames", "3-4"}).err ==
+      "unfurl: --frames must be FIRST:END, two whole numbers (END itself is left out), or one; got '3-4'\n");
   CHECK(error({"--frames", "4:4"}).err == "unfurl: --frames 4:4 names no frame\n");
   CHECK(error({"--frames", "7:9"}).err ==
         "unfurl: --frames 7:9 begins behind the film's end: it has 5 frames, from 0\n");
