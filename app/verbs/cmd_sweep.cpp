@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl sweep SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR: measures over a grid of parameters.
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "app/command.hpp"
@@ -57,6 +59,15 @@ std::string not_unique(const SweepPlan& plan, const Sweep& sweep) {
   return text;
 }
 
+// Do they need a modulus that no rod of the scene has?
+bool wants_modulus(const std::string& measure, const SweepPlan& plan) {
+  constexpr std::string_view of_moduli[] = {"peak_stress", "stress_margin", "buckling_margin", "frequency"};
+  if (std::find(std::begin(of_moduli), std::end(of_moduli), measure) == std::end(of_moduli)) return false;
+  const auto model = build_model(plan.source.read());
+  return std::none_of(model->structure.rods.begin(), model->structure.rods.end(),
+                      [](const Rod& rod) { return std::isfinite(rod.youngs_modulus); });
+}
+
 // Which measures are no number in points that were run: the scene has no such thing.
 std::string not_there(const SweepPlan& plan, const Sweep& sweep) {
   const std::size_t outcome = plan.axes.size();
@@ -68,6 +79,7 @@ std::string not_there(const SweepPlan& plan, const Sweep& sweep) {
     if (lacking == 0) continue;
     text += "; " + plan.measures[m].name + " has no value in " + std::to_string(lacking) + " of them";
     if (plan.measures[m].name == "deploy_time") text += " (nothing deploys: [deployment] says what does)";
+    if (wants_modulus(plan.measures[m].name, plan)) text += " (no rod has a structure.youngs_modulus)";
   }
   return text;
 }
