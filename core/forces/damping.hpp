@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/forces/force.hpp"
 
@@ -12,6 +13,10 @@ namespace unfurl {
 //                   angle. Rods have no inertia about their own axis and spin so as to feel no torque there:
 //                   of their relative angular velocity only theta' is left.
 //   drag            R = c/2 |v|^2 of a node
+// Rods are at a node with an end, or carry it as a pin between their ends.
+std::vector<Measure> angles_at_joint(const Structure& structure, int joint);
+// Notes each entry of the kind of whose nodes none has two rods.
+void note_idle_joints(Structure& structure);
 std::unique_ptr<ForceBlock> joint_damping_block(const Structure& structure, const SparseRows& node_mass);
 std::unique_ptr<ForceBlock> drag_block(const Structure& structure, const SparseRows& node_mass);
 const std::vector<ParamSpec>& joint_damping_params();

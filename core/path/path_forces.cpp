@@ -139,7 +139,9 @@ PathForces::PathForces(const Structure& structure, const System& system, bool se
         done[k] = 1;
       }
     }
+    if (force.kind == "joint_damping") one.constraints = structure.constraints;  // which hold pins on rods
     add(force.name, force.kind, timed ? &force.size : nullptr, is_cable(force));
+    one.constraints.clear();
   }
 }
 

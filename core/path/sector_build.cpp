@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 
+#include "core/forces/damping.hpp"
 #include "core/math/linear_elimination.hpp"
 #include "core/structure/node_positions.hpp"
 
@@ -127,18 +128,13 @@ class SectorBuilder {
 
   // Between any two rods at the node, which in the sector do not all end there.
   void take_joint(const Force& joint) {
-    const int at = joint.nodes[0];
-    std::vector<int> ends;
-    for (const Rod& rod : whole_.rods)
-      if (rod.a == at || rod.b == at) ends.push_back(node(rod.a == at ? rod.b : rod.a));
-    for (std::size_t i = 0; i < ends.size(); ++i)
-      for (std::size_t j = i + 1; j < ends.size(); ++j) {
-        Force own = joint;
-        own.kind = "torsion_spring";
-        own.nodes.clear();
-        own.measure = {MeasureKind::angle, {node(at), ends[i], node(at), ends[j]}, Vec3::Zero(), 0, {}};
-        s().forces.push_back(std::move(own));
-      }
+    for (const Measure& angle : angles_at_joint(whole_, joint.nodes[0])) {
+      Force own = joint;
+      own.kind = "torsion_spring";
+      own.nodes.clear();
+      own.measure = measure(angle);
+      s().forces.push_back(std::move(own));
+    }
   }
 
   // c . x of a node, as of its source: c . (centre + R (x - centre)).

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/forces/damping.hpp"
 #include "core/forces/pin_loads.hpp"
 #include "core/math/determined_rows.hpp"
 #include "core/scene/element_members.hpp"
@@ -373,6 +374,7 @@ Structure build_structure(const Scene& scene) {
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
     if (scene.surfaces[i].enabled)
       surface_nodes(scene.surfaces[i], "surfaces[" + std::to_string(i) + "].nodes", structure);
+  note_idle_joints(structure);
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   structure.notes.insert(structure.notes.end(), moves.begin(), moves.end());
   return structure;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Forces where more than one acts, or where a term is only seen off its special value.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
+#include "core/scene/library.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/system/system.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/scene_run.hpp"
@@ -173,6 +177,38 @@ TEST_CASE("lumped rods weigh half at either end, consistent ones a third and a s
           for (int l = 0; l < 3; ++l)
             CHECK(M(3 * i + k, 3 * j + l) == Approx(k == l ? expected(i, j) : 0.0).margin(1e-15));
   }
+}
+
+// The rods of a cell of a mast cross at a pin between their ends, and turn about it against each other as the
+// dashpot of three nodes at the same pin says: its angle is the supplement of theirs.
+TEST_CASE("a damped joint acts on rods that carry it between their ends") {
+  const auto mast = [](const std::string& force) {
+    return build_model(read_scene_file(find_scene("scissor_mast"), {"forces[0]={" + force + "}"}));
+  };
+  const auto joint = mast(R"(kind="joint_damping",nodes=["P*"],damping=5)"),
+             dashpot = mast(R"(kind="torsion_spring",nodes=["L0","P1","R0"],damping=5)"),
+             one = mast(R"(kind="joint_damping",nodes=["P1"],damping=5)"),
+             end = mast(R"(kind="joint_damping",nodes=["L0"],damping=5)");
+  const System& system = joint->system;
+  const VectorXd q = node_positions(joint->structure);
+  VectorXd w(system.solved_coordinates()), v(q.size());
+  for (Index i = 0; i < w.size(); ++i) w[i] = std::sin(1.3 + 2.1 * static_cast<double>(i));
+  system.expand_rate(w, v);
+  const auto power = [&](const Model& model) {
+    VectorXd force = VectorXd::Zero(q.size());
+    model.system.add_applied_force(0.2, q, v, 1.0, force);
+    return force.dot(v);
+  };
+  const double bare = power(*end), by_dashpot = power(*dashpot) - bare;
+  CHECK(by_dashpot < 0);
+  CHECK(power(*one) - bare == Approx(by_dashpot).epsilon(1e-10));  // v has a size of 1: 1e-16 of forces
+  CHECK(power(*joint) - bare < 2 * by_dashpot);
+  // Where one rod ends there is nothing to damp.
+  const auto& notes = end->structure.notes;
+  CHECK(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+    return note.find("does nothing: no two rods meet at L0") != std::string::npos;
+  }));
+  CHECK(one->structure.notes.size() + 1 == notes.size());
 }
 
 }  // namespace force_sums_test
