@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/math/determined_rows.hpp"
 #include "core/math/linear_elimination.hpp"
+#include "core/math/saddle_solver.hpp"
 #include "core/math/singular_values.hpp"
 
 namespace unfurl {
@@ -122,6 +124,32 @@ std::vector<int> dependent_rows(const MatrixXd& G, const VectorXd& values) {
   return dependent;
 }
 
+// Whether a unit row of G is a sum of others, sum y_k g_k, which is known as well as 1e-16 |y|: x of
+//
+//     [ 1    G_k^T ] [x]   [g]
+//     [ G_k    0   ] [y] = [0]
+//
+// is what is left of it.
+bool depends(const SparseRows& G, int row, const std::vector<int>& others) {
+  constexpr double left = 1e-10;  // times |y|
+  if (others.empty()) return false;
+  const SparseRows across = without_round_off_transposed(picked_rows(G, others)), some = across.transpose();
+  SparseRows identity(G.cols(), G.cols());
+  identity.setIdentity();
+  SaddleSolver solver(identity, some);
+  if (!solver.factorise(some)) return false;
+  solver.weakest_pivot(100 * SaddleSolver::standard_regularisation);
+  VectorXd x(G.cols()), y(some.rows());
+  solver.solve(VectorXd(G.row(row).transpose()), VectorXd::Zero(y.size()), x, y, 40);
+  return x.norm() <= left * std::max(1.0, y.norm());
+}
+
+std::vector<int> dependent_rows(const SparseRows& G) {
+  return eliminate(G, VectorXd::Zero(G.rows()), tolerance,
+                   [&](int row, const std::vector<int>& others) { return depends(G, row, others); })
+      .redundant;
+}
+
 }  // namespace
 
 Mobility analyse_mobility(const System& system, const ConstVec& q) {
@@ -135,8 +163,7 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
   const bool dense = G.cols() <= max_dense_coordinates;
   const MatrixXd full = dense ? MatrixXd(G) : MatrixXd();
   const VectorXd values = dense && full.size() > 0 ? singular_values(full) : VectorXd();
-  const std::vector<int> dependent =
-      dense ? dependent_rows(full, values) : eliminate(G, VectorXd::Zero(G.rows()), tolerance).redundant;
+  const std::vector<int> dependent = dense ? dependent_rows(full, values) : dependent_rows(G);
 
   mobility.rank = G.rows() - static_cast<Index>(dependent.size());
   mobility.degrees_of_freedom = mobility.coordinates - mobility.rank;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/system/mobility.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -8,6 +9,7 @@
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/structure/node_positions.hpp"
+#include "core/structures/custom.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -168,6 +170,42 @@ TEST_CASE("an umbrella of any number of ribs has one freedom and nothing redunda
     CHECK(m.degrees_of_freedom == 1);
     CHECK(m.count == 1);
     CHECK(m.redundant.empty());
+  }
+}
+
+// Nets of k x k uneven meshes with a triangle on either side of every diagonal are rigid in their plane: 2 n
+// - 3 of the rods are independent, and three motions are left. They have more than 900 coordinates; with the
+// diagonals first, the rows before a row nearly depend on each other.
+TEST_CASE("the sparse analysis of redundant nets finds the three motions that they have") {
+  constexpr int k = 18;
+  for (const auto& [seed, uneven] : {std::pair(7u, 0.05), std::pair(8u, 0.25), std::pair(8u, 0.05)}) {
+    INFO(seed << " " << uneven);
+    unsigned state = seed;
+    const auto dice = [&state] {
+      state = state * 1664525u + 1013904223u;
+      return static_cast<double>(state >> 8) / (1 << 24) - 0.5;
+    };
+    CustomSpec spec;
+    std::array<std::vector<CustomRod>, 4> rods;
+    const auto name = [](int i, int j) { return std::to_string(i) + "_" + std::to_string(j); };
+    for (int i = 0; i < k; ++i)
+      for (int j = 0; j < k; ++j) {
+        const double x = 0.5 * i + uneven * dice(), y = 0.5 * j + uneven * dice();
+        spec.nodes.push_back({name(i, j), {x, y, 0}, Vec3::Zero(), 0.1, false});
+        if (i > 0) rods[3].push_back({"", {name(i - 1, j), name(i, j)}, 0.1});
+        if (j > 0) rods[2].push_back({"", {name(i, j - 1), name(i, j)}, 0.1});
+        if (i > 0 && j > 0) rods[1].push_back({"", {name(i - 1, j - 1), name(i, j)}, 0.1});
+        if (i > 0 && j > 0 && dice() > 0.3) rods[0].push_back({"", {name(i - 1, j), name(i, j - 1)}, 0.1});
+      }
+    for (const auto& group : rods) spec.rods.insert(spec.rods.end(), group.begin(), group.end());
+    Structure net = build_custom(spec);
+    for (int i = 0; i < k * k; ++i)
+      net.constraints.push_back({"plane", "plane", {i}, {Vec3::UnitZ()}, 0.0, {}, {}});
+    const Mobility m = analyse_mobility(System(net, true), node_positions(net));
+    CHECK(m.coordinates == 3 * k * k);
+    CHECK(m.rigid_motions == 3);
+    CHECK(m.degrees_of_freedom == 3);
+    CHECK(m.redundant.size() == spec.rods.size() - (2 * k * k - 3));
   }
 }
 
