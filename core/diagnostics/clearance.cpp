@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -33,8 +34,16 @@ class ClearanceScan {
  public:
   explicit ClearanceScan(const Trajectory& trajectory)
       : trajectory_(trajectory), rods_(trajectory.structure().rod_copies) {
-    for (const RodCopy& rod : rods_)
-      radius_.push_back(trajectory.structure().rods[static_cast<std::size_t>(rod.source)].radius);
+    for (const RodCopy& copy : rods_) {
+      const Rod& rod = trajectory.structure().rods[static_cast<std::size_t>(copy.source)];
+      radius_.push_back(rod.radius);
+      const bool goes_on = !wholes_.empty() && wholes_.back().size() < static_cast<std::size_t>(rod.parts) &&
+                           !rod.whole.empty() && rod.whole == last_whole_;
+      if (!goes_on) wholes_.emplace_back();
+      last_whole_ = rod.whole;
+      wholes_.back().push_back(whole_of_.size());
+      whole_of_.push_back(wholes_.size() - 1);
+    }
     const std::size_t last = trajectory.size() - 1;
     for (const std::size_t i : {std::size_t{0}, last / 2, last}) poses_.push_back(trajectory.positions(i));
   }
@@ -105,13 +114,18 @@ class ClearanceScan {
     std::sort(order_.begin(), order_.end(), [&](std::size_t k, std::size_t l) { return low_[k] < low_[l]; });
   }
 
-  // In an end of each, or on a pin through both: a node that lies on either in every pose.
+  // In an end of each, or on a pin through both: a node that lies on either in every pose. Of rods that were
+  // cut the wholes: one does not pass through itself.
   bool meet(std::size_t a, std::size_t b) {
-    const auto [at, is_new] = meeting_.try_emplace({a, b}, false);
+    if (whole_of_[a] == whole_of_[b]) return true;
+    const auto [at, is_new] = meeting_.try_emplace({whole_of_[a], whole_of_[b]}, false);
     if (!is_new) return at->second;
     const auto near = [&](std::size_t rod, int n, const VectorXd& q) {
-      const Vec3 low = node(q, rods_[rod].a), high = node(q, rods_[rod].b), p = node(q, n);
-      return segment_distance(p, p, low, high) <= 1e-6 * (high - low).norm();
+      const std::vector<std::size_t>& parts = wholes_[whole_of_[rod]];
+      return std::any_of(parts.begin(), parts.end(), [&](std::size_t part) {
+        const Vec3 low = node(q, rods_[part].a), high = node(q, rods_[part].b), p = node(q, n);
+        return segment_distance(p, p, low, high) <= 1e-6 * (high - low).norm();
+      });
     };
     const auto nodes = static_cast<int>(poses_.front().size() / 3);
     for (int n = 0; n < nodes && !at->second; ++n)
@@ -140,6 +154,10 @@ class ClearanceScan {
   const Trajectory& trajectory_;
   const std::vector<RodCopy>& rods_;
   std::vector<double> radius_, low_, high_;
+  // Rods that were cut have their parts one after the other: of each rod its whole, of each whole its parts.
+  std::vector<std::size_t> whole_of_;
+  std::vector<std::vector<std::size_t>> wholes_;
+  std::string last_whole_;
   std::vector<std::size_t> order_;
   std::vector<VectorXd> poses_;  // the first, one in the middle, the last
   VectorXd q_;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 using namespace unfurl::testing;
@@ -97,6 +98,36 @@ TEST_CASE("rods on a common pin meet there") {
   CHECK_FALSE(crossing(true));
   REQUIRE(crossing(false));
   CHECK(crossing(false)->distance == Approx(-0.03).epsilon(1e-12));
+}
+
+// As the rods that they are, whatever they are cut into: one does not pass through itself, those that meet in
+// a node do so with all of their parts, and any other rod is as far as it was.
+TEST_CASE("parts of a rod are the rod, to itself and to those that meet it") {
+  const auto clearance = [](int segments) {
+    const Simulation still = run_scene(R"([structure]
+kind = 'custom'
+youngs_modulus = 7e10
+segments = )" + std::to_string(segments) +
+                                       R"(
+nodes = [{name = 'A', position = [0, 0, 0]}, {name = 'B', position = [1, 1, 0]}, {name = 'C', position = [2, 0, 1]},
+         {name = 'D', position = [0.1, 0.9, 0.31]}, {name = 'E', position = [0.9, 0.1, 0.31]}]
+rods = [{nodes = ['A', 'B'], density = 2700, area = 1e-3}, {nodes = ['B', 'C'], density = 2700, area = 1e-3},
+        {nodes = ['D', 'E'], mass = 0.1, area = 1e-4, segments = 1}]
+[solver]
+step = 1e-3
+end_time = 2e-3
+)");
+    return least_clearance(still.trajectory, still.trajectory.size());
+  };
+  const double radius = std::sqrt(1e-3 / pi), thin = std::sqrt(1e-4 / pi);
+  for (const int segments : {1, 8, 33}) {
+    INFO(segments);
+    const auto found = clearance(segments);
+    REQUIRE(found);
+    CHECK(found->overlapping == 0);
+    CHECK(found->axes == Approx(0.31).epsilon(1e-9));
+    CHECK(found->distance == Approx(0.31 - radius - thin).epsilon(1e-9));
+  }
 }
 
 }  // namespace clearance_test
