@@ -18,6 +18,7 @@ constexpr double joins = 1e-12;      // of the length: what fits
 constexpr double shortening = 1e-8;  // e M over K
 constexpr double redundant = 1e-3;   // times 1 / K: for rows that depend on others
 constexpr int most_steps = 60;
+constexpr int fewest_steps = 3;  // the first multipliers move rows away, the next ones back
 
 double misfit(const Structure& structure, const Rod& rod) {
   const Vec3 d = structure.nodes[static_cast<std::size_t>(rod.b)].position -
@@ -72,7 +73,8 @@ void add(std::vector<Eigen::Triplet<double>>& entries, const SparseRows& A, doub
 
 class Balance {
  public:
-  explicit Balance(const System& system) : system_(system), G_(system.jacobian_pattern()) {}
+  explicit Balance(const System& system)
+      : system_(system), G_(system.jacobian_pattern()), lambda_(VectorXd::Zero(system.constraints())) {}
 
   // True where it is found; q: the pose that was reached.
   bool find(VectorXd& q) {
@@ -85,7 +87,8 @@ class Balance {
       z += step;
       const double size = step.lpNorm<Eigen::Infinity>(), reach = q.lpNorm<Eigen::Infinity>();
       // Newton's steps fall to what rounding leaves, along the mechanism of the size of round-off / e.
-      if (size <= 1e-13 * reach || (size <= 1e-7 * reach && size > 0.5 * before)) {
+      const bool settled = it >= fewest_steps && size <= 1e-7 * reach && size > 0.5 * before;
+      if (size <= 1e-13 * reach || settled) {
         system_.expand(z, q);
         return true;
       }
@@ -95,6 +98,8 @@ class Balance {
   }
 
  private:
+  // lambda goes on from that of the step before: what keeps redundant rows solvable leaves no error then, and
+  // rows bend the way by what they hold.
   bool solve(const VectorXd& q, VectorXd& step) {
     const Index n = system_.solved_coordinates(), m = system_.constraints();
     const VectorXd rest = VectorXd::Zero(q.size());
@@ -107,7 +112,9 @@ class Balance {
       stiffest = std::max(stiffest, std::abs(by_z.coeff(i, i)) / system_.mass().coeff(i, i));
     }
     std::vector<Eigen::Triplet<double>> entries;
+    const double kept = redundant / largest;
     add(entries, by_z, -1.0);
+    add(entries, system_.curvature(q, lambda_), 1.0);
     add(entries, system_.mass(), shortening * stiffest);
     for (int r = 0; r < G_.outerSize(); ++r) {
       const int row = static_cast<int>(n) + r;
@@ -115,7 +122,7 @@ class Balance {
         entries.emplace_back(row, static_cast<int>(it.col()), it.value());
         entries.emplace_back(static_cast<int>(it.col()), row, it.value());
       }
-      entries.emplace_back(row, row, -redundant / largest);
+      entries.emplace_back(row, row, -kept);
     }
     SparseColumns A(n + m, n + m);
     A.setFromTriplets(entries.begin(), entries.end());
@@ -123,16 +130,18 @@ class Balance {
     system_.add_applied_force(0.0, q, rest, 1.0, force);
     system_.reduce_force(force, reduced);
     system_.constraint(0.0, q, phi);
-    b << reduced, -phi;
+    b << reduced, -phi - kept * lambda_;
     const SparseLu factors(A);
     if (!factors.ok()) return false;
-    step = factors.solve(b).head(n);
-    return step.allFinite();
+    const VectorXd x = factors.solve(b);
+    step = x.head(n), lambda_ = x.tail(m);
+    return x.allFinite();
   }
 
   const System& system_;
   SparseRows G_;
   std::vector<double> scratch_;
+  VectorXd lambda_;
 };
 
 // The same with what moves without stretching a rod held where it is: steps
@@ -272,7 +281,8 @@ void assemble_elastic(Structure& structure, bool eliminate_linear) {
   const VectorXd given = node_positions(structure);
   VectorXd q = given;
   const bool fits = fits_without_force(structure, eliminate_linear, q);
-  const bool balanced = fits || find_balance(system, structure, q);
+  const bool held = system.solved_coordinates() == 0;
+  const bool balanced = fits || held || find_balance(system, structure, q);
   if (!balanced && !Joint(system, structure).find(q))
     throw StructureError(key, off.str() + ", and no pose near the given one has the rods in balance");
   double most = 0;

@@ -58,4 +58,14 @@ values = [0, 0.4, 1]
   }
 }
 
+TEST_CASE("rods that do not fit between nodes that are held have the force of that") {
+  const double apart = Vec3(0.5, 0.3, 1).norm(), made = 1.001 * apart;
+  const Simulation run = run_scene(
+      tripod(""), {"structure.rod_model=elastic", "structure.rods[0].length=" + std::to_string(made)});
+  REQUIRE(run.status == RunStatus::completed);
+  // std::to_string leaves six digits of the length: 1e-6 of 1e-3.
+  CHECK(diagnose(run).axial_force(0, 0) ==
+        Approx(7e10 * 3e-4 * (apart / std::stod(std::to_string(made)) - 1)).epsilon(1e-9));
+}
+
 }  // namespace held_structure_test

@@ -227,4 +227,53 @@ TEST_CASE("temperature: a ring of rigid rods that warms evenly grows and keeps i
   CHECK(largest(d, "energy_balance_J") < 1e-9);
 }
 
+// In line between walls: rods of E A that are made l_1 and l_2 long, on either side of a rigid one of length
+// 1. With P off by u, (1 + u) / l_1 = (1 - u) / l_2.
+TEST_CASE("assembly: elastic rods beside a rigid one are in balance, and it keeps its length") {
+  const double EA = 1e6;
+  for (const auto& [l1, l2] : {std::pair(1.0004, 1.0), std::pair(1.004, 1.002), std::pair(0.997, 1.009)}) {
+    INFO(l1 << " " << l2);
+    const Simulation run = run_scene(R"([structure]
+kind = 'custom'
+rod_model = 'elastic'
+nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'P', position = [1, 0, 0], mass = 1},
+         {name = 'Q', position = [2, 0, 0], mass = 1}, {name = 'B', position = [3, 0, 0], fixed = true}]
+rods = [{nodes = ['A', 'P'], mass = 0.1, area = 1e-4, youngs_modulus = 1e10, length = )" +
+                                     number(l1) + R"(},
+        {nodes = ['P', 'Q'], mass = 0.1},
+        {nodes = ['Q', 'B'], mass = 0.1, area = 1e-4, youngs_modulus = 1e10, length = )" +
+                                     number(l2) + R"(}]
+[[constraints]]
+kind = 'line'
+nodes = ['P', 'Q']
+direction = [1, 0, 0]
+[solver]
+step = 1e-5
+end_time = 3e-5
+)");
+    const double u = (l1 - l2) / (l1 + l2), wanted = EA * ((1 + u) / l1 - 1);
+    const VectorXd q = run.trajectory.node_positions(0), force = first_forces(run);
+    // Rounding of coordinates, 1e-16, is 1e-12 of the strains.
+    CHECK(q[3] == Approx(1 + u).epsilon(1e-14));
+    CHECK(std::abs(q[6] - q[3] - 1) < 1e-15 * 4);
+    for (const Index r : {0, 2}) CHECK(force[r] == Approx(wanted).epsilon(1e-10));
+    CHECK(largest(diagnose(run), "kinetic_energy_J") < 1e-18);
+  }
+}
+
+// One side of the square is rigid and may turn: what bears on it is its own multiplier.
+TEST_CASE("assembly: a square of which one side is rigid is in balance") {
+  std::string scene = square(1.3e-3, "rod_model = 'elastic'\n");
+  const std::string mark = "name = '12'\n";
+  scene.insert(scene.find(mark) + mark.size(), "elastic = false\n");
+  const Simulation run = run_scene(scene);
+  REQUIRE(run.status == RunStatus::completed);
+  const VectorXd q = run.trajectory.node_positions(0);
+  CHECK(std::abs((q.segment<3>(3) - q.head<3>()).norm() - a) < 1e-15);
+  // Forces of 1e4 N that cancel to rounding move 3 kg by nothing in 3e-5 s; off by 1e-6 they would have
+  // 1e-14.
+  CHECK(std::abs(first_forces(run)[4]) > 1000);
+  CHECK(largest(diagnose(run), "kinetic_energy_J") < 1e-18);
+}
+
 }  // namespace assemble_elastic_test
