@@ -38,13 +38,17 @@ int furthest_off(const Structure& structure) {
   return worst;
 }
 
-// Rods and constraints alone.
+// Rods and constraints alone, rods that give as cold as those who join them: warmth acts on the rods as they
+// stand then, whether they fit or not.
 Structure unloaded(const Structure& structure) {
   Structure bare = structure;
   bare.forces.clear();
   bare.loads.clear();
   bare.gravity.setZero();
-  for (Rod& rod : bare.rods) rod.damping_time = 0;
+  for (Rod& rod : bare.rods) {
+    rod.damping_time = 0;
+    if (rod.gives) rod.expansion = 0;
+  }
   return bare;
 }
 
@@ -56,7 +60,7 @@ bool fits_without_force(const Structure& structure, bool eliminate_linear, Vecto
   double longest = 0;
   for (Rod& rod : rigid.rods) {
     longest = std::max(longest, rod.length);
-    if (rod.gives && !(rod.free_length > 0)) rod.gives = false, rod.expansion = 0;
+    if (!(rod.free_length > 0)) rod.gives = false;
   }
   VectorXd fitted = q;
   if (!solve_for_pose(System(rigid, eliminate_linear), fitted)) return false;

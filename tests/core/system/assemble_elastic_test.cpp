@@ -276,4 +276,38 @@ TEST_CASE("assembly: a square of which one side is rigid is in balance") {
   CHECK(largest(diagnose(run), "kinetic_energy_J") < 1e-18);
 }
 
+// The same for both: rods that are warm when the run begins were joined cold. A length that is off by 1e-7
+// changes forces by E A 1e-7 = 0.1 N.
+TEST_CASE("temperature: rods that do not fit are joined cold, as those that do") {
+  const auto forces = [](double length) {
+    return first_forces(run_scene(R"([structure]
+kind = 'custom'
+rod_model = 'elastic'
+nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'P', position = [1, 0, 0], mass = 1},
+         {name = 'B', position = [2, 0, 0], fixed = true}]
+rods = [{nodes = ['A', 'P'], mass = 0.1, area = 1e-4, youngs_modulus = 1e10, length = )" +
+                                  number(length) + R"(},
+        {nodes = ['P', 'B'], mass = 0.1, area = 1e-4, youngs_modulus = 1e10}]
+[[constraints]]
+kind = 'line'
+nodes = ['P']
+direction = [1, 0, 0]
+[[forces]]
+kind = 'temperature'
+rods = ['A-P']
+expansion = 1e-5
+change = 100
+[solver]
+step = 1e-5
+end_time = 3e-5
+)"));
+  };
+  const VectorXd fits = forces(1.0), off = forces(1.0 + 1e-7);
+  CHECK(fits[0] == Approx(-1000).epsilon(1e-9));
+  CHECK(std::abs(fits[1]) < 1e-6);
+  const double u = 1e-7 / (2 + 1e-7);
+  CHECK(off[0] == Approx(-1000 - 1e6 * u).epsilon(1e-9));  // of 1000 N: 1e-6 N, and 1e-5 of the 0.05 N
+  CHECK(off[1] == Approx(-1e6 * u).epsilon(1e-4));
+}
+
 }  // namespace assemble_elastic_test
