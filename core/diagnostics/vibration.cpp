@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/diagnostics/bent_rods.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/determined_rows.hpp"
 #include "core/math/factors.hpp"
@@ -22,6 +23,7 @@ constexpr double no_rank = 1e-9;   // of a unit row, less what others hold of it
 constexpr double nothing = 1e-11;  // of what gravity, loads and tensions make of w^2
 constexpr double no_potential = 1e-10;  // of the stiffness without rods: asymmetry that is not rounding
 constexpr double far_below = 1e-3;      // of the lowest elastic eigenvalue: solved for by itself
+constexpr double rounded = 1e-14;       // of the stiffness, in eigenvalues
 
 // Orthonormal columns that span the x with A x = 0; rows of A of unit length or zero.
 MatrixXd null_space(const MatrixXd& A) {
@@ -38,6 +40,28 @@ MatrixXd symmetric(const MatrixXd& A) {
   return 0.5 * (A + A.transpose());
 }
 
+VectorXd nodes_of(const System& system, const State& pose) {
+  VectorXd q(system.coordinates());
+  system.expand(pose.z, q);
+  return q;
+}
+
+// Rows of node coordinates as rows of solved ones.
+MatrixXd reduced_rows(const System& system, const MatrixXd& rows) {
+  MatrixXd out(rows.rows(), system.solved_coordinates());
+  VectorXd one(out.cols());
+  for (Index r = 0; r < rows.rows(); ++r) {
+    system.reduce_force(rows.row(r).transpose(), one);
+    out.row(r) = one.transpose();
+  }
+  return out;
+}
+
+void make_unit_rows(MatrixXd& A) {
+  for (Index row = 0; row < A.rows(); ++row)
+    if (const double norm = A.row(row).norm(); norm > 0) A.row(row) /= norm;
+}
+
 // The model at the pose, in solved coordinates.
 class AtPose {
  public:
@@ -48,11 +72,12 @@ class AtPose {
   //
   // and N of least energy: N_0 is kept where it is self-stress, and not where it is a load's that has yet to
   // come, or that of a wave.
-  AtPose(const Model& model, const State& pose, const VectorXd& known) : system_(model.system.at(pose)) {
+  AtPose(const Model& model, const State& pose, const VectorXd& known)
+      : bent_(model.structure, nodes_of(model.system, pose)), system_(unbent(model).at(pose)) {
     State rest = pose;
     rest.w.setZero(rest.z.size());
-    VectorXd q(system_.coordinates()), acceleration(rest.z.size());
-    system_.expand(rest.z, q);
+    const VectorXd q = nodes_of(system_, rest);
+    VectorXd acceleration(rest.z.size());
     SparseRows G = system_.jacobian_pattern();
     std::vector<double> scratch;
     system_.jacobian(q, G, scratch);
@@ -81,10 +106,15 @@ class AtPose {
   MatrixXd mass, elastic, geometric;  // K = elastic + geometric + skew
   MatrixXd skew;                      // of forces without a potential
   MatrixXd rigid_rows, rows;          // of unit length
-  double pull = 0.0;                  // what the applied forces alone may give, of w^2 [1/s^2]
+  MatrixXd mechanism;  // rods keep their lengths, and those that were cut their shapes; orthonormal by mass
+  double pull = 0.0;   // what the applied forces alone may give, of w^2 [1/s^2]
   bool unique = true;
 
  private:
+  System unbent(const Model& model) const {
+    return bent_.any() ? System(bent_.unbent, model.system.eliminated()) : model.system;
+  }
+
   static VectorXd rows_of(const Model& model, const VectorXd& known, Index rows) {
     VectorXd given = VectorXd::Zero(rows);
     for (Index r = 0; r < known.size(); ++r)
@@ -116,13 +146,40 @@ class AtPose {
     double shortest = std::numeric_limits<double>::infinity();
     for (const Rod& rod : model.structure.rods) shortest = std::min(shortest, rod.length);
     if (mass.rows() > 0) pull = Cholesky(mass).solve(reduced).lpNorm<Eigen::Infinity>() / shortest;
-    for (Index row = 0; row < rows.rows(); ++row) {
-      if (const double norm = rows.row(row).norm(); norm > 0) rows.row(row) /= norm;
+    make_unit_rows(rows);
+    for (Index row = 0; row < rows.rows(); ++row)
       if (!(compliance[row] > 0)) rigid.push_back(row);
-    }
     rigid_rows = rows(rigid, Eigen::all);
+    take_bending();
   }
 
+  // The energy of bending is elastic but for what the mechanism has of it, by moments. K stays the same.
+  void take_bending() {
+    MatrixXd shapes = reduced_rows(system_, bent_.rigid);
+    make_unit_rows(shapes);
+    MatrixXd all(rows.rows() + shapes.rows(), rows.cols());
+    all.topRows(rows.rows()) = rows;
+    all.bottomRows(shapes.rows()) = shapes;
+    mechanism = orthonormal(null_space(all), mass);
+    if (!bent_.any()) return;
+    const MatrixXd g = reduced_rows(system_, bent_.rows);
+    MatrixXd of_mechanism = g * mechanism;
+    for (Index r = 0; r < g.rows(); ++r)
+      for (Index k = 0; k < mechanism.cols(); ++k)
+        if (std::abs(of_mechanism(r, k)) <= no_turn * g.row(r).norm() * mechanism.col(k).norm())
+          of_mechanism(r, k) = 0;
+    const auto k = bent_.stiffness.asDiagonal();
+    const MatrixXd drawn = of_mechanism * mechanism.transpose() * mass, own = g - drawn,
+                   mixed = own.transpose() * k * drawn;
+    elastic += own.transpose() * k * own;
+    geometric += mixed + mixed.transpose() + drawn.transpose() * k * drawn;
+    for (Index r = 0; r < g.rows(); ++r)  // of which the system has all
+      if (bent_.bent[static_cast<std::size_t>(r)])
+        geometric -= bent_.stiffness[r] * g.row(r).transpose() * g.row(r);
+  }
+
+  static constexpr double no_turn = 1e-12;  // of a joint: round-off
+  BentRods bent_;
   System system_;
 };
 
@@ -142,7 +199,7 @@ struct Solved {
 Solved solve_general(const AtPose& at, const MatrixXd& N0, const MatrixXd& Z) {
   const MatrixXd A = Z.transpose() * (at.elastic + at.geometric + at.skew) * Z;
   const ComplexEigen all = complex_eigen(A);
-  const double zero = 1e-14 * A.norm();
+  const double zero = rounded * A.norm();
   std::vector<Index> order;
   for (Index k = 0; k < all.values.size(); ++k) order.push_back(k);
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
@@ -171,8 +228,7 @@ Solved solve_general(const AtPose& at, const MatrixXd& N0, const MatrixXd& Z) {
 }
 
 Solved solve(const AtPose& at) {
-  const MatrixXd N0 = orthonormal(null_space(at.rows), at.mass),
-                 Z = orthonormal(null_space(at.rigid_rows), at.mass);
+  const MatrixXd &N0 = at.mechanism, Z = orthonormal(null_space(at.rigid_rows), at.mass);
   if (Z.cols() == 0) return {};  // a drive holds all that could move
   if ((Z.transpose() * at.skew * Z).norm() > no_potential * (Z.transpose() * at.geometric * Z).norm())
     return solve_general(at, N0, Z);
@@ -189,7 +245,8 @@ Solved solve(const AtPose& at) {
   const auto own = order.begin() + out.mechanism;
   std::sort(order.begin(), own);
   std::sort(own, order.end());
-  for (const Index k : order) out.squares.push_back(all.values[k]);
+  const double level = rounded * largest_magnitude_of(all.values);
+  for (const Index k : order) out.squares.push_back(std::abs(all.values[k]) <= level ? 0.0 : all.values[k]);
   out.vectors = X(Eigen::all, order);
   if (out.mechanism == 0) return out;
 

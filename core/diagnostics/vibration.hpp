@@ -11,7 +11,7 @@ namespace unfurl {
 struct VibrationMode {
   double frequency = 0.0;  // [Hz]; 0 where nothing pulls back
   double growth = 0.0;     // > 0: the pose is unstable, x ~ exp(growth t) [1/s]; with a frequency: flutter
-  bool mechanism = false;  // a motion of the mechanism: rods keep their lengths to first order
+  bool mechanism = false;  // of the mechanism: rods keep lengths and, cut into parts, shapes to first order
   VectorXd shape;          // velocities of the whole structure's nodes, the largest 1 [3 N]
 };
 

@@ -356,4 +356,73 @@ end_time = 1
   }
 }
 
+// Six motions of the whole and the hinge's: nothing acts on them, and V >= 0.
+TEST_CASE("free rods that bend have no other free motions than rigid ones, and those are not unstable") {
+  for (const int segments : {1, 2, 3, 8, 32}) {
+    INFO(segments);
+    const Vibration v = of_text(R"([structure]
+kind = 'custom'
+youngs_modulus = 7e10
+segments = )" + std::to_string(segments) +
+                                R"(
+nodes = [{name = 'A', position = [0, 0, 0]}, {name = 'B', position = [1, 1, 0]}, {name = 'C', position = [2, 0, 1]}]
+rods = [{nodes = ['A', 'B'], density = 2700, area = 1e-4}, {nodes = ['B', 'C'], density = 2700, area = 1e-4}]
+)");
+    REQUIRE(v.mechanism_motions == 7);
+    for (const VibrationMode& mode : v.modes) {
+      CHECK(mode.growth == 0.0);
+      CHECK((mode.frequency == 0.0) == mode.mechanism);
+    }
+  }
+}
+
+namespace {
+
+// With pinned ends, E I = 56 N m^2 and rho A = 0.27 kg/m.
+std::string beam(int segments, const std::string& b) {
+  return R"([structure]
+kind = 'custom'
+youngs_modulus = 7e10
+segments = )" +
+         std::to_string(segments) +
+         R"(
+nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', position = [2, 0, 0])" +
+         b + R"(}]
+rods = [{nodes = ['A', 'B'], density = 2700, area = 1e-4, second_moment = 8e-10}]
+[solver]
+end_time = 0.01
+)";
+}
+
+}  // namespace
+
+// f = pi/2 sqrt(E I / m l^4); parts are off by (pi / k)^2 / 12 of the stiffness at most, and f by half of it.
+TEST_CASE("the lowest frequency of rods that bend is that of bending") {
+  const double wanted = pi / 2 * std::sqrt(56 / (0.27 * 16));
+  for (const int segments : {4, 16}) {
+    const Vibration v = of_text(beam(segments, ", fixed = true"));
+    CHECK(v.mechanism_motions == 0);
+    CHECK(v.lowest_elastic() == Approx(wanted).epsilon(std::pow(pi / segments, 2) / 24));
+  }
+}
+
+// Held at one end, it may turn about that, and about its own axis where it is not straight: two motions, or
+// three. Its pose changes frequencies by the square of its slopes, 1e-4; nothing holds the turns.
+TEST_CASE("a rod that is bent has the same frequencies, and a turn about itself") {
+  const auto model = build_model(read_scene_text(beam(12, ""), "s.toml"));
+  State pose = initial_state(model->structure, model->system).state;
+  const Vibration straight = vibration(*model, pose);
+  VectorXd q(model->system.coordinates());
+  model->system.expand(pose.z, q);
+  for (Index i = 0; i < q.size(); i += 3) q[i + 1] += 0.004 * std::sin(1.1 * q[i]) * q[i];
+  pose.z = model->system.reduce(q);
+  const Vibration bent = vibration(*model, pose);
+  CHECK(straight.mechanism_motions == 2);
+  CHECK(bent.mechanism_motions == 3);
+  // Clamped by nothing at A: the first of a pinned and a free end, (3.9266 / l)^2 sqrt(E I / m) / 2 pi.
+  const double first = std::pow(3.926602 / 2, 2) * std::sqrt(56 / 0.27) / (2 * pi);
+  CHECK(straight.lowest_elastic() == Approx(first).epsilon(std::pow(3.93 / 12, 2) / 24));
+  CHECK(bent.lowest_elastic() == Approx(straight.lowest_elastic()).epsilon(1e-2));
+}
+
 }  // namespace vibration_test
