@@ -112,8 +112,10 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
 
 std::string made_name(const SceneElement& element) {
   std::string text = element.fold_angle ? "fold angle" : "";
-  for (const auto* list : {&element.nodes, &element.rods, &element.terms})
+  for (const auto* list : {&element.nodes, &element.rods})
     for (const auto& name : *list) text += (text.empty() ? "" : "-") + name;
+  for (const std::string& term : element.terms)
+    text += text.empty() ? term : term.starts_with('-') ? " - " + term.substr(1) : " + " + term;
   return element.kind + " of " + text;
 }
 

@@ -77,7 +77,9 @@ Structure build_custom(const CustomSpec& spec) {
         (spec.nodes[static_cast<std::size_t>(b)].position - spec.nodes[static_cast<std::size_t>(a)].position)
             .norm();
     const double length = entry.length > 0.0 ? entry.length : apart;
-    structure.rods.push_back({rod_name(entry), a, b, rod_mass(entry, length), length, entry.group, 0.0, 1.0});
+    const double material = entry.free_length > 0.0 ? entry.free_length : length;
+    structure.rods.push_back(
+        {rod_name(entry), a, b, rod_mass(entry, material), length, entry.group, 0.0, 1.0});
     if (entry.area > 0.0) give_section(spec, entry, structure.rods.back());
     segments.push_back(segments_of(spec.material, entry, structure.rods.back()));
   }

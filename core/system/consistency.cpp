@@ -9,6 +9,7 @@
 #include "core/math/factors.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
+#include "core/system/mobility.hpp"
 
 namespace unfurl {
 namespace {
@@ -28,7 +29,7 @@ std::string listed(const std::vector<std::string>& names, std::size_t most = 6) 
 }
 
 // Rows of unit size, and what they were divided by.
-MatrixXd unit_rows(const System& system, const VectorXd& q, VectorXd& norms) {
+MatrixXd dense_unit_rows(const System& system, const VectorXd& q, VectorXd& norms) {
   MatrixXd G(system.all_jacobian(q));
   norms = G.rowwise().norm();
   for (Index r = 0; r < G.rows(); ++r)
@@ -61,7 +62,7 @@ class Checker {
     if (system_.coordinates() > max_coordinates) return;
     const bool driven = !system_.drives().empty();
     if (!driven && system_.all_constraints() < system_.coordinates()) return;
-    G_ = unit_rows(system_, q_, norms_);
+    G_ = dense_unit_rows(system_, q_, norms_);
     if (driven)
       for (const Drive& drive : system_.drives()) check_drive(drive);
     else if (!elastic_ && !moved_from_outside())
@@ -138,7 +139,7 @@ class Checker {
     VectorXd moved = q_, norms_moved;
     const double shift = 1e-3 * extent_of_nodes();
     for (Index i = 0; i < moved.size(); ++i) moved[i] += shift * std::sin(1.0 + 2.3 * static_cast<double>(i));
-    const VectorXd shares_moved = combination(unit_rows(system_, moved, norms_moved), row);
+    const VectorXd shares_moved = combination(dense_unit_rows(system_, moved, norms_moved), row);
     if (shares_moved.size() == 0 || (shares_moved - shares).norm() > 1e-6 * shares.norm()) return;
     for (const double t : times_of_drives()) {
       const VectorXd wanted = unit_rates(system_, t, q_, norms_);
@@ -180,12 +181,13 @@ class Checker {
 
   void check_freedom() const {
     if (rank_of(G_, 1e-9) < G_.cols()) return;
-    std::vector<std::string> members;
-    for (auto n = names_.rbegin(); n != names_.rend(); ++n)  // what is held or driven by name comes first
+    std::vector<std::string> names, members;
+    for (const int row : counted_rows(system_, q_)) names.push_back(name(row));
+    for (auto n = names.rbegin(); n != names.rend(); ++n)  // what is held or driven by name comes first
       if (n->rfind("rod ", 0) != 0) members.push_back(*n);
-    for (const auto& n : names_)
+    for (const auto& n : names)
       if (n.rfind("rod ", 0) == 0) members.push_back(n);
-    throw StructureError("", "nothing can move: " + std::to_string(names_.size()) + " constraints hold all " +
+    throw StructureError("", "nothing can move: " + std::to_string(names.size()) + " constraints hold all " +
                                  std::to_string(G_.cols()) + " coordinates; free one of " + listed(members));
   }
 
@@ -208,7 +210,7 @@ std::string driven_against(const System& system, double t, const VectorXd& q) {
   constexpr double too_much = 1e-3;  // of the rates
   if (system.coordinates() > max_coordinates) return "";
   VectorXd norms;
-  const MatrixXd G = unit_rows(system, q, norms);
+  const MatrixXd G = dense_unit_rows(system, q, norms);
   const VectorXd wanted = unit_rates(system, t, q, norms);
   const double most = wanted.size() > 0 ? wanted.lpNorm<Eigen::Infinity>() : 0.0;
   if (!(most > 0)) return "";

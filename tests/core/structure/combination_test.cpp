@@ -283,4 +283,14 @@ TEST_CASE("combinations that cannot be say what is wrong and where") {
         std::string::npos);
 }
 
+TEST_CASE("a combination without a name is called by its sum") {
+  const auto model = testing::model_of(atwood + R"([[forces]]
+kind = "combination"
+terms = ["-1.36 length A P", "-0.268 length A B", "1.43 length P B"]
+stiffness = 3
+)");
+  CHECK(model->structure.forces.back().name ==
+        "combination of -1.36 length A P - 0.268 length A B + 1.43 length P B");
+}
+
 }  // namespace combination_test

@@ -196,4 +196,22 @@ TEST_CASE("a list that is wrong everywhere ends its report") {
   CHECK(check_custom(spec).size() == 100);
 }
 
+// Rods that start stretched have the material of their length without force.
+TEST_CASE("the mass of a rod by its density is that of its length without force") {
+  CustomSpec spec;
+  spec.nodes = {{"A", {0.1, 0, 0}, {0, 0, 0}, 0.0, false}, {"B", {1.1, 0, 0}, {0, 0, 0}, 0.0, false}};
+  CustomRod rod{"", {"A", "B"}};
+  rod.density = 2500;
+  rod.area = 4e-4;
+  rod.youngs_modulus = 1e6;
+  rod.elastic = true;
+  spec.rods = {rod};
+  CHECK(build_custom(spec).rods[0].mass == Approx(2500 * 4e-4 * 1.0).epsilon(1e-14));
+  spec.rods[0].free_length = 0.5;
+  CHECK(build_custom(spec).rods[0].mass == Approx(2500 * 4e-4 * 0.5).epsilon(1e-14));
+  spec.rods[0].free_length = 0;
+  spec.rods[0].length = 1.003;
+  CHECK(build_custom(spec).rods[0].mass == Approx(2500 * 4e-4 * 1.003).epsilon(1e-14));
+}
+
 }  // namespace custom_test

@@ -62,4 +62,18 @@ TEST_CASE("what is violated at the start is listed with the worst, up to six by 
   CHECK(testing::error_of(table({0, 0, -13.3e-7, 0, 0, 0, 0})) != "");
 }
 
+// Three equations keep a node on a line, of which two count, in the list as in what the check says of it.
+TEST_CASE("rows that others of their constraint imply do not count among what holds a structure") {
+  const std::string error = testing::error_of(R"([structure]
+kind = 'custom'
+nodes = [{name = 'A', position = [0.1, 0.2, 0.3], fixed = true}, {name = 'B', position = [1.3, 1, 0.7], fixed = true},
+         {name = 'P', position = [0.7, 0.6, 0.5], mass = 1}]
+rods = [{nodes = ['A', 'P'], mass = 0.1}]
+[[constraints]]
+kind = 'collinear'
+nodes = ['A', 'B', 'P']
+)");
+  CHECK_THAT(error, Catch::Contains("nothing can move: 9 constraints hold all 9 coordinates"));
+}
+
 }  // namespace consistency_test
