@@ -202,7 +202,7 @@ double largest_in_motion(const Simulation& run, const std::vector<double>& at_st
   double best = std::numeric_limits<double>::quiet_NaN();
   for (const double x : at_states)
     if (!std::isnan(x) && !(x <= best)) best = x;
-  if (std::isnan(best) || !values) return best;
+  if (std::isnan(best) || !values || at_states.size() != run.trajectory.size()) return best;
   for (const std::size_t i : candidates(run.trajectory, at_states, best)) {
     const Neighbourhood around(run, i);
     if (!around.empty()) best = closer(around, values, best);
