@@ -12,7 +12,7 @@ namespace unfurl {
 // A drive comes to its end in the deployed pose: from then on what is left is zero but for rounding, and for
 // what the method drifts from the drive, and whose sign that has says nothing.
 bool Stepper::Loop::arrives(const Probe& to) {
-  constexpr double nothing = 1e-9, at_rest = 1e-3;  // rates are off by what a method makes of them
+  constexpr double nothing = 1e-9, at_rest = 1e-2;  // rates are off by what a method makes of them
   if (!edge_ || part_end_ != target_ || !deploys_regularly(model().structure) || fold(now()) <= margin_)
     return false;
   const VectorXd& lengths = system().constraint_lengths();
