@@ -127,7 +127,7 @@ void Hardware::find_supports(const Poses& poses) {
   const double size = std::max(high - low, 1e-9);
   const double hangs_above = structure_.gravity.isZero() ? middle + 0.3 * size : middle - 0.02 * size;
   for (std::size_t n = 0; n < support_.size(); ++n) {
-    if (!looks_.fixed[n] || looks_.joint_radius[n] <= 0) continue;
+    if (!looks_.fixed[n] || looks_.joint_radius[n] <= 0 || (looks_.bare[n] && pulley(n))) continue;
     const double reach = support_height / 1.75 * looks_.joint_radius[n];
     const Vec3 wanted = (height[n] >= hangs_above ? 1.0 : -1.0) * Vec3::UnitZ();
     support_[n] = reach * free_side(static_cast<int>(n), wanted, poses);
@@ -152,6 +152,10 @@ RodCoat Hardware::coat(int group, const Color* field) const {
   const auto [color, finish] = coat_of_material(materials_.empty() ? options_.material : materials_[index]);
   if (color.a == 0) return {own, look_.fitting, finish, Finish::metal};
   return {color, own, finish, Finish::anodised};  // the fittings tell the group
+}
+
+bool Hardware::pulley(std::size_t node) const {
+  return std::ranges::any_of(pulleys_, [node](const Triple& p) { return p[1] == static_cast<int>(node); });
 }
 
 bool Hardware::seam(const RodEnd& end) const {
@@ -262,10 +266,9 @@ void Hardware::add_joint(std::size_t n, double t, const std::vector<Vec3>& at, D
   if (seams_[n] && !held && !payload) return;
   if (pinned) add_pins(n, t, at[n], list);
   if (!support_[n].isZero()) add_support(n, at[n], list);
-  // A pulley stands for what its node weighs.
-  const bool pulley =
-      std::ranges::any_of(pulleys_, [n](const Triple& p) { return p[1] == static_cast<int>(n); });
-  if (payload && !held && (pinned || (detailed_ && looks_.bare[n])) && !pulley)
+  // A pulley stands for what its node weighs, and for a node without rods.
+  if (looks_.bare[n] && pulley(n)) return;
+  if (payload && !held && (pinned || (detailed_ && looks_.bare[n])) && !pulley(n))
     return add_payload(n, at[n], list);
   if (detailed_ && (kind == JointKind::hinge || (kind == JointKind::none && !looks_.bare[n]))) return;
   const double scale = held && !detailed_ ? 1.5 : kind == JointKind::hub && detailed_ ? 0.86 : 1.0;

@@ -84,6 +84,7 @@ class Hardware {
   void add_payload(std::size_t node, const Vec3& at, DrawList& list) const;
   void add_forces(const std::vector<Vec3>& at, DrawList& list) const;
   bool cable(std::size_t rod) const { return cables_[rod]; }
+  bool pulley(std::size_t node) const;                        // a cable runs over it
   bool seam(const RodEnd& end) const;                         // of two parts of one rod, which goes on there
   double whole_length(std::size_t rod, double length) const;  // of the rod that it is a part of [m]
   double radius(std::size_t rod) const;                       // as drawn [m]
