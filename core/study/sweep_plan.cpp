@@ -3,6 +3,7 @@
 #include <cmath>
 #include <exception>
 #include <iomanip>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <sstream>
@@ -43,9 +44,12 @@ void fill_range(const std::string& text, const std::vector<std::string>& parts, 
   if (axis.log && (!(from > 0) || !(to > 0))) refuse(text, "a log range needs numbers > 0");
   if (count > 1 && from == to) refuse(text, "the range is empty; its ends are equal");
   for (long i = 0; i < static_cast<long>(count); ++i) {
-    const double n = static_cast<double>(i), last = std::max(count - 1, 1.0);
-    // Multiplied before it is divided: whole numbers are met exactly.
-    double x = axis.log ? from * std::pow(to / from, n / last) : from + (to - from) * n / last;
+    const double u = count > 1 ? static_cast<double>(i) / (count - 1) : 0.0;
+    double x = axis.log ? from * std::pow(to / from, u) : from + (to - from) * u;
+    // Whole numbers are met exactly, where rounding alone is between.
+    const double size = axis.log ? std::abs(x) : std::max(std::abs(from), std::abs(to));
+    if (i > 0 && std::abs(x - std::round(x)) <= 4 * std::numeric_limits<double>::epsilon() * size)
+      x = std::round(x);
     if (i + 1 == static_cast<long>(count) && i > 0) x = to;
     axis.numbers.push_back(x);
     axis.values.push_back(exact_number(x));
