@@ -106,12 +106,9 @@ void ImguiHost::apply(const InputEvent& event) const {
       io.KeyAlt = event.alt;
       break;
     case Kind::text: {
-      // In a number a comma is a point, as on half of the keyboards; a box for numbers would drop it. So it
-      // is for one that has the keyboard but was not drawn since.
-      const ImGuiInputTextState* typed = ImGui::GetInputTextState(ImGui::GetActiveID());
-      const ImGuiInputTextFlags numbers =
-          ImGuiInputTextFlags_CharsDecimal | ImGuiInputTextFlags_CharsScientific;
-      const bool number = !typed || (typed->Flags & numbers) != 0;
+      // In a number a comma is a point, as on half of the keyboards; a box for numbers would drop it.
+      const ImGuiID active = ImGui::GetActiveID();
+      const bool number = active != 0 && (active == context_->TempInputId || active == ui_.number);
       std::string text = event.text;
       if (number) std::replace(text.begin(), text.end(), ',', '.');
       io.AddInputCharactersUTF8(text.c_str());

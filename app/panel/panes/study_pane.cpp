@@ -25,6 +25,7 @@ void label_row(const Ui& ui, const char* label) {
 void number_row(Ui& ui, const char* label, const char* key, double& value, const std::string& help) {
   label_row(ui, label);
   ImGui::InputDouble((std::string("##") + key).c_str(), &value, 0, 0, "%.6g");
+  if (ImGui::IsItemActive()) ui.number = ImGui::GetItemID();
   ui.note(key);
   tooltip(ui, help);
 }

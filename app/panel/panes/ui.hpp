@@ -25,6 +25,8 @@ struct Ui {
   // Lines at the present time, over the figures. In a list of their own: what moves is small.
   std::vector<plot::Rect> cursors;  // [pixels]
 
+  ImGuiID number = 0;  // the last box for a number, but for sliders, that had the keyboard
+
   float px(float points) const { return points * scale; }
   ImU32 color(const ImVec4& c, float alpha = 1) const {
     return ImGui::ColorConvertFloat4ToU32(ImVec4(c.x, c.y, c.z, c.w * alpha));

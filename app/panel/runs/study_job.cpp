@@ -57,6 +57,8 @@ void study_sweep(const StudyHooks& hooks, StudyOutcome& out) {
   SweepPlan plan{{d.name, overrides_of(d), d.text, d.folder}, {parse_axis(axis_text(out.request))}, {}, {}};
   plan.measures.push_back(find_measure(out.request.measure));
   check_plan(plan);
+  for (const auto* end : {&plan.axes[0].values.front(), &plan.axes[0].values.back()})
+    plan.source.read({plan.axes[0].key + "=" + *end});  // what is wrong with them is said before it runs
   Journal journal({}, plan.columns(), plan.axes.size());
   const Sweep sweep = run_sweep(plan, journal, hooks);
   if (sweep.table.rows.empty()) throw Cancelled();
