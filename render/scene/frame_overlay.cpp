@@ -200,7 +200,9 @@ void FrameOverlay::add_status(double t, const VectorXd& whole, Boxes& taken, Dra
     if (const std::string both = lines[0] + "    " + lines[1]; width(both) <= room) lines = {both};
   float widest = 0;
   for (const std::string& line : lines) widest = std::max(widest, width(line));
-  const float size = widest > room ? fine_ * std::floor(small_ * room / widest / fine_) : small_;
+  constexpr float least = 5;  // pixels: what has no room for those is cut off
+  const float size =
+      widest > room ? fine_ * std::max(least, std::floor(small_ * room / widest / fine_)) : small_;
   float y = height_ - edge_ - size - 1.2f * size * static_cast<float>(lines.size() - 1);
   for (const std::string& line : lines) {
     list.labels.push_back(quiet(list, {edge_, y, size, look_.ink, line}));

@@ -29,7 +29,7 @@ TEST_CASE("a range meets the whole numbers between its ends") {
   REQUIRE(axis.numbers.size() == 50);
   for (int i = 0; i < 50; ++i) CHECK(axis.numbers[static_cast<std::size_t>(i)] == i + 1);
   CHECK(parse_axis("x=-7:993:1001").numbers[777] == 770);
-  CHECK(parse_axis("x=0.3:0.9:7").values[3] == "0.6");
+  CHECK(parse_axis("x=0.5:2.5:21").values[3] == "0.8");
   CHECK(parse_axis("x=1:1000:4:log").values[2] == "100");
   CHECK(parse_axis("x=1e-3:1e15:19:log").numbers[1] == Approx(0.01).epsilon(1e-12));
   CHECK(parse_axis("x=0.001:1e15:3").numbers[0] == 0.001);
