@@ -54,8 +54,9 @@ std::optional<State> step_to_deployed(const Model& model, Integrator& integrator
   });
 }
 
-std::optional<double> step_to_dip(const Model& model, Integrator& integrator, const State& from,
-                                  const State& to, double h, double margin) {
+std::optional<double> step_to_dip(const Model& model,
+                                  const std::function<std::unique_ptr<Integrator>()>& fresh,
+                                  const State& from, const State& to, double h, double margin) {
   if (!deploys_regularly(model.structure)) return std::nullopt;
   struct At {
     double length, left, rate;
@@ -73,14 +74,16 @@ std::optional<double> step_to_dip(const Model& model, Integrator& integrator, co
     return a.left + a.rate * dx <= 0;
   };
   At low = at(0, from), high = at(h, to);
+  if (!may_dip(low, high)) return std::nullopt;
+  const std::unique_ptr<Integrator> integrator = fresh();
   constexpr int most = 60;
   for (int i = 0; i < most && may_dip(low, high); ++i) {
     // The rate's zero by its secant, and every third time by halves.
     const double secant = low.length - low.rate * (high.length - low.length) / (high.rate - low.rate);
     const double length = i % 3 == 2 ? 0.5 * (low.length + high.length) : secant;
     State state = from;
-    integrator.restart();
-    if (!(length > low.length && length < high.length) || !integrator.step(state, length).ok())
+    integrator->restart();
+    if (!(length > low.length && length < high.length) || !integrator->step(state, length).ok())
       return std::nullopt;
     const At middle = at(length, state);
     if (middle.left <= 0) return length;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "core/integrators/integrator.hpp"
@@ -27,9 +28,10 @@ std::optional<State> step_to_deployed(const Model& model, Integrator& integrator
 
 // Where a step of size h leads from one side of the deployed pose to the same side, `to`, but may have been
 // beyond it in between: the length of a step that ends there. Nothing where it was not, or the pose is not
-// regular.
-std::optional<double> step_to_dip(const Model& model, Integrator& integrator, const State& from,
-                                  const State& to, double h, double margin);
+// regular. `fresh`: makes the integrator, which few steps need.
+std::optional<double> step_to_dip(const Model& model,
+                                  const std::function<std::unique_ptr<Integrator>()>& fresh,
+                                  const State& from, const State& to, double h, double margin);
 
 // The rate of Deployment::remaining at a state [1/s].
 double remaining_rate(const Model& model, const State& state);

@@ -54,7 +54,8 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
   }
   double within = h;
   if (!crosses(to.state)) {
-    const auto bottom = step_to_dip(model(), *fresh_integrator(), now(), to.state, h, margin_);
+    const auto bottom = step_to_dip(
+        model(), [this] { return fresh_integrator(); }, now(), to.state, h, margin_);
     if (!bottom) return true;
     within = *bottom;
   }
