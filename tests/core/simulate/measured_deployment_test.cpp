@@ -261,7 +261,7 @@ TEST_CASE("a deployment by angles counts turns: what turns the wrong way is neve
       const Simulation run = run_scene(turning(measure, 90), {std::string("solver.method=") + method});
       CHECK(run.status == RunStatus::completed);
       CHECK(time_of(run, "deployed") < 0);
-      const auto& fraction = diagnose(run).at("deployed_fraction").values;
+      const std::vector<double> fraction = diagnose(run).at("deployed_fraction").values;
       for (std::size_t i = 0; i < fraction.size(); ++i)  // to the error of the methods
         CHECK(fraction[i] == Approx(-rate * run.trajectory.time(i) / (pi / 2 - first)).margin(1e-6));
     }
