@@ -34,37 +34,47 @@ std::set<std::size_t> looked_at(const Simulation& run, std::size_t first, std::s
   return states;
 }
 
-SparseRows jacobian_at(const Trajectory& trajectory, std::size_t i) {
-  const System& system = trajectory.model(i).system;
-  SparseRows G = system.jacobian_pattern();
-  std::vector<double> scratch;
-  system.jacobian(trajectory.node_positions(i), G, scratch);
-  return G;
-}
-
 }  // namespace
 
 ForceUniqueness::ForceUniqueness(const Simulation& run, const KnownUniqueness& before, bool goes_on)
     : known_(before) {
   const Trajectory& trajectory = run.trajectory;
   for (std::size_t first = 0, last = 0; first < trajectory.size(); first = last + 1) {
+    const RestingRows resting(trajectory.model(first));
+    const auto rests_at = [&](std::size_t i) {
+      return resting.empty() ? std::vector<char>() : resting.at(trajectory.state(i), run.options.step);
+    };
+    const std::vector<char>& rests = rests_[first] = rests_at(first);
     last = first;
-    while (last + 1 < trajectory.size() && &trajectory.model(last + 1) == &trajectory.model(first)) ++last;
-    if (first > 0) known_ = {};
-    examine(run, first, last, !goes_on || last + 1 < trajectory.size());
+    while (last + 1 < trajectory.size() && &trajectory.model(last + 1) == &trajectory.model(first) &&
+           rests_at(last + 1) == rests)
+      ++last;
+    if (first > 0 || known_.rests != rests) known_ = {{}, {}, rests};
+    examine(run, resting, first, last, !goes_on || last + 1 < trajectory.size());
   }
 }
 
-void ForceUniqueness::examine(const Simulation& run, std::size_t first, std::size_t last, bool ends) {
-  const auto rows = static_cast<std::size_t>(run.trajectory.model(first).system.constraints());
+void ForceUniqueness::examine(const Simulation& run, const RestingRows& resting, std::size_t first,
+                              std::size_t last, bool ends) {
+  const System& system = run.trajectory.model(first).system;
+  const auto rows = static_cast<std::size_t>(system.constraints());
   const auto any_of_both = [](std::vector<char>& usual, const std::vector<char>& determined) {
     for (std::size_t r = 0; r < usual.size(); ++r) usual[r] = static_cast<char>(usual[r] | determined[r]);
   };
+  const auto determined_at = [&](std::size_t i, const VectorXd& compliance) {
+    const VectorXd q = run.trajectory.node_positions(i);
+    SparseRows G = system.jacobian_pattern();
+    std::vector<double> scratch;
+    system.jacobian(q, G, scratch);
+    G = resting.behind(G, q, known_.rests);
+    std::vector<char> determined = determined_rows(G, RestingRows::behind(compliance, G.rows()));
+    determined.resize(rows);
+    return determined;
+  };
   const bool is_known = rows > 0 && known_.rigidly.size() == rows;
-  if (!is_known) known_ = {std::vector<char>(rows, 0), std::vector<char>(rows, 0)};
+  if (!is_known) known_ = {std::vector<char>(rows, 0), std::vector<char>(rows, 0), known_.rests};
   std::map<std::size_t, std::vector<char>> seen;
-  for (const std::size_t i : looked_at(run, first, last, is_known, ends))
-    seen[i] = determined_rows(jacobian_at(run.trajectory, i));
+  for (const std::size_t i : looked_at(run, first, last, is_known, ends)) seen[i] = determined_at(i, {});
   examined_ += seen.size();
   std::vector<char>& rigid = known_.rigidly;
   for (const auto& [i, determined] : seen) any_of_both(rigid, determined);
@@ -75,8 +85,7 @@ void ForceUniqueness::examine(const Simulation& run, std::size_t first, std::siz
   if (rigidly_[first] || compliance.size() == 0)
     known_.usual = rigid;
   else
-    for (const auto& [i, unused] : seen)
-      any_of_both(known_.usual, determined_rows(jacobian_at(run.trajectory, i), compliance));
+    for (const auto& [i, unused] : seen) any_of_both(known_.usual, determined_at(i, compliance));
   usual_[first] = known_.usual;
 }
 

@@ -4,7 +4,10 @@
 // Where constraints are redundant, any state of self-stress may be added to their forces: the multipliers
 // that are reported are those of least norm, one choice among many. A multiplier that no such state contains
 // is unique (math/determined_rows.hpp). That is a matter of the structure's shape, not of its pose: it
-// changes only where the constraints change (contact, latch) and, for a moment, at singular poses.
+// changes only where what holds it changes (contact, latch, rest) and, for a moment, at singular poses.
+//
+// Several frictions, stops and drives that hold one freedom at rest are redundant like rows: whether they
+// have any in the model or not (resting_rows.hpp), they may share as they like.
 //
 // Rods that have a modulus share the load (elastic_sharing.hpp): then their forces are unique, and those of
 // guides and rigid rods where these determine them among themselves. At a singular pose, where the rank falls
@@ -16,6 +19,7 @@
 #include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
+#include "core/diagnostics/resting_rows.hpp"
 #include "core/text/archive.hpp"
 
 namespace unfurl {
@@ -23,7 +27,8 @@ namespace unfurl {
 // Per kept row of a model, at poses that are not singular, 1: determined. Empty: nothing is known yet.
 struct KnownUniqueness {
   std::vector<char> rigidly, usual;  // by rigid rods alone; where rods share by their moduli
-  void archive(Archive& archive) { archive(rigidly), archive(usual); }
+  std::vector<char> rests = {};      // where of friction and stops this rests (RestingRows)
+  void archive(Archive& archive) { archive(rigidly), archive(usual), archive(rests); }
 };
 
 // Per kept row of a run's constraints, at every state. A few states of each model are examined: its ends,
@@ -40,18 +45,24 @@ class ForceUniqueness {
   const std::vector<char>& at(std::size_t state) const;
   // False: a singular pose, where more than usual is open.
   bool regular(std::size_t state) const { return singular_.count(state) == 0; }
+  // What rests at the state, as RestingRows::at says it.
+  const std::vector<char>& rests(std::size_t state) const {
+    return std::prev(rests_.upper_bound(state))->second;
+  }
   // True: rigid rods determine every force of the state's model, whatever moduli they have.
   bool all_by_rigid_rods(std::size_t state) const;
   const KnownUniqueness& known() const { return known_; }  // of the model of the last state
   std::size_t examined() const { return examined_; }       // states
 
  private:
-  void examine(const Simulation& run, std::size_t first, std::size_t last, bool ends);
+  void examine(const Simulation& run, const RestingRows& resting, std::size_t first, std::size_t last,
+               bool ends);
 
   KnownUniqueness known_;
   std::size_t examined_ = 0;
-  std::map<std::size_t, std::vector<char>> usual_;  // by the first state of a model
-  std::map<std::size_t, bool> rigidly_;             // the same
+  // By the first state of those of a model in which the same rests.
+  std::map<std::size_t, std::vector<char>> usual_, rests_;
+  std::map<std::size_t, bool> rigidly_;
   std::map<std::size_t, std::vector<char>> singular_;
 };
 

@@ -73,12 +73,19 @@ VectorXd all_compliances(const Model& model) {
   return compliance;
 }
 
-// Per support.
-std::vector<char> unique_supports(const Trajectory& trajectory, std::size_t i, bool shared) {
+// Per support. `rests`: what does there.
+std::vector<char> unique_supports(const Trajectory& trajectory, std::size_t i, bool shared,
+                                  const std::vector<char>& rests) {
   const Model& model = trajectory.model(i);
-  const SparseRows G = model.system.all_jacobian(trajectory.node_positions(i));
-  const VectorXd compliance = shared ? all_compliances(model) : VectorXd();
-  const VectorXd of_support = rows_of_supports(model.structure, model.system.all_sources());
+  const VectorXd q = trajectory.node_positions(i);
+  const RestingRows resting(model);
+  const SparseRows constraints = model.system.all_jacobian(q), G = resting.behind(constraints, q, rests);
+  const VectorXd compliance = shared ? RestingRows::behind(all_compliances(model), G.rows()) : VectorXd();
+  VectorXd of_support = VectorXd::Zero(G.rows());
+  of_support.head(constraints.rows()) = rows_of_supports(model.structure, model.system.all_sources());
+  Index row = constraints.rows();
+  for (const Measure& measure : resting.measures(rests))
+    of_support[row++] = tells_place(model.structure, measure) ? 1.0 : 0.0;
   const std::vector<char> sums = determined_sums(G, of_support, compliance);
   std::vector<char> unique;
   for (const int node : supports(trajectory.structure()))
@@ -188,7 +195,8 @@ void mark_reactions(const Trajectory& trajectory, const ForceUniqueness& uniquen
   for (std::size_t i = 0; i < d.t.size(); ++i) {
     const auto [at, is_new] = known.try_emplace(&uniqueness.at(i));
     if (is_new)
-      at->second = unique_supports(trajectory, i, uniqueness.regular(i) && !uniqueness.all_by_rigid_rods(i));
+      at->second = unique_supports(trajectory, i, uniqueness.regular(i) && !uniqueness.all_by_rigid_rods(i),
+                                   uniqueness.rests(i));
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       Series* const column = &*first + 5 * k;
       const bool unique = at->second[k] && !waves[i] && !std::isnan(column[0].values[i]);
