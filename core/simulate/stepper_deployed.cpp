@@ -13,7 +13,7 @@ namespace unfurl {
 // what the method drifts from the drive, and whose sign that has says nothing.
 bool Stepper::Loop::arrives(const Probe& to) {
   constexpr double nothing = 1e-9, at_rest = 1e-2;  // rates are off by what a method makes of them
-  if (!edge_ || part_end_ != target_ || !deploys_regularly(model().structure) || fold(now()) <= margin_)
+  if (!edge_ || part_end_ != target_ || margin_ > stepping::deployed_already || fold(now()) <= margin_)
     return false;
   const VectorXd& lengths = system().constraint_lengths();
   VectorXd phi(lengths.size());
@@ -47,6 +47,10 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
   if (!event && !to.report.ok() && may_cross(stepping::near_deployed * h))
     event = locate(h, now().t + 2 * stepping::near_deployed * h);
   if (event || !to.report.ok() || deployment_.empty() || deployed_) return true;
+  // What a drive leads may come to rest in the deployed pose: near is not there.
+  if (margin_ > stepping::deployed_already && crosses(to.state) && !system().drives().empty() &&
+      regular_when_deployed(run_.trajectory, to.state))
+    margin_ = stepping::deployed_already;
   if (arrives(to)) {
     event = to.state;
     event->t = part_end_;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// [deployment] of structures without a fold angle: fraction, event and latch by a measure.
+// [deployment] of structures without a fold angle: fraction, event and latch by a measure; and what drives
+// lead to the deployed pose.
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/diagnostics/measures.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/path/path_run.hpp"
+#include "core/scene/library.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -406,6 +408,35 @@ end_time = 1
       const Simulation path = simulate_on_path(build_model(scene), scene.solver);
       CHECK(time_of(path, "deployed") == Approx(duration).epsilon(1e-12));
     }
+}
+
+// Led there slower and slower, a mast is deployed when the drive has come to its end and no fraction of a
+// percent earlier; led on beyond it, when it passes: of smooth motion u^3 (10 - 15 u + 6 u^2) is its share.
+TEST_CASE("a family whose drive ends in its deployed fold angle is deployed then, with every method") {
+  const auto mast = [](double deployed, double to, const std::vector<std::string>& more) {
+    std::vector<std::string> all = {
+        "structure.tip_force=0", "structure.deployed_angle=" + std::to_string(deployed), "solver.step=0.05",
+        "constraints[0]={kind=\"angle\", name=\"m\", fold_angle=true, motion=\"smooth\", duration=2, to=" +
+            std::to_string(to) + "}"};
+    all.insert(all.end(), more.begin(), more.end());
+    return read_scene_file(find_scene("scissor_mast"), all);
+  };
+  for (const Method& method : methods())
+    for (const char* then : {"stop", "latch", "pass"}) {
+      const Scene scene = mast(20, 20,
+                               {"solver.method=" + std::string(method.name),
+                                std::string("solver.at_deployed=") + then, "solver.end_time=2.5"});
+      const Simulation run = simulate(build_model(scene), scene.solver);
+      INFO(method.name << ", " << then << ": " << run.message);
+      CHECK(run.status == (std::string(then) == "stop" ? RunStatus::deployed : RunStatus::completed));
+      CHECK(time_of(run, "deployed") == Approx(2.0).epsilon(1e-12));
+    }
+  const Scene beyond = mast(25, 10, {});
+  const double start = beyond.structure.real("fold_angle"), part = (start - 25) / (start - 10);
+  double u = 0.5;
+  for (int k = 0; k < 50; ++k)
+    u -= (u * u * u * (10 - 15 * u + 6 * u * u) - part) / (30 * u * u * (1 - u) * (1 - u));
+  CHECK(time_of(simulate(build_model(beyond), beyond.solver), "deployed") == Approx(2 * u).epsilon(1e-9));
 }
 
 }  // namespace measured_deployment_test
