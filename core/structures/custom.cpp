@@ -44,6 +44,21 @@ void add_nodes(const CustomSpec& spec, Structure& structure) {
   }
 }
 
+// What rods say themselves of a section that no modulus asks for.
+void note_idle_sections(const CustomSpec& spec, Structure& structure) {
+  const auto note = [&](const char* key, const auto& given) {
+    std::size_t first = 0, count = 0;
+    for (std::size_t r = 0; r < spec.rods.size(); ++r)
+      if (given(spec.rods[r]) && !structure.rods[r].elastic() && count++ == 0) first = r;
+    if (count == 0) return;
+    const std::string others = count == 1 ? "" : " and of " + std::to_string(count - 1) + " more";
+    structure.notes.push_back(std::string(key) + " of rod " + structure.rods[first].name + others +
+                              " does nothing without a youngs_modulus and an area");
+  };
+  note("strength", [](const CustomRod& rod) { return !std::isnan(rod.strength); });
+  note("second_moment", [](const CustomRod& rod) { return rod.second_moment > 0.0; });
+}
+
 }  // namespace
 
 bool gives_in_motion(const RodMaterial& all, const CustomRod& rod) {
@@ -84,6 +99,8 @@ Structure build_custom(const CustomSpec& spec) {
     segments.push_back(segments_of(spec.material, entry, structure.rods.back()));
   }
   show_as_solved(structure);
+  note_idle_material(structure, spec.material);
+  note_idle_sections(spec, structure);
   add_length_errors(structure, spec.material);
   cut_rods(structure, segments);
   return structure;

@@ -141,6 +141,16 @@ void add_length_errors(Structure& structure, const RodMaterial& material) {
       rod.length += material.length_error * normal(static_cast<std::uint64_t>(material.error_seed), r);
 }
 
+void note_idle_material(Structure& structure, const RodMaterial& material) {
+  if (std::ranges::any_of(structure.rods, &Rod::elastic)) return;
+  const auto idle = [&](const char* key, bool given) {
+    if (given)
+      structure.notes.push_back(std::string(key) + " does nothing: no rod has a youngs_modulus and an area");
+  };
+  idle("strength", std::isfinite(material.strength));
+  idle("section", material.section == "square");
+}
+
 void give_material(Structure& structure, double area, const RodMaterial& material) {
   check_rod_model(material);
   structure.quasi_static = material.rod_model == "quasi-static";
@@ -158,6 +168,7 @@ void give_material(Structure& structure, double area, const RodMaterial& materia
     rod.damping_time = damping_time_of(material, rod, structure.lumped_mass, material.segments);
     segments[r] = material.segments;
   }
+  note_idle_material(structure, material);
   add_length_errors(structure, material);
   cut_rods(structure, segments);
 }

@@ -58,6 +58,9 @@ void check_rod_model(const RodMaterial& material);
 // StructureError in a sector model, whose symmetry they break.
 void add_length_errors(Structure& structure, const RodMaterial& material);
 
+// Notes what of the material does nothing because no rod is elastic.
+void note_idle_material(Structure& structure, const RodMaterial& material);
+
 // Gives every rod that has a mass this area [m^2] and material; cuts them into segments.
 void give_material(Structure& structure, double area, const RodMaterial& material);
 
