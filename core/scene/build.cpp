@@ -342,7 +342,7 @@ void find_jumps(const Scene& scene, Structure& structure) {
   const double near = 1e-7 * scene.solver.step;
   MemberFinder find(structure);
   for (const SceneElement& e : scene.forces) {
-    if (!e.enabled || (e.kind != "load_over_time" && e.kind != "follower")) continue;
+    if (!e.enabled || !may_jump(e.kind)) continue;
     const std::vector<double>& t = e.values.vector("times");
     for (std::size_t i = 2; i < t.size(); ++i)
       if (t[i] - t[i - 2] < near) {

@@ -34,11 +34,6 @@ void read_table(TableReader& entry, ParamSet& values, const std::string& folder,
   values.set("table", std::string());
 }
 
-// Their tables are straight lines; all others are smooth curves.
-bool loads_jump(std::string_view kind) {
-  return kind == "load_over_time" || kind == "follower";
-}
-
 // `jumps`: a time may stand twice.
 void check_table(TableReader& entry, const ParamSet& values, bool jumps) {
   const auto &times = values.vector("times"), &sizes = values.vector("values");
@@ -121,6 +116,10 @@ std::string made_name(const SceneElement& element) {
 
 }  // namespace
 
+bool may_jump(std::string_view kind) {
+  return kind == "load_over_time" || kind == "follower";
+}
+
 const ElementKind* find_kind(const std::vector<ElementKind>& kinds, std::string_view kind) {
   for (const ElementKind& row : kinds)
     if (row.kind == kind) return &row;
@@ -178,7 +177,7 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
   if (element.values.has("table")) {
     element.table = element.values.text("table");
     read_table(entry, element.values, folder, notes);
-    check_table(entry, element.values, loads_jump(element.kind));
+    check_table(entry, element.values, may_jump(element.kind));
   }
   if (element.values.has("motion")) check_motion(entry, element.values);
   entry.warn_idle(kind->params(), element.values);

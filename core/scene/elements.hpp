@@ -54,6 +54,9 @@ inline constexpr const char* terms_wanted = "a list of terms such as \"2.5 lengt
 // Every entry of [[loads]], [[forces]] and [[constraints]] has it.
 const ParamSpec& enabled_param();
 
+// Is a table of this kind straight lines, in which a time may stand twice? All others are smooth curves.
+bool may_jump(std::string_view kind);
+
 // How a kind names its members, for `unfurl list`: "nodes = [A, B]".
 std::string_view members_text(Members members);
 
