@@ -61,13 +61,23 @@ class Parser {
   double whole() {
     const double value = sum();
     if (!at_end()) fail("an operator is missing before this");
-    if (!std::isfinite(value)) throw ExpressionError("the value is not a finite number", 1);
-    return value;
+    return finite(value, 0);
   }
 
  private:
   [[noreturn]] void fail(const std::string& message) const { throw ExpressionError(message, at_ + 1); }
 
+  // At once, where it comes up: min, max and a power would make a number of it again.
+  static double finite(double value, std::size_t begin) {
+    if (!std::isfinite(value)) throw ExpressionError("the value is not a finite number", begin + 1);
+    return value;
+  }
+
+  // Where the next word begins.
+  std::size_t here() {
+    at_end();
+    return at_;
+  }
   bool at_end() {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
     return at_ >= text_.size();
@@ -97,6 +107,7 @@ class Parser {
   }
 
   double product() {
+    const std::size_t begin = here();
     double value = sign();
     while (true) {
       if (take('*'))
@@ -107,6 +118,7 @@ class Parser {
         value = modulo(value, sign());
       else
         return value;
+      finite(value, begin);
     }
   }
 
@@ -126,12 +138,13 @@ class Parser {
   }
 
   double power() {
+    const std::size_t begin = here();
     const double base = operand();
     if (!take('^')) return base;
     if (++depth_ > max_depth) fail("nested too deep");
     const double value = std::pow(base, sign());
     --depth_;
-    return value;
+    return finite(value, begin);
   }
 
   double operand() {
@@ -160,7 +173,7 @@ class Parser {
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
     const std::string_view name = text_.substr(begin, at_ - begin);
     for (const auto& f : functions)
-      if (f.name == name) return call(f);
+      if (f.name == name) return finite(call(f), begin);
     for (const auto& constant : constants)
       if (constant.name == name) return constant.value;
     if (const auto it = variables_.find(name); it != variables_.end()) return it->second;

@@ -75,6 +75,14 @@ TEST_CASE("mistakes are told with their place") {
   CHECK(mistake(powers).ends_with("nested too deep"));
 }
 
+TEST_CASE("what is not a number stays none, whatever is done with it") {
+  CHECK(mistake("max(0.1, sqrt(1 - 1.5^2))") == "10: the value is not a finite number");
+  for (const char* text : {"min(0/0, 2)", "max(2, 0/0)", "(0/0)^0", "1^(0/0)", "hypot(1/0, 3)", "atan(1/0)",
+                           "1/(1/0)", "exp(-1/0)", "exp(1000)*0", "0*log(0)", "2 % 0", "(2%0)^0", "10^400*0"})
+    CHECK(mistake(text).ends_with("the value is not a finite number"));
+  CHECK(value("exp(-1000) + 2^-2000 + atan2(0, 0) + 0^0") == 1.0);
+}
+
 TEST_CASE("what a variable may be called") {
   for (const char* name : {"n", "radius_2", "_x", "Pi"}) CHECK(is_variable_name(name));
   for (const char* name : {"", "2n", "a-b", "pi", "deg", "sin", "a b"}) CHECK_FALSE(is_variable_name(name));
