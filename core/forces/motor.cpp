@@ -338,6 +338,8 @@ void fill_motor(const ParamSet& values, Force& force) {
     m.command.offset = values.real("voltage");
   else
     m.command = motion_function(values, force.rest, unit);
+  // The integral of the rate's error is the change of both since t = 0, whatever values a table goes through.
+  if (m.control == Motor::Control::rate) m.command.offset += force.rest - m.command(0.0);
 }
 
 }  // namespace unfurl

@@ -302,6 +302,28 @@ TEST_CASE("a controller of the rate follows its command") {
 }
 
 // A winch lifts 2 kg: (m + n^2 J / r^2) x'' = n T / r - m g with T on the line.
+// The integral of the rate's error is (f - f(0)) - (th - th(0)): the law of a controller of the position,
+// along a table that begins where the crank is, with both gains in each other's place.
+TEST_CASE("a controller of the rate knows nothing of the values that its table begins with") {
+  const auto run = [](const char* control, const char* of_value, const char* of_rate, double first) {
+    const auto at = [&](double x) { return std::to_string(first + x); };
+    const std::string force = "forces[0].";
+    return run_scene(crank, {force + "control=" + control, force + of_value + "=3", force + of_rate + "=0.4",
+                             force + "motion=table", force + "times=[0, 0.5, 0.9]",
+                             force + "values=[" + at(0) + ", " + at(60) + ", " + at(20) + "]"});
+  };
+  const double start = start_angle * 180 / pi;
+  const Simulation position = run("position", "proportional", "derivative", start);
+  for (const double first : {0.0, start, -500.0, 1080.0}) {
+    const Simulation rate = run("rate", "integral", "proportional", first);
+    INFO("from " << first);
+    REQUIRE(rate.status == RunStatus::completed);
+    CHECK(diagnose(rate).at("motor.torque_N_m").values.front() == Approx(0).margin(1e-12));
+    CHECK((end_positions(rate) - end_positions(position)).norm() <=
+          1e-7);  // six digits of the table's degrees
+  }
+}
+
 TEST_CASE("a winch draws in what hangs on its cable") {
   const std::string text = R"(
 [structure]
