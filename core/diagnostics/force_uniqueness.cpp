@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -57,7 +58,8 @@ ForceUniqueness::ForceUniqueness(const Simulation& run, const KnownUniqueness& b
 void ForceUniqueness::examine(const Simulation& run, const RestingRows& resting, std::size_t first,
                               std::size_t last, bool ends) {
   const System& system = run.trajectory.model(first).system;
-  const auto rows = static_cast<std::size_t>(system.constraints());
+  const std::vector<std::string> cables = resting.cables(known_.rests);
+  const auto kept = static_cast<std::size_t>(system.constraints()), rows = kept + cables.size();
   const auto any_of_both = [](std::vector<char>& usual, const std::vector<char>& determined) {
     for (std::size_t r = 0; r < usual.size(); ++r) usual[r] = static_cast<char>(usual[r] | determined[r]);
   };
@@ -67,9 +69,7 @@ void ForceUniqueness::examine(const Simulation& run, const RestingRows& resting,
     std::vector<double> scratch;
     system.jacobian(q, G, scratch);
     G = resting.behind(G, q, known_.rests);
-    std::vector<char> determined = determined_rows(G, RestingRows::behind(compliance, G.rows()));
-    determined.resize(rows);
-    return determined;
+    return determined_rows(G, RestingRows::behind(compliance, G.rows()));
   };
   const bool is_known = rows > 0 && known_.rigidly.size() == rows;
   if (!is_known) known_ = {std::vector<char>(rows, 0), std::vector<char>(rows, 0), known_.rests};
@@ -80,13 +80,17 @@ void ForceUniqueness::examine(const Simulation& run, const RestingRows& resting,
   for (const auto& [i, determined] : seen) any_of_both(rigid, determined);
   for (auto& [i, determined] : seen)
     if (determined != rigid && !run.trajectory.report(i).singular_event) singular_[i] = std::move(determined);
-  rigidly_[first] = std::find(rigid.begin(), rigid.end(), 0) == rigid.end();
+  rigidly_[first] =
+      std::all_of(rigid.begin(), rigid.begin() + static_cast<std::ptrdiff_t>(kept), std::identity());
   const VectorXd compliance = row_compliance(run.trajectory.model(first));
   if (rigidly_[first] || compliance.size() == 0)
     known_.usual = rigid;
   else
     for (const auto& [i, unused] : seen) any_of_both(known_.usual, determined_at(i, compliance));
   usual_[first] = known_.usual;
+  std::set<std::string>& open = open_cables_[first];
+  for (std::size_t k = 0; k < cables.size(); ++k)
+    if (known_.usual[kept + k] == 0 && !cables[k].empty()) open.insert(cables[k]);
 }
 
 bool ForceUniqueness::all_by_rigid_rods(std::size_t state) const {
@@ -182,7 +186,10 @@ void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness
     if (std::vector<double>* const column =
             values_of(d, drive.name() + (drive.angle() ? ".torque_unique" : ".force_unique")))
       for (std::size_t i = 0; i < column->size(); ++i)
-        (*column)[i] = drive.unique(trajectory.model(i), open[i] ? none : uniqueness.at(i)) ? 1.0 : 0.0;
+        (*column)[i] = drive.unique(trajectory.model(i), open[i] ? none : uniqueness.at(i)) &&
+                               uniqueness.unique_without_row(i, drive.name())
+                           ? 1.0
+                           : 0.0;
 }
 
 PeakForce peak_rod_force(const Diagnostics& d, Pull pull) {

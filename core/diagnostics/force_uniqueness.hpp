@@ -15,6 +15,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@
 
 namespace unfurl {
 
-// Per kept row of a model, at poses that are not singular, 1: determined. Empty: nothing is known yet.
+// Per kept row of a model and of what else rests, at poses that are not singular, 1: determined. Empty:
+// nothing is known yet.
 struct KnownUniqueness {
   std::vector<char> rigidly, usual;  // by rigid rods alone; where rods share by their moduli
   std::vector<char> rests = {};      // where of friction and stops this rests (RestingRows)
@@ -40,14 +42,19 @@ class ForceUniqueness {
   // its end where that is the end of a window only and the run goes on.
   ForceUniqueness(const Simulation& run, const KnownUniqueness& before, bool goes_on);
 
-  // 1: unique, per kept row of the model that the state belongs to. At a singular pose without redundancy the
-  // forces that are carried over as the limit along the motion (StepReport::singular_event) stay unique.
+  // 1: unique, per kept row of the model that the state belongs to, and behind these of what rests. At  a
+  // singular pose without redundancy the forces that are carried over as the limit along the motion
+  // (StepReport::singular_event) stay unique.
   const std::vector<char>& at(std::size_t state) const;
   // False: a singular pose, where more than usual is open.
   bool regular(std::size_t state) const { return singular_.count(state) == 0; }
   // What rests at the state, as RestingRows::at says it.
   const std::vector<char>& rests(std::size_t state) const {
     return std::prev(rests_.upper_bound(state))->second;
+  }
+  // Is the force of this cable, taut as it may be without a row?
+  bool unique_without_row(std::size_t state, const std::string& cable) const {
+    return !std::prev(open_cables_.upper_bound(state))->second.contains(cable);
   }
   // True: rigid rods determine every force of the state's model, whatever moduli they have.
   bool all_by_rigid_rods(std::size_t state) const;
@@ -63,6 +70,7 @@ class ForceUniqueness {
   // By the first state of those of a model in which the same rests.
   std::map<std::size_t, std::vector<char>> usual_, rests_;
   std::map<std::size_t, bool> rigidly_;
+  std::map<std::size_t, std::set<std::string>> open_cables_;
   std::map<std::size_t, std::vector<char>> singular_;
 };
 

@@ -81,14 +81,22 @@ std::vector<char> unique_supports(const Trajectory& trajectory, std::size_t i, b
   const RestingRows resting(model);
   const SparseRows constraints = model.system.all_jacobian(q), G = resting.behind(constraints, q, rests);
   const VectorXd compliance = shared ? RestingRows::behind(all_compliances(model), G.rows()) : VectorXd();
+  // With what keeps a support in the plane of a flat structure: there it gives nothing, but to be chosen.
+  const std::vector<int> nodes = supports(trajectory.structure());
+  const std::vector<int>& sources = model.system.all_sources();
   VectorXd of_support = VectorXd::Zero(G.rows());
-  of_support.head(constraints.rows()) = rows_of_supports(model.structure, model.system.all_sources());
+  of_support.head(constraints.rows()) = rows_of_supports(model.structure, sources);
+  for (std::size_t r = 0; r < sources.size(); ++r)
+    if (sources[r] >= 0)
+      if (const Constraint& c = model.structure.constraints[static_cast<std::size_t>(sources[r])];
+          c.symmetry && c.nodes.size() == 1 && std::ranges::binary_search(nodes, c.nodes.front()))
+        of_support[static_cast<Index>(r)] = 1.0;
   Index row = constraints.rows();
   for (const Measure& measure : resting.measures(rests))
     of_support[row++] = tells_place(model.structure, measure) ? 1.0 : 0.0;
   const std::vector<char> sums = determined_sums(G, of_support, compliance);
   std::vector<char> unique;
-  for (const int node : supports(trajectory.structure()))
+  for (const int node : nodes)
     unique.push_back(std::all_of(sums.begin() + 3 * node, sums.begin() + 3 * node + 3, std::identity()));
   return unique;
 }

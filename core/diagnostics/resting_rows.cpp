@@ -14,6 +14,7 @@ RestingRows::RestingRows(const Model& model)
     if (force.kind == "friction" && (force.holding > 0 || PinLoads::arm(force) > 0))
       frictions_.push_back(
           {force.measure, MeasureFunction(force.measure, model.structure.deployment), force.slip != 0});
+  for (std::size_t i = 0; i < stops_.size(); ++i) held_.push_back(stops_.is_held(i, model.structure));
 }
 
 std::vector<char> RestingRows::at(const State& state, double step) const {
@@ -33,7 +34,7 @@ std::vector<char> RestingRows::at(const State& state, double step) const {
   for (std::size_t i = 0; i < stops_.size(); ++i) {
     double rate = 0;
     const double gap = stops_.gap(i, state, q, v, rate), zero = drifted * stops_.touching(stops_[i].function);
-    rests[frictions_.size() + i] = !stops_[i].reeled && gap <= zero && std::abs(rate) * step <= zero;
+    rests[frictions_.size() + i] = !held_[i] && gap <= zero && std::abs(rate) * step <= zero;
   }
   return rests;
 }
@@ -72,6 +73,16 @@ VectorXd RestingRows::behind(const VectorXd& compliance, Index rows) {
   VectorXd all = VectorXd::Zero(rows);
   all.head(compliance.size()) = compliance;
   return all;
+}
+
+std::vector<std::string> RestingRows::cables(const std::vector<char>& rests) const {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < rests.size(); ++i) {
+    if (!rests[i]) continue;
+    const bool cable = i >= frictions_.size() && stops_[i - frictions_.size()].reeled;
+    out.push_back(cable ? stops_[i - frictions_.size()].name : "");
+  }
+  return out;
 }
 
 std::vector<Measure> RestingRows::measures(const std::vector<char>& rests) const {

@@ -2,6 +2,7 @@
 // What may hold a structure at rest beside its constraints, and what that leaves undetermined.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/simulate/stops.hpp"
@@ -9,10 +10,10 @@
 
 namespace unfurl {
 
-// Friction and stops of a model. At a state some of them rest: friction that does not move, be it held by a
-// row of the model, by what others hold or not at all, and stops that are touched. Each may then bear a force
-// along its measure. The model has rows for an independent subset, which is one choice where there are
-// others.
+// Friction, stops and inextensible cables of a model. At a state some of them rest: friction that does not
+// move, be it held by a row of the model, by what others hold or not at all, and stops that are touched and
+// cables that are taut without a row. Each may then bear a force along its measure. The model has rows for an
+// independent subset, which is one choice where there are others.
 class RestingRows {
  public:
   explicit RestingRows(const Model& model);
@@ -25,7 +26,8 @@ class RestingRows {
   SparseRows behind(const SparseRows& G, const ConstVec& q, const std::vector<char>& rests) const;
   // Compliances of the rows of such a G before it had those, and 0 of these; none stay none.
   static VectorXd behind(const VectorXd& compliance, Index rows);
-  // By added row.
+  // By added row; the names of cables, empty for all else.
+  std::vector<std::string> cables(const std::vector<char>& rests) const;
   std::vector<Measure> measures(const std::vector<char>& rests) const;
 
  private:
@@ -42,6 +44,7 @@ class RestingRows {
   bool led_;  // by a drive, which may stop it: else what slips is at rest for a moment only
   std::vector<Friction> frictions_;
   Stops stops_;
+  std::vector<char> held_;  // of the stops
 };
 
 }  // namespace unfurl

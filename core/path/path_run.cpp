@@ -340,9 +340,10 @@ class PathRun {
       sides_.set_active(i, true);
       held_ = i;
       held_slope_ = slope;
+      const bool from_start = run_.trajectory.size() == 1 && motion_.v() == 0;
       motion_.set_speed(0);
       resting_ = true;
-      const double taken = change_model(sides_.model(*base_));
+      const double taken = change_model(sides_.model(*base_), from_start);
       Event rests = sides_.events(i, motion_.t()).front();
       rests.kind = "contact";
       add_event(std::move(rests), taken);

@@ -148,7 +148,7 @@ Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std
     system.jacobian(q, G, scratch);
     scale_rows(G);
     const VectorXd values = singular_values(MatrixXd(G));
-    rank = std::max(rank, Index((values.array() > no_rank * values[0]).count()));
+    if (values.size() > 0) rank = std::max(rank, Index((values.array() > no_rank * values[0]).count()));
   }
   return G.rows() - rank;
 }
@@ -338,6 +338,7 @@ std::vector<Event> find_singular_poses(const Trajectory& trajectory, const std::
       ++last;
     const Index size = std::max(system.constraints(), system.solved_coordinates());
     if (last < first + 2 || system.constraints() == 0 || size > max_singular_size) continue;
+    if (system.solved_coordinates() == 0) continue;  // nothing can move
     DipSearch(trajectory, first, last).run(found, cancelled);
   }
   return found;

@@ -107,6 +107,12 @@ void Stops::hold(const std::set<std::size_t>& held, Structure& structure) const 
   }
 }
 
+bool Stops::is_held(std::size_t i, const Structure& structure) const {
+  const std::string name = held_name(stops_[i]);
+  return std::ranges::any_of(structure.constraints,
+                             [&](const Constraint& c) { return c.kind == "measure" && c.name == name; });
+}
+
 double Stops::push(std::size_t i, const Model& model, const std::set<std::size_t>& held,
                    const State& state) const {
   const auto behind = std::distance(held.find(i), held.end());

@@ -55,7 +55,7 @@ void note_idle_sections(const CustomSpec& spec, Structure& structure) {
     structure.notes.push_back(std::string(key) + " of rod " + structure.rods[first].name + others +
                               " does nothing without a youngs_modulus and an area");
   };
-  note("strength", [](const CustomRod& rod) { return !std::isnan(rod.strength); });
+  note("strength", [](const CustomRod& rod) { return std::isfinite(rod.strength); });
   note("second_moment", [](const CustomRod& rod) { return rod.second_moment > 0.0; });
 }
 

@@ -186,6 +186,26 @@ TEST_CASE("a plane that holds a node against a spring beside it bears what the s
   CHECK((reaction(d, "B", 0) - Vec3(0, -100 * (0.8 - 0.5), 0)).norm() < 1e-10);
 }
 
+// What keeps a support in its plane gives nothing there, and cancels what a fixed node could give against it.
+TEST_CASE("a support of a flat structure is unique, in the plane of all nodes or not") {
+  const std::string bob = node("B", Vec3(1, 0, 0), "mass = 1") + rod("A", "B", "mass = 1");
+  const auto plane = [](const char* nodes) {
+    return "[[constraints]]\nkind = 'plane'\nnodes = ['" + std::string(nodes) + "']\nnormal = [0, 1, 0]\n";
+  };
+  const std::string free = node("A", Vec3(0, 0, 0), ""), fixed = node("A", Vec3(0, 0, 0), "fixed = true");
+  const std::string held = "[[constraints]]\nkind = 'fixed'\nnodes = ['A']\n",
+                    line = "[[constraints]]\nkind = 'line'\nnodes = ['A']\ndirection = [1, 0, 0]\n";
+  for (const std::string& scene : {fixed + bob + plane("*"), fixed + bob + plane("B"),
+                                   free + bob + held + plane("*"), free + bob + line + plane("*")}) {
+    const Diagnostics d = diagnose(run_scene(custom + scene + run_for(0.05)));
+    INFO(scene);
+    for (std::size_t i = 0; i < d.t.size(); ++i) {
+      CHECK(unique(d, "A", i));
+      CHECK(reaction(d, "A", i).y() == Approx(0).margin(1e-9));
+    }
+  }
+}
+
 TEST_CASE("planes that say that a structure is flat, and the rotor of a motor, are no supports") {
   const auto flat = [](const std::string& held, double y = 0) {
     return custom + node("O", Vec3(0, y, 0), "fixed = true") + node("A", Vec3(1, y, 0), "mass = 1") +

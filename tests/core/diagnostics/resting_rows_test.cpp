@@ -2,8 +2,11 @@
 // One freedom that several things hold at rest: how they share is nobody's to say.
 #include "core/diagnostics/resting_rows.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "core/path/path_run.hpp"
+#include "core/simulate/singular_poses.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -113,6 +116,93 @@ TEST_CASE(
     if (d.t[i] > 0.34) CHECK(d.at("motor.force_unique").values[i] == 0.0);
     if (d.t[i] > 0.34) CHECK(d.force_unique(static_cast<Index>(i), 1));
   }
+}
+
+// 1.1 kg hang from a point; their weight is what all that pulls gives together.
+TEST_CASE("taut cables side by side, or beside a rod, share as they like, one alone does not") {
+  const std::string hung = R"(
+[structure]
+kind = "custom"
+nodes = [{ name = "A", fixed = true, position = [0, 0, 0] }, { name = "B", mass = 1.1, position = [0, 0, -1] }]
+[[constraints]]
+kind = "cable"
+name = "one"
+nodes = ["A", "B"]
+[gravity]
+acceleration = [0, 0, -10]
+[solver]
+end_time = 0.2
+)";
+  const std::string two = "[[constraints]]\nkind = 'cable'\nname = 'two'\nnodes = ['A', 'B']\n";
+  const auto flags = [&](const std::string& text, const char* column) {
+    const Diagnostics d = diagnose(run_scene(text));
+    double least = 1, most = 0;
+    for (const double flag : d.at(column).values) least = std::min(least, flag), most = std::max(most, flag);
+    CHECK(least == most);
+    for (const double pull : d.at("one.force_N").values) CHECK(pull + 11 >= -1e-9);
+    CHECK(d.at("A.reaction_z_N").values.back() == Approx(11));
+    CHECK(d.at("A.reaction_unique").values.back() == 1.0);
+    return most;
+  };
+  CHECK(flags(hung, "one.force_unique") == 1.0);
+  CHECK(flags(hung + two, "one.force_unique") == 0.0);
+  CHECK(flags(hung + two, "two.force_unique") == 0.0);
+  CHECK(flags(hung + two + "length = 1.5\n", "one.force_unique") == 1.0);  // slack
+  CHECK(flags(hung + two + "length = 1.5\n", "two.force_unique") == 1.0);
+  const std::string rod = "[[structure.rods]]\nnodes = ['A', 'B']\nmass = 0\n";
+  CHECK(flags(hung + rod, "one.force_unique") == 0.0);
+  const Diagnostics d = diagnose(run_scene(hung + rod));
+  CHECK_FALSE(d.force_unique(2, 0));
+}
+
+// Load and stop act on the same node: nothing passes through the rod, at no time.
+TEST_CASE("what rests on a stop from the start has no row of the forces that it would have without") {
+  const std::string pushed = R"(
+[structure]
+kind = "custom"
+nodes = [{ name = "P1", position = [0, 0, 0], mass = 1 }, { name = "P2", position = [1, 0, 0], mass = 1 }]
+rods = [{ name = "rod", nodes = ["P1", "P2"], mass = 0 }]
+[[constraints]]
+kind = "line"
+nodes = ["P*"]
+direction = [1, 0, 0]
+[[constraints]]
+kind = "coordinate_stop"
+name = "stop"
+nodes = ["P2"]
+direction = [1, 0, 0]
+max = 1
+[[loads]]
+nodes = ["P2"]
+force = [100, 0, 0]
+[solver]
+end_time = 0.05
+)";
+  for (const char* model : {"full", "path"}) {
+    const Scene scene = read_scene_text(pushed, "s.toml", {});
+    const auto built = build_model(scene);
+    const Simulation run =
+        std::string(model) == "path" ? simulate_on_path(built, scene.solver) : simulate(built, scene.solver);
+    INFO(model);
+    const Diagnostics d = diagnose(run);
+    CHECK(run.trajectory.time(1) > 0);
+    CHECK(d.axial_force.cwiseAbs().maxCoeff() <= 1e-9);
+    REQUIRE(run.events.size() == 1);
+    CHECK(run.events[0].name == "rests on stop stop");
+    CHECK(d.at("P2.reaction_x_N").values.front() == Approx(-100));
+  }
+}
+
+TEST_CASE("a rod with a modulus between held nodes is a run without motion") {
+  const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{ name = "A", fixed = true, position = [0, 0, 0] }, { name = "B", fixed = true, position = [1, 0, 0] }]
+rods = [{ nodes = ["A", "B"], mass = 1, area = 1e-4, youngs_modulus = 1e10 }]
+)");
+  CHECK(run.trajectory.size() > 2);
+  CHECK(find_singular_poses(run.trajectory).empty());
+  CHECK(diagnose(run).axial_force.rows() > 0);
 }
 
 }  // namespace resting_rows_test
