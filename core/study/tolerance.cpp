@@ -43,8 +43,10 @@ double work_of(const Simulation& run) {
   return solves;
 }
 
-// Largest distance of a node at the times that both have, and of the deployed poses, which each locates at a
-// time of its own.
+// Largest distance of a node of a from b: at the times that both have, and at most so many others of a, to
+// which b is solved from its state before; where a structure deploys, also of the deployed poses, and of what
+// the fastest node goes in the time between both.
+constexpr std::size_t most_between = 100;
 double distance(const Simulation& a, const Simulation& b) {
   if (a.status == RunStatus::failed || b.status == RunStatus::failed || a.status != b.status)
     return std::numeric_limits<double>::infinity();
@@ -55,15 +57,32 @@ double distance(const Simulation& a, const Simulation& b) {
                          b.trajectory.node_positions(k).head(in_space));
   };
   double largest = 0;
+  std::vector<std::size_t> between;
   std::size_t k = 0;
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
     while (k < b.trajectory.size() && b.trajectory.time(k) < a.trajectory.time(i) - near) ++k;
     if (k == b.trajectory.size()) break;
-    if (b.trajectory.time(k) > a.trajectory.time(i) + near) continue;
-    largest = larger(largest, apart(i, k));
+    if (b.trajectory.time(k) > a.trajectory.time(i) + near)
+      between.push_back(i);
+    else
+      largest = larger(largest, apart(i, k));
   }
-  if (a.status == RunStatus::deployed)
-    largest = larger(largest, apart(a.trajectory.size() - 1, b.trajectory.size() - 1));
+  const std::size_t every = (between.size() + most_between - 1) / most_between;
+  for (std::size_t n = 0; n < between.size(); n += every) {
+    const double t = a.trajectory.time(between[n]);
+    const System& system = b.trajectory.model(b.trajectory.state_before(t)).system;
+    VectorXd q(system.coordinates());
+    system.expand(b.trajectory.state_at(t).z, q);
+    largest = larger(largest,
+                     node_distance(a.trajectory.node_positions(between[n]).head(in_space), q.head(in_space)));
+  }
+  if (a.status == RunStatus::deployed) {
+    const std::size_t last = a.trajectory.size() - 1;
+    const double late = std::abs(a.trajectory.end_time() - b.trajectory.end_time());
+    largest = larger(largest, apart(last, b.trajectory.size() - 1));
+    const VectorXd v = a.trajectory.node_velocities(last).head(in_space);
+    largest = larger(largest, late * node_distance(v, VectorXd::Zero(in_space)));
+  }
   return largest;
 }
 

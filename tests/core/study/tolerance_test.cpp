@@ -4,6 +4,7 @@
 #include <random>
 
 #include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/study/measured_run.hpp"
 #include "core/study/reference.hpp"
@@ -152,6 +153,68 @@ TEST_CASE("what a tolerance claims of blows, stops that let go and cables that s
     }
   }
   CHECK(kept > 20);
+}
+
+// What deploys early in its time has few steps before, and none that grids of other steps share; an error may
+// die between times that they do. The truth is seven stages with steps of 1/40, whose error is below 1e-10 of
+// the first one's.
+TEST_CASE(
+    "the error at every state of a run is what its tolerance claims, deployed after one step or thirty") {
+  const std::string dragged = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true},
+  {name = "A", position = [1, 0, 0.2], velocity = [0, 0.4, 0], mass = 0.5}, {name = "B", position = [1.6, 0, -0.3], mass = 0.5}]
+rods = [{nodes = ["O", "A"], mass = 1}, {nodes = ["A", "B"], mass = 0.4}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[[forces]]
+kind = "load_over_time"
+nodes = ["B"]
+force = [0, 400, 0]
+times = [0.3, 0.301, 0.302]
+values = [0, 1, 0]
+[[forces]]
+kind = "drag"
+nodes = ["A", "B"]
+damping = 200
+[solver]
+end_time = 2
+)";
+  const auto library = [](const char* name, double end_time) {
+    return read_scene_file(find_scene(name), {"solver.end_time=" + text_of(end_time)});
+  };
+  const std::vector<std::pair<Scene, std::vector<double>>> cases = {
+      {library("scissor_mast", 60), {1e-4, 1e-6}},
+      {library("scissor_mast", 8), {1e-6}},
+      {library("bricard", 6), {1e-5, 1e-9}},
+      {library("scissor_ring", 60), {1e-6}},
+      {read_scene_text(dragged, "s.toml", {}), {1e-5, 1e-9}}};
+  for (const auto& [scene, tolerances] : cases)
+    for (const double tolerance : tolerances) {
+      SolverOptions options = scene.solver;
+      options.model = "full";
+      options.tolerance = tolerance;
+      const auto model = build_model(scene);
+      const Simulation run = simulate_as_asked(model, options);
+      INFO(scene.title << " within " << tolerance << ", " << run.steps << " steps of " << run.options.stages
+                       << " stages");
+      REQUIRE(run.position_estimate <= tolerance);
+      options.tolerance = 0;
+      options.stages = 7;
+      options.step = std::min(run.options.step, run.trajectory.end_time()) / 40;
+      options.adaptive = false;
+      const Simulation truth = simulate(model, options);
+      double error = 0;
+      for (std::size_t i = 0; i < run.trajectory.size(); ++i)
+        if (run.trajectory.time(i) <= truth.trajectory.end_time())
+          error = std::max(error, node_distance(run.trajectory.positions(i),
+                                                truth.trajectory.positions_at(run.trajectory.time(i))));
+      CHECK(error <= tolerance);
+      CHECK(error <= 10 * run.position_estimate + 1e-12);
+      if (run.status == RunStatus::deployed)
+        CHECK(std::abs(run.trajectory.end_time() - truth.trajectory.end_time()) <= 10 * tolerance);
+    }
 }
 
 TEST_CASE("a tolerance ends in bounded time where it cannot be met") {
