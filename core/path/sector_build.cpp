@@ -165,6 +165,7 @@ class SectorBuilder {
     own.fold_sine = form(d.fold_sine);
     own.fold_cosine = form(d.fold_cosine);
     own.latches.clear();
+    own.parts.clear();
     if (d.measured) own.measure = measure(d.measure);
   }
 

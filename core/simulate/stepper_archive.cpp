@@ -50,6 +50,7 @@ void Stepper::Loop::archive(Archive& archive) {
   archive_models(archive);
   archive(last_touch_);
   archive(turning_back_);
+  archive(turned_);
   for (double* x : {&target_, &part_end_, &last_step_, &crowd_time_, &unwatched_until_, &margin_})
     archive(*x);
   for (bool* x : {&deployed_, &ended_, &regular_}) archive(*x);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A step of a run and the deployed pose.
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 
+#include "core/constraints/linear_rows.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/simulate/run_words.hpp"
 #include "core/simulate/stepper_loop.hpp"
 
 namespace unfurl {
@@ -67,9 +70,32 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
   return event || fail("the deployed pose was passed but its time could not be located");
 }
 
+// By how much the parts of a structure that is deployed on the mean are off that, as a share of its size.
+double Stepper::Loop::uneven(const State& event) {
+  const std::vector<LinearForm>& parts = deployment_.parts.empty() ? deployment_.latches : deployment_.parts;
+  if (parts.size() < 2) return 0.0;
+  system().expand(event.z, q_);
+  double most = 0.0;
+  for (const LinearForm& part : parts) most = std::max(most, std::abs(part(q_)));
+  return most / reference_length(base_->structure);
+}
+
 bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
+  constexpr double even = 1e-3;
   deployed_ = true;
   run_.events.push_back({.name = "deployed", .t = event.t, .kind = "deployed"});
+  const double off = uneven(event);
+  if (off > even) {
+    char share[32];
+    std::snprintf(share, sizeof share, "%.2g", 100 * off);
+    const std::string how = "is deployed on the mean alone: single parts are off by up to " +
+                            std::string(share) + " % of its size";
+    if (run_.options.at_deployed == "latch" && !latch_gives(base_->structure))
+      return fail("the structure " + how +
+                  ", and latches that close at once would move them there; deploy its parts alike, give the "
+                  "latches a stiffness, or take solver.at_deployed = \"stop\"");
+    run_.warnings.push_back("at t = " + seconds(event.t) + ": the structure " + how);
+  }
   if (run_.options.at_deployed == "pass") {
     if (!to.report.ok() || (!regular_ && std::abs(fold(to.state)) < margin_)) step_over(to, h);
     if (watched() && to.report.ok())

@@ -24,6 +24,7 @@
 #include "core/simulate/step_in_parts.hpp"
 #include "core/simulate/stepper.hpp"
 #include "core/simulate/time_grid.hpp"
+#include "core/simulate/turned_frame.hpp"
 #include "core/simulate/turning_back.hpp"
 
 namespace unfurl {
@@ -66,6 +67,7 @@ class Stepper::Loop {
         deployment_(run.trajectory.structure().deployment),
         sides_(run.trajectory.structure(), run.options),
         turning_back_(run.trajectory.structure()),
+        turned_(run.trajectory.structure()),
         start_(start),
         grid_(start, run.options, time_edges(run.trajectory.structure(), run.options.step)),
         last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {}
@@ -183,6 +185,8 @@ class Stepper::Loop {
       state.tension_error =
           state.tension_error.size() > 0 ? state.tension_error.cwiseMax(doubt).eval() : doubt;
     std::ranges::move(turning_back_.between(system(), now(), state), std::back_inserter(run_.warnings));
+    if (std::string told = turned_.at(system(), state); !told.empty())
+      run_.warnings.push_back(std::move(told));
     append(std::move(state), report);
     ++run_.steps;
   }
@@ -279,14 +283,28 @@ class Stepper::Loop {
     return apply(modes_after(in_base(now()), which));
   }
 
-  // Modes at the start of a run: nothing of that is an event but impacts. What cannot be ends it there.
+  // Stops that are touched from the start, none of which is approached then.
+  bool rests_from_start() {
+    bool any = false;
+    for (std::size_t i = 0; i < sides_.stops().size(); ++i) {
+      if (!sides_.touches(i, system(), now())) continue;
+      any = true;
+      if (sides_.stops().gap_rate(i, system(), now()) < -sides_.zero_rate(i)) return false;
+    }
+    return any;
+  }
+
+  // Modes at the start of a run: of that impacts are events, and what rests on a stop. What cannot be ends it
+  // there.
   void find_first_modes() try {
     sides_.find_laws(system(), now());
     sides_.touch(system(), now());
     ModeChange change{.state = now()};  // the base is the model at the start
-    if (sides_.any_friction()) change = modes_after(now());
+    if (sides_.any_friction() || rests_from_start()) change = modes_after(now());
     if (!change.failure.empty()) return ended_ = true, void(fail(change.failure));
     record(change);
+    for (const std::size_t i : change.turned)
+      if (sides_.is_stop(i)) std::ranges::copy(sides_.events(i, start_), std::back_inserter(run_.events));
     if (sides_.any_active()) set_model(sides_.model(*base_), change.state, false);
   } catch (const CannotFactorise& error) {
     ended_ = true, fail(error.what());
@@ -403,6 +421,7 @@ class Stepper::Loop {
   std::optional<State> locate(double h, double latest);
   bool arrives(const Probe& to);
   bool find_deployed(Probe& to, double h, std::optional<State>& event);
+  double uneven(const State& event);
   bool deployed(State& event, Probe& to, double h);
   bool latch();
   void step_over(Probe& to, double& h);
@@ -414,6 +433,7 @@ class Stepper::Loop {
   const Deployment& deployment_;
   OneSided sides_;
   TurningBack turning_back_;
+  TurnedFrame turned_;
   double start_;
   TimeGrid grid_;
   double target_ = 0, part_end_ = 0;  // of the present step, and of what is solved of it at once

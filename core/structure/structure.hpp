@@ -190,6 +190,9 @@ struct Deployment {
   // Zero when deployed; what latches hold. Empty: fold_sine is held. Where several parts can move on their
   // own in the deployed pose, each needs one.
   std::vector<LinearForm> latches = {};
+  // The same of parts that may be uneven in the deployed pose, where one latch holds them all; what is zero
+  // there [m].
+  std::vector<LinearForm> parts = {};
 
   // In place of a fold angle. Its angles with a sign count their turns (FollowedAngles, measure.hpp).
   bool measured = false;

@@ -73,6 +73,9 @@ void set_deployment(Structure& out, const HoopShape& s) {
       }
       d.fold_sine.nodes.push_back(first + bottom_hinge + level);
       d.fold_sine.coefficients.push_back(sign);
+      const Vec3 half = 0.5 * Vec3::UnitZ();
+      d.parts.push_back(
+          {{first + bottom_hinge + level, first + level, next + level}, {2 * half, -half, -half}, 0.0});
     }
   }
   d.initial_fold_angle = std::atan2(s.sine, s.cosine);
