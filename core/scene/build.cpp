@@ -17,6 +17,7 @@
 #include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/structures/family.hpp"
+#include "core/structures/rod_material.hpp"
 #include "core/system/assemble_elastic.hpp"
 #include "core/system/consistency.hpp"
 #include "core/system/fit_lengths.hpp"
@@ -375,6 +376,7 @@ Structure build_structure(const Scene& scene) {
     if (scene.surfaces[i].enabled)
       surface_nodes(scene.surfaces[i], "surfaces[" + std::to_string(i) + "].nodes", structure);
   note_idle_joints(structure);
+  note_pins_between(structure);
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   structure.notes.insert(structure.notes.end(), moves.begin(), moves.end());
   return structure;

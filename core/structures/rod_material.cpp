@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "core/structure/structure_error.hpp"
 #include "core/structures/segments.hpp"
@@ -149,6 +152,27 @@ void note_idle_material(Structure& structure, const RodMaterial& material) {
   };
   idle("strength", std::isfinite(material.strength));
   idle("section", material.section == "square");
+}
+
+void note_pins_between(Structure& structure) {
+  std::map<std::pair<int, int>, const Rod*> elastic;
+  for (const Rod& rod : structure.rods)
+    if (rod.elastic()) elastic[std::minmax(rod.a, rod.b)] = &rod;
+  std::set<const Rod*> pinned;
+  const auto look = [&](int a, int b) {
+    if (const auto it = elastic.find(std::minmax(a, b)); it != elastic.end()) pinned.insert(it->second);
+  };
+  for (const Constraint& c : structure.constraints) {  // a node as a point of a rod, or of two
+    if (c.kind != "relation" || elastic.empty()) continue;
+    if (c.nodes.size() == 3) look(c.nodes[1], c.nodes[2]);
+    if (c.nodes.size() == 4) look(c.nodes[0], c.nodes[1]), look(c.nodes[2], c.nodes[3]);
+  }
+  if (pinned.empty()) return;
+  structure.notes.push_back(
+      "stress, buckling and strength of " + std::to_string(pinned.size()) +
+      (pinned.size() == 1 ? " rod" : " rods") +
+      " with pins between the ends are those of the mean force along it: beside a pin it may be "
+      "twice as large (scissors); model such a rod as two in line to see it");
 }
 
 void give_material(Structure& structure, double area, const RodMaterial& material) {

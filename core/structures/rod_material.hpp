@@ -61,6 +61,9 @@ void add_length_errors(Structure& structure, const RodMaterial& material);
 // Notes what of the material does nothing because no rod is elastic.
 void note_idle_material(Structure& structure, const RodMaterial& material);
 
+// Notes that stress and margins of elastic rods with pins between their ends are those of their mean force.
+void note_pins_between(Structure& structure);
+
 // Gives every rod that has a mass this area [m^2] and material; cuts them into segments.
 void give_material(Structure& structure, double area, const RodMaterial& material);
 

@@ -48,10 +48,23 @@ TEST_CASE("a strength or section without a modulus does nothing, and is noted in
     }
 }
 
+// Of a scissor at 60 degrees under 1000 N one half of an arm bears 1750 N and the other one 250 N; its length
+// has one force, 1000 N.
+TEST_CASE("stress and margins of rods with pins between their ends are said to be those of their mean") {
+  const std::string pins = "stress, buckling and strength of ";
+  CHECK(notes_of("scissor_mast", {"structure.cells=2", "structure.youngs_modulus=7e10"}, pins + "4 rods") ==
+        1);
+  CHECK(notes_of("scissor_ring", {"structure.youngs_modulus=7e10"}, pins) == 1);
+  CHECK(notes_of("scissor_mast", {}, pins) == 0);
+  CHECK(notes_of("hoop6", {"structure.youngs_modulus=7e10"}, pins) == 0);
+}
+
 TEST_CASE("in a custom structure a rod's own strength without a modulus is noted with its name") {
   CHECK(notes_of_rods("strength = 1e8\n", "", "strength does nothing") == 1);
   CHECK(notes_of_rods("", ", strength = 1e8", "strength of rod A-B does nothing") == 1);
   CHECK(notes_of_rods("", ", strength = 1e8, youngs_modulus = 7e10", "strength") == 0);
+  CHECK(notes_of_rods("", ", strength = inf", "strength") ==
+        0);  // the default, as `unfurl new custom` has it
   CHECK(notes_of_rods("", ", second_moment = 1e-9", "second_moment of rod A-B does nothing") == 1);
 }
 
