@@ -105,11 +105,14 @@ void add_force(const SceneElement& e, ElementAdder& to) {
     to.structure.notes.push_back(
         problem_text({{}, e.key, "does nothing without a weight: gravity.acceleration is 0"}));
   for (Force& force : forces_on(e, kind.members, to.find)) {
+    const double begin = force.rest;
     try {
       kind.fill(e.values, force);
     } catch (const StructureError& error) {
       return to.find.problem(e, error.key, error.message);
     }
+    if (e.kind == "combination" && force.stiffness > 0)
+      note_long_way(e, "free_value", force.measure, begin, force.rest, to.structure);
     const double initial = force.rest;
     to.structure.forces.push_back(std::move(force));
     if (kind.kind == "motor") add_ghosts(to, e.values.real("inertia"), initial);

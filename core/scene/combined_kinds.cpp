@@ -302,11 +302,35 @@ void add_telescope(const SceneElement& e, ElementAdder& to) {
 }
 
 void add_combination(const SceneElement& e, ElementAdder& to) {
-  if (const auto measure = terms_of(e, to.find))
-    hold_sum(e, to, *measure, motion_of(e, to, *measure, to.find.initial(*measure)));
+  const auto measure = terms_of(e, to.find);
+  if (!measure) return;
+  const double initial = to.find.initial(*measure);
+  TimeFunction motion = motion_of(e, to, *measure, initial);
+  if (motion.kind == TimeFunction::Kind::smooth)
+    note_long_way(e, "to", *measure, initial, initial + motion.rise, to.structure);
+  hold_sum(e, to, *measure, std::move(motion));
 }
 
 }  // namespace
+
+void note_long_way(const SceneElement& e, const std::string& key, const Measure& measure, double initial,
+                   double target, Structure& structure) {
+  const bool sum = measure.kind == MeasureKind::combination;
+  if (sum && measure.terms.size() != 1) return;
+  const Measure& dihedral = sum ? measure.terms[0].measure : measure;
+  const double factor = sum ? measure.terms[0].coefficient : 1.0, begin = initial / factor,
+               end = target / factor;
+  if (dihedral.kind != MeasureKind::dihedral || !(std::abs(end - begin) > pi * (1 + 1e-9))) return;
+  std::ostringstream text;
+  text.precision(4);
+  text << "takes the dihedral from " << begin / radians_per_degree << " to " << end / radians_per_degree
+       << " deg, more than half a turn: dihedral A B C D is right-handed about the edge from B to C; name A "
+          "and "
+          "D the other way round to change its sign";
+  const auto place = e.places.find(key);
+  structure.notes.push_back(
+      problem_text({place == e.places.end() ? e.where : place->second, e.key + "." + key, text.str()}));
+}
 
 std::optional<Measure> path_of(const SceneElement& e, MemberFinder& find) {
   const std::vector<int> nodes = find.path(e);
@@ -396,6 +420,7 @@ void give_deployment(const Scene& scene, Structure& structure) {
     find.problem(e, "deployed", text.str());
   }
   find.throw_problems();
+  note_long_way(e, "deployed", d.measure, initial, d.deployed, structure);
 }
 
 const std::vector<ElementKind>& combined_kinds() {

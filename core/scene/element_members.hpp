@@ -73,6 +73,10 @@ struct ElementAdder {
 std::optional<Measure> path_of(const SceneElement& element, MemberFinder& find);
 std::optional<Measure> terms_of(const SceneElement& element, MemberFinder& find);
 std::optional<Measure> sum_of_terms(const SceneElement& element, MemberFinder& find, const std::string& key);
+// Notes that a single dihedral is to go from `initial` to `target`, which `key` gives, by more than half a
+// turn [rad, times its coefficient]: its sign may be another than was thought.
+void note_long_way(const SceneElement& element, const std::string& key, const Measure& measure,
+                   double initial, double target, Structure& structure);
 // An elastic cable, or one that is only paid out and drawn in.
 void add_cable(const SceneElement& element, ElementAdder& to);
 

@@ -48,10 +48,11 @@ Keys member_keys(Members members) {
     case Members::path:
       return {names_key("nodes", 0, "A, B, ...: in order")};
     case Members::terms:
-      return {
-          names_key("terms", 0,
-                    "sum of: \"C length A B\", \"C coordinate A along X Y Z\", \"C angle A HINGE B\" (also: "
-                    "about X Y Z), \"C dihedral A B C D\"; C: a number")};
+      return {names_key(
+          "terms", 0,
+          "sum of: \"C length A B\", \"C coordinate A along X Y Z\", \"C angle A HINGE B\" (also: "
+          "about X Y Z), \"C dihedral A B C D\"; C: a number; a dihedral goes from A to D, right-handed "
+          "about the edge from B to C: 0 folded together, 180 or -180 flat")};
     case Members::two_nodes:
       return {names_key("nodes", 2, "A, B")};
     case Members::three_nodes:

@@ -11,7 +11,7 @@ namespace combination_test {
 
 namespace {
 
-using testing::end_positions, testing::error_of, testing::run_scene;
+using testing::end_positions, testing::error_of, testing::model_of, testing::run_scene;
 
 // A ring that floats freely, one unit of which is driven harder than the others.
 const std::string ring = R"(
@@ -250,6 +250,51 @@ end_time = 2
   const VectorXd end = end_positions(run_scene(text));
   CHECK(end[9] == Approx(-std::sin(theta)).margin(1e-9));
   CHECK(end[10] == Approx(std::cos(theta)).margin(1e-9));
+}
+
+// Two panels that stand 90 degrees open about the x axis: L lies in -y of it, R in +z. About the edge from H0
+// to H1, which is +x, the half-plane of R follows that of L by atan2(x . (L x R), L . R) = atan2(-1, 0) = -90
+// deg.
+TEST_CASE("a dihedral has a sign, and one that is sent the long way round is noted") {
+  const std::string panels = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "H0", position = [0, 0, 0], fixed = true}, {name = "H1", position = [1, 0, 0], fixed = true},
+  {name = "L", position = [0.5, -1, 0], fixed = true}, {name = "R", position = [0.5, 0, 1], mass = 0.3}]
+rods = [{nodes = ["H0", "R"], mass = 1}, {nodes = ["H1", "R"], mass = 1}]
+[solver]
+step = 0.05
+)";
+  const auto notes = [&](const std::string& entry) {
+    std::string all;
+    const auto model = model_of(panels + entry);
+    for (const std::string& note : model->structure.notes) all += note + "\n";
+    return all;
+  };
+  const auto drive = [](const std::string& term, const std::string& to) {
+    return "[[constraints]]\nkind = 'combination'\nterms = ['" + term + "']\nmotion = 'smooth'\nto = " + to +
+           "\n";
+  };
+  const std::string long_way = notes(drive("dihedral L H0 H1 R", "180"));
+  CHECK(long_way.starts_with(
+      "s.toml:14:6: constraints[0].to: takes the dihedral from -90 to 180 deg, more than "));
+  CHECK(long_way.find("name A and D the other way round to change its sign") != std::string::npos);
+  CHECK(notes(drive("-2 dihedral L H0 H1 R", "-360")) == long_way);  // -2 times as much
+  for (const char* order : {"R H0 H1 L", "L H1 H0 R"})
+    CHECK(notes(drive(std::string("dihedral ") + order, "180")).empty());
+  for (const char* to : {"-180", "90", "-270"}) CHECK(notes(drive("dihedral L H0 H1 R", to)).empty());
+  // The short way to 180 lays the panel flat at +y without going through the other one at 0.
+  const Simulation run = run_scene(panels + "end_time = 1\n" + drive("dihedral R H0 H1 L", "180"));
+  CHECK((run.trajectory.node_positions(run.trajectory.size() - 1).tail<3>() - Vec3(0.5, 1, 0)).norm() < 1e-9);
+  const std::string spring = "[[forces]]\nkind = 'combination'\nterms = ['dihedral L H0 H1 R']\n";
+  CHECK(notes(spring + "stiffness = 2\nfree_value = 135\n")
+            .find("forces[0].free_value: takes the dihedral from -90 to 135") != std::string::npos);
+  CHECK(notes(spring + "stiffness = 2\nfree_value = 45\n").empty());
+  const std::string deployment = "[deployment]\nmeasure = 'dihedral L H0 H1 R'\n";
+  CHECK(notes(deployment + "deployed = 180\n")
+            .find("deployment.deployed: takes the dihedral from -90 to 180") != std::string::npos);
+  CHECK(notes(deployment + "deployed = -180\n").empty());
 }
 
 TEST_CASE("combinations that cannot be say what is wrong and where") {
