@@ -42,6 +42,12 @@ class Checker {
     return spec_.nodes[static_cast<std::size_t>(names_.find(node))].position;
   }
 
+  // A CSV file may name what no scene file could: there such a text is an expression.
+  void check_text(const char* table, std::size_t i, const char* key, const std::string& text) {
+    if (text.starts_with('='))
+      add(table, i, key, in_quotes(text) + " begins with =, as expressions do; give it another name");
+  }
+
   void check_nodes() {
     if (spec_.nodes.empty())
       problems_.push_back({"nodes", -1, "", "a custom structure needs nodes: [[structure.nodes]]"});
@@ -54,6 +60,7 @@ class Checker {
         add("nodes", i, "name",
             "there is already a node " + in_quotes(node.name) + ", entry " + std::to_string(first));
       }
+      check_text("nodes", i, "name", node.name);
       if (!node.position.allFinite()) add("nodes", i, "position", "must be finite");
       if (!node.velocity.allFinite()) add("nodes", i, "velocity", "must be finite");
       if (!(node.mass >= 0.0) || std::isinf(node.mass)) add("nodes", i, "mass", "must be >= 0 kg");
@@ -64,6 +71,8 @@ class Checker {
     std::unordered_map<std::string, std::size_t> seen;
     for (std::size_t i = 0; i < spec_.rods.size() && !full(); ++i) {
       const auto& rod = spec_.rods[i];
+      check_text("rods", i, "name", rod.name);
+      check_text("rods", i, "group", rod.group);
       check_rod_mass(rod, i);
       check_rod_length(rod, i);
       check_rod_material(rod, i);

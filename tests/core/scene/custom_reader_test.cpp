@@ -8,6 +8,7 @@
 
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
+#include "core/scene/write.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -180,6 +181,28 @@ TEST_CASE("mistakes in CSV files carry file and line") {
   CHECK(error("name,x,y,z,mass\nA,0,0,0,-1\n") ==
         dir + "n.csv:2:1: structure.nodes[0].mass: must be >= 0 kg; got -1");
   CHECK(error("name,x,y,z\n\xFF,0,0,0\n") == dir + "n.csv:2:1: not valid UTF-8");
+}
+
+// A scene has such texts worked out, so that the scene as run could not be read again, or would say "2" as 2.
+TEST_CASE("names and groups of CSV files that are expressions in a scene are refused where they stand") {
+  const Folder folder;
+  const std::string dir = folder.path.string() + "/";
+  const auto scene = folder.write("s.toml", head + "nodes_file = 'n.csv'\nrods_file = 'r.csv'\n");
+  const auto error = [&](const std::string& node, const std::string& rod, const std::string& group) {
+    folder.write("n.csv", "name,x,y,z\n" + node + ",0,0,0\nB,1,0,0\n");
+    folder.write("r.csv", "a,b,name,mass,group\n" + node + ",B," + rod + ",2," + group + "\n");
+    return file_error_of(scene);
+  };
+  const std::string why = " begins with =, as expressions do; give it another name";
+  for (const std::string text : {"=A", "=2", "=pi"}) {
+    CHECK(error(text, "r", "g") == dir + "n.csv:2:1: structure.nodes[0].name: '" + text + "'" + why);
+    CHECK(error("A", text, "g") == dir + "r.csv:2:1: structure.rods[0].name: '" + text + "'" + why);
+    CHECK(error("A", "r", text) == dir + "r.csv:2:1: structure.rods[0].group: '" + text + "'" + why);
+  }
+  CHECK(error("E=A", "r=", "{g}") == "");
+  const Scene read = read_scene_file(scene);
+  const std::string text = scene_text(read);
+  CHECK(scene_text(read_scene_text(text, "s.toml")) == text);
 }
 
 // What the table [[structure.rods]] refuses, a column of the same name refuses in the same words.
