@@ -10,6 +10,7 @@
 #include "app/panel/document/scene_entries.hpp"
 #include "app/panel/view/film_camera.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/scene/title.hpp"
 #include "render/image/png.hpp"
 
 namespace unfurl {
@@ -165,7 +166,7 @@ void LiveSession::describe() {
       for (const ParamEntry& entry : section.entries)
         if (section.entries.size() > 3) state_.folded.insert(entry.key);
   state_.title_row = {"title", "title", text_param("title", "", "of pictures and figures"),
-                      base.title_pattern.empty() ? base.title : base.title_pattern};
+                      base.title_pattern.empty() ? title_that_says(base.title) : base.title_pattern};
 }
 
 bool LiveSession::act() {

@@ -10,19 +10,22 @@
 namespace unfurl {
 namespace {
 
-// One place "{key}" of a title.
-struct Place {
-  std::size_t begin, end;  // of the braces and what is between
-  std::string key;
+// A piece of a title: a place "{key}", or what stands there itself.
+struct Piece {
+  std::size_t end;
+  std::string key, text;
 };
 
-std::optional<Place> next_place(const std::string& text, std::size_t from) {
-  for (std::size_t open = text.find('{', from); open != std::string::npos; open = text.find('{', open + 1)) {
-    const std::size_t close = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789", open + 1);
-    if (close != std::string::npos && text[close] == '}' && close > open + 1)
-      return Place{open, close + 1, text.substr(open + 1, close - open - 1)};
+// A brace that is doubled means itself; so does one around anything but a key.
+Piece piece_at(const std::string& text, std::size_t at) {
+  const char c = text[at];
+  if ((c == '{' || c == '}') && at + 1 < text.size() && text[at + 1] == c) return {at + 2, "", {c}};
+  if (c == '{') {
+    const std::size_t close = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789", at + 1);
+    if (close != std::string::npos && text[close] == '}' && close > at + 1)
+      return {close + 1, text.substr(at + 1, close - at - 1), ""};
   }
-  return std::nullopt;
+  return {at + 1, "", {c}};
 }
 
 std::string shortest(double x) {
@@ -116,30 +119,49 @@ std::string changes(const TomlTree& now, const TomlTree& before) {
 }  // namespace
 
 bool is_title_pattern(const std::string& title) {
-  return next_place(title, 0).has_value();
+  for (std::size_t at = 0; at < title.size();) {
+    const Piece piece = piece_at(title, at);
+    if (!piece.key.empty()) return true;
+    at = piece.end;
+  }
+  return false;
+}
+
+std::string title_that_says(const std::string& text) {
+  bool plain = true;
+  std::string doubled;
+  for (std::size_t at = 0; at < text.size();) {
+    const Piece piece = piece_at(text, at);
+    plain = plain && piece.end == at + 1;
+    for (; at < piece.end; ++at) doubled.append(text[at] == '{' || text[at] == '}' ? 2 : 1, text[at]);
+  }
+  return plain ? text : doubled;
 }
 
 std::string scene_title(const TomlTree& tree, const TomlTree& own, const std::string& name,
                         std::string* unknown) {
   const TomlTree *given = tree.find("title"), *before = own.find("title");
   if (!given || given->kind != TomlTree::Kind::text) return name;
-  std::string title = given->text;
-  if (!is_title_pattern(title)) {
-    const bool as_in_file = before && before->kind == TomlTree::Kind::text && before->text == title;
-    const std::string changed = as_in_file ? changes(structure_of(tree), structure_of(own)) : "";
-    return changed.empty() ? title : name + ": " + changed;
-  }
+  const std::string& pattern = given->text;
   const TomlTree& structure = structure_of(tree);
-  for (auto place = next_place(title, 0); place; place = next_place(title, place->begin)) {
-    const TomlTree* value = structure.find(place->key);
-    const bool first = place->begin == 0;
-    const auto text = value ? said(*value, first) : said_default(structure, place->key, first);
-    if (!text) {
-      if (unknown) *unknown = place->key;
-      return title;
+  if (!is_title_pattern(pattern)) {
+    const bool as_in_file = before && before->kind == TomlTree::Kind::text && before->text == pattern;
+    const std::string changed = as_in_file ? changes(structure, structure_of(own)) : "";
+    if (!changed.empty()) return name + ": " + changed;
+  }
+  std::string title;
+  for (std::size_t at = 0; at < pattern.size();) {
+    const Piece piece = piece_at(pattern, at);
+    if (piece.key.empty()) {
+      title += piece.text;
+    } else {
+      const TomlTree* value = structure.find(piece.key);
+      const auto text = value ? said(*value, at == 0) : said_default(structure, piece.key, at == 0);
+      if (!text && unknown) *unknown = piece.key;
+      if (!text) return pattern;
+      title += *text;
     }
-    title.replace(place->begin, place->end - place->begin, *text);
-    place->begin += text->size();
+    at = piece.end;
   }
   return title;
 }

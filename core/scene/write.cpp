@@ -8,6 +8,7 @@
 
 #include "core/scene/custom_reader.hpp"
 #include "core/scene/key_tables.hpp"
+#include "core/scene/title.hpp"
 #include "core/structures/family.hpp"
 
 namespace unfurl {
@@ -161,8 +162,8 @@ std::string toml_value(const ParamValue& value) {
 }
 
 std::string scene_text(const Scene& scene) {
-  std::string text =
-      line("title", toml_string(scene.title_pattern.empty() ? scene.title : scene.title_pattern)) +
+  std::string text = line("title", toml_string(scene.title_pattern.empty() ? title_that_says(scene.title)
+                                                                           : scene.title_pattern)) +
       structure_text(scene);
   text += "\n[gravity]\n" + line_of(gravity_params(), "acceleration", vec_text(scene.gravity));
   for (const auto& load : scene.loads)

@@ -71,6 +71,36 @@ TEST_CASE("a place in a title takes a key of the structure, its default too, and
   CHECK(written("{} and {units} of {a b} { {units}").title == "{} and nine of {a b} { nine");
 }
 
+TEST_CASE("a doubled brace is a brace") {
+  CHECK(written("{{units}} of {units}").title == "{units} of nine");
+  CHECK(written("{{{units}}} }} {{").title == "{nine} } {");
+  CHECK(written("{{units}}").title == "{units}");
+  CHECK(written("{{units}}").title_pattern.empty());
+  CHECK(written("{{units}}", {"structure.units=5"}).title == "mine: units = 5");  // it names no parameter
+}
+
+// A scene without a title is called by its file's name, which is no pattern whatever is in it.
+TEST_CASE("a file's name in braces survives writing and reading, and is no place of the title") {
+  const std::string hoop = "[structure]\nkind = 'hoop'\n";
+  for (const std::string name :
+       {"x{foo}", "r{units}", "{{units}}", "{units", "units}", "}{", "{{", "a{{{units}b}}", "{}", "{a b}"}) {
+    INFO(name);
+    const Scene scene = read_scene_text(hoop, name + ".toml");
+    REQUIRE(scene.title == name);
+    std::string text = scene_text(scene);
+    for (int generation = 0; generation < 3; ++generation) {
+      const Scene again = read_scene_text(text, "scene.toml");
+      CHECK(again.title == name);
+      CHECK(scene_text(again) == text);
+      text = scene_text(again);
+    }
+  }
+  // What says what was changed begins with that name, too.
+  const Scene changed = read_scene_text("title = 'Mine'\n" + hoop, "x{units}.toml", {"structure.units=8"});
+  CHECK(changed.title == "x{units}: units = 8");
+  CHECK(read_scene_text(scene_text(changed), "scene.toml").title == changed.title);
+}
+
 TEST_CASE("the scene as run keeps the title's places") {
   const Scene scene = written("{units}-bay ring", {"structure.units=5"});
   CHECK(scene.title == "Five-bay ring");
