@@ -19,12 +19,16 @@ std::string table_title(const KeyTable& table) {
   return title;
 }
 
-// While what it means something; "" where always.
+// While what it means something: "only with motion = rate or smooth", "only with stiffness given, or
+// tension_only = true"; "" where always.
 std::string condition_text(const ParamSpec& spec) {
-  if (spec.only_with.empty()) return "";
-  std::string text = "only with " + std::string(spec.only_with) + " = ";
-  for (std::size_t i = 0; i < spec.only_values.size(); ++i)
-    text += (i ? " or " : "") + std::string(spec.only_values[i]);
+  std::string text;
+  for (const ParamCondition& condition : spec.only) {
+    text += (text.empty() ? "only with " : ", or ") + std::string(condition.other);
+    text += condition.values.empty() ? " given" : " = ";
+    for (std::size_t i = 0; i < condition.values.size(); ++i)
+      text += (i ? " or " : "") + std::string(condition.values[i]);
+  }
   return text;
 }
 

@@ -193,7 +193,7 @@ const std::vector<ParamSpec>& friction_params() {
                    "up to which it sticks, at least kinetic; by default kinetic"),
         real_param("pin_friction", "", 0.0, 0.0, endless,
                    "of a hinge: besides, Coulomb's mu times pin_radius times the force of the pin"),
-        real_param("pin_radius", "m", 0.0, 0.0, endless, "of the hinge's pin"),
+        only_given("pin_friction", real_param("pin_radius", "m", 0.0, 0.0, endless, "of the hinge's pin")),
         vector_param("axis", "", {0, 0, 0},
                      "of the hinge: the angle then has a sign and counts any number of turns"),
         vector_param("direction", "", {0, 0, 0},

@@ -262,8 +262,9 @@ std::vector<ParamSpec> motor_own_params(std::string_view unit) {
                  turns ? "turns of the motor for one of the joint; negative: the other way"
                        : "turns of the motor for one of the drum"),
       positive_param("current_limit", "A", no_limit, "most that the motor takes; with torque_constant"),
-      positive_param("torque_constant", "N m/A", std::numeric_limits<double>::quiet_NaN(),
-                     "torque per ampere"),
+      only_given("current_limit",
+                 positive_param("torque_constant", "N m/A", std::numeric_limits<double>::quiet_NaN(),
+                                "torque per ampere")),
       choice_param("control", "voltage", {"voltage", "position", "rate"},
                    "voltage: a share of the full one; position, rate: a controller that follows the motion"),
       only_with(
@@ -277,7 +278,9 @@ std::vector<ParamSpec> motor_own_params(std::string_view unit) {
       only_with("control", {"position"},
                 real_param("derivative", turns ? "N m s/rad" : "N s/m", 0.0, 0.0, no_limit,
                            "effort per rate of the error"))};
-  for (ParamSpec& spec : motion_params(unit)) all.push_back(std::move(spec));
+  for (ParamSpec& spec : motion_params(unit))
+    all.push_back(spec.name == "motion" ? only_with("control", {"position", "rate"}, std::move(spec))
+                                        : std::move(spec));
   return all;
 }
 
@@ -306,7 +309,8 @@ const std::vector<ParamSpec>& winch_params() {
                                       "E A of an elastic cable; 0: it does not stretch"),
                            positive_param("length", "m", std::numeric_limits<double>::quiet_NaN(),
                                           "unstressed, at t = 0; by default the length of its path there"),
-                           real_param("damping", "N s/m", 0.0, 0.0, no_limit, "of an elastic cable, per m/s"),
+                           only_given("axial_stiffness", real_param("damping", "N s/m", 0.0, 0.0, no_limit,
+                                                                    "of an elastic cable, per m/s")),
                            pulley_friction_param(), pulley_creep_param()});
     return all;
   }();

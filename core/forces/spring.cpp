@@ -249,10 +249,12 @@ const std::vector<ParamSpec>& cable_params() {
                    "E A of an elastic cable, which pulls with E A (S / L - 1); 0: it does not stretch"),
         positive_param("length", "m", as_built,
                        "unstressed, at t = 0; by default the length of its path there"),
-        real_param("damping", "N s/m", 0.0, 0.0, infinity, "elastic: force per m/s of stretching"),
-        real_param("smoothing", "m", 0.0, 0.0, infinity,
-                   "elastic: it begins to pull over this much on both sides of its length, for nets of "
-                   "hundreds of cables; 0: at an event of its own"),
+        only_given("axial_stiffness", real_param("damping", "N s/m", 0.0, 0.0, infinity,
+                                                 "elastic: force per m/s of stretching")),
+        only_given("axial_stiffness",
+                   real_param("smoothing", "m", 0.0, 0.0, infinity,
+                              "elastic: it begins to pull over this much on both sides of its length, for "
+                              "nets of hundreds of cables; 0: at an event of its own")),
         pulley_friction_param(),
         pulley_creep_param()};
     for (ParamSpec& spec : motion_params("m")) all.push_back(std::move(spec));
@@ -272,14 +274,17 @@ void fill_cable(const ParamSet& values, Force& force) {
 }
 
 ParamSpec pulley_friction_param() {
-  return real_param("pulley_friction", "", 0.0, 0.0, infinity,
-                    "elastic: Coulomb's mu on all nodes between its ends; over a wrap angle beta tensions "
-                    "differ by exp(mu beta)");
+  return only_given("axial_stiffness",
+                    real_param("pulley_friction", "", 0.0, 0.0, infinity,
+                               "elastic: Coulomb's mu on all nodes between its ends; over a wrap angle beta "
+                               "tensions differ by exp(mu beta)"));
 }
 
 ParamSpec pulley_creep_param() {
-  return positive_param("pulley_creep", "m/s", 0.01,
-                        "over a node it rubs fully where it runs at least so fast; slower it creeps");
+  return only_given(
+      "pulley_friction",
+      positive_param("pulley_creep", "m/s", 0.01,
+                     "over a node it rubs fully where it runs at least so fast; slower it creeps"));
 }
 
 // Force::kinetic of a cable is mu, Force::holding the speed from which on it has all of that.
@@ -293,8 +298,8 @@ const std::vector<ParamSpec>& combination_params() {
       real_param("stiffness", "", 0.0, 0.0, infinity,
                  "N/m, or N m/rad where all terms are angles: of the sum"),
       real_param("damping", "", 0.0, 0.0, infinity, "of the sum, per its rate"),
-      real_param("free_value", "", as_built, -infinity, infinity,
-                 "of the sum without a force, m or deg; by default that at t = 0")};
+      only_given("stiffness", real_param("free_value", "", as_built, -infinity, infinity,
+                                         "of the sum without a force, m or deg; by default that at t = 0"))};
   return params;
 }
 
@@ -311,8 +316,10 @@ const std::vector<ParamSpec>& axial_spring_params() {
   static const std::vector<ParamSpec> params = {
       real_param("stiffness", "N/m", 0.0, 0.0, infinity, "force per metre of stretch"),
       real_param("damping", "N s/m", 0.0, 0.0, infinity, "force per m/s of stretching"),
-      real_param("free_length", "m", as_built, 0.0, infinity,
-                 "without force; by default the length at t = 0"),
+      // What only pulls is slack below it, a damper too.
+      only_with("tension_only", {"true"},
+                only_given("stiffness", real_param("free_length", "m", as_built, 0.0, infinity,
+                                                   "without force; by default the length at t = 0"))),
       boolean_param("tension_only", false, "a cable: pulls, never pushes")};
   return params;
 }
@@ -321,8 +328,9 @@ const std::vector<ParamSpec>& torsion_spring_params() {
   static const std::vector<ParamSpec> params = {
       real_param("stiffness", "N m/rad", 0.0, 0.0, infinity, "torque per radian"),
       real_param("damping", "N m s/rad", 0.0, 0.0, infinity, "torque per rad/s"),
-      real_param("free_angle", "deg", as_built, -infinity, infinity,
-                 "without torque, any number of turns away; by default the angle at t = 0"),
+      only_given("stiffness",
+                 real_param("free_angle", "deg", as_built, -infinity, infinity,
+                            "without torque, any number of turns away; by default the angle at t = 0")),
       vector_param(
           "axis", "", {0, 0, 0},
           "of the hinge: the angle then has a sign and counts any number of turns; none: in [0, 180]")};

@@ -131,6 +131,15 @@ void check_latches(const Scene& scene, Structure& structure) {
     if (force.kind == "latch") force.measure = structure.deployment.measure, force.slack = true;
 }
 
+// What happens in the deployed pose needs one.
+void note_idle_at_deployed(const Scene& scene, Structure& structure) {
+  const std::string key = "solver.at_deployed";
+  if (!structure.deployment.empty() || scene.solver.at_deployed == SolverOptions().at_deployed) return;
+  const auto place = scene.locations.find(key);
+  structure.notes.push_back(problem_text({place == scene.locations.end() ? SourceLocation() : place->second,
+                                          key, "does nothing: the structure has no deployed pose"}));
+}
+
 // The measure of a structure that has no fold angle, as [deployment] says.
 void add_deployment(const Scene& scene, Structure& structure) {
   if (scene.deployment.terms.empty()) return;
@@ -370,6 +379,7 @@ Structure build_structure(const Scene& scene) {
   find_jumps(scene, structure);
   add_deployment(scene, structure);
   check_latches(scene, structure);
+  note_idle_at_deployed(scene, structure);
   find_flat(structure, scene.solver.at_deployed == "latch");
   show_cables(structure);
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i)

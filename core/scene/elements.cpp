@@ -105,6 +105,23 @@ void read_members(TableReader& entry, Members members, SceneElement& element) {
                       : "must name one measure: " + std::string(members_text(members)));
 }
 
+// Which of axis and direction says something follows from what is measured.
+void warn_idle_directions(TableReader& entry, Members members, const SceneElement& element,
+                          SceneNotes& notes) {
+  if (members != Members::angle && members != Members::measure) return;
+  const auto given = [&](const char* key) {
+    return entry.has(key) &&
+           std::ranges::any_of(element.values.vector(key), [](double x) { return x != 0.0; });
+  };
+  const auto warn = [&](const char* key, const char* reason) {
+    notes.warnings.push_back({entry.places().at(key), entry.key(key), std::string("does nothing ") + reason});
+  };
+  const bool angle = element.fold_angle || !element.rods.empty() || element.nodes.size() == 3;
+  if (given("axis") && element.fold_angle) warn("axis", "with fold_angle = true");
+  if (given("axis") && !angle) warn("axis", "without an angle: one or two nodes have no hinge");
+  if (members == Members::measure && angle && given("direction")) warn("direction", "with an angle");
+}
+
 std::string made_name(const SceneElement& element) {
   std::string text = element.fold_angle ? "fold angle" : "";
   for (const auto* list : {&element.nodes, &element.rods})
@@ -183,9 +200,7 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
   entry.warn_idle(kind->params(), element.values);
   if (element.values.has("stiffness") && !entry.has("stiffness") && !entry.has("damping"))
     entry.problem("stiffness", "is missing, and so is damping: it would do nothing");
-  if (element.fold_angle && entry.has("axis") &&
-      std::ranges::any_of(element.values.vector("axis"), [](double x) { return x != 0.0; }))
-    notes.warnings.push_back({element.where, key + ".axis", "does nothing with fold_angle = true"});
+  warn_idle_directions(entry, kind->members, element, notes);
   entry.finish();
   element.name = head.text("name");
   element.places = entry.places();

@@ -49,8 +49,8 @@ std::vector<ParamSpec> stop_params(std::string_view unit) {
       real_param("restitution", "", 0.0, 0.0, 1.0, "rebound speed over approach speed; 0: no rebound");
   return {real_param("min", unit, as_built, -infinity, infinity, "lower limit; none by default"),
           real_param("max", unit, as_built, -infinity, infinity, "upper limit; none by default"), restitution,
-          real_param("rest_speed", unit == "m" ? "m/s" : "deg/s", 1e-3, 0.0, infinity,
-                     "rebounds slower than this rest on the stop")};
+          only_given("restitution", real_param("rest_speed", unit == "m" ? "m/s" : "deg/s", 1e-3, 0.0,
+                                               infinity, "rebounds slower than this rest on the stop"))};
 }
 const std::vector<ParamSpec>& length_stop_params() {
   return measured_once([] { return stop_params("m"); });
@@ -72,7 +72,8 @@ const std::vector<ParamSpec>& clearance_params() {
         required(positive_param("clearance", "m", 1e-4,
                                 "of the pin in its hole: the distance of the nodes at most")),
         real_param("restitution", "", 0.0, 0.0, 1.0, "rebound speed over approach speed; 0: no rebound"),
-        real_param("rest_speed", "m/s", 1e-3, 0.0, infinity, "rebounds slower than this rest on the rim")};
+        only_given("restitution", real_param("rest_speed", "m/s", 1e-3, 0.0, infinity,
+                                             "rebounds slower than this rest on the rim"))};
   });
 }
 

@@ -86,7 +86,9 @@ void read_surfaces(TableReader& root, Scene& scene, SceneNotes& notes) {
   for (const TomlTree* tree : root.tables("surfaces")) {
     TableReader entry(tree, "surfaces[" + std::to_string(scene.surfaces.size()) + "]", tree->where, notes);
     std::vector<std::string> nodes = entry.names("nodes");
-    SceneSurface surface = scene_surface(entry.read(surface_params()));
+    const ParamSet values = entry.read(surface_params());
+    entry.warn_idle(surface_params(), values);
+    SceneSurface surface = scene_surface(values);
     surface.nodes = std::move(nodes);
     surface.where = tree->find("nodes") ? tree->find("nodes")->where : tree->where;
     entry.finish();

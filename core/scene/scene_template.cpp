@@ -24,16 +24,6 @@ const KeyTable& table_named(std::string_view name) {
   return *find_key_tables(name).front();
 }
 
-// Whether a key means something while the others of its table have their defaults.
-bool in_force(const ParamSpec& spec, const std::vector<ParamSpec>& keys) {
-  if (spec.only_with.empty()) return true;
-  for (const ParamSpec& other : keys)
-    if (other.name == spec.only_with)
-      for (const auto& value : spec.only_values)
-        if (default_text(other) == value) return true;
-  return false;
-}
-
 // Keys that a scene leaves out rather than give their default: it has no value that could be written.
 bool writable(const ParamSpec& spec) {
   if (const auto* x = std::get_if<double>(&spec.fallback)) return !std::isnan(*x);
@@ -72,9 +62,10 @@ struct Given {
 
 std::string table_lines(const KeyTable& table, const std::vector<Given>& given) {
   std::string text = "\n" + comment(table.help) + table.header + "\n";
+  const ParamSet defaults(table.keys);
   for (const ParamSpec& spec : table.keys) {
     std::string value = writable(spec) ? toml_value(spec.fallback) : placeholder(spec);
-    bool active = writable(spec) && in_force(spec, table.keys);
+    bool active = writable(spec) && means_something(spec, table.keys, defaults);
     for (const Given& own : given)
       if (own.key == spec.name) {
         active = !own.value.empty();

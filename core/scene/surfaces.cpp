@@ -35,9 +35,12 @@ const std::vector<ParamSpec>& surface_params() {
   static const std::vector<ParamSpec> params = {
       choice_param("kind", fallback.kind, kind_names(), "what it is made of; unfurl list surfaces"),
       choice_param("shape", fallback.shape, {"flat", "paraboloid"}, "what is spanned between its nodes"),
-      real_param("focal_ratio", "", fallback.focal_ratio, 0.1, 100,
-                 "of a paraboloid: focal length over diameter of the ring"),
-      integer_param("cells", fallback.cells, 1, 200, "of a net or a panel, from edge to edge"),
+      only_with("kind", {"paraboloid"},
+                only_with("shape", {"paraboloid"},
+                          real_param("focal_ratio", "", fallback.focal_ratio, 0.1, 100,
+                                     "of a paraboloid: focal length over diameter of the ring"))),
+      only_with("kind", {"mesh", "net", "solar_panel", "paraboloid"},
+                integer_param("cells", fallback.cells, 1, 200, "of a net or a panel, from edge to edge")),
       real_param("opacity", "", fallback.opacity, 0, 1,
                  "share of the light that it keeps; 0: the kind's own"),
       boolean_param("enabled", fallback.enabled, "false: as if it were not there")};

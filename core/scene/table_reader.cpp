@@ -189,15 +189,13 @@ std::vector<const TomlTree*> TableReader::tables(std::string_view name) {
 
 void TableReader::warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values, Idle which) {
   for (const ParamSpec& spec : specs) {
-    if (!has(spec.name) || means_something(spec, values)) continue;
+    if (!has(spec.name)) continue;
+    const std::string reason = idle_reason(spec, specs, values);
+    if (reason.empty()) continue;
     if (!overridden(*table_->find(spec.name)) &&
         (which == Idle::from_command_line || same_value(values.value(spec.name), spec.fallback)))
       continue;
-    const std::string other(spec.only_with);
-    std::string text = "does nothing with " + other + " = ";
-    const bool* on = std::get_if<bool>(&values.value(other));
-    text += !on ? in_quotes(values.text(other)) : *on ? "true" : "false";
-    notes_.warnings.push_back({table_->find(spec.name)->where, key(spec.name), text});
+    notes_.warnings.push_back({table_->find(spec.name)->where, key(spec.name), "does nothing " + reason});
   }
 }
 

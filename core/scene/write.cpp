@@ -97,7 +97,7 @@ std::string element_text(std::string_view table, const SceneElement& element, co
   if (element.fold_angle) text += line("fold_angle", "true");
   for (const auto& spec : kind.params()) {
     const ParamValue& value = element.values.value(spec.name);
-    if (!worth_writing(value) || !means_something(spec, element.values)) continue;
+    if (!worth_writing(value) || !means_something(spec, kind.params(), element.values)) continue;
     text += line(spec.name, toml_value(value), spec.unit);
   }
   return text;
@@ -164,7 +164,7 @@ std::string toml_value(const ParamValue& value) {
 std::string scene_text(const Scene& scene) {
   std::string text = line("title", toml_string(scene.title_pattern.empty() ? title_that_says(scene.title)
                                                                            : scene.title_pattern)) +
-      structure_text(scene);
+                     structure_text(scene);
   text += "\n[gravity]\n" + line_of(gravity_params(), "acceleration", vec_text(scene.gravity));
   for (const auto& load : scene.loads)
     text += "\n[[loads]]\n" + (load.enabled ? "" : line("enabled", "false")) +

@@ -158,8 +158,9 @@ const std::vector<ParamSpec>& cable_ring_params() {
       below_max(real_param("deployed_angle", "deg", 0.0, 0.0, 90.0, "of the longerons when deployed")),
       real_param("cable_rate", "m/s", 0.5, 0.0, std::numeric_limits<double>::infinity(),
                  "at which the cable through the diagonals is drawn in; 0: it is held"),
-      real_param("cable_ramp", "s", 2.0, 0.0, std::numeric_limits<double>::infinity(),
-                 "how long the cable takes to reach that"),
+      only_given("cable_rate",
+                 real_param("cable_ramp", "s", 2.0, 0.0, std::numeric_limits<double>::infinity(),
+                            "how long the cable takes to reach that")),
       real_param("diagonal_mass", "kg", 0.1, 0.0, std::numeric_limits<double>::infinity(),
                  "of a telescoping diagonal, shared by the corners of its bay"),
       real_param(

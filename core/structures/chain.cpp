@@ -79,8 +79,10 @@ const std::vector<ParamSpec>& chain_params() {
       density_param(),
       section_area_param(1e-4),
       choice_param("shape", "catenary", {"straight", "catenary"}, "shape at t = 0"),
-      real_param("angle", "deg", 0.0, -180.0, 180.0, "straight: angle from the downward vertical"),
-      positive_param("span", "m", 1.0, "catenary: distance of the chain's ends"),
+      only_with("shape", {"straight"},
+                real_param("angle", "deg", 0.0, -180.0, 180.0, "straight: angle from the downward vertical")),
+      only_with("shape", {"catenary"},
+                positive_param("span", "m", 1.0, "catenary: distance of the chain's ends")),
       choice_param("held", "start", {"none", "start", "both"}, "which ends are held in place"),
   };
   return params;

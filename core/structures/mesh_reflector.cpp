@@ -224,6 +224,10 @@ class NetBuilder {
 
 constexpr double no_end = std::numeric_limits<double>::infinity();
 
+ParamSpec of_nets(ParamSpec spec) {
+  return only_with("nets", {"true"}, std::move(spec));
+}
+
 }  // namespace
 
 const std::vector<ParamSpec>& mesh_reflector_params() {
@@ -238,8 +242,8 @@ const std::vector<ParamSpec>& mesh_reflector_params() {
       inside(real_param("fold_angle", "deg", 80.0, 0.0, 90.0, "of the rim at t = 0; 0 is fully deployed")),
       only_with("hoop", {"cable_ring"},
                 real_param("cable_rate", "m/s", 0.5, 0.0, no_end, "at which the rim's cable is drawn in")),
-      only_with("hoop", {"cable_ring"},
-                real_param("cable_ramp", "s", 2.0, 0.0, no_end, "how long the cable takes to reach that")),
+      only_given("cable_rate",
+                 real_param("cable_ramp", "s", 2.0, 0.0, no_end, "how long the cable takes to reach that")),
       only_with(
           "hoop", {"cable_ring"},
           real_param("joint_damping", "N m s/rad", 2.0, 0.0, no_end, "of every longeron at its battens")),
@@ -250,16 +254,19 @@ const std::vector<ParamSpec>& mesh_reflector_params() {
       only_with("hoop", {"hoop"},
                 real_param("hinge_force", "N", 20.0, -1e12, 1e12,
                            "-f along z on each bottom hinge, +f on each top hinge")),
-      positive_param("focal_length", "m", 6.0, "of the paraboloid that the front net is to take"),
+      of_nets(positive_param("focal_length", "m", 6.0, "of the paraboloid that the front net is to take")),
       boolean_param("nets", true, "front and rear net with their ties"),
-      integer_param("net_rings", 2, 1, 200, "rings of triangles from the centre of a net to its edge"),
-      positive_param("force_density", "N/m", 0.5, "force of the nets' members per length, when deployed"),
-      positive_param("edge_density", "", 10.0, "times as much in the members of the edge"),
-      positive_param("net_stiffness", "N", 2e3, "E A of a member of a net or a tie"),
-      positive_param("net_mass", "kg/m", 1e-2, "mass of members and ties per length"),
-      real_param("net_damping", "N s/m", 2.0, 0.0, no_end, "force of a member per m/s of stretching"),
-      positive_param("smoothing", "m", 1e-3,
-                     "a member begins to pull over this much on both sides of its length"),
+      of_nets(
+          integer_param("net_rings", 2, 1, 200, "rings of triangles from the centre of a net to its edge")),
+      of_nets(positive_param("force_density", "N/m", 0.5,
+                             "force of the nets' members per length, when deployed")),
+      of_nets(positive_param("edge_density", "", 10.0, "times as much in the members of the edge")),
+      of_nets(positive_param("net_stiffness", "N", 2e3, "E A of a member of a net or a tie")),
+      of_nets(positive_param("net_mass", "kg/m", 1e-2, "mass of members and ties per length")),
+      of_nets(
+          real_param("net_damping", "N s/m", 2.0, 0.0, no_end, "force of a member per m/s of stretching")),
+      of_nets(positive_param("smoothing", "m", 1e-3,
+                             "a member begins to pull over this much on both sides of its length")),
       choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"),
   };
   return params;

@@ -56,7 +56,8 @@ const std::vector<ParamSpec>& rod_material_params() {
                     "that rods with a youngs_modulus are cut into, to bend between their ends"),
       real_param("length_error", "m", 0.0, 0.0, unbounded,
                  "of the rods as they are made, standard deviation; elastic rods are joined all the same"),
-      integer_param("error_seed", 1, 0, 1000000000, "of the errors: another number, other errors"),
+      only_given("length_error", integer_param("error_seed", 1, 0, 1000000000,
+                                               "of the errors: another number, other errors")),
   };
   return params;
 }
@@ -131,10 +132,7 @@ double normal(std::uint64_t seed, std::uint64_t index) {
 }  // namespace
 
 void add_length_errors(Structure& structure, const RodMaterial& material) {
-  if (material.length_error == 0) {
-    if (material.error_seed != 1) structure.notes.emplace_back("error_seed does nothing: length_error is 0");
-    return;
-  }
+  if (material.length_error == 0) return;
   if (structure.sectors > 1 || structure.node_copies.size() != structure.nodes.size())
     throw StructureError("length_error",
                          "errors of length break the symmetry of a sector model; set structure.model to "
@@ -152,6 +150,7 @@ void note_idle_material(Structure& structure, const RodMaterial& material) {
   };
   idle("strength", std::isfinite(material.strength));
   idle("section", material.section == "square");
+  idle("segments", material.segments > 1);
 }
 
 void note_pins_between(Structure& structure) {

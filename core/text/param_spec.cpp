@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/text/nearest_name.hpp"
+
 namespace unfurl {
 
 namespace {
@@ -171,9 +173,12 @@ ParamSpec text_param(std::string_view name, std::string_view fallback, std::stri
 }
 
 ParamSpec only_with(std::string_view other, std::vector<std::string_view> values, ParamSpec spec) {
-  spec.only_with = other;
-  spec.only_values = std::move(values);
+  spec.only.push_back({other, std::move(values)});
   return spec;
+}
+
+ParamSpec only_given(std::string_view other, ParamSpec spec) {
+  return only_with(other, {}, std::move(spec));
 }
 
 ParamSpec required(ParamSpec spec) {
@@ -286,12 +291,58 @@ const std::vector<double>& ParamSet::vector(std::string_view name) const {
   return get<std::vector<double>>(value(name), name);
 }
 
-bool means_something(const ParamSpec& spec, const ParamSet& values) {
-  if (spec.only_with.empty() || !values.has(spec.only_with)) return true;
-  const ParamValue& other = values.value(spec.only_with);
+bool is_met(const ParamCondition& condition, const ParamValue& other) {
+  if (condition.values.empty()) {
+    const auto* x = std::get_if<double>(&other);
+    const auto* i = std::get_if<long>(&other);
+    return x ? std::isfinite(*x) && *x != 0 : i && *i != 0;
+  }
   const auto* on = std::get_if<bool>(&other);
   const std::string_view now = on ? (*on ? "true" : "false") : std::string_view(std::get<std::string>(other));
-  return std::ranges::find(spec.only_values, now) != spec.only_values.end();
+  return std::ranges::find(condition.values, now) != condition.values.end();
+}
+
+namespace {
+
+// What is in the way of each of the conditions; nothing where one of them is met.
+std::vector<std::string> reasons_against(const ParamSpec& spec, const std::vector<ParamSpec>& specs,
+                                         const ParamSet& values) {
+  std::vector<std::string> reasons;
+  const auto add = [&](std::string reason) {
+    if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(std::move(reason));
+  };
+  for (const ParamCondition& condition : spec.only) {
+    if (!values.has(condition.other)) return {};
+    const ParamValue& now = values.value(condition.other);
+    const std::string other(condition.other);
+    if (!is_met(condition, now)) {
+      const auto* text = std::get_if<std::string>(&now);
+      const auto* x = std::get_if<double>(&now);
+      const bool missing = x && !std::isfinite(*x);
+      add(missing ? "without " + other
+                  : "with " + other + " = " + (text ? in_quotes(*text) : value_text(now)));
+      continue;
+    }
+    const auto above = std::ranges::find(specs, condition.other, &ParamSpec::name);
+    const auto further =
+        above == specs.end() ? std::vector<std::string>() : reasons_against(*above, specs, values);
+    if (further.empty()) return {};
+    for (const std::string& reason : further) add(reason);
+  }
+  return reasons;
+}
+
+}  // namespace
+
+bool means_something(const ParamSpec& spec, const std::vector<ParamSpec>& specs, const ParamSet& values) {
+  return reasons_against(spec, specs, values).empty();
+}
+
+std::string idle_reason(const ParamSpec& spec, const std::vector<ParamSpec>& specs, const ParamSet& values) {
+  std::string text;
+  for (const std::string& reason : reasons_against(spec, specs, values))
+    text += (text.empty() ? "" : " and ") + reason;
+  return text;
 }
 
 }  // namespace unfurl

@@ -16,6 +16,13 @@ using ParamValue =
 
 enum class ParamKind { boolean, integer, real, choice, text, vector, names };
 
+// That another parameter of the same table has one of these values ("true" of a switch); without values: that
+// it says something, a number but 0 that is given and has an end.
+struct ParamCondition {
+  std::string_view other;
+  std::vector<std::string_view> values;
+};
+
 struct ParamSpec {
   std::string_view name;
   std::string_view unit;  // "m", "deg", "N", ... ; empty: a pure number
@@ -29,10 +36,7 @@ struct ParamSpec {
   std::size_t length = 0;                 // for ParamKind::vector: how many numbers; 0: any number of them
   std::string_view help;                  // one line
   bool required = false;                  // true: there is no default, a scene must give it
-  // It means something only while another parameter of the same table has one of these values ("true" of a
-  // switch); empty: always.
-  std::string_view only_with;
-  std::vector<std::string_view> only_values;
+  std::vector<ParamCondition> only;       // it means something while one of these is met; empty: always
 };
 
 // Shorthand for the common shapes, so that a table of parameters reads like a table.
@@ -48,8 +52,10 @@ ParamSpec vector_param(std::string_view name, std::string_view unit, std::vector
                        std::string_view help);
 
 ParamSpec text_param(std::string_view name, std::string_view fallback, std::string_view help);
-// That parameter, but only while another has one of the values.
+// That parameter, but only while another has one of the values, or is given. Of a parameter of which that is
+// said twice either is enough.
 ParamSpec only_with(std::string_view other, std::vector<std::string_view> values, ParamSpec spec);
+ParamSpec only_given(std::string_view other, ParamSpec spec);
 ParamSpec required(ParamSpec spec);  // that parameter, without a default: a scene must give it
 ParamSpec names_param(std::string_view name, std::string_view help);  // of nodes or rods; required
 
@@ -60,9 +66,14 @@ std::string range_text(const ParamSpec& spec);
 // of 3 numbers".
 std::string wanted_text(const ParamSpec& spec);
 
-// False where `spec` means nothing with the values that the other parameters of its table have.
+bool is_met(const ParamCondition& condition, const ParamValue& other);
+
+// False where `spec` means nothing with the values that the other parameters of its table have, all of which
+// are `specs`: one that means nothing itself lets nothing mean something.
 class ParamSet;
-bool means_something(const ParamSpec& spec, const ParamSet& values);
+bool means_something(const ParamSpec& spec, const std::vector<ParamSpec>& specs, const ParamSet& values);
+// Why not: "with law = 'pulse'", "with stiffness = 0", "without current_limit"; "" where it does.
+std::string idle_reason(const ParamSpec& spec, const std::vector<ParamSpec>& specs, const ParamSet& values);
 
 // Empty when `value` is of the spec's kind and inside its range; else the reason ("must be > 0 m; got -3").
 std::string range_error(const ParamSpec& spec, const ParamValue& value);

@@ -78,20 +78,23 @@ std::string_view table_of(const ParamRow& row) {
   return std::string_view(row.key).substr(0, row.key.rfind('.') + 1);
 }
 
-// Whether the row says anything: its entry is on, and the parameter that it goes with has a value that it
-// goes with. Where something is wrong with it, always.
+// Whether a parameter that the row goes with has a value that it goes with, and says anything itself.
+bool in_force(const PanelState& state, const ParamSection& section, const ParamRow& row) {
+  const std::string table(table_of(row));
+  return row.spec.only.empty() || std::ranges::any_of(row.spec.only, [&](const ParamCondition& condition) {
+           const auto other =
+               std::ranges::find(section.rows, table + std::string(condition.other), &ParamRow::key);
+           return other == section.rows.end() ||
+                  (is_met(condition, present_value(state, *other)) && in_force(state, section, *other));
+         });
+}
+
+// Whether the row says anything: its entry is on, and what it goes with is. Where something is wrong with it,
+// always.
 bool matters(const PanelState& state, const ParamSection& section, const ParamRow& row, bool entry_on) {
   if (problem_of(state, row.key)) return true;
   if (!row.entry.empty() && !entry_on) return false;
-  if (row.spec.only_with.empty()) return true;
-  const std::string other = std::string(table_of(row)).append(row.spec.only_with);
-  for (const ParamRow& candidate : section.rows)
-    if (candidate.key == other) {
-      const std::string value = value_caption(present_value(state, candidate), "");
-      const auto& values = row.spec.only_values;
-      return std::find(values.begin(), values.end(), value) != values.end();
-    }
-  return true;
+  return in_force(state, section, row);
 }
 
 // What an entry is, with a box to switch it off, and a button that takes it away where the panel added it.

@@ -2,6 +2,7 @@
 // The list of keys is what the reader reads: every key of every table, and nothing else.
 #include "core/scene/key_tables.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -58,6 +59,43 @@ TEST_CASE("every key has a meaning, a type and a range, and tables have names of
   for (const ElementKind& kind : scene_forces()) CHECK(names.contains("forces." + std::string(kind.kind)));
   for (const ElementKind& kind : scene_constraints())
     CHECK(names.contains("constraints." + std::string(kind.kind)));
+}
+
+// What a condition names is a key of the same table, its values are among the choices of that, and no key
+// waits for itself.
+TEST_CASE("keys that go with others go with keys that there are, and with values that those can have") {
+  for (const KeyTable& table : key_tables())
+    for (const ParamSpec& spec : table.keys)
+      for (const ParamCondition& condition : spec.only) {
+        INFO(table.name << "." << spec.name << " with " << condition.other);
+        const auto other = std::ranges::find(table.keys, condition.other, &ParamSpec::name);
+        REQUIRE(other != table.keys.end());
+        for (const std::string_view value : condition.values) {
+          if (other->kind == ParamKind::boolean)
+            CHECK((value == "true" || value == "false"));
+          else
+            CHECK(std::ranges::count(other->choices, value) == 1);
+        }
+        if (condition.values.empty())
+          CHECK((other->kind == ParamKind::real || other->kind == ParamKind::integer));
+        std::vector<std::string_view> above{spec.name, condition.other};
+        for (std::size_t i = 1; i < above.size(); ++i)
+          for (const ParamSpec& key : table.keys)
+            if (key.name == above[i])
+              for (const ParamCondition& further : key.only) {
+                REQUIRE(further.other != spec.name);
+                above.push_back(further.other);
+                REQUIRE(above.size() < 100);
+              }
+      }
+}
+
+TEST_CASE("a new scene shows as comments what does nothing as the others are") {
+  const std::string chain = scene_template("chain"), custom = scene_template("custom");
+  CHECK(chain.find("\nspan = ") != std::string::npos);  // shape = "catenary"
+  CHECK(chain.find("\n# angle = ") != std::string::npos);
+  CHECK(custom.find("\n# error_seed = 1\n") != std::string::npos);  // length_error = 0
+  CHECK(scene_template("cable_ring").find("\ncable_ramp = ") != std::string::npos);
 }
 
 TEST_CASE("tables are found by name, by group and by their last word") {

@@ -307,7 +307,8 @@ TEST_CASE("numbers that need another number beside them are warned of where they
   CHECK(notes({"structure.perturbed_force=190"}) ==
         Notes{"perturbed_force does nothing: perturbed_unit says which unit has it"});
   CHECK(notes({"structure.perturbed_force=190", "structure.perturbed_unit=2"}).empty());
-  CHECK(notes({"structure.error_seed=7"}) == Notes{"error_seed does nothing: length_error is 0"});
+  CHECK(notes({"structure.error_seed=7"}) ==
+        Notes{"--set structure.error_seed: does nothing with length_error = 0"});
 }
 
 TEST_CASE("entries are addressed by name in brackets, too") {

@@ -61,6 +61,8 @@ TEST_CASE("stress and margins of rods with pins between their ends are said to b
 
 TEST_CASE("in a custom structure a rod's own strength without a modulus is noted with its name") {
   CHECK(notes_of_rods("strength = 1e8\n", "", "strength does nothing") == 1);
+  CHECK(notes_of_rods("segments = 3\n", "", "segments does nothing") == 1);
+  CHECK(notes_of_rods("segments = 3\n", ", youngs_modulus = 7e10", "segments does nothing") == 0);
   CHECK(notes_of_rods("", ", strength = 1e8", "strength of rod A-B does nothing") == 1);
   CHECK(notes_of_rods("", ", strength = 1e8, youngs_modulus = 7e10", "strength") == 0);
   CHECK(notes_of_rods("", ", strength = inf", "strength") ==

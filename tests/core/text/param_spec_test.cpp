@@ -204,20 +204,70 @@ TEST_CASE("a parameter that belongs to a value of another means something only w
   const ParamSpec law = choice_param("law", "ramp", {"ramp", "pulse", "sine"}, "");
   const ParamSpec rise = only_with("law", {"ramp", "sine"}, positive_param("rise", "s", 2.5, ""));
   const ParamSpec depth = only_with("held", {"true"}, positive_param("depth", "m", 2.5, ""));
-  ParamSet set({law, rise, boolean_param("held", false, ""), depth});
-  CHECK(means_something(law, set));
+  const std::vector<ParamSpec> specs{law, rise, boolean_param("held", false, ""), depth};
+  ParamSet set(specs);
+  CHECK(means_something(law, specs, set));
   for (const std::string value : {"ramp", "pulse", "sine"}) {
     set.set("law", value);
-    CHECK(means_something(rise, set) == (value != "pulse"));
+    CHECK(means_something(rise, specs, set) == (value != "pulse"));
   }
-  CHECK_FALSE(means_something(depth, set));
+  CHECK_FALSE(means_something(depth, specs, set));
+  CHECK(idle_reason(depth, specs, set) == "with held = false");
   set.set("held", true);
-  CHECK(means_something(depth, set));
-  CHECK(means_something(depth, ParamSet({law})));  // nobody says that it does not
+  CHECK(means_something(depth, specs, set));
+  CHECK(idle_reason(depth, specs, set).empty());
+  CHECK(means_something(depth, {law}, ParamSet({law})));  // nobody says that it does not
   CHECK(rise.name == "rise");
   CHECK(required(rise).required);
   CHECK_FALSE(rise.required);
   CHECK(names_param("n", "").required);
+}
+
+TEST_CASE(
+    "a parameter that goes with a number means something where that is given, has an end and is not 0") {
+  const double endless = std::numeric_limits<double>::infinity();
+  const std::vector<ParamSpec> specs{positive_param("limit", "A", endless, ""),
+                                     only_given("limit", positive_param("per_ampere", "N m/A", 3, "")),
+                                     integer_param("parts", 0, 0, 9, ""),
+                                     only_given("parts", positive_param("gap", "m", 3, ""))};
+  ParamSet set(specs);
+  for (const double nothing : {endless, -endless, nan_value, 0.0}) {
+    set.set("limit", nothing);
+    CHECK_FALSE(means_something(specs[1], specs, set));
+    CHECK(idle_reason(specs[1], specs, set) == (nothing == 0 ? "with limit = 0" : "without limit"));
+  }
+  for (const double some : {-2.5, 1e-300}) {
+    set.set("limit", some);
+    CHECK(means_something(specs[1], specs, set));
+  }
+  CHECK(idle_reason(specs[3], specs, set) == "with parts = 0");
+  set.set("parts", 4L);
+  CHECK(means_something(specs[3], specs, set));
+}
+
+TEST_CASE(
+    "what goes with a parameter that means nothing means nothing, and either of two conditions is enough") {
+  const std::vector<ParamSpec> specs{
+      choice_param("control", "none", {"none", "follow"}, ""),
+      only_with("control", {"follow"}, choice_param("motion", "hold", {"hold", "smooth"}, "")),
+      only_with("motion", {"smooth"}, real_param("to", "deg", 0, -9, 9, "")),
+      real_param("stiffness", "N/m", 0, 0, 9, ""),
+      boolean_param("slack", false, ""),
+      only_with("slack", {"true"}, only_given("stiffness", real_param("free", "m", 0, 0, 9, "")))};
+  const ParamSpec &motion = specs[1], &to = specs[2], &free = specs[5];
+  ParamSet set(specs);
+  CHECK(idle_reason(to, specs, set) == "with motion = 'hold'");
+  set.set("motion", std::string("smooth"));
+  CHECK(idle_reason(motion, specs, set) == "with control = 'none'");
+  CHECK(idle_reason(to, specs, set) == "with control = 'none'");  // what is in its way, not what is met
+  set.set("control", std::string("follow"));
+  CHECK(means_something(to, specs, set));
+  CHECK(idle_reason(free, specs, set) == "with stiffness = 0 and with slack = false");
+  set.set("stiffness", 2.5);
+  CHECK(means_something(free, specs, set));
+  set.set("stiffness", 0.0);
+  set.set("slack", true);
+  CHECK(means_something(free, specs, set));
 }
 
 }  // namespace param_spec_test
