@@ -84,6 +84,7 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
   constexpr double even = 1e-3;
   deployed_ = true;
   run_.events.push_back({.name = "deployed", .t = event.t, .kind = "deployed"});
+  look_for_turn(event);
   const double off = uneven(event);
   if (off > even) {
     char share[32];

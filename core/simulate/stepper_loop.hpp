@@ -185,10 +185,15 @@ class Stepper::Loop {
       state.tension_error =
           state.tension_error.size() > 0 ? state.tension_error.cwiseMax(doubt).eval() : doubt;
     std::ranges::move(turning_back_.between(system(), now(), state), std::back_inserter(run_.warnings));
-    if (std::string told = turned_.at(system(), state); !told.empty())
-      run_.warnings.push_back(std::move(told));
+    constexpr long first_steps = 64, every = 8;
+    if (run_.steps < first_steps || run_.steps % every == 0) look_for_turn(state);
     append(std::move(state), report);
     ++run_.steps;
+  }
+
+  void look_for_turn(const State& state) {
+    if (std::string told = turned_.at(system(), state); !told.empty())
+      run_.warnings.push_back(std::move(told));
   }
 
   void append(State state, const StepReport& report) {
