@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "core/math/box_complementarity.hpp"
 #include "core/math/factors.hpp"
@@ -26,25 +27,46 @@ class Change {
   }
 
   ModeChange run(const std::function<bool(std::size_t, double)>& rests) {
+    std::vector<std::size_t> laws = sides_.laws_left(system_, out_.state);
     for (const std::size_t i : which_)
-      if (!sides_.is_stop(i) && !sides_.is_friction(i)) sides_.turn_law(i, system_, out_.state), tell(i);
+      if (!sides_.is_stop(i) && !sides_.is_friction(i) && std::ranges::find(laws, i) == laws.end())
+        laws.push_back(i);
+    turn_laws(laws);
     find_rows();
     if (rows_.empty()) return std::move(out_);
-    const Model acting = sides_.without_holds(base_);  // a cable may pull with a jump
-    const System system = acting.system.at(out_.state);
-    PushResponses responses(system, out_.state);
+    std::optional<Acting> acting(std::in_place, *this);
+    const PushResponses& responses = acting->responses;
     if (!responses.ok()) return failed("the constraint matrix cannot be factorised where modes change");
-    for (const std::size_t i : rows_)
-      responses.add(sides_.measure(i), sides_.sign(i), sides_.near(i, out_.state),
-                    sides_.limit_motion(i, out_.state.t));
     D_ = responses.matrix();
     for (Index i = 0; i < D_.rows(); ++i) movable_.push_back(responses.movable(i));
     settle(responses);
-    if (strike(responses, rests) && choose(responses)) assign();
+    if (!strike(responses, rests)) return std::move(out_);
+    // What is asked of motors and how cables are stretched may have jumped with the rates.
+    if (!out_.impacts.empty() && turn_laws(sides_.laws_left(system_, out_.state))) acting.emplace(*this);
+    if (choose(acting->responses)) assign();
     return std::move(out_);
   }
 
  private:
+  // What acts in the state, cables and motors by their present laws, and what pushes do there.
+  struct Acting {
+    explicit Acting(const Change& c)
+        : model(c.sides_.without_holds(c.base_)),
+          system(model.system.at(c.out_.state)),
+          responses(system, c.out_.state) {
+      for (const std::size_t i : c.rows_)
+        if (responses.ok())
+          responses.add(c.sides_.measure(i), c.sides_.sign(i), c.sides_.near(i, c.out_.state),
+                        c.sides_.limit_motion(i, c.out_.state.t));
+    }
+    const Model model;
+    const System system;
+    PushResponses responses;
+  };
+  bool turn_laws(const std::vector<std::size_t>& laws) {
+    for (const std::size_t i : laws) sides_.turn_law(i, system_, out_.state), tell(i);
+    return !laws.empty();
+  }
   std::size_t side(Index row) const { return rows_[static_cast<std::size_t>(row)]; }
   bool movable(Index row) const { return movable_[static_cast<std::size_t>(row)]; }
   bool crossed(Index row) const { return std::find(which_.begin(), which_.end(), side(row)) != which_.end(); }
@@ -63,7 +85,7 @@ class Change {
     tell(i);
   }
   void tell(std::size_t i) {
-    out_.turned.push_back(i);
+    if (std::ranges::find(out_.turned, i) == out_.turned.end()) out_.turned.push_back(i);
     out_.changed = true;
   }
 

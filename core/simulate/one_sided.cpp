@@ -290,6 +290,32 @@ double OneSided::stretch(const Cable& cable, double t, const VectorXd& q, const 
   return damping > 0 ? std::min(s, n / (law.stiffness + damping / step_)) : s;
 }
 
+// Of a cable or motor.
+double OneSided::law_margin(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v,
+                            double& rate) {
+  if (is_motor(i)) {
+    const Drive& motor = motors_[i - first_motor()];
+    rate = unknown;
+    return room(motor, q, v, state) - motor.shift;
+  }
+  const double sign = active_[i] ? 1.0 : -1.0, zero = stops_.touching();
+  const double margin = sign * stretch(cables_[i - stops_.size()], state.t, q, v, rate);
+  rate = sign * rate / zero;
+  return margin / zero;
+}
+
+std::vector<std::size_t> OneSided::laws_left(const System& system, const State& state) {
+  std::vector<std::size_t> out;
+  if (!laws() || relaxed_) return out;
+  VectorXd q(system.coordinates()), v(q.size());
+  system.expand(state.z, q);
+  system.expand_rate(state.w, v);
+  double rate = 0;
+  for (std::size_t i = stops_.size(); i < active_.size(); ++i)
+    if (!is_friction(i) && law_margin(i, state, q, v, rate) < -1) out.push_back(i);
+  return out;
+}
+
 void OneSided::measure_held(const Model& model, const State& state, Probe& probe) {
   if (!index1_) {
     followed_.emplace(model.system);
@@ -360,22 +386,13 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
       measure_friction(q, v, state, k, probe);
       continue;
     }
-    if (is_motor(k)) {
-      const Drive& motor = motors_[k - first_motor()];
-      probe.margins[i] = room(motor, q, v, state) - motor.shift;
+    if (i >= stops) {
+      probe.margins[i] = law_margin(k, state, q, v, probe.rates[i]);
       continue;
     }
-    double rate = 0, margin = 0, zero = stops_.touching();
-    if (i < stops) {
-      zero = touching(k);
-      margin = stops_.gap(k, state, q, v, rate) - shift_[i];
-    } else {
-      const double sign = active_[k] ? 1.0 : -1.0;
-      margin = sign * stretch(cables_[k - stops_.size()], state.t, q, v, rate);
-      rate *= sign;
-    }
-    probe.margins[i] = margin / zero;
-    probe.rates[i] = rate / zero;
+    double rate = 0;
+    probe.margins[i] = (stops_.gap(k, state, q, v, rate) - shift_[i]) / touching(k);
+    probe.rates[i] = rate / touching(k);
   }
 }
 

@@ -75,6 +75,8 @@ class OneSided {
   bool relax_laws();
   // A cable or motor whose margin is used up goes on by the next part of its law.
   void turn_law(std::size_t i, const System& system, const State& state);
+  // Cables and motors whose margins are used up in this state, as where rates have jumped.
+  std::vector<std::size_t> laws_left(const System& system, const State& state);
 
   // What a stop or friction acts along: sign * s.
   const MeasureFunction& measure(std::size_t i) const;
@@ -168,6 +170,7 @@ class OneSided {
   void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
                         Probe& probe);
   double stretch(const Cable& cable, double t, const VectorXd& q, const VectorXd& v, double& rate);
+  double law_margin(std::size_t i, const State& state, const VectorXd& q, const VectorXd& v, double& rate);
 
   Stops stops_;
   std::vector<Cable> cables_;

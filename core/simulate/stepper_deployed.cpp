@@ -129,6 +129,9 @@ bool Stepper::Loop::latch() {
   if (!sides_.empty()) change = modes_after(change.state);
   if (!change.failure.empty()) return fail(change.failure);
   record(change);
+  for (const std::size_t i : change.turned)
+    if (sides_.is_cable(i) || sides_.is_motor(i))
+      std::ranges::copy(sides_.events(i, change.state.t), std::back_inserter(run_.events));
   set_model(sides_.any_active() ? sides_.model(*base_) : base_, change.state, true);
   const double taken = (before - system().kinetic_energy(now().w)) * run_.trajectory.structure().sectors;
   run_.events.push_back(
