@@ -409,8 +409,11 @@ std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {
   };
   for (Stop& stop : structure.stops)
     if (stop.reeled) stop.reel = still(stop.reel);
+  // At a rate of zero: it still is a cable that was drawn in, with what it gives among the run's columns.
   const auto stop = [&](Force& force) {
-    if (force.unstressed.moves()) force.unstressed = still(force.unstressed);
+    if (!force.unstressed.moves()) return;
+    force.unstressed = still(force.unstressed);
+    force.unstressed.kind = TimeFunction::Kind::rate;
   };
   std::for_each(structure.forces.begin(), structure.forces.end(), stop);
   for (Cable& cable : cables_) stop(cable.law);

@@ -10,6 +10,7 @@
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 using namespace unfurl::testing;
@@ -161,6 +162,52 @@ TEST_CASE("a drive that moves on behind a closed latch is named") {
   const Simulation run = simulate(build_model(scene), scene.solver);
   CHECK(run.status == RunStatus::failed);
   CHECK(run.message.find("the latch holds what crank drives on") != std::string::npos);
+}
+
+// Its winch stands still behind the latch: no power, no more of it drawn in, and its columns go on.
+TEST_CASE("a damped cable that a motion draws in stays a column of the run behind a latch") {
+  const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [-1, 0, 0], fixed = true}, {name = "P", position = [0, 0, 0], fixed = true},
+  {name = "B", position = [0, -2, 0], mass = 3}]
+rods = []
+constraints = [{kind = "line", nodes = ["B"], direction = [0, 1, 0]}]
+[gravity]
+acceleration = [0, -9.81, 0]
+[[forces]]
+kind = "cable"
+name = "c"
+nodes = ["A", "P", "B"]
+axial_stiffness = 3000
+damping = 30
+motion = "rate"
+rate = -0.8
+ramp = 0.2
+[deployment]
+measure = "length P B"
+deployed = 1.2
+[solver]
+step = 0.01
+stages = 4
+end_time = 3
+at_deployed = "latch"
+)");
+  REQUIRE(run.status == RunStatus::completed);
+  const Diagnostics d = diagnose(run);
+  const auto &value = d.at("c.value_m").values, &force = d.at("c.force_N").values,
+             &power = d.at("c.power_W").values;
+  REQUIRE(power.size() == run.trajectory.size());
+  const double latched = run.events.back().t, rest = 3 - (0.8 * (latched - 0.1));
+  for (std::size_t i = 0; i < power.size(); ++i) {
+    if (run.trajectory.time(i) <= latched) continue;
+    CHECK(power[i] == 0);
+    CHECK(value[i] == Approx(rest).epsilon(1e-12));
+    // Nothing moves: E A (S / L - 1) is all.
+    CHECK(std::abs(force[i]) == Approx(3000 * (2.2 / rest - 1)).epsilon(1e-9));
+  }
+  CHECK(smallest_of_column(run, d, "c.power_W") <= 0);
+  CHECK(largest_of_column(run, d, "c.power_W") >= *std::ranges::max_element(power));
 }
 
 }  // namespace
