@@ -66,11 +66,12 @@ class Neighbourhood {
     std::vector<char> moves;
     for (const double t : times) {
       State state = state_at(t);
-      model.system.expand(state.z, q);
-      model.system.all_constraint_values(t, q, phi);
+      const System there = model.system.at(state);
+      there.expand(state.z, q);
+      there.all_constraint_values(t, q, phi);
       moves.push_back(phi.size() == 0 ||
                       phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() <= good_constraint);
-      if (moves.back() && phi.size() > 0) project(model.system.at(state), state);
+      if (moves.back() && phi.size() > 0) project(there, state);
       piece.trajectory.append(std::move(state), StepReport{});
     }
     std::vector<double> out = values(piece);
@@ -94,6 +95,7 @@ class Neighbourhood {
     state.t = t;
     state.z = motion.value(u);
     state.w = motion.rate(u);
+    if (a.angles.size() == b.angles.size()) state.angles = (1 - u) * a.angles + u * b.angles;
     return state;
   }
 

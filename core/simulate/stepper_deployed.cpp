@@ -21,7 +21,7 @@ bool Stepper::Loop::arrives(const Probe& to) {
   const VectorXd& lengths = system().constraint_lengths();
   VectorXd phi(lengths.size());
   system().expand(to.state.z, q_);
-  system().constraint(part_end_, q_, phi);
+  system().at(to.state).constraint(part_end_, q_, phi);
   const double drift = phi.size() > 0 ? phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() : 0.0;
   return std::abs(fold(to.state)) <= nothing + 2 * drift &&
          std::abs(remaining_rate(model(), to.state)) * run_.options.step <= at_rest;
