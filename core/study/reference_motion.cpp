@@ -123,14 +123,50 @@ std::optional<ReferenceMotion> tightest(ReferenceSolver& solver, double end, dou
 
 }  // namespace
 
+namespace {
+
+// Cables that stretch and motors change their law there: a bend, that of the first state is known.
+constexpr std::array bend_kinds{"taut", "slack", "saturated", "unsaturated"};
+constexpr std::array break_kinds{"contact", "free", "slip", "stick", "reversal"};
+
+bool is_one_of(const auto& kinds, const Event& event) {
+  return std::ranges::find(kinds, event.kind) != kinds.end();
+}
+
+}  // namespace
+
 JudgedSpan judged_span(const Simulation& run) {
+  const double start = run.trajectory.start_time();
   for (const Event& event : run.events) {
     if (!(event.t < run.options.end_time)) continue;
     if (event.name == "deployed") return {before_singular * event.t, "the deployed pose"};
     if (event.name.find("stop ") != std::string::npos)
       return {before_singular * event.t, "the first end stop"};
+    if (is_one_of(break_kinds, event) || (is_one_of(bend_kinds, event) && event.t > start))
+      return {before_singular * event.t, "the first time that " + event.name};
   }
   return {run.options.end_time};
+}
+
+std::string one_sided_at_start(const Simulation& run) {
+  const Trajectory& all = run.trajectory;
+  std::size_t first = 0;
+  while (first + 1 < all.size() && all.time(first + 1) == all.start_time()) ++first;
+  const Structure &structure = all.model(first).structure, &plain = all.structure();
+  if (structure.constraints.size() > plain.constraints.size())
+    return structure.constraints[plain.constraints.size()].name;
+  for (const Force& force : structure.forces)
+    if (force.slip != 0) return force.name + " (slips)";
+  return "";
+}
+
+void require_plain_start(const Simulation& run) {
+  const std::string name = one_sided_at_start(run);
+  if (!name.empty())
+    throw ReferenceError("what acts on one side only does so from the start: " + name +
+                         "; the reference solutions know neither stops nor taut cables nor dry friction");
+  if (!(judged_span(run).end > 0))
+    throw ReferenceError("the motion begins at an end stop: there is nothing to measure");
 }
 
 ReferenceMotion::ReferenceMotion(const Trajectory& trajectory) {

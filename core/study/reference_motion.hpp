@@ -8,12 +8,21 @@
 namespace unfurl {
 
 // How far a run can be judged by a reference, which is one smooth motion: to its end or, where it comes to a
-// singular deployed pose or an end stop before, to 99.5 % of that time.
+// singular deployed pose, an end stop or another change of what acts on one side only before, to 99.5 % of
+// that time.
 struct JudgedSpan {
-  double end = 0;           // [s]
-  std::string before = {};  // "the deployed pose", "the first end stop"; empty: it is all of the motion
+  double end = 0;  // [s]
+  // "the deployed pose", "the first end stop", "the first time that rope pulls"; empty: it is all of the
+  // motion
+  std::string before = {};
 };
 JudgedSpan judged_span(const Simulation& run);
+
+// What is held, taut, sticks or slips from the start: the equations without modes, those of solve_reference,
+// have none of it. Empty: nothing.
+std::string one_sided_at_start(const Simulation& run);
+// Throws ReferenceError where solve_reference would solve another motion from the start.
+void require_plain_start(const Simulation& run);
 
 // States of a motion, close enough to tell it at any time: by Hermite interpolation of degree 15 through
 // positions and velocities of the eight states around that.

@@ -9,7 +9,9 @@
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/books.hpp"
+#include "core/simulate/one_sided.hpp"
 #include "core/study/parallel_for.hpp"
+#include "core/study/reference_motion.hpp"
 #include "core/study/row_columns.hpp"
 #include "core/study/team.hpp"
 
@@ -79,6 +81,23 @@ Duration duration(const Site& site, SolverOptions options, const StudyHooks& hoo
   throw ReferenceError("it does not deploy");
 }
 
+// The part of the motion before anything one-sided acts, of which the reference knows nothing. Throws
+// ReferenceError.
+double plain_part(const Site& site, SolverOptions options, double end, const StudyHooks& hooks) {
+  options.end_time = end;
+  options.step = end / 4000;
+  if (OneSided(site.model->structure, options).empty()) return end;
+  const double begin = thread_cpu_seconds();
+  SimulationHooks bounded;
+  bounded.cancelled = [&] { return hooks.stopped() || thread_cpu_seconds() - begin > probing_seconds; };
+  const Simulation run = simulate(site.model, options, bounded);
+  if (hooks.stopped()) throw Cancelled();
+  require_plain_start(run);
+  const double plain = judged_span(run).end;
+  if (plain < end || run.status == RunStatus::completed) return plain;
+  throw ReferenceError("no run tells when stops, cables, friction or motors act in it");
+}
+
 // The share of the deployment that the reference must show: a motion that has not begun tells nothing.
 constexpr double deployed_share = 0.5;
 
@@ -87,7 +106,9 @@ void prepare(Site& site, int intervals, const StudyHooks& hooks) {
     SolverOptions options;
     site.model = site.extreme->build(site.value, options);
     const double enough = 1e-6 * structure_size(*site.model);
-    const Duration motion = duration(site, options, hooks);
+    Duration motion = duration(site, options, hooks);
+    if (const double plain = plain_part(site, options, motion.end, hooks); plain < motion.end)
+      motion = {plain};
     Reference reference = solve_reference(site.model, motion.end, intervals, hooks, enough);
     const Deployment& deployment = site.model->structure.deployment;
     if (motion.deploys && !(deployment.fraction(reference.q.back()) >= deployed_share))

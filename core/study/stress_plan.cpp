@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/scene/build.hpp"
+#include "core/simulate/one_sided.hpp"
 #include "core/study/stress.hpp"
 #include "core/text/nearest_name.hpp"
 
@@ -69,7 +70,10 @@ StressPlan plan_stress(const SceneSource& source, const std::vector<std::string>
       plan.settings.push_back(std::move(setting));
   const double own = std::clamp(scene.solver.end_time / scene.solver.step, 128.0, 4096.0);
   for (int level = -5; level <= 2; ++level) plan.steps.push_back(1L << (std::lround(std::log2(own)) + level));
-  if (build_structure(scene).deployment.empty()) plan.long_steps = 1'000'000;
+  // Very many steps are those of the method by itself, which knows nothing that is one-sided.
+  if (const Structure structure = build_structure(scene);
+      structure.deployment.empty() && OneSided(structure, scene.solver).empty())
+    plan.long_steps = 1'000'000;
   return plan;
 }
 

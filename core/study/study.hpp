@@ -45,9 +45,10 @@ struct StudyPlan {
   TimingOptions timing;
 };
 
-// The motion of a scene up to its end or, where it deploys or meets an end stop before, to 99.5 % of that
-// time (judged_span): the deployed pose is singular, and no method's error there says anything about the
-// method. Throws StudyError.
+// The motion of a scene up to its end or, where it deploys, meets an end stop or changes in another way that
+// is one-sided before, to 99.5 % of that time (judged_span): the deployed pose is singular, and no method's
+// error there says anything about the method. Throws StudyError, and ReferenceError where something one-sided
+// acts from the start.
 StudyPlan plan_study(std::shared_ptr<const Model> model, const SolverOptions& scene, double largest_step,
                      double smallest_step, const StudyHooks& hooks);
 

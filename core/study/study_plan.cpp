@@ -107,8 +107,8 @@ StudyPlan plan_study(std::shared_ptr<const Model> model, const SolverOptions& sc
                      double smallest_step, const StudyHooks& hooks) {
   const Simulation probe = trusted_probe(model, scene, hooks);
   StudyPlan plan;
+  require_plain_start(probe);
   const JudgedSpan span = judged_span(probe);
-  if (!(span.end > 0)) throw StudyError("the motion begins at an end stop: there is nothing to measure");
   plan.end = span.end;
   plan.before = span.before;
   plan.settings = study_settings(scene);

@@ -114,3 +114,41 @@ TEST_CASE("an extreme that is not there is named") {
   CHECK_THROWS_WITH(plan_stress({find_scene("four_bar"), {}}, {"units"}),
                     Catch::Contains("cannot be driven"));
 }
+
+// A bob that falls on a floor is judged up to there; what rubs from the start has no reference, and says so.
+TEST_CASE("an atlas is of the motion before anything that acts on one side only") {
+  const std::string pendulum = R"(
+[structure]
+kind = "pendulum"
+angle = 90.0
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+stages = 4
+step = 0.01
+end_time = 2.0
+)";
+  const auto atlas = [&](const std::string& more) {
+    const auto text = std::make_shared<const std::string>(pendulum + more);
+    StressPlan plan = plan_stress({"one.toml", {}, text, "."}, {"force"});
+    CHECK(plan.long_steps == 0);
+    plan.extremes[0].values = {1};
+    std::erase_if(plan.settings, [](const Setting& s) { return s.name != "dvm s=4"; });
+    plan.steps = {256};
+    Journal journal({}, stress_columns(), stress_key_columns);
+    return run_stress(plan, journal, {});
+  };
+  const Stress floor = atlas(
+      "[[constraints]]\nkind = \"coordinate_stop\"\nname = \"floor\"\nnodes = [\"bob\"]\n"
+      "direction = [0, 0, 1]\nmin = -0.5\nrestitution = 0.5\n");
+  for (const std::string& note : floor.notes) FAIL_CHECK(note);
+  REQUIRE(floor.cells.size() == 1);
+  CHECK(floor.cells[0].verdict == Verdict::right);
+  CHECK(floor.cells[0].run.position_error < 1e-9);
+  const Stress rubs = atlas(
+      "[[forces]]\nkind = \"friction\"\nname = \"pad\"\nnodes = [\"bob\"]\n"
+      "direction = [0, 0, 1]\nkinetic = 0.1\n");
+  CHECK(rubs.cells.empty());
+  REQUIRE(rubs.notes.size() == 1);
+  CHECK(rubs.notes[0].find("pad (slips)") != std::string::npos);
+}

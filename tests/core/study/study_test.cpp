@@ -197,4 +197,62 @@ TEST_CASE("a scene with adaptive steps is studied like one without") {
   CHECK(names(study_settings(scene)) == fixed);
 }
 
+// Reference solutions know no modes: a motion is judged as long as nothing in it changes its mode.
+TEST_CASE("a study ends before what acts on one side only, or is refused where that is from the start") {
+  const std::string pendulum = R"(
+[structure]
+kind = "pendulum"
+angle = 90.0
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+stages = 4
+step = 0.01
+end_time = 1.0
+)";
+  const auto plan_of = [&](const std::string& more) {
+    const Scene scene = read_scene_text(pendulum + more, "s.toml");
+    return plan_study(build_model(scene), scene.solver, 0, 0, {});
+  };
+  CHECK(plan_of("").before.empty());
+  // Friction slips from the start, or holds; a cable is taut and takes the bob along.
+  const std::string friction =
+      "[[forces]]\nkind = \"friction\"\nname = \"pad\"\nnodes = [\"bob\"]\ndirection = [0, 0, 1]\n";
+  CHECK_THROWS_WITH(plan_of(friction + "kinetic = 0.1\n"), Catch::Contains("from the start: pad (slips)"));
+  CHECK_THROWS_AS(plan_of(friction + "kinetic = 0.1\n"), ReferenceError);
+  CHECK_THROWS_WITH(plan_of(friction + "kinetic = 1e4\n"), Catch::Contains("from the start: pad (sticks)"));
+  // From the bob down to a point above which it hangs: slack until it has fallen, taut all the way.
+  const auto rope = [&](const char* end, const std::string& more) {
+    std::string text = pendulum;
+    const std::string custom =
+        "[structure]\nkind = \"custom\"\nnodes = [{name = \"O\", position = [0, 0, 0], fixed = true}, "
+        "{name = \"bob\", position = [1, 0, 0], mass = 1}, {name = \"E\", position = " +
+        std::string(end) +
+        ", fixed = true}]\nrods = [{nodes = [\"O\", \"bob\"], mass = 0}]\n"
+        "constraints = [{kind = \"plane\", nodes = [\"bob\"], normal = [0, 1, 0]}]\n";
+    const auto from = text.find("[structure]");
+    text.replace(from, text.find("[gravity]") - from, custom);
+    const Scene scene = read_scene_text(text + more, "s.toml");
+    return plan_study(build_model(scene), scene.solver, 0, 0, {});
+  };
+  std::string stiff = "[[constraints]]\nkind = \"cable\"\nname = \"rope\"\nnodes = [\"E\", \"bob\"]\n",
+              soft =
+                  "[[forces]]\nkind = \"cable\"\nname = \"rope\"\nnodes = [\"E\", \"bob\"]\n"
+                  "axial_stiffness = 50\n";
+  CHECK_THROWS_WITH(rope("[1, 0, 1]", stiff + "length = 1\n"), Catch::Contains("from the start: rope"));
+  for (const std::string& kind : {stiff, soft}) {
+    const StudyPlan plan = rope("[1, 0, 1]", kind + "length = 1.2\n");
+    CHECK(plan.before == "the first time that rope pulls");
+    // At length 1.2 from (1, 1): (1 - cos a)^2 + (1 + sin a)^2 = 1.44, by a'' = 9.81 cos a from rest.
+    double angle = 0, rate = 0, t = 0;
+    const double h = 1e-6;
+    while (std::hypot(1 - std::cos(angle), 1 + std::sin(angle)) < 1.2)
+      rate += h * 9.81 * std::cos(angle), angle += h * rate, t += h;
+    CHECK(plan.end == Approx(0.995 * t).margin(1e-5));
+  }
+  // A weak elastic one pulls all the time: a spring, smooth from the start.
+  soft.replace(soft.find("= 50"), 4, "= 1");
+  CHECK(rope("[1, 0, 1]", soft + "length = 0.5\n").before.empty());
+}
+
 }  // namespace study_test
