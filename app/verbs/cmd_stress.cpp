@@ -43,6 +43,7 @@ void add_long_runs(const Stress& stress, Report& report) {
 int cmd_stress(const Arguments& arguments) {
   const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
   const Scene scene = scene_of(arguments);
+  warn_of_own_steps(scene);
   const StressPlan plan = plan_stress(source, arguments.study.extremes);
   const InterruptGuard guard;
   StudySession session(arguments, "stressing", study_identity("An atlas", scene), "stress.csv");

@@ -80,6 +80,7 @@ int cmd_study(const Arguments& arguments) {
   if (arguments.study.models) return study_models(arguments);
   const Range range = step_range(arguments.study.ladder);
   const Scene scene = scene_of(arguments);
+  warn_of_own_steps(scene);
   auto model = model_of(scene, arguments);
   const InterruptGuard guard;
   const int repeats = arguments.study.repeats > 0 ? arguments.study.repeats : TimingOptions{}.repeats;

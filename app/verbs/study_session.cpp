@@ -38,6 +38,15 @@ bool ends_as_journal(std::string_view end) {
 
 }  // namespace
 
+void warn_of_own_steps(const Scene& scene) {
+  const auto idle = [](const char* key) {
+    std::cerr << "unfurl: warning: " << key
+              << " does nothing here: steps are equal, as the ladder has them\n";
+  };
+  if (scene.solver.adaptive) idle("solver.adaptive");
+  if (scene.solver.tolerance > 0) idle("solver.tolerance");
+}
+
 std::vector<fs::path> journals_like(const std::string& journal, const fs::path& directory) {
   const std::string begin = journal.substr(0, journal.find_first_of("_."));
   std::vector<fs::path> found;

@@ -26,6 +26,9 @@ std::vector<std::filesystem::path> journals_like(const std::string& journal,
 // these.
 std::string study_identity(const std::string& what, const Scene& scene);
 
+// On stderr: what the scene, or --set, says of steps that a study picks itself.
+void warn_of_own_steps(const Scene& scene);
+
 // Throws FileError, with what can be done, where DIR/scene.toml tells of other results than `identity`.
 void require_identity(const std::filesystem::path& directory, const std::string& identity,
                       const std::string& cure);

@@ -125,6 +125,9 @@ void read_solver(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
   const ParamSet values = table.read(solver_params());
   table.warn_idle(solver_params(), values, Idle::from_command_line);
   scene.solver = solver_options(values);
+  if (scene.solver.adaptive && scene.solver.tolerance > 0)
+    notes.warnings.push_back({found->find("adaptive")->where, table.key("adaptive"),
+                              "does nothing with tolerance > 0, which picks steps that are all equal"});
   const Family* family = find_family(scene.kind);
   if (!table.has("end_time") && ((family && family->deploys) || !scene.deployment.terms.empty()))
     scene.solver.end_time = time_to_deploy;

@@ -284,6 +284,8 @@ TEST_CASE("what is set on the command line and does nothing is warned of in ever
   };
   CHECK(said({"solver.turn=0.2"}) == "--set solver.turn: does nothing with adaptive = false\n");
   CHECK(said({"solver.turn=0.2", "solver.adaptive=true"}).empty());
+  CHECK(said({"solver.tolerance=1e-6", "solver.turn=0.2", "solver.adaptive=true"}) ==
+        "--set solver.adaptive: does nothing with tolerance > 0, which picks steps that are all equal\n");
   CHECK(said({"solver.rho_inf=0.5"}) == "--set solver.rho_inf: does nothing with method = 'dvm'\n");
   CHECK(said({"structure.wall_thickness=0.001"}) ==
         "--set structure.wall_thickness: does nothing with section = 'round'\n");
