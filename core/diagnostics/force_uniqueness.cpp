@@ -138,6 +138,20 @@ std::vector<double>* values_of(Diagnostics& d, std::string_view name) {
   return nullptr;
 }
 
+// The largest of what acts on the nodes in these states: beside it, what rods give where all fall alike is
+// rounding.
+double acting_in(const Trajectory& trajectory, const DoubtfulStates& states) {
+  double most = 0;
+  for (const auto& [i, unused] : states) {
+    const System system = trajectory.model(i).system.at(trajectory.state(i));
+    VectorXd f = VectorXd::Zero(system.coordinates());
+    system.add_applied_force(trajectory.time(i), trajectory.node_positions(i), trajectory.node_velocities(i),
+                             1.0, f);
+    most = std::max(most, largest_magnitude(f.data(), f.size()));
+  }
+  return most;
+}
+
 // open[i], 1: waves or round-off change forces of state i.
 void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
                const DoubtfulStates& doubtful, Diagnostics& d, std::vector<char>& open) {
@@ -149,7 +163,7 @@ void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
   for (Index i = 0; i < std::ssize(d.t); ++i)
     for (const double f : d.axial_force.row(i))
       largest_force = std::abs(f) > largest_force ? std::abs(f) : largest_force;
-  const double least = 1e-9 * largest_force;
+  const double least = std::max(1e-9 * largest_force, 1e-12 * acting_in(trajectory, doubtful));
   for (std::size_t i = 0; i < d.t.size(); ++i) {
     const std::vector<char>& rows = uniqueness.at(i);
     const std::vector<int>& row_of = trajectory.model(i).system.rod_rows();

@@ -164,4 +164,23 @@ TEST_CASE("what a drive gives is unique unless something else holds the same") {
   for (const double flag : d.at("motor.torque_unique").values) CHECK(flag == 1.0);
 }
 
+// Three rows of the rank three, if a weak one (B is 0.01 off the line): forces are determined, and zero.
+TEST_CASE("the forces of a flat triangle that falls freely are unique, being none") {
+  const std::string triangle = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], mass = 1}, {name = "B", position = [1, 0, 0.01], mass = 1},
+  {name = "C", position = [2, 0, 0], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 0}, {nodes = ["B", "C"], mass = 0}, {nodes = ["A", "C"], mass = 0}]
+[gravity]
+acceleration = [1.3, 0.7, -9.81]
+[solver]
+end_time = 0.05
+)";
+  const Diagnostics d = diagnose(run_scene(triangle));
+  CHECK(d.axial_force.cwiseAbs().maxCoeff() < 1e-10);
+  CHECK(d.force_unique.minCoeff() == 1);
+  CHECK(peak_rod_force(d).unique);
+}
+
 }  // namespace force_uniqueness_test
