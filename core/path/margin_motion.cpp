@@ -195,12 +195,16 @@ bool MarginMotion::follow(double from, double to) {
     if (const double least = turn_between(a, b); least > a && speed_at(least) <= 0) b = least;
     double s = 0, v = 0;
     motion_.at(b, s, v);
-    const bool turns = sense_ * v <= 0, passes = goal_ && sense_ * s >= *goal_;
-    if (turns || passes) b = last_time(a, b, turns);
+    // Until it turns it is under way: only what it reaches before counts, and by b it may have come back.
+    const bool turns = sense_ * v <= 0;
+    if (turns) b = last_time(a, b, true);
+    motion_.at(b, s, v);
+    const bool passes = goal_ && sense_ * s >= *goal_;
+    if (passes) b = last_time(a, b, false);
     account(a, b);
     if (!turns && !passes) continue;
     motion_.cut(b);
-    if (passes && !turns) {
+    if (passes) {
       ended_ = MarginEnd::arrives;
       return true;
     }

@@ -9,6 +9,7 @@
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
+#include "core/study/table.hpp"
 
 using namespace unfurl;
 
@@ -34,7 +35,7 @@ direction = [1, 0, 0]
 [deployment]
 measure = "coordinate A along 1 0 0"
 deployed = )" +
-         std::to_string(deployed) + "\n" + more + "[solver]\n" + solver + "\n";
+         exact_number(deployed) + "\n" + more + "[solver]\n" + solver + "\n";
 }
 
 std::string over_time(const std::string& name, double force, const std::string& times,
@@ -254,6 +255,53 @@ TEST_CASE("a motion whose time is up has not stalled, nor one that sets out the 
                          "[[loads]]\nnodes = [\"A\"]\nforce = [0, 1, 0]\n[solver]\nend_time = 9\n"));
   CHECK(wrong.end == MarginEnd::other_way);
   CHECK(std::isnan(wrong.dynamic_min));
+}
+
+// 1 kg under a load of 1 N against a spring of k N/m passes x with 1 - k x / 2 of x J left, which is 2 / (k
+// x) - 1 of what has been resisted, and turns at 2 / k. However close behind the deployed pose that is, it
+// arrives: in one part of a step it is past the pose, has turned, and may be on this side of it again.
+// Energies are those of steps that are resolved to 1e-13.
+TEST_CASE("a motion that would turn just behind the deployed pose arrives there") {
+  const std::string push = "[[loads]]\nnodes = [\"A\"]\nforce = [1, 0, 0]\n";
+  for (const double deployed : {1.3, 0.7}) {
+    for (const double behind : {0.3, 1e-2, 2e-3, 1e-3, 3e-4, 1e-5, 1e-7, 1e-9}) {
+      const double k = 2 / (deployed * (1 + behind));
+      const Margin margin = margin_in(slider(
+          push + "[[forces]]\nkind = \"spring\"\nnodes = [\"W\", \"A\"]\nfree_length = 1\nstiffness = " +
+              exact_number(k) + "\n",
+          deployed));
+      INFO(deployed << " " << behind);
+      CHECK(margin.arrives);
+      CHECK(margin.motion.back().s == Approx(deployed).epsilon(1e-12));
+      CHECK(margin.dynamic_min == Approx(behind).margin(2e-12));
+    }
+    // Just before it, it stalls.
+    const Margin stalls = margin_in(
+        slider(push + "[[forces]]\nkind = \"spring\"\nnodes = [\"W\", \"A\"]\nfree_length = 1\nstiffness = " +
+                   exact_number(2 / (deployed * (1 - 1e-6))) + "\n",
+               deployed));
+    CHECK(stalls.end == MarginEnd::stalls);
+    CHECK(stalls.motion.back().s == Approx(deployed * (1 - 1e-6)).epsilon(1e-11));
+  }
+  // Thrown up at 10 m/s against 10 m/s^2, to 5 m.
+  for (const double deployed : {4.8, 4.9995, 4.9999999}) {
+    const Margin margin = margin_in(R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], velocity = [0, 0, 10], mass = 1}]
+[[constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [0, 0, 1]
+[gravity]
+acceleration = [0, 0, -10]
+[deployment]
+measure = "coordinate A along 0 0 1"
+deployed = )" + exact_number(deployed) +
+                                    "\n[solver]\nend_time = 9\n");
+    INFO(deployed);
+    CHECK(margin.arrives);
+    CHECK(margin.dynamic_min == Approx(5 / deployed - 1).margin(1e-11));
+  }
 }
 
 }  // namespace margin_motion_test
