@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/golden_section.hpp"
 #include "core/path/margin_motion.hpp"
 #include "core/path/path_scope.hpp"
 #include "core/path/path_time.hpp"
@@ -109,9 +110,12 @@ class MarginMaker {
     out_.dynamic_min = motion_.speed() != 0 ? infinite : static_margin(0.0, motion_.released());
     if (out_.end == MarginEnd::other_way && motion_.speed() != 0)
       out_.dynamic_min = std::numeric_limits<double>::quiet_NaN();
-    for (const MarginReach& reach : out_.motion)
+    const auto take_least = [&](const MarginReach& reach) {
       if (const double m = reach.margin(); reach.resisted > 0 && m < out_.dynamic_min)
         out_.dynamic_min = m, out_.dynamic_at = reach.s;
+    };
+    for (const MarginReach& reach : out_.motion) take_least(reach);
+    if (motion_.least()) take_least(*motion_.least());
     if (!out_.arrives) out_.dynamic_at = out_.motion.back().s;
   }
 
@@ -164,17 +168,11 @@ class MarginMaker {
         });
     out_.worst = *worst;
     if (!std::isfinite(worst->margin)) return;
-    // Golden section between the poses beside the worst.
-    constexpr double golden = 0.6180339887498949;
-    double a = worst == out_.points.begin() ? worst->s : (worst - 1)->s;
-    double b = worst + 1 == out_.points.end() ? worst->s : (worst + 1)->s;
-    for (int it = 0; it < 60; ++it) {
-      const double x = b - golden * (b - a), y = a + golden * (b - a);
-      (static_margin(x, time_at(x)) < static_margin(y, time_at(y)) ? b : a) =
-          static_margin(x, time_at(x)) < static_margin(y, time_at(y)) ? y : x;
-    }
-    if (const MarginPoint refined = point(0.5 * (a + b)); refined.margin < out_.worst.margin)
-      out_.worst = refined;
+    // Between the poses beside the worst.
+    const double a = worst == out_.points.begin() ? worst->s : (worst - 1)->s;
+    const double b = worst + 1 == out_.points.end() ? worst->s : (worst + 1)->s;
+    const double at = golden_section([&](double s) { return static_margin(s, time_at(s)); }, a, b, 60);
+    if (const MarginPoint refined = point(at); refined.margin < out_.worst.margin) out_.worst = refined;
   }
 
   const Structure& structure_;

@@ -18,6 +18,8 @@ constexpr double same_place = 1e-8;         // of the way: a stop in the deploye
 constexpr double same_energy = 1e-5;        // of all work, in which a motion must balance
 constexpr long most_turns_at_once = 100, most_steps = 100000;
 constexpr int poses_for_stops = 400;
+constexpr double level = 1e-9;  // slope of the margin, of what it is the difference of, that is none
+constexpr double next_to = 1e-6, near_start = 1e-2;  // the ends of a part of a step, as shares of it
 
 }  // namespace
 
@@ -55,12 +57,19 @@ void MarginMotion::begin() {
   crowd_ = 0;
   stop_.clear();
   reaches_.clear();
+  least_.reset();
+}
+
+void MarginMotion::at(double t, double& way, double& speed) const {
+  motion_.at(t, way, speed);
+  way *= sense_;
+  speed *= sense_;
 }
 
 double MarginMotion::speed_at(double t) const {
-  double s = 0, v = 0;
-  motion_.at(t, s, v);
-  return sense_ * v;
+  double way = 0, speed = 0;
+  at(t, way, speed);
+  return speed;
 }
 
 double MarginMotion::pull_at(double t) const {
@@ -233,20 +242,71 @@ double MarginMotion::last_time(double a, double b, bool turns) const {
   return a;
 }
 
+double MarginMotion::force_at(std::size_t group, double t) const {
+  double s = 0, v = 0;
+  motion_.at(t, s, v);
+  return sense_ * law_.force(group, s, v, t);
+}
+
+// Every source on its own side: where it turns from a drive to a resistance, or back, its power has a kink.
+MarginMotion::Work MarginMotion::work_between(double a, double b) const {
+  static const Quadrature gauss = gauss_legendre(8);
+  Work work;
+  for (std::size_t g = 0; g < law_.groups().size(); ++g) {
+    const auto add = [&](double from, double to) {
+      double sum = 0;
+      for (Index i = 0; i < gauss.nodes.size(); ++i) {
+        const double t = from + (to - from) * gauss.nodes[i];
+        sum += (to - from) * gauss.weights[i] * force_at(g, t) * speed_at(t);
+      }
+      (sum > 0 ? work.driven : work.resisted) += std::abs(sum);
+    };
+    double low = a, high = b;
+    const double first = force_at(g, a);
+    if (first * force_at(g, b) < 0)
+      for (int it = 0; it < 60; ++it)
+        (force_at(g, 0.5 * (low + high)) * first > 0 ? low : high) = 0.5 * (low + high);
+    if (high < b) add(high, b);
+    add(a, high);
+  }
+  return work;
+}
+
+MarginReach MarginMotion::reach_at(double t, const Work& since) const {
+  double way = 0, speed = 0;
+  at(t, way, speed);
+  return {way, t, 0.0, 0.5 * speed * speed, driven_ + since.driven, resisted_ + since.resisted};
+}
+
+// The slope of driven / resisted along the way has the sign of drives * resisted - driven * resistances.
+void MarginMotion::look_for_least(double a, double b) {
+  const auto slope = [&](double t) {
+    const MarginReach reach = reach_at(t, work_between(a, t));
+    double drives = 0, resistances = 0;
+    for (std::size_t g = 0; g < law_.groups().size(); ++g)
+      if (const double force = force_at(g, t); force > 0)
+        drives += force;
+      else
+        resistances -= force;
+    const double up = drives * reach.resisted, down = reach.driven * resistances;
+    return std::abs(up - down) > level * (up + down) ? up - down : 0.0;
+  };
+  // Within the part: a load may jump at its ends, and nothing has been resisted yet at the start of the
+  // motion.
+  double low = a + (resisted_ > 0 ? next_to : near_start) * (b - a), high = b - next_to * (b - a);
+  if (!(slope(low) < 0 && slope(high) > 0)) return;
+  for (int it = 0; it < 50; ++it) (slope(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
+  const MarginReach found = reach_at(high, work_between(a, high));
+  if (!least_ || found.margin() < least_->margin()) least_ = found;
+}
+
 void MarginMotion::account(double a, double b) {
   if (!record_) return;
-  static const Quadrature gauss = gauss_legendre(8);
-  double s = 0, v = 0;
-  for (Index i = 0; i < gauss.nodes.size(); ++i) {
-    const double t = a + (b - a) * gauss.nodes[i];
-    motion_.at(t, s, v);
-    for (std::size_t g = 0; g < law_.groups().size(); ++g) {
-      const double power = (b - a) * gauss.weights[i] * law_.force(g, s, v, t) * v;
-      (power > 0 ? driven_ : resisted_) += std::abs(power);
-    }
-  }
-  motion_.at(b, s, v);
-  reaches_.push_back({sense_ * s, b, 0.0, 0.5 * v * v, driven_, resisted_});
+  look_for_least(a, b);
+  const MarginReach reached = reach_at(b, work_between(a, b));
+  driven_ = reached.driven;
+  resisted_ = reached.resisted;
+  reaches_.push_back(reached);
 }
 
 // A load that was stepped over would show here.

@@ -39,7 +39,10 @@ class MarginMotion {
   double t() const { return motion_.t(); }
   double way() const { return sense_ * motion_.s(); }
   double time_at(double way) const;  // when it was last there; behind its end, the end
+  void at(double t, double& way, double& speed) const;
   const std::vector<MarginReach>& reaches() const { return reaches_; }  // of one sector, without fold angles
+  // Where the margin falls and rises again between two of them, the least such.
+  const std::optional<MarginReach>& least() const { return least_; }
 
  private:
   void begin();
@@ -47,6 +50,13 @@ class MarginMotion {
   bool follow(double from, double to);
   double turn_between(double a, double b) const;
   double last_time(double a, double b, bool turns) const;
+  struct Work {
+    double driven = 0.0, resisted = 0.0;
+  };
+  double force_at(std::size_t group, double t) const;
+  Work work_between(double a, double b) const;
+  MarginReach reach_at(double t, const Work& since) const;
+  void look_for_least(double a, double b);
   void account(double a, double b);
   void turn_cable(std::size_t side);
   double speed_at(double t) const;
@@ -74,6 +84,7 @@ class MarginMotion {
   MarginEnd ended_ = MarginEnd::stalls;
   std::string stop_;
   std::vector<MarginReach> reaches_;
+  std::optional<MarginReach> least_;
 };
 
 }  // namespace unfurl

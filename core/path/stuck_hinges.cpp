@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/golden_section.hpp"
 #include "core/path/hinge_turns.hpp"
 #include "core/path/margin.hpp"
 #include "core/path/margin_motion.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 constexpr double still = 1e-9;         // [rad]
 constexpr double hardly_turns = 1e-6;  // of the hinge's fastest turn: a pose that no torque of it holds
+constexpr double level_torque = 1e-9;  // by which it differs where it is not level, as a share
+constexpr double told_turn = 1e-7;     // [rad] of differences of angles, that tells them to 1e-8
 constexpr double torque_found = 1e-7;  // as a share
 constexpr double loose_steps = 1e-9;   // of motions that only tell whether they arrive
 // A motion without loads over time that creeps is followed for so many end times.
@@ -30,7 +33,8 @@ class StuckMaker {
     for (const MarginReach& reach : margin_.motion) poses_.push_back(pose(reach.s));
     for (const MarginPoint& point : margin_.points) points_.push_back(pose(point.s));
     for (const Hinge& hinge : hinges_of(structure_)) take(hinge);
-    for (std::size_t j = 0; j < margin_.points.size(); ++j) rest_.push_back(rest_force(margin_.points[j]));
+    for (std::size_t j = 0; j < margin_.points.size(); ++j)
+      rest_.push_back(rest_force(margin_.points[j].s, margin_.points[j].t));
     by_pose_ = depends_on_pose();
     if (!by_pose_) {
       rates_ = std::make_unique<HingeRates>(hinges_);
@@ -39,12 +43,19 @@ class StuckMaker {
   }
 
   std::vector<StuckHinge> make(std::size_t most_for_pairs) {
+    std::vector<Some> all;
+    for (std::size_t i = 0; i < hinges_.size(); ++i) all.push_back({i});
+    if (hinges_.size() <= most_for_pairs)
+      for (std::size_t i = 0; i < hinges_.size(); ++i)
+        for (std::size_t k = i + 1; k < hinges_.size(); ++k) all.push_back({i, k});
     std::vector<StuckHinge> out;
-    for (std::size_t i = 0; i < hinges_.size(); ++i) out.push_back(stuck(hinges_[i].name, {i}));
-    if (hinges_.size() > most_for_pairs) return out;
-    for (std::size_t i = 0; i < hinges_.size(); ++i)
-      for (std::size_t k = i + 1; k < hinges_.size(); ++k)
-        out.push_back(stuck(hinges_[i].name + " and " + hinges_[k].name, {i, k}));
+    if (all.empty()) return out;
+    // The motion of the margin again, to ask it between its states.
+    const double end = margin_.end == MarginEnd::stalls ? options_.end_time : margin_.motion.back().t;
+    motion_.run(margin_.sense, std::nullopt, end, false);
+    for (const Some& some : all) out.push_back(stuck(some));
+    if (!by_pose_)
+      for (std::size_t i = 0; i < all.size(); ++i) stall_by_motion(all[i], out[i]);
     return out;
   }
 
@@ -61,6 +72,10 @@ class StuckMaker {
   struct Pose {
     VectorXd q, dq;
   };
+  struct Turns {
+    std::vector<double> angle, rate, turned;  // at the places of the motion
+    std::vector<double> rate_in_point;        // in those of the margin, its size
+  };
 
   Pose pose(double s) const {
     VectorXd z, tangent;
@@ -73,26 +88,26 @@ class StuckMaker {
 
   // The angle turned until each place of the motion, and the rates in the poses of the margin.
   void take(const Hinge& hinge) {
-    std::vector<double> turned{0.0};
-    double before = hinge_angle(hinge, poses_[0].q), rate = hinge_rate(hinge, poses_[0].q, poses_[0].dq);
-    for (std::size_t i = 1; i < poses_.size(); ++i) {
-      const double angle = hinge_angle(hinge, poses_[i].q);
-      const double next = hinge_rate(hinge, poses_[i].q, poses_[i].dq);
+    Turns turns;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      turns.angle.push_back(hinge_angle(hinge, poses_[i].q));
+      turns.rate.push_back(hinge_rate(hinge, poses_[i].q, poses_[i].dq));
+      if (i == 0) {
+        turns.turned.push_back(0.0);
+        continue;
+      }
+      const double before = turns.angle[i - 1], angle = turns.angle[i], rate = turns.rate[i - 1];
       double turn = std::abs(angle - before);
-      if (rate * next < 0) {
+      if (rate * turns.rate[i] < 0) {
         const double between = turn_of(hinge, margin_.motion[i - 1].s, margin_.motion[i].s, rate);
         turn = std::abs(between - before) + std::abs(angle - between);
       }
-      turned.push_back(turned.back() + turn);
-      before = angle;
-      rate = next;
+      turns.turned.push_back(turns.turned.back() + turn);
     }
-    if (turned.back() < still) return;
-    std::vector<double> rates;
-    for (const Pose& at : points_) rates.push_back(std::abs(hinge_rate(hinge, at.q, at.dq)));
+    if (turns.turned.back() < still) return;
+    for (const Pose& at : points_) turns.rate_in_point.push_back(std::abs(hinge_rate(hinge, at.q, at.dq)));
     hinges_.push_back(hinge);
-    turned_.push_back(std::move(turned));
-    rate_.push_back(std::move(rates));
+    turns_.push_back(std::move(turns));
   }
 
   // The angle at which it turns back, or in line.
@@ -105,10 +120,19 @@ class StuckMaker {
     return hinge_angle(hinge, at.q);
   }
 
+  // Until a pose between the places m and m + 1 of the motion.
+  double turned_until(std::size_t hinge, std::size_t m, const Pose& here) const {
+    const Turns& turns = turns_[hinge];
+    const double angle = hinge_angle(hinges_[hinge], here.q);
+    const bool turned_back = turns.rate[m] * hinge_rate(hinges_[hinge], here.q, here.dq) < 0;
+    return turned_back ? turns.turned[m + 1] - std::abs(turns.angle[m + 1] - angle)
+                       : turns.turned[m] + std::abs(angle - turns.angle[m]);
+  }
+
   // Of the whole structure along the path, the way it deploys.
-  double rest_force(const MarginPoint& point) const {
-    const double s = margin_.sense * point.s;
-    return structure_.sectors * (margin_.sense * motion_.law().at_rest(s, point.t).Q - motion_.law().hold(s));
+  double rest_force(double way, double t) const {
+    const double s = margin_.sense * way;
+    return structure_.sectors * (margin_.sense * motion_.law().at_rest(s, t).Q - motion_.law().hold(s));
   }
 
   bool depends_on_pose() const {
@@ -119,44 +143,99 @@ class StuckMaker {
     return true;
   }
 
-  StuckHinge stuck(const std::string& name, const Some& some) {
-    StuckHinge out{name, static_torque(some), unbounded_torque, 0.0, 0.0, 0.0};
-    for (const std::size_t i : some) out.turn += turned_[i].back();
-    if (by_pose_)
-      stall_by_energy(some, out);
-    else
-      stall_by_motion(some, out);
+  StuckHinge stuck(const Some& some) const {
+    StuckHinge out{"", static_torque(some), unbounded_torque, 0.0, 0.0, 0.0};
+    for (const std::size_t i : some) {
+      out.name += (out.name.empty() ? "" : " and ") + hinges_[i].name;
+      out.turn += turns_[i].turned.back();
+    }
+    if (by_pose_) stall_by_energy(some, out);
     return out;
   }
 
   double rate_in(const Some& some, std::size_t point) const {
     double sum = 0;
-    for (const std::size_t i : some) sum += rate_[i][point];
+    for (const std::size_t i : some) sum += turns_[i].rate_in_point[point];
     return sum;
   }
 
-  double static_torque(const Some& some) const {
-    double fastest = 0, least = unbounded_torque;
-    for (std::size_t j = 0; j < rest_.size(); ++j) fastest = std::max(fastest, rate_in(some, j));
-    for (std::size_t j = 0; j < rest_.size(); ++j)
-      if (const double rate = rate_in(some, j); rate > hardly_turns * fastest)
-        least = std::min(least, std::max(0.0, rest_[j] / rate));
+  // The least torque at places, and between those beside any that is less than its neighbours, told from
+  // rounding.
+  struct Least {
+    double torque = unbounded_torque, at = 0.0;
+  };
+  template <class Torque>
+  static Least least_of(const std::vector<double>& places, const std::vector<double>& torques,
+                        const Torque& torque) {
+    Least least;
+    const auto take = [&](double value, double at) {
+      if (value < least.torque) least = {value, at};
+    };
+    for (std::size_t i = 0; i < places.size(); ++i) take(torques[i], places[i]);
+    if (!(least.torque > 0)) return least;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const std::size_t before = i > 0 ? i - 1 : i, behind = std::min(i + 1, places.size() - 1);
+      const double least_beside = std::min(before < i ? torques[before] : unbounded_torque,
+                                           behind > i ? torques[behind] : unbounded_torque);
+      const double most_beside = std::max(torques[before], torques[behind]);
+      if (torques[i] > least_beside || most_beside <= (1 + level_torque) * torques[i]) continue;
+      const double at = golden_section(torque, places[before], places[behind], 40);
+      take(torque(at), at);
+    }
     return least;
   }
 
-  void stall_by_energy(const Some& some, StuckHinge& out) const {
-    const auto take_least = [&](double torque, const MarginReach& at) {
-      if (torque < out.stall_torque)
-        out.stall_torque = torque, out.stall_at = at.s, out.stall_fold = at.fold_angle;
+  double static_torque(const Some& some) const {
+    double fastest = 0;
+    for (std::size_t j = 0; j < rest_.size(); ++j) fastest = std::max(fastest, rate_in(some, j));
+    const auto holding = [&](double force, double rate) {
+      return rate > hardly_turns * fastest ? std::max(0.0, force / rate) : unbounded_torque;
     };
-    // At rest at the start it does not set out.
-    if (margin_.motion[0].kinetic == 0 && rate_in(some, 0) > 0)
-      take_least(std::max(0.0, rest_[0]) / rate_in(some, 0), margin_.motion[0]);
-    for (std::size_t m = 1; m < margin_.motion.size(); ++m) {
-      double turned = 0;
-      for (const std::size_t i : some) turned += turned_[i][m];
-      take_least(margin_.motion[m].kinetic / turned, margin_.motion[m]);
+    std::vector<double> places, torques;
+    for (std::size_t j = 0; j < rest_.size(); ++j) {
+      places.push_back(margin_.points[j].s);
+      torques.push_back(holding(rest_[j], rate_in(some, j)));
     }
+    const auto between = [&](double way) {
+      const Pose at = pose(way);
+      double rate = 0;
+      for (const std::size_t i : some) rate += std::abs(hinge_rate(hinges_[i], at.q, at.dq));
+      return holding(rest_force(way, motion_.law().timed() ? motion_.time_at(way) : 0.0), rate);
+    };
+    return least_of(places, torques, between).torque;
+  }
+
+  void stall_by_energy(const Some& some, StuckHinge& out) const {
+    const std::vector<MarginReach>& states = margin_.motion;
+    std::vector<double> times, torques;
+    for (std::size_t m = 0; m < states.size(); ++m) {
+      double turned = 0;
+      for (const std::size_t i : some) turned += turns_[i].turned[m];
+      times.push_back(states[m].t);
+      torques.push_back(states[m].kinetic / turned);
+    }
+    // At rest at the start it does not set out.
+    torques[0] = states[0].kinetic == 0 && rate_in(some, 0) > 0 ? std::max(0.0, rest_[0]) / rate_in(some, 0)
+                                                                : unbounded_torque;
+    const auto between = [&](double t) {
+      double way = 0, speed = 0, turned = 0;
+      motion_.at(t, way, speed);
+      const Pose here = pose(way);
+      const auto behind = std::upper_bound(times.begin() + 1, times.end() - 1, t);
+      for (const std::size_t i : some)
+        turned += turned_until(i, static_cast<std::size_t>(behind - times.begin()) - 1, here);
+      return turned > told_turn ? 0.5 * structure_.sectors * speed * speed / turned : unbounded_torque;
+    };
+    const Least least = least_of(times, torques, between);
+    out.stall_torque = least.torque;
+    double speed = 0;
+    if (least.torque < unbounded_torque) motion_.at(least.at, out.stall_at, speed);
+    out.stall_fold = fold_angle(out.stall_at);
+  }
+
+  double fold_angle(double way) const {
+    return structure_.deployment.folds() ? structure_.deployment.fold_angle(pose(way).q)
+                                         : std::numeric_limits<double>::quiet_NaN();
   }
 
   // |d angle / ds|, of the table of squares.
@@ -183,8 +262,7 @@ class StuckMaker {
   void stall_by_motion(const Some& some, StuckHinge& out) {
     const auto at = [&](double way) {
       out.stall_at = way;
-      out.stall_fold = structure_.deployment.folds() ? structure_.deployment.fold_angle(pose(way).q)
-                                                     : std::numeric_limits<double>::quiet_NaN();
+      out.stall_fold = fold_angle(way);
     };
     if (margin_.end == MarginEnd::stalls) {
       out.stall_torque = 0;
@@ -230,7 +308,7 @@ class StuckMaker {
   MarginMotion motion_;
   std::vector<Pose> poses_, points_;  // of the motion, of the margin's points
   std::vector<Hinge> hinges_;         // that turn
-  std::vector<std::vector<double>> turned_, rate_;
+  std::vector<Turns> turns_;          // of those
   std::vector<double> rest_;
   bool by_pose_ = true;
   std::unique_ptr<HingeRates> rates_;

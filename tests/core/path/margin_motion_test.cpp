@@ -304,4 +304,47 @@ deployed = )" + exact_number(deployed) +
   }
 }
 
+// A mass on a line under 1 N, past a spring beside it of V(x) = k/2 (L - L_0)^2, L^2 = (x - 2)^2 + 1, which
+// resists until it snaps through at x = 2 and drives from there on. Until then driven / resisted is
+// (x - 1) / (V(x) - V(1)), least on the way; behind it nothing resists any more.
+TEST_CASE("the dynamic margin is the least of the motion, between its states too") {
+  for (const double mass : {0.3, 2.0})
+    for (const double free_length : {std::sqrt(2.0), 1.5})
+      for (const double k : {2.0, 3.7, 5.0}) {
+        const Margin margin = margin_in(R"([structure]
+kind = "custom"
+nodes = [{name = "B", position = [2, 1, 0], fixed = true}, {name = "A", position = [1, 0, 0], mass = )" +
+                                        exact_number(mass) + R"(}]
+[[constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [1, 0, 0]
+[[loads]]
+nodes = ["A"]
+force = [1, 0, 0]
+[deployment]
+measure = "coordinate A along 1 0 0"
+deployed = 3
+[[forces]]
+kind = "spring"
+nodes = ["B", "A"]
+stiffness = )" + exact_number(k) + "\nfree_length = " +
+                                        exact_number(free_length) + "\n[solver]\nend_time = 60\n");
+        const auto V = [&](double x) { return 0.5 * k * std::pow(std::hypot(x - 2, 1) - free_length, 2); };
+        double least = 1e300, at = 0;
+        // A hundred thousand places, next to the least a parabola: 1e-10 of it.
+        for (double x = 1.00001; x < 2; x += 1e-5)
+          if (const double m = (x - 1) / (V(x) - V(1)) - 1; m < least) least = m, at = x;
+        INFO(mass << " " << free_length << " " << k);
+        REQUIRE(margin.arrives);
+        REQUIRE(at > 1.1);
+        CHECK(margin.dynamic_min == Approx(least).epsilon(1e-9));
+        // The place of a least value is known to the root of its error.
+        CHECK(margin.dynamic_at == Approx((at - 1) * std::sqrt(mass)).epsilon(1e-4));
+        // Where the spring turns from a resistance to a drive is no state of the motion either.
+        CHECK(margin.motion.back().resisted == Approx(V(2) - V(1)).epsilon(1e-11));
+        CHECK(margin.motion.back().driven == Approx(2 + V(2) - V(3)).epsilon(1e-11));
+      }
+}
+
 }  // namespace margin_motion_test

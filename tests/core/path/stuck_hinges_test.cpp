@@ -147,4 +147,87 @@ TEST_CASE("a hinge turns as far as in a run, without a deployed pose too") {
   }
 }
 
+namespace {
+
+// Slider and crank: A H of 0.5 m from 70 degrees, H B of 0.9 m, B on x under 2 N past a spring beside it of
+// k N/m; deployed where B is at 1.38 m. By the crank's angle p, hinge H has turned by p + asin(r sin p / l)
+// less than at the start.
+struct SliderCrank {
+  static constexpr double r = 0.5, l = 0.9, start = 70 * radians_per_degree, force = 2;
+  double k = 0;
+
+  static double x(double p) { return r * std::cos(p) + std::sqrt(l * l - std::pow(r * std::sin(p), 2)); }
+  static double angle(double p) { return p + std::asin(r * std::sin(p) / l); }
+  static double end() {
+    double low = 0, high = start;
+    for (int it = 0; it < 80; ++it) (x(0.5 * (low + high)) > 1.38 ? low : high) = 0.5 * (low + high);
+    return high;
+  }
+  double spring(double at) const { return std::hypot(at - 1.15, 0.2); }
+  double energy(double p) const {  // where it is let go of at rest
+    return force * (x(p) - x(start)) - 0.5 * k * std::pow(spring(x(p)) - spring(x(start)), 2);
+  }
+  // Of the hinge.
+  double stalled_at(double p) const { return energy(p) / (angle(start) - angle(p)); }
+  double held_at(double p) const {
+    const double at = x(p), L = spring(at);
+    const double f = force - k * (L - spring(x(start))) * (at - 1.15) / L;
+    return f * r * std::sin(p);  // dx by the hinge's angle
+  }
+  // Among 400 thousand angles: next to a least one a parabola, 1e-11 of it.
+  template <class Torque>
+  std::pair<double, double> least(const Torque& torque) const {
+    std::pair<double, double> out{1e300, 0.0};
+    constexpr int many = 400000;
+    for (int i = 1; i <= many; ++i) {
+      const double p = start + (end_ - start) * i / many;
+      out = std::min(out, {torque(p), p});
+    }
+    return out;
+  }
+
+  std::string scene(const std::string& load, const std::string& solver) const {
+    std::string text = R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "S", position = [1.15, 0, 0.2], fixed = true},
+  {name = "H", position = ["=0.5*cos(70*deg)", 0, "=0.5*sin(70*deg)"], mass = 0.3},
+  {name = "B", position = ["=0.5*cos(70*deg)+sqrt(0.81-(0.5*sin(70*deg))^2)", 0, 0], mass = 1}]
+rods = [{name = "crank", nodes = ["A", "H"], mass = 1}, {name = "coupler", nodes = ["H", "B"], mass = 2}]
+[[constraints]]
+kind = "plane"
+nodes = ["H"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "line"
+nodes = ["B"]
+direction = [1, 0, 0]
+)" + load + solver;
+    if (k > 0) text += "[[forces]]\nkind = \"spring\"\nnodes = [\"S\", \"B\"]\nstiffness = " + exact_number(k) + "\n";
+  return text;
+}
+
+private : double end_ = end();
+};
+
+const std::string push = "[[loads]]\nnodes = [\"B\"]\nforce = [2, 0, 0]\n";
+const std::string deployed = "[deployment]\nmeasure = \"length A B\"\ndeployed = 1.38\n";
+
+}  // namespace
+
+TEST_CASE("a jam stalls the motion, and holds it at rest, where it is least between states too") {
+  for (const double k : {0.0, 40.0, 60.0, 80.0}) {
+    const SliderCrank crank{k};
+    const auto hinges =
+        stuck_in(read_scene_text(crank.scene(push, deployed + "[solver]\nend_time = 20\n"), "crank.toml"));
+    INFO(k);
+    REQUIRE(hinges.size() == 1);
+    const auto [stall, at] = crank.least([&](double p) { return crank.stalled_at(p); });
+    const auto [hold, held_at] = crank.least([&](double p) { return std::max(0.0, crank.held_at(p)); });
+    CHECK(hinges[0].stall_torque == Approx(stall).epsilon(1e-9));
+    CHECK(hinges[0].static_torque == Approx(hold).epsilon(1e-9));
+    CHECK(hinges[0].turn ==
+          Approx(SliderCrank::angle(SliderCrank::start) - SliderCrank::angle(SliderCrank::end())));
+  }
+}
+
 }  // namespace stuck_hinges_test
