@@ -83,7 +83,8 @@ struct StuckHinge {
 // Every hinge that turns, then, where they are no more than most_for_pairs, every two of them, jammed alike.
 // Where all that acts depends on the pose alone the stall follows from the energy of the motion without the
 // jam, K(s) = torque times the angle turned so far. Dampers, motors and loads over time act otherwise in a
-// slower motion: there it is the torque at which the motion with the jam comes to rest on its way.
+// slower motion: there it is the torque at which the motion with the jam comes to rest on its way, with
+// nothing that sets it free before options.end_time; what moves then is followed further.
 std::vector<StuckHinge> stuck_hinges(const std::shared_ptr<const Model>& model, const SolverOptions& options,
                                      const Margin& margin, std::size_t most_for_pairs);
 

@@ -134,7 +134,7 @@ bool MarginMotion::set_out(double end_time, bool first) {
   const auto free = release(motion_.s(), motion_.t(), end_time);
   if (!free || free->sense != sense_) {
     ended_ = free && first ? MarginEnd::other_way : MarginEnd::stalls;
-    if (!free && law_.timed()) motion_.rest(end_time);
+    if (!free && law_.timed()) motion_.rest(std::max(end_time, motion_.t()));
     return false;
   }
   if (free->t > motion_.t()) motion_.rest(free->t);
@@ -143,7 +143,8 @@ bool MarginMotion::set_out(double end_time, bool first) {
   return true;
 }
 
-void MarginMotion::run(double sense, std::optional<double> goal, double end_time, bool record) {
+void MarginMotion::run(double sense, std::optional<double> goal, double end_time, bool record,
+                       double patience) {
   begin();
   sense_ = law_.going = sense;
   goal_ = goal;
@@ -162,11 +163,11 @@ void MarginMotion::run(double sense, std::optional<double> goal, double end_time
       first = false;
     }
     const double from = motion_.t();
-    if (from >= end_time) {
+    if (from >= patience * end_time) {
       ended_ = goal_ ? MarginEnd::time : MarginEnd::arrives;
       return check_energy();
     }
-    double latest = end_time;
+    double latest = from < end_time ? end_time : patience * end_time;
     for (const TimeEdge& edge : edges_)
       if (edge.t > from * (1 + 1e-15) + 1e-15) {
         latest = std::min(latest, edge.t);

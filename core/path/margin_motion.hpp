@@ -30,8 +30,9 @@ class MarginMotion {
   // The first place on the way where a stop bars it, and which.
   std::optional<std::pair<double, std::string>> barred(double sense, double end) const;
 
-  // goal: where it arrives; nothing: where it is at the end time.
-  void run(double sense, std::optional<double> goal, double end_time, bool record);
+  // goal: where it arrives; nothing: where it is at the end time. At rest it waits until the end time;
+  // patience: it is followed for so many of those while it moves.
+  void run(double sense, std::optional<double> goal, double end_time, bool record, double patience = 1.0);
 
   MarginEnd ended() const { return ended_; }
   const std::string& stop() const { return stop_; }

@@ -18,7 +18,8 @@ constexpr double level_torque = 1e-9;  // by which it differs where it is not le
 constexpr double told_turn = 1e-7;     // [rad] of differences of angles, that tells them to 1e-8
 constexpr double torque_found = 1e-7;  // as a share
 constexpr double loose_steps = 1e-9;   // of motions that only tell whether they arrive
-// A motion without loads over time that creeps is followed for so many end times.
+// A jam makes a motion late, and that is no stall: it is followed for so many end times. One that still
+// creeps then has stalled.
 constexpr double patience = 1e9;
 constexpr double unbounded_torque = std::numeric_limits<double>::infinity();
 
@@ -254,8 +255,7 @@ class StuckMaker {
     motion_.law().jam_torque = torque / structure_.sectors;
     // Only the way on which it was followed is asked for, to rounding.
     const double goal = margin_.motion.back().s * (1 - 1e-9);
-    const bool timed = motion_.law().timed();
-    motion_.run(margin_.sense, goal, (timed ? 1.0 : patience) * options_.end_time, false);
+    motion_.run(margin_.sense, goal, options_.end_time, false, patience);
     return motion_.ended() == MarginEnd::arrives;
   }
 
