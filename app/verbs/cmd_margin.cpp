@@ -191,7 +191,8 @@ std::string told_end(const Margin& margin, const std::string& place) {
   return "";
 }
 
-void print_margin(const Scene& scene, const Margin& margin, const std::vector<StuckHinge>& hinges) {
+void print_margin(const Scene& scene, const Margin& margin, const std::vector<StuckHinge>& hinges,
+                  bool stuck) {
   const std::string unit = folds(margin) ? " deg" : " m kg^1/2";
   const MarginReach& last = margin.motion.back();
   std::cout << scene.name << ": static margin " << words(margin.worst.margin) << " at "
@@ -199,7 +200,10 @@ void print_margin(const Scene& scene, const Margin& margin, const std::vector<St
             << ", dynamic margin " << words(margin.dynamic_min) << "; "
             << told_end(margin, short_number(place(margin, last.fold_angle, last.s), 6) + unit) << "\n";
   print_sources(margin);
-  if (!hinges.empty()) print_hinges(margin, hinges, unit);
+  if (!hinges.empty())
+    print_hinges(margin, hinges, unit);
+  else if (stuck)
+    std::cout << "no hinge jams: no two rods that meet at a node turn against each other on the way\n";
 }
 
 }  // namespace
@@ -225,7 +229,7 @@ int cmd_margin(const Arguments& arguments) {
   if (arguments.json)
     std::cout << margin_json(scene, margin, hinges, arguments.study.stuck).dump(2) << "\n";
   else
-    print_margin(scene, margin, hinges);
+    print_margin(scene, margin, hinges, arguments.study.stuck);
   if (arguments.output.empty()) return exit_ok;
   std::string asked = "Margins";
   for (const std::string& factor : arguments.study.factors) asked += " " + factor;

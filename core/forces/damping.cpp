@@ -95,19 +95,26 @@ std::unique_ptr<ForceBlock> drag_block(const Structure& structure, const SparseR
   return block;
 }
 
-std::vector<Measure> angles_at_joint(const Structure& structure, int joint) {
+std::vector<RodAtJoint> rods_at_joint(const Structure& structure, int joint) {
   const PinRelations relations(structure, joint);
-  std::vector<std::pair<int, int>> lines;
-  for (const Rod& rod : structure.rods)
+  std::vector<RodAtJoint> out;
+  for (std::size_t i = 0; i < structure.rods.size(); ++i) {
+    const Rod& rod = structure.rods[i];
     if (rod.a == joint || rod.b == joint)
-      lines.emplace_back(joint, rod.a == joint ? rod.b : rod.a);
+      out.push_back({i, joint, rod.a == joint ? rod.b : rod.a});
     else if (relations.on(rod))
-      lines.emplace_back(rod.a, rod.b);
+      out.push_back({i, rod.a, rod.b});
+  }
+  return out;
+}
+
+std::vector<Measure> angles_at_joint(const Structure& structure, int joint) {
+  const std::vector<RodAtJoint> lines = rods_at_joint(structure, joint);
   std::vector<Measure> angles;
   for (std::size_t i = 0; i < lines.size(); ++i)
     for (std::size_t j = i + 1; j < lines.size(); ++j)
       angles.push_back({MeasureKind::angle,
-                        {lines[i].first, lines[i].second, lines[j].first, lines[j].second},
+                        {lines[i].from, lines[i].to, lines[j].from, lines[j].to},
                         Vec3::Zero(),
                         0,
                         {}});

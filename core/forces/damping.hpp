@@ -14,6 +14,11 @@ namespace unfurl {
 //                   of their relative angular velocity only theta' is left.
 //   drag            R = c/2 |v|^2 of a node
 // Rods are at a node with an end, or carry it as a pin between their ends.
+struct RodAtJoint {
+  std::size_t rod = 0;
+  int from = 0, to = 0;  // nodes along it: the joint and its other end, or both ends
+};
+std::vector<RodAtJoint> rods_at_joint(const Structure& structure, int joint);
 std::vector<Measure> angles_at_joint(const Structure& structure, int joint);
 // Notes each entry of the kind of whose nodes none has two rods.
 void note_idle_joints(Structure& structure);

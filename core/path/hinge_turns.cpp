@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/forces/damping.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -13,8 +15,8 @@ constexpr double in_line = 1e-7;  // sine of the angle below which its axis is n
 struct Arms {
   Vec3 a, b, da, db;
   Arms(const Hinge& hinge, const VectorXd& q, const VectorXd& dq) {
-    direction(hinge.pin, hinge.first, q, dq, a, da);
-    direction(hinge.pin, hinge.second, q, dq, b, db);
+    direction(hinge.a_from, hinge.a_to, q, dq, a, da);
+    direction(hinge.b_from, hinge.b_to, q, dq, b, db);
   }
 
  private:
@@ -39,20 +41,19 @@ double rate_of(const Arms& arms) {
 
 std::vector<Hinge> hinges_of(const Structure& structure) {
   std::vector<Hinge> out;
-  const auto other = [&](const Rod& rod, int node) { return rod.a == node ? rod.b : rod.a; };
-  for (int node = 0; node < static_cast<int>(structure.nodes.size()); ++node)
-    for (std::size_t i = 0; i < structure.rods.size(); ++i)
-      for (std::size_t k = i + 1; k < structure.rods.size(); ++k) {
-        const Rod &a = structure.rods[i], &b = structure.rods[k];
-        if ((a.a != node && a.b != node) || (b.a != node && b.b != node)) continue;
-        out.push_back({a.name + " / " + b.name, node, other(a, node), other(b, node)});
-      }
+  for (int node = 0; node < static_cast<int>(structure.nodes.size()); ++node) {
+    const std::vector<RodAtJoint> rods = rods_at_joint(structure, node);
+    for (std::size_t i = 0; i < rods.size(); ++i)
+      for (std::size_t k = i + 1; k < rods.size(); ++k)
+        out.push_back({structure.rods[rods[i].rod].name + " / " + structure.rods[rods[k].rod].name,
+                       rods[i].from, rods[i].to, rods[k].from, rods[k].to});
+  }
   return out;
 }
 
 double hinge_angle(const Hinge& hinge, const VectorXd& q) {
   const auto at = [&](int node) { return Vec3(q.segment<3>(3 * static_cast<Index>(node))); };
-  const Vec3 a = at(hinge.first) - at(hinge.pin), b = at(hinge.second) - at(hinge.pin);
+  const Vec3 a = at(hinge.a_to) - at(hinge.a_from), b = at(hinge.b_to) - at(hinge.b_from);
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 

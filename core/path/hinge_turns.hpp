@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How pairs of rods that meet at a node turn against each other along a path.
+// How pairs of rods that meet at a node, with an end or with a pin between their ends, turn against each other
+// along a path.
 #pragma once
 
 #include <string>
@@ -12,7 +13,7 @@ namespace unfurl {
 
 struct Hinge {
   std::string name;
-  int pin = 0, first = 0, second = 0;  // nodes
+  int a_from = 0, a_to = 0, b_from = 0, b_to = 0;  // nodes along both rods
 };
 
 std::vector<Hinge> hinges_of(const Structure& structure);

@@ -71,7 +71,7 @@ struct Margin {
 Margin margin_of(const std::shared_ptr<const Model>& model, const SolverOptions& options,
                  const std::map<std::string, double>& factors = {});
 
-// A hinge between two rods that jams with a friction torque, all else as in the margin.
+// A hinge between two rods, at their ends or between them, that jams with a friction torque, all else as in the margin.
 struct StuckHinge {
   std::string name;
   double static_torque = 0.0;  // that holds the structure in some pose if it comes to rest there [N m]

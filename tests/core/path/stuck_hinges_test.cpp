@@ -272,4 +272,32 @@ TEST_CASE("a jam with loads over time stalls the motion where it rests, not wher
   }
 }
 
+// One scissor: two rods l on a pin in their middle, pushed up by F on both tips (half of it each), so that by
+// the angle p of the rods with the axis the force has gone l (cos p - cos p_0), while the rods turn against
+// each other by 2 (p_0 - p). At rest the pin holds F l sin p / 2.
+TEST_CASE("the pin in the middle of a scissor jams, like a hinge at the ends of rods") {
+  const double start = 84 * radians_per_degree, l = 1.3, force = 37;
+  for (const double deployed_angle : {35.0, 61.0}) {
+    const double end = deployed_angle * radians_per_degree;
+    const std::string shape =
+        "[structure]\nkind = \"scissor_mast\"\ncells = 1\nrod_length = 1.3\nfold_angle = 84\n"
+        "tip_force = 37\ndeployed_angle = " +
+        exact_number(deployed_angle) + "\n[solver]\nend_time = 20\n";
+    const auto hinges = stuck_in(read_scene_text(shape, "scissor.toml"));
+    INFO(deployed_angle);
+    REQUIRE(hinges.size() == 1);
+    CHECK(hinges[0].turn == Approx(2 * (start - end)).epsilon(1e-10));
+    // (cos p - cos p_0) / (p_0 - p) is the mean of the sine on the way, which falls: least at the end.
+    CHECK(hinges[0].stall_torque ==
+          Approx(force * l * (std::cos(end) - std::cos(start)) / (2 * (start - end))).epsilon(1e-9));
+    CHECK(hinges[0].static_torque == Approx(0.5 * force * l * std::sin(end)).epsilon(1e-9));
+  }
+  // Of two cells: both pins, and at two ends a rod below and a rod above, which turn alike.
+  const auto two = stuck_in(read_scene_text(
+      "[structure]\nkind = \"scissor_mast\"\ncells = 2\nfold_angle = 84\n[solver]\nend_time = 20\n",
+      "two.toml"));
+  REQUIRE(two.size() == 4);
+  for (const StuckHinge& hinge : two) CHECK(hinge.stall_torque == Approx(two[0].stall_torque).epsilon(1e-9));
+}
+
 }  // namespace stuck_hinges_test
