@@ -88,9 +88,11 @@ void PathMotion::advance(PathLaw& law, double latest) {
   law.look_from(s_);
   if (!(h_ > 0)) h_ = 0.01 * (latest - t_);
   ScalarStep step;
-  if (!scalar_step(law, t_, s_, v_, latest, h_, step))
+  if (!scalar_step(law, t_, s_, v_, latest, h_, step)) {
+    if (law.table().rough()) throw PathRefused("what acts on the structure is not smooth along its path");
     throw PathRefused("at t = " + seconds(t_) +
                       ": the path cannot be followed any further, or the motion on it not be resolved");
+  }
   const bool last = step.end() >= latest - unit * std::abs(latest);
   t_ = last ? latest : step.end();
   step.at(step.end(), s_, v_);

@@ -32,7 +32,7 @@ class PathLaw : public ScalarLaw {
 
  protected:
   const PathTable::Segment* in_reach(double s) const {
-    return s >= low_ && s <= high_ ? table_->segment(s) : nullptr;
+    return s >= low_ && s <= high_ ? table_->segment_within_reach(s) : nullptr;
   }
   bool pulls(std::size_t cable) const { return pulling_[cable] != 0; }
 

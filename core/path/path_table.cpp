@@ -40,6 +40,13 @@ PathTable::PathTable(const Path& path, const PathFunctions& functions) : path_(p
 }
 
 const PathTable::Segment* PathTable::segment(double s) {
+  const Segment* found = segment_within_reach(s);
+  if (!found && (s >= 0 ? forward_ : backward_).rough)
+    throw PathRefused("what acts on the structure is not smooth along its path");
+  return found;
+}
+
+const PathTable::Segment* PathTable::segment_within_reach(double s) {
   if (last_ && s >= last_->a && s <= last_->b) return last_;
   if (!std::isfinite(s)) return nullptr;
   const bool ahead = s >= 0;
@@ -59,14 +66,15 @@ ValueAndSlope PathTable::at(Index function, double s) {
 
 bool PathTable::extend(Side& side, bool forward) {
   const PathPiece* piece = path_.piece(forward ? side.pieces : -side.pieces - 1);
-  if (!piece) return false;
+  if (!piece || side.rough) return false;
   ++side.pieces;
-  tabulate(*piece, forward ? -1.0 : 1.0, forward ? 1.0 : -1.0, {}, side, forward);
-  return true;
+  const std::size_t before = side.segments.size();
+  side.rough = !tabulate(*piece, forward ? -1.0 : 1.0, forward ? 1.0 : -1.0, {}, side, forward);
+  return side.segments.size() > before;
 }
 
-// From x = `from` to `to` of the piece, outwards.
-void PathTable::tabulate(const PathPiece& piece, double from, double to, Cut cut, Side& side, bool forward) {
+// From x = `from` to `to` of the piece, outwards, as far as it is smooth.
+bool PathTable::tabulate(const PathPiece& piece, double from, double to, Cut cut, Side& side, bool forward) {
   const bool whole = cut.depth == 0;
   static const VectorXd x = chebyshev_points(table_points);
   const double low = std::min(from, to), high = std::max(from, to);
@@ -101,18 +109,17 @@ void PathTable::tabulate(const PathPiece& piece, double from, double to, Cut cut
   out.c = (values * chebyshev_transform(table_points)).transpose();
   const double left = table_tail(out.c, out.scale);
   if (!(left <= table_resolved || (left <= table_rough && left > no_gain * cut.before))) {
-    if (cut.depth == most_cuts || !values.allFinite())
-      throw PathRefused("what acts on the structure is not smooth along its path");
+    if (cut.depth == most_cuts || !values.allFinite()) return false;
     const Cut next{cut.depth + 1, left};
-    tabulate(piece, from, 0.5 * (from + to), next, side, forward);
-    tabulate(piece, 0.5 * (from + to), to, next, side, forward);
-    return;
+    return tabulate(piece, from, 0.5 * (from + to), next, side, forward) &&
+           tabulate(piece, 0.5 * (from + to), to, next, side, forward);
   }
   for (Index f = 0; f < functions_.size(); ++f)
     out.noise[f] = noise_of_tail * std::max(out.c.col(f).tail(table_tail_size).cwiseAbs().maxCoeff(),
                                             piece.noise * out.scale[f]);
   side.angles = angles;
   side.segments.push_back(std::move(out));
+  return true;
 }
 
 }  // namespace unfurl

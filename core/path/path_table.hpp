@@ -39,7 +39,10 @@ class PathTable {
 
   // Throws PathRefused where a function is not smooth; nullptr where the path cannot be followed so far.
   const Segment* segment(double s);
-  ValueAndSlope at(Index function, double s);  // NaN where the path does not go
+  // nullptr in both cases: of trial steps, which may look further than the motion gets.
+  const Segment* segment_within_reach(double s);
+  bool rough() const { return forward_.rough || backward_.rough; }  // somewhere that it was asked for
+  ValueAndSlope at(Index function, double s);                       // NaN where the path does not go
   const Path& path() const { return path_; }
   const PathFunctions& functions() const { return functions_; }
 
@@ -48,13 +51,14 @@ class PathTable {
     std::deque<Segment> segments;  // outwards
     VectorXd angles;               // at its end
     long pieces = 0;
+    bool rough = false;  // at its end, where it ends
   };
   struct Cut {
     int depth = 0;
     double before = std::numeric_limits<double>::infinity();  // tail of what was cut
   };
   bool extend(Side& side, bool forward);
-  void tabulate(const PathPiece& piece, double from, double to, Cut cut, Side& side, bool forward);
+  bool tabulate(const PathPiece& piece, double from, double to, Cut cut, Side& side, bool forward);
 
   const Path& path_;
   const PathFunctions& functions_;

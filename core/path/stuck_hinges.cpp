@@ -242,8 +242,11 @@ class StuckMaker {
   // |d angle / ds|, of the table of squares.
   ValueAndSlope turn_rate(const Some& some, double s) const {
     ValueAndSlope sum{0.0, 0.0};
+    const PathTable::Segment* here = table_->segment_within_reach(s);
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    if (!here) return {nan, nan};
     for (const std::size_t i : some) {
-      const ValueAndSlope square = table_->at(static_cast<Index>(i), s);
+      const ValueAndSlope square = here->at(static_cast<Index>(i), s);
       const double rate = std::sqrt(std::max(0.0, square.value));
       sum.value += rate;
       if (rate > 0) sum.slope += 0.5 * square.slope / rate;
