@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 #include "core/forces/damping.hpp"
 
@@ -10,6 +11,10 @@ namespace unfurl {
 namespace {
 
 constexpr double in_line = 1e-7;  // sine of the angle below which its axis is not known
+
+Vec3 node_of(const NodeCopy& node, const VectorXd& q) {
+  return node.map * q.segment<3>(3 * static_cast<Index>(node.source)) + node.offset;
+}
 
 // Directions of both rods and how those change.
 struct Arms {
@@ -20,11 +25,11 @@ struct Arms {
   }
 
  private:
-  static void direction(int from, int to, const VectorXd& q, const VectorXd& dq, Vec3& u, Vec3& du) {
-    const auto between = [&](const VectorXd& x) {
-      return Vec3(x.segment<3>(3 * static_cast<Index>(to)) - x.segment<3>(3 * static_cast<Index>(from)));
-    };
-    const Vec3 d = between(q), rate = between(dq);
+  static void direction(const NodeCopy& from, const NodeCopy& to, const VectorXd& q, const VectorXd& dq,
+                        Vec3& u, Vec3& du) {
+    const Vec3 d = node_of(to, q) - node_of(from, q);
+    const Vec3 rate = to.map * dq.segment<3>(3 * static_cast<Index>(to.source)) -
+                      from.map * dq.segment<3>(3 * static_cast<Index>(from.source));
     u = d.normalized();
     du = (rate - rate.dot(u) * u) / d.norm();
   }
@@ -39,21 +44,38 @@ double rate_of(const Arms& arms) {
 
 }  // namespace
 
+// Rods of the whole that end at the pin, then those that carry it between their ends.
 std::vector<Hinge> hinges_of(const Structure& structure) {
+  struct Line {
+    std::string rod;
+    NodeCopy from, to;
+  };
+  const std::vector<NodeCopy>& nodes = structure.node_copies;
+  std::vector<std::vector<Line>> ends(nodes.size());
+  for (const RodCopy& rod : structure.rod_copies)
+    for (const auto& [from, to] : {std::pair{rod.a, rod.b}, std::pair{rod.b, rod.a}})
+      ends[static_cast<std::size_t>(from)].push_back(
+          {rod.name, nodes[static_cast<std::size_t>(from)], nodes[static_cast<std::size_t>(to)]});
+  std::vector<char> seen(structure.nodes.size(), 0);
   std::vector<Hinge> out;
-  for (int node = 0; node < static_cast<int>(structure.nodes.size()); ++node) {
-    const std::vector<RodAtJoint> rods = rods_at_joint(structure, node);
-    for (std::size_t i = 0; i < rods.size(); ++i)
-      for (std::size_t k = i + 1; k < rods.size(); ++k)
-        out.push_back({structure.rods[rods[i].rod].name + " / " + structure.rods[rods[k].rod].name,
-                       rods[i].from, rods[i].to, rods[k].from, rods[k].to});
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (std::exchange(seen[static_cast<std::size_t>(nodes[n].source)], 1)) continue;
+    std::vector<Line> lines = ends[n];
+    const auto beside = [&](int node) { return NodeCopy{"", node, nodes[n].map, nodes[n].offset}; };
+    for (const RodAtJoint& rod : rods_at_joint(structure, nodes[n].source))
+      if (rod.from != nodes[n].source)
+        lines.push_back({structure.rods[rod.rod].name, beside(rod.from), beside(rod.to)});
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      for (std::size_t k = i + 1; k < lines.size(); ++k)
+        out.push_back(
+            {lines[i].rod + " / " + lines[k].rod, lines[i].from, lines[i].to, lines[k].from, lines[k].to});
   }
   return out;
 }
 
 double hinge_angle(const Hinge& hinge, const VectorXd& q) {
-  const auto at = [&](int node) { return Vec3(q.segment<3>(3 * static_cast<Index>(node))); };
-  const Vec3 a = at(hinge.a_to) - at(hinge.a_from), b = at(hinge.b_to) - at(hinge.b_from);
+  const Vec3 a = node_of(hinge.a_to, q) - node_of(hinge.a_from, q),
+             b = node_of(hinge.b_to, q) - node_of(hinge.b_from, q);
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 

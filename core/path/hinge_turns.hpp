@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How pairs of rods that meet at a node, with an end or with a pin between their ends, turn against each other
-// along a path.
+// How pairs of rods that meet at a node, with an end or with a pin between their ends, turn against each
+// other along a path.
 #pragma once
 
 #include <string>
@@ -13,9 +13,10 @@ namespace unfurl {
 
 struct Hinge {
   std::string name;
-  int a_from = 0, a_to = 0, b_from = 0, b_to = 0;  // nodes along both rods
+  NodeCopy a_from, a_to, b_from, b_to;  // along both rods
 };
 
+// Of the whole structure; of a sector model those at one pin of every set of images: the others turn alike.
 std::vector<Hinge> hinges_of(const Structure& structure);
 double hinge_angle(const Hinge& hinge, const VectorXd& q);  // [0, pi]
 // Of that angle, by what dq is by. It changes its sign where rods pass each other in line.

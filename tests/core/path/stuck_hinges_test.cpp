@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hinges that jam, against closed forms and runs with that friction.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/path/margin.hpp"
 #include "core/path/path.hpp"
 #include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/simulate/simulation.hpp"
 #include "core/study/table.hpp"
@@ -298,6 +300,50 @@ TEST_CASE("the pin in the middle of a scissor jams, like a hinge at the ends of 
       "two.toml"));
   REQUIRE(two.size() == 4);
   for (const StuckHinge& hinge : two) CHECK(hinge.stall_torque == Approx(two[0].stall_torque).epsilon(1e-9));
+}
+
+// A motor so weak that it does nothing, but whose angle has no axis and turns back in line, at 1.4 m: motions
+// that step over the deployed pose see that, and need not.
+TEST_CASE("a jam does not ask for what lies behind the deployed pose") {
+  const SliderCrank crank;
+  const auto hinges = stuck_in(read_scene_text(
+      crank.scene(push,
+                  deployed +
+                      "[[forces]]\nkind = \"motor\"\nnodes = [\"A\", \"H\", \"B\"]\nstall_torque = 1e-12\n"
+                      "no_load_speed = 1000\n[solver]\nend_time = 20\n"),
+      "motor.toml"));
+  REQUIRE(hinges.size() == 1);
+  const auto [stall, at] = crank.least([&](double p) { return crank.stalled_at(p); });
+  // Bisected to 1e-7.
+  CHECK(hinges[0].stall_torque == Approx(stall).epsilon(3e-7));
+}
+
+TEST_CASE("a sector model has every hinge of the whole ring, up to symmetry") {
+  const auto hinges_in = [](const char* name) {
+    const Scene scene = read_scene_file(find_scene(name), {"structure.fold_angle=80"});
+    const auto model = build_model(scene);
+    return stuck_hinges(model, scene.solver, margin_of(model, scene.solver), 0);
+  };
+  const auto whole = hinges_in("hoop6"), sector = hinges_in("hoop6_sector");
+  REQUIRE_FALSE(sector.empty());
+  CHECK(sector.size() < whole.size());
+  const auto has = [](const std::vector<StuckHinge>& hinges, const StuckHinge& one) {
+    return std::any_of(hinges.begin(), hinges.end(), [&](const StuckHinge& other) {
+      // Torques are energies of motions that are resolved to 1e-13, angles next to 90 degrees differences.
+      return std::abs(other.stall_torque - one.stall_torque) <= 1e-7 * one.stall_torque &&
+             std::abs(other.static_torque - one.static_torque) <= 1e-7 * one.static_torque &&
+             std::abs(other.turn - one.turn) <= 1e-7;
+    });
+  };
+  for (const StuckHinge& hinge : whole) {
+    INFO(hinge.name);
+    CHECK(has(sector, hinge));
+  }
+  for (const StuckHinge& hinge : sector) {
+    INFO(hinge.name);
+    CHECK(has(whole, hinge));
+    CHECK(std::any_of(whole.begin(), whole.end(), [&](const StuckHinge& h) { return h.name == hinge.name; }));
+  }
 }
 
 }  // namespace stuck_hinges_test
