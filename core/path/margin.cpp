@@ -12,7 +12,7 @@
 namespace unfurl {
 namespace {
 
-constexpr int poses = 400;       // at which margins are taken
+constexpr int poses = 400;       // at which margins are taken, at least
 constexpr long far_enough = 64;  // pieces of the path, to the deployed pose
 // What is left of forces across the path is rounding.
 constexpr double rounding = 1e-13;
@@ -157,9 +157,22 @@ class MarginMaker {
     return out;
   }
 
+  // Equal parts of the way; between them loads over time may pass, and cables pull: the motion's steps end
+  // where those begin and end.
+  std::vector<double> places() const {
+    std::vector<double> out;
+    for (int i = 0; i < poses; ++i) out.push_back(*end_ * i / (poses - 1));
+    if (!motion_.law().timed() && motion_.law().forces().cables().empty()) return out;
+    for (const MarginReach& reach : out_.motion)
+      if (reach.s > 0 && reach.s < *end_) out.push_back(reach.s);
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+
   void take_points() {
     out_.unit = structure_.deployment.folds() ? "N m" : "N/kg^1/2";
-    for (int i = 0; i < poses; ++i) out_.points.push_back(point(*end_ * i / (poses - 1)));
+    for (const double s : places()) out_.points.push_back(point(s));
     const auto worst =
         std::min_element(out_.points.begin(), out_.points.end(), [](const auto& a, const auto& b) {
           // Where nothing drives, the strongest resistance.
