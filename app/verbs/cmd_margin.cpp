@@ -175,22 +175,6 @@ void print_hinges(const Margin& margin, const std::vector<StuckHinge>& hinges, c
               << short_number(place(margin, h.stall_fold, h.stall_at), 5) << unit << "\n";
 }
 
-std::string told_end(const Margin& margin, const std::string& place) {
-  switch (margin.end) {
-    case MarginEnd::arrives:
-      return "the motion arrives";
-    case MarginEnd::stalls:
-      return "the motion stalls at " + place;
-    case MarginEnd::stopped:
-      return "the motion ends at " + place + ", on the end stop " + margin.stop;
-    case MarginEnd::time:
-      return "the motion is at " + place + " when its time is up";
-    case MarginEnd::other_way:
-      return "the motion sets out the other way";
-  }
-  return "";
-}
-
 void print_margin(const Scene& scene, const Margin& margin, const std::vector<StuckHinge>& hinges,
                   bool stuck) {
   const std::string unit = folds(margin) ? " deg" : " m kg^1/2";

@@ -206,4 +206,20 @@ Margin margin_of(const std::shared_ptr<const Model>& model, const SolverOptions&
   return MarginMaker(model, options, factors).make();
 }
 
+std::string told_end(const Margin& margin, const std::string& place) {
+  switch (margin.end) {
+    case MarginEnd::arrives:
+      return "the motion arrives";
+    case MarginEnd::stalls:
+      return "the motion stalls at " + place;
+    case MarginEnd::stopped:
+      return "the motion ends at " + place + ", on the end stop " + margin.stop;
+    case MarginEnd::time:
+      return "the motion is at " + place + " when its time is up";
+    case MarginEnd::other_way:
+      return "the motion sets out the other way";
+  }
+  return "";
+}
+
 }  // namespace unfurl

@@ -55,9 +55,10 @@ struct Margin {
   std::vector<MarginPoint> points;
   MarginPoint worst;                // of the static margins
   std::vector<MarginReach> motion;  // with the factors
-  double dynamic_min = std::numeric_limits<double>::infinity();
-  double dynamic_at = 0.0;  // s
-  bool arrives = false;     // the motion reaches the end of the path that was looked at
+  double dynamic_min =
+      std::numeric_limits<double>::infinity();  // NaN: none, it sets out the other way with a speed
+  double dynamic_at = 0.0;                      // s
+  bool arrives = false;                         // the motion reaches the end of the path that was looked at
   MarginEnd end = MarginEnd::stalls;
   std::string stop;    // that bars the way, in the motion or, where it ends before, behind that
   double sense = 1.0;  // s of the path by s here
@@ -71,7 +72,11 @@ struct Margin {
 Margin margin_of(const std::shared_ptr<const Model>& model, const SolverOptions& options,
                  const std::map<std::string, double>& factors = {});
 
-// A hinge between two rods, at their ends or between them, that jams with a friction torque, all else as in the margin.
+// "the motion stalls at 31 deg": how it ends, and where, as told.
+std::string told_end(const Margin& margin, const std::string& place);
+
+// A hinge between two rods, at their ends or between them, that jams with a friction torque, all else as in
+// the margin.
 struct StuckHinge {
   std::string name;
   double static_torque = 0.0;  // that holds the structure in some pose if it comes to rest there [N m]

@@ -44,6 +44,7 @@ double drawn(double margin) {
 }
 
 std::string words(double margin) {
+  if (std::isnan(margin)) return "none";
   return std::isfinite(margin) ? plot::format_number(margin, 4) : "without bound";
 }
 
@@ -75,12 +76,13 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
   margins.lines.push_back({0.0, true, "", zero_line});
   Figure figure{"margin", "Margins: " + title, "", 2, 1, {std::move(forces), std::move(margins)}};
   figure.height_mm = 150;
+  const MarginReach& last = margin.motion.back();
   figure.caption = "Least static margin " + words(margin.worst.margin) + " at " +
                    plot::format_number(along(margin, margin.worst.fold_angle, margin.worst.s), 4) +
                    (folds ? " deg" : "") + ", least dynamic margin " + words(margin.dynamic_min) + "; " +
-                   std::string(margin.arrives                    ? "the motion arrives."
-                               : margin.end == MarginEnd::stalls ? "the motion stalls on the way."
-                                                                 : "the motion does not arrive.");
+                   told_end(margin, plot::format_number(along(margin, last.fold_angle, last.s), 4) +
+                                        (folds ? " deg" : "")) +
+                   ".";
   for (const MarginSource& source : margin.sources)
     if (source.factor != 1.0)
       figure.caption += " " + source.name + " times " + plot::format_number(source.factor, 4) + ".";

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What stands below the figure of a margin.
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "render/plot/figures/margin_figure.hpp"
+
+namespace unfurl::margin_caption_test {
+
+namespace {
+
+std::string caption(MarginEnd end, double dynamic_min) {
+  Margin margin;
+  margin.sources = {{"loads", "load"}};
+  margin.unit = "N m";
+  margin.points = {{0.0, 1.2, VectorXd::Constant(1, 2.0), 0.7}, {0.5, 0.6, VectorXd::Constant(1, 3.0), 0.4}};
+  margin.worst = margin.points[1];
+  margin.motion = {{0.0, 0.0, 1.2, 0.1, 0.2, 0.1}, {0.25, 0.3, 0.9 * radians_per_degree, 0.2, 0.3, 0.1}};
+  margin.end = end;
+  margin.arrives = end == MarginEnd::arrives;
+  margin.stop = "bar";
+  margin.dynamic_min = dynamic_min;
+  return margin_figure(margin, "a scene").caption;
+}
+
+}  // namespace
+
+TEST_CASE("the caption of a margin says how the motion ends, and none where there is no dynamic margin",
+          "[figure]") {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const std::string other = caption(MarginEnd::other_way, std::numeric_limits<double>::quiet_NaN());
+  CHECK_THAT(other, Catch::Contains("least dynamic margin none; the motion sets out the other way."));
+  CHECK_THAT(caption(MarginEnd::arrives, infinite),
+             Catch::Contains("least dynamic margin without bound; the motion arrives."));
+  CHECK_THAT(caption(MarginEnd::stalls, 0.0), Catch::Contains("margin 0; the motion stalls at 0.9 deg."));
+  CHECK_THAT(caption(MarginEnd::stopped, 0.25),
+             Catch::Contains("margin 0.25; the motion ends at 0.9 deg, on the end stop bar."));
+  CHECK_THAT(caption(MarginEnd::time, 0.25), Catch::Contains("at 0.9 deg when its time is up."));
+}
+
+}  // namespace unfurl::margin_caption_test
