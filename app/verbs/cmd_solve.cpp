@@ -21,6 +21,7 @@
 #include "core/study/scene_variation.hpp"
 #include "core/study/solve_for.hpp"
 #include "core/study/tolerance.hpp"
+#include "core/system/fit_lengths.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {
@@ -114,12 +115,14 @@ int cmd_solve(const Arguments& arguments) {
   SimulationHooks hooks;
   hooks.cancelled = interrupted;
   const std::string flag = uniqueness_of(target.measure.name);
-  std::map<double, bool> unique;  // by the parameter
+  std::map<double, bool> unique;        // by the parameter
+  std::map<double, std::string> moved;  // nodes to fit lengths of rods: what is said of it
   const Objective objective = [&](double x) {
     try {
       const Scene changed = source.read({study.find + "=" + exact_number(x)});
-      Simulation run = simulate_as_asked(build_model(changed),
-                                         study_solver(changed, {study.find}, {target.measure}), hooks);
+      const auto model = build_model(changed);
+      moved[x] = note_of_moved_nodes(model->structure);
+      Simulation run = simulate_as_asked(model, study_solver(changed, {study.find}, {target.measure}), hooks);
       const Diagnostics diagnostics = judge(run);
       if (run.status == RunStatus::failed) return std::numeric_limits<double>::quiet_NaN();
       if (!flag.empty()) unique[x] = find_measure(flag).value(run, diagnostics) != 0.0;
@@ -132,6 +135,8 @@ int cmd_solve(const Arguments& arguments) {
   asking.cancelled = interrupted;
   try {
     const Solved solved = solve_for(objective, target.value, options, asking);
+    if (const std::string& said = moved[solved.x]; !said.empty())
+      std::cerr << "unfurl: warning: " << said << "\n";
     if (!output.path().empty()) write_results(output.path(), study.find, source, target, solved);
     std::optional<bool> solved_force;
     if (const auto at = unique.find(solved.x); at != unique.end()) solved_force = at->second;

@@ -185,6 +185,7 @@ int cmd_sweep(const Arguments& arguments) {
   if (!computed) return nothing_to_write(arguments);
   const Sweep& sweep = *computed;
   for (const std::string& conflict : sweep.conflicts) std::cerr << "unfurl: warning: " << conflict << "\n";
+  if (!sweep.moved.empty()) std::cerr << "unfurl: warning: " << sweep.moved << "\n";
   session.write(journal_name(plan.shard), csv_text(sweep.table));
   const std::size_t bad = unanswered(plan, sweep);
   const std::string count = std::to_string(sweep.table.rows.size()) + " points in " +

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <numeric>
 
@@ -14,6 +15,7 @@
 #include "core/study/path_sweep.hpp"
 #include "core/study/team.hpp"
 #include "core/study/tolerance.hpp"
+#include "core/system/fit_lengths.hpp"
 
 namespace unfurl {
 namespace {
@@ -26,9 +28,10 @@ Diagnostics asked_of(const SweepPlan& plan, Simulation& run) {
   return states || run.solved_as.name != "path" ? judge(run) : Diagnostics{};
 }
 
-// One point; nothing where it was cancelled.
+// One point; nothing where it was cancelled. moved: as in Sweep, of this one.
 std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const PathSweep& along_path,
-                                                  std::size_t point, const StudyHooks& hooks) {
+                                                  std::size_t point, const StudyHooks& hooks,
+                                                  std::string& moved) {
   const std::vector<std::string> key = plan.key(point);
   std::vector<std::string> changes, row = key, varied;
   if (along_path.measure(point, row)) return row;
@@ -40,7 +43,9 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const P
     const Scene scene = plan.source.read(changes);
     SimulationHooks own;
     own.cancelled = hooks.cancelled;
-    Simulation run = simulate_as_asked(build_model(scene), study_solver(scene, varied, plan.measures), own);
+    const auto model = build_model(scene);
+    moved = note_of_moved_nodes(model->structure);
+    Simulation run = simulate_as_asked(model, study_solver(scene, varied, plan.measures), own);
     if (run.status == RunStatus::stopped) return std::nullopt;
     const Diagnostics diagnostics = asked_of(plan, run);
     row.emplace_back(to_string(run.status));
@@ -123,6 +128,7 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
     });
   const PathSweep along_path(plan);
   std::size_t done = 0;
+  std::map<std::size_t, std::string> said;  // by the point
   std::mutex mutex;
   const auto look_again = [&] {
     const std::lock_guard lock(mutex);
@@ -136,13 +142,17 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
     const std::string piece = "points-" + std::to_string(scattered(open[i]) % pieces);
     if (hooks.stopped()) return;
     if (hooks.team && (!hooks.team->takes(piece, look_again) || known(open[i]))) return;
-    auto row = run_point(plan, along_path, open[i], hooks);
+    std::string moved;
+    auto row = run_point(plan, along_path, open[i], hooks, moved);
     if (!row) return;
     const std::lock_guard lock(mutex);
+    if (!moved.empty()) said.emplace(open[i], std::move(moved));
     if (!hooks.team || hooks.team->holds(piece)) journal.append(std::move(*row));
     hooks.tell(static_cast<double>(++done) / static_cast<double>(open.size()));
   });
-  return collect(plan, own, [&](std::size_t i) { return journal.find(plan.key(i)); });
+  Sweep sweep = collect(plan, own, [&](std::size_t i) { return journal.find(plan.key(i)); });
+  if (!said.empty()) sweep.moved = point_text(plan, said.begin()->first) + ": " + said.begin()->second;
+  return sweep;
 }
 
 std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep) {

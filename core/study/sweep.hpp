@@ -51,6 +51,9 @@ struct Sweep {
   Table table;
   std::vector<std::size_t> missing = {};    // of the grid, ascending
   std::vector<std::string> conflicts = {};  // points that merged journals do not agree on, in words
+  // What the first of the points that were computed now says of nodes moved to fit given lengths of rods;
+  // empty: none says anything.
+  std::string moved = {};
 };
 // Points whose run failed or whose parameters made no structure.
 std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep);

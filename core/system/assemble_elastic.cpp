@@ -164,7 +164,7 @@ class Joint {
     VectorXd z = system_.reduce(q), step;
     double first = 0;
     for (int it = 0; it < most_steps; ++it) {
-      if (!solve(q, step)) return false;
+      if (!solve(q, held, step)) return false;
       z += step;
       system_.expand(z, q);
       const double size = step.lpNorm<Eigen::Infinity>();
@@ -174,13 +174,25 @@ class Joint {
     return (q - given).lpNorm<Eigen::Infinity>() <= farthest * first;
   }
 
+  // How far nodes move in the linear theory, from a pose where what moves the mechanism stretches no rod:
+  // what gives a little, as a long truss does, moves all of its way, the mechanism not at all. A negative
+  // number where that cannot be told.
+  double linear_move(const VectorXd& q) {
+    VectorXd step, moved(q.size());
+    lambda_.resize(0);
+    if (!solve(q, barely_held, step)) return -1;
+    system_.expand(system_.reduce(q) + step, moved);
+    return (moved - q).lpNorm<Eigen::Infinity>();
+  }
+
  private:
-  static constexpr double held = 1e-3;     // e M over K
+  static constexpr double held = 1e-3;  // e M over K
+  static constexpr double barely_held = 1e-9;
   static constexpr double settled = 1e-6;  // of the first step
   static constexpr double farthest = 50;   // first steps
 
   // lambda goes on from that of the step before, so that what keeps redundant rows solvable leaves no error.
-  bool solve(const VectorXd& q, VectorXd& step) {
+  bool solve(const VectorXd& q, double hold, VectorXd& step) {
     const std::vector<int>& giving = system_.giving_rods();
     const Index n = system_.solved_coordinates(), m = system_.constraints(), k = std::ssize(giving);
     SparseRows G = system_.jacobian_pattern();
@@ -214,7 +226,7 @@ class Joint {
       add_row(G, r, n + r);
       entries.emplace_back(static_cast<int>(n) + r, static_cast<int>(n) + r, -kept);
     }
-    add(entries, system_.mass(), held * stiffest);
+    add(entries, system_.mass(), hold * stiffest);
     SparseColumns A(n + m + k, n + m + k);
     A.setFromTriplets(entries.begin(), entries.end());
     const SparseLu factors(A);
@@ -230,11 +242,16 @@ class Joint {
 };
 
 // Goes on from where the mechanism was held: before that, forces of lengths that only are not fitted yet are
-// all that there is to hold it. False, and q as it was, where no balance is found.
+// all that there is to hold it. False, and q as it was, where no balance is found near: along a mechanism
+// self-stress falls to a pose that the size of the errors has nothing to do with.
 bool find_balance(const System& system, const Structure& structure, VectorXd& q) {
+  constexpr double farthest = 3;  // times the linear theory: errors up to 1 % also turn what they move
   VectorXd held = q;
-  if (!Joint(system, structure).find(held)) held = q;
+  Joint joint(system, structure);
+  if (!joint.find(held)) held = q;
   if (!Balance(system).find(held)) return false;
+  const double linear = joint.linear_move(q);
+  if (linear >= 0 && !((held - q).lpNorm<Eigen::Infinity>() <= farthest * linear)) return false;
   q = held;
   return true;
 }

@@ -16,7 +16,8 @@ namespace unfurl {
 //     [ G          0  ] [ lambda ] = [ -Phi ]
 //
 // where e M, small, keeps them short along what no rod resists: motions of the mechanism. Where self-stress
-// drives these far away, or for ever, they are held instead, and the structure starts out of balance by that.
+// drives these for ever, or farther than a few times what the lengths ask for in the linear theory, they are
+// held instead, and the structure starts out of balance by that.
 // A note of the largest force of self-stress is added; nothing happens where all lengths fit, and rods with a
 // free_length of their own stay stretched. Throws StructureError that names the rod furthest off where a
 // length is further off than fitted_share, or no balance is found near the given pose.

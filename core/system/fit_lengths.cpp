@@ -59,6 +59,12 @@ bool lengths_fit(const Structure& structure) {
   });
 }
 
+std::string note_of_moved_nodes(const Structure& structure) {
+  for (const std::string& note : structure.notes)
+    if (note.find("nodes were moved") != std::string::npos) return note;
+  return "";
+}
+
 bool solve_for_pose(const System& system, VectorXd& q) {
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;

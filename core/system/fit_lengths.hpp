@@ -24,4 +24,8 @@ bool solve_for_pose(const System& system, VectorXd& q);
 // than fitted_share, or no pose near the given one has these lengths.
 void fit_lengths(Structure& structure, bool eliminate_linear);
 
+// Of the structure's notes the one that says how far nodes were moved to fit lengths, rigid or elastic;
+// empty: none were.
+std::string note_of_moved_nodes(const Structure& structure);
+
 }  // namespace unfurl

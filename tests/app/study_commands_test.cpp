@@ -190,6 +190,26 @@ TEST_CASE("a sweep says how many of its points have no answer") {
   CHECK(file_text(dir / "out/sweep.csv").find("failed,nan") != std::string::npos);
 }
 
+TEST_CASE("sweeps say how far nodes were moved to fit the lengths of rods") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> made{"--set", "structure.length_error=1e-4", "--set",
+                                      "solver.end_time=0.05"};
+  const std::string said = "unfurl: warning: structure.error_seed=1: ";
+  const ProgramResult swept =
+      run_program(std::vector<std::string>{"sweep", "scissor_mast", "--vary", "structure.error_seed=1,2",
+                                           "--measure", "end_time", "-o", dir / "out"} +
+                  made);
+  INFO(swept.err);
+  CHECK(swept.code == 0);
+  CHECK(swept.err.find(said) != std::string::npos);
+  CHECK(swept.err.find("nodes were moved to fit") != std::string::npos);
+  const ProgramResult exact =
+      run_program({"sweep", "scissor_mast", "--vary", "structure.density=2000,2100", "--measure", "end_time",
+                   "-o", dir / "exact", "--set", "solver.end_time=0.05"});
+  CHECK(exact.code == 0);
+  CHECK(exact.err.find("nodes were moved") == std::string::npos);
+}
+
 TEST_CASE("a sweep says which measure its scene does not have") {
   const ScratchDirectory dir;
   const ProgramResult r =
