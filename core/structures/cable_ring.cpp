@@ -54,18 +54,21 @@ void add_bays(Assembly& a, const CableRingShape& s, const ParamSet& params) {
   }
 }
 
-// Viscous joints: without what resists it the ring would run ahead of a cable that can only pull.
+// Viscous joints, at both ends of each of the 2 n longerons: without what resists it the ring would run ahead
+// of a cable that can only pull.
 void add_dampers(Assembly& a, const CableRingShape& s, double damping) {
   for (int k = 0; damping > 0 && k < s.n; ++k)
-    for (const int other : {(k + s.n - 1) % s.n, (k + 1) % s.n}) {
-      Force joint;
-      joint.kind = "torsion_spring";
-      joint.name = "joint at B" + std::to_string(k);
-      joint.measure.kind = MeasureKind::angle;
-      joint.measure.nodes = {s.bottom(k), s.top(k), s.bottom(k), s.bottom(other)};
-      joint.damping = damping;
-      a.structure.forces.push_back(std::move(joint));
-    }
+    for (const int level : {0, 1})
+      for (const int other : {(k + s.n - 1) % s.n, (k + 1) % s.n}) {
+        const int here = s.bottom(k) + level, opposite = s.bottom(k) + 1 - level;
+        Force joint;
+        joint.kind = "torsion_spring";
+        joint.name = "joint at " + a.name(here);
+        joint.measure.kind = MeasureKind::angle;
+        joint.measure.nodes = {here, opposite, here, s.bottom(other) + level};
+        joint.damping = damping;
+        a.structure.forces.push_back(std::move(joint));
+      }
 }
 
 void hold(Assembly& a, std::string name, const Measure& measure, double value) {
@@ -163,9 +166,9 @@ const std::vector<ParamSpec>& cable_ring_params() {
                             "how long the cable takes to reach that")),
       real_param("diagonal_mass", "kg", 0.1, 0.0, std::numeric_limits<double>::infinity(),
                  "of a telescoping diagonal, shared by the corners of its bay"),
-      real_param(
-          "joint_damping", "N m s/rad", 2.0, 0.0, std::numeric_limits<double>::infinity(),
-          "of every longeron at its battens: the cable can only pull, and the ring would run ahead of it"),
+      real_param("joint_damping", "N m s/rad", 1.0, 0.0, std::numeric_limits<double>::infinity(),
+                 "of every longeron at either of its battens: the cable can only pull, and the ring would "
+                 "run ahead of it"),
       boolean_param("gears", true, "synchronising gears at the battens: all bays turn alike"),
       choice_param("mass", "consistent", {"consistent", "lumped"}, "mass matrix of a rod"),
   };

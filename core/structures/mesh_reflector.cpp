@@ -244,9 +244,9 @@ const std::vector<ParamSpec>& mesh_reflector_params() {
                 real_param("cable_rate", "m/s", 0.5, 0.0, no_end, "at which the rim's cable is drawn in")),
       only_given("cable_rate",
                  real_param("cable_ramp", "s", 2.0, 0.0, no_end, "how long the cable takes to reach that")),
-      only_with(
-          "hoop", {"cable_ring"},
-          real_param("joint_damping", "N m s/rad", 2.0, 0.0, no_end, "of every longeron at its battens")),
+      only_with("hoop", {"cable_ring"},
+                real_param("joint_damping", "N m s/rad", 1.0, 0.0, no_end,
+                           "of every longeron at either of its battens")),
       only_with("hoop", {"cable_ring"},
                 real_param("diagonal_mass", "kg", 0.1, 0.0, no_end,
                            "of a telescoping diagonal of the rim, shared by the corners of its bay")),

@@ -3,9 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/diagnostics/diagnostics.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/structures/force_density.hpp"
 #include "core/system/mobility.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -25,7 +27,7 @@ post_length = 0.8
 fold_angle = 77
 cable_rate = 0.6
 cable_ramp = 1.5
-joint_damping = 8
+joint_damping = 4
 [solver]
 stages = 3
 step = 0.02
@@ -50,6 +52,27 @@ TEST_CASE("a ring drawn open by a cable is deployed when so much of it is drawn 
   const double sine = (left * left / 36 - 1.7 * 1.7 - 0.8 * 0.8) / (2 * 1.7 * 0.8);
   CHECK(run.trajectory.structure().deployment.fold_angle(run.trajectory.node_positions(i)) ==
         Approx(std::asin(sine)).margin(1e-9));
+}
+
+// A ring of n bays has 2 n longerons, each with two ends that turn against a batten by the fold angle: the
+// power is 4 n c rate^2. By trapezia, off by h^2 / 12 of the curve's bends.
+TEST_CASE("dampers act at both ends of every longeron of a ring that a cable draws") {
+  const double c = 1.7;
+  for (const char* kind : {"cable_ring", "mesh_reflector"}) {
+    INFO(kind);
+    const bool nets = std::string(kind) == "mesh_reflector";
+    const Simulation run =
+        run_scene("[structure]\nkind = '" + std::string(kind) +
+                  "'\nunits = 6\nfold_angle = 70\ncable_ramp = 0.5\njoint_damping = " + testing::number(c) +
+                  (nets ? "\nnets = false" : "") + "\n[solver]\nstages = 4\nstep = 0.01\nend_time = 2\n");
+    REQUIRE(run.status == RunStatus::completed);
+    const Diagnostics d = diagnose(run);
+    const std::vector<double>&rate = d.at("fold_rate_rad_s").values, &lost = d.at("dissipated_J").values;
+    double squares = 0;
+    for (std::size_t i = 0; i + 1 < rate.size(); ++i)
+      squares += 0.5 * (d.t[i + 1] - d.t[i]) * (rate[i] * rate[i] + rate[i + 1] * rate[i + 1]);
+    CHECK(lost.back() == Approx(4 * 6 * c * squares).epsilon(1e-4));
+  }
 }
 
 TEST_CASE("gears leave a ring of bays one freedom, without them it has one for each bay but three more") {
