@@ -75,6 +75,9 @@ void add_link(Assembly& a, const BricardShape& s, const RodSection& section, int
     a.brace(from, to, distance(from, to));
 }
 
+// Linear in the positions: the tangent is height / L over S_1, and L S_1 half the side of the triangle of the
+// even hinges. The bars' own slope, of the sine height / L, is not; both are zero in the flat pose and 90
+// degrees in the bundle.
 void set_deployment(Structure& out, const BricardShape& s, double deployed_degrees) {
   Deployment& d = out.deployment;
   for (int i = 0; i < 6; ++i) {
@@ -105,8 +108,10 @@ const std::vector<ParamSpec>& bricard_params() {
                  "angle between the hinge axes of a bar; at 120 the loop folds to a bundle"),
       inside(real_param("opening_angle", "deg", 30.0, 0.0, 180.0,
                         "angle between the bars at hinges 1, 3, 5 at t = 0")),
-      below_max(real_param("deployed_angle", "deg", 3.0, 0.0, 90.0,
-                           "fold angle, of the bars above the triangle's plane, when deployed; 0 is flat")),
+      below_max(real_param(
+          "deployed_angle", "deg", 3.0, 0.0, 90.0,
+          "fold angle when deployed; its tangent is the height of hinges 2, 4, 6 above the others over "
+          "half the side of their triangle; 0 is flat")),
       real_param("radial_force", "N", 5.0, -1e12, 1e12, "outward force on each of the hinges 2, 4, 6"),
   };
   return params;
