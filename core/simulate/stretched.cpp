@@ -2,8 +2,11 @@
 #include "core/simulate/stretched.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "core/integrators/index1.hpp"
 #include "core/math/determined_rows.hpp"
@@ -45,6 +48,16 @@ class Stretch {
     return true;
   }
 
+  // Whether the pose is so near to a singular one that its round-off, as a part of the multipliers, is felt:
+  // the displacement divides it by the weakest direction once more.
+  bool in_doubt(const State& state) {
+    constexpr double felt = 1e-8;
+    VectorXd acceleration, lambda, doubt;
+    system_.follow(state);
+    if (!index1_.evaluate_closely(state, acceleration, lambda, doubt)) return true;
+    return doubt.size() > 0 && !(doubt.maxCoeff() <= felt * lambda.lpNorm<Eigen::Infinity>());
+  }
+
  private:
   System system_;  // follows the states
   SparseRows G_;
@@ -55,20 +68,104 @@ class Stretch {
   std::optional<ElasticSharing> sharing_;
 };
 
+// The displacements of a run's states, found in their order.
+class StretchedRun {
+ public:
+  explicit StretchedRun(const Trajectory& trajectory)
+      : trajectory_(trajectory), u_(trajectory.size()), good_(trajectory.size(), 0) {}
+
+  std::vector<VectorXd> find() {
+    VectorXd u = VectorXd::Zero(trajectory_.model().system.coordinates());
+    for (std::size_t i = 0; i < u_.size(); ++i) {
+      good_[i] = at(i).at(trajectory_.state(i), trajectory_.report(i).singular_event, u);
+      u_[i] = u;
+    }
+    std::vector<std::size_t> odd;
+    for (std::size_t i = 0; i < u_.size(); ++i)
+      if (good_[i] && !smooth(i) && at(i).in_doubt(trajectory_.state(i))) odd.push_back(i);
+    for (const std::size_t i : odd) good_[i] = 0;
+    for (const std::size_t i : odd) interpolate(i);
+    return std::move(u_);
+  }
+
+ private:
+  Stretch& at(std::size_t i) {
+    if (model_ != &trajectory_.model(i)) {
+      model_ = &trajectory_.model(i);
+      stretch_ = std::make_unique<Stretch>(*model_, trajectory_.node_positions(i));
+    }
+    return *stretch_;
+  }
+
+  // Nothing is smooth across an impact, a jump of what acts, a change of the model.
+  bool joined(std::size_t before, std::size_t after) const {
+    return &trajectory_.model(before) == &trajectory_.model(after) &&
+           trajectory_.time(before) < trajectory_.time(after);
+  }
+
+  // The nearest good states on one side: the second as far behind the first as that is, where there is one,
+  // so that it tells more than round-off.
+  std::vector<std::size_t> beside(std::size_t i, int way, std::size_t most) const {
+    std::vector<std::size_t> out;
+    const auto apart = [&](std::size_t a, std::size_t b) {
+      return std::abs(trajectory_.time(a) - trajectory_.time(b));
+    };
+    for (std::size_t j = i; way < 0 ? j > 0 : j + 1 < u_.size();) {
+      const std::size_t next = way < 0 ? j - 1 : j + 1;
+      if (!joined(std::min(j, next), std::max(j, next))) break;
+      j = next;
+      if (!good_[j] || (!out.empty() && apart(j, out.front()) < 0.9 * apart(out.front(), i))) continue;
+      out.push_back(j);
+      if (out.size() == most) break;
+    }
+    return out;
+  }
+
+  // The polynomial through the states, at that of state i.
+  VectorXd through(const std::vector<std::size_t>& states, std::size_t i) const {
+    const double t = trajectory_.time(i);
+    VectorXd out = VectorXd::Zero(u_[i].size());
+    for (const std::size_t a : states) {
+      double weight = 1;
+      for (const std::size_t b : states)
+        if (b != a) weight *= (t - trajectory_.time(b)) / (trajectory_.time(a) - trajectory_.time(b));
+      out += weight * u_[a];
+    }
+    return out;
+  }
+
+  bool smooth(std::size_t i) const {
+    constexpr double rough = 1e-6;
+    std::vector<std::size_t> states = beside(i, -1, 2), behind = beside(i, +1, 2);
+    states.insert(states.end(), behind.begin(), behind.end());
+    return states.size() == 4 &&
+           (through(states, i) - u_[i]).lpNorm<Eigen::Infinity>() <= rough * u_[i].lpNorm<Eigen::Infinity>();
+  }
+
+  // At the ends, where nothing is known behind: as the nearest.
+  void interpolate(std::size_t i) {
+    std::vector<std::size_t> states = beside(i, -1, 2);
+    const std::vector<std::size_t> behind = beside(i, +1, 2);
+    if (states.empty() && behind.empty()) return;
+    if (states.empty() || behind.empty())
+      states = {states.empty() ? behind.front() : states.front()};
+    else
+      states.insert(states.end(), behind.begin(), behind.end());
+    u_[i] = through(states, i);
+  }
+
+  const Trajectory& trajectory_;
+  std::vector<VectorXd> u_;
+  std::vector<char> good_;
+  const Model* model_ = nullptr;
+  std::unique_ptr<Stretch> stretch_;
+};
+
 }  // namespace
 
 void add_stretch(Trajectory& trajectory) {
-  const Model* model = nullptr;
-  std::unique_ptr<Stretch> stretch;
-  VectorXd u = VectorXd::Zero(trajectory.model().system.coordinates());
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    if (model != &trajectory.model(i)) {
-      model = &trajectory.model(i);
-      stretch = std::make_unique<Stretch>(*model, trajectory.node_positions(i));
-    }
-    stretch->at(trajectory.state(i), trajectory.report(i).singular_event, u);
-    trajectory.add_stretch(i, u);
-  }
+  std::vector<VectorXd> u = StretchedRun(trajectory).find();
+  for (std::size_t i = 0; i < u.size(); ++i) trajectory.add_stretch(i, std::move(u[i]));
 }
 
 }  // namespace unfurl
