@@ -101,6 +101,11 @@ int rim_corner(const ParamSet& params, int k, bool top) {
   return (params.text("hoop") == "cable_ring" ? 2 : 4) * k + (top ? 1 : 0);
 }
 
+// The nets cannot be slack in the pose that is asked for.
+struct NoRoom {
+  std::string said;
+};
+
 class NetBuilder {
  public:
   NetBuilder(const ParamSet& params, const Nets& net, Structure& out)
@@ -111,6 +116,7 @@ class NetBuilder {
     for (const bool front : {true, false}) add_nodes(front);
     for (const bool front : {true, false})
       for (const NetMember& m : net_.members) {
+        if (along_longeron(m)) continue;
         const double length =
             (net_.form[static_cast<std::size_t>(m.b)] - net_.form[static_cast<std::size_t>(m.a)]).norm();
         add_member(node(front, m.a), node(front, m.b), net_.unstressed(length, m.density));
@@ -128,6 +134,13 @@ class NetBuilder {
   }
 
  private:
+  // The edge of a net of one ring joins corners that a rim of rigid longerons keeps apart in every pose: it
+  // could neither be slack nor pull on anything but a longeron.
+  bool along_longeron(const NetMember& m) const {
+    return net_.rings == 1 && m.a >= net_.first(1) && m.b >= net_.first(1) &&
+           params_.text("hoop") == "cable_ring";
+  }
+
   int node(bool front, int i) const { return nodes_[front ? 0 : 1][static_cast<std::size_t>(i)]; }
 
   // On the facets between the centre and the rim's corners as the rim is now.
@@ -209,9 +222,8 @@ class NetBuilder {
       if (worst <= 0.01 * smoothing_) return;
     }
     std::ostringstream text;
-    text << "leaves no room for the nets: folded so, some members are " << worst
-         << " m too long to be slack; fold it less, or take a larger focal_length or a smaller smoothing";
-    throw StructureError("fold_angle", text.str());
+    text << "folded so, some members are " << worst << " m too long to be slack; ";
+    throw NoRoom{text.str()};
   }
 
   const ParamSet& params_;
@@ -272,9 +284,9 @@ const std::vector<ParamSpec>& mesh_reflector_params() {
   return params;
 }
 
-Structure build_mesh_reflector(const ParamSet& params) {
-  Structure out = build_rim(params);
-  out.kind = "mesh_reflector";
+namespace {
+
+Nets nets_of(const ParamSet& params) {
   Nets net;
   net.n = static_cast<int>(params.integer("units"));
   net.rings = static_cast<int>(params.integer("net_rings"));
@@ -284,10 +296,47 @@ Structure build_mesh_reflector(const ParamSet& params) {
   net.density = params.real("force_density");
   net.stiffness = params.real("net_stiffness");
   net.mass = params.real("net_mass");
+  add_triangles(net, params.real("edge_density"));
+  find_net_form(net);
+  return net;
+}
+
+// Whether the nets would be slack in a rim folded so.
+bool have_room(const ParamSet& params, const Nets& net, double fold_degrees) {
+  ParamSet folded = params;
+  folded.set("fold_angle", fold_degrees);
+  Structure out = build_rim(folded);
+  try {
+    NetBuilder(folded, net, out).build();
+  } catch (const NoRoom&) {
+    return false;
+  }
+  return true;
+}
+
+// A rim that is hardly folded is still as wide as the nets, one that is folded far may be as high as they
+// are wide: what helps is tried.
+[[noreturn]] void refuse_room(const ParamSet& params, const Nets& net, const std::string& said) {
+  const double fold = params.real("fold_angle");
+  const char* way = have_room(params, net, 0.5 * (fold + 90)) ? "fold it more, or "
+                    : have_room(params, net, 0.5 * fold)      ? "fold it less, or "
+                                                              : "";
+  throw StructureError("fold_angle", "leaves no room for the nets: " + said + way +
+                                         "take a larger focal_length or a smaller smoothing");
+}
+
+}  // namespace
+
+Structure build_mesh_reflector(const ParamSet& params) {
+  Structure out = build_rim(params);
+  out.kind = "mesh_reflector";
   if (params.boolean("nets")) {
-    add_triangles(net, params.real("edge_density"));
-    find_net_form(net);
-    NetBuilder(params, net, out).build();
+    const Nets net = nets_of(params);
+    try {
+      NetBuilder(params, net, out).build();
+    } catch (const NoRoom& none) {
+      refuse_room(params, net, none.said);
+    }
   }
   show_as_solved(out);
   return out;

@@ -118,6 +118,32 @@ TEST_CASE("equal force densities under equal loads put nodes on a parabola") {
   CHECK_THROWS_WITH(find_form(members, fixed, loads, x), Catch::Contains("hang on nothing"));
 }
 
+// What an error advises must help; a net of one ring has no edge where the rim's longerons are one.
+TEST_CASE("nets find room in a rim that is folded as the error says") {
+  const std::string text = "[structure]\nkind = 'mesh_reflector'\n";
+  for (const char* fold : {"5", "20"}) {
+    INFO(fold);
+    const std::string said = error_of(text, {std::string("structure.fold_angle=") + fold});
+    CHECK_THAT(said, Catch::Contains("fold it more, or take"));
+  }
+  CHECK(error_of(text, {"structure.fold_angle=40"}).empty());
+  for (const char* hoop : {"cable_ring", "hoop"}) {
+    INFO(hoop);
+    const std::vector<std::string> one{"structure.net_rings=1", std::string("structure.hoop=") + hoop};
+    REQUIRE(error_of(text, one).empty());
+    const auto folded = model_of(text, one);
+    long members = 0;
+    for (const Force& f : folded->structure.forces) members += f.name == "net";
+    CHECK(members == 2 * 6 + 1 + (std::string(hoop) == "hoop" ? 2 * 6 : 0));  // spokes, a tie, edges
+    const VectorXd q = node_positions(folded->structure);
+    VectorXd f = VectorXd::Zero(q.size());
+    if (std::string(hoop) == "cable_ring") {
+      folded->system.add_applied_force(0.0, q, VectorXd::Zero(q.size()), 1.0, f);
+      CHECK(f.isZero(0.0));
+    }
+  }
+}
+
 // Latched and at rest the nets hang in the form that was found: no node feels a force.
 TEST_CASE("nets are slack when folded and on their paraboloid when deployed") {
   const std::string text =
