@@ -16,6 +16,7 @@
 #include "core/structure/measure.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
+#include "core/structures/assembly.hpp"
 #include "core/structures/family.hpp"
 #include "core/structures/rod_material.hpp"
 #include "core/system/assemble_elastic.hpp"
@@ -102,6 +103,7 @@ std::vector<std::string> place_nodes(const Scene& scene, Structure& structure) {
   add_elements(placing(scene.forces, scene_forces(), true), scene_forces(), scene.solver.end_time, placed);
   add_elements(placing(scene.constraints, scene_constraints(), false), scene_constraints(),
                scene.solver.end_time, placed);
+  warm_braces(placed);
   placed.notes.clear();
   try {
     fit_lengths(placed, scene.solver.eliminate_linear);
@@ -376,6 +378,7 @@ Structure build_structure(const Scene& scene) {
   if (is_sector(structure)) refuse_elements(scene);
   add_elements(scene.forces, scene_forces(), scene.solver.end_time, structure);
   add_elements(scene.constraints, scene_constraints(), scene.solver.end_time, structure);
+  warm_braces(structure);
   find_jumps(scene, structure);
   add_deployment(scene, structure);
   check_latches(scene, structure);

@@ -135,4 +135,77 @@ const std::string& Assembly::name(int node) const {
   return structure.nodes[static_cast<std::size_t>(node)].name;
 }
 
+namespace {
+
+bool warm_alike(const Rod& a, const Rod& b) {
+  const TimeFunction &f = a.warming, &g = b.warming;
+  return a.expansion == b.expansion && f.kind == g.kind && f.offset == g.offset && f.times == g.times &&
+         f.values == g.values;
+}
+
+// Of a brace a-b, by its third corner: what joins it to a and to b.
+struct Triangle {
+  const Rod* to_a;
+  const Rod* to_b;
+};
+
+std::vector<Triangle> triangles_of(const Structure& structure, const std::vector<std::vector<int>>& rods_at,
+                                   const Rod& brace) {
+  std::vector<Triangle> found;
+  const auto rod = [&](int r) { return &structure.rods[static_cast<std::size_t>(r)]; };
+  const auto other_end = [](const Rod& r, int node) { return r.a == node ? r.b : r.a; };
+  for (const int first : rods_at[static_cast<std::size_t>(brace.a)])
+    for (const int second : rods_at[static_cast<std::size_t>(brace.b)])
+      if (const int c = other_end(*rod(first), brace.a);
+          c != brace.b && c == other_end(*rod(second), brace.b))
+        found.push_back({rod(first), rod(second)});
+  return found;
+}
+
+}  // namespace
+
+void warm_braces(Structure& structure) {
+  if (std::ranges::none_of(structure.rods, [](const Rod& rod) { return rod.expansion != 0; })) return;
+  const std::vector<char> shown = shown_rods(structure);
+  std::vector<std::vector<int>> rods_at(structure.nodes.size());
+  std::vector<Rod*> cold;
+  for (std::size_t r = 0; r < structure.rods.size(); ++r) {
+    Rod& rod = structure.rods[r];
+    for (const int end : {rod.a, rod.b})
+      rods_at[static_cast<std::size_t>(end)].push_back(static_cast<int>(r));
+    if (!shown[r] && rod.mass == 0 && rod.expansion == 0) cold.push_back(&rod);
+  }
+  // One that is warmed may close the triangle of the next.
+  for (bool again = true; again;) {
+    again = false;
+    std::erase_if(cold, [&](Rod* brace) {
+      for (const auto& [to_a, to_b] : triangles_of(structure, rods_at, *brace)) {
+        if (to_a->expansion == 0 || !warm_alike(*to_a, *to_b)) continue;
+        brace->expansion = to_a->expansion;
+        brace->warming = to_a->warming;
+        return again = true;
+      }
+      return false;
+    });
+  }
+  const auto warm_at = [&](int node) {
+    return std::ranges::any_of(rods_at[static_cast<std::size_t>(node)], [&](int r) {
+      return structure.rods[static_cast<std::size_t>(r)].expansion != 0;
+    });
+  };
+  std::erase_if(cold, [&](const Rod* brace) {
+    const std::vector<Triangle> triangles = triangles_of(structure, rods_at, *brace);
+    if (triangles.empty()) return !warm_at(brace->a) && !warm_at(brace->b);  // of rods that are cut to bend
+    return std::ranges::none_of(
+        triangles, [](const Triangle& t) { return t.to_a->expansion != 0 || t.to_b->expansion != 0; });
+  });
+  if (cold.empty()) return;
+  structure.notes.push_back(
+      std::to_string(cold.size()) +
+      " braces that hold the shape of links, which are not shown, stay cold beside rods "
+      "that are warmed, and bend their links: " +
+      cold.front()->name + (cold.size() > 1 ? " and others" : "") +
+      "; a temperature of rods = [\"brace\"] warms them");
+}
+
 }  // namespace unfurl

@@ -63,5 +63,9 @@ class Assembly {
 
 // Takes the braces out of what is shown, after show_as_solved.
 void hide_braces(Structure& structure);
+// Braces that only hold the shape of a link are not shown, and who names the rods that are to be warmed does
+// not know of them. One that closes a triangle with two rods that warm alike warms with these: the link grows
+// and keeps its angles. A note where others of a link that warms stay cold, which bends it.
+void warm_braces(Structure& structure);
 
 }  // namespace unfurl

@@ -216,6 +216,31 @@ TEST_CASE("temperature: a clamped elastic rod carries -E A alpha dT") {
   CHECK(largest(d, "energy_balance_J") < 1e-6 * largest(d, "potential_energy_J"));
 }
 
+// All rods that are seen are warmed: the links grow and keep their angles, as they do where all rods are
+// named.
+TEST_CASE("temperature: braces that are not shown warm with the rods of their link") {
+  const auto end = [](const char* kind, const std::string& rods, const std::string& more = "") {
+    return run_scene("[structure]\nkind = '" + std::string(kind) + "'\n" + more +
+                     "[[forces]]\nkind = 'temperature'\nrods = [" + rods +
+                     "]\nexpansion = 1e-4\nchange = 100\ntimes = [0, 0.2, 0.3]\nvalues = [0, 1, 1]\n"
+                     "[solver]\nstages = 4\nstep = 0.01\nend_time = 0.3\n");
+  };
+  for (const auto& [kind, seen] : {std::pair("bricard", "'bar', 'hinge pin'"),
+                                   std::pair("hoberman", "'left element', 'right element'")}) {
+    INFO(kind);
+    const Simulation by_groups = end(kind, seen), all = end(kind, "'*'");
+    REQUIRE(by_groups.status == RunStatus::completed);
+    CHECK(end_positions(by_groups) == end_positions(all));
+    CHECK(by_groups.warnings.empty());
+  }
+  // Of bars that warm between pins that do not, nobody knows what the two braces over each right angle do.
+  const auto half = model_of(
+      "[structure]\nkind = 'bricard'\n[[forces]]\nkind = 'temperature'\nrods = ['bar']\nexpansion = 1e-5\n"
+      "change = 1\ntimes = [0, 1]\nvalues = [0, 1]\n");
+  REQUIRE(half->structure.notes.size() == 1);
+  CHECK_THAT(half->structure.notes[0], Catch::Contains("12 braces") && Catch::Contains("stay cold"));
+}
+
 TEST_CASE("temperature: a ring of rigid rods that warms evenly grows and keeps its angles") {
   std::string ring = "[structure]\nkind = 'custom'\n";
   const int n = 5;
