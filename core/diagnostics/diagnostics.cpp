@@ -160,18 +160,25 @@ const std::array rows{
         [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v) / radians_per_degree; }},
 };
 
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
 // -(across'/across) / (along'/along): the ratio of the strain increments of the motion that goes on, which at
-// rest is the one that begins.
+// rest is the one that begins. At rest is what a step does not tell from the rounding of positions; where
+// nothing begins either there is no ratio.
 double poisson_ratio(const Instant& s) {
   const Structure& structure = s.run.trajectory.structure();
   const LinearForm& along = structure.lengths[static_cast<std::size_t>(structure.strain_along)].value;
   const LinearForm& across = structure.lengths[static_cast<std::size_t>(structure.strain_across)].value;
-  const VectorXd& motion = s.v.isZero(0.0) ? s.acceleration : s.v;
-  const double stretch = along.rate(motion) / along(s.q), widening = across.rate(motion) / across(s.q);
+  constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+  const double h = s.run.options.step;
+  double stretch = along.rate(s.v) / along(s.q), widening = across.rate(s.v) / across(s.q);
+  if (std::max(std::abs(stretch), std::abs(widening)) * h <= rounding) {
+    stretch = along.rate(s.acceleration) / along(s.q), widening = across.rate(s.acceleration) / across(s.q);
+    if (!(std::max(std::abs(stretch), std::abs(widening)) * h * h > rounding)) return nan;
+  }
   constexpr double turning =
       1e-9;  // a length at its greatest, but for rounding: the ratio has no bound there
-  return std::abs(stretch) <= turning * std::abs(widening) ? std::numeric_limits<double>::quiet_NaN()
-                                                           : -widening / stretch;
+  return std::abs(stretch) <= turning * std::abs(widening) ? nan : -widening / stretch;
 }
 
 // The columns that only this structure has, at the end.
@@ -231,7 +238,6 @@ bool present(Needs needs, const Simulation& run) {
   return true;
 }
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // The fold angle, which counts on where it passes half a turn.
 class FoldAngle {

@@ -3,6 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
 #include "core/system/mobility.hpp"
 #include "tests/support/deployment_check.hpp"
 #include "tests/support/family_structure.hpp"
@@ -53,6 +56,20 @@ TEST_CASE("a sheet that opens flat has no Poisson's ratio there") {
   CHECK(std::isnan(ratio.back()));
   CHECK(std::abs(ratio[ratio.size() - 2]) < 1e4);
   for (std::size_t i = 0; i + 1 < ratio.size(); ++i) CHECK_FALSE(std::isnan(ratio[i]));
+}
+
+// No force: its velocities and accelerations are rounding, as is their ratio.
+TEST_CASE("a sheet that rests has no Poisson's ratio") {
+  const auto ratios = [](const std::vector<std::string>& changes) {
+    const Scene scene = read_scene_file(find_scene("reentrant_sheet"), changes);
+    return diagnose(simulate(build_model(scene), scene.solver)).at("poisson_ratio").values;
+  };
+  for (const double ratio : ratios({"structure.stretch_force=0", "solver.end_time=0.1"}))
+    CHECK(std::isnan(ratio));
+  const auto latched =
+      ratios({"solver.at_deployed=latch", "structure.deployed_angle=10", "solver.end_time=20"});
+  CHECK_FALSE(std::isnan(latched.front()));
+  CHECK(std::isnan(latched.back()));
 }
 
 TEST_CASE("a re-entrant sheet has one degree of freedom at every fold angle on its way") {
