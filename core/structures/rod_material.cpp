@@ -137,9 +137,19 @@ void add_length_errors(Structure& structure, const RodMaterial& material) {
     throw StructureError("length_error",
                          "errors of length break the symmetry of a sector model; set structure.model to "
                          "\"full\"");
-  for (std::size_t r = 0; r < structure.rods.size(); ++r)
-    if (Rod& rod = structure.rods[r]; rod.mass > 0)
+  // Of a truss with its mass in its nodes, too; not of what only holds a shape.
+  const std::vector<char> shown = shown_rods(structure);
+  std::vector<std::string> exact;
+  for (std::size_t r = 0; r < structure.rods.size(); ++r) {
+    Rod& rod = structure.rods[r];
+    if (rod.mass > 0 || rod.area > 0)
       rod.length += material.length_error * normal(static_cast<std::uint64_t>(material.error_seed), r);
+    else if (shown[r])
+      exact.push_back(rod.name);
+  }
+  if (!exact.empty())
+    structure.notes.push_back("length_error leaves out rods with neither mass nor area: " + exact.front() +
+                              (exact.size() > 1 ? " and " + std::to_string(exact.size() - 1) + " more" : ""));
 }
 
 void note_idle_material(Structure& structure, const RodMaterial& material) {

@@ -146,6 +146,42 @@ TEST_CASE("assembly: a ring that self-stress would throw along its mechanism sta
     }
 }
 
+// A - M - B between walls 1.5 m apart, both rods of one E A and made l_1 and l_2 long: M stands where both
+// have the strain 1.5 / (l_1 + l_2) - 1. What they weigh does not matter; rods without a section are not made
+// at all.
+TEST_CASE("assembly: errors of length are those of rods without mass, too") {
+  const auto chain = [](const std::string& rod) {
+    return model_of(
+        "[structure]\nkind = 'custom'\nrod_model = 'elastic'\nyoungs_modulus = 1e9\nlength_error = "
+        "1e-4\nerror_seed = 5\n"
+        "nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'M', position = [0.6, 0, 0], "
+        "mass = 1},"
+        "{name = 'B', position = [1.5, 0, 0], fixed = true}]\n"
+        "rods = [{nodes = ['A', 'M'], area = 1e-4" +
+        rod + "}, {nodes = ['M', 'B'], area = 1e-4" + rod +
+        "}]\n"
+        "[[constraints]]\nkind = 'line'\nnodes = ['M']\ndirection = [1, 0, 0]\n");
+  };
+  const auto light = chain(", mass = 0"), heavy = chain(", mass = 0.5");
+  const std::vector<Rod>& rods = light->structure.rods;
+  for (const std::size_t r : {0U, 1U}) CHECK(rods[r].length == heavy->structure.rods[r].length);
+  VectorXd force(2);
+  const VectorXd q = node_positions(light->structure);
+  light->system.giving_rod_forces(0, q, VectorXd::Zero(q.size()), force);
+  const double wanted = 1e5 * (1.5 / (rods[0].length + rods[1].length) - 1);
+  CHECK(std::abs(wanted) > 0.1);
+  for (const Index r : {0, 1})
+    CHECK(force[r] == Approx(wanted).margin(1e-8));  // 1e5 N times rounding of lengths
+  for (const std::string& note : light->structure.notes) CHECK(note.find("leaves out") == std::string::npos);
+  const auto bare = model_of(
+      "[structure]\nkind = 'custom'\nlength_error = 1e-4\n"
+      "nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', position = [1, 0, 0], mass = "
+      "1}]\n"
+      "rods = [{nodes = ['A', 'B'], mass = 0}]\n");
+  REQUIRE(bare->structure.notes.size() == 1);
+  CHECK(bare->structure.notes[0] == "length_error leaves out rods with neither mass nor area: A-B");
+}
+
 // A mast is statically determinate: errors of its lengths stress nothing, and the pose is that of rigid rods,
 // whatever the modulus. Both are fitted to round-off of coordinates of some metres.
 TEST_CASE("assembly: a mast whose rods are off starts where it would with rigid rods") {
