@@ -238,7 +238,6 @@ bool present(Needs needs, const Simulation& run) {
   return true;
 }
 
-
 // The fold angle, which counts on where it passes half a turn.
 class FoldAngle {
  public:
