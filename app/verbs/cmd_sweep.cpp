@@ -10,6 +10,7 @@
 
 #include "app/command.hpp"
 #include "app/output/interrupt.hpp"
+#include "app/output/receipt.hpp"
 #include "app/verbs/cluster.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/study_session.hpp"

@@ -313,7 +313,7 @@ TEST_CASE("temperature: a ring of rigid rods that warms evenly grows and keeps i
 // In line between walls: rods of E A that are made l_1 and l_2 long, on either side of a rigid one of length
 // 1. With P off by u, (1 + u) / l_1 = (1 - u) / l_2.
 TEST_CASE("assembly: elastic rods beside a rigid one are in balance, and it keeps its length") {
-  const double EA = 1e6;
+  const double stiff = 1e6;
   for (const auto& [l1, l2] : {std::pair(1.0004, 1.0), std::pair(1.004, 1.002), std::pair(0.997, 1.009)}) {
     INFO(l1 << " " << l2);
     const Simulation run = run_scene(R"([structure]
@@ -334,7 +334,7 @@ direction = [1, 0, 0]
 step = 1e-5
 end_time = 3e-5
 )");
-    const double u = (l1 - l2) / (l1 + l2), wanted = EA * ((1 + u) / l1 - 1);
+    const double u = (l1 - l2) / (l1 + l2), wanted = stiff * ((1 + u) / l1 - 1);
     const VectorXd q = run.trajectory.node_positions(0), force = first_forces(run);
     // Rounding of coordinates, 1e-16, is 1e-12 of the strains.
     CHECK(q[3] == Approx(1 + u).epsilon(1e-14));
