@@ -42,7 +42,7 @@ class ForceUniqueness {
   // its end where that is the end of a window only and the run goes on.
   ForceUniqueness(const Simulation& run, const KnownUniqueness& before, bool goes_on);
 
-  // 1: unique, per kept row of the model that the state belongs to, and behind these of what rests. At  a
+  // 1: unique, per kept row of the model that the state belongs to, and behind these of what rests. At a
   // singular pose without redundancy the forces that are carried over as the limit along the motion
   // (StepReport::singular_event) stay unique.
   const std::vector<char>& at(std::size_t state) const;

@@ -93,8 +93,8 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
                             std::string(share) + " % of its size";
     if (run_.options.at_deployed == "latch" && !latch_gives(base_->structure))
       return fail("the structure " + how +
-                  ", and latches that close at once would move them there; deploy its parts alike, give the "
-                  "latches a stiffness, or take solver.at_deployed = \"stop\"");
+                  ", and latches that close at once would move them there; deploy its parts alike, or take "
+                  "solver.at_deployed = \"stop\"");
     run_.warnings.push_back("at t = " + seconds(event.t) + ": the structure " + how);
   }
   if (run_.options.at_deployed == "pass") {

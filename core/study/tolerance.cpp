@@ -23,6 +23,8 @@ constexpr double most = 0.5, least = 0.02, aim = 0.2;
 // Numbers of steps are multiples of 35, for what other grids share with them (solve).
 constexpr long multiple = 35, first_steps = 4 * multiple, fewest_steps = multiple, max_steps = 100'000'000;
 constexpr int tries = 8;  // per number of stages
+// States of a run beside which another one is solved, where their grids do not meet.
+constexpr std::size_t most_between = 100;
 // What a run along the path is off by at most, as a share of the structure's size.
 constexpr double path_share = 1e-12;
 // Work of the whole search, in solves times unknowns: a minute or two of one core.
@@ -43,10 +45,9 @@ double work_of(const Simulation& run) {
   return solves;
 }
 
-// Largest distance of a node of a from b: at the times that both have, and at most so many others of a, to
+// Largest distance of a node of a from b: at the times that both have, and at most_between others of a, to
 // which b is solved from its state before; where a structure deploys, also of the deployed poses, and of what
 // the fastest node goes in the time between both.
-constexpr std::size_t most_between = 100;
 double distance(const Simulation& a, const Simulation& b) {
   if (a.status == RunStatus::failed || b.status == RunStatus::failed || a.status != b.status)
     return std::numeric_limits<double>::infinity();
