@@ -368,6 +368,21 @@ void find_jumps(const Scene& scene, Structure& structure) {
   for (Force& f : structure.forces) make_jumps(f.size, near);
 }
 
+// A group that no rod is of, most likely misspelt.
+void note_idle_materials(const Scene& scene, Structure& structure) {
+  std::set<std::string_view> groups;
+  for (const Rod& rod : structure.rods) groups.insert(rod.group);
+  for (std::size_t i = 0; i < scene.render.materials.size(); ++i) {
+    const std::string& group = scene.render.materials[i].group;
+    if (std::ranges::any_of(groups, [&](std::string_view known) { return glob_match(group, known); }))
+      continue;
+    const std::string key = "render.materials[" + std::to_string(i) + "].group";
+    structure.notes.push_back(problem_text({location_of(scene, key), key,
+                                            "no rods are of the group " + in_quotes(group) +
+                                                did_you_mean(group, {groups.begin(), groups.end()})}));
+  }
+}
+
 }  // namespace
 
 Structure build_structure(const Scene& scene) {
@@ -389,6 +404,7 @@ Structure build_structure(const Scene& scene) {
     if (scene.surfaces[i].enabled)
       surface_nodes(scene.surfaces[i], "surfaces[" + std::to_string(i) + "].nodes", structure);
   note_idle_joints(structure);
+  note_idle_materials(scene, structure);
   note_pins_between(structure);
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   structure.notes.insert(structure.notes.end(), moves.begin(), moves.end());

@@ -20,7 +20,7 @@ std::string_view trimmed(std::string_view text) {
 struct Record {
   int line = 0;  // where it begins
   std::vector<std::string> cells;
-  bool closed = true;  // its quotes are
+  std::string_view fault;  // what is wrong with its quotes
 };
 
 // Takes one record after the other from the text.
@@ -31,8 +31,8 @@ class Splitter {
   bool next(Record& record) {
     while (at_ < text_.size() && (text_[at_] == '\n' || text_[at_] == '\r' || text_[at_] == '#')) skip_line();
     if (at_ >= text_.size()) return false;
-    record = {line_, {}, true};
-    do record.cells.push_back(cell(record.closed));
+    record = {line_, {}, ""};
+    do record.cells.push_back(cell(record.fault));
     while (at_ < text_.size() && text_[at_++] == ',');
     if (at_ > 0 && text_[at_ - 1] == '\n') ++line_;
     return true;
@@ -46,20 +46,23 @@ class Splitter {
   }
 
   // Stops at the comma or line end behind the cell.
-  std::string cell(bool& closed) {
+  std::string cell(std::string_view& fault) {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
     std::string value;
-    if (at_ < text_.size() && text_[at_] == '"') value = quoted_cell(closed);
+    const bool quoted = at_ < text_.size() && text_[at_] == '"';
+    if (quoted) value = quoted_cell(fault);
     const std::size_t begin = at_;
     while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n') ++at_;
     std::string_view rest = text_.substr(begin, at_ - begin);
     if (!rest.empty() && rest.back() == '\r') rest.remove_suffix(1);
-    return value.append(trimmed(rest));
+    rest = trimmed(rest);
+    if (quoted && !rest.empty()) fault = "has text behind a closing quote";
+    return quoted ? value : std::string(rest);
   }
 
-  std::string quoted_cell(bool& closed) {
+  std::string quoted_cell(std::string_view& fault) {
     std::string value;
-    closed = false;
+    bool closed = false;
     for (++at_; at_ < text_.size(); ++at_) {
       if (text_[at_] == '"' && (at_ + 1 >= text_.size() || text_[at_ + 1] != '"')) {
         ++at_;
@@ -70,6 +73,7 @@ class Splitter {
       if (text_[at_] == '\n') ++line_;
       value += text_[at_];
     }
+    if (!closed) fault = "has a quote that is not closed";
     return value;
   }
 
@@ -117,7 +121,7 @@ void read_number(const std::string& cell, const CsvColumn& column, CsvRow& row, 
     row.numbers[std::string(column.name)] = cell == "true" ? 1.0 : 0.0;
     return;
   }
-  const char* begin = cell.data() + (cell[0] == '+' ? 1 : 0);
+  const char* begin = cell.data() + (cell[0] == '+' && cell.size() > 1 && cell[1] != '-' ? 1 : 0);
   double x = 0.0;
   const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
   if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x) ||
@@ -135,7 +139,7 @@ std::vector<std::vector<std::string>> csv_records(std::string_view text) {
   Splitter splitter(text);
   std::vector<std::vector<std::string>> rows;
   for (Record record; splitter.next(record);)
-    if (record.closed) rows.push_back(std::move(record.cells));
+    if (record.fault.empty()) rows.push_back(std::move(record.cells));
   return rows;
 }
 
@@ -158,8 +162,8 @@ std::vector<CsvRow> read_csv(std::string_view text, const std::string& file,
   std::vector<CsvRow> rows;
   while (splitter.next(record)) {
     CsvRow row{{file, record.line, 1}, {}, {}};
-    if (!record.closed) {
-      notes.add(row.where, "", "has a quote that is not closed");
+    if (!record.fault.empty()) {
+      notes.add(row.where, "", std::string(record.fault));
       continue;
     }
     if (record.cells.size() != header.size()) {

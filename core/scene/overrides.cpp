@@ -106,13 +106,18 @@ TomlTree parse_value(std::string_view text) {
   return value;
 }
 
-// What an entry of an array of tables goes by: its name; a rod without one, "A-B" from its nodes.
-std::string entry_name(const TomlTree& entry) {
+// What an entry of an array of tables goes by: its name; without one, "A-B" from its nodes.
+struct EntryName {
+  std::string text;
+  bool own = false;  // the entry says it
+};
+
+EntryName entry_name(const TomlTree& entry) {
   const TomlTree* name = entry.find("name");
-  if (name && name->kind == TomlTree::Kind::text) return name->text;
+  if (name && name->kind == TomlTree::Kind::text) return {name->text, true};
   const TomlTree* nodes = entry.find("nodes");
-  if (!nodes || nodes->items.size() != 2) return "";
-  return nodes->items[0].text + "-" + nodes->items[1].text;
+  if (!nodes || nodes->items.size() != 2) return {};
+  return {nodes->items[0].text + "-" + nodes->items[1].text};
 }
 
 // Lists of entries to which one more may be added.
@@ -139,11 +144,18 @@ TomlTree& step_into_array(TomlTree& array, const Step& step, std::string_view so
                   (grows(so_far) ? "; a new one is [" + std::to_string(count) + "]" : "; the first is [0]")};
   }
   std::vector<std::string> names;
-  for (auto& item : array.items) {
-    const std::string name = entry_name(item);
-    if (name == step.name) return item;
-    if (!name.empty()) names.push_back(name);
+  std::vector<std::size_t> between;  // entries without a name that stand between two nodes of that name
+  for (std::size_t i = 0; i < array.items.size(); ++i) {
+    const EntryName name = entry_name(array.items[i]);
+    if (name.own && name.text == step.name) return array.items[i];
+    if (!name.own && name.text == step.name) between.push_back(i);
+    if (!name.text.empty()) names.push_back(name.text);
   }
+  if (between.size() == 1) return array.items[between[0]];
+  if (between.size() > 1)
+    throw Refusal{std::string(so_far) + " has " + std::to_string(between.size()) + " entries that go by " +
+                  in_quotes(step.name) + "; the first is [" + std::to_string(between[0]) + "], the second [" +
+                  std::to_string(between[1]) + "]"};
   const std::string first = "; " + std::string(array.items.empty() ? "a new one" : "the first") + " is [0]";
   throw Refusal{std::string(so_far) + " has no entry named " + in_quotes(step.name) +
                 (names.empty() ? first : did_you_mean(step.name, {names.begin(), names.end()}))};

@@ -2,10 +2,10 @@
 #include "core/scene/title.hpp"
 
 #include <array>
-#include <charconv>
 #include <optional>
 
 #include "core/structures/family.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 namespace {
@@ -28,11 +28,6 @@ Piece piece_at(const std::string& text, std::size_t at) {
   return {at + 1, "", {c}};
 }
 
-std::string shortest(double x) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr};
-}
-
 std::string number_word(long x, bool first) {
   static constexpr std::array words{"one",   "two",   "three", "four", "five",   "six",
                                     "seven", "eight", "nine",  "ten",  "eleven", "twelve"};
@@ -48,7 +43,7 @@ std::optional<std::string> said(const TomlTree& value, bool first) {
     case TomlTree::Kind::integer:
       return number_word(value.integer, first);
     case TomlTree::Kind::real:
-      return shortest(value.real);
+      return shortest_number(value.real);
     case TomlTree::Kind::text:
       return value.text;
     case TomlTree::Kind::boolean:
@@ -65,7 +60,7 @@ std::optional<std::string> said_default(const TomlTree& structure, const std::st
   for (const ParamSpec& spec : family->params()) {
     if (spec.name != key) continue;
     if (const auto* i = std::get_if<long>(&spec.fallback)) return number_word(*i, first);
-    if (const auto* x = std::get_if<double>(&spec.fallback)) return shortest(*x);
+    if (const auto* x = std::get_if<double>(&spec.fallback)) return shortest_number(*x);
     if (const auto* s = std::get_if<std::string>(&spec.fallback)) return *s;
     if (const auto* b = std::get_if<bool>(&spec.fallback)) return *b ? "true" : "false";
   }
@@ -108,8 +103,9 @@ std::string changes(const TomlTree& now, const TomlTree& before) {
     const bool number = value.kind == TomlTree::Kind::integer || value.kind == TomlTree::Kind::real;
     text += (text.empty() ? "" : ", ") + key;
     if (number)
-      text += " = " +
-              shortest(value.kind == TomlTree::Kind::real ? value.real : static_cast<double>(value.integer));
+      text +=
+          " = " + shortest_number(value.kind == TomlTree::Kind::real ? value.real
+                                                                     : static_cast<double>(value.integer));
     else
       text += short_one ? " = " + *said(value, false) : " changed";
   }

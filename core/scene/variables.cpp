@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/variables.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -11,6 +9,7 @@
 #include "core/scene/expression.hpp"
 #include "core/scene/overrides.hpp"
 #include "core/text/nearest_name.hpp"
+#include "core/text/param_spec.hpp"
 
 namespace unfurl {
 
@@ -19,13 +18,6 @@ namespace {
 constexpr std::size_t max_turns = 100'000;  // of all loops of repeated entries together
 constexpr std::string_view of_variables = "variables.";
 using Kind = TomlTree::Kind;
-
-// A number as it stands in a name: 3, not 3.0.
-std::string plain_number(double x) {
-  std::array<char, 32> buffer{};
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), x == 0.0 ? 0.0 : x);
-  return {buffer.data(), end};
-}
 
 bool is_expression(const TomlTree& tree) {
   return tree.kind == Kind::text && tree.text.starts_with('=');
@@ -130,7 +122,7 @@ class Expansion {
         return note(tree, key, "a brace stands alone in " + in_quotes(text) + "; write it twice to mean it");
       const auto value = evaluated(tree, text.substr(i + 1, end - i - 1), key);
       if (!value) return;
-      filled += plain_number(*value);
+      filled += shortest_number(*value);
       keys_.insert(key);
       i = end;
     }

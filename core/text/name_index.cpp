@@ -3,6 +3,15 @@
 
 namespace unfurl {
 
+namespace {
+
+// A byte of UTF-8 behind the first of its character.
+bool within_character(char byte) {
+  return (static_cast<unsigned char>(byte) & 0xC0) == 0x80;
+}
+
+}  // namespace
+
 // Greedy matching with one point of return, the last star: linear in practice, never exponential.
 bool glob_match(std::string_view pattern, std::string_view name) {
   constexpr std::size_t none = std::string_view::npos;
@@ -12,8 +21,9 @@ bool glob_match(std::string_view pattern, std::string_view name) {
       star = p++;
       resume = n;
     } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
-      ++p;
       ++n;
+      while (pattern[p] == '?' && n < name.size() && within_character(name[n])) ++n;
+      ++p;
     } else if (star != none) {
       p = star + 1;
       n = ++resume;

@@ -14,18 +14,6 @@ namespace unfurl {
 
 namespace {
 
-// The shortest text that reads back as the same number.
-std::string number_text(double x) {
-  if (std::isnan(x)) return "nan";
-  if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
-  std::array<char, 32> buffer{};
-  const bool countable = x == std::floor(x) && std::abs(x) < 1e7;  // 100000 rather than 1e+05
-  const auto end = countable
-                       ? std::to_chars(buffer.data(), buffer.data() + buffer.size(), static_cast<long>(x)).ptr
-                       : std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr;
-  return {buffer.data(), end};
-}
-
 std::string join(const std::vector<std::string_view>& names) {
   std::string text;
   for (const auto name : names) text.append(text.empty() ? "" : ", ").append(name);
@@ -36,11 +24,11 @@ std::string value_text(const ParamValue& value) {
   struct Writer {
     std::string operator()(bool b) const { return b ? "true" : "false"; }
     std::string operator()(long i) const { return std::to_string(i); }
-    std::string operator()(double x) const { return number_text(x); }
+    std::string operator()(double x) const { return shortest_number(x); }
     std::string operator()(const std::string& s) const { return '"' + s + '"'; }
     std::string operator()(const std::vector<double>& v) const {
       std::string text = "[";
-      for (const double x : v) text += (text.size() > 1 ? ", " : "") + number_text(x);
+      for (const double x : v) text += (text.size() > 1 ? ", " : "") + shortest_number(x);
       return text + "]";
     }
     std::string operator()(const std::vector<std::string>& v) const {
@@ -113,15 +101,26 @@ ParamSpec named(std::string_view name, std::string_view unit, ParamKind kind, Pa
 std::string interval_text(const ParamSpec& spec) {
   const bool low = std::isfinite(spec.min), high = std::isfinite(spec.max);
   if (low && high) {
-    return (spec.min_open ? "(" : "[") + number_text(spec.min) + ", " + number_text(spec.max) +
+    return (spec.min_open ? "(" : "[") + shortest_number(spec.min) + ", " + shortest_number(spec.max) +
            (spec.max_open ? ")" : "]");
   }
-  if (low) return (spec.min_open ? "> " : ">= ") + number_text(spec.min);
-  if (high) return (spec.max_open ? "< " : "<= ") + number_text(spec.max);
+  if (low) return (spec.min_open ? "> " : ">= ") + shortest_number(spec.min);
+  if (high) return (spec.max_open ? "< " : "<= ") + shortest_number(spec.max);
   return "";
 }
 
 }  // namespace
+
+std::string shortest_number(double x) {
+  if (std::isnan(x)) return "nan";
+  if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
+  std::array<char, 32> buffer{};
+  const bool countable = x == std::floor(x) && std::abs(x) < 1e7;  // 100000 rather than 1e+05
+  const auto end = countable
+                       ? std::to_chars(buffer.data(), buffer.data() + buffer.size(), static_cast<long>(x)).ptr
+                       : std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr;
+  return {buffer.data(), end};
+}
 
 ParamSpec real_param(std::string_view name, std::string_view unit, double fallback, double min, double max,
                      std::string_view help) {

@@ -59,6 +59,9 @@ ParamSpec only_given(std::string_view other, ParamSpec spec);
 ParamSpec required(ParamSpec spec);  // that parameter, without a default: a scene must give it
 ParamSpec names_param(std::string_view name, std::string_view help);  // of nodes or rods; required
 
+// The shortest text that reads back as the same number; a whole one below 1e7 without an exponent.
+std::string shortest_number(double x);
+
 // "[0.1, 8]", "> 0", "one of a, b": the allowed range in words, for help and error messages.
 std::string range_text(const ParamSpec& spec);
 

@@ -94,6 +94,11 @@ TEST_CASE("all that is wrong with a table is listed, and nothing else") {
               "3: fixed must be true or false; got 'yes'", "4: x must be a finite number; got '1m'",
               "5: has 4 cells; the header has 3", "6: x must be a finite number; got 'inf'",
               "8: has a quote that is not closed"});
+  CHECK(wrong("name,x\n\"A\"B,1\n\"A\" \t,+1\nB,+-1\nC,-+1\nD,+\n") ==
+        Texts{"2: has text behind a closing quote", "4: x must be a finite number; got '+-1'",
+              "5: x must be a finite number; got '-+1'", "6: x must be a finite number; got '+'"});
+  CHECK(wrong("name,x\n\"A\"B,1").front() == "2: has text behind a closing quote");
+  CHECK(wrong("name,x\n\"A\"B,1\n\"#1\",2\n#1,2\n").size() == 1);
   CHECK(wrong("name,x\nA,1\n\"\xFF\",2\n").size() == 1);
   CHECK(wrong("name,x\nA,1\n\"\xFF\",2\n")[0].starts_with("3: "));
 }

@@ -149,6 +149,22 @@ TEST_CASE("keys of structures, surfaces and the solver that do nothing are warne
         "s.toml:4:9: surfaces[0].cells: does nothing with kind = 'membrane'\n");
 }
 
+TEST_CASE("a material of a group that is not there is warned of") {
+  const auto notes = [](const std::string& group) {
+    std::string all;
+    const Scene scene = read_scene_text(
+        arms + "[[render.materials]]\ngroup = '" + group + "'\nmaterial = 'cfrp'\n", "x.toml");
+    for (const std::string& note : build_structure(scene).notes) all += note + "\n";
+    return all;
+  };
+  const std::string own = build_structure(read_scene_text(arms, "x.toml")).rods[0].group;
+  CHECK(notes(own) == "");
+  CHECK(notes("*") == "");
+  CHECK_THAT(notes(own + "z"),
+             Catch::StartsWith("x.toml:16:9: render.materials[0].group: no rods are of the group '" + own +
+                               "z'; did you mean '" + own + "'?"));
+}
+
 TEST_CASE("what does nothing is not written, and what is written is not warned of") {
   const Scene scene =
       read_scene_text(arms + "[[forces]]\n" + motor + "motion = 'smooth'\nto = 150\n[[constraints]]\n" +

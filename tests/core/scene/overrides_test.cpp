@@ -66,6 +66,29 @@ TEST_CASE("entries of arrays go by index or name") {
   CHECK(with({"structure.rods.\"A-B.0\".mass=2"}).problems == "");
 }
 
+TEST_CASE("what goes by its nodes gives way to what has that name, and is not chosen among several") {
+  const auto masses = [](const std::string& entries, std::string& problems) {
+    TomlTree tree = parse_toml("[[forces]]\nnodes = ['A', 'B']\nsize = 1\n" + entries, "x.toml");
+    std::vector<SceneProblem> found;
+    apply_overrides(tree, {"forces[A-B].size=7"}, found);
+    problems = found.empty() ? "" : problem_text(found[0]);
+    std::vector<long> sizes;
+    for (const TomlTree& item : tree.find("forces")->items) sizes.push_back(item.find("size")->integer);
+    return sizes;
+  };
+  const std::string named = "[[forces]]\nname = 'A-B'\nnodes = ['C', 'D']\nsize = 2\n",
+                    alike = "[[forces]]\nnodes = ['A', 'B']\nsize = 3\n",
+                    other = "[[forces]]\nname = 'own'\nnodes = ['A', 'B']\nsize = 4\n";
+  std::string problems;
+  CHECK(masses(named, problems) == std::vector<long>{1, 7});
+  CHECK(masses(other, problems) == std::vector<long>{7, 4});
+  CHECK(masses(alike + named, problems) == std::vector<long>{1, 3, 7});
+  CHECK(problems == "");
+  CHECK(masses(other + alike, problems) == std::vector<long>{1, 4, 3});
+  CHECK(problems ==
+        "--set forces[A-B].size: forces has 2 entries that go by 'A-B'; the first is [0], the second [2]");
+}
+
 TEST_CASE("the index behind the last adds an entry of loads, forces or constraints, of nothing else") {
   const Result r = with({"forces[0]={kind = 'drag', nodes = ['A']}", "forces[0].damping=2",
                          "forces[1]={kind = 'drag', nodes = ['B.0']}", "loads[0].nodes=['A']"});

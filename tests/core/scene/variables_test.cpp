@@ -94,6 +94,17 @@ TEST_CASE("two variables of a repeat: the last one runs fastest") {
   }
 }
 
+TEST_CASE("whole numbers stand in names without an exponent") {
+  const Scene scene = read(
+      "[variables]\nk = 100000\n[structure]\nkind = 'custom'\n"
+      "nodes = [{name = 'A{k}', position = [0, 0, 0], fixed = true},\n"
+      "{name = 'B{-2*k}', position = [1, 0, 0]}, {name = 'C{k/8e5}', position = [2, 0, 0]},\n"
+      "{name = 'D{0*-1}', position = [3, 0, 0]}]\n"
+      "rods = [{nodes = ['A100000', 'B-200000'], mass = 1}, {nodes = ['B-200000', 'C0.125'], mass = 1},\n"
+      "{nodes = ['C0.125', 'D0'], mass = 1}]\n");
+  CHECK(build_structure(scene).nodes.size() == 4);
+}
+
 TEST_CASE("variables are set on the command line") {
   const Scene scene =
       read(polygon, {"variables.n=8", "variables.radius=\"=n/2\"", "structure.nodes.P7.mass=3"});

@@ -43,6 +43,17 @@ TEST_CASE("patterns match what their definition says, every short one against ev
   CHECK(found > names.size());
 }
 
+TEST_CASE("a question mark stands for one character, of however many bytes") {
+  for (const char* name : {"Aa", "A\u00e9", "A\u20ac", "A\U0001F6F0"}) {
+    CHECK(glob_match("A?", name));
+    CHECK(glob_match("*?", name));
+    CHECK(glob_match("??", name));
+    CHECK_FALSE(glob_match("A??", name));
+    CHECK_FALSE(glob_match("?", name));
+  }
+  CHECK(glob_match("?-?", "\u03b1-\u03b2"));
+}
+
 TEST_CASE("names are found by themselves and by patterns, in their order") {
   NameIndex index;
   CHECK(index.add("B10") == -1);
