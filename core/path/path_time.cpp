@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
 
 #include "core/math/chebyshev.hpp"
+#include "core/math/golden_section.hpp"
 #include "core/math/quadrature.hpp"
 
 namespace unfurl {
@@ -103,6 +107,49 @@ class Part {
   bool first_ = false;
 };
 
+// What remains to the deployed pose, at a place of the path.
+struct PathLook {
+  double s = 0.0, left = 0.0;
+  VectorXd angles;  // those that count turns
+};
+
+// Between two looks that are so near that no angle turns by half a turn. The poses are smooth there; what is
+// measured need not be: an angle without an axis has a kink where its sides lie in line, a distance at zero.
+class DeployedSearch {
+ public:
+  DeployedSearch(const Path& path, const Deployment& deployment) : path_(path), deployment_(deployment) {}
+
+  // Where it falls to zero.
+  std::optional<double> crossing(const PathLook& above, const PathLook& below) const {
+    double low = above.s, high = below.s;
+    for (int it = 0; it < 60; ++it) {
+      const double middle = 0.5 * (low + high);
+      (left(middle, above.angles) > 0 ? low : high) = middle;
+    }
+    return high;
+  }
+
+  // Where it is least between them, if there it is zero or less.
+  std::optional<PathLook> dip(const PathLook& a, const PathLook& b) const {
+    const double s = golden_section([&](double at) { return left(at, a.angles); }, a.s, b.s, 60);
+    PathLook least{s, left(s, a.angles), {}};
+    if (least.left > 0) return std::nullopt;
+    return least;
+  }
+
+ private:
+  double left(double s, VectorXd angles) const {
+    VectorXd z, tangent, q(path_.system().coordinates());
+    if (!path_.point(s, z, tangent)) return std::numeric_limits<double>::infinity();
+    path_.system().expand(z, q);
+    deployment_.count_on(q, angles);
+    return deployment_.remaining(q, angles);
+  }
+
+  const Path& path_;
+  const Deployment& deployment_;
+};
+
 }  // namespace
 
 double time_from_rest(const Path& path, const VectorXd& force, double from, double to) {
@@ -128,26 +175,22 @@ double time_from_rest(const Path& path, const VectorXd& force, double from, doub
 std::optional<double> deployed_pose(const Path& path, const Deployment& deployment, bool forward,
                                     long most_pieces) {
   const VectorXd x = chebyshev_points(Path::degree);
-  VectorXd angles = deployment.first_angles();
-  bool armed = false;
+  const DeployedSearch search(path, deployment);
+  PathLook last{0, 0, deployment.first_angles()}, before = last;
+  int looks = 0;  // since the deployment was first ahead
   for (long k = 0; k < most_pieces; ++k) {
     const PathPiece* piece = path.piece(forward ? k : -k - 1);
     if (!piece) return std::nullopt;
-    VectorXd values(x.size());
-    for (Index i = 0; i < x.size(); ++i) {
+    for (Index i = k == 0 ? 0 : 1; i < x.size(); ++i) {  // a piece begins where the one before it ends
       const Index at = forward ? i : x.size() - 1 - i;
-      deployment.count_on(piece->q.col(at), angles);
-      values[at] = deployment.remaining(piece->q.col(at), angles);
-    }
-    const VectorXd c = (values.transpose() * chebyshev_transform(Path::degree)).transpose();
-    for (Index i = 0; i < x.size(); ++i) {
-      const Index at = forward ? i : x.size() - 1 - i, before = forward ? at - 1 : at + 1;
-      armed = armed || values[at] > 0;
-      if (!armed || values[at] > 0 || before < 0 || before >= x.size()) continue;
-      double low = x[before], high = x[at];
-      for (int it = 0; it < 60; ++it)
-        (chebyshev_value(c.data(), c.size(), 0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
-      return piece->at(high);
+      PathLook now{piece->at(x[at]), 0, last.angles};
+      deployment.count_on(piece->q.col(at), now.angles);
+      now.left = deployment.remaining(piece->q.col(at), now.angles);
+      if (looks > 0 && now.left <= 0) return search.crossing(last, now);
+      if (looks > 1 && last.left <= before.left && last.left < now.left)
+        if (const auto dip = search.dip(before, now)) return search.crossing(before, *dip);
+      looks += looks > 0 || now.left > 0;
+      before = std::exchange(last, std::move(now));
     }
   }
   return std::nullopt;

@@ -330,6 +330,46 @@ end_time = 0.2
   }
 }
 
+// An angle without an axis turns back where its sides lie in line: the deployed pose may be as near to that
+// as one likes.
+TEST_CASE("the way ends at the deployed pose where what is measured turns back behind it") {
+  for (const double deployed : {30.0, 5.0, 1.0, 0.3, 0.02}) {
+    const Scene scene = read_scene_text(R"toml(
+[variables]
+x = "=cos(80*deg)"
+z = "=sin(80*deg)"
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "D", position = [2, 0, 0], fixed = true},
+  {name = "B", position = ["=x", 0, "=z"]}, {name = "C", position = ["=2+x", 0, "=z"]},
+  {name = "X", position = [0, 0, -1], fixed = true}]
+rods = [{nodes = ["A", "B"], mass = 1}, {nodes = ["B", "C"], mass = 1}, {nodes = ["C", "D"], mass = 1},
+  {nodes = ["A", "D"], mass = 0}]
+[[constraints]]
+kind = "plane"
+nodes = ["B", "C"]
+normal = [0, 1, 0]
+[[forces]]
+kind = "friction"
+nodes = ["X", "A", "B"]
+kinetic = 0.001
+axis = [0, 1, 0]
+[[loads]]
+nodes = ["C"]
+force = [8, 0, 0]
+[deployment]
+measure = "angle D A B"
+)toml",
+                                        "s.toml", {"deployment.deployed=" + exact_number(deployed)});
+    const Margin margin = margin_in(scene);
+    CHECK(margin.arrives);
+    // The load drives with 8 N x 1 m x sin(angle), least in the end. Poses near the line, where there are two
+    // ways on, are right to 1e-16 over the angle to it.
+    CHECK(margin.worst.margin ==
+          Approx(8 * std::sin(deployed * radians_per_degree) / 0.001 - 1).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("dry friction resists in every pose, with what it holds at rest and what it takes on the way") {
   const double most = 1100, kinetic = 700;
   const Margin margin = margin_in(
