@@ -490,7 +490,7 @@ class PathRun {
 Simulation simulate_on_path(const std::shared_ptr<const Model>& model, const SolverOptions& options,
                             const SimulationHooks& hooks) {
   const double begin = thread_cpu_seconds();
-  Simulation run = PathRun(model, options, hooks).run();
+  Simulation run = PathRun(model, with_steps_inside(options), hooks).run();
   run.cpu_s = thread_cpu_seconds() - begin;
   if (model->structure.quasi_static) add_stretch(run.trajectory);
   return run;

@@ -20,6 +20,7 @@ using Panel = Eigen::Array<double, gauss, 1>;
 // Two halves that agree so well with the whole are right to the square of that and more.
 constexpr double agree = 1e-9;
 constexpr int most_halvings_of_time = 40;
+constexpr double there = 1e-12;  // what rounding leaves of the deployed pose, as a share of the way
 
 struct Rule16 {
   Panel node, weight;
@@ -133,7 +134,7 @@ class DeployedSearch {
   std::optional<PathLook> dip(const PathLook& a, const PathLook& b) const {
     const double s = golden_section([&](double at) { return left(at, a.angles); }, a.s, b.s, 60);
     PathLook least{s, left(s, a.angles), {}};
-    if (least.left > 0) return std::nullopt;
+    if (least.left > there) return std::nullopt;
     return least;
   }
 

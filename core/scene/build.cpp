@@ -351,7 +351,8 @@ void refuse_endless_runs(const Scene& scene, const Model& model) {
 // Points of a load's table that no step tells apart are a jump: steps end on either side of it. Three of them
 // may be a blow, of which nothing would be left.
 void find_jumps(const Scene& scene, Structure& structure) {
-  const double near = 1e-7 * scene.solver.step;
+  const double end = scene.solver.end_time,
+               near = 1e-7 * (end > 0 ? std::min(scene.solver.step, end) : scene.solver.step);
   MemberFinder find(structure);
   for (const SceneElement& e : scene.forces) {
     if (!e.enabled || !may_jump(e.kind)) continue;

@@ -67,11 +67,11 @@ std::optional<double> step_to_dip(const Model& model,
     return At{length, model.structure.deployment.remaining(q, state.angles) - margin,
               remaining_rate(model, state)};
   };
-  // Above the crossing of both tangents, as any motion is that bends one way.
+  // A fall at twice the first rate would get there. (Tangents are no bound: an angle without an axis has a
+  // kink where its sides lie in line, and may bend either way on both sides of it.)
   const auto may_dip = [](const At& a, const At& b) {
-    if (!(a.left > 0 && b.left > 0 && a.rate < 0 && b.rate > 0)) return false;
-    const double dx = (b.left - a.left - b.rate * (b.length - a.length)) / (a.rate - b.rate);
-    return a.left + a.rate * dx <= 0;
+    return a.left > 0 && b.left > 0 && a.rate < 0 && b.rate > 0 &&
+           a.left + 2 * a.rate * (b.length - a.length) <= 0;
   };
   At low = at(0, from), high = at(h, to);
   if (!may_dip(low, high)) return std::nullopt;

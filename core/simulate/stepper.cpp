@@ -155,7 +155,7 @@ Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& option
     : Stepper(model, options, initial_state(model->structure, model->system).state) {}
 
 Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& options, State start)
-    : run_{.trajectory = Trajectory(model, options), .options = options} {
+    : run_{.trajectory = Trajectory(model, options), .options = with_steps_inside(options)} {
   if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);
   run_.trajectory.append(std::move(start), StepReport{});
   loop_ = std::make_unique<Loop>(run_, std::move(model), time());
@@ -163,7 +163,7 @@ Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& option
 }
 
 Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& options, Archive& archived)
-    : run_{.trajectory = Trajectory(model, options), .options = options} {
+    : run_{.trajectory = Trajectory(model, options), .options = with_steps_inside(options)} {
   double start = 0;
   archived(start);
   loop_ = std::make_unique<Loop>(run_, std::move(model), start);

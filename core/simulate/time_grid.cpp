@@ -14,6 +14,11 @@ constexpr double together = 1e-9;
 
 }  // namespace
 
+SolverOptions with_steps_inside(SolverOptions options) {
+  if (options.end_time > 0) options.step = std::min(options.step, options.end_time);
+  return options;
+}
+
 TimeGrid::TimeGrid(double start, const SolverOptions& options, std::vector<TimeEdge> edges)
     : start_(start),
       step_(options.step),

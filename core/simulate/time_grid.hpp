@@ -9,6 +9,9 @@
 
 namespace unfurl {
 
+// With a solver.step that is no longer than the run: what counts as one time or as at rest is a share of it.
+SolverOptions with_steps_inside(SolverOptions options);
+
 // A regular grid of solver.step from the start, or steps of a size that is asked for each, cut where time has
 // edges. Where a velocity jumps at t, the step before it ends at the last number before t, so that all it
 // evaluates is what was before the jump, and the next one begins at t.

@@ -8,6 +8,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/path/path_run.hpp"
 #include "core/scene/library.hpp"
+#include "core/study/table.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -58,6 +59,60 @@ TEST_CASE("a structure is deployed when its measure says so") {
   // A swept stowed value is a scale of the fraction, not of the motion.
   const Simulation half = run_scene(pushed, {"deployment.stowed=-1.1"});
   CHECK(diagnose(half).at("deployed_fraction").values.front() == Approx(0.5).epsilon(1e-13));
+}
+
+// An arm O-B swings through the line of O and A, where an angle without an axis turns back: from `first` to
+// `angle` [rad] at the rate 3 rad/s and under the gravity g that acts along the line.
+double swing_time(double first, double angle, double g) {
+  const auto rate = [&](double turned) {
+    return std::sqrt(9 + 2 * g * (std::cos(first) - std::cos(turned)));
+  };
+  constexpr int parts = 4000;  // Simpson's rule, off by (half a turn / 4000)^4 / 180 times some ten, 1e-14
+  const double h = (angle - first) / parts;
+  double sum = 1 / rate(first) + 1 / rate(angle);
+  for (int i = 1; i < parts; ++i) sum += (i % 2 == 1 ? 4 : 2) / rate(first + i * h);
+  return sum * h / 3;
+}
+
+TEST_CASE("a measure that turns back at the deployed pose has been there") {
+  constexpr double first = 100 * radians_per_degree;
+  const std::string arm = R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1, 0, 0], fixed = true},
+  {name = "B", position = ["=cos(100*deg)", 0, "=sin(100*deg)"], mass = 2, velocity = ["=-3*sin(100*deg)", 0, "=3*cos(100*deg)"]}]
+rods = [{nodes = ["O", "B"], mass = 0}]
+[[constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 1, 0]
+[deployment]
+measure = "angle A O B"
+[solver]
+step = 0.01
+end_time = 1
+)toml";
+  for (const double g : {0.0, 2.0, -2.0})  // the arm bends neither way, or either
+    for (const std::string method : {"dvm", "rk4", "generalized_alpha"})
+      for (const double deployed : {180.0, 179.99999, 179.9, 150.0}) {
+        INFO(g << " " << method << " " << deployed);
+        const Simulation run =
+            run_scene(arm, {"gravity.acceleration=[" + exact_number(-g) + ",0,0]", "solver.method=" + method,
+                            "solver.stages=" + std::string(method == "dvm" ? "5" : "2"), "solver.step=0.002",
+                            "deployment.deployed=" + exact_number(deployed)});
+        CHECK(run.status == RunStatus::deployed);
+        // generalized_alpha is of second order: some h^2 = 4e-6 s at most; dvm ends where rounding of 1e-12
+        // of the fraction is left.
+        CHECK(time_of(run, "deployed") == Approx(swing_time(first, deployed * radians_per_degree, g))
+                                              .margin(method == "generalized_alpha" ? 4e-6 : 1e-10));
+      }
+  const Simulation latched = run_scene(arm, {"deployment.deployed=180", "solver.at_deployed=latch"});
+  CHECK(latched.status == RunStatus::completed);
+  CHECK(testing::end_positions(latched)[6] == Approx(-1).epsilon(1e-12));
+  // A point that flies through another one: length 0.
+  const Simulation met = run_scene(pushed, {"loads=[]", "structure.nodes.B.velocity=[-0.7,0,0]",
+                                            "deployment.deployed=0", "solver.end_time=2"});
+  CHECK(time_of(met, "deployed") == Approx(0.4 / 0.7).epsilon(1e-11));
 }
 
 TEST_CASE("a measured deployment latches and stays") {
