@@ -84,12 +84,15 @@ State Sector::whole_state(const State& state, bool multipliers) const {
   if (multipliers) lift_multipliers(state.lambda, out.lambda);
   const std::vector<int>&giving = to.giving_rods(), own = from.giving_rods();
   if (state.tension.size() > 0) out.tension.resize(std::ssize(giving));
+  if (state.tension_error.size() > 0) out.tension_error.resize(std::ssize(giving));
   if (state.stage_tension.size() > 0)
     out.stage_tension.resize(std::ssize(giving), state.stage_tension.cols());
   for (std::size_t k = 0; k < giving.size(); ++k) {
     const int source = symmetry_.rods[static_cast<std::size_t>(giving[k])].source;
     const auto at = std::find(own.begin(), own.end(), rod_at_[static_cast<std::size_t>(source)]);
     if (out.tension.size() > 0) out.tension[static_cast<Index>(k)] = state.tension[at - own.begin()];
+    if (out.tension_error.size() > 0)
+      out.tension_error[static_cast<Index>(k)] = state.tension_error[at - own.begin()];
     if (out.stage_tension.size() > 0)
       out.stage_tension.row(static_cast<Index>(k)) = state.stage_tension.row(at - own.begin());
   }

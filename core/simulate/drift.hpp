@@ -11,7 +11,7 @@ inline StepReport drift(const System& system, State& state, double h) {
   VectorXd lambda = state.lambda;
   const System followed = system.at(state);
   Index1 index1(followed);
-  if (!index1.evaluate(state.t, state.z, state.w, acceleration, lambda)) acceleration.setZero();
+  if (!index1.evaluate(state, acceleration, lambda)) acceleration.setZero();
   state.t += h;
   state.z += h * state.w + 0.5 * h * h * acceleration;
   state.w += h * acceleration;

@@ -25,6 +25,22 @@ double constraint_error(const System& system, const State& state) {
   return phi.cwiseQuotient(system.constraint_lengths()).lpNorm<Eigen::Infinity>();
 }
 
+// An impulse changes no length: rods that give pull as before it, where lengths do not tell their forces.
+// What their dampers add by the rates that it has changed is not followed.
+void keep_tension(const Model& from, const State& before, const Model& to, State& after) {
+  if (before.tension_error.size() == 0 || from.system.giving_rods() != to.system.giving_rods()) return;
+  after.tension = before.tension;
+  after.tension_error = before.tension_error;
+  if (before.tension.size() == 0) return;
+  VectorXd q(from.system.coordinates()), v(q.size()), pull(before.tension.size()), pulled(pull.size());
+  from.system.expand(before.z, q);
+  from.system.expand_rate(before.w, v);
+  from.system.giving_rod_forces(before.t, q, v, pulled);
+  to.system.expand_rate(after.w, v);
+  to.system.giving_rod_forces(before.t, q, v, pull);
+  after.tension_error = after.tension_error.cwiseMax((pull - pulled).cwiseAbs());
+}
+
 }  // namespace
 
 // cos(d) sine - sin(d) cosine with d the deployed fold angle.
@@ -121,6 +137,7 @@ Handover hand_over(const Model& from, const State& state, const Model& to) {
     to.system.expand(s.z, q);
   }
   s.w = fitted_rates(near, s.t, q, v);
+  keep_tension(from, state, to, s);
   s.lambda.setZero(to.system.constraints());
   VectorXd acceleration(s.z.size());
   const System followed = to.system.at(s);
