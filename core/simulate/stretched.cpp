@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -33,32 +34,50 @@ class Stretch {
   // False where the state's pose has no displacement of its own.
   bool at(const State& state, bool singular, VectorXd& u) {
     if (singular || compliance_.size() == 0) return false;
-    VectorXd q(system_.coordinates()), acceleration(state.w.size()), lambda = state.lambda;
+    VectorXd acceleration(state.w.size()), lambda = state.lambda;
     system_.follow(state);
+    return index1_.evaluate(state, acceleration, lambda) && by(state, lambda, u);
+  }
+
+  // The same, by multipliers from which what the step left of the constraints is taken; and what round-off in
+  // them may change of it [m]: the displacement divides that by the weakest direction once more.
+  bool closely(const State& state, VectorXd& u, double& doubt) {
+    VectorXd acceleration, lambda, of_forces;
+    system_.follow(state);
+    if (!index1_.evaluate_closely(state, acceleration, lambda, of_forces) || !by(state, lambda, u))
+      return false;
+    VectorXd rows(lambda.size()), weakest(lambda.size()), x(state.z.size()), change(u.size());
+    const VectorXd none = VectorXd::Zero(x.size());
+    for (Index r = 0; r < rows.size(); ++r) rows[r] = std::cos(1.0 + static_cast<double>(r));
+    saddle_.solve(none, rows, x, weakest);
+    rows.noalias() = G_ * x;  // without what redundant rows hold of it
+    saddle_.solve(none, rows, x, weakest);
+    for (Index r = 0; r < rows.size(); ++r) of_forces[r] = std::copysign(of_forces[r], weakest[r]);
+    if (!expand(of_forces, change)) return false;
+    doubt = change.lpNorm<Eigen::Infinity>();
+    return true;
+  }
+
+ private:
+  bool by(const State& state, VectorXd& lambda, VectorXd& u) {
+    VectorXd q(system_.coordinates());
     system_.expand(state.z, q);
-    if (!index1_.evaluate(state, acceleration, lambda)) return false;
     sharing_->share(state.t, q, false, lambda);
     system_.jacobian(q, G_, scratch_);
-    if (!saddle_.factorise(G_)) return false;
-    VectorXd x(state.z.size()), y(lambda.size());
+    return saddle_.factorise(G_) && expand(lambda, u);
+  }
+
+  // u of G u = C lambda.
+  bool expand(const VectorXd& lambda, VectorXd& u) {
+    VectorXd x(system_.solved_coordinates()), y(lambda.size());
     saddle_.solve(VectorXd::Zero(x.size()), compliance_.cwiseProduct(lambda), x, y);
     if (!x.allFinite()) return false;
+    VectorXd q(system_.coordinates());
     system_.expand_rate(x, q);
     u = q;
     return true;
   }
 
-  // Whether the pose is so near to a singular one that its round-off, as a part of the multipliers, is felt:
-  // the displacement divides it by the weakest direction once more.
-  bool in_doubt(const State& state) {
-    constexpr double felt = 1e-8;
-    VectorXd acceleration, lambda, doubt;
-    system_.follow(state);
-    if (!index1_.evaluate_closely(state, acceleration, lambda, doubt)) return true;
-    return doubt.size() > 0 && !(doubt.maxCoeff() <= felt * lambda.lpNorm<Eigen::Infinity>());
-  }
-
- private:
   System system_;  // follows the states
   SparseRows G_;
   std::vector<double> scratch_;
@@ -70,6 +89,8 @@ class Stretch {
 
 // The displacements of a run's states, found in their order.
 class StretchedRun {
+  static constexpr double rough = 1e-6;
+
  public:
   explicit StretchedRun(const Trajectory& trajectory)
       : trajectory_(trajectory), u_(trajectory.size()), good_(trajectory.size(), 0) {}
@@ -80,11 +101,19 @@ class StretchedRun {
       good_[i] = at(i).at(trajectory_.state(i), trajectory_.report(i).singular_event, u);
       u_[i] = u;
     }
-    std::vector<std::size_t> odd;
-    for (std::size_t i = 0; i < u_.size(); ++i)
-      if (good_[i] && !smooth(i) && at(i).in_doubt(trajectory_.state(i))) odd.push_back(i);
-    for (const std::size_t i : odd) good_[i] = 0;
-    for (const std::size_t i : odd) interpolate(i);
+    const std::vector<char> own = good_;
+    std::vector<std::pair<std::size_t, double>> odd;
+    for (std::size_t i = 0; i < u_.size(); ++i) {
+      double doubt = std::numeric_limits<double>::infinity();
+      if (!good_[i] || smooth(i)) continue;
+      if (at(i).closely(trajectory_.state(i), u, doubt) && doubt <= rough * size(i)) continue;
+      odd.emplace_back(i, doubt);
+      if (doubt < std::numeric_limits<double>::infinity()) u_[i] = u;
+    }
+    for (const auto& [i, doubt] : odd) good_[i] = 0;
+    for (const auto& [i, doubt] : odd) interpolate(i, doubt);
+    for (std::size_t i = 1; i < u_.size(); ++i)
+      if (!own[i]) u_[i] = u_[i - 1];
     return std::move(u_);
   }
 
@@ -135,15 +164,14 @@ class StretchedRun {
   }
 
   bool smooth(std::size_t i) const {
-    constexpr double rough = 1e-6;
     std::vector<std::size_t> states = beside(i, -1, 2), behind = beside(i, +1, 2);
     states.insert(states.end(), behind.begin(), behind.end());
-    return states.size() == 4 &&
-           (through(states, i) - u_[i]).lpNorm<Eigen::Infinity>() <= rough * u_[i].lpNorm<Eigen::Infinity>();
+    return states.size() == 4 && (through(states, i) - u_[i]).lpNorm<Eigen::Infinity>() <= rough * size(i);
   }
 
-  // At the ends, where nothing is known behind: as the nearest.
-  void interpolate(std::size_t i) {
+  // At the ends, where nothing is known behind: as the nearest. What differs by more than the doubt is no
+  // answer, as beside a displacement that is infinite.
+  void interpolate(std::size_t i, double doubt) {
     std::vector<std::size_t> states = beside(i, -1, 2);
     const std::vector<std::size_t> behind = beside(i, +1, 2);
     if (states.empty() && behind.empty()) return;
@@ -151,8 +179,11 @@ class StretchedRun {
       states = {states.empty() ? behind.front() : states.front()};
     else
       states.insert(states.end(), behind.begin(), behind.end());
-    u_[i] = through(states, i);
+    VectorXd u = through(states, i);
+    if ((u - u_[i]).lpNorm<Eigen::Infinity>() <= doubt) u_[i] = std::move(u);
   }
+
+  double size(std::size_t i) const { return u_[i].lpNorm<Eigen::Infinity>(); }
 
   const Trajectory& trajectory_;
   std::vector<VectorXd> u_;

@@ -14,7 +14,8 @@ namespace unfurl {
 // which is no motion of the mechanism. Of first order in C; forces and motion stay those of the rigid run.
 // Poses at which the rank falls take the displacement of the state before, u being infinite there.
 // Next to such a pose the weakest direction makes of the states' round-off as much as it makes of C lambda:
-// what is not smooth there is the polynomial through the states on either side that are not in doubt.
+// what is not smooth there is the polynomial through the states on either side that are not in doubt, or the
+// nearest where they are on one side only, as far as round-off explains that u differs from it.
 void add_stretch(Trajectory& trajectory);
 
 }  // namespace unfurl

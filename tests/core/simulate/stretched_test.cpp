@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What quasi-static rods give next to a singular pose, at the first and last states of a run too.
+#include "core/simulate/stretched.hpp"
+
+#include <Eigen/Dense>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/library.hpp"
+#include "tests/support/number.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace stretched_test {
+
+using testing::number;
+using testing::run_scene;
+
+namespace {
+
+using Real = long double;
+using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+constexpr double lengths[] = {1, 2, 1}, masses[] = {1, 2, 1.3}, gravity = 9.81, EA = 2e9;
+
+// A parallelogram of cranks A-B and D-C, coupler B-C, all in line at x = 0, through which it swings.
+std::string parallelogram(double x, double step) {
+  const std::string c = number(std::cos(x)), s = number(std::sin(x)), far = number(2 + std::cos(x)),
+                    velocity = "velocity = [" + s + ", 0, " + number(-std::cos(x)) + "]";
+  const auto rod = [](const char* nodes, int k) {
+    return "{nodes = [" + std::string(nodes) + "], area = 1e-4, youngs_modulus = " + number(EA / 1e-4) +
+           ", mass = " + number(masses[k]) + "}";
+  };
+  return "[structure]\nkind = 'custom'\nrod_model = 'quasi-static'\n"
+         "nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', position = [" +
+         c + ", 0, " + s + "], " + velocity + "}, {name = 'C', position = [" + far + ", 0, " + s + "], " +
+         velocity + "}, {name = 'D', position = [2, 0, 0], fixed = true}]\nrods = [" + rod("'A', 'B'", 0) +
+         ", " + rod("'B', 'C'", 1) + ", " + rod("'C', 'D'", 2) +
+         "]\n[[structure.constraints]]\nkind = 'plane'\nnodes = ['B', 'C']\nnormal = [0, 1, 0]\n"
+         "[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nstages = 4\nend_time = 0.03\nstep = " +
+         number(step) + "\n";
+}
+
+// Its displacement (B, C; x and z), dense, in extended precision: M a + G^T lambda = F, G a = -|v|^2 / l,
+// then the least u^T M u with G u = C lambda.
+Vector exact(double angle, double rate) {
+  const Real x = angle, w = rate, c = std::cos(x), s = std::sin(x);
+  const Eigen::Matrix<Real, 2, 1> crank(c, s), v(-s * w, c * w);
+  Matrix K = Matrix::Zero(7, 7);
+  Vector b = Vector::Zero(7);
+  const auto rod = [&](int r, int from, int to, const Eigen::Matrix<Real, 2, 1>& along, Real turning) {
+    for (const auto& [node, sign] : {std::pair{from, -1}, std::pair{to, 1}}) {
+      if (node < 0) continue;
+      K.block<1, 2>(4 + r, 2 * node) += sign * along.transpose();
+      K.block<2, 2>(2 * node, 2 * node) += masses[r] / Real(3) * Matrix::Identity(2, 2);
+      b[2 * node + 1] -= gravity * masses[r] / Real(2);
+    }
+    if (from >= 0 && to >= 0) {
+      K.block<2, 2>(2 * from, 2 * to) += masses[r] / Real(6) * Matrix::Identity(2, 2);
+      K.block<2, 2>(2 * to, 2 * from) += masses[r] / Real(6) * Matrix::Identity(2, 2);
+    }
+    b[4 + r] = -turning / lengths[r];
+  };
+  rod(0, -1, 0, crank, v.squaredNorm());
+  rod(1, 0, 1, {1, 0}, 0);
+  rod(2, 1, -1, -crank, v.squaredNorm());
+  K.topRightCorner(4, 3) = K.bottomLeftCorner(3, 4).transpose();
+  const Eigen::FullPivLU<Matrix> solver(K);
+  const Vector forces = solver.solve(b).tail(3);
+  b.setZero();
+  for (int r = 0; r < 3; ++r) b[4 + r] = lengths[r] / EA * forces[r];
+  return solver.solve(b).head(4);
+}
+
+VectorXd stretch(const Simulation& run, std::size_t i) {
+  return run.trajectory.positions(i) - run.trajectory.node_positions(i);
+}
+
+}  // namespace
+
+// Round-off of the pose is 1e-16 / x^3 of the forces, which are 1 / x: to 1e-5 of u down to |x| = 1e-3. The
+// states from 0.003 rad to -0.01 rad had all the displacement of the last of them.
+TEST_CASE("a parallelogram that starts next to its flat pose is stretched as its equations say") {
+  double first = 0;
+  for (const double step : {0.01, 0.001, 0.0001}) {
+    const Simulation run = run_scene(parallelogram(0.003, step));
+    REQUIRE(run.status == RunStatus::completed);
+    for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+      const VectorXd q = run.trajectory.node_positions(i), v = run.trajectory.node_velocities(i),
+                     u = stretch(run, i);
+      const double x = std::atan2(q[5], q[3]), w = std::cos(x) * v[5] - std::sin(x) * v[3];
+      if (std::abs(x) < 1e-3) continue;
+      INFO("step " << step << ", x = " << x);
+      const Vector truth = exact(x, w);
+      const std::array<Index, 4> at{3, 5, 6, 8};
+      for (Index k = 0; k < 4; ++k)
+        CHECK(std::abs(u[at[static_cast<std::size_t>(k)]] - static_cast<double>(truth[k])) <=
+              1e-5 * static_cast<double>(truth.lpNorm<Eigen::Infinity>()));
+    }
+    const double at_start = stretch(run, 0)[5];
+    if (first != 0) CHECK(at_start == Approx(first).epsilon(1e-9));  // the same pose, whatever the step
+    first = at_start;
+  }
+}
+
+// The last state before the deployed pose, 2 ms before it: the same pose in a run with a quarter of the step,
+// where it is not the last. Round-off of it is 1e-9 m of 2e-4 m; it was 1e-5 m off. The pose takes its own.
+TEST_CASE("the last stretch before a deployed pose is that of its own state") {
+  const auto run = [](double step) {
+    const Scene scene = read_scene_file(
+        find_scene("hoop6"),
+        {"structure.rod_model=quasi-static", "structure.youngs_modulus=7e10", "solver.step=" + number(step)});
+    return simulate(build_model(scene), scene.solver);
+  };
+  const Simulation coarse = run(0.002), fine = run(0.0005);
+  REQUIRE(coarse.status == RunStatus::deployed);
+  const std::size_t last = coarse.trajectory.size() - 2;
+  std::size_t same = 0;
+  while (fine.trajectory.time(same) < coarse.trajectory.time(last) - 1e-9) ++same;
+  REQUIRE(fine.trajectory.time(same) == Approx(coarse.trajectory.time(last)).margin(1e-9));
+  const VectorXd u = stretch(coarse, last);
+  CHECK((u - stretch(fine, same)).lpNorm<Eigen::Infinity>() <= 1e-8);
+  CHECK(stretch(coarse, last + 1) == u);
+}
+
+}  // namespace stretched_test
