@@ -4,17 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/singular_values.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/structure/node_positions.hpp"
 
 namespace unfurl {
 namespace {
-
-// Held in space, at least somewhere; planes of symmetry do not hold a ring.
-bool held(const Constraint& c) {
-  const bool linear = c.kind == "fixed" || c.kind == "plane" || c.kind == "line";
-  return linear && c.nodes.size() == 1;
-}
 
 MatrixXd about_centre(const VectorXd& q) {
   MatrixXd x = Eigen::Map<const MatrixXd>(q.data(), 3, q.size() / 3);
@@ -23,12 +18,42 @@ MatrixXd about_centre(const VectorXd& q) {
   return x;
 }
 
+// Of a rigid body that is held like this at x, about the centre: rows that its three translations and three
+// rotations must give zero.
+void add_rows(const Constraint& c, const Vec3& x, MatrixXd& rows) {
+  Mat3 held = Mat3::Identity();
+  if (c.kind != "fixed") {
+    const Vec3 n = c.vectors[0].normalized();
+    held = c.kind == "plane" ? Mat3(n * n.transpose()) : Mat3(held - n * n.transpose());
+  }
+  const Index at = rows.rows();
+  rows.conservativeResize(at + 3, Eigen::NoChange);
+  for (int k = 0; k < 3; ++k) {
+    rows.block<3, 1>(at, k) = held.col(k);
+    rows.block<3, 1>(at, 3 + k) = held * Vec3::Unit(k).cross(x);
+  }
+}
+
+// Whether supports of single nodes leave the whole a rotation; planes of symmetry do not hold a ring.
+bool can_turn(const Structure& structure, const MatrixXd& about) {
+  MatrixXd rows(0, 6);
+  const double size = std::max(about.lpNorm<Eigen::Infinity>(), 1e-300);
+  for (const Constraint& c : structure.constraints)
+    if ((c.kind == "fixed" || c.kind == "plane" || c.kind == "line") && c.nodes.size() == 1)
+      add_rows(c, about.col(c.nodes[0]) / size, rows);
+  if (rows.rows() == 0) return true;
+  const auto rank = [](const MatrixXd& A) {
+    return (singular_values(A).array() > 1e-9).count();  // entries are of size 1
+  };
+  return rank(rows) - rank(rows.leftCols(3)) < 3;
+}
+
 }  // namespace
 
 TurnedFrame::TurnedFrame(const Structure& structure) {
-  if (structure.deployment.folds() && structure.sectors == 1.0 &&
-      std::ranges::none_of(structure.constraints, held))
-    start_ = about_centre(node_positions(structure));
+  if (!structure.deployment.folds() || structure.sectors != 1.0) return;
+  MatrixXd about = about_centre(node_positions(structure));
+  if (can_turn(structure, about)) start_ = std::move(about);
 }
 
 std::string TurnedFrame::at(const System& system, const State& state) {

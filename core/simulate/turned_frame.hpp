@@ -17,7 +17,8 @@ namespace unfurl {
 //     A = sum_i r_i s_i^T
 //
 // is symmetric where every node moves as the symmetry of a ring, or of a mast, asks. Turned by x about an
-// axis across j and k it has (A_kj - A_jk) / (A_jj + A_kk) = tan(x), however slender it is.
+// axis across j and k it has (A_kj - A_jk) / (A_jj + A_kk) = tan(x), however slender it is. Where supports of
+// single nodes leave no rotation there is nothing to be watched.
 class TurnedFrame {
  public:
   explicit TurnedFrame(const Structure& structure);

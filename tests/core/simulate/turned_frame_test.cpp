@@ -63,6 +63,12 @@ TEST_CASE("a floating ring that its loads turn says that its fold angle is off, 
                    std::to_string(-200 * std::sin(k * std::numbers::pi / 3)) + ", " +
                    std::to_string(200 * std::cos(k * std::numbers::pi / 3)) + ", 0]}");
   CHECK(told(run_library("hoop6", spun).warnings, "turns in space") == 1);
+  // A support that leaves the spin free says nothing against it: a plane across the axis, or a node on it.
+  auto on_plane = spun, on_foot = spun;
+  on_plane.push_back("constraints[0]={kind=\"plane\", nodes=[\"B0\"], normal=[0, 0, 1]}");
+  on_foot.push_back("constraints[0]={kind=\"fixed\", nodes=[\"B0\"]}");
+  CHECK(told(run_library("hoop6", on_plane).warnings, "turns in space") == 1);
+  CHECK(told(run_library("hoop6", on_foot).warnings, "turns in space") == 1);
   CHECK(told(run_library("hoop6", ring_of_joints).warnings, "turns in space") == 0);
   for (const char* scene : {"hoop_arc", "hoberman", "scissor_ring", "bricard", "cable_ring"}) {
     INFO(scene);
