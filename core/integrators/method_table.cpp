@@ -24,10 +24,9 @@ Claims dvm_claims(const SolverOptions& options) {
     claims.order = 2;
   else if (options.nodes == "lobatto")
     claims.order = 2 * s - 2;
-  else
-    claims.order =
-        2 *
-        ((s + 1) / 2);  // that of a symmetric interpolatory quadrature: exact to degree s - 1, s for odd s
+  else  // a symmetric interpolatory quadrature is exact to degree s - 1, s for odd s; multipliers allow no
+        // more
+    claims.order = s == 2 ? 2 : s % 2 == 0 ? 4 : std::min(6, s + 1);
   return claims;
 }
 

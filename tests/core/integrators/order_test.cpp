@@ -39,14 +39,19 @@ TEST_CASE("orders of the variational methods and of Runge-Kutta") {
     int stages;
     double coarse, order;
   };
-  // Orders of physics: Lobatto 2 s - 2; equidistant 2, 4, 4, 6; constraints at the ends: 2 whatever s.
+  // Orders of physics: Lobatto 2 s - 2; other nodes 2, 4, 4, 6 and no more, 4 and 6 for even and odd s, by
+  // multipliers; constraints at the ends: 2 whatever s.
   const Case cases[] = {
-      {"dvm", "lobatto", "nodes", 2, 0.01, 2},     {"dvm", "lobatto", "nodes", 3, 0.02, 4},
-      {"dvm", "lobatto", "nodes", 4, 0.05, 6},     {"dvm", "lobatto", "nodes", 5, 0.05, 8},
-      {"dvm", "equidistant", "nodes", 3, 0.02, 4}, {"dvm", "equidistant", "nodes", 4, 0.02, 4},
-      {"dvm", "equidistant", "nodes", 5, 0.05, 6}, {"dvm", "chebyshev", "nodes", 4, 0.02, 4},
-      {"dvm", "equidistant", "ends", 2, 0.01, 2},  {"dvm", "equidistant", "ends", 3, 0.01, 2},
-      {"dvm", "equidistant", "ends", 5, 0.01, 2},  {"rk4", "lobatto", "nodes", 2, 0.01, 4},
+      {"dvm", "lobatto", "nodes", 2, 0.01, 2},      {"dvm", "lobatto", "nodes", 3, 0.02, 4},
+      {"dvm", "lobatto", "nodes", 4, 0.05, 6},      {"dvm", "lobatto", "nodes", 5, 0.05, 8},
+      {"dvm", "equidistant", "nodes", 3, 0.02, 4},  {"dvm", "equidistant", "nodes", 4, 0.02, 4},
+      {"dvm", "equidistant", "nodes", 5, 0.05, 6},  {"dvm", "chebyshev", "nodes", 4, 0.02, 4},
+      {"dvm", "equidistant", "nodes", 6, 0.05, 4},  {"dvm", "equidistant", "nodes", 7, 0.025, 6},
+      {"dvm", "equidistant", "nodes", 8, 0.025, 4}, {"dvm", "chebyshev", "nodes", 6, 0.025, 4},
+      {"dvm", "chebyshev", "nodes", 7, 0.025, 6},   {"dvm", "chebyshev", "nodes", 8, 0.025, 4},
+      {"dvm", "lobatto", "nodes", 6, 0.1, 10},      {"dvm", "equidistant", "ends", 2, 0.01, 2},
+      {"dvm", "equidistant", "ends", 3, 0.01, 2},   {"dvm", "equidistant", "ends", 5, 0.01, 2},
+      {"rk4", "lobatto", "nodes", 2, 0.01, 4},
   };
   for (const Case& c : cases) {
     SolverOptions options = dvm_options(c.stages, c.coarse, 1.0);
