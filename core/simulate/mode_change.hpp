@@ -2,6 +2,7 @@
 // Which stops hold and what sticks after an event: all at once, as their equations ask.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ struct ModeChange {
   bool changed = false;                  // some mode is another than before
   std::vector<std::size_t> turned = {};  // those of them that are worth telling
   std::string failure = {};              // not empty: nothing of this has an answer, and why
+  bool strikes(std::size_t stop) const {
+    return std::ranges::find(impacts, stop, &Impact::stop) != impacts.end();
+  }
 };
 
 // What comes of it that `which` have crossed in a state of `base`'s coordinates; `base`: the model without

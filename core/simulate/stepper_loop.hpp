@@ -309,8 +309,13 @@ class Stepper::Loop {
     if (!change.failure.empty()) return ended_ = true, void(fail(change.failure));
     record(change);
     for (const std::size_t i : change.turned)
-      if (sides_.is_stop(i)) std::ranges::copy(sides_.events(i, start_), std::back_inserter(run_.events));
-    if (sides_.any_active()) set_model(sides_.model(*base_), change.state, false);
+      if (sides_.is_stop(i) && !change.strikes(i))
+        std::ranges::copy(sides_.events(i, start_), std::back_inserter(run_.events));
+    const bool struck = !change.impacts.empty();  // the state before it stays
+    if (sides_.any_active())
+      set_model(sides_.model(*base_), change.state, struck);
+    else if (struck)
+      append_after_impulse(hand_over(*base_, change.state, model()).state);
   } catch (const CannotFactorise& error) {
     ended_ = true, fail(error.what());
   }
@@ -335,7 +340,7 @@ class Stepper::Loop {
     for (const std::size_t i : change.turned)
       if (sides_.is_cable(i) && sides_.active(i) && !run_.options.adaptive) warn_of_cable(i, change.state);
     for (const std::size_t i : change.turned)
-      if (std::ranges::find(change.impacts, i, &ModeChange::Impact::stop) == change.impacts.end())
+      if (!change.strikes(i))
         std::ranges::copy(sides_.events(i, change.state.t), std::back_inserter(run_.events));
     if (change.changed)
       set_model(sides_.model(*base_), change.state, true);

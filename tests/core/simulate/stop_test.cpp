@@ -149,6 +149,46 @@ end_time = 4
   CHECK(v[0] == Approx(-1000 * std::sin(turned)).epsilon(1e-8));
 }
 
+// Two kilograms meet it at 1 m/s as the run begins: m v^2 / 2 (1 - e^2) are lost, once, and the state before
+// stays; friction that holds nothing, that slips, or none.
+TEST_CASE("an impact at the start is told once, with friction or without") {
+  for (const double e : {0.0, 0.5})
+    for (const char* direction : {"", "[1, 0, 0]", "[0, 1, 0]"}) {
+      std::string text = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", mass = 1, position = [0, 0, 0], velocity = [-1, 0, 0]},
+         {name = "B", mass = 1, position = [1, 0, 0], velocity = [-1, 0, 0]}]
+rods = [{nodes = ["A", "B"], mass = 0}]
+[[constraints]]
+kind = "line"
+nodes = ["A", "B"]
+direction = [1, 0, 0]
+[[constraints]]
+kind = "coordinate_stop"
+nodes = ["A"]
+direction = [1, 0, 0]
+min = 0
+restitution = )" + std::to_string(e) +
+                         "\n[solver]\nend_time = 0.1\n";
+      if (*direction)
+        text += "[[forces]]\nkind = \"friction\"\nnodes = [\"B\"]\nkinetic = 1\ndirection = " +
+                std::string(direction) + "\n";
+      INFO("restitution " << e << ", friction along " << direction);
+      const Simulation run = run_scene(text);
+      REQUIRE(run.status == RunStatus::completed);
+      REQUIRE(run.events.size() == 1);
+      CHECK(run.events[0].t == 0);
+      CHECK(run.events[0].energy_lost == Approx(1 - e * e).epsilon(1e-14));
+      CHECK(run.trajectory.node_velocities(0)[0] == -1);
+      CHECK(run.trajectory.time(1) == 0);
+      CHECK(run.trajectory.node_velocities(1)[0] == Approx(e).margin(1e-14));
+      const Diagnostics d = diagnose(run);
+      CHECK(d.at("impact_loss_J").values.back() == Approx(1 - e * e).epsilon(1e-13));
+      CHECK(testing::largest(d, "energy_balance_J") <= 1e-14);
+    }
+}
+
 TEST_CASE("bounces come to rest after their geometric series, and the stop then carries the weight") {
   const Simulation run = run_scene(ball, {"solver.end_time=4"});
   REQUIRE(run.status == RunStatus::completed);
