@@ -143,7 +143,10 @@ Handover hand_over(const Model& from, const State& state, const Model& to) {
   const System followed = to.system.at(s);
   Index1 index1(followed);
   if (!index1.evaluate(s, acceleration, s.lambda)) s.lambda.setZero();
-  out.energy_lost = from.system.kinetic_energy(state.w) - to.system.kinetic_energy(s.w);
+  VectorXd taken(v.size());
+  to.system.expand_rate(s.w, taken);
+  taken -= v;
+  out.energy_lost = 0.5 * taken.dot(to.system.node_mass() * taken);
   return out;
 }
 

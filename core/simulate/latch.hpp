@@ -22,9 +22,11 @@ State in_coordinates(const System& from, const State& state, const System& to);
 // the constraints' impulse takes the part of the velocities that they forbid and nothing else,
 //
 //     M (w+ - w-) + G^T mu = 0,   G w+ = g'(t)
+//
+// What is lost is the kinetic energy of w+ - w- (Carnot); drives do the rest of the work.
 struct Handover {
   State state;
-  double energy_lost = 0.0;  // kinetic [J]
+  double energy_lost = 0.0;  // [J]
 };
 Handover hand_over(const Model& from, const State& state, const Model& to);
 

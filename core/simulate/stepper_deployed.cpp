@@ -124,8 +124,8 @@ bool Stepper::Loop::latch() {
     return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
   base_ = latched_model(*base_, run_.options.eliminate_linear);
   latched_ = true;
-  const double before = system().kinetic_energy(now().w);
-  ModeChange change{.state = hand_over(model(), now(), *base_).state};
+  const Handover locked = hand_over(model(), now(), *base_);
+  ModeChange change{.state = locked.state};
   if (!sides_.empty()) change = modes_after(change.state);
   if (!change.failure.empty()) return fail(change.failure);
   record(change);
@@ -133,7 +133,7 @@ bool Stepper::Loop::latch() {
     if (sides_.is_cable(i) || sides_.is_motor(i))
       std::ranges::copy(sides_.events(i, change.state.t), std::back_inserter(run_.events));
   set_model(sides_.any_active() ? sides_.model(*base_) : base_, change.state, true);
-  const double taken = (before - system().kinetic_energy(now().w)) * run_.trajectory.structure().sectors;
+  const double taken = locked.energy_lost * run_.trajectory.structure().sectors;
   run_.events.push_back(
       {.name = "latched", .t = now().t, .energy_lost = gives ? 0.0 : taken, .kind = "latch"});
   return true;

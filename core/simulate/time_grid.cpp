@@ -43,7 +43,7 @@ TimeGrid::Target TimeGrid::cut(double now, Target target) const {
   auto edge = std::upper_bound(edges_.begin(), edges_.end(), now,
                                [](double t, const TimeEdge& e) { return t < e.t; });
   for (; edge != edges_.end() && edge->t < target.t + near; ++edge) {
-    if (edge->t >= end_ - near) break;
+    if (edge->jump ? edge->t > end_ : edge->t >= end_ - near) break;
     if (edge->jump) {
       const double before = before_jump(edge->t);
       if (edge->t <= now + near) return {now, 0.0, true, true, edge->t};

@@ -9,6 +9,7 @@
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
+#include "core/study/table.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -291,4 +292,78 @@ TEST_CASE("a latch that gives is refused where the deployed pose is singular") {
   CHECK(run.status == RunStatus::failed);
   CHECK_THAT(run.message, Catch::Contains("cannot hold this deployed pose"));
   CHECK(run.trajectory.end_time() == Approx(4.92).epsilon(1e-4));  // the good part is kept
+}
+
+// What a latch takes is the energy of the velocities that it takes (Carnot): of what stops, cables and drives
+// do at the same instant nothing is its own, and the events of impacts are all of the impact loss.
+TEST_CASE("a latch takes what it takes itself, whatever else happens at that instant") {
+  const std::string guided = R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], velocity = [1, 0, 0], mass = 2},
+  {name = "B", position = [0, 1, 0], velocity = [1, 0, 0], mass = 3}]
+[[constraints]]
+kind = "line"
+nodes = ["A", "B"]
+direction = [1, 0, 0]
+[[constraints]]
+kind = "coordinate_stop"
+nodes = ["B"]
+direction = [1, 0, 0]
+max = 1
+[deployment]
+measure = "coordinate A along 1 0 0"
+deployed = 1
+[solver]
+at_deployed = "latch"
+end_time = 2
+)";
+  // A free end T of a mass m = 1 kg at (0, -1) from E, which is driven about P: the latch of the joint at E
+  // takes from T the velocity that E does not have.
+  const std::string driven = R"toml([structure]
+kind = "custom"
+nodes = [{name = "P", position = [0, 0, 0], fixed = true}, {name = "X", position = [1, 0, 0], fixed = true},
+  {name = "E", position = [1, 0, 0], mass = 1}, {name = "T", position = [2, 0, 0], velocity = [0, 3, 0], mass = 1}]
+rods = [{nodes = ["P", "E"], mass = 0}, {nodes = ["E", "T"], mass = 0}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["E", "T"]
+normal = [0, 0, 1]
+[[constraints]]
+kind = "angle"
+nodes = ["X", "P", "E"]
+axis = [0, 0, 1]
+motion = "rate"
+rate = 57.29577951308232
+[deployment]
+measure = "angle P E T about 0 0 1"
+deployed = 200
+[solver]
+at_deployed = "latch"
+step = 0.001
+stages = 5
+end_time = 1
+)toml";
+  const auto lost = [](const Simulation& run, const std::string& name) {
+    double sum = 0;
+    for (const Event& event : run.events)
+      if (event.name.starts_with(name)) sum += event.energy_lost;
+    return sum;
+  };
+  for (const double restitution : {0.0, 0.5, 1.0}) {
+    const Simulation run = run_scene(guided, {"constraints[1].restitution=" + exact_number(restitution)});
+    CHECK(lost(run, "latched") == Approx(0.5 * 2).epsilon(1e-12));
+    CHECK(lost(run, "") == Approx(1 + 1.5 * (1 - restitution * restitution)).epsilon(1e-12));
+    CHECK(diagnose(run).at("impact_loss_J").values.back() == Approx(lost(run, "")).epsilon(1e-12));
+  }
+  const Simulation run = run_scene(driven);
+  REQUIRE(run.status == RunStatus::completed);
+  REQUIRE(lost(run, "latched") > 0.4);
+  const Diagnostics d = diagnose(run);
+  CHECK(d.at("impact_loss_J").values.back() == Approx(lost(run, "latched")).epsilon(1e-9));
+  std::size_t i = 0;
+  while (i + 1 < d.t.size() && d.t[i + 1] != d.t[i]) ++i;
+  REQUIRE(i + 1 < d.t.size());
+  const Eigen::VectorXd turned = run.trajectory.velocities(i + 1) - run.trajectory.velocities(i);
+  CHECK(turned.head(9).norm() < 1e-9);  // the drive holds E
+  CHECK(lost(run, "latched") == Approx(0.5 * turned.squaredNorm()).epsilon(1e-9));
 }
