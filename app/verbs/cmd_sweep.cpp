@@ -94,7 +94,11 @@ std::string journal_name(const Shard& shard) {
 std::string identity(const Scene& scene, const SweepPlan& plan) {
   std::string text = "A sweep over";
   for (const auto& axis : plan.axes) text += " " + axis.key;
-  return study_identity(text, scene);
+  const bool by_variables = std::any_of(plan.axes.begin(), plan.axes.end(), [](const SweepAxis& axis) {
+    return axis.key.starts_with("variables.");
+  });
+  return study_identity(text, scene) + "\n" + idle_text(scene) +
+         (by_variables ? unexpanded_text(plan.source) : "");
 }
 
 // What a whole sweep is of: a title that names what is varied would speak of one point.

@@ -128,7 +128,26 @@ std::string render_text(const RenderOptions& render) {
   return text;
 }
 
+std::string idle_lines(const SceneElement& element, const ElementKind& kind) {
+  std::string text;
+  for (const auto& spec : kind.params()) {
+    const ParamValue& value = element.values.value(spec.name);
+    if (worth_writing(value) && value != spec.fallback &&
+        !means_something(spec, kind.params(), element.values))
+      text += "# of " + toml_string(element.name) + ": " + line(spec.name, toml_value(value));
+  }
+  return text;
+}
+
 }  // namespace
+
+std::string idle_text(const Scene& scene) {
+  std::string text;
+  for (const auto& force : scene.forces) text += idle_lines(force, *find_kind(scene_forces(), force.kind));
+  for (const auto& constraint : scene.constraints)
+    text += idle_lines(constraint, *find_kind(scene_constraints(), constraint.kind));
+  return text;
+}
 
 std::string toml_string(std::string_view text) {
   constexpr std::string_view hex = "0123456789ABCDEF";

@@ -11,6 +11,10 @@ namespace unfurl {
 // files inline, numbers with all their digits. Reading it back gives an equal scene.
 std::string scene_text(const Scene& scene);
 
+// What scene_text() leaves out, as comments: given values of forces and constraints that mean nothing beside
+// what else is given, but may where that is varied.
+std::string idle_text(const Scene& scene);
+
 // A parameter's value as TOML, numbers with all their digits.
 std::string toml_value(const ParamValue& value);
 

@@ -5,6 +5,7 @@
 
 #include "core/scene/overrides.hpp"
 #include "core/scene/reader.hpp"
+#include "core/scene/text_file.hpp"
 #include "core/scene/toml_tree.hpp"
 #include "core/scene/write.hpp"
 
@@ -19,6 +20,44 @@ Scene SceneSource::read(const std::vector<std::string>& changes) const {
   std::vector<std::string> all = overrides;
   all.insert(all.end(), changes.begin(), changes.end());
   return text ? read_scene_text(*text, path, all, folder) : read_scene_file(path, all);
+}
+
+namespace {
+
+std::string plain_value(const TomlTree& tree) {
+  using Kind = TomlTree::Kind;
+  std::string text;
+  switch (tree.kind) {
+    case Kind::boolean:
+      return tree.boolean ? "true" : "false";
+    case Kind::integer:
+      return toml_value(tree.integer);
+    case Kind::real:
+      return toml_value(tree.real);
+    case Kind::text:
+    case Kind::time:
+      return toml_string(tree.text);
+    case Kind::array:
+      for (const TomlTree& item : tree.items) text += (text.empty() ? "" : ", ") + plain_value(item);
+      return "[" + text + "]";
+    case Kind::table:
+      for (const auto& [name, value] : tree.entries)
+        text += (text.empty() ? "" : ", ") + toml_string(name) + " = " + plain_value(value);
+      return "{" + text + "}";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string unexpanded_text(const SceneSource& source) {
+  const TextFile file = source.text ? TextFile{source.path, *source.text, ""} : read_text_file(source.path);
+  if (!file.error.empty()) throw UnreadableScene("cannot read scene " + source.path + ": " + file.error);
+  std::string text;
+  for (const auto& [name, value] : parse_toml(file.text, source.path).entries)
+    text += "# " + toml_string(name) + " = " + plain_value(value) + "\n";
+  for (const std::string& change : source.overrides) text += "# --set " + toml_string(change) + "\n";
+  return text;
 }
 
 SolverOptions study_solver(const Scene& scene, const std::vector<std::string>& varied,

@@ -25,6 +25,11 @@ struct SceneSource {
   Scene read(const std::vector<std::string>& changes = {}) const;
 };
 
+// What a scene says before its variables are worked out, without comments and layout, and the overrides: as
+// comments of TOML. Two scenes that agree in it agree whatever the values of their variables, which two that
+// agree once they are worked out need not.
+std::string unexpanded_text(const SceneSource& source);
+
 // The solver of a scene of which many are run: its model is "auto" where the scene says that or nothing, but
 // "full" where a key that is varied, or a measure, is about the method itself. Written out with the scene it
 // makes the same numbers again.

@@ -310,6 +310,52 @@ TEST_CASE("points of another sweep are neither joined nor merged") {
         std::string::npos);
 }
 
+// Both pairs agree at the scene's own values and differ at others, so that points of one are not of the
+// other.
+TEST_CASE("points of scenes that agree only before something is varied are not mixed") {
+  const ScratchDirectory dir;
+  const std::string head =
+      "[structure]\nkind = \"custom\"\nnodes = [{name = \"A\", position = [0, 0, 0], fixed = true}, "
+      "{name = \"B\", position = [1, 0, 0]}, {name = \"C\", position = [0, 0, 1], fixed = true}]\nrods = "
+      "[{nodes = [\"A\", \"B\"], mass = 1}]\n"
+      "[solver]\nend_time = 0.3\n";
+  const auto gravity = [&](const std::string& down) {
+    return head + "[variables]\nk = 2\n[gravity]\nacceleration = [0, 0, \"=" + down + "\"]\n";
+  };
+  const auto motor = [&](const std::string& constant) {
+    return head +
+           "[[constraints]]\nkind = \"plane\"\nnodes = [\"B\"]\nnormal = [0, 1, 0]\n[[forces]]\nkind = "
+           "\"motor\"\n"
+           "name = \"m\"\nnodes = [\"C\", \"A\", \"B\"]\nstall_torque = 2\nno_load_speed = "
+           "90\ntorque_constant = " +
+           constant + "\n";
+  };
+  struct Pair {
+    std::string one, other, axis;
+  };
+  int number = 0;
+  for (const Pair& pair : {Pair{gravity("-4*k"), gravity("-2*k^2"), "variables.k=1,2"},
+                           Pair{motor("0.1"), motor("0.2"), "forces.m.current_limit=1,2"}}) {
+    const std::string scene = dir / "scene.toml", out = dir / ("out" + std::to_string(++number));
+    const std::vector<std::string> sweep = {"sweep",     scene,        "--vary", pair.axis,
+                                            "--measure", "peak_speed", "-o",     out};
+    std::ofstream(scene) << pair.one;
+    const ProgramResult first = run_program(sweep);
+    INFO(first.err);
+    REQUIRE(first.code == 0);
+    std::ofstream(scene) << pair.one << "# a remark\n";
+    CHECK(run_program(sweep).code == 0);
+    std::ofstream(scene) << pair.other;
+    const ProgramResult other = run_program(sweep);
+    CHECK(other.code == 5);
+    CHECK(other.err.find("holds results of another scene or other settings") != std::string::npos);
+    CHECK(run_program({"sweep", scene, "--vary", pair.axis, "--measure", "peak_speed", "--merge", out, "-o",
+                       dir / "new"})
+              .code == 5);
+    CHECK(run_program({"check", out + "/scene.toml"}).code == 0);
+  }
+}
+
 TEST_CASE("which model solved a sweep is part of it, and makes its figures again") {
   const ScratchDirectory dir;
   const std::vector<std::string> command = {"sweep",     "pendulum",
