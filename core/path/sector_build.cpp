@@ -119,7 +119,9 @@ class SectorBuilder {
       own.measure = measure(f.measure);
       if (symmetry_.whole_force[i]) {
         require_fold(f.measure, f.name);
-        for (double* part : {&own.stiffness, &own.damping, &own.motor.stall, &own.motor.limit})
+        Motor& motor = own.motor;
+        for (double* part : {&own.stiffness, &own.damping, &motor.stall, &motor.limit, &motor.proportional,
+                             &motor.integral, &motor.derivative})
           *part /= symmetry_.order;
       }
       s().forces.push_back(std::move(own));

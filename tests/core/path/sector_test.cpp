@@ -91,6 +91,22 @@ TEST_CASE("a ring whose sectors are alike is solved as one of them, and is where
                         "damping=11}"})},
        "one of 5",
        0.5},
+      // Controllers: what acts on the whole ring is shared among its sectors. The first rests where the two
+      // models are compared by themselves, at the start and in the middle.
+      {{"hoop6",
+        joined(joints, {"structure.hinge_force=0",
+                        "forces[0]={kind=\"motor\",fold_angle=true,stall_torque=1e5,no_load_speed=36000,"
+                        "control=\"position\",proportional=2000,derivative=500,motion=\"smooth\",to=50,"
+                        "start=0.3,duration=0.2}"})},
+       "one of 5",
+       0.5},
+      {{"hoop6",
+        joined(joints, {"structure.hinge_force=0",
+                        "forces[0]={kind=\"motor\",fold_angle=true,stall_torque=1e3,no_load_speed=360,"
+                        "control=\"rate\",proportional=500,integral=1000,motion=\"smooth\",to=50,"
+                        "start=0.05,duration=0.3,current_limit=2,torque_constant=100}"})},
+       "one of 5",
+       0.5},
       {{"hoop6",
         joined(joints, for_units(5, "constraints",
                                  R"({name="actuator #",kind="length",nodes=["Mb#","Mt#"],motion="smooth",)"
