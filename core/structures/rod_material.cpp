@@ -173,8 +173,10 @@ void note_pins_between(Structure& structure) {
   };
   for (const Constraint& c : structure.constraints) {  // a node as a point of a rod, or of two
     if (c.kind != "relation" || elastic.empty()) continue;
-    if (c.nodes.size() == 3) look(c.nodes[1], c.nodes[2]);
-    if (c.nodes.size() == 4) look(c.nodes[0], c.nodes[1]), look(c.nodes[2], c.nodes[3]);
+    const auto& n = c.nodes;
+    const auto between = [&](std::size_t a, std::size_t b) { return c.vectors[a].dot(c.vectors[b]) > 0; };
+    if (n.size() == 3 && between(1, 2)) look(n[1], n[2]);
+    if (n.size() == 4 && between(0, 1) && between(2, 3)) look(n[0], n[1]), look(n[2], n[3]);
   }
   if (pinned.empty()) return;
   structure.notes.push_back(
