@@ -130,6 +130,8 @@ Diagnostics RunDigest::add(Simulation& window, std::size_t first, std::size_t la
   const GoodPart part = good_part(all_.run, all_.diagnostics);
   const std::size_t before = kept_.run.trajectory.size(), size = all_.run.trajectory.size();
   trusted_ = std::max(part.states, before) - before;
+  if (first > 0 && trusted_ > 0 && look_at_seam(window, d, first, first + std::min<std::size_t>(trusted_, 2)))
+    all_ = with_rows(kept_, window, d, first, last);
   if (part.states == size) {
     doubt_.clear();
   } else if (part.states > before || doubt_.empty()) {
@@ -139,6 +141,48 @@ Diagnostics RunDigest::add(Simulation& window, std::size_t first, std::size_t la
     doubt_ = part.text(all_.diagnostics);
   }
   return d;
+}
+
+// Between the last state before the window and its first new one the motion may go beyond all that the digest
+// has. That is then put at the last state that is kept. False: it does not.
+bool RunDigest::look_at_seam(const Simulation& window, const Diagnostics& d, std::size_t first,
+                             std::size_t end) {
+  const std::size_t begin = first - std::min<std::size_t>(first, 2);
+  const Simulation seam{.trajectory = window.trajectory.part(begin, end, options_), .options = options_};
+  bool found = false;
+  for (std::size_t c = 0; c < d.columns.size(); ++c) {
+    if (!looked_for(d.columns[c].name)) continue;
+    Diagnostics rows;
+    rows.columns.push_back(d.columns[c]);
+    std::vector<double>& x = rows.columns.back().values;
+    x.erase(x.begin() + static_cast<std::ptrdiff_t>(end), x.end());
+    x.erase(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(begin));
+    const auto [low, high] = std::minmax_element(x.begin(), x.end());
+    for (const double sign : {1.0, -1.0}) {
+      const std::vector<double>& all = all_.diagnostics.columns[c].values;
+      const std::size_t row = row_of_largest(all, sign);
+      if (row == all.size() || !(std::max(sign * *low, sign * *high) + *high - *low >= sign * all[row]))
+        continue;
+      const double top = sign > 0 ? largest_of_column(seam, rows, d.columns[c].name)
+                                  : smallest_of_column(seam, rows, d.columns[c].name);
+      if (!(sign * top > sign * all[row])) continue;
+      kept_.diagnostics.columns[c].values.back() = top;
+      found = true;
+    }
+  }
+  const RunMeasure peak_speed = find_measure("peak_speed");
+  const double top = peak_speed.value(seam, d);
+  double most = 0;
+  for (std::size_t i = 0; i < all_.run.trajectory.size(); ++i)
+    most = std::max(most, fastest(all_.run.trajectory, i));
+  Trajectory& kept = kept_.run.trajectory;
+  const double speed = fastest(kept, kept.size() - 1);
+  if (!(top > most && speed > 0)) return found;
+  State state = kept.state(kept.size() - 1);
+  state.w *= top / speed;
+  kept.pop_back();
+  kept.append(std::move(state), StepReport{.singular_event = true});
+  return true;
 }
 
 Digest RunDigest::with_rows(const Digest& before, const Simulation& window, const Diagnostics& d,

@@ -44,6 +44,7 @@ class RunDigest {
  private:
   Digest with_rows(const Digest& before, const Simulation& window, const Diagnostics& d, std::size_t first,
                    std::size_t last) const;
+  bool look_at_seam(const Simulation& window, const Diagnostics& d, std::size_t first, std::size_t end);
   Digest thinned(const Digest& all) const;
   void count_on(Diagnostics& d, std::size_t first);
   void add_events(const Simulation& window, double until);
