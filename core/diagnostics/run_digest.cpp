@@ -86,6 +86,11 @@ void add_rise(const std::vector<double>& values, std::set<std::size_t>& rows) {
   rows.insert({from, to});
 }
 
+// A deployed pose in which forces have no bound: a warning names them (accuracy_warnings()).
+bool without_forces(const Trajectory& run, std::size_t i) {
+  return run.report(i).singular_event && !run.state(i).lambda.allFinite();
+}
+
 }  // namespace
 
 RunDigest::RunDigest(std::shared_ptr<const Model> model, const SolverOptions& options)
@@ -252,6 +257,8 @@ Digest RunDigest::thinned(const Digest& all) const {
       }
       found[largest ? 0 : 1].emplace_back(row, value);
     }
+  for (std::size_t i = 0; i < trajectory.size(); ++i)
+    if (without_forces(trajectory, i)) rows.insert(i);
   add_rods(trajectory.structure(), d, rows);
   add_rise(d.at("energy_balance_J").values, rows);
   std::size_t quickest = 0;
@@ -270,7 +277,8 @@ Digest RunDigest::thinned(const Digest& all) const {
   for (Index to = 0; const std::size_t i : rows) {
     State state = in_coordinates(trajectory.model(i).system, trajectory.state(i), model_->system);
     if (i == quickest && speed > 0 && std::isfinite(top)) state.w *= top / speed;
-    state.lambda.resize(0);
+    const bool same_rows = trajectory.model(i).system.rod_rows() == model_->system.rod_rows();
+    if (!without_forces(trajectory, i) || !same_rows) state.lambda.resize(0);
     state.tension.resize(0), state.tension_error.resize(0);
     state.stage_tension.resize(0, 0);
     out.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
@@ -330,7 +338,7 @@ void RunDigest::archive_digest(Archive& archive, Digest& digest) const {
     State state;
     if (!archive.reading()) state = digest.run.trajectory.state(i);
     archive(state.t);
-    for (VectorXd* x : {&state.z, &state.w, &state.angles}) archive(*x);
+    for (VectorXd* x : {&state.z, &state.w, &state.lambda, &state.angles}) archive(*x);
     if (archive.reading()) digest.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
   }
   archive(d.t);

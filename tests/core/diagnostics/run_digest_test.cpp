@@ -265,4 +265,33 @@ TEST_CASE("a peak between two parts of a long run is found as within one") {
     }
 }
 
+// Under gravity rods in line would have to bear it across; the ring rests there, latched, for many parts
+// more.
+TEST_CASE("that forces have no bound in the deployed pose is told of a long run as of a short one") {
+  const Scene scene = read_scene_file(find_scene("hoop6"),
+                                      {"structure.fold_angle=60", "gravity.acceleration=[0,0,-1]",
+                                       "solver.at_deployed=latch", "solver.step=0.01", "solver.end_time=3"});
+  const auto model = build_model(scene);
+  const Simulation run = simulate(model, scene.solver);
+  const std::vector<std::string> expected = accuracy_warnings(run, diagnose(run));
+  REQUIRE(expected.size() == 1);
+  CHECK(expected[0].find("grow without bound towards the deployed pose") != std::string::npos);
+  Windows w = windows_of(scene, 40);
+  REQUIRE(w.parts.size() >= 4);
+  RunDigest digest(model, scene.solver);
+  for (Stepper::Window& part : w.parts) {
+    digest.add(part.run, part.first, part.last);
+    digest.settle();
+    Archive out;
+    digest.archive(out);
+    Archive in(out.bytes());
+    RunDigest again(model, scene.solver);
+    again.archive(in);
+    digest = std::move(again);
+  }
+  digest.add(w.rest, w.first, w.rest.trajectory.size());
+  const Digest whole = digest.whole(w.rest);
+  CHECK(accuracy_warnings(whole.run, whole.diagnostics) == expected);
+}
+
 }  // namespace run_digest_test
