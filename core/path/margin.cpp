@@ -106,8 +106,10 @@ class MarginMaker {
   }
 
   void take_dynamic() {
-    // A motion that begins with a speed has resisted nothing yet there.
-    out_.dynamic_min = motion_.speed() != 0 ? infinite : static_margin(0.0, motion_.released());
+    // A motion that begins with a speed has resisted nothing yet there; what sets out at rest begins with the
+    // margin of its forces, in which friction slips.
+    const bool moves = out_.motion.back().s > 0;
+    out_.dynamic_min = motion_.speed() != 0 ? infinite : static_margin(0.0, motion_.released(), moves);
     if (out_.end == MarginEnd::other_way && motion_.speed() != 0)
       out_.dynamic_min = std::numeric_limits<double>::quiet_NaN();
     const auto take_least = [&](const MarginReach& reach) {
@@ -122,19 +124,20 @@ class MarginMaker {
   // Loads over time are taken as the motion finds them in that pose, or at its end.
   double time_at(double s) const { return motion_.law().timed() ? motion_.time_at(s) : 0.0; }
 
-  // Of source k, at rest: what friction can hold counts against the way.
-  ScalarLaw::Value force(std::size_t k, double s, double t) const {
+  // Of source k, at rest: what friction can hold counts against the way; as it sets out, what it takes then.
+  ScalarLaw::Value force(std::size_t k, double s, double t, bool slips = false) const {
     ScalarLaw::Value out = motion_.law().at_rest(k, out_.sense * s, t);
-    const double hold = motion_.law().hold(k, out_.sense * s);
+    const MarginLaw& law = motion_.law();
+    const double hold = slips ? law.slip(k, out_.sense * s) : law.hold(k, out_.sense * s);
     out.Q = out_.sense * out.Q - hold;
     out.scale += hold;
     return out;
   }
 
-  double static_margin(double s, double t) const {
+  double static_margin(double s, double t, bool slips = false) const {
     double drives = 0, resistances = 0;
     for (std::size_t k = 0; k < out_.sources.size(); ++k) {
-      const ScalarLaw::Value at = force(k, s, t);
+      const ScalarLaw::Value at = force(k, s, t, slips);
       if (std::abs(at.Q) <= rounding * at.scale) continue;
       (at.Q > 0 ? drives : resistances) += std::abs(at.Q);
     }

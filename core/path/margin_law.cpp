@@ -133,12 +133,20 @@ ScalarLaw::Value MarginLaw::at_rest(double s, double t) const {
   return sum;
 }
 
-double MarginLaw::hold(std::size_t group, double s) const {
+double MarginLaw::friction(std::size_t group, double s, double PathForces::Friction::*size) const {
   double sum = 0;
   for (const std::size_t k : groups_[group].sources)
     if (const PathForces::Friction* law = friction_of(k))
-      sum += factors_[k] * law->holding * std::abs(table().at(forces().sources()[k].position, s).value);
+      sum += factors_[k] * law->*size * std::abs(table().at(forces().sources()[k].position, s).value);
   return sum;
+}
+
+double MarginLaw::hold(std::size_t group, double s) const {
+  return friction(group, s, &PathForces::Friction::holding);
+}
+
+double MarginLaw::slip(std::size_t group, double s) const {
+  return friction(group, s, &PathForces::Friction::kinetic);
 }
 
 double MarginLaw::hold(double s) const {

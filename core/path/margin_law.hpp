@@ -42,6 +42,7 @@ class MarginLaw final : public PathLaw {
   Value at_rest(std::size_t group, double s, double t) const;
   Value at_rest(double s, double t) const;
   double hold(std::size_t group, double s) const;
+  double slip(std::size_t group, double s) const;  // what friction takes as soon as it moves
   double hold(double s) const;
 
  private:
@@ -49,6 +50,7 @@ class MarginLaw final : public PathLaw {
   Value value_of(const PathTable::Segment& here, std::size_t k, double s, double v, double t,
                  bool pulls) const;
   const PathForces::Friction* friction_of(std::size_t k) const;
+  double friction(std::size_t group, double s, double PathForces::Friction::*size) const;
   bool stretched(const PathTable::Segment& here, std::size_t k, double s) const;
 
   std::vector<Group> groups_;

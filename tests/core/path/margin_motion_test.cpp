@@ -88,6 +88,8 @@ TEST_CASE("a structure waits at rest until a load over time exceeds what holds i
   CHECK(t * t * t / 6 + 0.05 * t * t == Approx(1).epsilon(1e-10));
   // Of work done on the way: that of the friction is all that resists.
   CHECK(held.motion.back().resisted == Approx(0.2).epsilon(1e-10));
+  CHECK(held.dynamic_min ==
+        Approx(0.3 / 0.2 - 1).epsilon(1e-9));  // as it sets out; more and more from there on
   // It never does.
   const Margin never = margin_in(slider(ramp + dry + "kinetic = 70\n"));
   CHECK(never.end == MarginEnd::stalls);

@@ -385,6 +385,10 @@ TEST_CASE("dry friction resists in every pose, with what it holds at rest and wh
   CHECK(margin.worst.margin == Approx(12 * f * l * std::cos(start) / most - 1).epsilon(1e-9));
   CHECK(margin.arrives);
   CHECK(margin.motion.back().resisted == Approx(kinetic * start).epsilon(1e-8));
+  // Work is what it takes on the way: 12 f l (sin start - sin angle) over 700 (start - angle), least at the
+  // start.
+  CHECK(margin.dynamic_min == Approx(12 * f * l * std::cos(start) / kinetic - 1).epsilon(1e-9));
+  CHECK(margin.dynamic_at == 0);
   // What holds more than the drive gives holds for good.
   const Scene held = ring(0, {R"(forces[0]={kind="friction",fold_angle=true,kinetic=1700,static=1720})"});
   CHECK(12 * f * l * std::cos(start) < 1720);
