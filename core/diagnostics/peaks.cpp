@@ -10,6 +10,7 @@
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
+#include "core/math/largest.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/structure/time_edges.hpp"
 
@@ -237,6 +238,10 @@ double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, 
 
 double smallest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {
   return extreme_of(run, diagnostics, column, false);
+}
+
+double peak_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {
+  return larger(largest_of_column(run, diagnostics, column), -smallest_of_column(run, diagnostics, column));
 }
 
 }  // namespace unfurl

@@ -28,6 +28,8 @@ double largest_in_motion(const Simulation& run, const std::vector<double>& at_st
 // steps (energies that went in or out, errors, counts) are taken at the states.
 double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
 double smallest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
+// The larger magnitude of both.
+double peak_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
 
 // While one of these lives, largest and smallest values that this thread has found are not looked for again:
 // several measures of a run, which stays as it is meanwhile, begin with the same ones.

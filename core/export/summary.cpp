@@ -61,8 +61,7 @@ Json drives_json(const Simulation& run, const Diagnostics& diagnostics) {
     for (const std::string_view end : {".torque_N_m", ".force_N", ".power_W"})
       if (column.name.ends_with(end))
         object[column.name.substr(0, column.name.size() - end.size())]["peak_" + std::string(end.substr(1))] =
-            larger(largest_of_column(run, diagnostics, column.name),
-                   -smallest_of_column(run, diagnostics, column.name));
+            peak_of_column(run, diagnostics, column.name);
   return object;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <map>
 
+#include "core/diagnostics/peaks.hpp"
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/run_facts.hpp"
 #include "render/plot/style.hpp"
@@ -44,7 +45,7 @@ Figure drives_figure(const Simulation& run, const Diagnostics& d) {
   for (const Series& column : d.columns)
     if (column.name.ends_with(".power_W"))
       f.caption += " " + column.name.substr(0, column.name.size() - 8) + ": at most " +
-                   plot::format_number(largest_magnitude(column.values), 4) + " W.";
+                   plot::format_number(peak_of_column(run, d, column.name), 4) + " W.";
   f.caption += events_sentence(run) + " " + method_sentence(run);
   return f;
 }

@@ -8,6 +8,7 @@
 
 #include "render/plot/figures/rod_groups.hpp"
 #include "render/plot/figures/run_facts.hpp"
+#include "render/plot/ticks.hpp"
 
 namespace unfurl {
 namespace {
@@ -116,6 +117,13 @@ std::vector<RodGroup> known_groups(const Structure& structure, const MatrixXd& v
 }
 
 }  // namespace
+
+std::string whose_peak(const Structure& structure, const RodPeak& peak) {
+  const bool within_step = std::abs(peak.peak) > (1 + 1e-4) * std::abs(peak.at_state);
+  return " (rod " + structure.rods[static_cast<std::size_t>(peak.rod)].name +
+         (within_step ? " near " : " at ") + plot::format_number(peak.t, 5) + " s" +
+         (peak.unique ? "" : open_force) + ")";
+}
 
 bool each_rod_alone(const Structure& structure) {
   return structure.rods.size() <= 6 && rod_groups(structure).size() == 1;

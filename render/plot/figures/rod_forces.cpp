@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-
 #include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/rod_bands.hpp"
@@ -22,13 +21,12 @@ std::string uniqueness_sentence(const Structure& structure, const Diagnostics& d
          "; shown is the choice of least norm, scaled by mass.";
 }
 
-std::string peak_sentence(const Structure& structure, const Diagnostics& d) {
+std::string peak_sentence(const Simulation& run, const Diagnostics& d) {
   const PeakForce peak = peak_rod_force(d);
-  std::string text = " Largest magnitude " + plot::format_number(std::abs(peak.force_N), 4) + " N";
-  if (peak.rod >= 0)
-    text += " (rod " + structure.rods[static_cast<std::size_t>(peak.rod)].name + " at " +
-            plot::format_number(peak.t, 5) + " s" + (peak.unique ? "" : open_force) + ")";
-  return text + ".";
+  if (peak.rod < 0) return " Largest magnitude 0 N.";
+  const double force = find_measure("peak_rod_force").value(run, d);
+  return " Largest magnitude " + plot::format_number(force, 4) + " N" +
+         whose_peak(run.trajectory.structure(), {force, peak.force_N, peak.rod, peak.t, peak.unique}) + ".";
 }
 
 }  // namespace
@@ -47,7 +45,7 @@ Figure rod_forces_figure(const Simulation& run, const Diagnostics& d) {
     f.caption =
         "Axial force of the rods by group, tension positive, the mean over a rod's length: one line where "
         "the forces of a group differ by less than its width, else the range between the extremes.";
-  f.caption += uniqueness_sentence(structure, d) + peak_sentence(structure, d) + " " + method_sentence(run);
+  f.caption += uniqueness_sentence(structure, d) + peak_sentence(run, d) + " " + method_sentence(run);
   f.panels.push_back(std::move(p));
   return f;
 }
