@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl figure SCENE NAME... -o FILE: one figure, PNG, SVG or PDF by extension; several, or `all`,
 // into a directory. Beside each its numbers and its caption.
+#include <algorithm>
 #include <iostream>
 
 #include "app/command.hpp"
@@ -15,13 +16,16 @@ namespace unfurl {
 
 namespace {
 
+bool asks_for_all(const Arguments& arguments) {
+  return std::find(arguments.names.begin() + 1, arguments.names.end(), "all") != arguments.names.end();
+}
+
+// Every name is looked at, those beside `all`, too.
 std::vector<const FigureKind*> chosen_figures(const Arguments& arguments) {
   std::vector<const FigureKind*> kinds;
-  for (std::size_t i = 1; i < arguments.names.size(); ++i) {
-    if (arguments.names[i] == "all") return all_figures();
-    kinds.push_back(&figure_named(arguments.names[i]));
-  }
-  return kinds;
+  for (std::size_t i = 1; i < arguments.names.size(); ++i)
+    if (arguments.names[i] != "all") kinds.push_back(&figure_named(arguments.names[i]));
+  return asks_for_all(arguments) ? all_figures() : kinds;
 }
 
 // Does -o name one file (rather than a directory)?
@@ -64,7 +68,8 @@ int cmd_figure(const Arguments& arguments) {
   Simulation run = simulate_scene(scene, std::move(model), arguments);
   throw_if_interrupted();
   const Diagnostics diagnostics = judge_run(run);
-  if (arguments.names.size() == 2 && kinds.size() == 1) require_data(*kinds[0], scene, run, diagnostics);
+  if (!asks_for_all(arguments))
+    for (const FigureKind* kind : kinds) require_data(*kind, scene, run, diagnostics);
   const auto writer =
       context ? std::make_unique<FigureWriter>(*context, options) : std::make_unique<FigureWriter>(options);
   if (file) {

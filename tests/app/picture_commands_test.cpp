@@ -197,4 +197,25 @@ TEST_CASE("figures that cannot be made say why") {
   CHECK(files_in(dir / "").empty());
 }
 
+TEST_CASE("every figure that is asked for by name must be there to be made") {
+  const ScratchDirectory dir;
+  const auto figures = [&](const std::vector<std::string>& names, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"figure", "double_pendulum"};
+    words.insert(words.end(), names.begin(), names.end());
+    return run_program(
+        with(with(words, {"--set", "solver.end_time=0.1", "--quiet", "-o", dir / "out"}), more));
+  };
+  ProgramResult r = figures({"energy", "poisson"});
+  CHECK(r.code == 2);
+  CHECK(r.err == "unfurl: the scene double_pendulum has no data for the figure 'poisson'\n");
+  CHECK_FALSE(fs::exists(dir / "out/energy.svg"));
+  r = figures({"all", "energi"});
+  CHECK(r.code == 2);
+  CHECK(r.err == "unfurl: no figure 'energi'; did you mean 'energy'?\n");
+  CHECK(figures({"energi", "all"}).code == 2);
+  CHECK(figures({"poisson", "all"}).code == 0);  // all that there are
+  CHECK(fs::exists(dir / "out/energy.svg"));
+  CHECK_FALSE(fs::exists(dir / "out/poisson.svg"));
+}
+
 }  // namespace picture_commands_test
