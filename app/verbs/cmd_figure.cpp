@@ -74,6 +74,7 @@ int cmd_figure(const Arguments& arguments) {
       context ? std::make_unique<FigureWriter>(*context, options) : std::make_unique<FigureWriter>(options);
   if (file) {
     const Figure figure = kinds[0]->make(run, diagnostics);
+    refuse_other_data(output);
     writer->write(figure, output);
     write_figure_data(figure, output);
   } else if (!write_figures(output, kinds, run, diagnostics, *writer, arguments)) {

@@ -54,6 +54,7 @@ bool write_figures(const std::filesystem::path& directory, const std::vector<con
     if (!kinds[i]->applies(run, diagnostics)) continue;
     const Figure figure = kinds[i]->make(run, diagnostics);
     const std::string name(kinds[i]->name);
+    refuse_other_data(directory / (name + ".png"));
     for (const char* extension : {".svg", ".pdf", ".png"}) {
       if (interrupted()) return false;
       writer.write(figure, directory / (name + extension));

@@ -75,17 +75,8 @@ class PanelTable {
   std::string& out_;
 };
 
-// Tables of a run or of the user's own are not for us to replace. A caption is ours where it stands beside a
-// table of ours.
-void refuse_other_data(const std::filesystem::path& table, const std::filesystem::path& caption) {
-  std::ifstream file(table, std::ios::binary);
-  std::string line;
-  const bool there = file && std::getline(file, line);
-  if (there && line + '\n' != figure_csv_header)
-    throw FileError(table,
-                    "holds other data, which the figure's numbers would replace; name the figure otherwise");
-  if (!there && std::filesystem::exists(caption))
-    throw FileError(caption, "is not of a figure, whose caption would replace it; name the figure otherwise");
+std::filesystem::path beside(std::filesystem::path picture, const char* extension) {
+  return picture.replace_extension(extension);
 }
 
 }  // namespace
@@ -102,13 +93,24 @@ std::string figure_caption(const Figure& figure) {
   return out + figure.caption + "\n";
 }
 
+// Tables of a run or of the user's own are not for us to replace. A caption is ours where it stands beside a
+// table of ours.
+void refuse_other_data(const std::filesystem::path& picture) {
+  const std::filesystem::path table = beside(picture, ".csv"), caption = beside(picture, ".caption.txt");
+  std::ifstream file(table, std::ios::binary);
+  std::string line;
+  const bool there = file && std::getline(file, line);
+  if (there && line + '\n' != figure_csv_header)
+    throw FileError(table,
+                    "holds other data, which the figure's numbers would replace; name the figure otherwise");
+  if (!there && std::filesystem::exists(caption))
+    throw FileError(caption, "is not of a figure, whose caption would replace it; name the figure otherwise");
+}
+
 void write_figure_data(const Figure& figure, const std::filesystem::path& picture) {
-  std::filesystem::path table = picture, caption = picture;
-  table.replace_extension(".csv");
-  caption.replace_extension(".caption.txt");
-  refuse_other_data(table, caption);
-  write_file_atomically(table, figure_csv(figure));
-  write_file_atomically(caption, figure_caption(figure));
+  refuse_other_data(picture);
+  write_file_atomically(beside(picture, ".csv"), figure_csv(figure));
+  write_file_atomically(beside(picture, ".caption.txt"), figure_caption(figure));
 }
 
 }  // namespace unfurl

@@ -218,4 +218,21 @@ TEST_CASE("every figure that is asked for by name must be there to be made") {
   CHECK_FALSE(fs::exists(dir / "out/poisson.svg"));
 }
 
+TEST_CASE("a figure is not drawn where its numbers would replace other data") {
+  const ScratchDirectory dir;
+  const std::string table = dir.write("f.csv", "mass,price\n1,2\n"), picture = dir.write("f.png", "mine");
+  const ProgramResult r = run_program(
+      {"figure", "double_pendulum", "energy", "--set", "solver.end_time=0.1", "--quiet", "-o", picture});
+  CHECK(r.code == 5);
+  CHECK(r.err.find("name the figure otherwise") != std::string::npos);
+  CHECK(file_text(picture) == "mine");
+  CHECK(file_text(table) == "mass,price\n1,2\n");
+  fs::create_directory(dir / "all");
+  dir.write("all/energy.csv", "mass,price\n1,2\n");
+  CHECK(run_program({"figure", "double_pendulum", "energy", "--set", "solver.end_time=0.1", "--quiet", "-o",
+                     dir / "all"})
+            .code == 5);
+  CHECK_FALSE(fs::exists(dir / "all/energy.svg"));
+}
+
 }  // namespace picture_commands_test
