@@ -24,8 +24,8 @@ namespace unfurl {
 namespace {
 
 constexpr double period_s = 2.0;  // of film
-constexpr int periods = 3;
-constexpr double swing = 0.09;  // largest displacement, of the structure's size
+constexpr int periods = 3;        // at render.fps, 1000 at most, not too many frames
+constexpr double swing = 0.09;    // largest displacement, of the structure's size
 
 // What is asked for and a mode has not.
 void refuse_what_modes_lack(const Arguments& arguments) {
@@ -155,7 +155,6 @@ int render_mode(const Arguments& arguments) {
   const Vibration vibration = vibration_of(pose);
   const VibrationMode& mode = mode_asked_for(vibration, arguments.mode);
   const Scene shown = shown_scene(scene, title_of(scene, vibration, mode, arguments.mode), arguments);
-  check_film(shown);
 
   OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
   const std::string which = "mode " + std::to_string(arguments.mode) + " at " + exact_number(vibration.t);

@@ -309,6 +309,11 @@ TEST_CASE("a mode's film is whole periods of it, and is mixed with no other film
   CHECK(picture(1) == picture(3));
   CHECK_FALSE(picture(2) == picture(6));  // the two ends
   CHECK_FALSE(picture(0) == picture(2));
+  // Its length is not that of the scene's motion.
+  CHECK(run_program({"render", "hoop6_sector", "--mode", "1", "--at", "start", "--set", "solver.end_time=5e4",
+                     "--fps", "4", "--size", "96x64", "--quiet", "-o", dir / "long"})
+            .code == 0);
+  CHECK(frames_in(dir / "long") == 24);
   for (const char* file : {"modes.csv", "scene.toml", "animation.gif", "figures/modes.svg"})
     CHECK(fs::exists(out + "/" + file));
   CHECK(run_program({"verify", out}).code == 0);
