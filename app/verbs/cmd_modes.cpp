@@ -86,7 +86,7 @@ int cmd_modes(const Arguments& arguments) {
     std::cout << modes_json(scene, vibration).dump(2) << "\n";
   else
     print_modes(scene, vibration, any_elastic(structure));
-  if (arguments.output.empty()) return exit_ok;
+  if (arguments.output.empty()) return pose.code;
   StudySession session(arguments, "modes",
                        study_identity("Modes at " + exact_number(vibration.t) + " s", scene), "modes.csv");
   session.write("modes.csv", csv_text(modes_table(vibration)));
@@ -95,7 +95,7 @@ int cmd_modes(const Arguments& arguments) {
   pose.model->system.expand(pose.state.z, q);
   if (!vibration.modes.empty() && !structure.rod_copies.empty())
     session.write(mode_shapes_figure(structure, whole_positions(structure, q), vibration, scene.title));
-  return exit_ok;
+  return pose.code;
 }
 
 }  // namespace unfurl

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "app/output/interrupt.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/study/solve_for.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {
@@ -37,9 +39,14 @@ double time_of_pose(const std::string& at, const Simulation& run) {
   if (at == "deployed") {
     for (const Event& event : run.events)
       if (event.name == "deployed") return event.t;
+    if (run.status == RunStatus::failed)
+      throw NotFound("--at deployed: the run fails before the deployed pose");
     throw UsageError("--at deployed: the run does not reach the deployed pose");
   }
   const double t = number_of(at);
+  if (run.status == RunStatus::failed && t > trajectory.end_time())
+    throw NotFound("--at " + at + ": the run is good up to " + short_number(trajectory.end_time(), 6) +
+                   " s only");
   if (!(t >= trajectory.start_time() && t <= trajectory.end_time()))
     throw UsageError("--at takes start, end, deployed or a time from " +
                      short_number(trajectory.start_time(), 6) + " to " +
@@ -48,13 +55,17 @@ double time_of_pose(const std::string& at, const Simulation& run) {
 }
 
 ModalPose in_motion(const Scene& scene, const Arguments& arguments) {
-  const auto run =
-      std::make_shared<const Simulation>(simulate_scene(scene, model_of(scene, arguments), arguments));
+  const auto run = std::make_shared<Simulation>(simulate_scene(scene, model_of(scene, arguments), arguments));
+  throw_if_interrupted();
+  const Diagnostics diagnostics = judge_run(*run);
+  throw_if_interrupted();
+  warn_of_run(*run, diagnostics);
   const Trajectory& trajectory = run->trajectory;
   const double t = time_of_pose(arguments.at, *run);
   const std::size_t i = trajectory.state_before(t);
   return {{run, &trajectory.model(i)},
-          trajectory.time(i) == t ? trajectory.state(i) : trajectory.state_at(t)};
+          trajectory.time(i) == t ? trajectory.state(i) : trajectory.state_at(t),
+          exit_code_of(*run, diagnostics)};
 }
 
 }  // namespace

@@ -15,10 +15,12 @@ namespace unfurl {
 struct ModalPose {
   std::shared_ptr<const Model> model;  // holds what it belongs to
   State state;
+  int code = 0;  // exit code: of a run that failed later on, which has been said, exit_solver_failed
 };
 
-// --at start, end, deployed or a time; the start where it is not given. Throws UsageError where the motion
-// has no such time.
+// --at start, end, deployed or a time; the start where it is not given. The run that it is of is judged, and
+// what it warns of said. Throws UsageError where the motion has no such time, NotFound where a run that
+// failed does not get there, Interrupted.
 ModalPose modal_pose(const Scene& scene, const Arguments& arguments);
 
 // Throws UsageError where the structure is too large.

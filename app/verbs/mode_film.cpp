@@ -175,7 +175,7 @@ int render_mode(const Arguments& arguments) {
     require_all_frames(folder, framed, run, arguments);
   else if (!draw_frames(folder, framed, run, {}, *context, arguments, memory))
     return exit_interrupted;
-  return encode_films(output.path(), folder, framed, run, arguments, memory) ? exit_ok : exit_interrupted;
+  return encode_films(output.path(), folder, framed, run, arguments, memory) ? pose.code : exit_interrupted;
 }
 
 }  // namespace unfurl

@@ -153,10 +153,14 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
   for (const std::string& warning : said) std::cerr << "unfurl: warning: " << warning << "\n";
 }
 
-void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {
+void warn_of_run(const Simulation& run, const Diagnostics& diagnostics) {
   for (const auto& warnings : {run.warnings, accuracy_warnings(run, diagnostics)})
     for (const auto& warning : warnings) std::cerr << "unfurl: warning: " << warning << "\n";
   if (run.status == RunStatus::failed) std::cerr << "unfurl: the solver failed: " << run.message << "\n";
+}
+
+void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {
+  warn_of_run(run, diagnostics);
   if (run.status == RunStatus::stopped) std::cerr << "unfurl: interrupted; what is finished is kept\n";
   if (arguments.quiet) return;
   std::ostringstream text;

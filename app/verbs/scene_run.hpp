@@ -44,7 +44,10 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
                    const Scene& scene, const Simulation& run, const Diagnostics& diagnostics,
                    const Arguments& arguments);
 
-// A few lines for a person on stderr; nothing where `quiet` was asked for.
+// What the run warns of, and why it failed where it did, on stderr.
+void warn_of_run(const Simulation& run, const Diagnostics& diagnostics);
+
+// That and a few lines for a person on stderr; nothing where `quiet` was asked for.
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments);
 
 // The run's diagnostics, which decide its end (judge()); half a second after Ctrl-C what is not computed yet

@@ -63,6 +63,9 @@ TEST_CASE("every verb ends soon after a signal") {
       {"sweep", "hoop6", "--vary", "structure.hinge_force=100:300:400", "--measure", "deploy_time", "--set",
        "solver.model=full", "-o", out},
       {"reproduce", "-o", out},
+      with({"modes", "hoop6", "--at", "4.6"}, slow),
+      with({"modes", "hoop6", "--at", "deployed"}, slow),
+      with({"render", "hoop6", "--mode", "1", "--at", "4.6", "-o", out}, slow),
       // Nothing can be asked while such a scene is analysed.
       {"check", "reentrant_sheet", "--set", "structure.rows=60", "--set", "structure.columns=60"},
   };
