@@ -63,10 +63,11 @@ void study_sweep(const StudyHooks& hooks, StudyOutcome& out) {
   const Sweep sweep = run_sweep(plan, journal, hooks);
   if (sweep.table.rows.empty()) throw Cancelled();
   out.figures = sweep_figures(plan, sweep, read_document(d).title);
+  const std::size_t measured = plan.axes.size() + 1;  // behind it may stand whether it is unique
   double low = 0, high = 0;
   std::string at_low, at_high;
   for (const auto& row : sweep.table.rows) {
-    const double value = number_of(row.back());
+    const double value = number_of(row[measured]);
     if (!(value == value)) continue;
     if (at_low.empty() || value < low) low = value, at_low = row.front();
     if (at_high.empty() || value > high) high = value, at_high = row.front();

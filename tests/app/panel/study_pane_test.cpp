@@ -128,6 +128,27 @@ TEST_CASE("a measure over a parameter comes to the page, and bad values say why"
   CHECK(driver.state().studied->message.find("fold_angle") != std::string::npos);
 }
 
+// 1.5 m g at the lowest point, whatever its length (for a rod of 5 kg without a bob 73.6 N): not the column
+// behind it, which says whether that is unique.
+TEST_CASE("the sentence of a measure that may not be unique is of the measure itself") {
+  PanelDriver driver(PanelDriver::small(), "pendulum");
+  driver.state().history.edit("structure.rod_mass", 5.0);
+  driver.state().history.edit("structure.bob_mass", 0.0);
+  driver.settle();
+  driver.key(Key::three);
+  driver.state().study.kind = StudyRequest::Kind::sweep;
+  driver.state().study.key = "structure.length";
+  driver.state().study.measure = "peak_rod_force";
+  driver.state().study.from = 0.5;
+  driver.state().study.to = 1.5;
+  driver.state().study.count = 3;
+  driver.frame();
+  driver.click("start study");
+  finish_study(driver, nullptr);
+  const std::string words = "peak rod force (N): from 73.5";
+  CHECK(driver.state().studied->sentence.substr(0, words.size()) == words);
+}
+
 TEST_CASE("a study is cancelled at once, and the window does not wait for it") {
   PanelDriver driver;
   driver.key(Key::three);
