@@ -41,6 +41,7 @@ struct GifAnimation::Encoder {
   double fps;
   int stride;  // every so many frames one is kept
   long given = 0;
+  Image latest;  // behind the frame that is kept next; empty: there is none
   bool transparent = false;
   ColorPalette palette{colors};
   std::vector<GifByteType> shown, next;  // indices, row by row
@@ -74,7 +75,7 @@ struct GifAnimation::Encoder {
   void write_loop();
   void index(const Image& frame);
   Rect changed() const;
-  void write_frame(int delay);
+  void write_frame();
 };
 
 void GifAnimation::Encoder::open() {
@@ -138,7 +139,10 @@ Rect GifAnimation::Encoder::changed() const {
   return {left, top, right - left + 1, bottom - top + 1};
 }
 
-void GifAnimation::Encoder::write_frame(int delay) {
+// What is in `next`, for as long as the frames that it stands for.
+void GifAnimation::Encoder::write_frame() {
+  const long first_of = (given - 1) / stride * stride;
+  const int delay = centiseconds(first_of + stride) - centiseconds(first_of);
   const Rect part = changed();
   GraphicsControlBlock control{transparent ? DISPOSE_BACKGROUND : DISPOSE_DO_NOT, false, delay, clear_index};
   std::array<GifByteType, 4> block{};
@@ -172,16 +176,19 @@ void GifAnimation::add(const Image& frame) {
   Encoder& e = *encoder_;
   if (frame.width != e.width || frame.height != e.height)
     throw std::invalid_argument("GifAnimation::add: the frame is not of the animation's size");
-  const long k = e.given++;
-  if (k % e.stride != 0) return;
+  const bool kept = e.given % e.stride == 0;
   if (e.gif == nullptr) e.open();
-  e.index(frame);
-  e.write_frame(e.centiseconds(k + e.stride) - e.centiseconds(k));
+  if (kept && e.given > 0) e.write_frame();
+  ++e.given;
+  e.latest = kept ? Image() : frame;
+  if (kept) e.index(frame);
 }
 
 void GifAnimation::finish() {
   Encoder& e = *encoder_;
   if (e.gif == nullptr) return;
+  if (!e.latest.rgba.empty()) e.index(e.latest);  // the film ends with its last frame
+  e.write_frame();
   if (!e.close()) throw FileError(e.target, "GIF: cannot be encoded");
   write_file_atomically(e.target, std::span<const std::byte>(e.bytes));
 }

@@ -9,7 +9,8 @@
 namespace unfurl {
 
 // An animated GIF that repeats forever: one palette of 255 colours for the whole film, and of each frame only
-// the pixels that changed. Frames beyond 50 a second, which viewers would slow down, are left out.
+// the pixels that changed. Frames beyond 50 a second, which viewers would slow down, are left out, the last
+// one not.
 //
 //     for some frames spread over the film: gif.sample(frame);
 //     for all frames in order:              gif.add(frame);

@@ -124,6 +124,25 @@ TEST_CASE("a GIF of more frames a second than viewers show leaves some out, at t
   CHECK(film.shown(1, 4 * 3 + 9, 25) == white);
 }
 
+// Of 34 frames at 60 a second every other one is kept; the last has the place of the one before it, and the
+// film its length: 34 / 60 s, to a centisecond.
+TEST_CASE("a GIF that leaves frames out ends with the last one") {
+  const ScratchFolder scratch;
+  for (const int count : {33, 34}) {
+    std::vector<Image> frames;
+    for (int k = 0; k < count; ++k) frames.push_back(square(k % 12));
+    const Reader film(write(scratch.path, 60, frames));
+    CHECK(film.gif->ImageCount == 17);
+    const int last = (count - 1) % 12;  // each square begins 4 pixels further on, and is 10 wide
+    CHECK(film.shown(16, 4 * last + 9, 25) == white);
+    CHECK(film.shown(16, 4 * last - 1 < 0 ? 60 : 4 * last - 1, 25) == blue);
+    CHECK(film.shown(15, 4 * 6 + 9, 25) == white);  // frame 30
+    int centiseconds = 0;
+    for (int k = 0; k < 17; ++k) centiseconds += film.control(k).DelayTime;
+    CHECK(centiseconds == 57);
+  }
+}
+
 TEST_CASE("a GIF keeps what is transparent, and nothing of the frame before") {
   const ScratchFolder scratch;
   const Reader film(write(scratch.path, 25, {square(0, clear), square(5, clear)}));
