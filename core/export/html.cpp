@@ -38,9 +38,9 @@ std::string packed(const auto& values) {
   return base64(std::as_bytes(std::span(values)));
 }
 
-std::string short_text(double x) {
+std::string short_text(double x, int digits = 3) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", x);
+  std::snprintf(text.data(), text.size(), "%.*g", digits, x);
   return text.data();
 }
 
@@ -195,7 +195,7 @@ void add_words(const ExportJob& job, Page& page) {
   page["subtitle"] = std::string(to_string(run.status)) + " at " + short_text(run.trajectory.end_time()) +
                      " s" + (run.message.empty() ? "" : ": " + run.message);
   facts("ended",
-        std::string(to_string(run.status)) + " at " + std::to_string(run.trajectory.end_time()) + " s");
+        std::string(to_string(run.status)) + " at " + short_text(run.trajectory.end_time(), 9) + " s");
   facts("structure", std::to_string(structure.node_copies.size()) + " nodes, " +
                          std::to_string(structure.rod_copies.size()) + " rods");
   facts("method", solver.method + ", " + std::to_string(run.steps) + " steps");

@@ -416,4 +416,19 @@ TEST_CASE(
   CHECK(page["seams"] == nlohmann::json({2, 3, 4, 5}));
 }
 
+TEST_CASE("a page says when a short run ended, and its clock shows a thousandth of it") {
+  const Simulation run = run_scene(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [0, 0, 0], velocity = [1, 0, 0], mass "
+      "= "
+      "1}]\nrods = []\n[solver]\nstep = 2e-8\nend_time = 1.25e-7\n");
+  const fs::path directory = fs::temp_directory_path() / ("unfurl_short_" + std::to_string(::getpid()));
+  fs::create_directories(directory);
+  find_export_format("html")->write({run, diagnose(run), directory, "short", 0.1, 1.0});
+  std::ostringstream page;
+  page << std::ifstream(directory / "viewer.html", std::ios::binary).rdbuf();
+  fs::remove_all(directory);
+  CHECK(data_of(page.str())["facts"][0] == nlohmann::json({"ended", "completed at 1.25e-07 s"}));
+  CHECK(page.str().find("t.toFixed(clock_digits)") != std::string::npos);
+}
+
 }  // namespace formats_test
