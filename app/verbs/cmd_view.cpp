@@ -70,6 +70,8 @@ int draw_picture(SceneDocument document, const Scene& scene, const Arguments& ar
 int replay(const Arguments& arguments) {
   if (!arguments.names.empty() || !arguments.overrides.empty())
     throw UsageError("--replay plays the scene that was recorded: give no other and no --set");
+  if (!arguments.view.picture.empty())
+    require_writable_png(arguments.view.picture, "a picture of the window");
   const auto context = make_offscreen_context({arguments.threads, arguments.gpu});
   const Replay played = replay_session(*context, arguments.view.replay);
   if (!arguments.view.picture.empty()) write_png(arguments.view.picture, played.last);
@@ -103,6 +105,9 @@ void refuse_contradictions(const Arguments& arguments) {
   if (view.bench && !view.replay.empty()) refuse("--bench", "--replay", "what is played is not measured");
   if (!arguments.at.empty() && !view.replay.empty())
     refuse("--at", "--replay", "a session begins where it was recorded");
+  if (view.dark && !view.replay.empty()) refuse("--dark", "--replay", "a session looks as it was recorded");
+  if (arguments.ui_scale > 0 && !view.replay.empty())
+    refuse("--ui-scale", "--replay", "a session is played at the scale it was recorded at");
 }
 
 }  // namespace

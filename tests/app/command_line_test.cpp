@@ -297,6 +297,12 @@ TEST_CASE("options that would do nothing, or contradict each other, are refused"
   CHECK(run_program({"view", "--replay", record, "--record", record}).code == 2);
   CHECK(run_program({"view", "hoop6", "--bench", "--picture", png}).code == 2);
   CHECK(run_program({"view", "--replay", record, "--at", "1"}).code == 2);
+  check_error({"view", "--replay", record, "--dark"}, 2,
+              "unfurl: --dark beside --replay: a session looks as it was recorded; leave one of them out");
+  CHECK(run_program({"view", "--replay", record, "--ui-scale", "2"}).code == 2);
+  const ProgramResult no_png = run_program({"view", "--replay", record, "--picture", dir / "p.txt"});
+  CHECK(no_png.code == 2);
+  CHECK(contains(no_png.err, "a picture of the window is written as .png, not '.txt'"));
   const std::vector<std::string> sweep{"sweep",     "hoop6_sector", "--vary", "structure.fold_angle=40:80:3",
                                        "--measure", "deploy_time",  "-o",     dir / "out"};
   const auto with = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
