@@ -220,11 +220,14 @@ void check_plan(SweepPlan& plan) {
                          " are names of the same thing, or one is part of the other: vary one of them");
     }
   const auto& known = scene.units;
-  for (const SweepAxis& axis : plan.axes)
-    for (std::size_t i = 0; i < axis.numbers.size(); ++i)
-      if (axis.numbers[i] != std::floor(axis.numbers[i]) && is_whole_number(scene, axis.key))
-        throw StudyError(in_quotes(axis.key) + " takes whole numbers; " + axis.values[i] +
-                         " is none: give a COUNT that leads to some, or list them (" + axis.key + "=4,6,12)");
+  for (const SweepAxis& axis : plan.axes) {
+    const auto broken =
+        std::ranges::find_if(axis.numbers, [](double number) { return number != std::floor(number); });
+    if (broken != axis.numbers.end() && is_whole_number(scene, axis.key))
+      throw StudyError(in_quotes(axis.key) + " takes whole numbers; " +
+                       axis.values[static_cast<std::size_t>(broken - axis.numbers.begin())] +
+                       " is none: give a COUNT that leads to some, or list them (" + axis.key + "=4,6,12)");
+  }
   for (SweepAxis& axis : plan.axes) axis.unit = unit_of_axis(plan, axis, known);
 }
 
