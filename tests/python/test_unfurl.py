@@ -242,3 +242,8 @@ def test_pictures_and_files(tmp_path):
     with pytest.raises(unfurl.StudyError, match="no figure 'enrgy' of this run; did you mean 'energy'"):
         run.plot("enrgy", tmp_path / "x.svg")
     assert unfurl.scenes() and "deploy_time" in unfurl.measures()
+
+
+def test_any_text_is_a_value():
+    for title in ("\U0001F600 x", "a\x7fb", "\u00e9 \\ \" \t \x01", "\U0010FFFF"):
+        assert unfurl.Scene("pendulum", set={"title": title}).title == title
