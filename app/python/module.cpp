@@ -9,14 +9,14 @@
 #include <pybind11/stl.h>
 
 #include <chrono>
-#include <filesystem>
 #include <map>
+#include <memory>
+#include <mutex>
 
+#include "app/python/run_files.hpp"
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/export/atomic_file.hpp"
-#include "core/export/formats.hpp"
-#include "core/export/summary.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
@@ -30,12 +30,6 @@
 #include "core/text/nearest_name.hpp"
 #include "core/text/version.hpp"
 #include "render/gl/graphics_error.hpp"
-#include "render/image/png.hpp"
-#include "render/plot/figures.hpp"
-#include "render/scene/exported_looks.hpp"
-#include "render/scene/film_style.hpp"
-#include "render/scene/renderer.hpp"
-#include "render/ui/write_figure.hpp"
 
 namespace py = pybind11;
 using namespace unfurl;
@@ -76,29 +70,42 @@ py::array view(const std::vector<T>& values, std::vector<py::ssize_t> shape, con
   return array;
 }
 
-// A run with what a person looks at, as plain arrays.
+// One picture at a time: what draws text has one state for all.
+std::mutex drawing;
+
+// A run with what a person looks at, as plain arrays. Made without the interpreter's lock.
 class Run {
  public:
-  Run(Scene scene, Simulation run)
-      : scene_(std::move(scene)), run_(std::move(run)), diagnostics_(judge(run_)) {
-    const Trajectory& trajectory = run_.trajectory;
-    const Structure& structure = trajectory.structure();
+  Run(Scene scene, Simulation run, std::shared_ptr<std::mutex> use)
+      : run_{std::move(scene), std::move(run), {}}, use_(std::move(use)) {
+    const std::lock_guard lock(*use_);
+    run_.diagnostics = judge(run_.simulation);
+    const Trajectory& trajectory = simulation().trajectory;
     for (std::size_t i = 0; i < trajectory.size(); ++i) {
       t_.push_back(trajectory.time(i));
       const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
       x_.insert(x_.end(), x.begin(), x.end());
       v_.insert(v_.end(), v.begin(), v.end());
-      for (const RodCopy& rod : structure.rod_copies) {
-        force_.push_back(diagnostics_.axial_force(static_cast<Index>(i), rod.source));
-        unique_.push_back(diagnostics_.force_unique(static_cast<Index>(i), rod.source));
+      for (const RodCopy& rod : structure().rod_copies) {
+        force_.push_back(diagnostics().axial_force(static_cast<Index>(i), rod.source));
+        unique_.push_back(diagnostics().force_unique(static_cast<Index>(i), rod.source));
       }
     }
   }
 
-  const Scene& scene() const { return scene_; }
-  const Simulation& simulation() const { return run_; }
-  const Diagnostics& diagnostics() const { return diagnostics_; }
-  const Structure& structure() const { return run_.trajectory.structure(); }
+  const Scene& scene() const { return run_.scene; }
+  const Simulation& simulation() const { return run_.simulation; }
+  const Diagnostics& diagnostics() const { return run_.diagnostics; }
+  const Structure& structure() const { return simulation().trajectory.structure(); }
+  // Work on the run that takes long: without the interpreter's lock, one after the other (states between
+  // steps are computed as they are asked for), under one more lock where there is one.
+  template <class Work>
+  auto alone(const Work& work, std::mutex* more = nullptr) const {
+    const py::gil_scoped_release release;
+    const std::lock_guard lock(*use_);
+    const auto held = more ? std::unique_lock(*more) : std::unique_lock<std::mutex>();
+    return work(run_);
+  }
   py::ssize_t steps() const { return static_cast<py::ssize_t>(t_.size()); }
   py::ssize_t nodes() const { return static_cast<py::ssize_t>(structure().node_copies.size()); }
   py::ssize_t rods() const { return static_cast<py::ssize_t>(structure().rod_copies.size()); }
@@ -119,81 +126,44 @@ class Run {
   }
   static py::dict series(const py::object& self) {
     py::dict columns;
-    for (const Series& column : of(self).diagnostics_.columns)
+    for (const Series& column : of(self).diagnostics().columns)
       columns[py::str(column.name)] = view(column.values, {of(self).steps()}, self);
     return columns;
   }
 
-  py::array at(double time) const {
-    if (!(time >= run_.trajectory.start_time() && time <= run_.trajectory.end_time()))
+  void require_time(double time) const {
+    const Trajectory& trajectory = simulation().trajectory;
+    if (!(time >= trajectory.start_time() && time <= trajectory.end_time()))
       throw py::index_error("t = " + exact_number(time) + " s is not within the run, which goes from " +
-                            exact_number(run_.trajectory.start_time()) + " to " +
-                            exact_number(run_.trajectory.end_time()) + " s");
-    const VectorXd x = run_.trajectory.positions_at(time);
+                            exact_number(trajectory.start_time()) + " to " +
+                            exact_number(trajectory.end_time()) + " s");
+  }
+  py::array at(double time) const {
+    require_time(time);
+    const VectorXd x =
+        alone([time](const JudgedRun& run) { return run.simulation.trajectory.positions_at(time); });
     return py::array_t<double>({nodes(), py::ssize_t{3}}, x.data());
+  }
+  double measure(const std::string& name) const {
+    std::vector<std::string> columns;
+    for (const Series& column : diagnostics().columns) columns.push_back(column.name);
+    const RunMeasure measure = find_measure(name, columns);
+    return alone([&](const JudgedRun& run) { return measure.value(run.simulation, run.diagnostics); });
   }
 
  private:
   static const Run& of(const py::object& self) { return self.cast<const Run&>(); }
 
-  Scene scene_;
-  Simulation run_;
-  Diagnostics diagnostics_;
+  JudgedRun run_;
+  std::shared_ptr<std::mutex> use_;  // of those that share a trajectory
   Doubles t_, x_, v_, force_;
   std::vector<std::uint8_t> unique_;
 };
 
-std::string summary_of(const Run& run) {
-  const auto& trajectory = run.simulation().trajectory;
-  const Mobility mobility = analyse_mobility(trajectory.model().system, trajectory.node_positions(0));
-  return summary_json(run.scene().name, run.simulation(), run.diagnostics(), mobility);
-}
-
-void export_run(const Run& run, const std::string& format, const std::string& directory) {
-  std::vector<std::string_view> known;
-  for (const ExportFormat& row : export_formats()) known.push_back(row.name);
-  const ExportFormat* found = find_export_format(format);
-  if (!found) throw StudyError("no export format " + in_quotes(format) + did_you_mean(format, known));
-  std::filesystem::create_directories(directory);
-  const Scene& scene = run.scene();
-  const std::string text = scene_text(scene);
-  const ExportedLooks looks = exported_looks(scene, run.simulation().trajectory);
-  std::vector<std::string> about_text;
-  for (const SceneProblem& warning : scene.warnings) about_text.push_back(problem_text(warning));
-  found->write({run.simulation(),
-                run.diagnostics(),
-                directory,
-                scene.name,
-                scene.render.speed / scene.render.fps,
-                scene.render.speed,
-                scene.title,
-                text,
-                {},
-                &looks,
-                about_text});
-}
-
-void write_figure_of(const Run& run, const std::string& name, const std::string& file,
-                     const std::string& style) {
-  std::vector<std::string_view> known;
-  for (const FigureKind& kind : figure_kinds())
-    if (kind.applies(run.simulation(), run.diagnostics())) known.push_back(kind.name);
-  const FigureKind* kind = find_figure(name);
-  if (!kind || std::find(known.begin(), known.end(), name) == known.end())
-    throw StudyError("no figure " + in_quotes(name) + " of this run" + did_you_mean(name, known));
-  FigureOptions options;
-  for (const FigureStyle& row : figure_styles())
-    if (row.name == style) options.style = &row;
-  if (options.style->name != style) throw StudyError("no style " + in_quotes(style));
-  write_figure(kind->make(run.simulation(), run.diagnostics()), file, options);
-}
-
+// A frame of a time that the run has not is no picture of it.
 void write_frame(const Run& run, double t, const std::string& file) {
-  const FrameStyle style = film_style(run.scene(), run.simulation(), run.diagnostics());
-  const auto context = make_offscreen_context();
-  const FrameBuilder builder(run.simulation().trajectory, style);
-  Renderer renderer(*context, style.width, style.height);
-  write_png(file, renderer.draw(builder.build(t)));
+  run.require_time(t);
+  run.alone([&](const JudgedRun& judged) { write_still(judged, t, file); }, &drawing);
 }
 
 // Where a scene comes from: a name, a file, or a text.
@@ -211,7 +181,8 @@ std::shared_ptr<Run> run_scene(const SceneSource& source, const std::vector<std:
   {
     const py::gil_scoped_release release;
     Simulation run = simulate_as_asked(build_model(scene), scene.solver, hooks);
-    if (run.status != RunStatus::stopped) made = std::make_shared<Run>(std::move(scene), std::move(run));
+    if (run.status != RunStatus::stopped)
+      made = std::make_shared<Run>(std::move(scene), std::move(run), std::make_shared<std::mutex>());
   }
   asker.raise();
   return made;
@@ -232,7 +203,6 @@ py::dict sweep_scene(const SceneSource& source, const std::vector<std::pair<std:
   }
   const auto columns = columns_of(build_model(source.read()));
   for (const std::string& name : measures) plan.measures.push_back(find_measure(name, columns));
-  check_plan(plan);
   Asker asker;
   std::mutex mutex;
   StudyHooks hooks;
@@ -244,6 +214,7 @@ py::dict sweep_scene(const SceneSource& source, const std::vector<std::pair<std:
   Sweep sweep;
   {
     const py::gil_scoped_release release;
+    check_plan(plan);
     Journal nowhere("", plan.columns(), plan.axes.size(), plan.number_columns());
     sweep = run_sweep(plan, nowhere, hooks);
   }
@@ -312,16 +283,21 @@ class SteppedScene {
       : scene_(std::move(scene)), stepper_(build_model(scene_), scene_.solver) {}
   bool step() {
     const py::gil_scoped_release release;
-    return stepper_.step();
+    const std::lock_guard lock(*use_);
+    return goes_on_ = stepper_.step();
   }
   bool advance_to(double t) {
     const py::gil_scoped_release release;
-    return stepper_.advance_to(t);
+    const std::lock_guard lock(*use_);
+    return goes_on_ = stepper_.advance_to(t);
   }
   double time() const { return stepper_.time(); }
   py::array positions() const { return array(trajectory().positions(trajectory().size() - 1)); }
   py::array velocities() const { return array(trajectory().velocities(trajectory().size() - 1)); }
-  std::string status() const { return std::string(to_string(stepper_.run().status)); }
+  std::string status() const {
+    const bool ended = !goes_on_ || time() >= stepper_.run().options.end_time;
+    return ended ? std::string(to_string(stepper_.run().status)) : "running";
+  }
   std::vector<std::pair<std::string, double>> events() const {
     std::vector<std::pair<std::string, double>> found;
     for (const Event& event : stepper_.run().events) found.emplace_back(event.name, event.t);
@@ -345,6 +321,7 @@ class SteppedScene {
     if (!force.allFinite()) throw py::value_error("a force is three finite numbers [N]");
     const int of = node(key);
     const py::gil_scoped_release release;
+    const std::lock_guard lock(*use_);
     stepper_.set_force(of, force);
     forces_[of] = force;
   }
@@ -352,16 +329,25 @@ class SteppedScene {
     const auto found = forces_.find(node(key));
     return found == forces_.end() ? Vec3(Vec3::Zero()) : found->second;
   }
-  std::shared_ptr<Run> finish() { return std::make_shared<Run>(scene_, Simulation(stepper_.run())); }
+  std::shared_ptr<Run> finish() const {
+    const py::gil_scoped_release release;
+    return std::make_shared<Run>(scene_, so_far(), use_);
+  }
 
  private:
   const Trajectory& trajectory() const { return stepper_.run().trajectory; }
+  Simulation so_far() const {
+    const std::lock_guard lock(*use_);
+    return stepper_.run();
+  }
   static py::array array(const VectorXd& x) {
     return py::array_t<double>({static_cast<py::ssize_t>(x.size() / 3), py::ssize_t{3}}, x.data());
   }
   Scene scene_;
   Stepper stepper_;
   std::map<int, Vec3> forces_;
+  bool goes_on_ = true;
+  std::shared_ptr<std::mutex> use_ = std::make_shared<std::mutex>();
 };
 
 // stepper.force["B0"] = [fx, fy, fz]
@@ -423,15 +409,20 @@ void add_run(py::module_& module) {
           })
       .def_property_readonly("title", [](const Run& run) { return run.scene().title; })
       .def("at", &Run::at, py::arg("t"))
-      .def("measure",
-           [](const Run& run, const std::string& name) {
-             std::vector<std::string> columns;
-             for (const Series& column : run.diagnostics().columns) columns.push_back(column.name);
-             return find_measure(name, columns).value(run.simulation(), run.diagnostics());
-           })
-      .def("summary_json", &summary_of)
-      .def("export", &export_run, py::arg("format"), py::arg("directory"))
-      .def("plot", &write_figure_of, py::arg("name"), py::arg("file"), py::arg("style") = "screen")
+      .def("measure", &Run::measure)
+      .def("summary_json", [](const Run& run) { return run.alone(summary_of); })
+      .def(
+          "export",
+          [](const Run& run, const std::string& format, const std::string& directory) {
+            run.alone([&](const JudgedRun& judged) { write_export(judged, format, directory); }, &drawing);
+          },
+          py::arg("format"), py::arg("directory"))
+      .def(
+          "plot",
+          [](const Run& run, const std::string& name, const std::string& file, const std::string& style) {
+            run.alone([&](const JudgedRun& judged) { write_plot(judged, name, file, style); }, &drawing);
+          },
+          py::arg("name"), py::arg("file"), py::arg("style") = "screen")
       .def("frame", &write_frame, py::arg("t"), py::arg("file"));
 }
 
@@ -442,6 +433,8 @@ void add_scene(py::module_& module) {
       .def("__getitem__",
            [](const NodeForces& forces, const py::object& node) { return forces.of.force(node); });
   py::class_<SteppedScene>(module, "Stepper")
+      .def(py::init([](const SceneSource& source) { return std::make_unique<SteppedScene>(source.read()); }),
+           py::arg("source"))
       .def("__enter__", [](py::object self) { return self; })
       .def("__exit__", [](SteppedScene&, const py::args&) {})
       .def_property_readonly("force", py::cpp_function([](SteppedScene& self) { return NodeForces{self}; },
@@ -458,7 +451,6 @@ void add_scene(py::module_& module) {
   py::class_<SceneSource>(module, "SceneSource")
       .def(py::init(&source_of), py::arg("scene"), py::arg("overrides"), py::arg("is_text"))
       .def("run", &run_scene, py::arg("changes"))
-      .def("stepper", [](const SceneSource& source) { return std::make_unique<SteppedScene>(source.read()); })
       .def("sweep", &sweep_scene, py::arg("vary"), py::arg("measures"), py::arg("threads"))
       .def("solve", &solve_scene)
       .def_property_readonly("text", [](const SceneSource& source) { return scene_text(source.read()); })

@@ -15,6 +15,7 @@
 #include "render/scene/frame_builder.hpp"
 #include "render/scene/pose_times.hpp"
 #include "render/scene/renderer.hpp"
+#include "render/scene/still.hpp"
 
 namespace unfurl {
 

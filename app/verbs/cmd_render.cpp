@@ -17,6 +17,7 @@
 #include "app/verbs/team_work.hpp"
 #include "core/export/atomic_file.hpp"
 #include "render/scene/film_style.hpp"
+#include "render/scene/still.hpp"
 
 namespace unfurl {
 

@@ -22,6 +22,7 @@
 #include "render/image/png.hpp"
 #include "render/image/webp_animation.hpp"
 #include "render/scene/frame_builder.hpp"
+#include "render/scene/still.hpp"
 
 namespace unfurl {
 

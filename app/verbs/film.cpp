@@ -21,6 +21,7 @@
 #include "render/scene/frame_builder.hpp"
 #include "render/scene/renderer.hpp"
 #include "render/scene/shutter.hpp"
+#include "render/scene/still.hpp"
 
 namespace unfurl {
 
@@ -50,29 +51,6 @@ void check_film(const Scene& scene) {
   throw SceneError({{place_of(scene, "render.fps"), "render.fps",
                      "the film would have more than 99999 frames; take fewer per second, a larger "
                      "render.speed or an earlier solver.end_time"}});
-}
-
-Scene fitted(const Scene& scene, const Simulation& run) {
-  Scene out = scene;
-  RenderOptions& render = out.render;
-  if (!render.fit) return out;
-  FrameStyle style;
-  style.width = render.width, style.height = render.height;
-  style.options = render;
-  style.options.inset.clear();
-  style.options.colour_by = "group";
-  style.labels = false;
-  const double aspect = FrameBuilder(run.trajectory, style).fitting_aspect();
-  const double pixels = static_cast<double>(render.width) * render.height;
-  const auto even = [](double x) { return std::max(16, 2 * static_cast<int>(std::lround(0.5 * x))); };
-  render.height = even(std::sqrt(pixels / aspect));
-  render.width = even(std::sqrt(pixels * aspect));
-  return out;
-}
-
-bool has_alpha(const RenderOptions& options) {
-  const Look* look = find_look(options.look);
-  return options.transparent || (look != nullptr && look->transparent);
 }
 
 void require_all_frames(const FilmFolder& folder, const Scene& scene, const Simulation& run,

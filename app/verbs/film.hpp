@@ -32,12 +32,6 @@ class FrameMemory {
 // reason.
 void check_film(const Scene& scene);
 
-// The scene with a picture of the motion's shape where it asks for that (render.fit), of as many pixels.
-Scene fitted(const Scene& scene, const Simulation& run);
-
-// Do the frames have transparent pixels: because the scene says so, or its look?
-bool has_alpha(const RenderOptions& options);
-
 // Draws the frames that the folder lacks, or those of them that --frames asks for. Stops at Ctrl-C. Returns
 // whether it did not. Of a team's worker: those that no other worker is at. Throws FileError, GraphicsError,
 // UsageError.

@@ -18,6 +18,7 @@
 #include "render/plot/figure_data.hpp"
 #include "render/plot/figures/mode_shapes.hpp"
 #include "render/plot/ticks.hpp"
+#include "render/scene/still.hpp"
 
 namespace unfurl {
 

@@ -22,6 +22,7 @@
 #include "render/scene/film_style.hpp"
 #include "render/scene/renderer.hpp"
 #include "render/scene/shutter.hpp"
+#include "render/scene/still.hpp"
 
 namespace unfurl {
 

@@ -144,6 +144,20 @@ std::vector<Shot> film_shots(const Trajectory& trajectory, const RenderOptions& 
   return shots;
 }
 
+Shot shot_at(const Trajectory& trajectory, const RenderOptions& options, double t) {
+  RenderOptions motion = options;
+  motion.title_card = motion.hold_start = motion.turntable = motion.hold = 0;
+  const std::vector<Shot> shots = film_shots(trajectory, motion);
+  const auto next =
+      std::upper_bound(shots.begin(), shots.end(), t, [](double x, const Shot& shot) { return x < shot.t; });
+  if (next == shots.begin()) return shots.front();
+  Shot shot = *std::prev(next);
+  if (next == shots.end() || shot.t == t) return shot;
+  shot.progress += (t - shot.t) / (next->t - shot.t) * (next->progress - shot.progress);
+  shot.t = t;
+  return shot;
+}
+
 CameraPath::CameraPath(std::vector<std::vector<Vec3>> poses, std::vector<double> times, MotionBounds bounds,
                        Framing framing, const RenderOptions& options)
     : poses_(std::move(poses)),

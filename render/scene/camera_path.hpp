@@ -29,6 +29,10 @@ struct Shot {
 // e longer: p' rises from 0 to 1 as x^2 (3 - 2 x), x = film time / e, and falls again before the end.
 std::vector<Shot> film_shots(const Trajectory& trajectory, const RenderOptions& options);
 
+// The picture of the motion at a time [s]: the film's own where it has one of that time, else how far the
+// film has come by shares between those around it.
+Shot shot_at(const Trajectory& trajectory, const RenderOptions& options, double t);
+
 // How many there would be at most for a run to this end time [s].
 double most_shots(double end_time, const RenderOptions& options);
 

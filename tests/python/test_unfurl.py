@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -244,6 +245,123 @@ def test_pictures_and_files(tmp_path):
     assert unfurl.scenes() and "deploy_time" in unfurl.measures()
 
 
+def pixels(path):
+    """Of a PNG without interlacing: what its header says, and its bytes with the filters undone (numpy, [rows, columns, channels])."""
+    data, at, packed = Path(path).read_bytes(), 8, b""
+    while at < len(data):
+        length = int.from_bytes(data[at:at + 4], "big")
+        kind, body = data[at + 4:at + 8], data[at + 8:at + 8 + length]
+        if kind == b"IHDR":
+            width, height, color = int.from_bytes(body[:4], "big"), int.from_bytes(body[4:8], "big"), body[9]
+        packed += body if kind == b"IDAT" else b""
+        at += length + 12
+    channels = {2: 3, 6: 4}[color]
+    rows = np.frombuffer(zlib.decompress(packed), dtype=np.uint8).reshape(height, 1 + width * channels)
+    out = np.zeros((height + 1, width + 1, channels), dtype=int)
+    for y in range(height):
+        line = rows[y, 1:].reshape(width, channels).astype(int)
+        for x in range(width):
+            left, up, corner = out[y + 1, x], out[y, x + 1], out[y, x]
+            guess = left + up - corner
+            a, b, c = abs(guess - left), abs(guess - up), abs(guess - corner)
+            paeth = np.where((a <= b) & (a <= c), left, np.where(b <= c, up, corner))
+            out[y + 1, x + 1] = (line[x] + [0, left, up, (left + up) // 2, paeth][rows[y, 0]]) % 256
+    return out[1:, 1:]
+
+
+@pytest.mark.parametrize("more", [{"render.supersample": 2}, {"render.transparent": True}, {"render.look": "blueprint", "render.fit": True},
+                                  {"render.motion_blur": 0.5, "render.depth_of_field": 0.05}, {"render.orbit": 40, "render.hold_start": 0.1}],
+                         ids=lambda more: "+".join(more))
+def test_a_frame_is_that_of_the_film(tmp_path, more):
+    changes = {"solver.end_time": 0.2, "render.size": [64, 48], "render.fps": 20, "render.hold": 0, **more}
+    sets = [word for key, value in changes.items() for word in ("--set", f"{key}={json.dumps(value)}")]
+    subprocess.run([PROGRAM, "render", "hoop6_sector", "-o", tmp_path / "out", "--quiet", *sets], check=True)
+    run = unfurl.Scene("hoop6_sector", set=changes).run()
+    first = 2 if "render.hold_start" in more else 0  # 0.1 s of film at rest
+    for k in (0, 2, 4):  # at 0, 0.1 and 0.2 s
+        run.frame(0.05 * k, tmp_path / "frame.png")
+        film = pixels(tmp_path / f"out/frames/frame_{first + k:05d}.png")
+        assert np.array_equal(pixels(tmp_path / "frame.png"), film)
+
+
+def test_what_a_person_can_mend_is_an_error_of_unfurl(tmp_path):
+    run = unfurl.Scene("hoop6_sector", set={"solver.end_time": 0.2}).run()
+    with pytest.raises(unfurl.StudyError, match="a figure is written as .png, .svg or .pdf, not '.bmp'"):
+        run.plot("energy", tmp_path / "g.bmp")
+    with pytest.raises(unfurl.StudyError, match="a frame is written as .png, not '.jpg'"):
+        run.frame(0.1, tmp_path / "g.jpg")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(unfurl.FileError, match="file/below: not a directory"):
+        run.export("html", tmp_path / "file/below")
+    for t in (100, -0.1, float("nan")):
+        with pytest.raises(IndexError, match="is not within the run"):
+            run.frame(t, tmp_path / "g.png")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
 def test_any_text_is_a_value():
     for title in ("\U0001F600 x", "a\x7fb", "\u00e9 \\ \" \t \x01", "\U0010FFFF"):
         assert unfurl.Scene("pendulum", set={"title": title}).title == title
+
+
+def test_a_stepper_says_how_far_it_is_and_gives_a_run_as_a_scene_does():
+    stepper = unfurl.Scene("pendulum", set={"solver.end_time": 0.2}).stepper()
+    assert isinstance(stepper, unfurl.Stepper) and stepper.status == "running"
+    stepper.step()
+    assert stepper.status == "running"
+    early = stepper.finish()
+    while stepper.step():
+        pass
+    assert stepper.status == "completed"
+    run = stepper.finish()
+    assert isinstance(run, unfurl.Run) and len(early.t) == 2 and len(run.t) == 21
+    assert run.summary["final"]["t_s"] == 0.2 and run.rod_force.shape == (21, len(run.rods))
+    assert np.array_equal(run.x[run.nodes[-1]][-1], stepper.x[-1])
+
+
+def test_work_on_a_run_leaves_other_threads_alone(tmp_path):
+    run = unfurl.Scene("hoop6", set={"solver.step": 0.002, "render.size": [640, 480]}).run()
+    stepper = unfurl.Scene("hoop6", set={"solver.step": 0.002}).stepper()
+    stepper.advance_to(4.0)
+    work = {"frame": lambda: run.frame(1.0, tmp_path / "a.png"), "plot": lambda: run.plot("poses", tmp_path / "b.png"),
+            "export": lambda: run.export("html", tmp_path), "finish": stepper.finish}
+    for name, call in work.items():
+        thread, ticks = threading.Thread(target=call), [time.monotonic()]
+        thread.start()
+        while thread.is_alive():
+            ticks.append(time.monotonic())
+            time.sleep(0.001)
+        # With the lock held there would be one tick or two, whatever the machine does besides; the work takes 0.1 s and more.
+        assert len(ticks) > 10, name
+
+
+def test_threads_may_use_one_run(tmp_path):
+    run = unfurl.Scene("hoop6_sector", set={"solver.end_time": 1, "render.size": [96, 64]}).run()
+    alone = np.array([run.at(t) for t in np.linspace(0, 1, 50)])
+    results = [None] * 3
+
+    def work(i):
+        run.plot("energy", tmp_path / f"{i}.png")
+        run.frame(0.1 * i, tmp_path / f"f{i}.png")
+        results[i] = np.array([run.at(t) for t in np.linspace(0, 1, 50)])
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(np.array_equal(r, alone) for r in results)
+    assert (tmp_path / "0.png").read_bytes() == (tmp_path / "2.png").read_bytes()
+
+
+def test_ctrl_c_ends_a_large_sweep():
+    code = ("import unfurl\ns = unfurl.Scene('hoop6_sector')\nprint('ready', flush=True)\n"
+            "s.sweep({'structure.fold_angle': [40 + 1e-3 * i for i in range(30000)]}, ['peak_rod_force'])")
+    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    child.stdout.readline()
+    time.sleep(1.0)
+    begin = time.monotonic()
+    child.send_signal(signal.SIGINT)
+    _, err = child.communicate(timeout=60)
+    assert "KeyboardInterrupt" in err
+    assert time.monotonic() - begin < 5

@@ -19,7 +19,7 @@ from typing import Any, Iterable, Mapping, Sequence
 import numpy as np
 
 from . import _unfurl
-from ._unfurl import Error, FileError, GraphicsError, NotFound, SceneError, Stepper, StructureError, StudyError, UnreadableScene, __version__, measures, scenes
+from ._unfurl import Error, FileError, GraphicsError, NotFound, SceneError, StructureError, StudyError, UnreadableScene, __version__, measures, scenes
 
 __all__ = ["Scene", "Structure", "Run", "Named", "Stepper", "Error", "SceneError", "StructureError", "StudyError", "FileError",
            "GraphicsError", "NotFound", "UnreadableScene", "measures", "scenes", "__version__"]
@@ -116,7 +116,7 @@ class Run:
                 return Svg(svg.read())
 
     def frame(self, t: float, file: str | os.PathLike) -> None:
-        """The picture of the structure at a time, as PNG, with the scene's look."""
+        """The picture of the structure at a time of the run, as PNG: what a film of the scene shows then."""
         self._run.frame(t, os.fspath(file))
 
     def export(self, format: str, directory: str | os.PathLike) -> None:
@@ -137,6 +137,14 @@ class Run:
 
     def __repr__(self):
         return f"<run of {self.title!r}: {self.status} at {self.t[-1]:.6g} s, {len(self.t)} states>"
+
+
+class Stepper(_unfurl.Stepper):
+    """A run step by step: while s.step(): s.t, s.x, s.v. `status` is running until it has ended."""
+
+    def finish(self) -> Run:
+        """The run so far."""
+        return Run(super().finish())
 
 
 class Svg(str):
@@ -174,7 +182,7 @@ class Scene:
 
     def stepper(self) -> Stepper:
         """Step by step, through events, stops and latches: while s.step(): s.t, s.x, s.v."""
-        return self._source.stepper()
+        return Stepper(self._source)
 
     def sweep(self, vary: Mapping[str, Sequence[float]], measures: Sequence[str], threads: int = 1) -> dict:
         """The measures at every point of the grid: arrays by column, the last key runs fastest."""

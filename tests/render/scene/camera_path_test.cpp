@@ -195,6 +195,29 @@ TEST_CASE("a film begins with its card and its first picture, and its last one s
   CHECK(shots[shots.size() - 12].t < shots.back().t);
 }
 
+TEST_CASE("the picture of a time is the one that the film has of it, whatever the pace") {
+  const Simulation run = ring();
+  RenderOptions options;
+  options.fps = 10;
+  options.title_card = options.hold_start = options.turntable = 0.5;
+  options.motion_blur = 0.4;
+  for (const auto& [pace, easing] :
+       {std::pair("time", 0.0), std::pair("time", 0.5), std::pair("even", 0.3)}) {
+    options.pace = pace;
+    options.easing = easing;
+    const auto shots = film_shots(run.trajectory, options);
+    for (std::size_t k = 10; k + 15 < shots.size(); ++k) {  // the motion
+      const Shot at = shot_at(run.trajectory, options, shots[k].t);
+      CHECK(at == shots[k]);
+      const double middle = 0.5 * (shots[k].t + shots[k + 1].t);
+      const Shot between = shot_at(run.trajectory, options, middle);
+      CHECK(between.t == middle);
+      CHECK(between.progress == Approx(0.5 * (shots[k].progress + shots[k + 1].progress)).margin(1e-12));
+    }
+    CHECK(shot_at(run.trajectory, options, run.trajectory.end_time()) == Shot{run.trajectory.end_time(), 1});
+  }
+}
+
 TEST_CASE("a camera that follows while it turns has every pose in the picture, larger at the start") {
   const Simulation run = ring();
   RenderOptions options;

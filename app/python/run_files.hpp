@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a run of the Python module writes; knows nothing of Python.
+#pragma once
+
+#include <string>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/scene/scene.hpp"
+#include "core/simulate/simulation.hpp"
+
+namespace unfurl {
+
+struct JudgedRun {
+  Scene scene;
+  Simulation simulation;
+  Diagnostics diagnostics;
+};
+
+// All throw what derives from Error where a person can mend it.
+std::string summary_of(const JudgedRun& run);
+void write_export(const JudgedRun& run, const std::string& format, const std::string& directory);
+void write_plot(const JudgedRun& run, const std::string& name, const std::string& file,
+                const std::string& style);
+// At a time within the run.
+void write_still(const JudgedRun& run, double t, const std::string& file);
+
+}  // namespace unfurl
