@@ -10,6 +10,7 @@
 #include "app/command.hpp"
 #include "app/output/progress.hpp"
 #include "app/verbs/scene_run.hpp"
+#include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/clearance.hpp"
 #include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
@@ -86,7 +87,8 @@ NearRods near_rods(const std::shared_ptr<const Model>& model, const Scene& scene
   const Waiting waiting("distances of " + std::to_string(near.names.size()) + " rods over the motion",
                         arguments.quiet);
   try {
-    const Simulation run = simulate_as_asked(model, solver);
+    Simulation run = simulate_as_asked(model, solver);
+    judge(run);  // nothing is near in what is wrong
     const std::size_t states = near.why.empty() ? run.trajectory.size() : 1;
     near.least = least_clearance(run.trajectory, states);
     near.until = run.trajectory.time(states - 1);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "core/math/determined_rows.hpp"
 #include "core/simulate/elastic_sharing.hpp"
@@ -14,20 +15,36 @@
 namespace unfurl {
 namespace {
 
-// What a measure changes by where everything is moved by a metre: zero for all but coordinates in space.
+// A node of which a measure tells where it is in space, not against others, and what the measure changes by
+// where that one is moved by a metre.
+struct Place {
+  int node;
+  Vec3 change;
+};
+
 // A ghost is nowhere.
-Vec3 change_with_place(const Structure& structure, const Measure& measure) {
-  if (measure.kind == MeasureKind::coordinate && measure.nodes.size() == 1)
-    return structure.nodes[static_cast<std::size_t>(measure.nodes.front())].ghost ? Vec3(Vec3::Zero())
-                                                                                  : measure.axis;
-  Vec3 sum = Vec3::Zero();
+void add_places(const Structure& structure, const Measure& measure, double share,
+                std::vector<Place>& places) {
+  if (measure.kind == MeasureKind::coordinate && measure.nodes.size() == 1 &&
+      !structure.nodes[static_cast<std::size_t>(measure.nodes.front())].ghost)
+    places.push_back({measure.nodes.front(), share * measure.axis});
   for (const MeasureTerm& term : measure.terms)
-    sum += term.coefficient * change_with_place(structure, term.measure);
-  return sum;
+    add_places(structure, term.measure, share * term.coefficient, places);
+}
+
+// Of what the ground holds: none where the measure stays as it is when everything is moved. Of a rack these
+// are its own node, not those of the pinion's angle.
+std::vector<Place> places_of(const Structure& structure, const Measure& measure) {
+  std::vector<Place> places;
+  add_places(structure, measure, 1.0, places);
+  Vec3 sum = Vec3::Zero();
+  for (const Place& place : places) sum += place.change;
+  if (sum.isZero()) places.clear();
+  return places;
 }
 
 bool tells_place(const Structure& structure, const Measure& measure) {
-  return !change_with_place(structure, measure).isZero();
+  return !places_of(structure, measure).empty();
 }
 
 bool linear(const Constraint& c) {
@@ -37,11 +54,6 @@ bool linear(const Constraint& c) {
 bool ties_to_ground(const Structure& structure, const Constraint& c) {
   if (c.kind == "measure") return tells_place(structure, c.measure);
   return linear(c) && !c.symmetry && c.nodes.size() == 1;
-}
-
-void add_nodes(const Measure& measure, std::set<int>& nodes) {
-  nodes.insert(measure.nodes.begin(), measure.nodes.end());
-  for (const MeasureTerm& term : measure.terms) add_nodes(term.measure, nodes);
 }
 
 // Per row of these sources, 1: it belongs to a support.
@@ -106,15 +118,18 @@ std::vector<char> unique_supports(const Trajectory& trajectory, std::size_t i, b
 std::vector<int> supports(const Structure& structure) {
   std::set<int> nodes;
   if (structure.sectors != 1.0) return {};
+  const auto add_nodes = [&](const Measure& measure) {
+    for (const Place& place : places_of(structure, measure)) nodes.insert(place.node);
+  };
   for (const Constraint& c : structure.constraints) {
-    if (!ties_to_ground(structure, c)) continue;
-    nodes.insert(c.nodes.begin(), c.nodes.end());
-    add_nodes(c.measure, nodes);
+    if (c.kind == "measure")
+      add_nodes(c.measure);
+    else if (ties_to_ground(structure, c))
+      nodes.insert(c.nodes.front());
   }
-  for (const Stop& stop : structure.stops)
-    if (tells_place(structure, stop.measure)) add_nodes(stop.measure, nodes);
+  for (const Stop& stop : structure.stops) add_nodes(stop.measure);
   for (const Force& force : structure.forces)
-    if (force.kind == "friction" && tells_place(structure, force.measure)) add_nodes(force.measure, nodes);
+    if (force.kind == "friction") add_nodes(force.measure);
   std::erase_if(nodes, [&](int node) { return structure.nodes[static_cast<std::size_t>(node)].ghost; });
   return {nodes.begin(), nodes.end()};
 }
@@ -137,6 +152,16 @@ ReactionColumns::ReactionColumns(const Model& first, std::vector<Series>& column
 void ReactionColumns::enter(const Model& model) {
   model_ = &model;
   kept_ = rows_of_supports(model.structure, model.system.sources());
+  measured_.clear();
+  for (Index r = 0; r < kept_.size(); ++r) {
+    const int source = model.system.sources()[static_cast<std::size_t>(r)];
+    if (kept_[r] == 0) continue;
+    const Constraint& c = model.structure.constraints[static_cast<std::size_t>(source)];
+    if (c.kind != "measure") continue;
+    kept_[r] = 0.0;
+    for (const Place& place : places_of(model.structure, c.measure))
+      measured_.push_back({r, place.node, place.change});
+  }
   solver_.reset();
   if (!model.system.eliminated()) return;
   const std::vector<int> sources = model.system.all_sources();
@@ -168,6 +193,7 @@ void ReactionColumns::append(const Model& model, const System& system, const Sta
   if (model_ != &model) enter(model);
   VectorXd reaction = VectorXd::Zero(q.size());
   system.add_constraint_force(q, kept_.cwiseProduct(lambda), -1.0, reaction);
+  for (const Held& held : measured_) reaction.segment<3>(3 * held.node) -= lambda[held.row] * held.change;
   if (solver_) {
     VectorXd rest = VectorXd::Zero(q.size()), left(q.size()), mu(rows_.rows());  // rest = A^T mu
     if (state.tension.size() > 0) {

@@ -42,7 +42,13 @@ class ReactionColumns {
   std::vector<int> supports_;
   const Model* model_ = nullptr;
   VectorXd kept_, linear_;  // 1: a row of a support, of the kept ones and of those of rows_
-  SparseRows rows_;         // of the node coordinates, constant; empty: nothing was eliminated
+  struct Held {
+    Index row;
+    int node;
+    Vec3 change;
+  };
+  std::vector<Held> measured_;  // of rows that hold a measure: what of it the ground holds, and how
+  SparseRows rows_;             // of the node coordinates, constant; empty: nothing was eliminated
   std::unique_ptr<SaddleSolver> solver_;
 };
 

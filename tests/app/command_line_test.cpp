@@ -286,6 +286,19 @@ TEST_CASE("modes at the start: stops that hold and friction that sticks are lock
   CHECK(motions(friction + "1}]") == 1);
 }
 
+TEST_CASE("check looks at distances of rods in what is good of the motion only") {
+  const std::vector<std::string> long_steps = {"ladder", "--set", "solver.step=1", "--json", "--quiet"};
+  const auto json_of = [&](const std::string& verb) {
+    std::vector<std::string> words = long_steps;
+    words.insert(words.begin(), verb);
+    return nlohmann::json::parse(run_program(words).out);
+  };
+  const auto run = json_of("run"), clearance = json_of("check")["clearance"];
+  REQUIRE(run["status"] == "failed");
+  CHECK(clearance["until_s"] == run["final"]["t_s"]);
+  CHECK(clearance["whole_motion"] == false);
+}
+
 TEST_CASE("options that would do nothing, or contradict each other, are refused") {
   const ScratchDirectory dir;
   const std::string png = dir / "p.png", record = dir / "r.jsonl";

@@ -259,6 +259,40 @@ TEST_CASE("planes that say that a structure is flat, and the rotor of a motor, a
   CHECK(supports(testing::model_of(tripod + run_for(0.1))->structure) == std::vector<int>{0, 1});
 }
 
+// A level arm H-A on a pin at H, balanced by a rack that a load pulls; the pinion's angle is against the
+// fixed node B. The ground holds the rack, and H and B bear the arm; A is in the air.
+TEST_CASE("of a rack the ground holds the node whose place it tells") {
+  const std::string arm = custom + node("A", {1, 0, 0}, "mass = 1") + node("H", {0, 0, 0}, "fixed = true") +
+                          node("B", {-1, 0, 1}, "fixed = true") + node("R", {0.3, 0, -0.2}, "mass = 1") +
+                          rod("A", "H", "mass = 1") +
+                          "[[constraints]]\nkind = 'line'\nnodes = ['R']\ndirection = [1, 0, 0]\n"
+                          "[[constraints]]\nkind = 'plane'\nnodes = ['A']\nnormal = [0, 1, 0]\n"
+                          "[[loads]]\nnodes = ['R']\nforce = [-73.575, 0, 0]\n" +
+                          run_for(0.1);
+  const std::string rack =
+      "[[constraints]]\nkind = 'rack'\nnodes = ['A', 'H', 'B', 'R']\nradius = 0.2\ndirection = [1, 0, 0]\n";
+  const Simulation run = run_scene(arm + rack);
+  const Diagnostics d = diagnose(run);
+  for (std::size_t i = 0; i < d.t.size(); i += 3) {
+    // Statics: 19.62 N of the arm and A, 9.81 N of R; 1e-9 of the largest force.
+    CHECK((reaction(d, "H", i) + reaction(d, "B", i) - Vec3(0, 0, 19.62)).norm() < 1e-7);
+    if (d.find("A.reaction_N")) CHECK(reaction(d, "A", i).norm() < 1e-7);
+    CHECK((reaction(d, "R", i) - Vec3(73.575, 0, 9.81)).norm() < 1e-7);
+  }
+  // Let go, all of it moves; the supports' impulse, with weight and load, is the momentum.
+  const Simulation moving = run_scene(arm + rack, {"loads[0].force=[-20, 0, 0]", "solver.stages=5"});
+  const Diagnostics m = diagnose(moving);
+  Vec3 impulse = Vec3::Zero();
+  const std::size_t last = m.t.size() - 1;
+  const auto all = [&](std::size_t i) {
+    return reaction(m, "H", i) + reaction(m, "B", i) + reaction(m, "R", i);
+  };
+  for (std::size_t i = 0; i + 2 <= last; i += 2)  // Simpson's rule of ten steps: some 1e-6 of it
+    impulse += (m.t[i + 2] - m.t[i]) / 6 * (all(i) + 4 * all(i + 1) + all(i + 2));
+  const Vec3 given = impulse + m.t[last] * Vec3(-20, 0, -9.81 * 3);
+  CHECK((given - momentum(moving.trajectory, last)).norm() < 1e-5 * 3);
+}
+
 TEST_CASE("what comes to rest on a stop is held by it") {
   const Simulation run =
       run_scene(custom + node("A", Vec3(0, 0, 0.02), "mass = 2") + node("B", Vec3(1, 0, 0.02), "mass = 1") +
