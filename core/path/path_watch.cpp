@@ -117,12 +117,30 @@ double PathWatch::margin(const PathMotion& motion, double t, Index i) const {
   return out[i];
 }
 
+// Otherwise it would have gone through by what counts as zero before it is told. A load may begin with
+// nothing: what presses is asked for a moment later, too.
+bool PathWatch::pressed(const PathMotion& motion, double t, double to, Index i, double margin) const {
+  constexpr double rounded = 1e-12;  // of what the force is the sum of
+  constexpr double moment = 1e-3;    // of the way to `to`
+  if (motion.driven() || i >= static_cast<Index>(sides_.stops().size()) || !(std::abs(margin) <= 1))
+    return false;
+  double s = 0, v = 0;
+  motion.at(t, s, v);
+  if (v != 0) return false;
+  const int into = gap_slope(static_cast<std::size_t>(i), s) > 0 ? -1 : 1;
+  const auto push = [&](double at, double least) {
+    const ScalarLaw::Value pull = law_->at(s, 0.0, at);
+    return into * pull.Q > least * (rounded * pull.scale + pull.noise);
+  };
+  return push(t, -1) && push(t + moment * (to - t), 1);
+}
+
 std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double from, double to, bool edge) {
   VectorXd a, b, rates_a, rates_b;
   margins(motion, from, a, rates_a);
   const Index deployed = a.size() - 1;
   for (Index i = 0; i < deployed; ++i)
-    if (a[i] < -1) return {from, static_cast<int>(i)};
+    if (a[i] < -1 || pressed(motion, from, to, i, a[i])) return {from, static_cast<int>(i)};
   std::pair<double, int> first{to, -1};
   double t0 = from;
   for (const double t1 : looked_at(motion, from, to)) {

@@ -49,6 +49,8 @@ class PathWatch {
   double margin(const PathMotion& motion, double t, Index i) const;
   // When a margin that falls at one time and rises at another is least in between.
   double least_between(const PathMotion& motion, Index i, double a, double b) const;
+  // Whether stop i is touched at t by what is at rest, and pressed against it.
+  bool pressed(const PathMotion& motion, double t, double to, Index i, double margin) const;
   std::vector<double> looked_at(const PathMotion& motion, double from, double to) const;
   double zero_of(const PathMotion& motion, Index i, double a, double b) const;
 

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs on the path of what stays where it is.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/measures.hpp"
+#include "core/diagnostics/peaks.hpp"
+#include "core/path/path_run.hpp"
+#include "tests/support/number.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using unfurl::testing::number;
+
+namespace path_at_rest_test {
+
+namespace {
+
+Simulation run_on_path(const std::string& text, const std::vector<std::string>& changes = {}) {
+  const Scene scene = read_scene_text(text, "s.toml", changes);
+  return simulate_on_path(build_model(scene), scene.solver);
+}
+
+// A slider-crank whose slider stands at the limit of its stop and is pressed on it.
+const std::string slider_crank = R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true},
+  {name = "C", position = ["=0.5*cos(45*deg)", 0, "=0.5*sin(45*deg)"], mass = 0.3},
+  {name = "B", position = ["=0.5*cos(45*deg)+sqrt(1.2^2-(0.5*sin(45*deg))^2)", 0, 0], mass = 1}]
+rods = [{nodes = ["A", "C"], mass = 1}, {nodes = ["C", "B"], mass = 1}]
+[[constraints]]
+kind = "line"
+nodes = ["B"]
+direction = [1, 0, 0]
+[[constraints]]
+kind = "plane"
+nodes = ["C"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "coordinate_stop"
+name = "end"
+nodes = ["B"]
+direction = [1, 0, 0]
+max = "=0.5*cos(45*deg)+sqrt(1.2^2-(0.5*sin(45*deg))^2)"
+restitution = 0
+[gravity]
+acceleration = [3, 0, -5]
+[solver]
+step = 0.007
+end_time = 0.8
+)toml";
+
+}  // namespace
+
+// However weakly: gravity along the line alone, of 1e-9 m/s^2, would need 1e-1 s to go through the stop by
+// what counts as touching. Peaks are those of what never moves: none but rounding, of coordinates of 1 m over
+// a step of 7 ms.
+TEST_CASE("what is pressed on a stop at the start rests on it from the start and never moves") {
+  for (const double g : {3.0, 1e-3, 1e-9, 1e4})
+    for (const double restitution : {0.0, 0.6}) {
+      CAPTURE(g, restitution);
+      const Simulation run = run_on_path(slider_crank, {"gravity.acceleration=[" + number(g) + ",0,0]",
+                                                        "constraints[2].restitution=" + number(restitution)});
+      CHECK(run.status == RunStatus::completed);
+      REQUIRE(run.events.size() == 1);
+      CHECK(run.events[0].name == "rests on stop end");
+      CHECK(run.events[0].t == 0);
+      CHECK(run.events[0].energy_lost == 0);
+      const Diagnostics d = diagnose(run);
+      CHECK(largest_of_column(run, d, "kinetic_energy_J") <= 1e-24);
+      CHECK(find_measure("peak_speed").value(run, d) <= 1e-12);
+      CHECK((testing::end_positions(run) - run.trajectory.node_positions(0)).lpNorm<Eigen::Infinity>() <=
+            1e-14);
+    }
+  // A push that begins with nothing is there right behind the start.
+  const Simulation ramp = run_on_path(
+      slider_crank,
+      {"gravity.acceleration=[0,0,0]",
+       R"(forces=[{kind="load_over_time",nodes=["B"],force=[4,0,0],times=[0,0.2],values=[0,1]}])"});
+  REQUIRE(ramp.events.size() == 1);
+  CHECK(ramp.events[0].t == 0);
+  CHECK((testing::end_positions(ramp) - ramp.trajectory.node_positions(0)).lpNorm<Eigen::Infinity>() <=
+        1e-14);
+  // The other way it leaves at once, and nothing holds it.
+  const Simulation away = run_on_path(slider_crank, {"gravity.acceleration=[-3,0,0]", "solver.end_time=0.1"});
+  CHECK(away.events.empty());
+  CHECK(largest_of_column(away, diagnose(away), "kinetic_energy_J") > 0.01);
+}
+
+}  // namespace path_at_rest_test
