@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/simulate/run_words.hpp"
 
@@ -119,19 +120,44 @@ void PathMotion::at(double t, double& s, double& v) const {
   step.at(std::clamp(t, step.t0, step.end()), s, v);
 }
 
-// Newton's method from where it was last.
+// Newton's method from where it was last, on the one branch on which what is driven follows s: where it turns
+// round, or where the path ends, the drive can go no further. No correction is longer than a part of a piece
+// of the path, so that nothing is traced that the motion does not come to.
 void PathMotion::on_drive(double t, double& s, double& v) const {
+  constexpr double part = 0.3, least_slope = 1e-9, rounded = 1e-14;
+  constexpr int most = 100;  // corrections that are no shorter than the ones before, or not whole
+  const auto refuse = [&](const char* why) {
+    throw PathRefused("at t = " + seconds(t) + ": the drive " + why);
+  };
   const double wanted = drive_.target(t);
   s = s_;
-  for (int it = 0; it < 40; ++it) {
-    const ValueAndSlope m = law_->table().at(drive_.column, s);
+  const PathTable::Segment* here = law_->table().segment(s);
+  if (!here) refuse("leads where the path cannot be followed");
+  ValueAndSlope m = here->at(drive_.column, s);
+  const double branch = m.slope > 0 ? 1 : -1;
+  double turn = std::numeric_limits<double>::quiet_NaN();  // behind where it turns round
+  for (int it = 0;; ++it) {
     const double change = (wanted - m.value) / m.slope;
-    if (!std::isfinite(change) || std::abs(m.slope) < 1e-9)
-      throw PathRefused("at t = " + seconds(t) + ": the drive does not determine the motion along the path");
-    s += change;
-    if (std::abs(change) <= 4e-16 * (1 + std::abs(s)) || (it > 8 && std::abs(change) < 1e-13)) break;
+    if (!std::isfinite(change) || std::abs(m.slope) < least_slope)
+      refuse("does not determine the motion along the path");
+    const bool at_round_off =
+        std::abs(wanted - m.value) <= rounded * here->scale[drive_.column] + here->noise[drive_.column];
+    if (std::abs(change) <= 4e-16 * (1 + std::abs(s)) || (it > 8 && at_round_off)) break;
+    if (it == most) refuse("goes beyond what the structure can reach");
+    const double longest = part * (here->b - here->a);
+    double next = s + std::clamp(change, -longest, longest);
+    if ((next - turn) * change >= 0) next = 0.5 * (s + turn);
+    const PathTable::Segment* there = law_->table().segment(next);
+    const ValueAndSlope found =
+        there ? there->at(drive_.column, next) : ValueAndSlope{0, std::numeric_limits<double>::quiet_NaN()};
+    if (!(found.slope * branch > 0)) {
+      turn = next;
+      continue;
+    }
+    if (std::abs(change) > longest) it = 0;
+    s = next, m = found, here = there;
   }
-  v = drive_.target.derivative(1, t) / law_->table().at(drive_.column, s).slope;
+  v = drive_.target.derivative(1, t) / m.slope;
 }
 
 }  // namespace unfurl

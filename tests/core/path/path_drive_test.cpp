@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Drives on the path, up to what the structure can reach and beyond.
+#include <catch2/catch.hpp>
+
+#include "core/path/path_run.hpp"
+#include "core/study/tolerance.hpp"
+#include "tests/support/number.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using unfurl::testing::number;
+
+namespace path_drive_test {
+
+namespace {
+
+// The crank A-B of length 1 and D at 3 from A: B-D is at most 4, where the crank points away from D.
+const std::string four_bar = R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [0, 0, 1]},
+  {name = "C", position = [2.6, 0, 2.4]}, {name = "D", position = [3, 0, 0], fixed = true}]
+rods = [{nodes = ["A", "B"], mass = 1}, {nodes = ["B", "C"], mass = 3}, {nodes = ["C", "D"], mass = 2.4}]
+[[constraints]]
+kind = "plane"
+nodes = ["B", "C"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "length"
+name = "drive"
+nodes = ["B", "D"]
+)toml";
+
+Scene driven(const std::vector<std::string>& drive) {
+  std::vector<std::string> changes{"solver.step=0.01"};
+  for (const std::string& one : drive)
+    changes.push_back((one.starts_with("solver.") ? "" : "constraints[1].") + one);
+  return read_scene_text(four_bar, "s.toml", changes);
+}
+
+std::string refusal(const Scene& scene) {
+  try {
+    simulate_on_path(build_model(scene), scene.solver);
+  } catch (const PathRefused& refused) {
+    return refused.what();
+  }
+  return "";
+}
+
+double length_at_end(const Simulation& run) {
+  const VectorXd q = testing::end_positions(run);
+  return (q.segment<3>(3) - q.segment<3>(9)).norm();
+}
+
+}  // namespace
+
+// 4 m are passed by a lot, a little and by 1e-9 of them; 1e-11 of them more or less is 1e-5 rad of the crank.
+TEST_CASE("a drive beyond what the structure can reach is refused where it gets there") {
+  CHECK(refusal(driven({"motion=\"rate\"", "rate=0.5", "ramp=0.1", "solver.end_time=4"})).find("the drive") !=
+        std::string::npos);
+  for (const double to : {5.0, 4.5, 4.00001, 4 + 4e-9}) {
+    CAPTURE(to);
+    const std::vector<std::string> drive{"motion=\"smooth\"", "to=" + number(to), "duration=1",
+                                         "solver.end_time=1.5"};
+    CHECK(refusal(driven(drive)).find("the drive") != std::string::npos);
+    std::vector<std::string> by_itself = drive;
+    by_itself.push_back("solver.model=\"auto\"");
+    const Scene scene = driven(by_itself);
+    CHECK(simulate_as_asked(build_model(scene), scene.solver).status == RunStatus::failed);
+  }
+  for (const double to : {4 - 4e-9, 3.99999, 3.9, 2.1}) {
+    CAPTURE(to);
+    const Scene scene =
+        driven({"motion=\"smooth\"", "to=" + number(to), "duration=1", "solver.end_time=1.5"});
+    const Simulation run = simulate_on_path(build_model(scene), scene.solver);
+    CHECK(run.status == RunStatus::completed);
+    CHECK(length_at_end(run) == Approx(to).epsilon(1e-14));
+  }
+}
+
+// From one time of the grid to the next over more than a piece of the path, and there and back.
+TEST_CASE("a drive may go far in a step") {
+  for (const double step : {0.01, 0.2, 1.0}) {
+    CAPTURE(step);
+    const Scene scene = driven(
+        {"motion=\"smooth\"", "to=2.001", "duration=1", "solver.end_time=2", "solver.step=" + number(step)});
+    const Simulation run = simulate_on_path(build_model(scene), scene.solver);
+    CHECK(run.status == RunStatus::completed);
+    CHECK(length_at_end(run) == Approx(2.001).epsilon(1e-14));
+  }
+}
+
+}  // namespace path_drive_test
