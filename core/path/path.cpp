@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/math/chebyshev.hpp"
 #include "core/math/saddle_solver.hpp"
@@ -51,6 +52,17 @@ struct Fit {
 };
 
 }  // namespace
+
+// T_k'(x) = k U_{k-1}(x).
+VectorXd PathPiece::bend(double x) const {
+  VectorXd out = VectorXd::Zero(tangent.rows());
+  double u = 1, before = 0;  // U_{k-1}, U_{k-2}
+  for (Index k = 1; k < tangent.cols(); ++k) {
+    out += static_cast<double>(k) * u * tangent.col(k);
+    before = std::exchange(u, 2 * x * u - before);
+  }
+  return out * (2 / (b - a));
+}
 
 // Poses of one piece after the other.
 class Path::Tracer {

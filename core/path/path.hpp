@@ -34,10 +34,11 @@ struct PathRefused : Error {
 
 // Chebyshev series between two poses, as functions of x in [-1, 1], s = middle + x * half.
 struct PathPiece {
-  double a = 0.0, b = 0.0;  // s at its ends
-  MatrixXd z, tangent;      // [solved coordinates x points]: coefficients
-  double noise = 0.0;       // of the tangent, as a share of it: next to singular poses, else 0
-  MatrixXd q, dq;           // [node coordinates x points]: values at the points, dq = dq/ds
+  double a = 0.0, b = 0.0;        // s at its ends
+  MatrixXd z, tangent;            // [solved coordinates x points]: coefficients
+  double noise = 0.0;             // of the tangent, as a share of it: next to singular poses, else 0
+  MatrixXd q, dq;                 // [node coordinates x points]: values at the points, dq = dq/ds
+  VectorXd bend(double x) const;  // d tangent / ds
   double at(double x) const { return 0.5 * (a + b) + 0.5 * (b - a) * x; }
   double x_of(double s) const { return (2 * s - (a + b)) / (b - a); }
 };

@@ -32,8 +32,10 @@ constexpr double same_equations = 1e-7, one_way = 1 - 1e-6;
 
 class PathRun {
  public:
-  PathRun(std::shared_ptr<const Model> model, const SolverOptions& options, const SimulationHooks& hooks)
+  PathRun(std::shared_ptr<const Model> model, const SolverOptions& options, const SimulationHooks& hooks,
+          double nudge)
       : base_(std::move(model)),
+        nudge_(nudge),
         options_(options),
         hooks_(hooks),
         path_(trace_path(base_)),
@@ -90,7 +92,8 @@ class PathRun {
     if (!path_->point(0.0, z, tangent)) throw PathRefused("no path leads on from the pose at the start");
     base_->system.expand_rate(start.state.w, q);
     const double v = tangent.dot(path_->system().mass() * path_->system().reduce_rate(q));
-    motion_.begin(0.0, 0.0, v);
+    path_->system().expand_rate(tangent, q);
+    motion_.begin(0.0, nudge_ / q.lpNorm<Eigen::Infinity>(), v);
     if (const Constraint* drive = driven_row(structure())) {
       drive_ = {drive->target, drive_column_};
       motion_.prescribe(*law_, drive_);
@@ -150,7 +153,7 @@ class PathRun {
     path_->point(s, z, tangent);
     const double along_path = drive_.there() ? a_on_drive(0.0) : law_->at(s, v, 0.0).Q;
     VectorXd q(base_->system.coordinates());
-    path_->system().expand_rate(along_path * tangent + v * v * bend(piece, x), q);
+    path_->system().expand_rate(along_path * tangent + v * v * piece.bend(x), q);
     const VectorXd in_model = base_->system.reduce_rate(q);
     const auto size = [&](const VectorXd& u) { return std::sqrt(u.dot(base_->system.mass() * u)); };
     if (!(size(a - in_model) <= same_equations * (size(a) + size(in_model)) + 1e-12))
@@ -165,17 +168,6 @@ class PathRun {
       const double e = length.value - cable.rest;
       law_->set_pulling(k, e > 0 && cable.stiffness * e + cable.damping * length.slope * v > 0);
     }
-  }
-
-  // d tangent / ds at x in [-1, 1] of a piece: T_k'(x) = k U_{k-1}(x).
-  static VectorXd bend(const PathPiece& piece, double x) {
-    VectorXd out = VectorXd::Zero(piece.tangent.rows());
-    double u = 1, before = 0;  // U_{k-1}, U_{k-2}
-    for (Index k = 1; k < piece.tangent.cols(); ++k) {
-      out += static_cast<double>(k) * u * piece.tangent.col(k);
-      before = std::exchange(u, 2 * x * u - before);
-    }
-    return out * (2 / (piece.b - piece.a));
   }
 
   // s'' that a drive asks for: f'' = m'' s'^2 + m' s''.
@@ -466,6 +458,7 @@ class PathRun {
   }
 
   std::shared_ptr<const Model> base_;  // without what is held or pulls
+  const double nudge_;                 // of the fastest coordinate, at the start
   const SolverOptions options_;
   const SimulationHooks& hooks_;
   std::shared_ptr<const Path> path_;
@@ -488,9 +481,9 @@ class PathRun {
 }  // namespace
 
 Simulation simulate_on_path(const std::shared_ptr<const Model>& model, const SolverOptions& options,
-                            const SimulationHooks& hooks) {
+                            const SimulationHooks& hooks, double nudge) {
   const double begin = thread_cpu_seconds();
-  Simulation run = PathRun(model, with_steps_inside(options), hooks).run();
+  Simulation run = PathRun(model, with_steps_inside(options), hooks, nudge).run();
   run.cpu_s = thread_cpu_seconds() - begin;
   if (model->structure.quasi_static) add_stretch(run.trajectory);
   return run;

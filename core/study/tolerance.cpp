@@ -10,6 +10,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/math/largest.hpp"
 #include "core/path/path_run.hpp"
+#include "core/path/path_scope.hpp"
 #include "core/path/sector.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/study/reference.hpp"
@@ -27,6 +28,8 @@ constexpr int tries = 8;  // per number of stages
 constexpr std::size_t most_between = 100;
 // What a run along the path is off by at most, as a share of the structure's size.
 constexpr double path_share = 1e-12;
+// And what rounding leaves of its start, likewise.
+constexpr double rounded_start = 1e-15;
 // Work of the whole search, in solves times unknowns: a minute or two of one core.
 constexpr double most_work = 2e8;
 
@@ -87,6 +90,11 @@ double distance(const Simulation& a, const Simulation& b) {
   return largest;
 }
 
+std::string out_of_reach(double tolerance, double estimate) {
+  return "the tolerance of " + short_number(tolerance) + " m is out of reach; the estimated error is " +
+         short_number(estimate) + " m";
+}
+
 class Picker {
  public:
   Picker(const std::shared_ptr<const Model>& model, const SolverOptions& options,
@@ -114,9 +122,7 @@ class Picker {
     run.position_estimate = best_->estimate;
     run.options.tolerance = options_.tolerance;
     if (!(best_->estimate <= options_.tolerance))
-      run.warnings.push_back("the tolerance of " + short_number(options_.tolerance) +
-                             " m is out of reach; the estimated error is " + short_number(best_->estimate) +
-                             " m");
+      run.warnings.push_back(out_of_reach(options_.tolerance, best_->estimate));
     return run;
   }
 
@@ -278,6 +284,26 @@ Simulation without_path(const std::shared_ptr<const Model>& model, const SolverO
   return run;
 }
 
+// What the motion makes of rounding, at least path_share of its size: a run that sets out from a start off by
+// some units of round-off ends up elsewhere. Either way, should there be no path the one way.
+double path_estimate(const std::shared_ptr<const Model>& model, const SolverOptions& options,
+                     const SimulationHooks& hooks, const Simulation& run) {
+  const double size = size_of_motion(*model, run.trajectory);
+  if (run.status == RunStatus::stopped || driven_row(model->structure)) return path_share * size;
+  SimulationHooks quiet;
+  quiet.cancelled = hooks.cancelled;
+  for (const double way : {1.0, -1.0}) {
+    try {
+      const Simulation other = simulate_on_path(model, options, quiet, way * rounded_start * size);
+      if (other.status == RunStatus::stopped) return std::numeric_limits<double>::quiet_NaN();
+      return larger(path_share * size, distance(run, other));
+    } catch (const PathRefused&) {
+      continue;
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const SolverOptions& options,
@@ -286,7 +312,17 @@ Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const So
   try {
     Simulation run = simulate_on_path(model, options, hooks);
     run.solved_as = {"path", "one degree of freedom; solver.model = \"" + options.model + "\""};
-    if (options.tolerance > 0) run.position_estimate = path_share * size_of_motion(*model, run.trajectory);
+    if (!(options.tolerance > 0)) return run;
+    run.position_estimate = path_estimate(model, options, hooks, run);
+    if (!(run.position_estimate > options.tolerance)) return run;  // NaN: stopped by the user
+    const bool for_ever = path_share * size_of_motion(*model, run.trajectory) > options.tolerance;
+    if (options.model == "auto" && !for_ever) {
+      Simulation other = without_path(
+          model, options, hooks,
+          "no path: rounding of the start grows to " + short_number(run.position_estimate) + " m on it");
+      if (other.position_estimate < run.position_estimate || other.status == RunStatus::stopped) return other;
+    }
+    run.warnings.push_back(out_of_reach(options.tolerance, run.position_estimate));
     return run;
   } catch (const PathRefused& refused) {
     if (options.model == "path")

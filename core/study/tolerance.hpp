@@ -17,9 +17,10 @@ namespace unfurl {
 // timed.
 //
 // Before that options.model decides what is solved: "path" and, where it applies, "auto" take the path
-// (path/path_run.hpp), whose answer is at round-off, so that no tolerance is looked after. "sector" and,
-// where there is no path, "auto" solve one sector of a ring whose sectors are alike (path/sector.hpp). Throws
-// PathRefused where "path" does not apply, SectorRefused where "sector" does not.
+// (path/path_run.hpp), whose answer is at round-off; a tolerance is compared with what the motion makes of
+// that, as a second run shows that sets out from a start nudged by it. "sector" and, where there is no path
+// or it does not keep the tolerance, "auto" solve one sector of a ring whose sectors are alike
+// (path/sector.hpp). Throws PathRefused where "path" does not apply, SectorRefused where "sector" does not.
 Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const SolverOptions& options,
                              const SimulationHooks& hooks = {});
 
