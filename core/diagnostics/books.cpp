@@ -7,11 +7,26 @@
 
 namespace unfurl {
 
+namespace {
+
+// Of each node coordinate [N].
+VectorXd weight_of(const Model& model) {
+  const SparseRows& mass = model.system.node_mass();
+  VectorXd out = mass * model.structure.gravity.replicate(mass.rows() / 3, 1);
+  for (std::size_t i = 0; i < model.structure.nodes.size(); ++i)
+    if (model.structure.nodes[i].ghost) out.segment<3>(3 * static_cast<Index>(i)).setZero();
+  return out;
+}
+
+}  // namespace
+
 std::vector<double> energy_round_off(const Simulation& run) {
   constexpr double noise = 64 * std::numeric_limits<double>::epsilon();
   const Trajectory& trajectory = run.trajectory;
   std::vector<double> out;
   VectorXd force;
+  double loads = 0;
+  for (const Load& load : trajectory.structure().loads) loads += load.force.lpNorm<1>();
   double reach = 0, work = 0;  // so far; a state that is not finite leaves them as they are
   const auto grow = [](double& most, double x) { most = x > most ? x : most; };
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
@@ -24,8 +39,11 @@ std::vector<double> energy_round_off(const Simulation& run) {
     const VectorXd mass = system.node_mass().diagonal();
     for (Index k = 0; k < std::min(mass.size(), force.size()); ++k)
       if (mass[k] > 0) grow(reach, std::abs(force[k]) / mass[k] * run.options.step * run.options.step);
-    grow(work,
-         force.lpNorm<1>() * reach + std::abs(system.potential_energy(q)) + std::abs(system.load_work(q)));
+    // Of gravity and loads by themselves, which other forces may balance: sums of them are rounded, too.
+    const VectorXd weight = weight_of(trajectory.model(i));
+    const double high = weight.dot(q);
+    grow(work, std::max(force.lpNorm<1>(), weight.lpNorm<1>() + loads) * reach + std::abs(high) +
+                   std::abs(system.potential_energy(q) + high) + std::abs(system.load_work(q)));
     // So far: a run that is not kept whole has made more than it has states.
     const auto behind = static_cast<long>(trajectory.size() - 1 - i);
     const auto steps = static_cast<double>(std::max(static_cast<long>(i), run.steps - behind));

@@ -27,8 +27,8 @@ Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniquen
 // What the energy balance may be off by rounding alone, at every state of the run [J]. Coordinates are known
 // to some `levels` = 64 units of round-off of their largest, x; a force F works |F| levels ulp x along that,
 // a mass m that moves so within a step h has the energy m (levels ulp x / h)^2 (h: the mean, since a step may
-// end at an event right behind its start); sums of large energies are rounded as those. Errors of n states
-// add up like sqrt(n).
+// end at an event right behind its start); sums of large energies are rounded as those; gravity and loads
+// count by themselves, whatever balances them. Errors of n states add up like sqrt(n).
 std::vector<double> energy_round_off(const Simulation& run);
 
 }  // namespace unfurl
