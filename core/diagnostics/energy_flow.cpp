@@ -70,17 +70,18 @@ double EnergyMeter::damping_power(const State& state, const VectorXd& accelerati
 // power in the middle, by the cubic through coordinates and rates, says the same but for order 5 (and has the
 // rounding of coordinates over h); the smaller one is taken, and none where they disagree in sign.
 //
-// A rate that is gone long before the step's end, with most of the power, is not to be had from the ends:
-// what it lost is what the energies lost beyond the work of others, `others`, as in an impact.
+// A rate that is gone long before the step's end, with most of the power, or that has come about right behind
+// its start, is not to be had from the ends: what it lost is what the energies lost beyond the work of
+// others, `others`, as in an impact.
 double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastest, double others) {
   const double h = b.t - a.t, e = 1e-3 / fastest;
   const auto rate = [&](const State& s, const VectorXd& acceleration) {
     return (damping_power(s, acceleration, e) - damping_power(s, acceleration, -e)) / (2 * e);
   };
-  constexpr double most = 10;  // times what is left of the power
+  constexpr double most = 10;  // times the power at the other end
   const double at_start = damping_power(a, before_.acceleration, 0),
                at_end = damping_power(b, after_.acceleration, 0);
-  if (at_start > most * at_end) return energy(a) - energy(b) + others;
+  if (at_start > most * at_end || at_end > most * at_start) return energy(a) - energy(b) + others;
   const double line = 0.5 * h * (at_start + at_end);
   double bend = h * h / 12 * (rate(a, before_.acceleration) - rate(b, after_.acceleration));
   if (constexpr double too_large = 1e5; h * fastest > too_large) {
