@@ -11,8 +11,10 @@ std::string ending_note(const Simulation& run, const Diagnostics& diagnostics) {
   if (run.status != RunStatus::completed || !fraction || fraction->values.empty()) return "";
   for (const Event& event : run.events)
     if (event.name == "deployed") return "";
-  // Rounded down: what is not deployed is never called 100 %.
-  const double percent = std::floor(1000 * fraction->values.back()) / 10;
+  // Rounded down: what is not deployed is never called 100 %. What has not moved may be off zero by rounding.
+  constexpr double rounding = 1e-9;
+  const double last = fraction->values.back();
+  const double percent = std::abs(last) <= rounding ? 0.0 : std::floor(1000 * last) / 10;
   if (!(percent < 100)) return "";
   std::ostringstream text;
   text << percent << " % deployed when end_time = " << run.options.end_time << " s was reached";

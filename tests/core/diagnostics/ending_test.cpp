@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <utility>
 
 #include "tests/support/scene_run.hpp"
 
@@ -25,6 +26,16 @@ TEST_CASE("a run that ends before the deployed pose says how far it got, rounded
     CHECK(said > percent - 0.1 - 1e-9);
     CHECK(note.find(std::string(" % deployed when end_time = ") + end + " s was reached") !=
           std::string::npos);
+  }
+  // What has not moved is deployed by nothing, whatever the sign of its rounding; what has moved back says
+  // so.
+  Simulation still = run_scene(ring, {"solver.end_time=0.1"});
+  Diagnostics d = diagnose(still);
+  for (const auto& [fraction, said] : std::vector<std::pair<double, std::string>>{
+           {-1e-14, "0 %"}, {-0.0, "0 %"}, {1e-14, "0 %"}, {-0.002, "-0.2 %"}, {-0.0021, "-0.3 %"}}) {
+    for (Series& column : d.columns)
+      if (column.name == "deployed_fraction") column.values.back() = fraction;
+    CHECK(ending_note(still, d).starts_with(said + " deployed"));
   }
   // Nothing where it deployed, where there is nothing to deploy, or where it broke off.
   Simulation deployed = run_scene(ring, {"solver.end_time=6"});
