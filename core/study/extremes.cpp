@@ -85,12 +85,20 @@ std::optional<Extreme> units(const SceneSource& source) {
                 [](double value) { return value; });
 }
 
-// The first number of the scene that is called so; its dotted key.
+// A stiffness that acts: neither that of a damper, 0, nor that of what does not give, inf.
+bool is_stiffness(const std::string& name, const TomlTree& value) {
+  if (name.find("stiffness") == std::string::npos) return false;
+  if (value.kind == TomlTree::Kind::integer) return value.integer > 0;
+  return value.kind == TomlTree::Kind::real && value.real > 0 && std::isfinite(value.real);
+}
+
+// The first of the scene, in an entry that is enabled; its dotted key.
 std::string stiffness_key(const TomlTree& tree, const std::string& path) {
+  const TomlTree* enabled = tree.find("enabled");
+  if (enabled && enabled->kind == TomlTree::Kind::boolean && !enabled->boolean) return {};
   for (const auto& [name, value] : tree.entries) {
     const std::string key = path.empty() ? name : path + "." + name;
-    const bool number = value.kind == TomlTree::Kind::real || value.kind == TomlTree::Kind::integer;
-    if (number && name.find("stiffness") != std::string::npos) return key;
+    if (is_stiffness(name, value)) return key;
     if (value.kind == TomlTree::Kind::table)
       if (std::string found = stiffness_key(value, key); !found.empty()) return found;
     for (std::size_t i = 0; i < value.items.size(); ++i)
@@ -114,7 +122,7 @@ constexpr std::array kinds{
     ExtremeKind{"force", "loads and gravity, to 1e8 times", force},
     ExtremeKind{"fold_angle", "folded towards dead centre, to 90 deg - 1e-7", fold_angle},
     ExtremeKind{"units", "more units", units},
-    ExtremeKind{"stiffness", "stiffer springs, to 1e10", stiffness},
+    ExtremeKind{"stiffness", "the first spring that acts stiffer, to 1e10", stiffness},
 };
 
 }  // namespace

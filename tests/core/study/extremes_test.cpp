@@ -140,6 +140,19 @@ TEST_CASE("an extreme changes what it is called by, by its value, and nothing el
   CHECK(built(ring.at("units"), 12).rods.size() == 2 * hoop.rods.size());
 }
 
+TEST_CASE("the stiffness that is driven is one that acts") {
+  const std::string dashpot = "forces[1]={kind=\"spring\", nodes=[\"O\",\"B\"], damping=2}";
+  for (const std::string& idle : {std::string("forces[1].enabled=false"), dashpot}) {
+    INFO(idle);
+    const auto all = extremes_of(source_of(swing, {idle}));
+    REQUIRE(all.count("stiffness") == 1);
+    CHECK(all.at("stiffness").label == "forces[2].stiffness");
+    CHECK(built(all.at("stiffness"), 1e6).forces.back().stiffness == 1e6);
+  }
+  const SceneSource none = source_of(swing, {"forces[1].enabled=false", "forces[2].enabled=false"});
+  CHECK(names_of(extremes_of(none)) == Names{"mass_ratio", "force"});
+}
+
 TEST_CASE("an atlas has the scene's own steps in it, and long runs where nothing deploys") {
   const auto steps_of = [](const char* end_time, const char* step) {
     const StressPlan plan = plan_stress(
