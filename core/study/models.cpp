@@ -32,18 +32,29 @@ std::string text_at(const TomlTree& root, const char* table, const char* key) {
   return value->kind == TomlTree::Kind::boolean ? (value->boolean ? "true" : "false") : value->text;
 }
 
-// Every number of the scene whose name tells of damping and is not zero.
-void damping_keys(const TomlTree& tree, const std::string& path, std::vector<std::string>& out) {
+bool is_false(const TomlTree* value) {
+  return value && value->kind == TomlTree::Kind::boolean && !value->boolean;
+}
+
+// Changes that take the damping out of a scene: every number whose name tells of it and is not zero is zero,
+// entries of kinds that do nothing else, which take no zero, are disabled.
+void undamp(const TomlTree& tree, const std::string& path, std::vector<std::string>& out) {
+  if (is_false(tree.find("enabled"))) return;
+  const TomlTree* kind = tree.find("kind");
+  if (kind && (kind->text == "joint_damping" || kind->text == "drag")) {
+    out.push_back(path + ".enabled=false");
+    return;
+  }
   for (const auto& [name, value] : tree.entries) {
     const std::string key = path.empty() ? name : path + "." + name;
     const double number =
         value.kind == TomlTree::Kind::real ? value.real : static_cast<double>(value.integer);
     if ((value.kind == TomlTree::Kind::real || value.kind == TomlTree::Kind::integer) && number != 0 &&
         name.find("damping") != std::string::npos)
-      out.push_back(key);
-    if (value.kind == TomlTree::Kind::table) damping_keys(value, key, out);
+      out.push_back(key + "=0");
+    if (value.kind == TomlTree::Kind::table) undamp(value, key, out);
     for (std::size_t i = 0; i < value.items.size(); ++i)
-      damping_keys(value.items[i], key + "[" + std::to_string(i) + "]", out);
+      undamp(value.items[i], key + "[" + std::to_string(i) + "]", out);
   }
 }
 
@@ -226,12 +237,9 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
   add_modulus(root, out);
   add_rod_models(root, out);
   add_switches(scene, root, out);
-  std::vector<std::string> keys;
-  damping_keys(root, "", keys);
-  if (!keys.empty()) {
-    for (std::string& key : keys) key += "=0";
-    out.push_back({"without damping", keys});
-  }
+  std::vector<std::string> undamped;
+  undamp(root, "", undamped);
+  if (!undamped.empty()) out.push_back({"without damping", std::move(undamped)});
   std::vector<std::string> rubbing;
   for (const auto* list : {&scene.constraints, &scene.forces})
     for (const SceneElement& e : *list)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
@@ -121,6 +122,45 @@ TEST_CASE("what friction and a test rig add is measured beside the scene") {
   const auto pulled = compare_models(fixed, 1, {});
   CHECK(pulled.front().deployment_time >
         named(pulled, "0 g flight: neither weight nor offload").deployment_time + 1e-3);
+}
+
+namespace {
+
+MeasuredModel without_damping(const std::string& text) {
+  const SceneSource source{"s.toml", {}, std::make_shared<const std::string>(text)};
+  for (const MeasuredModel& m : compare_models(source, 1, {}))
+    if (m.choice.name == "without damping") return m;
+  FAIL("no row without damping");
+  throw std::logic_error("unreachable");
+}
+
+}  // namespace
+
+TEST_CASE("what only damps is switched off where the price of damping is measured") {
+  // A free mass of m = 2 kg at v = 3 m/s against a drag of c = 5 N s/m: x = v m/c (1 - exp(-c t/m)); without
+  // it v t. Steps of 0.01 s keep order 4 at least: 1e-8 of the way.
+  const std::string coasting =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], velocity = [3, 0, 0], mass "
+      "= "
+      "2}]\n[[forces]]\nkind = 'drag'\nnodes = ['A']\ndamping = 7\nenabled = false\n[[forces]]\nkind = "
+      "'drag'\nnodes = ['A']\ndamping = 5\n[solver]\nstep = 0.01\nend_time = 0.5\n";
+  const MeasuredModel free = without_damping(coasting);
+  CHECK(free.choice.changes == std::vector<std::string>{"forces[1].enabled=false"});
+  CHECK(free.outcome == "completed");
+  CHECK(free.difference == Approx(1.5 - 1.2 * (1 - std::exp(-1.25))).epsilon(1e-7));
+  // Torques at a pin against one another: a rod that turns beside one that is held. 1/3 m L^2 of 3 kg and 1 m
+  // is 1 kg m^2: the angle is w/c (1 - exp(-c t)), without damping w t.
+  const MeasuredModel swung = without_damping(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'H', position = [0, 0, 0], fixed = true}, {name = 'F', "
+      "position = [-1, 0, 0], fixed = true}, {name = 'A', position = [1, 0, 0], velocity = [0, 0, "
+      "0.5]}]\nrods "
+      "= [{nodes = ['F', 'H'], mass = 1}, {nodes = ['H', 'A'], mass = 3}]\n[[structure.constraints]]\nkind = "
+      "'plane'\nnodes = ['A']\nnormal = [0, 1, 0]\n[[forces]]\nkind = 'joint_damping'\nnodes = ['H']\n"
+      "damping = 2\n[[forces]]\nkind = 'spring'\nnodes = ['F', 'A']\ndamping = 0\nstiffness = 1e-9\n"
+      "[solver]\nstep = 0.01\nend_time = 1\n");
+  const double angle = 0.5 - 0.25 * (1 - std::exp(-2.0));
+  CHECK(swung.outcome == "completed");
+  CHECK(swung.difference == Approx(2 * std::sin(angle / 2)).epsilon(1e-7));
 }
 
 // The rim is in both; what hangs slack in it moves it by its mass: little in 0.02 s of a drive that begins
