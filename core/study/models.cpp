@@ -122,15 +122,16 @@ std::vector<std::pair<Index, Index>> common_nodes(const Trajectory& a, const Tra
   return common;
 }
 
-// Of those nodes, at every time that both runs have.
-double difference(const Trajectory& a, const Trajectory& b) {
+// Of those nodes, at every time that both runs have: grids that meet do so within round-off of their times.
+double difference(const Trajectory& a, const Trajectory& b, const SolverOptions& options) {
   const auto common = common_nodes(a, b);
   if (common.empty()) return nan;
+  const double near = 1e-9 * std::min(options.step, options.end_time);
   double largest = 0;
   for (std::size_t i = 0, k = 0; i < a.size(); ++i) {
-    while (k < b.size() && b.time(k) < a.time(i) - 1e-9) ++k;
+    while (k < b.size() && b.time(k) < a.time(i) - near) ++k;
     if (k == b.size()) break;
-    if (!(b.time(k) < a.time(i) + 1e-9)) continue;
+    if (!(b.time(k) < a.time(i) + near)) continue;
     const VectorXd x = a.positions(i), y = b.positions(k);
     for (const auto& [at, there] : common)
       largest = std::max(largest, (x.segment<3>(at) - y.segment<3>(there)).norm());
@@ -267,7 +268,7 @@ std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats
         base = std::move(run);
         m.difference = m.tip_difference = 0;
       } else {
-        m.difference = difference(base->trajectory, run.trajectory);
+        m.difference = difference(base->trajectory, run.trajectory, base->options);
         m.tip_difference = tip_difference(base->trajectory, run.trajectory);
       }
     } catch (const SceneError& error) {
