@@ -71,7 +71,7 @@ std::string unknown_to_path(const Structure& structure) {
       return "a constraint holds a measure that the path does not know";
   }
   for (const Stop& stop : structure.stops)
-    if (stop.reeled) return "a cable is paid out or drawn in";
+    if (stop.reeled) return "a cable that does not stretch is not known to the path";
   for (const Stop& stop : structure.stops)
     if (!holds(known_measures, stop.measure.kind))
       return "a stop bounds a measure that the path does not know";
