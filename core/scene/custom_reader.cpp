@@ -246,7 +246,8 @@ const std::vector<ParamSpec>& custom_rod_params() {
         "the distance of its nodes by default; where it differs by up to 1 %, nodes are moved");
     return std::vector<ParamSpec>{
         name,
-        real_param("mass", "kg", 0.0, 0.0, endless, "0: a pure distance constraint"),
+        real_param("mass", "kg", 0.0, 0.0, endless,
+                   "to be given where density and area are not; 0: a pure distance constraint"),
         real_param("density", "kg/m^3", 0.0, 0.0, endless, "in place of mass, with area"),
         real_param("area", "m^2", 0.0, 0.0, endless, "cross section"),
         group,
