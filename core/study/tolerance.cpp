@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/books.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/math/largest.hpp"
 #include "core/path/path_run.hpp"
@@ -23,7 +25,8 @@ namespace {
 constexpr double most = 0.5, least = 0.02, aim = 0.2;
 // Numbers of steps are multiples of 35, for what other grids share with them (solve).
 constexpr long multiple = 35, first_steps = 4 * multiple, fewest_steps = multiple, max_steps = 100'000'000;
-constexpr int tries = 8;  // per number of stages
+constexpr int tries = 8;   // per number of stages
+constexpr int doubts = 4;  // of them, runs whose own books do not agree: more steps do not mend them then
 // States of a run beside which another one is solved, where their grids do not meet.
 constexpr std::size_t most_between = 100;
 // What a run along the path is off by at most, as a share of the structure's size.
@@ -38,6 +41,7 @@ constexpr double most_work = 2e8;
 struct Judged {
   Simulation run;
   double estimate = std::numeric_limits<double>::infinity();  // [m]
+  bool trusted = true;                                        // by its own books, all of it
   double work = 0;                                            // of `run`, in solves
   double all_work = 0;                                        // of the others too
 };
@@ -182,29 +186,34 @@ class Picker {
       if (!other) return std::nullopt;
       out.estimate = larger(out.estimate, distance(out.run, *other));
     }
+    // Nodes may be where they should be while the energy balance is not: what hides within a step and is over
+    // at its end.
+    if (std::isfinite(out.estimate)) out.trusted = mistrust(out.run, diagnose_books(out.run)).empty();
     out.all_work = work;
     spent_ += work * unknowns_;
     return out;
   }
 
   // Steps are adjusted by the order that the last two estimates show, at most the claimed one, until the
-  // estimate is where it should be. Given up where smaller steps gain nothing, at round-off or twice, or
-  // would take too long.
+  // estimate is where it should be; four times as many where a run is not trusted. Given up where smaller
+  // steps gain nothing, at round-off or twice, or would take too long.
   void try_stages(int stages, long steps) {
     SolverOptions o = options_;
     o.stages = stages;
     const double claimed = std::max(1, method_.claims(o).order);
     long enough = 0, before = 0;  // `enough`: the fewest steps known to suffice
     double last = std::numeric_limits<double>::infinity();
-    int stalls = 0;
+    int stalls = 0, doubted = 0;
     for (int i = 0; i < tries; ++i) {
       auto judged = solve(stages, steps);
       if (!judged) return;
-      const double estimate = judged->estimate, share = estimate / options_.tolerance;
+      if (!judged->trusted) ++doubted;
+      const double estimate = judged->trusted ? judged->estimate : std::numeric_limits<double>::infinity();
+      const double share = estimate / options_.tolerance;
       const double work = judged->work, all_work = judged->all_work;
       if (share > most && steps > before && estimate > 0.7 * last) ++stalls;
-      const bool hopeless =
-          stalls > 1 || (stalls > 0 && estimate < 1e-6 * size_of_motion(*model_, judged->run.trajectory));
+      const bool hopeless = doubted == doubts || stalls > 1 ||
+                            (stalls > 0 && estimate < 1e-6 * size_of_motion(*model_, judged->run.trajectory));
       const double ratio = before > 0 ? static_cast<double>(steps) / static_cast<double>(before) : 1.0;
       const double seen = std::log(last / estimate) / std::log(ratio);
       const double order = std::isfinite(seen) ? std::clamp(seen, 0.5, claimed) : claimed;
@@ -224,17 +233,22 @@ class Picker {
     }
   }
 
-  bool reached() const { return best_ && best_->estimate <= most * options_.tolerance; }
+  bool reaches(const Judged& p) const { return p.trusted && p.estimate <= most * options_.tolerance; }
+  bool reached() const { return best_ && reaches(*best_); }
   static long steps_of(const Simulation& run) { return std::lround(run.options.end_time / run.options.step); }
 
-  // The least work among those that reach the tolerance; without any, the smallest estimate.
+  // The least work among those that reach the tolerance; without any, the smallest estimate of those that are
+  // trusted, or else of all.
+  bool better(const Judged& a, const Judged& b) const {
+    if (reaches(a) != reaches(b)) return reaches(a);
+    if (reaches(a)) return a.work < b.work;
+    if (a.trusted != b.trusted) return a.trusted;
+    return a.estimate < b.estimate;
+  }
+
   void keep(Judged pair) {
-    const double goal = most * options_.tolerance;
-    const auto reaches = [&](const Judged& p) { return p.estimate <= goal; };
     if (!std::isfinite(pair.estimate)) return;
-    if (!best_ || (reaches(pair) && (!reaches(*best_) || pair.work < best_->work)) ||
-        (!reaches(pair) && !reaches(*best_) && pair.estimate < best_->estimate))
-      best_ = std::move(pair);
+    if (!best_ || better(pair, *best_)) best_ = std::move(pair);
   }
 
   const std::shared_ptr<const Model>& model_;

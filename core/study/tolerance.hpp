@@ -7,7 +7,8 @@
 namespace unfurl {
 
 // As simulate(), but where options.tolerance > 0 m, stages (of a method whose order depends on them) and step
-// are picked first, so that the error of the node positions is estimated below it. The estimate comes from
+// are picked first, so that the error of the node positions is estimated below it and judge() (accuracy.hpp)
+// trusts all of the run. The estimate comes from
 // two more solutions on other grids, with one stage more or else with smaller steps: the largest distance of
 // a node at the times that they share with the run. It is in position_estimate of the result; where it is not
 // below the tolerance, a warning says so: after a bounded amount of work the best that was found is the
