@@ -43,6 +43,15 @@ double EnergyMeter::taken(const State& state) {
   return system_.taken(q_);
 }
 
+VectorXd EnergyMeter::rod_forces(const State& state) {
+  if (state.tension.size() > 0) return state.tension;
+  VectorXd force(std::ssize(system_.giving_rods()));
+  system_.expand(state.z, q_);
+  system_.expand_rate(state.w, v_);
+  system_.giving_rod_forces(state.t, q_, v_, force);
+  return force;
+}
+
 // c / m of the strongest damper, from above [1/s].
 double EnergyMeter::damping_bound(const State& state) {
   system_.expand(state.z, q_);
@@ -114,7 +123,10 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   // Both rules are of order 6; where all that is asked is the multipliers, the ends have them already.
   const bool by_ends = points == 0 && !loads_ && !dampers_ && before_.known && after_.known;
   const Quadrature& rule = points > 0 ? own_ : by_ends ? lobatto : gauss;
-  VectorXd tension;
+  // Warming works against the forces of rods; of stiffly damped ones the states tell these, not the line.
+  const bool by_line = stiff && loads_ && points == 0 && system_.elastic_rods();
+  const VectorXd pull = by_line ? rod_forces(a) : VectorXd(), change = by_line ? rod_forces(b) - pull : pull;
+  VectorXd tension, line;
   for (Index i = 0; i < rule.nodes.size(); ++i) {
     const double u = rule.nodes[i], t = a.t + u * ends.h, weight = ends.h * rule.weights[i];
     const bool at_end = by_ends && (i == 0 || i + 1 == rule.nodes.size());
@@ -124,7 +136,8 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
     system_.expand_rate(w, v_);
     if (points > 0) tension = b.stage_tension.col(i);
     const double* const pulls = points > 0 ? tension.data() : nullptr;
-    if (loads_) load_work += weight * system_.power(false, t, q_, v_, pulls);
+    if (by_line) line = pull + u * change;
+    if (loads_) load_work += weight * system_.power(false, t, q_, v_, by_line ? line.data() : pulls);
     if (dampers_ && !stiff) dissipated -= weight * system_.power(true, t, q_, v_, pulls);
     if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
     const bool known = drives_ && (at_end || index1_->evaluate(t, z, w, unused_, lambda_, tension));

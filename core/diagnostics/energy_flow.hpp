@@ -47,6 +47,7 @@ class EnergyMeter {
   SolvedPoint at_state(const State& state);  // where nothing is known the acceleration is zero
   double damping_power(const State& state, const VectorXd& acceleration, double after);
   double damping_bound(const State& state);
+  VectorXd rod_forces(const State& state);  // of those that give [N]
   double taken(const State& state);
   double energy(const State& state);
   double taken_by_stiff(const State& a, const State& b, double fastest, double others);

@@ -319,12 +319,13 @@ Vibration vibration_of_giving(const Model& model, const State& pose) {
   const System& system = model.system;
   VectorXd q(system.coordinates());
   system.expand(pose.z, q);
-  VectorXd tension(static_cast<Index>(system.giving_rods().size()));
-  system.giving_rod_forces(pose.t, q, VectorXd::Zero(q.size()), tension);
   VectorXd known = VectorXd::Constant(static_cast<Index>(model.structure.rods.size()),
                                       std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t k = 0; k < system.giving_rods().size(); ++k)
-    known[system.giving_rods()[k]] = tension[static_cast<Index>(k)];
+  for (const int r : system.giving_rods()) {
+    const Rod& rod = model.structure.rods[static_cast<std::size_t>(r)];
+    const double length = (q.segment<3>(3 * rod.b) - q.segment<3>(3 * rod.a)).norm();
+    known[r] = (length - rod.rest_length(pose.t)) / rod.compliance();  // at rest, whatever warms
+  }
   Structure rods = rigid_twin(model.structure, q);
   System rows(rods, system.eliminated());
   const Model twin{std::move(rods), std::move(rows)};

@@ -13,6 +13,10 @@ std::vector<Rod> giving_rods_of(const Structure& structure) {
   return rods;
 }
 
+bool any_warmed(const std::vector<Rod>& rods) {
+  return std::any_of(rods.begin(), rods.end(), [](const Rod& rod) { return rod.expansion != 0; });
+}
+
 // From a to b of a rod: direction and distance.
 struct Span {
   Vec3 along;
@@ -25,8 +29,13 @@ Span span_of(const Rod& rod, const double* q) {
   return {length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero()), length};
 }
 
-double stretch_rate(const Rod& rod, const Span& span, const double* v) {
+double length_rate(const Rod& rod, const Span& span, const double* v) {
   return span.along.dot(node_vector(v, rod.b) - node_vector(v, rod.a));
+}
+
+// e': warming stretches nothing.
+double stretch_rate(const Rod& rod, double t, const Span& span, const double* v) {
+  return length_rate(rod, span, v) - rod.rest_rate(t);
 }
 
 void pull(const Rod& rod, const Vec3& force, double* f) {
@@ -54,37 +63,49 @@ void add_row_of(const Rod& rod, int r, const Vec3& x, ForceDerivative& out) {
   }
 }
 
-// With c = damping_time / C, N = c n . (v_b - v_a):
-//     dN/dd = c P u / |d|  with u the relative velocity and P = 1 - n n^T
+// With c = damping_time / C, N = c e' = c (n . u - l'), u = v_b - v_a the relative velocity and P = 1 - n
+// n^T:
+//     dN/dd = c P u / |d|
 class RodDampers final : public ForceBlock {
  public:
-  explicit RodDampers(std::vector<Rod> rods) : rods_(std::move(rods)) {}
+  explicit RodDampers(std::vector<Rod> rods) : rods_(std::move(rods)), warmed_(any_warmed(rods_)) {}
   bool constant() const override { return false; }
   bool of_giving_rods() const override { return true; }
   bool has_power() const override { return true; }
-  bool dissipative() const override { return true; }
+  bool dissipative() const override { return !warmed_; }
+  bool dissipates() const override { return true; }
+  bool supplies() const override { return warmed_; }
 
-  void add(const Moment&, const double* q, const double* v, double scale, double* f) const override {
+  void add(const Moment& at, const double* q, const double* v, double scale, double* f) const override {
     for (const Rod& rod : rods_) {
       const Span span = span_of(rod, q);
-      pull(rod, (scale * coefficient(rod) * stretch_rate(rod, span, v)) * span.along, f);
+      pull(rod, (scale * coefficient(rod) * stretch_rate(rod, at.t, span, v)) * span.along, f);
     }
   }
-  double power(const Moment&, const double* q, const double* v) const override {
+  // -c e'^2, and the part -N l' of N = c e': with the axial forces known, ElasticRods has all of that.
+  double power(const Moment& at, const double* q, const double* v) const override {
+    double sum = dissipation(at, q, v);
+    if (at.tension) return sum;
+    for (const Rod& rod : rods_)
+      if (rod.expansion != 0)
+        sum -= coefficient(rod) * stretch_rate(rod, at.t, span_of(rod, q), v) * rod.rest_rate(at.t);
+    return sum;
+  }
+  double dissipation(const Moment& at, const double* q, const double* v) const override {
     double sum = 0;
     for (const Rod& rod : rods_) {
-      const double rate = stretch_rate(rod, span_of(rod, q), v);
+      const double rate = stretch_rate(rod, at.t, span_of(rod, q), v);
       sum -= coefficient(rod) * rate * rate;
     }
     return sum;
   }
-  void derivatives(const Moment&, const double* q, const double* v, ForceDerivative& by_q,
+  void derivatives(const Moment& at, const double* q, const double* v, ForceDerivative& by_q,
                    ForceDerivative& by_v) const override {
     for (const Rod& rod : rods_) {
       const Span span = span_of(rod, q);
       const Vec3 u = node_vector(v, rod.b) - node_vector(v, rod.a);
       const Mat3 along = span.along * span.along.transpose(), across = Mat3::Identity() - along;
-      const double c = coefficient(rod), tension = c * span.along.dot(u);
+      const double c = coefficient(rod), tension = c * stretch_rate(rod, at.t, span, v);
       add_block_of(rod, c * along, by_v);
       add_block_of(rod, (c * span.along * (across * u).transpose() + tension * across) / span.length, by_q);
     }
@@ -93,13 +114,13 @@ class RodDampers final : public ForceBlock {
  private:
   static double coefficient(const Rod& rod) { return rod.damping_time / rod.compliance(); }
   std::vector<Rod> rods_;
+  bool warmed_;
 };
 
 }  // namespace
 
-ElasticRods::ElasticRods(const Structure& structure) : rods_(giving_rods_of(structure)) {
-  warmed_ = std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) { return rod.expansion != 0; });
-}
+ElasticRods::ElasticRods(const Structure& structure)
+    : rods_(giving_rods_of(structure)), warmed_(any_warmed(rods_)) {}
 
 void ElasticRods::add(const Moment& at, const double* q, const double*, double scale, double* f) const {
   for (const Rod& rod : rods_) {
@@ -117,13 +138,15 @@ double ElasticRods::potential(const Moment& at, const double* q) const {
   return sum;
 }
 
-// What the explicit dependence of V on time puts in.
+// What the explicit dependence of V on time puts in; with the axial forces known, dampers' share too.
 double ElasticRods::power(const Moment& at, const double* q, const double*) const {
   double sum = 0;
-  for (const Rod& rod : rods_) {
+  for (std::size_t i = 0; i < rods_.size(); ++i) {
+    const Rod& rod = rods_[i];
     if (rod.expansion == 0) continue;
-    sum -= (span_of(rod, q).length - rod.rest_length(at.t)) / rod.compliance() * rod.natural_length() *
-           rod.warmed(at.t, 1);
+    const double tension =
+        at.tension ? at.tension[i] : (span_of(rod, q).length - rod.rest_length(at.t)) / rod.compliance();
+    sum -= tension * rod.rest_rate(at.t);
   }
   return sum;
 }
@@ -142,7 +165,7 @@ void ElasticRods::derivatives(const Moment& at, const double* q, const double*, 
 void ElasticRods::stretches(double t, const double* q, const double* v, double* e) const {
   for (const Rod& rod : rods_) {
     const Span span = span_of(rod, q);
-    *e++ = span.length - rod.rest_length(t) + rod.damping_time * stretch_rate(rod, span, v);
+    *e++ = span.length - rod.rest_length(t) + rod.damping_time * stretch_rate(rod, t, span, v);
   }
 }
 

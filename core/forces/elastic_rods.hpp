@@ -13,9 +13,10 @@ namespace unfurl {
 //
 //     N = e / C,     F = -N d|d|/dq,     V = e^2 / 2 C,     power put in by a change of temperature -N l'(t)
 //
-// and with its damper, c = damping_time / C, N = (e + damping_time e') / C. Forces that vary are taken at the
-// s - 1 Gauss points of a step, where the scheme is A-stable (integrators/galerkin.hpp). A step that resolves
-// a rod's waves may take N from its length. For one that does not, the same equation is a row
+// and with its damper, c = damping_time / C, N = (e + damping_time e') / C, e' = d|d|/dt - l'(t). Forces that
+// vary are taken at the s - 1 Gauss points of a step, where the scheme is A-stable
+// (integrators/galerkin.hpp). A step that resolves a rod's waves may take N from its length. For one that
+// does not, the same equation is a row
 //
 //     R = e + damping_time e' - C N = 0,     dR/dq = n + damping_time P u / |d|,   dR/dv = damping_time n
 //
@@ -50,10 +51,10 @@ class ElasticRods final : public ForceBlock {
 
  private:
   std::vector<Rod> rods_;
-  bool warmed_ = false;
+  bool warmed_;
 };
 
-// Their dampers, c = damping_time / C: N = c d|d|/dt. A material of relaxation time T damps a mode of
+// Their dampers, c = damping_time / C: N = c e'. A material of relaxation time T damps a mode of
 // frequency w by the ratio w T / 2.
 std::unique_ptr<ForceBlock> elastic_rods_block(const Structure& structure, const SparseRows& node_mass);
 std::unique_ptr<ForceBlock> rod_dampers_block(const Structure& structure, const SparseRows& node_mass);

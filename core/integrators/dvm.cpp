@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "core/forces/elastic_rods.hpp"
 #include "core/integrators/dvm_method.hpp"
 
 namespace unfurl {
@@ -384,7 +385,8 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   state.stage_tension.resize(0, 0);
   const double followed = resolved * (c_.s - 1);
   const bool unresolved = system_.elastic_rods() != nullptr && eq_.h_omega() > followed && !eq_.held();
-  if (eq_.rods.as_unknowns && (system_.rheonomic() || system_.by_tension()))
+  if (eq_.rods.as_unknowns &&
+      (system_.rheonomic() || system_.by_tension() || system_.elastic_rods()->has_power()))
     state.stage_tension = unresolved ? eq_.stage_tension(unheld) : eq_.rods.tension;
   if (unresolved) eq_.end_tension(w1_, followed, state.tension, state.tension_error);
 }

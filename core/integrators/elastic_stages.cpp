@@ -74,7 +74,7 @@ double ElasticStages::h_omega(Index i, double h, const SparseRows& directions) c
 
 double ElasticStages::rate_over_omega(Index i, double t, const VectorXd& w, const SparseRows& D) const {
   const Rod& rod = rods_->rods()[static_cast<std::size_t>(i)];
-  double square = 0, rate = -rod.natural_length() * rod.warmed(t, 1);
+  double square = 0, rate = -rod.rest_rate(t);
   for (SparseRows::InnerIterator it(D, static_cast<int>(i)); it; ++it) {
     square += it.value() * it.value() / system_.mass().coeff(it.col(), it.col());
     rate += it.value() * w[it.col()];
@@ -125,7 +125,7 @@ bool ElasticStages::still(double fast, double t, double h, const VectorXd& q, co
   rates.head(m) = rigid.rate;
   for (std::size_t k = 0; k < held_.size(); ++k) {
     const Rod& rod = rods_->rods()[static_cast<std::size_t>(held_[k])];
-    rates[m + static_cast<Index>(k)] = rod.natural_length() * rod.warmed(t, 1);
+    rates[m + static_cast<Index>(k)] = rod.rest_rate(t);
   }
   saddle_->solve(rigid.p, rates, w, impulse);
   mu = impulse.head(m);

@@ -56,6 +56,7 @@ struct Rod {
   }
   // Of a rod that gives, without force [m].
   double rest_length(double t) const { return natural_length() * (1 + warmed(t)); }
+  double rest_rate(double t) const { return natural_length() * warmed(t, 1); }  // its derivative [m/s]
   double natural_length() const { return free_length > 0 ? free_length : length; }
   // Between the pins at which it, or the rod that it is a part of, may turn [m].
   double pinned_length() const { return parts * length; }

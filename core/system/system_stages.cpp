@@ -59,7 +59,7 @@ double System::potential_energy(const State& state, const ConstVec& q) const {
     const Vec3 d = node_vector(q.data(), rod.b) - node_vector(q.data(), rod.a),
                u = node_vector(v.data(), rod.b) - node_vector(v.data(), rod.a);
     const double e = d.norm() - rod.rest_length(state.t), N = state.tension[i++], C = rod.compliance(),
-                 rate = d.normalized().dot(u) - rod.natural_length() * rod.warmed(state.t, 1);
+                 rate = d.normalized().dot(u) - rod.rest_rate(state.t);
     if (std::abs(rate) <= still * v.lpNorm<Eigen::Infinity>()) sum += 0.5 * (C * N * N - e * e / C);
   }
   return sum;

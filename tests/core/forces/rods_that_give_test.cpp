@@ -78,8 +78,8 @@ TEST_CASE("what rods that give do and how it changes with their nodes agree") {
       const Rod& rod = s.rods[r == 0 ? 0U : static_cast<std::size_t>(r) + 1];
       const Vec3 d = q.segment<3>(3 * rod.b) - q.segment<3>(3 * rod.a),
                  u = v.segment<3>(3 * rod.b) - v.segment<3>(3 * rod.a);
-      const double rest = rod.length * (1 + (r == 0 ? 2e-3 * 7 * t : 0));
-      const double e = d.norm() - rest + rod.damping_time * d.dot(u) / d.norm();
+      const double grows = r == 0 ? rod.length * 2e-3 * 7 : 0;  // per second
+      const double e = d.norm() - rod.length - grows * t + rod.damping_time * (d.dot(u) / d.norm() - grows);
       CHECK(stretches(q, v)[r] == Approx(e).epsilon(1e-12));
       VectorXd force(3);
       rods.forces(t, q.data(), v.data(), force.data());
@@ -111,6 +111,47 @@ TEST_CASE("what rods that give do and how it changes with their nodes agree") {
     // F = -N d|d|/dq: the pulls of all rods, by their directions.
     CHECK(near(pulled(q), -dense(directions, 3).transpose() * N));
   }
+}
+
+// F . v + dV/dt of springs and dampers together is -N l', N with the damper's part, less c e'^2, which the
+// dampers take; by axial forces that are known, these.
+TEST_CASE(
+    "of what warming puts into damped rods that give their dampers take c times the strain's rate squared") {
+  std::mt19937 dice(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  VectorXd q(3 * nodes), v(3 * nodes), N(3);
+  for (double& x : q) x = 2 * any(dice);
+  for (double& x : v) x = any(dice);
+  const Structure s = structure_of(q);
+  const auto springs = elastic_rods_block(s, {}), dampers = rod_dampers_block(s, {});
+  const double t = 1.3, h = 1e-5, grows = s.rods[0].length * 2e-3 * 7;
+  ElasticRods(s).forces(t, q.data(), v.data(), N.data());
+  VectorXd f = VectorXd::Zero(q.size());
+  springs->add(t, q.data(), v.data(), 1.0, f.data());
+  dampers->add(t, q.data(), v.data(), 1.0, f.data());
+  VectorXd pulled = VectorXd::Zero(q.size());
+  ElasticRods(s).add_forces(q.data(), N.data(), 1.0, pulled.data());
+  CHECK((f - pulled).norm() <= 1e-13 * f.norm());
+  const VectorXd before = q - h * v, after = q + h * v;
+  const double rate =  // of the potential; third derivatives of it times h^2
+      (springs->potential(t + h, after.data()) - springs->potential(t - h, before.data())) / (2 * h);
+  const double power = springs->power(t, q.data(), v.data()) + dampers->power(t, q.data(), v.data());
+  CHECK(power == Approx(f.dot(v) + rate).epsilon(1e-7));
+  double taken = 0;
+  for (const Rod& rod : s.rods) {
+    if (!rod.gives) continue;
+    const Vec3 d = q.segment<3>(3 * rod.b) - q.segment<3>(3 * rod.a),
+               u = v.segment<3>(3 * rod.b) - v.segment<3>(3 * rod.a);
+    const double e = d.dot(u) / d.norm() - (rod.expansion != 0 ? grows : 0);
+    taken -= rod.damping_time / rod.compliance() * e * e;
+  }
+  CHECK(dampers->dissipation(t, q.data(), v.data()) == Approx(taken).epsilon(1e-12));
+  CHECK(power - taken == Approx(-N[0] * grows).epsilon(1e-9));
+  N = 3.0 * N;
+  Moment known(t);
+  known.tension = N.data();
+  CHECK(springs->power(known, q.data(), v.data()) == Approx(-N[0] * grows).epsilon(1e-12));
+  CHECK(dampers->power(known, q.data(), v.data()) == Approx(taken).epsilon(1e-12));
 }
 
 // A sector's copies: turned about z by a third, and set off.
