@@ -81,7 +81,7 @@ class AtPose {
     SparseRows G = system_.jacobian_pattern();
     std::vector<double> scratch;
     system_.jacobian(q, G, scratch);
-    VectorXd compliance = row_compliance(model);
+    VectorXd compliance = row_compliance(model, rest.t);
     if (compliance.size() == 0) compliance = VectorXd::Zero(G.rows());
     const std::vector<char> rigidly = determined_rows(G);
     const bool all = std::find(rigidly.begin(), rigidly.end(), 0) == rigidly.end();
@@ -136,7 +136,9 @@ class AtPose {
       if (!(compliance[row] > 0)) continue;
       const VectorXd g = rows.row(row).transpose();
       elastic += (1 / compliance[row]) * g * g.transpose();
-      geometric -= (lambda[row] / model.structure.rods[r].length) * g * g.transpose();
+      const Rod& rod = model.structure.rods[r];
+      const double longer = 1 + rod.warmed(rest.t);
+      geometric -= (lambda[row] / (rod.length * longer * longer)) * g * g.transpose();
     }
     skew = 0.5 * (geometric - geometric.transpose());
     geometric = symmetric(geometric);

@@ -9,6 +9,15 @@ namespace {
 
 constexpr std::size_t most_before = 5;  // states that a limit is extrapolated from
 
+// Told the row and 1 + e of every rigid rod that warms.
+template <class Visit>
+void for_each_warmed(const Structure& structure, const System& system, double t, const Visit& visit) {
+  for (std::size_t r = 0; r < structure.rods.size(); ++r) {
+    const Rod& rod = structure.rods[r];
+    if (!rod.gives && rod.expansion != 0) visit(system.rod_rows()[r], 1 + rod.warmed(t));
+  }
+}
+
 }  // namespace
 
 VectorXd row_compliance(const Model& model) {
@@ -19,7 +28,16 @@ VectorXd row_compliance(const Model& model) {
   return compliance.isZero(0.0) ? VectorXd() : compliance;
 }
 
-ElasticSharing::ElasticSharing(const Model& model, bool all_determined) : system_(model.system) {
+VectorXd row_compliance(const Model& model, double t) {
+  VectorXd compliance = row_compliance(model);
+  if (compliance.size() > 0)
+    for_each_warmed(model.structure, model.system, t,
+                    [&](int row, double longer) { compliance[row] *= longer * longer; });
+  return compliance;
+}
+
+ElasticSharing::ElasticSharing(const Model& model, bool all_determined)
+    : system_(model.system), structure_(model.structure) {
   VectorXd compliance = row_compliance(model);
   if (all_determined || compliance.size() == 0) return;
   G_ = system_.jacobian_pattern();
@@ -38,7 +56,16 @@ void ElasticSharing::share(double t, const VectorXd& q, bool limit, VectorXd& la
   }
   const VectorXd given = lambda;
   system_.jacobian(q, G_, scratch_);
-  if (!least_->share(G_, lambda)) return;
+  // By axial forces and stretches, whose compliances stay.
+  for_each_warmed(structure_, system_, t, [&](int row, double longer) {
+    G_.row(row) /= longer;
+    lambda[row] *= longer;
+  });
+  if (!least_->share(G_, lambda)) {
+    lambda = given;
+    return;
+  }
+  for_each_warmed(structure_, system_, t, [&](int row, double longer) { lambda[row] /= longer; });
   if (!last_.empty() && !(last_.back().t < t)) last_.clear();  // an impulse
   last_.push_back({t, lambda - given});
   if (last_.size() > most_before) last_.pop_front();

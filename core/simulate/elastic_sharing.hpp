@@ -12,6 +12,9 @@ namespace unfurl {
 
 // Of every kept row [m/N]; zero: a guide or a rigid rod. Empty where no rod is elastic.
 VectorXd row_compliance(const Model& model);
+// The same at a time, of C in G x = C lambda: of a rod of the length l (1 + e), e = alpha dT, the row is (1 +
+// e) times its stretch, the axial force (1 + e) times the multiplier (constraints/rod_length.hpp).
+VectorXd row_compliance(const Model& model, double t);
 
 // Multipliers of least complementary energy in place of those of least norm, along the states of a model.
 class ElasticSharing {
@@ -30,6 +33,7 @@ class ElasticSharing {
   VectorXd at_limit(double t) const;
 
   const System& system_;
+  const Structure& structure_;
   SparseRows G_;
   std::vector<double> scratch_;
   std::unique_ptr<LeastEnergy> least_;

@@ -21,7 +21,8 @@ namespace {
 class Stretch {
  public:
   Stretch(const Model& model, const VectorXd& q)
-      : system_(model.system),
+      : model_(model),
+        system_(model.system),
         G_(system_.jacobian_pattern()),
         compliance_(row_compliance(model)),
         index1_(system_, true),
@@ -63,6 +64,7 @@ class Stretch {
     VectorXd q(system_.coordinates());
     system_.expand(state.z, q);
     sharing_->share(state.t, q, false, lambda);
+    compliance_ = row_compliance(model_, state.t);
     system_.jacobian(q, G_, scratch_);
     return saddle_.factorise(G_) && expand(lambda, u);
   }
@@ -78,6 +80,7 @@ class Stretch {
     return true;
   }
 
+  const Model& model_;
   System system_;  // follows the states
   SparseRows G_;
   std::vector<double> scratch_;

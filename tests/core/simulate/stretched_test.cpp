@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/diagnostics/vibration.hpp"
 #include "core/scene/library.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
@@ -124,6 +125,58 @@ TEST_CASE("the last stretch before a deployed pose is that of its own state") {
   const VectorXd u = stretch(coarse, last);
   CHECK((u - stretch(fine, same)).lpNorm<Eigen::Infinity>() <= 1e-8);
   CHECK(stretch(coarse, last + 1) == u);
+}
+
+// A weight of 3 kg below two rods in one line, of 1 m and of 2 m, that both have grown by 0.5 m when it hangs
+// still: E A / l of each as it was, whatever the warmth, as of rods that give. Rows of rods that are longer
+// by e are 1 + e times their stretch, multipliers 1 / (1 + e) of their forces.
+TEST_CASE("warmed quasi-static rods stretch and share and swing by their forces, E A and cold lengths") {
+  const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+rod_model = "quasi-static"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "P", position = [0, 0, 1], fixed = true},
+         {name = "A", position = [0, 0, -1], mass = 3}]
+rods = [{name = "short", nodes = ["O", "A"], mass = 0, area = 1e-4, youngs_modulus = 2e10},
+        {name = "long", nodes = ["P", "A"], mass = 0, area = 1e-4, youngs_modulus = 7e10}]
+[[structure.constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [0, 0, 1]
+[gravity]
+acceleration = [0, 0, -9.81]
+[[forces]]
+kind = "temperature"
+rods = ["short"]
+expansion = 0.01
+change = 50
+times = [0, 0.5]
+values = [0, 1]
+[[forces]]
+kind = "temperature"
+rods = ["long"]
+expansion = 0.005
+change = 50
+times = [0, 0.5]
+values = [0, 1]
+[solver]
+step = 0.01
+end_time = 0.6
+)");
+  INFO(run.message);
+  REQUIRE(run.status == RunStatus::completed);
+  const std::size_t last = run.trajectory.size() - 1;
+  REQUIRE(run.trajectory.node_positions(last)[8] == Approx(-1.5).epsilon(1e-12));
+  const double weight = 3 * 9.81, k1 = 2e6, k2 = 7e6 / 2;
+  const Diagnostics d = diagnose(run);
+  const auto row = static_cast<Index>(last);
+  CHECK(d.axial_force(row, 0) == Approx(weight * k1 / (k1 + k2)).epsilon(1e-9));
+  CHECK(d.axial_force(row, 1) == Approx(weight * k2 / (k1 + k2)).epsilon(1e-9));
+  // Read off a difference of positions of metres.
+  CHECK(stretch(run, last)[8] == Approx(-weight / (k1 + k2)).epsilon(1e-9));
+  const Vibration v = vibration(run.trajectory.model(), run.trajectory.state(last));
+  REQUIRE(v.modes.size() == 1);
+  CHECK(v.modes[0].frequency == Approx(std::sqrt((k1 + k2) / 3) / (2 * pi)).epsilon(1e-9));
 }
 
 }  // namespace stretched_test
