@@ -284,7 +284,7 @@ TEST_CASE("of a rack the ground holds the node whose place it tells") {
   const Diagnostics m = diagnose(moving);
   Vec3 impulse = Vec3::Zero();
   const std::size_t last = m.t.size() - 1;
-  const auto all = [&](std::size_t i) {
+  const auto all = [&](std::size_t i) -> Vec3 {
     return reaction(m, "H", i) + reaction(m, "B", i) + reaction(m, "R", i);
   };
   for (std::size_t i = 0; i + 2 <= last; i += 2)  // Simpson's rule of ten steps: some 1e-6 of it

@@ -116,11 +116,40 @@ TEST_CASE("colours after the eighth are others", "[figures]") {
 }
 
 TEST_CASE("a drive has one colour in all panels of its figure", "[figures]") {
-  Simulation run =
-      testing::run_scene("structure.kind = 'pendulum'\nsolver.step = 0.1\nsolver.end_time = 0.2\n");
-  Diagnostics d = diagnose(run);
-  for (const char* name : {"crane.force_N", "arm.torque_N_m", "crane.power_W", "arm.power_W"})
-    d.columns.push_back({name, name, "", std::vector<double>(d.t.size(), 1.0)});
+  const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], mass = 1}, {name = "P", position = [0, 0, 1], fixed = true},
+  {name = "O", position = [1, 0, 1], fixed = true}, {name = "Q", position = [0, 0, 2], mass = 1}]
+rods = [{nodes = ["P", "Q"], mass = 0}]
+[[constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [1, 0, 0]
+[[constraints]]
+kind = "plane"
+nodes = ["Q"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "coordinate"
+name = "crane"
+nodes = ["A"]
+direction = [1, 0, 0]
+motion = "smooth"
+to = 0.4
+duration = 0.2
+[[constraints]]
+kind = "angle"
+name = "arm"
+nodes = ["O", "P", "Q"]
+motion = "smooth"
+to = 70
+duration = 0.2
+[solver]
+step = 0.05
+end_time = 0.2
+)");
+  const Diagnostics d = diagnose(run);
   std::map<std::string, std::set<int>> colors;
   const Figure f = find_figure("drives")->make(run, d);
   REQUIRE(f.panels.size() == 3);
