@@ -66,11 +66,13 @@ double EnergyMeter::energy(const State& state) {
   return system_.kinetic_energy(state.w) + system_.potential_energy(state, q_) - system_.load_work(q_);
 }
 
-// A time after the state, or before it.
-double EnergyMeter::damping_power(const State& state, const VectorXd& acceleration, double after) {
+// The motion a time after the state, or before it; what depends on time itself, as what warms, by another.
+double EnergyMeter::damping_power(const State& state, const VectorXd& acceleration, double after,
+                                  double later) {
   system_.expand(state.z + after * state.w, q_);
   system_.expand_rate(state.w + after * acceleration, v_);
-  return -system_.power(true, state.t, q_, v_, state.tension.size() > 0 ? state.tension.data() : nullptr);
+  return -system_.power(true, state.t + later, q_, v_,
+                        state.tension.size() > 0 ? state.tension.data() : nullptr);
 }
 
 // (P_0 + P_1) h / 2 + (P_0' - P_1') h^2 / 12, of order 4 where the power is smooth at the step; the second
@@ -84,15 +86,17 @@ double EnergyMeter::damping_power(const State& state, const VectorXd& accelerati
 // others, `others`, as in an impact.
 double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastest, double others) {
   const double h = b.t - a.t, e = 1e-3 / fastest;
-  const auto rate = [&](const State& s, const VectorXd& acceleration) {
-    return (damping_power(s, acceleration, e) - damping_power(s, acceleration, -e)) / (2 * e);
+  // Of time itself into the step: at its ends something may begin.
+  const auto rate = [&](const State& s, const VectorXd& acceleration, double inward) {
+    return (damping_power(s, acceleration, e) - damping_power(s, acceleration, -e)) / (2 * e) +
+           (damping_power(s, acceleration, 0, inward) - damping_power(s, acceleration, 0)) / inward;
   };
   constexpr double most = 10;  // times the power at the other end
   const double at_start = damping_power(a, before_.acceleration, 0),
                at_end = damping_power(b, after_.acceleration, 0);
   if (at_start > most * at_end || at_end > most * at_start) return energy(a) - energy(b) + others;
   const double line = 0.5 * h * (at_start + at_end);
-  double bend = h * h / 12 * (rate(a, before_.acceleration) - rate(b, after_.acceleration));
+  double bend = h * h / 12 * (rate(a, before_.acceleration, e) - rate(b, after_.acceleration, -e));
   if (constexpr double too_large = 1e5; h * fastest > too_large) {
     const State middle{.t = a.t + 0.5 * h,
                        .z = 0.5 * (a.z + b.z) + h / 8 * (a.w - b.w),

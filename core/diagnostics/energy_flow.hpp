@@ -45,7 +45,7 @@ class EnergyMeter {
 
  private:
   SolvedPoint at_state(const State& state);  // where nothing is known the acceleration is zero
-  double damping_power(const State& state, const VectorXd& acceleration, double after);
+  double damping_power(const State& state, const VectorXd& acceleration, double after, double later = 0);
   double damping_bound(const State& state);
   VectorXd rod_forces(const State& state);  // of those that give [N]
   double taken(const State& state);

@@ -248,8 +248,9 @@ TEST_CASE("temperature: a clamped elastic rod carries -E A alpha dT") {
   const double e = 23e-6 * -60, wanted = -7e10 * 3e-4 * e;
   for (const Index r : {0, 1})
     CHECK(d.axial_force(d.axial_force.rows() - 1, r) == Approx(wanted).epsilon(1e-7));
-  // What the cold puts in is in the books.
-  CHECK(largest(d, "energy_balance_J") < 1e-6 * largest(d, "potential_energy_J"));
+  // What the cold puts in is in the books, and what the dampers take of it as the strain grows, 0.1 J of 26
+  // J: by powers of the states, which make 3e-4 of that of steps in which it starts.
+  CHECK(largest(d, "energy_balance_J") < 2e-6 * largest(d, "potential_energy_J"));
 }
 
 // All rods that are seen are warmed: the links grow and keep their angles, as they do where all rods are
