@@ -91,8 +91,7 @@ TEST_CASE("a ring whose sectors are alike is solved as one of them, and is where
                         "damping=11}"})},
        "one of 5",
        0.5},
-      // The first controller rests where the models are compared by themselves, at the start and in the
-      // middle.
+      // The first controller rests where the models compare themselves, at first and in the middle.
       {{"hoop6",
         joined(joints, {"structure.hinge_force=0",
                         "forces[0]={kind=\"motor\",fold_angle=true,stall_torque=1e5,no_load_speed=36000,"
