@@ -15,7 +15,8 @@
 namespace unfurl {
 namespace {
 
-constexpr std::size_t trail_points = 160;  // of a trail at most
+constexpr std::size_t trail_points = 20000;  // of a trail at most
+constexpr double trail_error = 1e-3;         // of the structure's size: less than a pixel
 
 // Where dimension lines may end: beside the corners of the box around a pose.
 void add_dimension_ends(std::vector<Vec3>& pose, double gap) {
@@ -203,6 +204,29 @@ void FrameBuilder::prepare_ghosts() {
     ghosts_.push_back({trajectory_.time(i), placed(trajectory_.positions(i))});
 }
 
+namespace {
+
+// Those of the points of a way between which it is straight but for so much.
+std::vector<std::size_t> corners_of(const std::vector<Vec3>& way, double off) {
+  constexpr std::size_t most = 64;  // points that one line leaves out
+  const auto straight = [&](std::size_t a, std::size_t b) {
+    const Vec3 line = way[b] - way[a];
+    for (std::size_t i = a + 1; i < b; ++i) {
+      const Vec3 from = way[i] - way[a];
+      const double share = std::clamp(from.dot(line) / std::max(line.squaredNorm(), 1e-300), 0.0, 1.0);
+      if ((from - share * line).norm() > off) return false;
+    }
+    return true;
+  };
+  std::vector<std::size_t> corners{0};
+  for (std::size_t i = 2; i < way.size(); ++i)
+    if (i - corners.back() > most || !straight(corners.back(), i)) corners.push_back(i - 1);
+  if (way.size() > 1) corners.push_back(way.size() - 1);
+  return corners;
+}
+
+}  // namespace
+
 void FrameBuilder::prepare_trails() {
   if (style_.trails.empty()) return;
   for (const int k : style_.trails) trails_.push_back({k, {}, {}});
@@ -212,6 +236,13 @@ void FrameBuilder::prepare_trails() {
       trail.t.push_back(trajectory_.time(i));
       trail.points.push_back(node(whole, trail.node));
     }
+  }
+  for (Trail& trail : trails_) {
+    const std::vector<std::size_t> corners = corners_of(trail.points, trail_error * bounds_.radius);
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      trail.t[k] = trail.t[corners[k]], trail.points[k] = trail.points[corners[k]];
+    trail.t.resize(corners.size());
+    trail.points.resize(corners.size());
   }
 }
 

@@ -48,11 +48,11 @@ Color clear_backing(const Look& look) {
 void FrameOverlay::add_scale_bar(Boxes& taken, DrawList& list) const {
   const Screen screen(list.camera);
   const Vec3f a = project(list.camera, style_.width, style_.height, list.center);
-  const Vec3f b = project(list.camera, style_.width, style_.height, list.center + screen.right);
-  const float pixels = std::abs(b.x() - a.x());  // of a metre
-  if (!(pixels > 0)) return;
-  const double metres = round_length(0.16 * static_cast<double>(width_ / pixels));
-  const auto length = pixels * static_cast<float>(metres);
+  const Vec3f b = project(list.camera, style_.width, style_.height, list.center + list.radius * screen.right);
+  const double pixels = std::abs(b.x() - a.x()) / list.radius;  // of a metre
+  if (!(pixels > 0 && std::isfinite(pixels))) return;
+  const double metres = round_length(0.16 * static_cast<double>(width_) / pixels);
+  const auto length = static_cast<float>(pixels * metres);
   char text[32];
   std::snprintf(text, sizeof text, list.camera.parallel_height > 0 ? "%g m" : "%g m in the middle", metres);
   const float x = 0.5f * (width_ - length), tick = 5 * unit_, thick = 2 * unit_;

@@ -62,16 +62,19 @@ Panel time_panel(const Simulation& run, std::string y_label) {
 }
 
 std::string events_sentence(const Simulation& run) {
+  // A millionth of a second, or of a run that is shorter.
+  const double span = run.trajectory.end_time() - run.trajectory.start_time();
+  const int decimals = span > 0 ? static_cast<int>(std::clamp(std::ceil(6 - std::log10(span)), 6.0, 300.0)) : 6;
+  const auto seconds = [&](double t) { return plot::format_fixed(t, decimals) + " s"; };
   std::string text;
   for (const EventGroup& group : event_groups(run)) {
     if (group.times.size() > most_named) {
       text += " Event \u201C" + group.name + "\u201D " + std::to_string(group.times.size()) +
-              " times, from " + plot::format_fixed(group.times.front(), 6) + " s to " +
-              plot::format_fixed(group.times.back(), 6) + " s.";
+              " times, from " + seconds(group.times.front()) + " to " + seconds(group.times.back()) + ".";
       continue;
     }
     for (const double t : group.times)
-      text += " Event \u201C" + group.name + "\u201D at " + plot::format_fixed(t, 6) + " s.";
+      text += " Event \u201C" + group.name + "\u201D at " + seconds(t) + ".";
   }
   return text;
 }

@@ -64,6 +64,35 @@ TEST_CASE("a scale bar says for which depth it holds, but where it holds for all
   CHECK(label(parallel, " m"));
 }
 
+// A chain of two rods and its motion are the same drawing in every unit of length: single precision moves the
+// ends by a hundredth of a pixel.
+TEST_CASE("a scale bar is as long of the smallest and of the largest structure") {
+  const auto length = [](const std::string& unit) {
+    const DrawList list = picture("structure.kind = 'custom'\nvariables.L = " + unit + R"(
+structure.nodes = [{name="A",position=[0,0,0]},{name="B",position=["=L",0,0]},{name="C",position=["=2*L",0,0]}]
+structure.rods = [{nodes=["A","B"],mass=1},{nodes=["B","C"],mass=1}]
+constraints = [{kind="fixed",nodes=["A"]}]
+gravity.acceleration = [0,0,"=-9.81*L"]
+solver.end_time = 2
+)",
+                                  "scale_bar = true\n");
+    const TextLabel* text = label(list, " m in the middle");
+    REQUIRE(text);
+    const auto bar = std::ranges::find_if(list.lines, [&](const OverlayLine& line) {
+      return line.y0 == line.y1 && std::abs(0.5f * (line.x0 + line.x1) - text->x) < 0.01f;
+    });
+    REQUIRE(bar != list.lines.end());
+    return std::pair(bar->x1 - bar->x0, std::stod(text->text) / std::stod(unit));
+  };
+  const auto [metre, says] = length("1");
+  for (const char* unit : {"1e-12", "1e-9", "1e-7", "1e6", "1e9"}) {
+    CAPTURE(unit);
+    const auto [bar, of] = length(unit);
+    CHECK(std::abs(bar - metre) < 0.05f);
+    CHECK(of == Approx(says));
+  }
+}
+
 TEST_CASE("loads have no colour of the rods' ramp, and a word beside it") {
   for (const Look& look : looks()) {
     const double least = told_apart(look);

@@ -146,6 +146,25 @@ TEST_CASE("ghosts are earlier poses, trails end at their node") {
   CHECK((list.ghosts.front().a - Vec3f(2, 0, 0)).norm() < 1e-6f);
 }
 
+// However long the run is: 60 s at 5 rad/s are 48 turns. The lines' middles are off the circle of 2 m by no more
+// than a pixel of a picture that shows it whole.
+TEST_CASE("a trail is where the node was") {
+  std::string text = spinning;
+  text.replace(text.find("step = 0.01"), 26, "step = 0.004\nend_time = 60");
+  const Scene scene = read_scene_text(text, "spin.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  FrameStyle style;
+  style.trails = {1};
+  const DrawList list = FrameBuilder(run.trajectory, style).build(60);
+  double way = 0;
+  for (const auto& line : list.ghosts) {
+    CHECK(std::abs((0.5f * (line.a + line.b)).norm() - 2) < 0.005f);
+    way += static_cast<double>((line.b - line.a).norm());
+  }
+  CHECK(way == Approx(600).epsilon(0.005));
+  CHECK(list.ghosts.size() < 48 * 80);
+}
+
 TEST_CASE("stress and buckling colour rods that have a modulus, others are grey and the legend says so") {
   std::string text = spinning;
   text.replace(text.find("mass = 3.0"), 10, "mass = 3.0\narea = 2e-4\nyoungs_modulus = 7e10");
