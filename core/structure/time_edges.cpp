@@ -22,12 +22,30 @@ void add_bends_of_line(const TimeFunction& f, std::vector<TimeEdge>& edges) {
   }
 }
 
+// What the jump of the third derivative at each point adds over the shorter of its two intervals.
+std::vector<double> kinks(const TimeFunction& f) {
+  const std::vector<double>&x = f.times, &m = f.bends;
+  std::vector<double> out(x.size(), 0.0);
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    const double before = x[i] - x[i - 1], after = x[i + 1] - x[i], d = std::min(before, after);
+    out[i] = std::abs((m[i + 1] - m[i]) / after - (m[i] - m[i - 1]) / before) * d * d * d / 6;
+  }
+  return out;
+}
+
 void add_points_of_spline(const TimeFunction& f, double step, std::vector<TimeEdge>& edges) {
   const std::vector<double>& x = f.times;
   for (const double end : {x.front(), x.back()}) edges.push_back({end, true, true});
+  const std::vector<double> kink = kinks(f);
+  std::vector<double> sorted = kink;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const auto [low, high] = std::minmax_element(f.values.begin(), f.values.end());
+  const double stands_out = std::max(1e-5 * (*high - *low), 30 * *middle);
   const double near = (1 - 1e-9) * step;
   for (std::size_t i = 1; i + 1 < x.size(); ++i)
-    if (x[i] - x[i - 1] >= near && x[i + 1] - x[i] >= near) edges.push_back({x[i], false});
+    if (kink[i] > stands_out || (x[i] - x[i - 1] >= near && x[i + 1] - x[i] >= near))
+      edges.push_back({x[i], false});
 }
 
 void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges) {

@@ -38,10 +38,11 @@ inline bool same_instant(double before, double after) {
 //   drive, smooth    start and start + duration, for the same reason; shorter than two steps, three times
 //                    between them too
 //   drive, spline    the ends, where the acceleration jumps; of the points between, where f''' jumps, those
-//   with both neighbours at least a `step` away. Points that lie closer
-//                    sample a motion finer than steps do: f''' jumps by f'''' times their distance there,
-//                    which is the spline's own error in the motion that it was sampled from, and a table of
-//                    thousands of points would shatter the grid for it.
+//                    with both neighbours at least a `step` away. Points that lie closer sample a motion
+//                    finer than steps do: f''' jumps by f'''' times their distance there, which is the
+//                    spline's own error in the motion that it was sampled from, and a table of thousands of
+//                    points would shatter the grid for it. Of these only those at which it jumps much more
+//                    than at most others (a spike, a corner), lest a step pass over them.
 std::vector<TimeEdge> time_edges(const Structure& structure, double step);
 
 }  // namespace unfurl

@@ -328,11 +328,20 @@ TEST_CASE("every kind of time function names its edges") {
   REQUIRE(edges_of(f, 0.1501).size() == 5);
   CHECK(edges_of(f, 0.1501)[1].t == Approx(0.7 + 0.075));
   CHECK(edges_of(f, 0.1501)[4].t == Approx(1.0));
-  // A dense table of a smooth motion does not shatter the grid; its ends still count.
+  // A dense table of a smooth motion does not shatter the grid, nor does one that is rounded; its ends still
+  // count. A spike in it does too, and points beside it, where the spline swings, by 0.27 less at each.
   std::vector<double> times, values;
-  for (int i = 0; i <= 2000; ++i) times.push_back(1e-3 * i), values.push_back(std::sin(1e-3 * i));
+  for (int i = 0; i <= 2000; ++i) times.push_back(1e-3 * i), values.push_back(std::cos(1e-3 * pi * i));
   CHECK(edges_of(make_spline(times, values), 0.01).size() == 2);
   CHECK(edges_of(make_spline(times, values), 0.001).size() == 2001);
+  std::vector<double> rounded = values;
+  for (double& y : rounded) y = 1e-3 * std::round(1e3 * y);
+  CHECK(edges_of(make_spline(times, rounded), 0.01).size() < 40);
+  values[700] += 0.1;
+  const std::vector<TimeEdge> spike = edges_of(make_spline(times, values), 0.01);
+  CHECK(spike.size() > 2 + 5);
+  for (const TimeEdge& edge : spike)
+    CHECK((edge.t == 0.0 || edge.t == times.back() || std::abs(edge.t - times[700]) < 0.0105));
   // Three points on a line and one off it: the first, the third and the last bend.
   f = {};
   f.kind = TimeFunction::Kind::linear, f.times = {0.1, 0.2, 0.3, 0.4}, f.values = {1, 2, 3, 3};
