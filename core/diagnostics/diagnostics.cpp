@@ -99,15 +99,23 @@ struct Row {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
+// What gives work_J besides loads.
+bool motors_or_warmed(const Structure& s) {
+  return std::ranges::any_of(s.forces,
+                             [](const Force& f) { return f.motor.stall > 0 || f.unstressed.moves(); }) ||
+         std::ranges::any_of(s.rods, [](const Rod& r) { return r.gives && r.expansion != 0; });
+}
+
 const std::array rows{
     Row{"kinetic_energy_J", "kinetic energy", "J", Needs::nothing,
         [](const Instant& s) { return s.kinetic(); }},
     Row{"potential_energy_J", "potential energy", "J", Needs::nothing,
         [](const Instant& s) { return s.system().potential_energy(s.state, s.q); }},
-    Row{"work_J", "work of the loads", "J", Needs::nothing, [](const Instant& s) { return s.work(); }},
+    Row{"work_J", "work of loads and motors, of elastic cables and rods that change their lengths", "J",
+        Needs::nothing, [](const Instant& s) { return s.work(); }},
     Row{"dissipated_J", "energy taken by dampers and friction", "J", Needs::dampers,
         [](const Instant& s) { return s.flow.dissipated[s.i]; }},
-    Row{"drive_work_J", "work of the drives and of rods that warm", "J", Needs::drives,
+    Row{"drive_work_J", "work of the drives and of rigid rods that warm", "J", Needs::drives,
         [](const Instant& s) { return s.flow.drive_work[s.i]; }},
     Row{"impact_loss_J", "energy lost in impacts", "J", Needs::impacts,
         [](const Instant& s) { return s.flow.impact_loss[s.i]; }},
@@ -396,7 +404,9 @@ class StateTable {
           row.unit == std::string_view("J") || std::string_view(row.name).starts_with("constraint_");
       if (!present(row.needs, run) || (books && !book)) continue;
       used.push_back(&row);
-      out.columns.push_back({row.name, row.label, row.unit, {}});
+      const bool loads_alone =
+          std::string_view(row.name) == "work_J" && !motors_or_warmed(run.trajectory.structure());
+      out.columns.push_back({row.name, loads_alone ? "work of the loads" : row.label, row.unit, {}});
     }
     return used;
   }

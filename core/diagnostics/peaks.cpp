@@ -46,9 +46,9 @@ class Neighbourhood {
       const bool known = index1.evaluate(s, a, lambda);
       accelerations_.push_back(known ? a : VectorXd());
     }
-    if (first_ < i && !known(first_)) first_ = i;
-    if (last_ > i && !known(last_)) last_ = i;
     if (!known(i)) first_ = last_ = i;
+    if (first_ < i && !(known(first_) && follows(system, index1, first_))) first_ = i;
+    if (last_ > i && !(known(last_) && follows(system, index1, i))) last_ = i;
   }
 
   double begin() const { return run_.trajectory.time(first_); }
@@ -86,10 +86,30 @@ class Neighbourhood {
     return acceleration(k).size() > 0 || run_.trajectory.state(k).z.size() == 0;
   }
   const VectorXd& acceleration(std::size_t k) const { return accelerations_[k - from_]; }
-  State state_at(double t) const {
+
+  // Whether the quintic from state k to the next obeys the equations of motion: accelerations at both ends
+  // and in its middle add up to the change of the velocities, by Simpson's rule. What dampers stop within a
+  // small part of the step has a first acceleration that says nothing of the rest.
+  bool follows(System& system, Index1& index1, std::size_t k) const {
+    constexpr double good_velocity = 0.1;  // of the largest
     const Trajectory& run = run_.trajectory;
-    const std::size_t k = t < run.time(i_) || last_ == i_ ? first_ : i_;
     const State &a = run.state(k), &b = run.state(k + 1);
+    State middle = state_in(k, 0.5 * (a.t + b.t));
+    if (middle.z.size() == 0) return true;
+    system.follow(middle);
+    if (system.all_constraints() > 0) project(system, middle);
+    VectorXd accel(middle.z.size()), lambda(system.constraints());
+    if (!index1.evaluate(middle, accel, lambda)) return false;
+    const auto size = [&](const VectorXd& w) { return std::sqrt(w.dot(system.mass() * w)); };
+    const VectorXd gained = (b.t - a.t) / 6 * (acceleration(k) + 4 * accel + acceleration(k + 1));
+    return size(b.w - a.w - gained) <= good_velocity * std::max({size(a.w), size(b.w), size(middle.w)});
+  }
+
+  State state_at(double t) const {
+    return state_in(t < run_.trajectory.time(i_) || last_ == i_ ? first_ : i_, t);
+  }
+  State state_in(std::size_t k, double t) const {
+    const State &a = run_.trajectory.state(k), &b = run_.trajectory.state(k + 1);
     const Quintic motion{a, b, acceleration(k), acceleration(k + 1), b.t - a.t};
     State state = a;
     const double u = (t - a.t) / (b.t - a.t);

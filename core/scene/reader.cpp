@@ -52,7 +52,12 @@ void read_structure(TableReader& root, const TomlTree& tree, const std::string& 
     table.warn_idle(family->params(), scene.structure);
   } else {
     scene.custom = read_custom(table, folder, notes, scene.constraints);
-    table.warn_idle(rod_material_params(), rod_material_values(scene.custom.material));
+    ParamSet material = rod_material_values(scene.custom.material);
+    // What says how elastic rods give is of use to one that is so by itself.
+    if (std::ranges::any_of(scene.custom.rods,
+                            [](const CustomRod& rod) { return rod.elastic.value_or(false); }))
+      material.set("rod_model", "elastic");
+    table.warn_idle(rod_material_params(), material);
   }
   table.finish();
 }

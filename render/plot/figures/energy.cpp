@@ -13,18 +13,18 @@ namespace {
 // The terms of the balance, kinetic + potential - the energy at the start - work of the loads + ... = 0, as
 // far as a run has them.
 struct Share {
-  const char *column, *label;
+  const char* column;
   int color;
   Dash dash;
   const char* sign;
 };
 constexpr Share shares[] = {
-    {"kinetic_energy_J", "kinetic energy", 0, Dash::solid, "+"},
-    {"potential_energy_J", "potential energy", 2, Dash::dash_dot, "+"},
-    {"work_J", "work of the loads", 1, Dash::dashed, "\u2212"},
-    {"dissipated_J", "energy taken by dampers and friction", 5, Dash::dash_dot_dot, "+"},
-    {"drive_work_J", "work of the drives and of rods that warm", 4, Dash::long_dashed, "\u2212"},
-    {"impact_loss_J", "energy lost in impacts", 6, Dash::dotted, "+"},
+    {"kinetic_energy_J", 0, Dash::solid, "+"},
+    {"potential_energy_J", 2, Dash::dash_dot, "+"},
+    {"work_J", 1, Dash::dashed, "\u2212"},
+    {"dissipated_J", 5, Dash::dash_dot_dot, "+"},
+    {"drive_work_J", 4, Dash::long_dashed, "\u2212"},
+    {"impact_loss_J", 6, Dash::dotted, "+"},
 };
 
 // Energies that hardly change are shown from zero on: their ripple is the lower panel's business.
@@ -50,9 +50,9 @@ Figure energy_figure(const Simulation& run, const Diagnostics& diagnostics) {
     const double size = series ? largest_magnitude(series->values) : 0.0;
     largest = std::max(largest, size);
     if (size == 0 && s.color != 0) continue;  // a scene without loads, gravity, dampers, ...
-    top.curves.push_back(over_time(diagnostics, series->values, s.label, s.color));
+    top.curves.push_back(over_time(diagnostics, series->values, series->label, s.color));
     top.curves.back().dash = s.dash;
-    balance += (balance.empty() ? std::string() : std::string(" ") + s.sign + " ") + s.label;
+    balance += (balance.empty() ? std::string() : std::string(" ") + s.sign + " ") + series->label;
   }
   show_from_zero(top);
 

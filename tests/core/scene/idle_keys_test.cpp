@@ -177,4 +177,16 @@ TEST_CASE("what does nothing is not written, and what is written is not warned o
         end_positions(run_scene(scene_text(read_scene_text(text, "again.toml")))));
 }
 
+TEST_CASE("what elastic rods are damped by is of use to one that is elastic by itself") {
+  for (const char* key : {"damping_ratio = 0.3", "damping_time = 0.01"})
+    for (const bool gives : {true, false}) {
+      std::string text = arms;
+      const std::string rod = "nodes = [\"O\", \"A\"], mass = 2";
+      text.replace(text.find(rod), rod.size(),
+                   rod + ", area = 1e-4, youngs_modulus = 1e6" + (gives ? ", elastic = true" : ""));
+      text.insert(text.find("nodes = ["), key + std::string("\n"));
+      CHECK(warnings_of(read_scene_text(text, "s.toml")).empty() == gives);
+    }
+}
+
 }  // namespace idle_keys_test
