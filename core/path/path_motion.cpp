@@ -160,4 +160,38 @@ void PathMotion::on_drive(double t, double& s, double& v) const {
   v = drive_.target.derivative(1, t) / m.slope;
 }
 
+std::vector<double> PathMotion::unseen_between(const PathLaw& law, double from, double to) const {
+  double seen = 1e-5;  // of the largest rate; where that is not so, it is well seen to:
+  constexpr double well = 1e-6;
+  constexpr double rounding = 1e-10;  // of the coordinate
+  constexpr std::size_t most = 100;
+  struct Point {
+    double t, s, v, a;
+  };
+  const auto point = [&](double t) {
+    Point p{t, 0, 0, 0};
+    at(t, p.s, p.v);
+    p.a = law.at(p.s, p.v, t).Q;
+    return p;
+  };
+  std::vector<double> times;
+  std::vector<Point> ends{point(to)};  // of the parts that are still to be looked at, the first one last
+  Point a = point(from);
+  while (!ends.empty()) {
+    const Point b = ends.back(), middle = point(0.5 * (a.t + b.t));
+    const double h = b.t - a.t, tell = 1.875 / h * (b.s - a.s) - 0.4375 * (a.v + b.v) + h / 32 * (b.a - a.a);
+    const double size = std::max({std::abs(a.v), std::abs(b.v), std::abs(middle.v)});
+    const double nothing = rounding / h * std::max(std::abs(a.s), std::abs(b.s));
+    if (std::abs(tell - middle.v) > seen * size + nothing && times.size() + ends.size() < most) {
+      ends.push_back(middle);
+      seen = well;
+      continue;
+    }
+    a = b;
+    ends.pop_back();
+    if (!ends.empty()) times.push_back(b.t);
+  }
+  return times;
+}
+
 }  // namespace unfurl

@@ -65,6 +65,9 @@ class PathMotion {
   void set_speed(double v) { v_ = v; }     // an impulse, now
   void rest(double t) { t_ = t, v_ = 0; }  // stood still until then
   void at(double t, double& s, double& v) const;
+  // Times between two without which the quintic through their coordinates, rates and accelerations is not
+  // this motion: what dampers stop at once.
+  std::vector<double> unseen_between(const PathLaw& law, double from, double to) const;
 
   double t() const { return t_; }
   double s() const { return s_; }

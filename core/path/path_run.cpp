@@ -212,51 +212,56 @@ class PathRun {
     run_.trajectory.append(std::move(state), report);
   }
 
+  void append_at(double t) {
+    double s = motion_.s(), v = 0;
+    if (!resting_) motion_.at(t, s, v);
+    append(state_at(t, s, v));
+  }
+
   // All times of the grid up to t.
   void append_grid(double until) {
     for (TimeGrid::Target next = grid_.next(last().t); next.t <= until && last().t < grid_.end();
          next = grid_.next(last().t)) {
-      double s = motion_.s(), v = 0;
-      if (!resting_) motion_.at(next.t, s, v);
       if (next.t > last().t) {
-        append(state_at(next.t, s, v));
+        append_unseen(next.t);
+        append_at(next.t);
         ++run_.steps;
       }
       if (!next.jumps) continue;
-      if (!resting_) motion_.at(next.jump, s, v);
-      append(state_at(next.jump, s, v));
+      if (next.jump > until) return;
+      append_at(next.jump);
     }
+  }
+
+  // States between the last one and one at t.
+  void append_unseen(double until) {
+    if (!resting_ && !drive_.there())
+      for (const double t : motion_.unseen_between(*law_, last().t, until)) append_at(t), ++run_.steps;
   }
 
   // Where an event ended what could be solved at once.
   void append_here(bool counted) {
-    if (motion_.t() > last().t) {
-      tell_pull(last().t);
-      append(state_at(motion_.t(), motion_.s(), motion_.v()));
-      run_.steps += counted ? 1 : 0;
-    }
+    if (!(motion_.t() > last().t)) return;
+    tell_pull(last().t);
+    append_unseen(motion_.t());
+    append(state_at(motion_.t(), motion_.s(), motion_.v()));
+    run_.steps += counted ? 1 : 0;
   }
 
   // A cable that pulls for less than a step: peaks are looked for between states.
   void tell_pull(double from) {
     if (run_.events.empty() || run_.events.back().t != from || run_.events.back().kind != "taut") return;
     const double h = (motion_.t() - from) / 8;
-    for (int k = 1; k < 8; ++k) {
-      double s, v;
-      motion_.at(from + k * h, s, v);
-      append(state_at(from + k * h, s, v));
-    }
+    for (int k = 1; k < 8; ++k) append_at(from + k * h);
   }
 
-  double change_model(const std::shared_ptr<const Model>& next, bool first = false) {
+  double change_model(const std::shared_ptr<const Model>& next, bool instead = false) {
     Handover after = hand_over(model(), last(), *next);
-    if (first) run_.trajectory.pop_back();
+    if (instead) run_.trajectory.pop_back();
     run_.trajectory.change_model(next);
     append(std::move(after.state));
     return after.energy_lost * structure().sectors;
   }
-
-  // --- motion ---
 
   double latest() const {
     if (!drive_.there()) {
@@ -372,14 +377,16 @@ class PathRun {
     append_grid(until < grid_.end() ? before(until) : until);
     motion_.rest(until);
     if ((!held_ && !stuck_) || until >= grid_.end()) return;
-    append_here(true);
+    // What jumps is no state of what held before it.
+    const bool jumps = last().t < until && same_instant(last().t, until);
+    append_here(!jumps);
     if (std::exchange(stuck_, false)) {
       resting_ = false;
-      return slip_or_stick(sides_.first_friction());
+      return slip_or_stick(sides_.first_friction(), jumps);
     }
     sides_.set_active(*held_, false);
     resting_ = false;
-    change_model(sides_.model(*base_));
+    change_model(sides_.model(*base_), jumps);
     add_events(*held_, until, 0.0);
     held_.reset();
   }
@@ -409,10 +416,10 @@ class PathRun {
     resting_ = stuck_ = true;
   }
 
-  void slip_or_stick(std::size_t i) {
+  void slip_or_stick(std::size_t i, bool jumps = false) {
     choose_slip();
     tell_law();
-    change_model(sides_.model(*base_));
+    change_model(sides_.model(*base_), jumps);
     add_events(i, motion_.t(), 0.0);
   }
 

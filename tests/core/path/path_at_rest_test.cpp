@@ -117,4 +117,57 @@ TEST_CASE("a structure on which nothing acts is no failure on the path") {
        R"({kind="spring",nodes=["A","B"],stiffness=1e7,free_length="=2*(0.5*cos(45*deg)+sqrt(1.2^2-(0.5*sin(45*deg))^2))-1.4"}])"});
 }
 
+// A load that jumps at what stands still: nothing holds a force of 100 N there that gives 2 or 80 N at most,
+// or a stop that only pushes. In every state what holds A along its line is that force at most, and the peaks
+// are those of the full model.
+TEST_CASE("what a jump sets free holds in no state of the path what it cannot hold") {
+  const std::string arms = R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1, 0, 0], mass = 1},
+  {name = "B", position = [1.6, 0, 0.8], mass = 1}]
+rods = [{nodes = ["O", "B"], mass = 0}, {nodes = ["A", "B"], mass = 0}]
+constraints = [{kind = "line", nodes = ["A"], direction = [1, 0, 0]},
+  {kind = "plane", nodes = ["B"], normal = [0, 1, 0]}]
+[solver]
+end_time = 0.2
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [100, 0, 0]
+times = [0, 0.1, 0.1, 1]
+)toml";
+  const auto friction = [](double kinetic, double hold) {
+    return "[[forces]]\nkind = 'friction'\nnodes = ['A']\ndirection = [1, 0, 0]\nkinetic = " +
+           number(kinetic) + "\nstatic = " + number(hold) + "\n";
+  };
+  struct Case {
+    std::string more;
+    double least, most;  // of what holds A along x [N]
+  };
+  for (const Case& one :
+       {Case{"values = [0, 0, 1, 1]\n" + friction(1, 2), -2, 2},
+        Case{"values = [0.5, 0.5, -1, -1]\n" + friction(60, 80), -80, 80},
+        Case{"values = [-0.1, -0.1, 1, 1]\n[[constraints]]\nkind = 'coordinate_stop'\nnodes = ['A']\n"
+             "direction = [1, 0, 0]\nmin = 1.0\n",
+             0, 10}}) {
+    CAPTURE(one.more);
+    const Scene scene = read_scene_text(arms + one.more, "s.toml", {});
+    const auto model = build_model(scene);
+    const Simulation path = simulate_on_path(model, scene.solver), full = simulate(model, scene.solver);
+    REQUIRE(path.status == RunStatus::completed);
+    CHECK(path.events.size() == full.events.size());
+    const Diagnostics d = diagnose(path), e = diagnose(full);
+    const double rounding = 1e-9;
+    CHECK(smallest_of_column(path, d, "A.reaction_x_N") >= one.least - rounding);
+    CHECK(largest_of_column(path, d, "A.reaction_x_N") <= one.most + rounding);
+    for (const char* column : {"A.reaction_N", "O.reaction_N", "axial_force_max_N", "axial_force_min_N"})
+      CHECK(peak_of_column(path, d, column) == Approx(peak_of_column(full, e, column)).epsilon(1e-7));
+    std::size_t at_jump = 0;
+    for (std::size_t i = 0; i < path.trajectory.size(); ++i)
+      at_jump += std::abs(path.trajectory.time(i) - 0.1) < 1e-9;
+    CHECK(at_jump == 2);  // before and behind
+  }
+}
+
 }  // namespace path_at_rest_test

@@ -53,4 +53,42 @@ end_time = 0.5
     }
 }
 
+// n times the no-load speed comes about within I / (n^2 stall / speed), 10^-4 to 10 of the step. From -90
+// degrees on the arm turns at w0 / n; the work of the motor is its kinetic energy and what gravity asks, here
+// none.
+TEST_CASE("books close where the speed line of a geared motor is stiff at the step") {
+  constexpr double inertia = 0.5 / 3 + 1, stall = 0.1, speed = 18000 * 2 * pi / 360;
+  for (const double gear : {500.0, 1000.0, 1500.0, 3000.0, 3e4, 1e6}) {
+    CAPTURE(gear);
+    const Scene scene = read_scene_text(R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1, 0, 0], mass = 1},
+  {name = "G", position = [0, 0, 1], fixed = true}]
+rods = [{nodes = ["O", "A"], mass = 0.5}]
+[[forces]]
+kind = "motor"
+name = "m"
+nodes = ["A", "O", "G"]
+axis = [0, 1, 0]
+stall_torque = 0.1
+no_load_speed = 18000
+gear_ratio = -1
+[[constraints]]
+kind = "plane"
+nodes = ["A"]
+normal = [0, 1, 0]
+[solver]
+end_time = 0.2
+)toml",
+                                        "s.toml", {"forces[0].gear_ratio=-" + number(gear)});
+    Simulation run = simulate_on_path(build_model(scene), scene.solver);
+    const Diagnostics d = judge(run);
+    CHECK(accuracy_warnings(run, d).empty());
+    const double rate = gear * gear * stall / speed / inertia, w = speed / gear * (1 - std::exp(-0.2 * rate));
+    CHECK(d.at("work_J").values.back() == Approx(0.5 * inertia * w * w).epsilon(1e-3));
+    CHECK(run.trajectory.node_velocities(run.trajectory.size() - 1).norm() == Approx(w).epsilon(1e-9));
+  }
+}
+
 }  // namespace path_damping_test
