@@ -357,13 +357,14 @@ void find_jumps(const Scene& scene, Structure& structure) {
   for (const SceneElement& e : scene.forces) {
     if (!e.enabled || !may_jump(e.kind)) continue;
     const std::vector<double>& t = e.values.vector("times");
-    for (std::size_t i = 2; i < t.size(); ++i)
-      if (t[i] - t[i - 2] < near) {
-        find.problem(e, e.table.empty() ? "times" : "table",
-                     "has three points within 1e-7 of solver.step: no step follows so short a blow; draw it "
-                     "out");
-        break;
-      }
+    TimeFunction f;
+    f.kind = TimeFunction::Kind::linear, f.times = t, f.values = e.values.vector("values");
+    bool too_short = !make_jumps(f, near);
+    for (std::size_t i = 2; i < t.size(); ++i) too_short = too_short || t[i] - t[i - 2] < near;
+    if (too_short)
+      find.problem(e, e.table.empty() ? "times" : "table",
+                   "has points within 1e-7 of solver.step of each other and another one beside them: no step "
+                   "follows so short a blow; draw it out");
   }
   find.throw_problems();
   for (Force& f : structure.forces) make_jumps(f.size, near);

@@ -221,6 +221,7 @@ class Stepper::Loop {
   // A drive's velocity jumps: what it drives is taken along by an impulse of the constraints.
   bool jump(double t) {
     State before = now();
+    drift(system(), before, t - before.t);
     before.t = t;
     if (sides_.empty()) return append_after_impulse(hand_over(model(), before, model()).state), true;
     sides_.touch(system(), before);

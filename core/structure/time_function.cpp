@@ -74,10 +74,24 @@ double TimeFunction::derivative(int order, double t) const {
   return base;
 }
 
-void make_jumps(TimeFunction& f, double near) {
-  if (f.kind != TimeFunction::Kind::linear) return;
-  for (std::size_t i = 1; i < f.times.size(); ++i)
-    if (f.times[i] - f.times[i - 1] < near) f.times[i] = f.times[i - 1] = 0.5 * (f.times[i - 1] + f.times[i]);
+bool make_jumps(TimeFunction& f, double near) {
+  if (f.kind != TimeFunction::Kind::linear) return true;
+  constexpr double short_of = 1e3;  // times a flank: what loses a part of itself where the flank moves
+  const std::vector<double> t = f.times, &x = f.values;
+  bool exact = true;
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    const double flank = t[i] - t[i - 1];
+    if (!(flank < near) || flank == 0) continue;
+    // The means of what becomes longer before and behind, and of the flank.
+    const double before = 0.5 * (x[i - 1] + (i > 1 ? x[i - 2] : x[i - 1])),
+                 behind = 0.5 * (x[i] + (i + 1 < t.size() ? x[i + 1] : x[i])), own = 0.5 * (x[i - 1] + x[i]);
+    const double share = before != behind ? (own - behind) / (before - behind) : 0.5;
+    const bool beside_short = (i > 1 && t[i - 1] - t[i - 2] < short_of * flank) ||
+                              (i + 1 < t.size() && t[i + 1] - t[i] < short_of * flank);
+    if (!(share >= 0 && share <= 1) && beside_short) exact = false;
+    f.times[i] = f.times[i - 1] = t[i - 1] + std::clamp(share, 0.0, 1.0) * flank;
+  }
+  return exact;
 }
 
 // Clamped spline: the bends f'' from the tridiagonal system of continuous slopes, which are zero at both
