@@ -5,7 +5,6 @@
 #include <array>
 
 #include "render/plot/style.hpp"
-#include "render/plot/text_metrics.hpp"
 
 namespace unfurl {
 namespace {
@@ -29,7 +28,8 @@ double left_out(const Figure& figure, const FigureStyle& style) {
   if (!style.title && !figure.title.empty()) points += 1.5 * plot::title_size;
   if (!style.caption && !figure.caption.empty()) {
     const double width = figure.width_mm * plot::points_per_mm - 8;
-    const auto lines = plot::wrap_text(figure.caption, plot::small_size, width).size();
+    const auto lines =
+        plot::caption_lines(figure.caption, width, figure.height_mm * plot::points_per_mm).size();
     points += 5 + plot::line_spacing * plot::small_size * static_cast<double>(lines);
   }
   return points / plot::points_per_mm;

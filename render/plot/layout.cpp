@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "render/plot/legend.hpp"
 #include "render/plot/panel_layout.hpp"
@@ -115,7 +116,7 @@ Rect lay_out_page(const Figure& figure, const LayoutOptions& options, FigureLayo
     area.y0 += 1.5 * title_size;
   }
   if (!options.caption || figure.caption.empty()) return area;
-  const std::vector<std::string> lines = wrap_text(figure.caption, small_size, area.width());
+  const std::vector<std::string> lines = caption_lines(figure.caption, area.width(), out.height);
   const double pitch = line_spacing * small_size;
   const double top = area.y1 - pitch * static_cast<double>(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i)
@@ -126,26 +127,92 @@ Rect lay_out_page(const Figure& figure, const LayoutOptions& options, FigureLayo
   return area;
 }
 
-// Inside where a place is free, else rows above the frame. False where room above has to be made first.
-bool place_legends(const Figure& figure, std::vector<PanelLayout>& panels, std::vector<int>& rows) {
-  bool room = true;
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    const Panel& panel = figure.panels[i];
-    if (rows[i] > 0) {
-      double bottom = panels[i].frame.y0 - 3 - (has_note(panels[i]) ? note_height : 0);
-      if (panel.bare && !panel.title.empty()) bottom -= panel_title_height + bare_gap;  // titles in one line
-      panels[i].legend = legend_above(panel, panels[i].frame, bottom);
-      continue;
-    }
-    panels[i].legend = inside_legend(panel, panels[i]);
-    if (panels[i].legend) continue;
-    rows[i] = legend_rows(panel, panels[i].frame.width());
-    room = room && rows[i] == 0;
+// Legends inside their frames where a place is free, else in rows above them. These take half of what the
+// frames have without them, at most: entries that then have no room are counted.
+class Legends {
+ public:
+  Legends(const Figure& figure, std::vector<PanelLayout>& panels)
+      : figure_(figure), panels_(panels), columns_(static_cast<std::size_t>(std::max(figure.columns, 1))) {
+    rows_.assign(panels.size(), 0);
+    most_ = rows_;
   }
-  return room;
-}
+
+  const std::vector<int>& rows() const { return rows_; }  // above each panel's frame
+
+  // False where room above has to be made first.
+  bool place() {
+    std::vector<std::size_t> unplaced;
+    bool room = true;
+    for (std::size_t i = 0; i < panels_.size(); ++i) {
+      const Panel& panel = figure_.panels[i];
+      if (most_[i] > 0) {
+        const int rows = legend_rows(panel, width(i), most_[i]);
+        if (rows > rows_[i]) rows_[i] = rows, room = false;  // ticks made the frame narrower
+        panels_[i].legend = above(i);
+        continue;
+      }
+      panels_[i].legend = inside_legend(panel, panels_[i]);
+      if (!panels_[i].legend && has_legend(panel)) unplaced.push_back(i);
+    }
+    return !make_rows(unplaced) && room;
+  }
+
+ private:
+  // Poses have their legend over all of them, else each panel's stands over its own frame.
+  double width(std::size_t i) const {
+    const std::size_t first = i - i % columns_, end = std::min(first + columns_, panels_.size());
+    const Rect& frame = panels_[i].frame;
+    if (i != first || !figure_.panels[i].bare) return frame.width();
+    for (std::size_t k = i + 1; k < end; ++k)
+      if (!figure_.panels[k].bare || has_legend(figure_.panels[k])) return frame.width();
+    return panels_[end - 1].frame.x1 - frame.x0;
+  }
+
+  Legend above(std::size_t i) const {
+    const Panel& panel = figure_.panels[i];
+    double bottom = panels_[i].frame.y0 - 3 - (has_note(panels_[i]) ? note_height : 0);
+    if (panel.bare && !panel.title.empty()) bottom -= panel_title_height + bare_gap;  // titles in one line
+    return legend_above(panel, {panels_[i].frame.x0, bottom}, width(i), rows_[i]);
+  }
+
+  // What is left is shared by the rows of panels that need some of it now. False where none gets any.
+  bool make_rows(const std::vector<std::size_t>& unplaced) {
+    if (!room_) {
+      room_ = 0;
+      for (std::size_t i = 0; i < panels_.size(); i += columns_) *room_ += 0.5 * panels_[i].frame.height();
+    }
+    std::map<std::size_t, int> taken;  // by rows of panels
+    for (const std::size_t i : unplaced) taken[i / columns_] = 0;
+    const double share = *room_ / static_cast<double>(std::max<std::size_t>(taken.size(), 1));
+    const int most = static_cast<int>((share - 3) / legend_row_height);
+    for (const std::size_t i : unplaced) {
+      most_[i] = std::max(most, 0);
+      rows_[i] = legend_rows(figure_.panels[i], width(i), most_[i]);
+      taken[i / columns_] = std::max(taken[i / columns_], rows_[i]);
+    }
+    bool any = false;
+    for (const auto& row : taken)
+      if (row.second > 0) any = true, *room_ -= row.second * legend_row_height + 3;
+    return any;
+  }
+
+  const Figure& figure_;
+  std::vector<PanelLayout>& panels_;
+  std::size_t columns_;
+  std::vector<int> rows_, most_;
+  std::optional<double> room_;  // for rows [points]
+};
 
 }  // namespace
+
+std::vector<std::string> caption_lines(const std::string& caption, double width, double page_height) {
+  std::vector<std::string> lines = wrap_text(caption, small_size, width);
+  const auto most = static_cast<std::size_t>(std::max(0.5 * page_height / (line_spacing * small_size), 1.0));
+  if (lines.size() <= most) return lines;
+  lines[most - 1] = shorten_text(lines[most - 1] + " " + lines[most], small_size, width);
+  lines.resize(most);
+  return lines;
+}
 
 FigureLayout lay_out(const Figure& figure, const LayoutOptions& options) {
   FigureLayout out;
@@ -156,19 +223,19 @@ FigureLayout lay_out(const Figure& figure, const LayoutOptions& options) {
   out.panels.resize(figure.panels.size());
   if (figure.panels.empty()) return out;
   Grid grid(figure, area, out.panels);
-  std::vector<int> rows(figure.panels.size(), 0);
-  for (int round = 0; round < 3; ++round) {
-    grid.settle(rows);
+  Legends legends(figure, out.panels);
+  for (bool placed = false; !placed;) {
+    grid.settle(legends.rows());
     for (std::size_t i = 0; i < out.panels.size(); ++i) {
       out.panels[i].curves.clear();
       out.panels[i].bands.clear();
       set_traces(figure.panels[i], out.panels[i]);
     }
-    if (place_legends(figure, out.panels, rows)) break;
+    placed = legends.place();
   }
   char letter = 'a';
   for (std::size_t i = 0; i < out.panels.size(); ++i) {
-    add_axis_labels(figure.panels[i], grid.cell(i), rows[i], out.panels[i]);
+    add_axis_labels(figure.panels[i], grid.cell(i), legends.rows()[i], out.panels[i]);
     add_inner_labels(figure.panels[i], out.panels[i]);
     if (!lettered(figure, i)) continue;
     const Rect cell = grid.cell(i);

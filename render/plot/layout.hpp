@@ -21,7 +21,7 @@ struct Label {
   bool backed = false;  // on a white ground, because it covers a line
 };
 
-// A legend's entry: a sample of a curve or a band, then its label.
+// A legend's entry: a sample of a curve or a band, then its label. Neither: of what is left out.
 struct LegendEntry {
   const Curve* curve = nullptr;
   const Band* band = nullptr;
@@ -65,6 +65,8 @@ struct LayoutOptions {
   double scale = 1;  // the page is so many times as large as laid out, with all that is on it
 };
 
+// A caption in lines of `width` that take half of the page at most: what is longer ends in dots [points].
+std::vector<std::string> caption_lines(const std::string& caption, double width, double page_height);
 // The figure must outlive the layout.
 FigureLayout lay_out(const Figure& figure, const LayoutOptions& options = {});
 

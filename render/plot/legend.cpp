@@ -24,20 +24,27 @@ std::vector<LegendEntry> entries_of(const Panel& panel) {
   return entries;
 }
 
+// Of its sample and the gap behind it.
+double sample_width(const LegendEntry& e) {
+  return e.curve || e.band ? legend_sample + sample_gap : 0;
+}
+
 double entry_width(const LegendEntry& e) {
-  return legend_sample + sample_gap + text_width(e.label.text, small_size);
+  return sample_width(e) + text_width(e.label.text, small_size);
 }
 
 void put(LegendEntry& e, double x, double middle) {
   e.sample = {x, middle};
-  e.label.at = {x + legend_sample + sample_gap, middle + cap_height * small_size / 2};
+  e.label.at = {x + sample_width(e), middle + cap_height * small_size / 2};
 }
 
-// The entries of each row above a frame: as many as fit.
-std::vector<std::vector<LegendEntry>> rows_of(const Panel& panel, double width) {
-  std::vector<std::vector<LegendEntry>> rows;
+using Rows = std::vector<std::vector<LegendEntry>>;
+
+// As many entries in each row as fit.
+Rows rows_of(std::vector<LegendEntry> entries, double width) {
+  Rows rows;
   double x = 0;
-  for (LegendEntry& e : entries_of(panel)) {
+  for (LegendEntry& e : entries) {
     e.label.text = shorten_text(e.label.text, small_size, std::max(10.0, width - legend_sample - sample_gap));
     const double w = entry_width(e);
     if (rows.empty() || x + w > width) rows.emplace_back(), x = 0;
@@ -47,10 +54,31 @@ std::vector<std::vector<LegendEntry>> rows_of(const Panel& panel, double width) 
   return rows;
 }
 
+// What does not fit into so many rows is counted in the last entry, which has no sample.
+Rows rows_of(const Panel& panel, double width, int most) {
+  const std::vector<LegendEntry> all = entries_of(panel);
+  if (most < 1) return {};
+  Rows rows = rows_of(all, width);
+  const auto limit = static_cast<std::size_t>(most);
+  std::size_t fit = 0;
+  for (std::size_t r = 0; r < std::min(limit, rows.size()); ++r) fit += rows[r].size();
+  for (std::size_t shown = fit + 1; shown-- > 0 && rows.size() > limit;) {
+    std::vector<LegendEntry> some(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown));
+    const std::string rest = "and " + std::to_string(all.size() - shown) + " more";
+    some.push_back({nullptr, nullptr, {}, {{}, rest, {small_size, ink}}});
+    rows = rows_of(std::move(some), width);
+  }
+  return rows;
+}
+
 }  // namespace
 
-int legend_rows(const Panel& panel, double width) {
-  return static_cast<int>(rows_of(panel, width).size());
+bool has_legend(const Panel& panel) {
+  return !entries_of(panel).empty();
+}
+
+int legend_rows(const Panel& panel, double width, int most) {
+  return static_cast<int>(rows_of(panel, width, most).size());
 }
 
 std::optional<Legend> inside_legend(const Panel& panel, const PanelLayout& layout) {
@@ -72,14 +100,14 @@ std::optional<Legend> inside_legend(const Panel& panel, const PanelLayout& layou
   return out;
 }
 
-Legend legend_above(const Panel& panel, const Rect& frame, double bottom) {
-  auto rows = rows_of(panel, frame.width());
+Legend legend_above(const Panel& panel, Point at, double width, int most) {
+  Rows rows = rows_of(panel, width, most);
   Legend out;
   out.inside = false;
-  out.box = {frame.x0, bottom - static_cast<double>(rows.size()) * legend_row_height, frame.x1, bottom};
+  out.box = {at.x, at.y - static_cast<double>(rows.size()) * legend_row_height, at.x + width, at.y};
   double middle = out.box.y0 + legend_row_height / 2;
   for (auto& row : rows) {
-    double x = frame.x0;
+    double x = at.x;
     for (LegendEntry& e : row) {
       put(e, x, middle);
       x += entry_width(e) + entry_gap;

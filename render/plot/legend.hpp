@@ -5,12 +5,15 @@
 
 namespace unfurl::plot {
 
-// Rows that the legend takes above a frame of this width; 0 where the panel has no labelled curve or band.
-int legend_rows(const Panel& panel, double width);
+// Whether the panel has a labelled curve or band.
+bool has_legend(const Panel& panel);
+// Rows that the legend takes above a frame in this width, so many at most.
+int legend_rows(const Panel& panel, double width, int most);
 // The legend inside the frame where it hides nothing; nullopt where there is no such place. Needs axes and
 // traces.
 std::optional<Legend> inside_legend(const Panel& panel, const PanelLayout& layout);
-// The legend in rows, its lower edge at `bottom`.
-Legend legend_above(const Panel& panel, const Rect& frame, double bottom);
+// The legend in rows, `at` its lower left corner. What more than `most` rows would hold is counted in the
+// last entry: "and 3 more".
+Legend legend_above(const Panel& panel, Point at, double width, int most);
 
 }  // namespace unfurl::plot

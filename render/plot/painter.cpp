@@ -133,7 +133,7 @@ class PanelPainter {
         canvas_.rectangle({from.x, from.y - 2.6, to.x, to.y + 2.6}, fill);
         for (const double y : {from.y - 2.6, from.y + 2.6})
           canvas_.line({from.x, y}, {to.x, y}, {palette(e.band->color), 0.8});
-      } else {
+      } else if (e.curve) {
         const FigureColor color = palette(e.curve->color);
         if (e.curve->width > 0) canvas_.line(from, to, {color, e.curve->width, e.curve->dash});
         canvas_.marker(e.curve->marker, {(from.x + to.x) / 2, from.y}, marker_radius * e.curve->marker_size,

@@ -198,10 +198,43 @@ Figure poses() {
   return figure("poses", "Six poses", panels, 2, 3, 100);
 }
 
+std::string group_name(int k) {
+  return "pendulum number " + std::to_string(k) + " (1 rod)";
+}
+
+Figure many_curves() {
+  Panel p = panel("axial force (N), tension > 0", {});
+  for (int k = 0; k < 60; ++k)
+    p.curves.push_back(
+        curve(group_name(k), 200, 5, k, [&](double t) { return 100 * std::sin((2 + 0.1 * k) * t + k); }));
+  Panel lower = p;
+  lower.curves.resize(4);  // its legend has no place inside, either
+  for (Panel* each : {&p, &lower}) each->lines.push_back({0, true, "", 7});
+  return figure("many_curves", "A legend that is longer than the page", {p, lower}, 2, 1, 110);
+}
+
+Figure many_groups() {
+  Figure f = poses();
+  f.name = "many_groups", f.height_mm = 70;
+  f.panels.front().curves.clear();
+  for (int k = 0; k < 90; ++k)
+    f.panels.front().curves.push_back(curve(group_name(k), 0, 0, k, [](double) { return 0.0; }));
+  return f;
+}
+
+Figure long_caption() {
+  Figure f = sines();
+  f.name = "long_caption";
+  for (int k = 0; k < 60; ++k)
+    f.caption += " Event \u201Cstop number " + std::to_string(k) + "\u201D at 1.25 s.";
+  return f;
+}
+
 }  // namespace
 
 std::vector<Figure> sample_figures() {
-  return {sines(), two_axes(), round_off(), degenerate(), magnitudes(), crowded(), markers(), poses()};
+  return {sines(),   two_axes(), round_off(),   degenerate(),  magnitudes(),  crowded(),
+          markers(), poses(),    many_curves(), many_groups(), long_caption()};
 }
 
 }  // namespace unfurl
