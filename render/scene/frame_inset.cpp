@@ -4,13 +4,25 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
+#include "core/diagnostics/force_round_off.hpp"
 #include "core/text/nearest_name.hpp"
 #include "render/plot/limits.hpp"
 #include "render/plot/style.hpp"
 #include "render/scene/frame_overlay.hpp"
 
 namespace unfurl {
+
+namespace {
+
+// Columns that follow from rod forces.
+bool of_rods(std::string_view column) {
+  return column.starts_with("axial_force_m") || column.starts_with("axial_stress_m") ||
+         column == "stress_ratio_max" || column == "buckling_ratio_max";
+}
+
+}  // namespace
 
 void FrameOverlay::prepare_inset() {
   const std::string& column = style_.options.inset;
@@ -25,6 +37,8 @@ void FrameOverlay::prepare_inset() {
   curve.x = style_.diagnostics->t;
   curve.y = series->values;
   curve.width = 1.6f;
+  if (of_rods(column) && style_.run && only_round_off(*style_.run, *style_.diagnostics))
+    for (double& value : curve.y) value = std::isnan(value) ? value : 0.0;
   panel.curves.push_back(std::move(curve));
   const plot::Limits x = plot::axis_limits(panel, plot::AxisOf::x),
                      y = plot::axis_limits(panel, plot::AxisOf::y);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/length_error.hpp"
 #include "core/diagnostics/rod_strength.hpp"
@@ -106,7 +107,7 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
     const Structure& structure = run.trajectory.structure();
     const std::size_t rods = structure.rod_copies.size(), open = rods - unique_rods(structure, diagnostics);
     if (open > 0) field.label += "; " + std::to_string(open) + " of " + std::to_string(rods) + " not unique";
-    field.values = diagnostics.axial_force;
+    field.values = without_round_off(run, diagnostics, diagnostics.axial_force);
     field.diverging = true;
   } else if (by == "stress" || by == "buckling") {
     const Structure& structure = run.trajectory.structure();
@@ -114,7 +115,9 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
     field.label = stress ? "axial stress (MPa), tension > 0" : "compression / Euler load";
     if (!any_elastic(structure)) field.label += ": not known, no rod has a youngs_modulus";
     field.values =
-        (stress ? 1e-6 : 1.0) * over_rods(structure, diagnostics, stress ? axial_stress : buckling_ratio);
+        (stress ? 1e-6 : 1.0) *
+        without_round_off(run, diagnostics,
+                          over_rods(structure, diagnostics, stress ? axial_stress : buckling_ratio));
     field.diverging = stress;
   } else if (by == "speed") {
     field.label = "speed (m/s)";

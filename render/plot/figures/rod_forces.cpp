@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/rod_strength.hpp"
@@ -23,7 +24,7 @@ std::string uniqueness_sentence(const Structure& structure, const Diagnostics& d
 
 std::string peak_sentence(const Simulation& run, const Diagnostics& d) {
   const PeakForce peak = peak_rod_force(d);
-  if (peak.rod < 0) return " Largest magnitude 0 N.";
+  if (peak.rod < 0 || only_round_off(run, d)) return " Largest magnitude 0 N.";
   const double force = find_measure("peak_rod_force").value(run, d);
   return " Largest magnitude " + plot::format_number(force, 4) + " N" +
          whose_peak(run.trajectory.structure(), {force, peak.force_N, peak.rod, peak.t, peak.unique}) + ".";
@@ -39,7 +40,7 @@ Figure rod_forces_figure(const Simulation& run, const Diagnostics& d) {
   f.height_mm = 85;
   Panel p = time_panel(run, "axial force (N), tension > 0");
   p.lines.push_back({0.0, true, "", 7});
-  add_rod_curves(structure, d, d.axial_force, p);
+  add_rod_curves(structure, d, without_round_off(run, d, d.axial_force), p);
   f.caption = "Axial force of every rod, tension positive, the mean over its length.";
   if (!each_rod_alone(structure))
     f.caption =

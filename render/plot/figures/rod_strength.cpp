@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/diagnostics/rod_strength.hpp"
 
+#include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/peaks.hpp"
 #include "render/plot/figures/kinds.hpp"
@@ -22,6 +23,7 @@ std::string margin_text(double ratio) {
 // Values are those of the motion, as in summary.json.
 std::string peak_sentences(const Simulation& run, const Diagnostics& d) {
   const Structure& structure = run.trajectory.structure();
+  if (only_round_off(run, d)) return " Largest stress 0 MPa.";
   std::string text;
   if (const WorstRod worst = worst_rod(structure, d, axial_stress); worst.rod >= 0) {
     const double stress = find_measure("peak_stress").value(run, d);
@@ -54,11 +56,14 @@ Figure rod_strength_figure(const Simulation& run, const Diagnostics& d) {
   f.height_mm = 140;
   Panel stress = time_panel(run, "axial stress (MPa), tension > 0");
   stress.lines.push_back({0.0, true, "", 7});
-  add_rod_curves(structure, d, 1e-6 * over_rods(structure, d, axial_stress), stress);
+  const auto values = [&](double (*quantity)(const Rod&, double)) {
+    return without_round_off(run, d, over_rods(structure, d, quantity));
+  };
+  add_rod_curves(structure, d, 1e-6 * values(axial_stress), stress);
   Panel buckling = time_panel(run, "compression / Euler load");
   if (worst_rod(structure, d, buckling_ratio).value > 0.3)
     buckling.lines.push_back({1.0, true, "it buckles", 7});
-  add_rod_curves(structure, d, over_rods(structure, d, buckling_ratio), buckling);
+  add_rod_curves(structure, d, values(buckling_ratio), buckling);
   share_time_axis(stress, buckling);
   f.caption =
       "Axial stress of the rods, force over area, and their compression as a share of Euler's load with "

@@ -71,4 +71,24 @@ TEST_CASE("captions of drives have the largest power of the motion", "[figures]"
   CHECK(number_behind("pull: at most ", text) == Approx(10 * most).epsilon(1e-3));
 }
 
+// Three rods that drift together, without a load: exactly 0 in each, 1e-28 N of rounding.
+TEST_CASE("what rounding leaves of forces is drawn and said as zero", "[figures]") {
+  const std::string moving = ", velocity = [1, 0.3, 0.2]}", rod = "], mass = 1, area = 1e-4}";
+  const Simulation run = testing::run_scene(
+      "[structure]\nkind = 'custom'\nyoungs_modulus = 7e10\nnodes = [{name = 'A', position = [0, 0, 0]" +
+      moving + ", {name = 'B', position = [1, 0, 0]" + moving + ", {name = 'C', position = [0.3, 0.9, 0.1]" +
+      moving + "]\nrods = [{nodes = ['B', 'C'" + rod + ", {nodes = ['A', 'B'" + rod + ", {nodes = ['A', 'C'" +
+      rod + "]\n[solver]\nend_time = 2\n");
+  const Diagnostics d = diagnose(run);
+  REQUIRE(d.axial_force.cwiseAbs().maxCoeff() > 0);  // rounding there is
+  for (const auto& [name, words] : {std::pair{"rod_forces", " Largest magnitude 0 N. Method"},
+                                    std::pair{"rod_strength", " Largest stress 0 MPa. Method"}}) {
+    const Figure f = find_figure(name)->make(run, d);
+    CHECK_THAT(f.caption, Contains(words));
+    for (const Panel& panel : f.panels)
+      for (const Curve& curve : panel.curves)
+        CHECK(std::ranges::all_of(curve.y, [](double y) { return y == 0; }));
+  }
+}
+
 }  // namespace unfurl::caption_peaks_test

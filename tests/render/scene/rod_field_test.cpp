@@ -146,8 +146,8 @@ TEST_CASE("ghosts are earlier poses, trails end at their node") {
   CHECK((list.ghosts.front().a - Vec3f(2, 0, 0)).norm() < 1e-6f);
 }
 
-// However long the run is: 60 s at 5 rad/s are 48 turns. The lines' middles are off the circle of 2 m by no more
-// than a pixel of a picture that shows it whole.
+// However long the run is: 60 s at 5 rad/s are 48 turns. The lines' middles are off the circle of 2 m by no
+// more than a pixel of a picture that shows it whole.
 TEST_CASE("a trail is where the node was") {
   std::string text = spinning;
   text.replace(text.find("step = 0.01"), 26, "step = 0.004\nend_time = 60");
@@ -256,6 +256,27 @@ TEST_CASE("around zero the colour tells the sign, whatever the range") {
     if (low < 0) CHECK(blue(low) > 0.3f);
     if (low <= 0 && high >= 0) CHECK(std::abs(blue(0)) < 0.02f);
   }
+}
+
+// The rod of `spinning`, let go and moving along itself: its force is 0, and rounding has no colour.
+TEST_CASE("rods without a force are grey, whatever rounding leaves") {
+  const Scene scene = read_scene_text(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [0, 0, 0], velocity = [3, 1, 0.7]}, "
+      "{name = "
+      "'E', position = [2, 0.1, 0], velocity = [3, 1, 0.7]}]\nrods = [{nodes = ['P', 'E'], mass = "
+      "3}]\n[solver]\n"
+      "end_time = 2\n",
+      "drift.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  Diagnostics d = diagnose(run);
+  d.axial_force(7, 0) = 1e-27;  // whatever this run's rounding is
+  const RodField field = rod_field("axial_force", {0, 0}, run, d);
+  const Color grey = diverging_color(0);
+  for (const double t : d.t) {
+    const Color c = field.color(field.at(t, 0));
+    CHECK(std::hypot(c.r - grey.r, c.g - grey.g, c.b - grey.b) == 0.0f);
+  }
+  CHECK(field.high == 1);  // of the bar: no number of rounding
 }
 
 }  // namespace rod_field_test

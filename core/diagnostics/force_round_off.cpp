@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/force_round_off.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace unfurl {
+
+double force_round_off(const Simulation& run) {
+  constexpr double noise = 64 * std::numeric_limits<double>::epsilon(), of_forces = 1e-12;
+  const Trajectory& trajectory = run.trajectory;
+  const Structure& structure = trajectory.structure();
+  const auto grow = [](double& most, double x) { most = x > most ? x : most; };
+  double acting = 0, reach = 0, speed = 0, mass = 0, stiffness = 0;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Load& load : structure.loads) grow(acting, load.force.lpNorm<Eigen::Infinity>());
+  for (const Rod& rod : structure.rods) {
+    if (rod.length > 0) shortest = std::min(shortest, rod.length);
+    if (rod.gives && rod.compliance() > 0) grow(stiffness, 1 / (rod.compliance() * rod.multiplicity));
+  }
+  VectorXd force;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const System system = trajectory.model(i).system.at(trajectory.state(i));
+    const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
+    const VectorXd masses = system.node_mass().diagonal();
+    if (q.size() == 0) continue;
+    force.setZero(q.size());
+    system.add_applied_force(trajectory.time(i), q, v, 1.0, force);
+    grow(acting, force.lpNorm<Eigen::Infinity>());
+    grow(acting, masses.lpNorm<Eigen::Infinity>() * structure.gravity.lpNorm<Eigen::Infinity>());
+    grow(reach, q.lpNorm<Eigen::Infinity>());
+    grow(speed, v.lpNorm<Eigen::Infinity>());
+    grow(mass, masses.sum() / 3);
+  }
+  const double elapsed = trajectory.end_time() - trajectory.start_time();
+  const double step =
+      elapsed > 0 && run.steps > 0 ? elapsed / static_cast<double>(run.steps) : run.options.step;
+  const double turning = noise * (speed + reach / step);
+  return of_forces * acting + mass * turning * turning / shortest + stiffness * noise * reach;
+}
+
+MatrixXd without_round_off(const Simulation& run, const Diagnostics& d, MatrixXd values) {
+  if (values.size() == 0) return values;
+  const double least = force_round_off(run);
+  for (Index i = 0; i < values.rows(); ++i)
+    for (Index r = 0; r < values.cols(); ++r)
+      if (std::abs(d.axial_force(i, r)) <= least && !std::isnan(values(i, r))) values(i, r) = 0;
+  return values;
+}
+
+bool only_round_off(const Simulation& run, const Diagnostics& d) {
+  const double least = force_round_off(run);
+  for (const double force : d.axial_force.reshaped())
+    if (std::abs(force) > least) return false;
+  return true;
+}
+
+}  // namespace unfurl
