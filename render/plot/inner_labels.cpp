@@ -46,13 +46,33 @@ std::vector<Rect> candidates(const Rect& frame, const ReferenceLine& line, doubl
   return inside;
 }
 
-void add_line_label(const ReferenceLine& line, Obstacles& obstacles, PanelLayout& out) {
+// Where names of vertical lines may not stand [points]: at other such lines where there are many with a name
+// of their own, of which none could be told whose it is.
+std::vector<double> crowd(const Panel& panel, const PanelLayout& layout) {
+  constexpr std::ptrdiff_t few = 5;
+  std::vector<double> at;
+  for (const ReferenceLine& line : panel.lines)
+    if (!line.horizontal) at.push_back(layout.x.scale(line.value));
+  const auto named = std::count_if(panel.lines.begin(), panel.lines.end(), [](const ReferenceLine& line) {
+    return !line.horizontal && !line.label.empty();
+  });
+  return named > few ? at : std::vector<double>();
+}
+
+void add_line_label(const ReferenceLine& line, const std::vector<double>& others, Obstacles& obstacles,
+                    PanelLayout& out) {
   if (line.label.empty()) return;
   const Rect& frame = out.frame;
   const double at = (line.horizontal ? out.y : out.x).scale(line.value);
   const std::string text = shorten_text(line.label, small_size, frame.width() - 8);
   const double width = text_width(text, small_size), height = (ascent + descent) * small_size;
-  const std::vector<Rect> boxes = candidates(frame, line, at, width, height);
+  std::vector<Rect> boxes = candidates(frame, line, at, width, height);
+  if (!line.horizontal)
+    std::erase_if(boxes, [&](const Rect& b) {  // with what lies between the name and its line
+      const double x0 = std::min(b.x0 - 1, at), x1 = std::max(b.x1 + 1, at);
+      return std::any_of(others.begin(), others.end(),
+                         [&](double x) { return std::abs(x - at) > 0.5 && x > x0 && x < x1; });
+    });
   if (boxes.empty()) return;
   const Spot spot = best_of(obstacles, boxes);
   if (spot.hidden >= touches_text) return;
@@ -136,7 +156,8 @@ Obstacles obstacles_of(const Panel& panel, const PanelLayout& layout) {
 
 void add_inner_labels(const Panel& panel, PanelLayout& out) {
   Obstacles obstacles = obstacles_of(panel, out);
-  for (const ReferenceLine& line : panel.lines) add_line_label(line, obstacles, out);
+  const std::vector<double> others = crowd(panel, out);
+  for (const ReferenceLine& line : panel.lines) add_line_label(line, others, obstacles, out);
   add_contour_labels(panel, out);
   add_scale_bar(panel, out);
   say_no_data(panel, out);

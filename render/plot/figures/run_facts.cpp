@@ -12,7 +12,8 @@ using plot::format_number;
 
 namespace {
 
-constexpr std::size_t most_named = 5;  // events of one name; of more the first is labelled, with their number
+// Events of one name: of more the first is labelled, with their number. And names in a sentence.
+constexpr std::size_t most_named = 5;
 
 // Events of one name, in the order of their first ones.
 struct EventGroup {
@@ -64,19 +65,28 @@ Panel time_panel(const Simulation& run, std::string y_label) {
 std::string events_sentence(const Simulation& run) {
   // A millionth of a second, or of a run that is shorter.
   const double span = run.trajectory.end_time() - run.trajectory.start_time();
-  const int decimals = span > 0 ? static_cast<int>(std::clamp(std::ceil(6 - std::log10(span)), 6.0, 300.0)) : 6;
+  const int decimals =
+      span > 0 ? static_cast<int>(std::clamp(std::ceil(6 - std::log10(span)), 6.0, 300.0)) : 6;
   const auto seconds = [&](double t) { return plot::format_fixed(t, decimals) + " s"; };
   std::string text;
-  for (const EventGroup& group : event_groups(run)) {
+  const std::vector<EventGroup> groups = event_groups(run);
+  for (std::size_t k = 0; k < std::min(groups.size(), most_named); ++k) {
+    const EventGroup& group = groups[k];
     if (group.times.size() > most_named) {
       text += " Event \u201C" + group.name + "\u201D " + std::to_string(group.times.size()) +
               " times, from " + seconds(group.times.front()) + " to " + seconds(group.times.back()) + ".";
       continue;
     }
-    for (const double t : group.times)
-      text += " Event \u201C" + group.name + "\u201D at " + seconds(t) + ".";
+    for (const double t : group.times) text += " Event \u201C" + group.name + "\u201D at " + seconds(t) + ".";
   }
-  return text;
+  if (groups.size() <= most_named) return text;
+  std::vector<double> rest;
+  for (std::size_t k = most_named; k < groups.size(); ++k)
+    rest.insert(rest.end(), groups[k].times.begin(), groups[k].times.end());
+  std::sort(rest.begin(), rest.end());
+  if (rest.size() == 1) return text + " One more event at " + seconds(rest.front()) + ".";
+  return text + " " + std::to_string(rest.size()) + " more events from " + seconds(rest.front()) + " to " +
+         seconds(rest.back()) + ".";
 }
 
 void share_time_axis(Panel& upper, Panel& lower) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Largest values in captions are those of the motion, not of the ends of steps.
+// What captions say: largest values are those of the motion, not of the ends of steps; of many events the
+// first.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -89,6 +90,24 @@ TEST_CASE("what rounding leaves of forces is drawn and said as zero", "[figures]
       for (const Curve& curve : panel.curves)
         CHECK(std::ranges::all_of(curve.y, [](double y) { return y == 0; }));
   }
+}
+
+TEST_CASE("captions name the first events and count the others", "[figures]") {
+  Simulation run = testing::run_scene("structure.kind = 'hoop'\nsolver.end_time = 0.2\n");
+  const auto with_events = [&](int events) {
+    run.events.clear();
+    for (int k = 0; k < events; ++k) {
+      Event event;
+      event.name = "stop " + std::to_string(k), event.t = 0.01 * k;
+      run.events.push_back(event);
+    }
+    return find_figure("deployment")->make(run, diagnose(run)).caption;
+  };
+  CHECK_THAT(with_events(5), Contains("\u201Cstop 4\u201D at 0.040000") && !Contains("more event"));
+  CHECK_THAT(with_events(6), Contains(" One more event at 0.050000"));
+  const std::string many = with_events(19);
+  CHECK_THAT(many, Contains("\u201Cstop 4\u201D at") && !Contains("stop 5"));
+  CHECK_THAT(many, Contains(" 14 more events from 0.050000") && Contains(" to 0.180000"));
 }
 
 }  // namespace unfurl::caption_peaks_test

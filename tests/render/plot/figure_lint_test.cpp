@@ -4,6 +4,7 @@
 
 #include "render/plot/layout.hpp"
 #include "render/plot/painter.hpp"
+#include "render/plot/text_metrics.hpp"
 #include "tests/render/plot/recording_canvas.hpp"
 #include "tests/render/plot/sample_figures.hpp"
 
@@ -186,6 +187,38 @@ TEST_CASE("legends leave half of the room to what they explain", "[figure]") {
     }
   }
   CHECK(cut > 0);
+}
+
+// Thirty events in a tenth of the run have no room for their names, eight over all of it do.
+TEST_CASE("names of many events stand at no other event's line", "[figure]") {
+  for (const bool close : {false, true}) {
+    const int events = close ? 30 : 8;
+    Figure figure;
+    figure.width_mm = 160, figure.height_mm = 85;
+    figure.panels.resize(1);
+    Panel& panel = figure.panels[0];
+    Curve c;
+    c.x = {0, 10}, c.y = {0, 1};
+    panel.curves.push_back(c);
+    for (int k = 0; k < events; ++k)
+      panel.lines.push_back({close ? 4 + 0.03 * k : 0.2 + 1.2 * k, false, "stop " + std::to_string(k), 7});
+    const plot::PanelLayout layout = plot::lay_out(figure).panels.at(0);
+    int named = 0;
+    for (const plot::Label& label : layout.labels) {
+      if (!label.text.starts_with("stop ")) continue;
+      ++named;
+      const plot::Rect box = plot::text_box(label.at, label.text, label.style);
+      for (const ReferenceLine& line : panel.lines) {
+        const double x = layout.x.scale(line.value);
+        CAPTURE(label.text, line.label);
+        CHECK((x < box.x0 || x > box.x1));
+      }
+    }
+    if (close)
+      CHECK((named >= 1 && named <= 2));  // beside the first line and beside the last one
+    else
+      CHECK(named == events);
+  }
 }
 
 }  // namespace unfurl
