@@ -91,23 +91,88 @@ void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
   const RenderOptions& options = style_.options;
   if (look_.dimensions || options.dimensions) add_dimensions(whole, list);
   add_names(whole, list);
-  add_heading(t, list);
-  Boxes taken;
-  if (options.time) add_status(t, whole, taken, list);
-  if (options.axes) add_axes(taken, list);
-  if (options.legend && field_) add_color_bar(taken, list);
-  if (options.scale_bar) add_scale_bar(taken, list);
-  if (options.legend) add_legend(t, taken, list);
-  add_inset(t, list);
+  Parts wanted;
+  const auto want = [&](bool on, Part part) {
+    if (on) wanted.insert(part);
+  };
+  want(options.time, Part::status);
+  want(!style_.title.empty() && options.title, Part::title);
+  want(wanted.contains(Part::title), Part::second_line);
+  want(options.legend && field_, Part::color_bar);
+  want(options.legend, Part::legend);
+  want(inset_ != nullptr, Part::inset);
+  want(options.legend, Part::thickness);
+  want(options.method && style_.run, Part::method);
+  want(options.errors && style_.diagnostics, Part::errors);
+  want(options.scale_bar, Part::scale_bar);
+  want(options.axes, Part::axes);
+  write(t, whole, wanted, list);
 }
 
 void FrameOverlay::add_key(double t, DrawList& list) const {
-  float y = 0.8f * edge_;
-  if (const std::string note = scale_text(looks_); !note.empty())
-    add_line_of_heading(y, small_, note, false, list);
+  Parts wanted{Part::thickness, Part::legend};
+  if (field_) wanted.insert(Part::color_bar);
+  write(t, {}, wanted, list);
+}
+
+void FrameOverlay::write(double t, const VectorXd& whole, Parts wanted, DrawList& list) const {
+  const std::size_t areas = list.areas.size(), lines = list.lines.size(), labels = list.labels.size();
+  for (;;) {
+    const std::optional<Part> left_out = in_the_way(write_all(t, whole, wanted, list));
+    if (!left_out) return;
+    wanted.erase(*left_out);
+    list.areas.resize(areas), list.lines.resize(lines), list.labels.resize(labels);
+    list.inset = {};
+  }
+}
+
+std::vector<FrameOverlay::Piece> FrameOverlay::write_all(double t, const VectorXd& whole, const Parts& wanted,
+                                                         DrawList& list) const {
+  std::vector<Piece> pieces;
+  std::size_t labels = list.labels.size(), boxes = 0;
   Boxes taken;
-  if (field_) add_color_bar(taken, list);
-  add_legend(t, taken, list);
+  const auto placed = [&](Part part) {
+    for (; boxes < taken.size(); ++boxes) pieces.push_back({part, taken[boxes]});
+    for (; labels < list.labels.size(); ++labels) {
+      const TextLabel& l = list.labels[labels];
+      const auto wide =
+          static_cast<float>(plot::text_width(l.text, static_cast<double>(l.height) / plot::line_height));
+      const float x = l.x - l.align * wide;
+      pieces.push_back({part, {x, l.y, x + wide, l.y + l.height}});
+    }
+  };
+  const auto add = [&](Part part, const auto& draw) {
+    if (!wanted.contains(part)) return;
+    draw();
+    placed(part);
+  };
+  add_heading(t, wanted, placed, list);
+  add(Part::status, [&] { add_status(t, whole, taken, list); });
+  add(Part::axes, [&] { add_axes(taken, list); });
+  add(Part::color_bar, [&] { add_color_bar(taken, list); });
+  add(Part::scale_bar, [&] { add_scale_bar(taken, list); });
+  add(Part::legend, [&] { add_legend(t, taken, list); });
+  add(Part::inset, [&] {
+    add_inset(t, list);
+    const Inset& in = list.inset;
+    taken.push_back({in.x, in.y, in.x + in.width, in.y + in.height});
+  });
+  return pieces;
+}
+
+std::optional<FrameOverlay::Part> FrameOverlay::in_the_way(const std::vector<Piece>& pieces) const {
+  std::optional<Part> least;
+  const auto out = [&](Part part) {
+    if (part != Part::status && (!least || part > *least)) least = part;
+  };
+  constexpr float hair = 0.5f;  // of a pixel
+  for (const Piece& p : pieces) {
+    const Box& b = p.box;
+    if (b.x0 < -hair || b.y0 < -hair || b.x1 > width_ + hair || b.y1 > height_ + hair) out(p.part);
+    for (const Piece& q : pieces)
+      if (p.part > q.part && b.overlaps(q.box)) out(p.part);
+  }
+  return least;
 }
 
 // The solved nodes' coordinates, read off any of their copies.
@@ -130,44 +195,59 @@ TextLabel FrameOverlay::quiet(const DrawList& list, TextLabel label) const {
   return label;
 }
 
-// Beside the inset. A title that is longer takes two lines, what is still longer ends in dots.
-void FrameOverlay::add_line_of_heading(float& y, float size, const std::string& text, bool title,
+// In so many lines at most: what is longer ends in dots. The title is larger than the others, and bold.
+void FrameOverlay::add_line_of_heading(Heading& heading, float size, const std::string& text, int most,
                                        DrawList& list) const {
-  constexpr double bold = 1.12;  // of the bold face's width to that of the other
+  if (heading.room < 4 * size) return;  // of dots alone
+  constexpr double bold = 1.12;         // of the bold face's width to that of the other
+  const bool title = size == large_;
   const double wide = static_cast<double>(size) / plot::line_height * (title ? bold : 1);
-  const auto room = static_cast<double>(width_ - 2 * edge_ - (inset_ ? 360 * unit_ : 0));
+  const auto room = static_cast<double>(heading.room);
   std::vector<std::string> lines = plot::wrap_text(text, wide, room);
-  if (!title || lines.size() > 2) {
-    const std::size_t first = title ? lines.front().size() + 1 : 0;
-    lines.resize(title ? 1 : 0);
+  if (std::ssize(lines) > most || most == 1) {
+    const std::size_t first = most > 1 ? lines.front().size() + 1 : 0;
+    lines.resize(static_cast<std::size_t>(most - 1));
     lines.push_back(
         plot::shorten_text(std::string_view(text).substr(std::min(first, text.size())), wide, room));
   }
   for (const std::string& line : lines) {
-    list.labels.push_back(quiet(list, {edge_, y, size, look_.ink, line, 0, title}));
-    y += (title ? 1.35f : 1.3f) * size;
+    list.labels.push_back(quiet(list, {edge_, heading.y, size, look_.ink, line, 0, title}));
+    heading.y += (title ? 1.35f : 1.3f) * size;
   }
 }
 
-void FrameOverlay::add_heading(double t, DrawList& list) const {
-  float y = 0.8f * edge_;
-  if (!style_.title.empty() && style_.options.title) add_line_of_heading(y, large_, style_.title, true, list);
+void FrameOverlay::add_heading(double t, const Parts& wanted, const std::function<void(Part)>& placed,
+                               DrawList& list) const {
+  // Beside the inset, or below it where there is no room.
+  const bool inset = wanted.contains(Part::inset);
+  Heading heading{0.8f * edge_, width_ - 2 * edge_};
+  if (const float beside = heading.room - 360 * unit_; inset && beside > 8 * large_)
+    heading.room = beside;
+  else if (inset)
+    heading.y += 215 * unit_;
+  if (wanted.contains(Part::title)) {
+    const std::size_t first = list.labels.size();
+    add_line_of_heading(heading, large_, style_.title, wanted.contains(Part::second_line) ? 2 : 1, list);
+    placed(list.labels.size() > first + 1 ? Part::second_line : Part::title);
+  }
   const float line = fine_ * std::round(0.85f * small_ / fine_);
-  if (const std::string note = scale_text(looks_); !note.empty() && style_.options.legend)
-    add_line_of_heading(y, small_, note, false, list);
-  if (style_.options.method && style_.run) {
+  const auto add = [&](Part part, float size, const std::string& text) {
+    if (text.empty()) return;
+    add_line_of_heading(heading, size, text, 1, list);
+    placed(part);
+  };
+  if (wanted.contains(Part::thickness)) add(Part::thickness, small_, scale_text(looks_));
+  if (wanted.contains(Part::method)) {
     const SolverOptions& solver = style_.run->options;
     std::string text = solver.method;
     if (solver.method == "dvm") text += ", s = " + std::to_string(solver.stages);
-    add_line_of_heading(y, line, text + ", h = " + number_text(solver.step) + " s", false, list);
+    add(Part::method, line, text + ", h = " + number_text(solver.step) + " s");
   }
-  if (style_.options.errors && style_.diagnostics) {
+  if (wanted.contains(Part::errors)) {
     const Diagnostics& d = *style_.diagnostics;
-    add_line_of_heading(y, line,
-                        "so far: constraints " + number_text(largest_until(d, "constraint_max_m", t)) +
-                            " m, energy balance " + number_text(largest_until(d, "energy_balance_J", t)) +
-                            " J",
-                        false, list);
+    add(Part::errors, line,
+        "so far: constraints " + number_text(largest_until(d, "constraint_max_m", t)) +
+            " m, energy balance " + number_text(largest_until(d, "energy_balance_J", t)) + " J");
   }
 }
 
@@ -264,6 +344,7 @@ std::vector<FrameOverlay::LegendRow> FrameOverlay::legend_rows(std::vector<Legen
 
 // The name in ink, which can be read on any ground, behind a sign in the colour.
 void FrameOverlay::add_legend(double t, Boxes& taken, DrawList& list) const {
+  if (width_ - 2 * edge_ < 6 * small_) return;  // for signs without names
   const std::vector<LegendEntry> all = legend_entries(t, list);
   const float y = height_ - edge_ - small_, highest = 0.6f * height_;
   std::vector<LegendRow> rows = legend_rows(all, y, taken);
@@ -319,11 +400,26 @@ std::string end_mark(const RodField& field, double u) {
 
 void FrameOverlay::add_color_bar(Boxes& taken, DrawList& list) const {
   constexpr int steps = 64;
-  const float length = 280 * unit_, thick = 12 * unit_, line = fine_ * std::round(0.8f * small_ / fine_);
+  const float length = std::min(280 * unit_, width_ - 2 * edge_), thick = 12 * unit_,
+              line = fine_ * std::round(0.8f * small_ / fine_);
+  const double low = field_->known ? field_->low : 0, high = field_->known ? field_->high : 1;
+  const auto value = [&](double u) {
+    return field_->log ? low * std::pow(high / low, u) : low + u * (high - low);
+  };
+  const std::array<std::string, 3> numbers = bar_numbers({value(0), value(0.5), value(1)});
+  std::array<float, 3> widths{};
+  for (std::size_t k = 0; k < 3; ++k)
+    widths[k] = static_cast<float>(plot::text_width(
+        end_mark(*field_, 0.5 * static_cast<double>(k)) + numbers[k], static_cast<double>(line)));
+  const float gap = 0.4f * line;
+  if (field_->known && widths[0] + gap + widths[2] > length) return;  // no bar without numbers
+  // Between the others where there is room.
+  const bool middle = std::max(widths[0], widths[2]) + gap + 0.5f * widths[1] <= 0.5f * length;
   const std::vector<std::string> words =
       plot::wrap_text(field_->label, static_cast<double>(line), static_cast<double>(width_ - 2 * edge_));
   float label = 0;
   for (const std::string& text : words) label = std::max(label, about_width(text, line));
+  label = std::min(label, width_ - 2 * edge_);  // they are wrapped
   const float wide = std::max(length, label), tall = 1.35f * line * static_cast<float>(words.size());
   const bool longer = label > length;  // it then ends where the bar ends
   const float x = width_ - edge_ - length;
@@ -348,17 +444,13 @@ void FrameOverlay::add_color_bar(Boxes& taken, DrawList& list) const {
   const float up = lifted(box, taken), y = height_ - edge_ - 1.25f * line - thick - up;
   box.y0 -= up, box.y1 -= up;
   taken.push_back(box);
-  const double low = field_->low, high = field_->high;
-  const auto value = [&](double u) {
-    return field_->log ? low * std::pow(high / low, u) : low + u * (high - low);
-  };
   for (int k = 0; k < steps; ++k) {
     const float a = x + length * static_cast<float>(k) / steps,
                 b = x + length * static_cast<float>(k + 1) / steps;
     list.areas.push_back({a, y, b, y + thick, field_->color(value((k + 0.5) / steps))});
   }
-  const std::array<std::string, 3> numbers = bar_numbers({value(0), value(0.5), value(1)});
   for (std::size_t k = 0; k < 3; ++k) {
+    if (k == 1 && !middle) continue;
     const double u = 0.5 * static_cast<double>(k);
     const float at = x + length * static_cast<float>(u);
     list.lines.push_back({at, y + thick, at, y + thick + 4 * unit_, 1.5f * unit_, look_.ink});

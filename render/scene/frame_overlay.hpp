@@ -2,7 +2,10 @@
 // What is written and drawn over a picture: labels, legend, colour bar, scale bar, axes, dimensions, inset.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,17 +39,48 @@ class FrameOverlay {
     float y;
     std::vector<LegendEntry> entries;
   };
+  // What is written over the picture, the most important first: where texts lie on each other or leave the
+  // picture, the less important ones are left out.
+  enum class Part {
+    status,
+    title,
+    color_bar,
+    legend,
+    second_line,  // of the title
+    inset,
+    thickness,
+    method,
+    errors,
+    scale_bar,
+    axes
+  };
+  using Parts = std::set<Part>;
+  struct Piece {
+    Part part;
+    Box box;
+  };
   // How far up a box has to go to be clear of those that are taken, all of them in the lower part.
   float lifted(Box box, const Boxes& taken) const;
   std::vector<LegendEntry> legend_entries(double t, const DrawList& list) const;
   std::vector<LegendRow> legend_rows(std::vector<LegendEntry> entries, float y, const Boxes& taken) const;
-  void add_line_of_heading(float& y, float size, const std::string& text, bool title, DrawList& list) const;
+  struct Heading {
+    float y, room;  // of the next line, and how wide that may be [pixels]
+  };
+  void add_line_of_heading(Heading& heading, float size, const std::string& text, int most,
+                           DrawList& list) const;
+  // Everything that is wanted and has room.
+  void write(double t, const VectorXd& whole, Parts wanted, DrawList& list) const;
+  std::vector<Piece> write_all(double t, const VectorXd& whole, const Parts& wanted, DrawList& list) const;
+  // The least important part that is in the way of another, or has no room in the picture.
+  std::optional<Part> in_the_way(const std::vector<Piece>& pieces) const;
   VectorXd solved(const VectorXd& whole) const;
   void add_swatch(DrawList& list, float x, float y, const Color& color) const;
   // A text on ground as quiet as the background: what is behind shines through a little.
   TextLabel quiet(const DrawList& list, TextLabel label) const;
   void prepare_inset();
-  void add_heading(double t, DrawList& list) const;
+  // `placed` is told of every part behind it.
+  void add_heading(double t, const Parts& wanted, const std::function<void(Part)>& placed,
+                   DrawList& list) const;
   // These take their places in the lower part one after the other, and none that is taken.
   void add_status(double t, const VectorXd& whole, Boxes& taken, DrawList& list) const;
   void add_axes(Boxes& taken, DrawList& list) const;

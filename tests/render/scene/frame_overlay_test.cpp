@@ -216,6 +216,50 @@ TEST_CASE("texts stay in the picture and apart, however small it is and whatever
   }
 }
 
+// Whatever does not fit is left out, the least important things first.
+TEST_CASE("texts of the smallest pictures are apart, and what matters most stays") {
+  const std::string all =
+      "[render]\nscale_bar = true\naxes = true\nmethod = true\nerrors = true\ninset = 'kinetic_energy_J'\n";
+  for (const auto& [width, height] :
+       {std::pair{160, 90}, {240, 135}, {240, 720}, {720, 120}, {200, 150}, {120, 160}, {96, 54}, {16, 16}})
+    for (const char* by : {"group", "axial_force", "constraint_error", "stress"})
+      for (const int groups : {1, 3, 9}) {
+        INFO(width << " x " << height << ", " << by << ", " << groups << " groups");
+        const DrawList list =
+            small_picture(chain(groups) + all + "colour_by = '" + by + "'\n", width, height);
+        if (width > 16) check_texts(list, width, height);  // the time is cut there
+        CHECK(
+            std::ranges::any_of(list.labels, [](const TextLabel& l) { return l.text.starts_with("t = "); }));
+        if (width >= 120) CHECK(std::ranges::any_of(list.labels, [](const TextLabel& l) { return l.bold; }));
+        for (const OverlayArea& area : list.areas) {
+          CHECK(area.x0 >= 0);
+          CHECK(area.x1 <= static_cast<float>(width));
+        }
+        const Inset& in = list.inset;
+        if (!in.figure) continue;
+        CHECK(in.x >= 0);
+        for (const TextLabel& l : list.labels) {
+          const Rectangle p = box_of(l);
+          INFO(l.text);
+          CHECK((p.x1 <= static_cast<double>(in.x) || p.x0 >= static_cast<double>(in.x + in.width) ||
+                 p.y1 <= static_cast<double>(in.y) || p.y0 >= static_cast<double>(in.y + in.height)));
+        }
+      }
+  // The bar of colours shrinks with the picture.
+  const DrawList panel = small_picture(
+      chain(2) + "[render]\ntitle = false\ncolour_by = 'axial_force'\ncolour_range = [-200, 200]\n", 160,
+      135);
+  CHECK(label(panel, "\u2212200"));
+  CHECK(std::ranges::any_of(panel.labels,
+                            [](const TextLabel& l) { return l.text.starts_with("axial force"); }));
+  for (const OverlayArea& area : panel.areas) CHECK((area.x0 >= 0 && area.x1 <= 160));
+  // Below the inset, not beside it in dots.
+  const DrawList narrow = small_picture(chain(3) + all, 240, 720);
+  REQUIRE(narrow.inset.figure);
+  CHECK(std::ranges::none_of(narrow.labels, [](const TextLabel& l) { return l.text == "\u2026"; }));
+  CHECK(label(narrow, " s"));
+}
+
 TEST_CASE("supersampling changes no size of what is written") {
   const std::string text = chain(3) + "[render]\nscale_bar = true\n";
   for (const auto& [width, height] : {std::pair{1280, 720}, {640, 360}, {426, 360}, {200, 150}}) {
