@@ -99,13 +99,6 @@ struct Row {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
-// What gives work_J besides loads.
-bool motors_or_warmed(const Structure& s) {
-  return std::ranges::any_of(s.forces,
-                             [](const Force& f) { return f.motor.stall > 0 || f.unstressed.moves(); }) ||
-         std::ranges::any_of(s.rods, [](const Rod& r) { return r.gives && r.expansion != 0; });
-}
-
 const std::array rows{
     Row{"kinetic_energy_J", "kinetic energy", "J", Needs::nothing,
         [](const Instant& s) { return s.kinetic(); }},

@@ -14,6 +14,13 @@
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
+
+bool motors_or_warmed(const Structure& s) {
+  return std::ranges::any_of(s.forces,
+                             [](const Force& f) { return f.motor.stall > 0 || f.unstressed.moves(); }) ||
+         std::ranges::any_of(s.rods, [](const Rod& r) { return r.gives && r.expansion != 0; });
+}
+
 EnergyMeter::EnergyMeter(const System& system)
     : system_(system),
       loads_(system.has_power(false)),

@@ -21,6 +21,9 @@ struct EnergyFlow {
   std::vector<std::vector<double>> of_drives = {};  // what each of drive_channels() has put in
 };
 
+// Whether something besides loads gives work by a law of its own: motors, winches, elastic rods that warm.
+bool motors_or_warmed(const Structure& structure);
+
 // What dry friction takes is exact: a force times the way. Powers are integrated over each step with three
 // Gauss points (order 6) on the quintic that has the coordinates, rates and accelerations of the states at
 // both ends: an independent quadrature, whatever the method, of order 6 where the forces are smooth within
