@@ -43,6 +43,18 @@ double between(const std::vector<CameraKey>& keys, double CameraKey::*value, dou
          keys[i + 1].*value * (3 - 2 * u) * u * u - slope(i + 1) * h * w * u * u;
 }
 
+// Of a sample: the states within the window around it, first and end.
+std::pair<std::size_t, std::size_t> window_of(const std::vector<double>& times, int sample) {
+  const auto time = [&](int i) {
+    const int k = std::clamp(i, 0, follow_samples - 1);
+    return times.front() + (times.back() - times.front()) * k / (follow_samples - 1);
+  };
+  const auto first = std::ranges::lower_bound(times, time(sample - follow_window)) - times.begin();
+  const auto end = std::ranges::upper_bound(times, time(sample + follow_window)) - times.begin();
+  return {static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, first - 1)),
+          std::min(times.size(), static_cast<std::size_t>(end) + 1)};
+}
+
 Camera mixed(const Camera& a, const Camera& b, float u) {
   Camera c = a;
   c.eye += u * (b.eye - a.eye);
@@ -57,6 +69,15 @@ Camera mixed(const Camera& a, const Camera& b, float u) {
 
 ViewAngles first_angles(const RenderOptions& options, const MotionBounds& bounds) {
   return preset(options.camera, bounds);
+}
+
+double followed_radius(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times) {
+  double radius = 0;
+  for (int k = 0; k < follow_samples; ++k) {
+    const auto [first, end] = window_of(times, k);
+    radius = std::max(radius, motion_bounds(source_of(poses, first, end)).radius);
+  }
+  return radius;
 }
 
 double most_shots(double end_time, const RenderOptions& o) {
@@ -172,7 +193,7 @@ CameraPath::CameraPath(std::vector<std::vector<Vec3>> poses, std::vector<double>
   framing_.parallel = options.projection == "orthographic";
   framing_.zoom = options.zoom;
   const PointSource all = source_of(poses_, 0, poses_.size());
-  still_ = frame_points(all, bounds_, start_, framing_);
+  still_ = frame_points(all, bounds_.center, bounds_, start_, framing_);
   const bool turning = !keys_.empty() || orbit_ != 0 || turntable_;
   if (follow_) turning ? prepare_turning_follow() : prepare_follow();
   if (!turning) return;
@@ -205,18 +226,11 @@ std::vector<double> CameraPath::elevations(double from, double to) const {
 // window has that moment; the condition of being in the picture is linear in the camera's place, so the mean
 // fulfils it as they do.
 void CameraPath::prepare_follow() {
-  const double start = times_.front(), span = times_.back() - start;
   std::vector<Camera> fitted;
   for (int k = 0; k < follow_samples; ++k) {
-    const auto time = [&](int i) {
-      return start + span * std::clamp(i, 0, follow_samples - 1) / (follow_samples - 1);
-    };
-    const auto first =
-        std::lower_bound(times_.begin(), times_.end(), time(k - follow_window)) - times_.begin();
-    const auto end = std::upper_bound(times_.begin(), times_.end(), time(k + follow_window)) - times_.begin();
-    const auto low = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, first - 1));
-    const std::size_t high = std::min(poses_.size(), static_cast<std::size_t>(end) + 1);
-    fitted.push_back(frame_points(source_of(poses_, low, high), bounds_, start_, framing_));
+    const auto [first, end] = window_of(times_, k);
+    const PointSource window = source_of(poses_, first, end);
+    fitted.push_back(frame_points(window, motion_bounds(window).center, bounds_, start_, framing_));
   }
   for (int k = 0; k < follow_samples; ++k) {
     Camera mean = fitted[static_cast<std::size_t>(k)];

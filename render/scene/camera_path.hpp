@@ -39,6 +39,9 @@ double most_shots(double end_time, const RenderOptions& options);
 // From where a film begins to look.
 ViewAngles first_angles(const RenderOptions& options, const MotionBounds& bounds);
 
+// With RenderOptions::follow: the radius of what the camera has room for at once, where that is largest [m].
+double followed_radius(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times);
+
 class CameraPath {
  public:
   // poses: the points of the motion, z up, of each state; times of the states [s], ascending.

@@ -144,14 +144,18 @@ struct DrawList {
   // A sphere around everything that casts a shadow. Keep it still through a film, or the shadows' edges
   // crawl.
   Vec3f center = Vec3f::Zero();
-  float radius = 1;                          // [m]
+  float radius = 1;  // [m]
+  // A sphere around what the camera shows at once: the same, or less of a motion that it follows.
+  Vec3f framed_center = Vec3f::Zero();
+  float framed_radius = 1;                   // [m]
   Vec3f light_direction{0.4f, -0.5f, 1.0f};  // towards the light
   Shading shading = Shading::studio;
   bool transparent = false;     // no background; shadows are as transparent as they are light
   Vec3f planet{0, 0, -1};       // the direction to the middle of the Earth,
   float planet_half_angle = 0;  // and half of how wide it is there; 0: it is not there [rad]
   float stars = 0;              // brightness of stars in the background, 0..1
-  // The share of the background in what is as far as the far side of the sphere; none at its near side.
+  // The share of the background in what is as far as the far side of the framed sphere; none at its near
+  // side.
   float depth_fade = 0;
   float hidden_gap =
       0;  // a line is hidden where something is nearer by more than this [m] (Shading::outline)

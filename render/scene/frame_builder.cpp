@@ -94,6 +94,15 @@ void FrameBuilder::choose_origin() {
       upright_.transpose() * drawing_origin(bounds.center, bounds.radius, upright_ * style_.origin);
 }
 
+void FrameBuilder::bound(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times) {
+  bounds_ = bounds_of(poses);
+  if (bounds_.radius <= 0) bounds_.radius = 1;  // a single node that rests
+  shown_radius_ = bounds_.radius;
+  if (!style_.options.follow) return;
+  const double followed = followed_radius(poses, times);
+  if (followed > 0) shown_radius_ = std::min(followed, bounds_.radius);
+}
+
 double FrameBuilder::prepare_camera() {
   const Structure& s = trajectory_.structure();
   std::vector<std::vector<Vec3>> poses;
@@ -106,18 +115,17 @@ double FrameBuilder::prepare_camera() {
   }
   for (ShownSurface& shown : style_.surfaces)
     shown.turned = is_turned(edge_of(shown, poses.front()), edge_of(shown, poses.back()));
-  bounds_ = bounds_of(poses);
-  if (bounds_.radius <= 0) bounds_.radius = 1;  // a single node that rests
-  looks_ = appearance_of(s, bounds_.radius, style_.options.rod_scale);
+  bound(poses, times);
+  looks_ = appearance_of(s, shown_radius_, style_.options.rod_scale);
   const double thickest = looks_.joint_radius.empty() ? 0.0 : *std::ranges::max_element(looks_.joint_radius);
   prepare_hardware(poses, times);
   for (auto& pose : poses) add_shown(pose, style_.surfaces, hardware_->support_depth(), looks_);
-  bounds_ = bounds_of(poses);
-  if (bounds_.radius <= 0) bounds_.radius = 1;
+  bound(poses, times);
   Framing framing;
   framing.around = thickest + (style_.loads && !s.load_copies.empty() ? 0.5 * looks_.arrow_length : 0.0);
   if (look_->dimensions || style_.options.dimensions)
-    for (auto& pose : poses) add_dimension_ends(pose, 1.15 * dimension_gap * still_radius(thickest));
+    for (auto& pose : poses)
+      add_dimension_ends(pose, 1.15 * dimension_gap * drawn_radius(shown_radius_, thickest));
   framing.aspect = static_cast<double>(style_.width) / style_.height;
   if (!style_.options.inset.empty() && style_.diagnostics) framing.margins.right = 0.27;
   const auto all = [&](const std::function<void(const Vec3&)>& visit) {
@@ -152,7 +160,7 @@ void FrameBuilder::prepare_hardware(const std::vector<std::vector<Vec3>>& poses,
     thickest = std::max(thickest, radius.back());
   }
   if (s.rod_copies.empty()) thickest = looks_.bare_radius;
-  const double pixels = thickest / bounds_.radius * 0.45 * std::min(style_.width, style_.height);
+  const double pixels = thickest / shown_radius_ * 0.45 * std::min(style_.width, style_.height);
   const bool lit = look_->shading == Shading::studio || look_->shading == Shading::space;
   auto joints = std::make_unique<const Joints>(s, std::move(sample_times), samples, radius, bounds_.center,
                                                bounds_.plane_normal);
@@ -160,8 +168,8 @@ void FrameBuilder::prepare_hardware(const std::vector<std::vector<Vec3>>& poses,
                                          upright_, lit && pixels > 0.8);
 }
 
-double FrameBuilder::still_radius(double thickest) const {
-  return bounds_.radius + looks_.arrow_length + thickest;
+double FrameBuilder::drawn_radius(double of_nodes, double thickest) const {
+  return of_nodes + looks_.arrow_length + thickest;
 }
 
 void FrameBuilder::prepare_still(double thickest) {
@@ -174,7 +182,9 @@ void FrameBuilder::prepare_still(double thickest) {
   still_.depth_fade = look_->depth_fade;
   still_.hidden_gap = static_cast<float>(3 * thickest);
   still_.center = bounds_.center.cast<float>();
-  still_.radius = static_cast<float>(still_radius(thickest));
+  still_.radius = static_cast<float>(drawn_radius(bounds_.radius, thickest));
+  still_.framed_center = still_.center;
+  still_.framed_radius = static_cast<float>(drawn_radius(shown_radius_, thickest));
 
   still_.ground.shown = look_->ground;
   still_.ground.z = static_cast<float>(bounds_.low.z() - thickest - 0.01 * bounds_.radius);
@@ -238,12 +248,23 @@ void FrameBuilder::prepare_trails() {
     }
   }
   for (Trail& trail : trails_) {
-    const std::vector<std::size_t> corners = corners_of(trail.points, trail_error * bounds_.radius);
+    const std::vector<std::size_t> corners = corners_of(trail.points, trail_error * shown_radius_);
     for (std::size_t k = 0; k < corners.size(); ++k)
       trail.t[k] = trail.t[corners[k]], trail.points[k] = trail.points[corners[k]];
     trail.t.resize(corners.size());
     trail.points.resize(corners.size());
   }
+}
+
+// A camera that follows is aimed at a window of the motion: bring its focus to where what it follows is.
+void FrameBuilder::aim(const std::vector<Vec3>& at, DrawList& list) const {
+  Vec3 low = at.front(), high = low;
+  for (const Vec3& p : at) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  Camera& camera = list.camera;
+  const Vec3f forward = (camera.target - camera.eye).normalized();
+  const float depth = forward.dot((0.5 * (low + high)).cast<float>() - camera.eye);
+  if (depth > camera.near_plane) camera.target = camera.eye + depth * forward;
+  list.framed_center = camera.target;
 }
 
 DrawList FrameBuilder::build(double t) const {
@@ -263,6 +284,7 @@ DrawList FrameBuilder::build(const Shot& shot) const {
   }
   std::vector<Vec3> at;
   for (Index k = 0; k < whole.size() / 3; ++k) at.push_back(node(whole, static_cast<int>(k)));
+  if (style_.options.follow && !at.empty()) aim(at, list);
   add_bodies(inside, at, list);
   add_lines(whole, list);
   if (style_.loads && style_.options.loads) add_loads(whole, list);
@@ -300,7 +322,7 @@ Color FrameBuilder::rod_color(double t, const RodCopy& rod) const {
 
 // Cables and nets: thinner than any rod, so that what they hang on shows.
 void FrameBuilder::add_lines(const VectorXd& whole, DrawList& list) const {
-  double thinnest = 0.004 * bounds_.radius;
+  double thinnest = 0.004 * shown_radius_;
   for (const double radius : looks_.rod_radius) thinnest = std::min(thinnest, radius);
   for (const ShownLine& line : trajectory_.structure().lines) {
     const bool net = line.group == "net";
@@ -367,7 +389,7 @@ void FrameBuilder::add_ghosts(double t, DrawList& list) const {
 void FrameBuilder::add_trails(double t, const VectorXd& whole, DrawList& list) const {
   for (const Trail& trail : trails_) {
     const double joint = looks_.joint_radius[static_cast<std::size_t>(trail.node)];
-    const auto thick = static_cast<float>(0.3 * (joint > 0 ? joint : 0.01 * bounds_.radius));
+    const auto thick = static_cast<float>(0.3 * (joint > 0 ? joint : 0.01 * shown_radius_));
     Color color = trail_color(*look_, looks_);
     color.a = 0.85f;
     Vec3 last = trail.points.front();

@@ -67,9 +67,12 @@ class FrameBuilder {
   Vec3 node(const VectorXd& whole, int i) const { return upright_ * whole.segment<3>(3 * i); }
   void add_card(DrawList& list) const;
   void choose_origin();
-  double prepare_camera();                     // returns the radius of the thickest joint [m]
-  double still_radius(double thickest) const;  // of a sphere around all that is drawn [m]
+  void bound(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times);
+  double prepare_camera();  // returns the radius of the thickest joint [m]
+  // Of a sphere around what is drawn of nodes in one of that radius [m].
+  double drawn_radius(double of_nodes, double thickest) const;
   void prepare_still(double thickest);
+  void aim(const std::vector<Vec3>& at, DrawList& list) const;
   void prepare_ghosts();
   void prepare_trails();
   Color rod_color(double t, const RodCopy& rod) const;
@@ -96,6 +99,7 @@ class FrameBuilder {
   const Look* look_;
   Appearance looks_;
   MotionBounds bounds_;
+  double shown_radius_ = 1;  // of what the camera has room for at once [m]
   double fitting_aspect_ = 1;
   std::unique_ptr<Hardware> hardware_;
   std::unique_ptr<RodField> field_;  // null: coloured by group

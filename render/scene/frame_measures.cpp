@@ -44,12 +44,14 @@ Color clear_backing(const Look& look) {
 
 }  // namespace
 
-// As long as it is at the middle of the motion; in perspective what is nearer is larger, which it says.
+// As long as it is in the middle of what the camera shows; in perspective what is nearer is larger, which it
+// says.
 void FrameOverlay::add_scale_bar(Boxes& taken, DrawList& list) const {
   const Screen screen(list.camera);
-  const Vec3f a = project(list.camera, style_.width, style_.height, list.center);
-  const Vec3f b = project(list.camera, style_.width, style_.height, list.center + list.radius * screen.right);
-  const double pixels = std::abs(b.x() - a.x()) / list.radius;  // of a metre
+  const Vec3f &middle = list.camera.target, beside = middle + list.framed_radius * screen.right;
+  const Vec3f a = project(list.camera, style_.width, style_.height, middle);
+  const Vec3f b = project(list.camera, style_.width, style_.height, beside);
+  const double pixels = std::abs(b.x() - a.x()) / list.framed_radius;  // of a metre
   if (!(pixels > 0 && std::isfinite(pixels))) return;
   const double metres = round_length(0.16 * static_cast<double>(width_) / pixels);
   const auto length = static_cast<float>(pixels * metres);
@@ -171,7 +173,7 @@ void FrameOverlay::add_dimensions(const VectorXd& whole, DrawList& list) const {
     low = low.cwiseMin(p), high = high.cwiseMax(p);
   }
   const Vec3 back = (list.camera.eye - list.camera.target).cast<double>().normalized();
-  const double gap = dimension_gap * static_cast<double>(list.radius);
+  const double gap = dimension_gap * static_cast<double>(list.framed_radius);
   const Vec3 near(back.x() > 0 ? high.x() : low.x(), back.y() > 0 ? high.y() : low.y(), low.z());
   // Outward along the floor, or down where that is straight towards the viewer.
   const auto outward = [&](const Vec3& away) {
@@ -180,7 +182,7 @@ void FrameOverlay::add_dimensions(const VectorXd& whole, DrawList& list) const {
   };
   const Vec3 outward_x = outward({back.x() > 0 ? gap : -gap, 0, 0}),
              outward_y = outward({0, back.y() > 0 ? gap : -gap, 0});
-  const double flat = 0.02 * static_cast<double>(list.radius);
+  const double flat = 0.02 * static_cast<double>(list.framed_radius);
   if (high.x() - low.x() > flat)
     add_dimension({low.x(), near.y(), low.z()}, {high.x(), near.y(), low.z()}, outward_y, list);
   if (high.y() - low.y() > flat)

@@ -106,7 +106,8 @@ class FrameOverlay {
   std::shared_ptr<Figure> inset_;  // of the whole run
 };
 
-// How far dimension lines are from what they measure, in radii of the picture (DrawList::radius).
+// How far dimension lines are from what they measure, in radii of the picture
+// (DrawList::framed_radius).
 inline constexpr double dimension_gap = 0.09;
 
 // The largest of 1, 2 and 5 times a power of ten that is not above x.

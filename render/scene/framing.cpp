@@ -102,6 +102,7 @@ struct Sight {
   Vec3 right, up, forward;
   double tan_y;
   Extremes x, y;
+  double nearest = std::numeric_limits<double>::infinity();  // along the view, with its room
   double share_x, share_y;  // of the picture's width and height that are inside the margins
 
   Sight(const PointSource& points, const ViewAngles& view, const Framing& f)
@@ -115,24 +116,27 @@ struct Sight {
         share_y(1 - f.margins.bottom - f.margins.top) {
     points([&](const Vec3& p) {
       const double depth = forward.dot(p);
+      nearest = std::min(nearest, depth - f.around);
       x.add(right.dot(p), depth, f.around);
       y.add(up.dot(p), depth, f.around);
     });
   }
 };
 
-Camera looking(const Vec3& eye, const MotionBounds& bounds, const ViewAngles& view, const Framing& f,
-               double parallel_height) {
+// What it is aimed at may be a small part of the whole, and the eye far inside that.
+Camera looking(const Vec3& eye, const Vec3& center, const MotionBounds& whole, const ViewAngles& view,
+               const Framing& f, double parallel_height) {
   const Vec3 forward = -view.direction();
-  const double depth = forward.dot(bounds.center - eye), reach = bounds.radius + f.around;
+  const double depth = forward.dot(center - eye), reach = whole.radius + f.around;
+  const double whole_depth = forward.dot(whole.center - eye);
   Camera camera;
   camera.eye = eye.cast<float>();
   camera.target = (eye + forward * depth).cast<float>();
   camera.up = view.up().cast<float>();
   camera.vertical_field_of_view = static_cast<float>(field_of_view);
   camera.parallel_height = static_cast<float>(parallel_height);
-  camera.near_plane = static_cast<float>(std::max(0.02 * depth, 0.8 * (depth - 1.05 * reach)));
-  camera.far_plane = static_cast<float>(depth + 13 * reach);  // and the floor behind
+  camera.near_plane = static_cast<float>(std::max(0.02 * depth, 0.8 * (whole_depth - 1.05 * reach)));
+  camera.far_plane = static_cast<float>(whole_depth + 13 * reach);  // and the floor behind
   return camera;
 }
 
@@ -140,10 +144,10 @@ constexpr double parallel_distance = 8;  // of the eye of a parallel picture, in
 
 }  // namespace
 
-Camera frame_points(const PointSource& points, const MotionBounds& bounds, const ViewAngles& view,
-                    const Framing& f) {
+Camera frame_points(const PointSource& points, const Vec3& middle, const MotionBounds& whole,
+                    const ViewAngles& view, const Framing& f) {
   const Sight sight(points, view, f);
-  const double center = sight.forward.dot(bounds.center);
+  const double center = sight.forward.dot(middle);
   if (f.parallel) {
     const double height = std::max((sight.y.high + sight.y.low) / sight.share_y,
                                    (sight.x.high + sight.x.low) / (sight.share_x * f.aspect)) /
@@ -151,14 +155,18 @@ Camera frame_points(const PointSource& points, const MotionBounds& bounds, const
     // The margins' middle lies beside the picture's.
     const double x = sight.x.middle(0) + 0.5 * (f.margins.right - f.margins.left) * height * f.aspect;
     const double y = sight.y.middle(0) + 0.5 * (f.margins.top - f.margins.bottom) * height;
-    const double depth = center - parallel_distance * (bounds.radius + f.around);
-    return looking(x * sight.right + y * sight.up + depth * sight.forward, bounds, view, f, height);
+    const double depth = sight.forward.dot(whole.center) - parallel_distance * (whole.radius + f.around);
+    return looking(x * sight.right + y * sight.up + depth * sight.forward, middle, whole, view, f, height);
   }
   const double fitted = std::min(sight.x.farthest(), sight.y.farthest());
   const double depth = center - (center - fitted) / f.zoom;
-  return looking(
+  Camera camera = looking(
       sight.x.middle(fitted) * sight.right + sight.y.middle(fitted) * sight.up + depth * sight.forward,
-      bounds, view, f, 0);
+      middle, whole, view, f, 0);
+  // What is long along the view and slim begins close to the eye.
+  const double nearest = std::max(0.9 * (sight.nearest - depth), 0.002 * (center - depth));
+  camera.near_plane = std::min(camera.near_plane, static_cast<float>(nearest));
+  return camera;
 }
 
 double fitting_aspect(const PointSource& points, const ViewAngles& view, const Framing& framing) {
@@ -181,11 +189,11 @@ double centered_distance(const PointSource& points, const Vec3& center, const Vi
   return sight.forward.dot(center) - std::min(sight.x.farthest_at(x), sight.y.farthest_at(y));
 }
 
-Camera centered_camera(const MotionBounds& bounds, const Vec3& center, double distance,
-                       const ViewAngles& view, const Framing& f) {
-  if (!f.parallel) return looking(center + distance / f.zoom * view.direction(), bounds, view, f, 0);
-  const double back = parallel_distance * (bounds.radius + f.around);
-  return looking(center + back * view.direction(), bounds, view, f, distance / f.zoom);
+Camera centered_camera(const MotionBounds& whole, const Vec3& center, double distance, const ViewAngles& view,
+                       const Framing& f) {
+  if (!f.parallel) return looking(center + distance / f.zoom * view.direction(), center, whole, view, f, 0);
+  const double back = parallel_distance * (whole.radius + f.around);
+  return looking(center + back * view.direction(), center, whole, view, f, distance / f.zoom);
 }
 
 }  // namespace unfurl

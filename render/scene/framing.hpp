@@ -49,9 +49,10 @@ struct Framing {
   double zoom = 1;
 };
 
-// The nearest camera in that direction that has all points, each with its room, inside the margins.
-Camera frame_points(const PointSource& points, const MotionBounds& bounds, const ViewAngles& view,
-                    const Framing& framing);
+// The nearest camera in that direction that has all points, each with its room, inside the margins. It is
+// aimed at as far as `middle`, that of the points; whole: where all is that may be drawn, they among it.
+Camera frame_points(const PointSource& points, const Vec3& middle, const MotionBounds& whole,
+                    const ViewAngles& view, const Framing& framing);
 
 // Width over height of the picture that they fill in that direction, if it has no perspective.
 double fitting_aspect(const PointSource& points, const ViewAngles& view, const Framing& framing);
@@ -61,7 +62,7 @@ double fitting_aspect(const PointSource& points, const ViewAngles& view, const F
 double centered_distance(const PointSource& points, const Vec3& center, const ViewAngles& view,
                          const Framing& framing);
 // The camera at that distance.
-Camera centered_camera(const MotionBounds& bounds, const Vec3& center, double distance,
-                       const ViewAngles& view, const Framing& framing);
+Camera centered_camera(const MotionBounds& whole, const Vec3& center, double distance, const ViewAngles& view,
+                       const Framing& framing);
 
 }  // namespace unfurl

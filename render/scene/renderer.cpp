@@ -100,8 +100,9 @@ void Renderer::begin_solids(const Program& program, const DrawList& list, const 
   program.set("to_light", light);
   program.set("lamp", Vec3f((light + Vec3f(0, 0, 0.6f)).normalized()));
   program.set("strip", Vec3f(Vec3f(-light.x(), -light.y(), 0.25f).normalized()));
-  program.set("fade_center", list.center);
-  program.set("mist_way", Vec3f((list.center * eye.w() - eye.head<3>()).normalized() / list.radius));
+  const Vec3f& middle = list.framed_center;
+  program.set("fade_center", middle);
+  program.set("mist_way", Vec3f((middle * eye.w() - eye.head<3>()).normalized() / list.framed_radius));
   program.set("mist", list.depth_fade);
   const Camera& camera = list.camera;
   const float rise = camera.parallel_height > 0 ? camera.parallel_height

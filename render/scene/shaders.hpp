@@ -93,7 +93,7 @@ uniform vec2 floor_height_reach;  // darkens what is nearer to the floor than `r
 uniform vec4 background_top, background_bottom;
 uniform float picture_height;
 uniform vec3 fade_center;
-uniform vec3 mist_way;  // away from the camera, over the motion's radius
+uniform vec3 mist_way;  // away from the camera, over the radius of what it shows
 uniform float mist;     // share of the background at the far side
 uniform float texel;    // of the shadow map [m]
 uniform mat4 light_projection;

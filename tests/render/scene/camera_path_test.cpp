@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/scene/camera_path.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
+#include <tuple>
 
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
@@ -273,6 +276,88 @@ TEST_CASE("whatever heights camera keys pass, all is in the picture") {
         }
       }
   }
+}
+
+namespace {
+
+// Three rods of 1 m around a triangle that flies along y, through the place where y = 0 at the time 1 s.
+Simulation flight(double speed) {
+  const std::string v = std::to_string(speed), start = std::to_string(-speed);
+  std::string text = "[solver]\nend_time = 2\nstep = 0.01\n[structure]\nkind = 'custom'\nnodes = [";
+  for (const auto& [name, x, z] : {std::tuple("A", "-0.5", "0.1"), {"B", "0.5", "0.1"}, {"C", "0", "0.966"}})
+    text += std::string("{name='") + name + "', position=[" + x + "," + start + "," + z + "], velocity=[0," +
+            v + ",0]},";
+  text += "]\nrods = [{nodes=['A','B'],mass=1},{nodes=['B','C'],mass=1},{nodes=['C','A'],mass=1}]\n";
+  const Scene scene = read_scene_text(text, "flight.toml");
+  return simulate(build_model(scene), scene.solver);
+}
+
+float apart(const Camera& camera, const Vec3f& a, const Vec3f& b) {
+  return (project(camera, width, height, b) - project(camera, width, height, a)).head<2>().norm();
+}
+
+}  // namespace
+
+TEST_CASE("a camera that follows a flight keeps its direction and what flies in the picture") {
+  for (const double speed : {100.0, -100.0, 3000.0}) {
+    const Simulation run = flight(speed);
+    RenderOptions options;
+    options.follow = true;
+    for (const char* camera : {"front", "auto", "side"})
+      for (const char* projection : {"perspective", "orthographic"})
+        for (const double orbit : {0.0, 1e-3})  // degrees: the cameras that turn, without a turn to speak of
+          for (const bool dimensions : {false, true}) {
+            options.camera = camera;
+            options.projection = projection;
+            options.orbit = orbit;
+            options.dimensions = dimensions;
+            const FrameBuilder frames = builder(run, options);
+            const Vec3f first = direction(frames.build(0).camera);
+            for (double t = 0; t <= 2; t += 0.1) {
+              CAPTURE(speed, camera, projection, orbit, dimensions, t);
+              const DrawList list = frames.build(t);
+              CHECK(margin(list) > 0);
+              // 1e-3 degrees are 2e-5.
+              CHECK((direction(list.camera) - first).norm() < 1e-4f);
+            }
+          }
+  }
+}
+
+TEST_CASE("the scale bar of a camera that follows is that of what it follows") {
+  const Simulation run = flight(100);
+  RenderOptions options;
+  options.follow = options.scale_bar = true;
+  options.camera = "front";
+  for (const double t : {0.0, 0.4, 1.7, 2.0}) {
+    const DrawList list = builder(run, options).build(t);
+    const auto text = std::ranges::find_if(
+        list.labels, [](const TextLabel& label) { return label.text.ends_with(" m in the middle"); });
+    REQUIRE(text != list.labels.end());
+    const auto bar = std::ranges::find_if(list.lines, [&](const OverlayLine& line) {
+      return line.y0 == line.y1 && std::abs(0.5f * (line.x0 + line.x1) - text->x) < 0.01f;
+    });
+    REQUIRE(bar != list.lines.end());
+    const auto y = static_cast<float>(100 * (t - 1));
+    const float metre = apart(list.camera, {-0.5f, y, 0}, {0.5f, y, 0});
+    CHECK((bar->x1 - bar->x0) / std::stof(text->text) == Approx(metre).epsilon(1e-3));
+  }
+}
+
+// In an even flight, away from its ends, as much of the way within the window is before what flies as behind
+// it: the middle of the picture is where that is. The run's states are 1 m apart, the camera some 20 m away:
+// to 5 %.
+TEST_CASE("zoom in a camera that follows is about what it follows") {
+  const Simulation run = flight(100);
+  RenderOptions options;
+  options.follow = true;
+  options.camera = "front";
+  const auto metre = [&](double zoom, double t) {
+    options.zoom = zoom;
+    const auto y = static_cast<float>(100 * (t - 1));
+    return apart(builder(run, options).build(t).camera, {-0.5f, y, 0}, {0.5f, y, 0});
+  };
+  for (const double t : {0.5, 1.5}) CHECK(metre(1.7, t) == Approx(1.7 * metre(1, t)).epsilon(0.05));
 }
 
 }  // namespace camera_path_test

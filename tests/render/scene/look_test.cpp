@@ -29,7 +29,7 @@ DrawList in_front(const Look& look) {
   list.camera.eye = {0, -20, 0};
   list.camera.target = {0, 0, 0};
   list.camera.parallel_height = 10;
-  list.radius = 8;
+  list.radius = list.framed_radius = 8;
   list.ground.shown = false;
   list.shading = look.shading;
   list.background_top = look.background_top;
