@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
 #include <map>
+#include <string>
 
 #include "core/diagnostics/peaks.hpp"
 #include "render/plot/figures/kinds.hpp"
@@ -23,6 +26,18 @@ void add_curves(const Diagnostics& d, std::string_view ending, std::map<std::str
   }
 }
 
+// " motor: between −2 W and 5.5 W.": what a drive brakes has a minus.
+std::string power_sentence(const Simulation& run, const Diagnostics& d, const std::string& drive) {
+  const std::string column = drive + ".power_W";
+  const double least = smallest_of_column(run, d, column), most = largest_of_column(run, d, column);
+  const double noise = 1e-9 * std::max(std::abs(least), std::abs(most));
+  const auto text = [noise](double x) {
+    return plot::format_number(std::abs(x) > noise ? x : 0.0, 4) + " W";
+  };
+  if (text(least) == text(most)) return " " + drive + ": " + text(most) + ".";
+  return " " + drive + ": between " + text(least) + " and " + text(most) + ".";
+}
+
 }  // namespace
 
 Figure drives_figure(const Simulation& run, const Diagnostics& d) {
@@ -30,7 +45,8 @@ Figure drives_figure(const Simulation& run, const Diagnostics& d) {
   f.name = "drives";
   f.title = "What the drives give";
   f.caption =
-      "Torque or force of every motor, winch and prescribed motion along what it moves, and its power.";
+      "Torque or force of every motor, winch and prescribed motion along what it moves, and the power it "
+      "gives.";
   std::map<std::string, int> colors;
   for (const auto& [ending, label] :
        {std::pair{".torque_N_m", "torque (N m)"}, std::pair{".force_N", "force (N)"},
@@ -44,8 +60,7 @@ Figure drives_figure(const Simulation& run, const Diagnostics& d) {
   for (std::size_t i = 1; i < f.panels.size(); ++i) share_time_axis(f.panels[i - 1], f.panels[i]);
   for (const Series& column : d.columns)
     if (column.name.ends_with(".power_W"))
-      f.caption += " " + column.name.substr(0, column.name.size() - 8) + ": at most " +
-                   plot::format_number(peak_of_column(run, d, column.name), 4) + " W.";
+      f.caption += power_sentence(run, d, column.name.substr(0, column.name.size() - 8));
   f.caption += events_sentence(run) + " " + method_sentence(run);
   return f;
 }
