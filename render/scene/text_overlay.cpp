@@ -6,6 +6,7 @@
 
 #include "render/plot/painter.hpp"
 #include "render/plot/style.hpp"
+#include "render/plot/written_text.hpp"
 #include "render/ui/imgui_canvas.hpp"
 #include "render/ui/sheet.hpp"
 
@@ -37,14 +38,17 @@ ImU32 at_night(ImU32 color) {
   return ImGui::ColorConvertFloat4ToU32({moved(c.x), moved(c.y), moved(c.z), c.w});
 }
 
+plot::FigureLayout inset_layout(const Inset& inset) {
+  return plot::lay_out(*inset.figure, {.title = false, .caption = false});
+}
+
 void draw_inset(const Inset& inset, bool night, Sheet& sheet, ImDrawList& paper) {
   const int first = paper.VtxBuffer.Size;
   paper.AddRectFilled({inset.x, inset.y}, {inset.x + inset.width, inset.y + inset.height},
                       packed({1, 1, 1, 0.85f}), 0.03f * inset.height);
-  const plot::FigureLayout layout = plot::lay_out(*inset.figure, {.title = false, .caption = false});
   plot::ImguiCanvas canvas(paper, [&](float pixels) { return sheet.font(pixels); }, inset.pixels_per_point,
                            {static_cast<double>(inset.x), static_cast<double>(inset.y)});
-  plot::paint(*inset.figure, layout, canvas);
+  plot::paint(*inset.figure, inset_layout(inset), canvas);
   if (!night) return;
   for (int i = first; i < paper.VtxBuffer.Size; ++i)
     paper.VtxBuffer[i].col = at_night(paper.VtxBuffer[i].col);
@@ -63,10 +67,14 @@ void TextOverlay::draw(const DrawList& list, int width, int height) {
   const Inset& inset = list.inset;
   if (list.labels.empty() && list.lines.empty() && list.areas.empty() && !inset.figure) return;
   Sheet& sheet = fonts_->sheet;
-  for (const TextLabel& label : list.labels) sheet.font(label.height, label.bold);
-  if (inset.figure)
+  for (const TextLabel& label : list.labels) sheet.need(label.text), sheet.font(label.height, label.bold);
+  if (inset.figure) {
+    plot::WrittenText written;
+    plot::paint(*inset.figure, inset_layout(inset), written);
+    sheet.need(written.all());
     for (const double size : plot::text_sizes)
       sheet.font(plot::ImguiCanvas::font_pixels(size, inset.pixels_per_point));
+  }
   ImDrawList& paper = sheet.begin(width, height);
   for (const OverlayArea& area : list.areas)
     paper.AddRectFilled({area.x0, area.y0}, {area.x1, area.y1}, packed(area.color), area.round);

@@ -28,6 +28,11 @@ ImFont* add(ImFontAtlas& atlas, std::string_view bytes, ImFontConfig config, con
                                     config.SizePixels, &config, ranges);
 }
 
+// ImGui sizes a font by its ascender and descender; its letters shall be as large as those of DejaVu Sans.
+float same_letters(const plot::Typeface& face, float pixels) {
+  return static_cast<float>(face.line_height / plot::typefaces().front().line_height) * pixels;
+}
+
 }  // namespace
 
 ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold) {
@@ -35,6 +40,28 @@ ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold) {
   config.SizePixels = pixels;
   if (ImFont* font = add(atlas, own_font(bold), config, glyph_ranges)) return font;
   return atlas.AddFontDefault(&config);
+}
+
+bool is_common(char32_t c) {
+  for (const ImWchar* range = glyph_ranges; *range != 0; range += 2)
+    if (c >= range[0] && c <= range[1]) return true;
+  return false;
+}
+
+// A glyph that a font has by now stays as it is.
+void add_glyphs(ImFontAtlas& atlas, ImFont& font, float pixels, bool bold, const plot::Typeface& face,
+                const ImWchar* ranges) {
+  ImFontConfig config;
+  config.MergeMode = true;
+  config.DstFont = &font;
+  const plot::Typeface& lender = plot::typefaces().front();
+  if (&face != &lender) {
+    config.SizePixels = same_letters(face, pixels);
+    add(atlas, font_bytes(face.file), config, ranges);
+  }
+  config.SizePixels = pixels;
+  if (bold) add(atlas, own_font(true), config, ranges);
+  add(atlas, own_font(), config, ranges);
 }
 
 ImFont* add_plot_font(ImFontAtlas& atlas, float pixels) {
@@ -49,10 +76,8 @@ ImFont* add_plot_font(ImFontAtlas& atlas, float pixels) {
     has.BuildRanges(&own);
     has_not.BuildRanges(&lent);
   }
-  // ImGui sizes a font by its ascender and descender; the letters shall be as large.
-  const double ratio = face.line_height / lender.line_height;
   ImFontConfig config;
-  config.SizePixels = static_cast<float>(ratio * pixels);
+  config.SizePixels = same_letters(face, pixels);
   ImFont* font = add(atlas, font_bytes(face.file), config, own.Data);
   config.SizePixels = pixels;
   config.MergeMode = true;

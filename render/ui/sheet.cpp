@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/text/utf8.hpp"
 #include "render/ui/fonts.hpp"
 
 namespace unfurl {
@@ -38,9 +39,32 @@ ImFont* Sheet::font_of(float pixels, bool bold, const plot::Typeface& face) {
   ImGui::SetCurrentContext(context_);
   const bool own = &face == &plot::typefaces().front();
   font = own ? add_font(*ImGui::GetIO().Fonts, pixels, bold) : add_plot_font(*ImGui::GetIO().Fonts, pixels);
+  for (const std::vector<ImWchar>& ranges : ranges_)
+    add_glyphs(*ImGui::GetIO().Fonts, *font, pixels, bold, face, ranges.data());
   fonts_changed_ = true;
   ImGui::SetCurrentContext(outer_);
   return font;
+}
+
+void Sheet::need(std::string_view text) {
+  std::vector<ImWchar> ranges;
+  for (std::size_t at = 0; at < text.size();) {
+    const char32_t c = next_code_point(text, at);
+    if (c < 0x20 || c > 0xFFFF || is_common(c) || !needed_.insert(c).second) continue;
+    ranges.insert(ranges.end(), 2, static_cast<ImWchar>(c));
+  }
+  if (ranges.empty()) return;
+  ranges.push_back(0);
+  ranges_.push_back(std::move(ranges));
+  outer_ = ImGui::GetCurrentContext();
+  ImGui::SetCurrentContext(context_);
+  for (const auto& [key, font] : fonts_) {
+    const auto& [size, bold, face] = key;
+    add_glyphs(*ImGui::GetIO().Fonts, *font, static_cast<float>(size) / 64, bold, *face,
+               ranges_.back().data());
+  }
+  fonts_changed_ = true;
+  ImGui::SetCurrentContext(outer_);
 }
 
 ImDrawList& Sheet::begin(int width, int height) {

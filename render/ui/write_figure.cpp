@@ -13,6 +13,7 @@
 #include "render/plot/scaled_canvas.hpp"
 #include "render/plot/style.hpp"
 #include "render/plot/svg_canvas.hpp"
+#include "render/plot/written_text.hpp"
 #include "render/ui/font_file.hpp"
 #include "render/ui/imgui_canvas.hpp"
 #include "render/ui/sheet.hpp"
@@ -57,6 +58,9 @@ Image FigureWriter::paint(const Figure& figure) {
   const int height = std::max(1, static_cast<int>(std::lround(layout.height * scale)));
   const Framebuffer picture(width, height, 0);  // ImGui smooths its own edges
   Sheet& sheet = *painter_->sheet;
+  plot::WrittenText written;
+  plot::paint(figure, layout, written);
+  sheet.need(written.all());
   for (const double size : plot::text_sizes) sheet.plot_font(plot::ImguiCanvas::font_pixels(size, scale));
   picture.bind();
   ImDrawList& list = sheet.begin(width, height);

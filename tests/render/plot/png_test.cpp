@@ -62,6 +62,19 @@ TEST_CASE("a painted curve has its colour where its axes say", "[png]") {
   CHECK(is(pixel(image, image.width - 3, image.height - 3), plot::white));
 }
 
+TEST_CASE("a title in letters that no figure had before is written in them", "[png]") {
+  FigureWriter writer;
+  const auto painted = [&](const char* label) {
+    Figure figure = diagonal();
+    figure.panels[0].y.label = label;
+    return writer.paint(figure).rgba;
+  };
+  const auto first = painted("\u0441\u0442\u0435\u0440");  // as wide as the next one
+  CHECK(first != painted("\u0442\u0441\u0435\u0440"));
+  CHECK(first != painted("????"));
+  CHECK(first == painted("\u0441\u0442\u0435\u0440"));
+}
+
 TEST_CASE("text is painted: tick labels leave ink left of the axis", "[png]") {
   const Figure figure = diagonal();
   FigureWriter writer;

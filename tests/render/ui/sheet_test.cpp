@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/ui/sheet.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
 
 #include "render/gl/context.hpp"
 #include "render/gl/framebuffer.hpp"
 #include "render/gl/functions.hpp"
 #include "render/scene/text_overlay.hpp"
+#include "render/ui/font_file.hpp"
 #include "render/ui/imgui_canvas.hpp"
 
 using namespace unfurl;
@@ -137,6 +140,45 @@ TEST_CASE("Greek, minus, superscripts and arrows have glyphs") {
     CHECK(font->FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr);
   }
   sheet.end();
+}
+
+TEST_CASE("letters that a text needs have glyphs, in fonts from before and after it") {
+  const Paper paper;
+  Sheet sheet;
+  ImFont *before = sheet.font(16), *bold = sheet.font(16, true);
+  sheet.begin(200, 100);  // the atlas is built
+  sheet.end();
+  CHECK(before->FindGlyphNoFallback(0x0416) == nullptr);
+  sheet.need("\u0416\u1EBF \u05D0 \u6746 \U0001D4D0");  // Cyrillic, Vietnamese, Hebrew; no font has the rest
+  sheet.need("\u0448");
+  CHECK(sheet.font(16) == before);
+  ImFont* after = sheet.font(20);
+  const plot::TypefaceScope scope(*plot::find_typeface("helvetica"));
+  ImFont* other = font_bytes(plot::typeface().file).empty() ? after : sheet.plot_font(18);
+  sheet.begin(200, 100);
+  for (const ImFont* font : {before, bold, after, other})
+    for (const int letter : {0x0416, 0x1EBF, 0x05D0, 0x0448, 0x0041}) {
+      CAPTURE(font->FontSize, letter);
+      CHECK(font->FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr);
+    }
+  for (const ImFont* font : {before, after}) CHECK(font->FindGlyphNoFallback(0x6746) == nullptr);
+  sheet.end();
+}
+
+TEST_CASE("labels in any letters that the font has are written in them") {
+  const Paper paper;
+  TextOverlay overlay;
+  const auto written = [&](const std::string& text) {
+    paper.clear();
+    DrawList list;
+    list.labels = {{10, 40, 16, {0, 0, 0, 1}, text}};
+    overlay.draw(list, 200, 100);
+    return paper.frame.read().rgba;
+  };
+  const auto first = written("\u0436");
+  CHECK(first != written("\u0448"));
+  CHECK(first != written("?"));
+  CHECK(first == written("\u0436"));
 }
 
 TEST_CASE("labels are aligned to the left, the middle or the right of their place") {
