@@ -91,7 +91,8 @@ std::string element_text(std::string_view table, const SceneElement& element, co
   text += line("name", toml_string(element.name));
   if (!element.nodes.empty()) text += line("nodes", names_text(element.nodes));
   if (!element.rods.empty())
-    text += line(kind.members == Members::rod ? "rod" : "rods", names_text(element.rods));
+    text += kind.members == Members::rod ? line("rod", toml_string(element.rods.front()))
+                                         : line("rods", names_text(element.rods));
   if (!element.terms.empty()) text += line("terms", names_text(element.terms));
   if (!element.enabled) text += line("enabled", "false");
   if (element.fold_angle) text += line("fold_angle", "true");

@@ -45,10 +45,14 @@ Figure jacobian_figure(const Simulation& run, const Diagnostics&) {
   if (!spectrum.smallest.empty()) {
     const std::vector<double>& least = spectrum.smallest.front();
     const auto at = std::min_element(least.begin(), least.end());
-    f.caption += " The smallest nonzero one starts at " + plot::format_number(least.front(), 3) +
-                 " and is least, " + (*at > 0 ? plot::format_number(*at, 2) : "zero to round-off") + ", at " +
-                 plot::format_number(spectrum.t[static_cast<std::size_t>(at - least.begin())], 4) +
-                 " s: where it vanishes the structure gains ways to move." + zeros_sentence(least);
+    f.caption += " The smallest nonzero one starts at " + plot::format_number(least.front(), 3);
+    if (*at >= (1 - 1e-9) * least.front())
+      f.caption += " and is never less";
+    else
+      f.caption += " and is least, " + (*at > 0 ? plot::format_number(*at, 3) : "zero to round-off") +
+                   ", at " +
+                   plot::format_number(spectrum.t[static_cast<std::size_t>(at - least.begin())], 4) + " s";
+    f.caption += ": where it vanishes the structure gains ways to move." + zeros_sentence(least);
   }
   f.panels.push_back(std::move(p));
   return f;
