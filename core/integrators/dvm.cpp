@@ -151,6 +151,14 @@ double Dvm::longest_step(const State& state, double h) {
   });
 }
 
+// Up to three stages the polynomial has no higher degree than the ends' cubic and is no better.
+bool Dvm::inside(const State& start, double h, double share, VectorXd& z, VectorXd& w) const {
+  if (c_.s < 4 || !have_history_ || h != previous_h_) return false;
+  z = start.z + previous_ * c_.basis.values(share).tail(c_.s - 1);
+  w = previous_ * c_.basis.derivatives(share).tail(c_.s - 1) / h;
+  return true;
+}
+
 // Corrections with the forces' derivatives at the middle of the predicted step; where they do not converge,
 // at the middle of the step as they left it.
 bool Dvm::steered_iterations(const State& state, StepReport& report) {

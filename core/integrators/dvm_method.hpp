@@ -69,6 +69,7 @@ class Dvm final : public Integrator {
   }
 
   double longest_step(const State& state, double h) override;
+  bool inside(const State& start, double h, double share, VectorXd& z, VectorXd& w) const override;
 
   void restart() override {
     have_history_ = false;

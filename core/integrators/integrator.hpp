@@ -22,6 +22,12 @@ class Integrator {
   // The longest step, up to h, with which to go on from a state: what follows on restart() may have to be
   // resolved although nothing of it is left after a step. Asked once before a step.
   virtual double longest_step(const State& /*state*/, double h) { return h; }
+  // Coordinates and rates at this share of the last step, if that was one of size h from `start`, on its own
+  // polynomial. False where the method has none that tells more than the cubic of the step's ends.
+  virtual bool inside(const State& /*start*/, double /*h*/, double /*share*/, VectorXd& /*z*/,
+                      VectorXd& /*w*/) const {
+    return false;
+  }
 };
 
 // What a method claims about itself; the conformance test checks every claim of every row.

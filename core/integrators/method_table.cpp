@@ -66,6 +66,9 @@ class Following final : public Integrator {
     system_.follow(state);
     return plain_->longest_step(state, h);
   }
+  bool inside(const State& start, double h, double share, VectorXd& z, VectorXd& w) const override {
+    return plain_->inside(start, h, share, z, w);
+  }
   void restart() override { plain_->restart(); }
 
  private:

@@ -17,12 +17,13 @@ class CrossingSearch {
   CrossingSearch(const Probe& from, const Probe& to, const Solve& solve)
       : from_(from), high_(to), whole_(to.at), solve_(solve) {}
 
-  // The end of the search moves to a pose inside the step where a margin that dips is below zero.
+  // The end of the search moves to a pose inside the step where a margin that dips is below zero, in the
+  // first of its dips where it is.
   void look_between(const MatrixXd& between) {
     const Probe to = high_;
     for (Index i = 0; i < to.margins.size(); ++i)
-      if (to.margins[i] >= -1)
-        if (const auto bottom = may_dip(between, to, i)) look_at_bottom(i, *bottom, between, to);
+      for (const Index bottom : may_dip(between, to, i))
+        if (look_at_bottom(i, bottom, between, to)) break;
   }
 
   std::optional<Crossing> search() {
@@ -59,30 +60,43 @@ class CrossingSearch {
     probe.rates = VectorXd::Constant(probe.margins.size(), std::numeric_limits<double>::quiet_NaN());
   }
 
-  // The part of the step at which margin i has its least value between the ends, where it comes near zero.
-  std::optional<Index> may_dip(const MatrixXd& between, const Probe& to, Index i) const {
-    std::optional<Index> least;
+  // The parts of the step around which margin i has a least value that comes near zero. By the rates at the
+  // ends, too: -1 and the number of parts are the step's start and end.
+  std::vector<Index> may_dip(const MatrixXd& between, const Probe& to, Index i) const {
+    std::vector<Index> known, out;
     double most = to.margins[i];
     for (Index k = 0; k < between.cols(); ++k) {
       if (!std::isfinite(between(i, k))) continue;
+      known.push_back(k);
       most = std::max(most, between(i, k));
-      if (!least || between(i, k) < between(i, *least)) least = k;
     }
-    if (!least) return {};
-    const double bottom = between(i, *least);
-    const bool falls = bottom < (*least > 0 ? to.margins[i] : std::min(from_.margins[i], to.margins[i]));
-    return falls && bottom < 0.1 * most ? least : std::nullopt;
+    if (known.empty()) return out;
+    const double start = from_.margins[i], end = to.margins[i];
+    const auto near_zero = [most](double bottom) { return bottom < 0.1 * most; };
+    if (start > 1 && from_.rates[i] < 0 && start <= between(i, known.front()) && near_zero(start))
+      out.push_back(-1);
+    for (std::size_t j = 0; j < known.size(); ++j) {
+      const Index k = known[j];
+      const double bottom = between(i, k);
+      if (!near_zero(bottom)) continue;
+      if (j > 0 ? !(bottom < between(i, known[j - 1])) : k == 0 && !(bottom < start)) continue;
+      if (j + 1 < known.size() ? bottom <= between(i, known[j + 1]) : bottom < end) out.push_back(k);
+    }
+    if (end > 1 && to.rates[i] > 0 && end <= between(i, known.back()) && near_zero(end))
+      out.push_back(between.cols());
+    return out;
   }
 
-  // Around the part that looked lowest, until a solved state is below zero or none can be.
-  void look_at_bottom(Index i, Index part, const MatrixXd& between, const Probe& to) {
+  // Around the part that looked lowest, until a solved state is below zero or none can be. True in the former
+  // case.
+  bool look_at_bottom(Index i, Index part, const MatrixXd& between, const Probe& to) {
     const double width = to.at / static_cast<double>(between.cols() + 1);
     const double middle = width * static_cast<double>(part + 1);
-    Probe a, b;
-    solve(middle - (part > 0 ? 1.0 : 0.9) * width, i, a);
-    solve(std::min(middle + width, to.at), i, b);
+    Probe a = from_, b = to;
+    if (part >= 0) solve(middle - (part > 0 ? 1.0 : 0.9) * width, i, a);
+    if (part < between.cols()) solve(std::min(middle + width, to.at), i, b);
     const bool rates = std::isfinite(a.rates[i]) && std::isfinite(b.rates[i]);
-    rates ? bottom_by_rates(i, a, b) : bottom_by_values(i, a, b);
+    return (rates ? bottom_by_rates(i, a, b) : bottom_by_values(i, a, b)) || take(i, a) || take(i, b);
   }
 
   // True where the search ends, at a margin below zero.
@@ -94,34 +108,38 @@ class CrossingSearch {
 
   // Zero of the rate by regula falsi (Illinois). With the curvature c that both ends tell, no margin falls
   // below m - r^2 / 2c by much.
-  void bottom_by_rates(Index i, Probe a, Probe b) {
+  bool bottom_by_rates(Index i, Probe a, Probe b) {
     double ra = a.rates[i], rb = b.rates[i];
     Probe p;
     for (int k = 0; k < most_trials && ra < 0 && rb > 0 && b.at - a.at > 1e-9 * whole_; ++k) {
       const double curvature = (b.rates[i] - a.rates[i]) / (b.at - a.at);
       solve((a.at * rb - b.at * ra) / (rb - ra), i, p);
       const double r = p.rates[i];
-      if (take(i, p) || !std::isfinite(r) || p.margins[i] - r * r / curvature > 1) return;
+      if (take(i, p)) return true;
+      if (!std::isfinite(r) || p.margins[i] - r * r / curvature > 1) break;
       if (r < 0) {
         a = p, ra = r, rb *= 0.5;
       } else {
         b = p, rb = r, ra *= 0.5;
       }
     }
+    return false;
   }
 
-  void bottom_by_values(Index i, const Probe& from, const Probe& to) {
+  bool bottom_by_values(Index i, const Probe& from, const Probe& to) {
     constexpr double golden = 0.381966011250105;
     double a = from.at, b = to.at;
     Probe p, q;
     solve(a + golden * (b - a), i, p);
     solve(b - golden * (b - a), i, q);
-    while (b - a > 1e-3 * whole_ && !take(i, p) && !take(i, q)) {
+    while (b - a > 1e-3 * whole_) {
+      if (take(i, p) || take(i, q)) return true;
       const bool left = p.margins[i] < q.margins[i];
       (left ? b : a) = left ? q.at : p.at;
       std::swap(p, q);
       left ? solve(a + golden * (b - a), i, p) : solve(b - golden * (b - a), i, q);
     }
+    return false;
   }
 
   // Where the cubic of values and rates at both ends (a straight line where rates are not known) is zero, as

@@ -109,7 +109,7 @@ std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
     if (probe.report.ok()) sides_.measure(model(), probe.state, true, probe);
     return probe.report.ok();
   };
-  auto crossing = first_crossing(begin_, to, between(to), solve);
+  auto crossing = first_crossing(begin_, to, between(to, to.at < h), solve);
   if (crossing && crossing->probe.at >= unsolved - 1e-6 * h) crossing->later = to.at - crossing->probe.at;
   return crossing;
 }
@@ -131,16 +131,89 @@ bool Stepper::Loop::go_to(Crossing crossing) {
   return act(crossing.which);
 }
 
-// Margins on the cubic through the coordinates and rates of both ends of a step.
-MatrixXd Stepper::Loop::between(const Probe& to) {
-  MatrixXd margins(static_cast<Index>(sides_.size()), stepping::parts - 1);
+// Margins inside a step, as hints: on the cubic through the coordinates and rates of both ends, as long as
+// the step's own polynomial says the same; else on that, in more parts, with the forces of what is held in
+// all of them, which cost a factorisation each. A method without a polynomial does not follow within a step
+// what its ends' cubic does not. `cut_off`: it ends in a singular pose, where rates say little.
+MatrixXd Stepper::Loop::between(const Probe& to, bool cut_off) {
+  const auto count = static_cast<Index>(sides_.size());
+  MatrixXd margins(count, stepping::parts - 1);
+  VectorXd fastest = VectorXd::Zero(count);
   Probe p;
+  const auto take = [&](Index column, bool forces) {
+    sides_.measure(model(), p.state, forces, p);
+    margins.col(column) = p.margins;
+    for (Index i = 0; i < count; ++i) fastest[i] = std::max(fastest[i], std::abs(p.rates[i]));
+  };
   for (int k = 1; k < stepping::parts; ++k) {
     p.state = on_cubic(now(), to.state, now().t + to.at * k / stepping::parts);
-    sides_.measure(model(), p.state, 2 * k == stepping::parts, p);
-    margins.col(k - 1) = p.margins;
+    take(k - 1, 2 * k == stepping::parts);
+  }
+  if (!inside(to, 1, p.state)) {
+    const VectorXd even = 0.5 * to.at * (begin_.rates + to.rates);
+    if (!cut_off) warn_of_long_step(to, to.margins - begin_.margins - even, fastest);
+  } else if (leaves_cubic(to, margins)) {
+    margins.resize(count, stepping::fine_parts - 1);
+    for (int k = 1; k < stepping::fine_parts; ++k) {
+      inside(to, static_cast<double>(k) / stepping::fine_parts, p.state);
+      take(k - 1, true);
+    }
+    inside(to, 1, p.state);
+    sides_.measure(model(), p.state, false, p);
+    warn_of_long_step(to, to.at * (p.rates - to.rates), fastest);
   }
   return margins;
+}
+
+// At a share of the step, by its own polynomial; false where there is none.
+bool Stepper::Loop::inside(const Probe& to, double share, State& state) {
+  state = on_cubic(now(), to.state, now().t + to.at * share);
+  return integrator_->inside(now(), to.at, share, state.z, state.w);
+}
+
+// Is the step's own polynomial off the cubic of its ends by a part of the way, or of what a stop's or cable's
+// margin changes? At two of the parts: their difference may be zero at one of them.
+bool Stepper::Loop::leaves_cubic(const Probe& to, const MatrixXd& margins) {
+  constexpr double part_of_change = 0.01, rounding = 1e4;
+  const State &a = now(), &b = to.state;
+  const double way = to.at * std::max(a.w.lpNorm<Eigen::Infinity>(), b.w.lpNorm<Eigen::Infinity>());
+  Probe p;
+  for (const int k : {2, 5}) {
+    inside(to, static_cast<double>(k) / stepping::parts, p.state);
+    const VectorXd off = p.state.z - on_cubic(a, b, p.state.t).z;
+    if (off.lpNorm<Eigen::Infinity>() > part_of_change * way) return true;
+    sides_.measure(model(), p.state, false, p);
+    for (Index i = 0; i < static_cast<Index>(sides_.first_friction()); ++i) {
+      double least = std::min(begin_.margins[i], to.margins[i]),
+             most = std::max(begin_.margins[i], to.margins[i]);
+      for (Index j = 0; j < margins.cols(); ++j) {
+        least = std::min(least, margins(i, j));
+        most = std::max(most, margins(i, j));
+      }
+      if (std::abs(p.margins[i] - margins(i, k - 1)) > std::max(part_of_change * (most - least), rounding))
+        return true;
+    }
+  }
+  return false;
+}
+
+// Of each stop and cable once, where it is within reach of a motion that turns round within the step faster
+// than that follows. `off`: by what the step contradicts itself; `fastest`: the margins' rates.
+void Stepper::Loop::warn_of_long_step(const Probe& to, const VectorXd& off, const VectorXd& fastest) {
+  constexpr double part_of_way = 0.15, rounding = 1e4;
+  if (run_.options.adaptive) return;
+  for (std::size_t k = 0; k < sides_.first_friction(); ++k) {
+    const auto i = static_cast<Index>(k);
+    const double way = to.at * std::max({fastest[i], std::abs(begin_.rates[i]), std::abs(to.rates[i])});
+    if (!(std::abs(off[i]) > std::max(part_of_way * way, rounding))) continue;
+    if (std::min(begin_.margins[i], to.margins[i]) > way) continue;
+    const std::string told = " does not resolve the motion towards " +
+                             (sides_.is_stop(k) ? "stop " + sides_.stops()[k].name : sides_.cable(k).name);
+    if (std::ranges::any_of(run_.warnings, [&](const auto& w) { return w.find(told) != w.npos; })) continue;
+    run_.warnings.push_back(
+        "at t = " + seconds(now().t) + ": the step of " + seconds(to.at) + told +
+        ", which may act within a step and be missed; solver.step = " + seconds(0.25 * to.at));
+  }
 }
 
 // Of each once.

@@ -51,6 +51,8 @@ inline constexpr double near_deployed = 5;
 inline constexpr double straight = 1e-3;
 // Parts of a step for the hints where margins dip between solved states.
 inline constexpr int parts = 8;
+// The same where the step covers a swing or so, of which eight stages follow one.
+inline constexpr int fine_parts = 16;
 
 inline constexpr const char* too_near =
     "so near the deployed pose, where the constraints lose rank, the motion cannot be told from rounding";
@@ -269,7 +271,10 @@ class Stepper::Loop {
   }
 
   std::optional<Crossing> find_crossing(Probe& to, double h);
-  MatrixXd between(const Probe& to);
+  MatrixXd between(const Probe& to, bool cut_off);
+  bool inside(const Probe& to, double share, State& state);
+  bool leaves_cubic(const Probe& to, const MatrixXd& margins);
+  void warn_of_long_step(const Probe& to, const VectorXd& off, const VectorXd& fastest);
 
   bool go_to(Crossing crossing);
 

@@ -139,6 +139,45 @@ TEST_CASE("a margin that dips below zero inside a step is not missed, one that s
     }
 }
 
+// Below zero where the cosine is above 0.9: around 0.24 s and 0.87 s (10 / s), the second time deeper.
+TEST_CASE("of several dips the first that is below zero is found, and those before it are passed") {
+  const Margin twice{[](double t) { return 0.9 + 0.2 * (0.2 - t) - std::cos(10 * (t - 0.24)); },
+                     [](double t) { return -0.2 + 10 * std::sin(10 * (t - 0.24)); }};
+  const Margin second{[](double t) { return 1.01 + 0.2 * (0.2 - t) - std::cos(10 * (t - 0.24)); },
+                      [](double t) { return -0.2 + 10 * std::sin(10 * (t - 0.24)); }};
+  const auto zero = [](const Margin& m, double low, double high) {  // by bisection, m(low) > 0 > m(high)
+    for (int k = 0; k < 60; ++k) (m.value(0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
+    return low;
+  };
+  for (const bool rates : {true, false})
+    for (const double length : {1.0, 0.9}) {  // its end is above zero or below
+      INFO((rates ? "rates, " : "") << length << " s");
+      Motion motion{{rates ? twice : without_rate(twice)}};
+      motion.length = length;
+      auto found = motion.first(15);
+      REQUIRE(found);
+      CHECK(std::abs(found->probe.at - zero(twice, 0.1, 0.24)) <= 0.1 / unit);
+      motion.margins = {rates ? second : without_rate(second)};
+      found = motion.first(15);
+      REQUIRE(found);
+      CHECK(std::abs(found->probe.at - zero(second, 0.6, 0.87)) <= 0.1 / unit);
+    }
+}
+
+TEST_CASE("a dip next to an end of the step shows by the rate there") {
+  // Parts are 1/16 s. From 0.02 s to 0.04 s, and from 0.96 s to 0.98 s.
+  const Margin first{[](double t) { return 30 * (t - 0.02) * (t - 0.04); },
+                     [](double t) { return 60 * (t - 0.03); }};
+  const Margin last{[](double t) { return 30 * (t - 0.96) * (t - 0.98); },
+                    [](double t) { return 60 * (t - 0.97); }};
+  for (const auto& [margin, at] : {std::pair{first, 0.02}, std::pair{last, 0.96}}) {
+    Motion motion{{margin}};
+    const auto found = motion.first(15);
+    REQUIRE(found);
+    CHECK(std::abs(found->probe.at - at) <= 0.1 / unit);
+  }
+}
+
 TEST_CASE("a margin that begins at zero crosses at once if it falls, and later if it rises first") {
   const Margin sinking{[](double t) { return -0.4 * t; }, [](double) { return -0.4; }};
   for (const bool rates : {true, false}) {
