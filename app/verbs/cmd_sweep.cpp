@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/command.hpp"
+#include "app/output/command_line.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/receipt.hpp"
 #include "app/verbs/cluster.hpp"
@@ -42,6 +43,12 @@ SweepPlan plan_of(const Arguments& arguments) {
   if (!arguments.study.shard.empty()) plan.shard = parse_shard(shard_of(arguments.study.shard));
   check_plan(plan);
   return plan;
+}
+
+SolverOptions solver_of(const SweepPlan& plan, const Scene& scene) {
+  std::vector<std::string> varied;
+  for (const SweepAxis& axis : plan.axes) varied.push_back(axis.key);
+  return study_solver(scene, varied, plan.measures);
 }
 
 // Which forces of the table the rigid model does not determine, for whoever reads only the last line.
@@ -83,6 +90,37 @@ std::string not_there(const SweepPlan& plan, const Sweep& sweep) {
     if (wants_modulus(plan.measures[m].name, plan)) text += " (no rod has a structure.youngs_modulus)";
   }
   return text;
+}
+
+// On stderr, of either kind of point without an answer, why the first has none. One that an earlier run or
+// another worker computed is named with the command that tells.
+void warn_of_unanswered(const SweepPlan& plan, const Sweep& sweep, const std::string& model,
+                        const Arguments& arguments) {
+  const std::size_t outcome = plan.axes.size();
+  for (const std::string kind : {"failed", "invalid"}) {
+    const auto first =
+        std::ranges::find_if(sweep.table.rows, [&](const auto& row) { return row[outcome] == kind; });
+    if (first == sweep.table.rows.end()) continue;
+    std::cerr << "unfurl: warning: " << kind << ": ";
+    if (const auto known = sweep.why.find(kind); known != sweep.why.end()) {
+      std::cerr << known->second << "\n";
+      continue;
+    }
+    std::vector<std::string> words{"run", arguments.names.front(), "--json"};
+    const auto set = [&](const std::string& change) { words.insert(words.end(), {"--set", change}); };
+    for (const std::string& change : arguments.overrides) set(change);
+    for (std::size_t a = 0; a < outcome; ++a) set(plan.axes[a].key + "=" + (*first)[a]);
+    set("solver.model=" + model);
+    std::cerr << as_typed(words) << " tells why\n";
+  }
+}
+
+// A whole sweep without a single answer is no success to a script.
+int code_of_answers(const SweepPlan& plan, const Sweep& sweep) {
+  if (sweep.table.rows.empty() || unanswered(plan, sweep) < sweep.table.rows.size()) return exit_ok;
+  const bool failed = std::ranges::any_of(sweep.table.rows,
+                                          [&](const auto& row) { return row[plan.axes.size()] == "failed"; });
+  return failed ? exit_solver_failed : exit_scene_invalid;
 }
 
 std::string journal_name(const Shard& shard) {
@@ -178,9 +216,7 @@ int cmd_sweep(const Arguments& arguments) {
     return exit_ok;
   }
   Scene scene = scene_of(arguments);
-  std::vector<std::string> varied;
-  for (const SweepAxis& axis : plan.axes) varied.push_back(axis.key);
-  scene.solver = study_solver(scene, varied, plan.measures);
+  scene.solver = solver_of(plan, scene);
   receipt_scene(scene.name, scene_text(scene));
   const InterruptGuard guard;
   const std::string name = identity(scene, plan);
@@ -191,6 +227,7 @@ int cmd_sweep(const Arguments& arguments) {
   const Sweep& sweep = *computed;
   for (const std::string& conflict : sweep.conflicts) std::cerr << "unfurl: warning: " << conflict << "\n";
   if (!sweep.moved.empty()) std::cerr << "unfurl: warning: " << sweep.moved << "\n";
+  warn_of_unanswered(plan, sweep, scene.solver.model, arguments);
   session.write(journal_name(plan.shard), csv_text(sweep.table));
   const std::size_t bad = unanswered(plan, sweep);
   const std::string count = std::to_string(sweep.table.rows.size()) + " points in " +
@@ -210,7 +247,8 @@ int cmd_sweep(const Arguments& arguments) {
     throw FileError(session.directory(),
                     std::to_string(sweep.missing.size()) + " of " + std::to_string(plan.points()) +
                         " points are missing; what there is was merged" + cure(plan, sweep, arguments));
-  return finish(sweep.missing.empty(), arguments, count);
+  const int code = finish(sweep.missing.empty(), arguments, count);
+  return code == exit_ok ? code_of_answers(plan, sweep) : code;
 }
 
 }  // namespace unfurl

@@ -28,10 +28,14 @@ Diagnostics asked_of(const SweepPlan& plan, Simulation& run) {
   return states || run.solved_as.name != "path" ? judge(run) : Diagnostics{};
 }
 
-// One point; nothing where it was cancelled. moved: as in Sweep, of this one.
+struct Said {
+  std::string moved = {};  // as in Sweep, of one point
+  std::string why = {};    // it has no answer
+};
+
+// One point; nothing where it was cancelled.
 std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const PathSweep& along_path,
-                                                  std::size_t point, const StudyHooks& hooks,
-                                                  std::string& moved) {
+                                                  std::size_t point, const StudyHooks& hooks, Said& said) {
   const std::vector<std::string> key = plan.key(point);
   std::vector<std::string> changes, row = key, varied;
   if (along_path.measure(point, row)) return row;
@@ -44,17 +48,20 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const P
     SimulationHooks own;
     own.cancelled = hooks.cancelled;
     const auto model = build_model(scene);
-    moved = note_of_moved_nodes(model->structure);
+    said.moved = note_of_moved_nodes(model->structure);
     Simulation run = simulate_as_asked(model, study_solver(scene, varied, plan.measures), own);
     if (run.status == RunStatus::stopped) return std::nullopt;
     const Diagnostics diagnostics = asked_of(plan, run);
     row.emplace_back(to_string(run.status));
+    if (run.status == RunStatus::failed) said.why = run.message;
     for (const RunMeasure& measure : plan.measures)
       row.push_back(exact_number(run.status == RunStatus::failed ? nan : measure.value(run, diagnostics)));
-  } catch (const SceneError&) {
+  } catch (const SceneError& error) {
     row.emplace_back("invalid");
-  } catch (const PathRefused&) {  // solver.model = "path": one point without an answer
+    said.why = problem_text(error.problems().front());
+  } catch (const PathRefused& error) {  // solver.model = "path": one point without an answer
     row.emplace_back("failed");
+    said.why = error.what();
   }
   row.resize(key.size() + 1 + plan.measures.size(), "nan");
   return row;
@@ -128,7 +135,12 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
     });
   const PathSweep along_path(plan);
   std::size_t done = 0;
-  std::map<std::size_t, std::string> said;  // by the point
+  using Words = std::pair<std::size_t, std::string>;  // of the first of some points
+  std::map<std::string, Words> moved, why;            // by the outcome
+  const auto keep = [](std::map<std::string, Words>& of, const std::string& outcome, Words words) {
+    if (const auto [at, first] = of.try_emplace(outcome, words); !first && words < at->second)
+      at->second = words;
+  };
   std::mutex mutex;
   const auto look_again = [&] {
     const std::lock_guard lock(mutex);
@@ -142,16 +154,20 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
     const std::string piece = "points-" + std::to_string(scattered(open[i]) % pieces);
     if (hooks.stopped()) return;
     if (hooks.team && (!hooks.team->takes(piece, look_again) || known(open[i]))) return;
-    std::string moved;
-    auto row = run_point(plan, along_path, open[i], hooks, moved);
+    Said of_point;
+    auto row = run_point(plan, along_path, open[i], hooks, of_point);
     if (!row) return;
     const std::lock_guard lock(mutex);
-    if (!moved.empty()) said.emplace(open[i], std::move(moved));
+    const std::string& outcome = (*row)[plan.axes.size()];
+    if (!of_point.moved.empty()) keep(moved, "", {open[i], of_point.moved});
+    if (!of_point.why.empty()) keep(why, outcome, {open[i], of_point.why});
     if (!hooks.team || hooks.team->holds(piece)) journal.append(std::move(*row));
     hooks.tell(static_cast<double>(++done) / static_cast<double>(open.size()));
   });
   Sweep sweep = collect(plan, own, [&](std::size_t i) { return journal.find(plan.key(i)); });
-  if (!said.empty()) sweep.moved = point_text(plan, said.begin()->first) + ": " + said.begin()->second;
+  const auto text = [&](const Words& words) { return point_text(plan, words.first) + ": " + words.second; };
+  for (const auto& [outcome, words] : moved) sweep.moved = text(words);
+  for (const auto& [outcome, words] : why) sweep.why[outcome] = text(words);
   return sweep;
 }
 

@@ -2,6 +2,10 @@
 // A scene over a grid of parameters: measures of every run.
 #pragma once
 
+#include <map>
+#include <string>
+#include <vector>
+
 #include "core/diagnostics/measures.hpp"
 #include "core/study/journal.hpp"
 #include "core/study/reference.hpp"
@@ -54,6 +58,9 @@ struct Sweep {
   // What the first of the points that were computed now says of nodes moved to fit given lengths of rods;
   // empty: none says anything.
   std::string moved = {};
+  // By the outcome ("failed", "invalid"): the first of the points that were computed now, and why it has no
+  // answer.
+  std::map<std::string, std::string> why = {};
 };
 // Points whose run failed or whose parameters made no structure.
 std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <catch2/catch.hpp>
+
+#include "tests/app/run_program.hpp"
+
+using namespace unfurl;
+
+namespace unanswered_sweep_test {
+
+TEST_CASE("a sweep says why a point has no answer and ends as a run would where none has") {
+  const ScratchDirectory dir;
+  const std::string scene = dir.write("rod.toml", R"([structure]
+kind = "custom"
+[[structure.nodes]]
+name = "A"
+position = [0, 0, 0]
+fixed = true
+[[structure.nodes]]
+name = "B"
+position = [0.6, 0, 0.8]
+mass = 1.3
+[[structure.rods]]
+nodes = ["A", "B"]
+mass = 0
+[solver]
+end_time = 0.01
+)");
+  const auto sweep = [&](const std::string& values, const std::string& to, const std::string& shard) {
+    return run_program({"sweep", scene, "--vary", "structure.nodes.B.fixed=" + values, "--measure",
+                        "end_time", "-o", dir / to, "--shard", shard});
+  };
+  // A rod between two fixed nodes can do nothing; one of two answers is a result, none is not, unless other
+  // shards may have some.
+  const std::string why = "unfurl: warning: invalid: structure.nodes.B.fixed=true: ";
+  const ProgramResult some = sweep("false,true", "some", "1/1"), none = sweep("true", "none", "1/1");
+  INFO(some.err << none.err);
+  CHECK(some.code == 0);
+  CHECK(some.err.starts_with(why));
+  CHECK(some.err.find("nothing can move") != std::string::npos);
+  CHECK(none.code == 3);
+  CHECK(none.err.starts_with(why));
+  CHECK(sweep("true", "share", "1/2").code == 0);
+  // An earlier run knew; the same command again names one that tells.
+  const ProgramResult again = sweep("true", "none", "1/1");
+  CHECK(again.code == 3);
+  CHECK(again.err.starts_with(
+      "unfurl: warning: invalid: unfurl run " + scene +
+      " --json --set structure.nodes.B.fixed=true --set solver.model=auto tells why\n"));
+}
+
+}  // namespace unanswered_sweep_test
