@@ -16,7 +16,7 @@ namespace unfurl {
 namespace {
 
 std::string changed_text(const std::string& path, const std::vector<std::string>& overrides) {
-  const TextFile file = read_text_file(path);
+  const TextFile file = read_text_file(path, TextSource::pipe_too);
   if (!file.error.empty()) throw UnreadableScene("cannot read scene " + path + ": " + file.error);
   if (overrides.empty()) return file.text;
   const std::string folder = std::filesystem::path(path).parent_path().string();

@@ -101,7 +101,7 @@ int cmd_solve(const Arguments& arguments) {
   const StudyArguments& study = arguments.study;
   if (study.find.empty()) throw UsageError("--find KEY is missing");
   if (study.target.empty()) throw UsageError("--target NAME=VALUE is missing");
-  const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
+  const SceneSource source = scene_source(find_scene(arguments.names.front()), arguments.overrides);
   const Scene scene = source.read();
   const Target target = target_of(study.target, scene);
   const SolveOptions options = options_of(arguments, source, scene);

@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 SweepPlan plan_of(const Arguments& arguments) {
-  SweepPlan plan{{find_scene(arguments.names.front()), arguments.overrides}, {}, {}, {}};
+  SweepPlan plan{scene_source(find_scene(arguments.names.front()), arguments.overrides), {}, {}, {}};
   for (const auto& text : arguments.study.vary) plan.axes.push_back(parse_axis(text));
   const auto columns = columns_of(build_model(plan.source.read()));
   std::string name;
@@ -215,7 +215,7 @@ int cmd_sweep(const Arguments& arguments) {
     std::cout << job_script(arguments);
     return exit_ok;
   }
-  Scene scene = scene_of(arguments);
+  Scene scene = plan.source.read();
   scene.solver = solver_of(plan, scene);
   receipt_scene(scene.name, scene_text(scene));
   const InterruptGuard guard;

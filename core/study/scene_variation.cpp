@@ -2,6 +2,8 @@
 #include "core/study/scene_variation.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <utility>
 
 #include "core/scene/overrides.hpp"
 #include "core/scene/reader.hpp"
@@ -20,6 +22,18 @@ Scene SceneSource::read(const std::vector<std::string>& changes) const {
   std::vector<std::string> all = overrides;
   all.insert(all.end(), changes.begin(), changes.end());
   return text ? read_scene_text(*text, path, all, folder) : read_scene_file(path, all);
+}
+
+SceneSource scene_source(const std::string& path, const std::vector<std::string>& overrides) {
+  SceneSource source{path, overrides};
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) return source;
+  TextFile file = read_text_file(path, TextSource::pipe_too);
+  if (!file.error.empty()) throw UnreadableScene("cannot read scene " + path + ": " + file.error);
+  source.text = std::make_shared<const std::string>(std::move(file.text));
+  source.folder = std::filesystem::path(path).parent_path().string();
+  if (source.folder.empty()) source.folder = ".";
+  return source;
 }
 
 namespace {

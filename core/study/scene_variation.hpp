@@ -25,6 +25,10 @@ struct SceneSource {
   Scene read(const std::vector<std::string>& changes = {}) const;
 };
 
+// Of a path as a person gave it. What can be read once only (a pipe, /dev/stdin) is read now. Throws
+// UnreadableScene.
+SceneSource scene_source(const std::string& path, const std::vector<std::string>& overrides);
+
 // What a scene says before its variables are worked out, without comments and layout, and the overrides: as
 // comments of TOML. Two scenes that agree in it agree whatever the values of their variables, which two that
 // agree once they are worked out need not.

@@ -2,6 +2,7 @@
 // What the program says and returns for every kind of command line. Error texts are part of the contract.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -81,6 +82,30 @@ TEST_CASE("usage errors") {
   CHECK(run_program({"run", "hoop6", "--threads", "many"}).code == 2);
 }
 
+// A pipe can be read once.
+TEST_CASE("a scene from a pipe is shown, swept and solved as one from a file") {
+  const ScratchDirectory dir;
+  const std::string path =
+      dir.write("s.toml",
+                "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], "
+                "fixed = true}, {name = 'B', position = [0.6, 0, 0.8]}]\nrods = [{nodes = "
+                "['A', 'B'], mass = 1.3}]\n[solver]\nend_time = 0.05\nstep = 0.01\n");
+  const auto ends = [&](const std::string& words) {
+    return std::system(("cat '" + path + "' | " UNFURL_PROGRAM " " + words + " 2>'" + (dir / "err") + "' >'" +
+                        (dir / "out") + "'")
+                           .c_str());
+  };
+  CHECK(ends("show /dev/stdin") == 0);
+  CHECK(file_text(dir / "out") == file_text(path));
+  CHECK(ends("show /dev/stdin --set solver.step=0.02") == 0);
+  CHECK(file_text(dir / "out").find("step = 0.02") != std::string::npos);
+  CHECK(ends("solve /dev/stdin --find solver.end_time --target end_time=0.07") == 0);
+  CHECK(file_text(dir / "out").starts_with("solver.end_time = 0.07"));
+  CHECK(ends("sweep /dev/stdin --vary solver.end_time=0.02,0.03 --measure end_time -o '" + (dir / "sweep") +
+             "'") == 0);
+  CHECK(file_text(dir / "sweep/sweep.csv").find("0.03,completed,0.03") != std::string::npos);
+}
+
 TEST_CASE("invalid scenes") {
   check_error({"check", "hoop6", "--set", "structure.units=2"}, 3,
               "--set structure.units: must be a whole number in [3, 100000]; got 2");
@@ -94,7 +119,8 @@ TEST_CASE("invalid scenes") {
               "--set solver.stpe: unknown key; did you mean 'step'?");
   const ScratchDirectory dir;
   const auto path = dir.write("bad.toml", "[structure]\nkind = 'hoop'\ndensity = nan\n");
-  check_error({"check", path}, 3, path + ":3:11: structure.density: must be > 0 kg/m^3; got nan");
+  check_error({"check", path}, 3,
+              path + ":3:11: structure.density: must be > 0 kg/m^3; got nan");
   check_error({"check", dir.write("odd.toml", "[$")}, 3,
               dir / "odd.toml" + ":1:2: not TOML: unexpected character here");
 }
