@@ -90,16 +90,27 @@ const CsvColumn* find_column(std::string_view header, const std::vector<CsvColum
   return nullptr;
 }
 
+// A column with a unit that is not its own holds other values than this one would.
+std::string unknown_column(const std::string& cell, const std::vector<CsvColumn>& columns) {
+  std::vector<std::string_view> names;
+  for (const auto& column : columns) names.push_back(column.name);
+  const std::string_view stem = name_before_unit(cell, names);
+  for (const auto& column : columns)
+    if (column.name == stem && !column.unit.empty())
+      return "unknown column " + in_quotes(cell) + "; give " +
+             in_quotes(std::string(stem) + "_" + std::string(column.unit)) +
+             ", with the values converted to that unit";
+  return "unknown column " + in_quotes(cell) + did_you_mean(cell, names);
+}
+
 // The column of each cell; nullptr for unknown ones, which are noted.
 std::vector<const CsvColumn*> read_header(const Record& record, const std::string& file,
                                           const std::vector<CsvColumn>& columns, SceneNotes& notes) {
   const SourceLocation where{file, record.line, 1};
-  std::vector<std::string_view> names;
-  for (const auto& column : columns) names.push_back(column.name);
   std::vector<const CsvColumn*> found;
   for (const auto& cell : record.cells) {
     const CsvColumn* column = find_column(cell, columns);
-    if (!column) notes.add(where, "", "unknown column " + in_quotes(cell) + did_you_mean(cell, names));
+    if (!column) notes.add(where, "", unknown_column(cell, columns));
     for (const auto* earlier : found)
       if (column && earlier == column) notes.add(where, "", "column " + in_quotes(cell) + " appears twice");
     found.push_back(column);
@@ -125,7 +136,7 @@ void read_number(const std::string& cell, const CsvColumn& column, CsvRow& row, 
   double x = 0.0;
   const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
   if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x) ||
-      (column.boolean && x != 0.0 && x != 1.0))
+           (column.boolean && x != 0.0 && x != 1.0))
     notes.add(row.where, std::string(column.name),
               std::string("must be ") + (column.boolean ? "true or false" : "a finite number") + "; got " +
                   in_quotes(cell));

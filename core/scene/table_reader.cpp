@@ -123,6 +123,7 @@ ParamSet TableReader::read(const std::vector<ParamSpec>& specs) {
 
 void TableReader::read_one(const ParamSpec& spec, ParamSet& values) {
   const TomlTree* tree = member(spec.name);
+  if (!spec.unit.empty()) units_.emplace(spec.name, spec.unit);
   if (!tree) {
     if (spec.required) problem(spec.name, "is missing; must be " + wanted_text(spec));
     return;
@@ -212,7 +213,13 @@ void TableReader::finish() {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const auto& where =
         value.key_where.line > 0 || value.key_where.file == override_source ? value.key_where : value.where;
-    std::string message = "unknown key" + did_you_mean(name, {known_.begin(), known_.end()});
+    const std::vector<std::string_view> known(known_.begin(), known_.end());
+    const auto other_unit = units_.find(std::string(name_before_unit(name, known)));
+    std::string message = "unknown key";
+    if (other_unit == units_.end())
+      message += did_you_mean(name, known);
+    else  // a rename alone would change the value
+      message += "; give " + in_quotes(other_unit->first) + ", converted to " + other_unit->second;
     if (message.ends_with("...")) message += "; all of them: unfurl list keys";
     notes_.add(where, key(name), std::move(message));
   }

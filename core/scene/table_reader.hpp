@@ -69,7 +69,8 @@ class TableReader {
   std::string path_;
   SourceLocation where_;
   SceneNotes& notes_;
-  std::vector<std::string> known_;  // own copies: a name may be a temporary
+  std::vector<std::string> known_;            // own copies: a name may be a temporary
+  std::map<std::string, std::string> units_;  // of known numbers that have one
 };
 
 }  // namespace unfurl

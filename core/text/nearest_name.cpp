@@ -62,6 +62,16 @@ std::string did_you_mean(std::string_view given, const std::vector<std::string_v
   return known.size() > most ? text + ", ..." : text;
 }
 
+std::string_view name_before_unit(std::string_view given, const std::vector<std::string_view>& known) {
+  std::string_view stem;
+  for (const auto name : known)
+    if (name.size() > stem.size() && name.size() < given.size() && given.starts_with(name) &&
+        std::string_view("_ ([").find(given[name.size()]) != std::string_view::npos)
+      stem = name;
+  const std::string_view near = nearest_name(given, known);
+  return near.empty() || near == stem || stem.starts_with(near) ? stem : "";
+}
+
 std::string in_quotes(std::string_view name) {
   constexpr std::size_t most = 60;
   constexpr std::string_view hex = "0123456789abcdef";

@@ -16,6 +16,10 @@ std::string_view nearest_name(std::string_view given, const std::vector<std::str
 // "; did you mean 'post_length'?", or without a near name "; known: a, b, c" (shortened after a dozen).
 std::string did_you_mean(std::string_view given, const std::vector<std::string_view>& known);
 
+// The known name that `given` is with another unit behind it, as in "mass_g" or "x (mm)": a rename alone
+// would change the value. Empty: there is none, or another name is nearer.
+std::string_view name_before_unit(std::string_view given, const std::vector<std::string_view>& known);
+
 // The name in quotes, fit for one line of an error message: control bytes as \xNN, long ones shortened.
 std::string in_quotes(std::string_view name);
 

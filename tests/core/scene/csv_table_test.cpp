@@ -103,4 +103,16 @@ TEST_CASE("all that is wrong with a table is listed, and nothing else") {
   CHECK(wrong("name,x\nA,1\n\"\xFF\",2\n")[0].starts_with("3: "));
 }
 
+// Followed to the letter, the name of another column would take 250 g for 250 kg.
+TEST_CASE("a column with another unit is told the unit and not a name") {
+  for (const char* other : {"mass_g", "mass_grams", "mass (kg)", "mass [g]"})
+    CHECK(wrong(std::string("name,x,") + other + "\nA,1,250\n") ==
+          Texts{std::string("1: unknown column '") + other +
+                "'; give 'mass_kg', with the values converted to that unit"});
+  CHECK(wrong("name,x_mm\nA,1\n") ==
+        Texts{"1: unknown column 'x_mm'; give 'x_m', with the values converted to that unit",
+              "1: column 'x' is missing"});
+  CHECK(wrong("name,x,fixed_x\nA,1,1\n").front().find("convert") == std::string::npos);  // it has no unit
+}
+
 }  // namespace csv_table_test

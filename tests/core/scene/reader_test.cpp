@@ -61,6 +61,9 @@ TEST_CASE("an error names file, line, column, key, range and the nearest name") 
   CHECK(error_of(hoop + "post_length = -1") == "s.toml:3:15: structure.post_length: must be > 0 m; got -1");
   CHECK(error_of(hoop + "post_lenght = 1") ==
         "s.toml:3:1: structure.post_lenght: unknown key; did you mean 'post_length'?");
+  // A rename alone would take 1200 mm for 1200 m.
+  CHECK(error_of(hoop + "post_length_mm = 1200") ==
+        "s.toml:3:1: structure.post_length_mm: unknown key; give 'post_length', converted to m");
   CHECK(error_of(hoop + "density = 'x'") ==
         "s.toml:3:11: structure.density: must be a number > 0 kg/m^3; got the text 'x'");
   CHECK(error_of(hoop + "density = nan") == "s.toml:3:11: structure.density: must be > 0 kg/m^3; got nan");
