@@ -135,7 +135,10 @@ void read_number(const std::string& cell, const CsvColumn& column, CsvRow& row, 
   const char* begin = cell.data() + (cell[0] == '+' && cell.size() > 1 && cell[1] != '-' ? 1 : 0);
   double x = 0.0;
   const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
-  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x) ||
+  if (error == std::errc::result_out_of_range)
+    notes.add(row.where, std::string(column.name),
+              "must be 0 or of a size between 1e-307 and 1e308; got " + in_quotes(cell));
+  else if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x) ||
            (column.boolean && x != 0.0 && x != 1.0))
     notes.add(row.where, std::string(column.name),
               std::string("must be ") + (column.boolean ? "true or false" : "a finite number") + "; got " +

@@ -237,7 +237,9 @@ std::string range_error(const ParamSpec& spec, const ParamValue& value) {
   // A number out of its range needs no reminder that a number is wanted.
   if (spec.kind == ParamKind::real && number && !interval_text(spec).empty()) {
     const std::string range = range_text(spec);
-    return (range.front() == '[' || range.front() == '(' ? "must be in " : "must be ") + range + "; got " +
+    const auto* x = std::get_if<double>(&value);
+    const std::string must = x && !std::isfinite(*x) ? "must be a finite number " : "must be ";
+    return must + (range.front() == '[' || range.front() == '(' ? "in " : "") + range + "; got " +
            value_text(value);
   }
   return "must be " + wanted_text(spec) + "; got " + value_text(value);

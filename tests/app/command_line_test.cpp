@@ -120,7 +120,7 @@ TEST_CASE("invalid scenes") {
   const ScratchDirectory dir;
   const auto path = dir.write("bad.toml", "[structure]\nkind = 'hoop'\ndensity = nan\n");
   check_error({"check", path}, 3,
-              path + ":3:11: structure.density: must be > 0 kg/m^3; got nan");
+              path + ":3:11: structure.density: must be a finite number > 0 kg/m^3; got nan");
   check_error({"check", dir.write("odd.toml", "[$")}, 3,
               dir / "odd.toml" + ":1:2: not TOML: unexpected character here");
 }

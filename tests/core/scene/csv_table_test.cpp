@@ -115,4 +115,10 @@ TEST_CASE("a column with another unit is told the unit and not a name") {
   CHECK(wrong("name,x,fixed_x\nA,1,1\n").front().find("convert") == std::string::npos);  // it has no unit
 }
 
+TEST_CASE("numbers too large and too small for a double are told so") {
+  for (const char* number : {"1e-400", "1e400", "-1e999"})
+    CHECK(wrong(std::string("name,x\nA,") + number + "\n") ==
+          Texts{std::string("2: x must be 0 or of a size between 1e-307 and 1e308; got '") + number + "'"});
+}
+
 }  // namespace csv_table_test

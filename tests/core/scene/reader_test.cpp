@@ -66,8 +66,10 @@ TEST_CASE("an error names file, line, column, key, range and the nearest name") 
         "s.toml:3:1: structure.post_length_mm: unknown key; give 'post_length', converted to m");
   CHECK(error_of(hoop + "density = 'x'") ==
         "s.toml:3:11: structure.density: must be a number > 0 kg/m^3; got the text 'x'");
-  CHECK(error_of(hoop + "density = nan") == "s.toml:3:11: structure.density: must be > 0 kg/m^3; got nan");
-  CHECK(error_of(hoop + "density = inf") == "s.toml:3:11: structure.density: must be > 0 kg/m^3; got inf");
+  CHECK(error_of(hoop + "density = nan") ==
+        "s.toml:3:11: structure.density: must be a finite number > 0 kg/m^3; got nan");
+  CHECK(error_of(hoop + "density = inf") ==
+        "s.toml:3:11: structure.density: must be a finite number > 0 kg/m^3; got inf");
   CHECK(error_of(hoop + "model = 'sectr'") ==
         "s.toml:3:9: structure.model: must be one of full, sector, joints; got 'sectr'; did you mean "
         "'sector'?");

@@ -148,8 +148,8 @@ TEST_CASE("ends of a range are in it, open ones are not, and both are in its wor
                                      : "any number";
     CHECK(range_text(spec) == words);
     const std::string got = "; got nan";
-    CHECK(range_error(spec, nan_value) == (low && high   ? "must be in " + words + got
-                                           : low || high ? "must be " + words + got
+    CHECK(range_error(spec, nan_value) == (low && high   ? "must be a finite number in " + words + got
+                                           : low || high ? "must be a finite number " + words + got
                                                          : "must be a finite number" + got));
     // Asked for a number and given a text, a person is told that it is a number, too.
     CHECK(wanted_text(spec) == (low && high   ? "a number in " + words
