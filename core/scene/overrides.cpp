@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/scene/write.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {
@@ -84,6 +85,18 @@ bool is_bare_word(std::string_view text) {
   return true;
 }
 
+// How TOML writes what is no TOML value as it stands, where that is known: a number with nothing before or
+// behind its point, a list without brackets.
+std::string in_toml(std::string_view text) {
+  const std::string_view number = text.substr(text.starts_with('+') ? 1 : 0);
+  double x = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), x);
+  if (error == std::errc() && end == number.data() + number.size() && number.find('.') != number.npos)
+    return toml_value(x);
+  const bool list = text.find(',') != text.npos && text.find_first_not_of("0123456789+-.eE, ") == text.npos;
+  return list ? "[" + std::string(text) + "]" : "";
+}
+
 TomlTree parse_value(std::string_view text) {
   TomlTree value;
   try {
@@ -91,6 +104,8 @@ TomlTree parse_value(std::string_view text) {
     if (parsed.entries.size() != 1) throw Refusal{"the value must be one TOML value"};
     value = std::move(parsed.entries[0].value);
   } catch (const SceneError& error) {
+    if (const std::string meant = in_toml(text); !meant.empty())
+      throw Refusal{"not a TOML value: " + in_quotes(text) + "; write " + meant};
     if (!is_bare_word(text)) {
       const bool none = text.find_first_not_of(" \t") == std::string_view::npos;
       throw Refusal{none ? "has no value"

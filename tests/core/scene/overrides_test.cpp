@@ -136,6 +136,13 @@ TEST_CASE("overrides that cannot be applied say why") {
   CHECK(with({"solver.step="}).problems == "--set solver.step: has no value\n");
   CHECK(with({"solver.step=1 2"}).problems ==
         "--set solver.step: not a TOML value: '1 2'; text goes in quotes unless it is a bare word\n");
+  const auto written = [](const std::string& value) { return with({"solver.step=" + value}).problems; };
+  const std::string no_value = "--set solver.step: not a TOML value: '";
+  CHECK(written(".5") == no_value + ".5'; write 0.5\n");
+  CHECK(written("+.5") == no_value + "+.5'; write 0.5\n");
+  CHECK(written("-.25e1") == no_value + "-.25e1'; write -2.5\n");
+  CHECK(written("0,0,-9.81") == no_value + "0,0,-9.81'; write [0,0,-9.81]\n");
+  CHECK(with({"solver.method=.dvm"}).problems == "");  // a word
   CHECK(with({"solver.step=1\nx=2"}).problems == "--set solver.step: the value must be one TOML value\n");
   CHECK(with({"title.x=1"}).problems == "--set title.x: title is text, not a table\n");
   CHECK(with({"structure.nodes[7].mass=1"}).problems ==
