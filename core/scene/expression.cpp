@@ -19,6 +19,7 @@ struct MathFunction {
   std::string_view name;
   std::size_t arguments;
   double (*value)(const double* x);
+  bool more = false;  // f(a, b, c) = f(f(a, b), c)
 };
 
 constexpr std::array functions{
@@ -36,8 +37,8 @@ constexpr std::array functions{
     MathFunction{"floor", 1, [](const double* x) { return std::floor(x[0]); }},
     MathFunction{"ceil", 1, [](const double* x) { return std::ceil(x[0]); }},
     MathFunction{"round", 1, [](const double* x) { return std::round(x[0]); }},
-    MathFunction{"min", 2, [](const double* x) { return std::fmin(x[0], x[1]); }},
-    MathFunction{"max", 2, [](const double* x) { return std::fmax(x[0], x[1]); }},
+    MathFunction{"min", 2, [](const double* x) { return std::fmin(x[0], x[1]); }, true},
+    MathFunction{"max", 2, [](const double* x) { return std::fmax(x[0], x[1]); }, true},
     MathFunction{"hypot", 2, [](const double* x) { return std::hypot(x[0], x[1]); }},
 };
 
@@ -192,8 +193,13 @@ class Parser {
       if (i > 0) require(',');
       x.at(i) = sum();
     }
+    double value = f.value(x.data());
+    while (f.more && take(',')) {
+      x = {value, sum()};
+      value = f.value(x.data());
+    }
     require(')');
-    return f.value(x.data());
+    return value;
   }
 
   std::string_view text_;

@@ -2,9 +2,12 @@
 #include "core/scene/variables.hpp"
 
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/scene/expression.hpp"
 #include "core/scene/overrides.hpp"
@@ -34,11 +37,13 @@ class Expansion {
     if (!table) return;
     braces_ = true;
     if (table->kind == Kind::table) {
-      for (const auto& [name, value] : table->entries) below_.insert(name);
+      for (const auto& [name, value] : table->entries) below_.emplace(name, &value);
       for (const auto& [name, value] : table->entries) {
         below_.erase(name);
+        reading_ = name;
         read_variable(name, value);
       }
+      reading_.clear();
     } else {
       note(*table, "variables", "must be a table, [variables]; got " + table->describe());
     }
@@ -88,15 +93,41 @@ class Expansion {
     try {
       return evaluate(text, variables_);
     } catch (const ExpressionError& error) {
-      const std::string why = below_.contains(error.unknown)
-                                  ? in_quotes(error.unknown) +
-                                        " stands below: a variable may use those above it; move one of them"
-                                  : error.what();
+      const std::string why = below_.contains(error.unknown) ? why_not_below(error.unknown) : error.what();
       note(
           at, key,
           "in the expression " + in_quotes(text) + ", character " + std::to_string(error.place) + ": " + why);
       return std::nullopt;
     }
+  }
+
+  // The variable that is being read needs this one, which stands below it: no order helps where that one, or
+  // what it needs, needs the first in its turn.
+  std::string why_not_below(const std::string& name) const {
+    std::set<std::string> seen;
+    std::vector<std::string> open{name};
+    while (!open.empty()) {
+      const std::string at = std::move(open.back());
+      open.pop_back();
+      if (at == reading_)
+        return in_quotes(name) + " is worked out of " + in_quotes(reading_) +
+               " in its turn: give one of them a number";
+      const auto below = below_.find(at);
+      if (below == below_.end() || !seen.insert(at).second || !is_expression(*below->second)) continue;
+      for (std::string& word : words_of(below->second->text)) open.push_back(std::move(word));
+    }
+    return in_quotes(name) + " stands below: a variable may use those above it; move one of them";
+  }
+
+  static std::vector<std::string> words_of(const std::string& expression) {
+    std::vector<std::string> words(1);
+    for (const char c : expression) {
+      if (is_variable_name(words.back() + c))
+        words.back() += c;
+      else if (!words.back().empty())
+        words.emplace_back();
+    }
+    return words;
   }
 
   static void become(TomlTree& tree, double value) {
@@ -208,7 +239,8 @@ class Expansion {
   std::vector<SceneProblem>& problems_;
   Variables variables_;
   std::set<std::string> keys_;
-  std::set<std::string, std::less<>> below_;  // variables that are not worked out yet
+  std::map<std::string, const TomlTree*, std::less<>> below_;  // variables that are not worked out yet
+  std::string reading_;                                        // the one that is
   bool braces_ = false;
   std::size_t turns_ = 0;
 };

@@ -54,6 +54,7 @@ TEST_CASE("names are variables, constants and functions") {
   CHECK(value("atan2(-1, -1)") == Approx(-3 * std::numbers::pi / 4).epsilon(1e-15));
   CHECK(value("hypot(3, 4) + sqrt(2.25)") == 6.5);
   CHECK(value("min(3, n) + max(3, n) + abs(-2)") == 17.0);
+  CHECK(value("min(3, n, 0.5, 2) + max(-1, n, 2^4, 7)") == 16.5);
   CHECK(value("floor(-2.5) + ceil(2.2) + round(2.6)") == 3.0);
   CHECK(value("log(exp(1.25))") == Approx(1.25).epsilon(1e-15));
   CHECK(value("asin(sin(0.3)) + acos(cos(0.4)) + atan(tan(0.5))") == Approx(1.2).epsilon(1e-14));
@@ -67,6 +68,9 @@ TEST_CASE("mistakes are told with their place") {
   CHECK(mistake("") == "1: a number or a name is missing here");
   CHECK(mistake("2+*3") == "3: a number or a name is missing here");
   CHECK(mistake("atan2(1)") == "8: a ',' is missing here");
+  CHECK(mistake("max(1)") == "6: a ',' is missing here");
+  CHECK(mistake("max(1, 2, 3") == "12: a ')' is missing here");
+  CHECK(mistake("hypot(1, 2, 3)") == "11: a ')' is missing here");
   CHECK(mistake("1/0") == "1: the value is not a finite number");
   CHECK(mistake("sqrt(0-1)") == "1: the value is not a finite number");
   CHECK(mistake(std::string(100000, '(')) == "101: nested too deep");

@@ -166,6 +166,15 @@ TEST_CASE("mistakes in variables and repeats have a place") {
             .find(order + "no variable 'k'") != std::string::npos);
   CHECK(mistakes(with(polygon, "radius = \"=1 + 1/4\"", "k = \"=1 + k\"\nradius = 1"))
             .find("no variable 'k'") != std::string::npos);
+  // Where two need each other, directly or through a third, no order helps.
+  const auto from = [](const std::string& first, const std::string& rest) {
+    return mistakes(with(polygon, "radius = \"=1 + 1/4\"", "radius = \"=" + first + "\"\n" + rest));
+  };
+  const std::string cycle = "'k' is worked out of 'radius' in its turn: give one of them a number";
+  CHECK(from("2*k", "k = \"=radius/2\"").find(cycle) != std::string::npos);
+  CHECK(from("2*k", "k = \"=m\"\nm = \"=1 + radius\"").find(cycle) != std::string::npos);
+  CHECK(from("2*k", "k = \"=m\"\nm = \"=k + radius_2\"\nradius_2 = 1").find("'k' stands below") !=
+        std::string::npos);
   // One mistake in an entry that stands many times is told once.
   const std::string twice = mistakes(with(polygon, "mass = \"=(i+1)/8\"", "mas = 1"));
   CHECK(twice.find("unknown key") == twice.rfind("unknown key"));
