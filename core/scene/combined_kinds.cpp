@@ -179,6 +179,10 @@ std::optional<MeasureTerm> term_of(const SceneElement& e, MemberFinder& find, co
         return bad_term(e, find, key, given, "must end in three numbers of a direction");
       break;
     }
+    if (find.is_part_of_name(word))
+      return bad_term(e, find, key, given,
+                      "has " + in_quotes(word) +
+                          ", a part of a name with a space, which cannot stand in a term: rename that node");
     nodes.push_back(find.node(e, key, word));
     if (nodes.back() < 0) return {};
   }

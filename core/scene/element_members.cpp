@@ -77,6 +77,14 @@ std::vector<int> MemberFinder::nodes(const SceneElement& element, bool globs) {
   return good ? found : std::vector<int>{};
 }
 
+bool MemberFinder::is_part_of_name(const std::string& word) const {
+  if (node_names_.find(word) >= 0) return false;
+  return std::ranges::any_of(structure_.nodes, [&](const Node& node) {
+    const std::string padded = " " + node.name + " ";
+    return node.name != word && padded.find(" " + word + " ") != std::string::npos;
+  });
+}
+
 int MemberFinder::node(const SceneElement& element, const std::string& key, const std::string& name) {
   const int found = node_names_.find(name);
   if (found < 0)

@@ -27,6 +27,8 @@ class MemberFinder {
   // The same with nodes that come again: those of a path, or of several angles.
   std::vector<int> path(const SceneElement& element);
   int node(const SceneElement& element, const std::string& key, const std::string& name);  // -1: a problem
+  // No node is called so, but one has it between the spaces of its name.
+  bool is_part_of_name(const std::string& word) const;
   // First and last part of one rod, the same where it was not cut; null: a problem was noted.
   struct RodParts {
     const Rod *first = nullptr, *last = nullptr;

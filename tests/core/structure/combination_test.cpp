@@ -322,6 +322,13 @@ TEST_CASE("combinations that cannot be say what is wrong and where") {
   CHECK(with("kind = 'combination'\n").find("terms: is missing; must be a list of terms such as") !=
         std::string::npos);
   CHECK(with("kind = 'combination'\nterms = ['0 length A P']\n").find("coefficient 0") != std::string::npos);
+  CHECK(
+      testing::error_of("structure = {kind = 'custom', nodes = [{name = 'left foot', position = [0, 0, 0]}, "
+                        "{name = 'B', position = [1.3, 0, 0], mass = 1}]}\n[[constraints]]\n"
+                        "kind = 'combination'\nterms = ['length left foot B']\n")
+          .find(
+              "has 'left', a part of a name with a space, which cannot stand in a term: rename that node") !=
+      std::string::npos);
   CHECK(with("kind = 'combination'\nterms = ['1 length A X']\n").find("there is no node 'X'") !=
         std::string::npos);
   CHECK(with("kind = 'telescope'\nnodes = ['A', 'P', 'Q']\nshares = [1, 0]\n").find("shares: must be > 0") !=
