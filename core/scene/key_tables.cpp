@@ -63,7 +63,10 @@ Keys member_keys(Members members) {
       return {text_param("rod", "", "its name; the direction follows it")};
     case Members::measure:
       return {
-          names_key("rods", 2, "R, S: the angle between two rods that share a node", false),
+          names_key("rods", 2,
+                    "R, S: the angle between two rods at the node they share; they share none: between their "
+                    "directions, from first node to second",
+                    false),
           names_key("nodes", 0,
                     "A, HINGE, B: the angle at the middle one; A, B: their distance, or with direction the "
                     "difference of their coordinates; A: its coordinate",
@@ -72,7 +75,10 @@ Keys member_keys(Members members) {
     case Members::angle:
       break;
   }
-  return {names_key("rods", 2, "R, S: the angle between two rods that share a node", false),
+  return {names_key("rods", 2,
+                    "R, S: the angle between two rods at the node they share; they share none: between their "
+                    "directions, from first node to second",
+                    false),
           names_key("nodes", 3, "A, HINGE, B: the angle at the middle one, in place of rods", false),
           boolean_param("fold_angle", false, "the structure's fold angle, in place of rods and nodes")};
 }
