@@ -167,6 +167,9 @@ struct Adder {
 Parsed parse(const Command& command, const std::vector<std::string>& words) {
   Parsed parsed;
   Arguments& a = parsed.arguments;
+  for (const std::string& word : words)
+    if (word.starts_with("-o="))
+      throw UsageError("a short option takes its value behind a space: -o " + word.substr(3));
   CLI::App parser;
   parser.set_help_flag();
   parser.allow_extras();

@@ -125,6 +125,11 @@ TEST_CASE("invalid scenes") {
               dir / "odd.toml" + ":1:2: not TOML: unexpected character here");
 }
 
+TEST_CASE("a short option with an equals sign is no directory of that name") {
+  check_error({"run", "pendulum", "-o=DD"}, 2,
+              "unfurl: a short option takes its value behind a space: -o DD");
+}
+
 TEST_CASE("scenes that are not there") {
   check_error({"check", "hoop7"}, 5,
               "unfurl: no scene 'hoop7', neither a file nor a built-in one; did you mean 'hoop6'?");
