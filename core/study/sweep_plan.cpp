@@ -208,6 +208,10 @@ std::string unit_of_axis(const SweepPlan& plan, const SweepAxis& axis,
 void check_plan(SweepPlan& plan) {
   if (plan.axes.empty()) throw StudyError("nothing to vary; give --vary KEY=FROM:TO:COUNT");
   if (plan.measures.empty()) throw StudyError("nothing to measure; give --measure NAME,...");
+  for (std::size_t m = 0; m < plan.measures.size(); ++m)
+    for (std::size_t k = 0; k < m; ++k)
+      if (plan.measures[k].column == plan.measures[m].column)
+        throw StudyError("the measure " + in_quotes(plan.measures[m].name) + " is asked for twice");
   add_uniqueness(plan.measures);
   if (plan.points() > max_points) throw StudyError("the grid has more than 1e7 points");
   const Scene scene = plan.source.read();

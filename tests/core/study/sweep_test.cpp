@@ -285,6 +285,9 @@ TEST_CASE("unknown measures and keys are named") {
   SweepPlan plan = ring_plan();
   plan.axes[0].key = "structure.fold_angl";
   CHECK_THROWS_WITH(check_plan(plan), Catch::Contains("did you mean 'fold_angle'"));
+  plan = ring_plan();
+  plan.measures.push_back(plan.measures.front());
+  CHECK_THROWS_WITH(check_plan(plan), Catch::Contains("is asked for twice"));
   plan.axes.clear();
   CHECK_THROWS_WITH(check_plan(plan), Catch::Contains("nothing to vary"));
 }
