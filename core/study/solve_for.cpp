@@ -22,7 +22,9 @@ class Search {
       bracket_around();
     refine();
     refuse_jump();
-    return {best_.x, best_.value, a_.x, b_.x, std::move(seen_)};
+    // The best may lie beside a bracket that closed to the last digits.
+    return {best_.x, best_.value, std::min({a_.x, b_.x, best_.x}), std::max({a_.x, b_.x, best_.x}),
+            std::move(seen_)};
   }
 
  private:

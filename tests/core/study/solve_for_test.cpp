@@ -33,6 +33,18 @@ TEST_CASE("a root between two ends is found on either side of where the scene st
   CHECK(exact.high == 2.5);
 }
 
+// Of a measure that falls, and of one that jitters in its last digits, the best may lie at an end or outside.
+TEST_CASE("the bracket of a root begins with its lower end and holds the value") {
+  const auto jitter = [](double x) { return 1e-15 * std::sin(1e17 * x); };
+  for (const double sign : {1.0, -1.0})
+    for (const double target : {-0.31, 0.77, 1.9}) {
+      const Solved s =
+          solve_for([&](double x) { return sign * (x * x * x + x) + jitter(x); }, target, {.start = 0.4}, {});
+      CHECK(s.low <= s.x);
+      CHECK(s.x <= s.high);
+    }
+}
+
 // As of a step that goes to zero: 1/x runs' time at x, for a target that is nowhere.
 TEST_CASE("a search gives a side up where runs take longer and longer") {
   double time = 0;
