@@ -2,6 +2,7 @@
 #include "core/simulate/run_words.hpp"
 
 #include "core/forces/pin_loads.hpp"
+#include "core/system/blocked_motion.hpp"
 #include "core/system/consistency.hpp"
 
 namespace unfurl {
@@ -21,6 +22,18 @@ std::string cure(const Model& model, const State& state, bool latched, double h)
       return "; no motion follows what is driven there (" + driven +
              "): they move one another or what is held; take one away, or let rods give "
              "(structure.rod_model)";
+  if (h > 0) {
+    const System system = model.system.at(state);
+    if (const std::string beyond = beyond_reach(system, state.t, h, q); !beyond.empty()) return "; " + beyond;
+    if (const std::string rods = held_at_second_order(system, q); !rods.empty())
+      return "; " + rods +
+             " hold each other in this pose, and what looks free there is not (as rods in line are not): "
+             "draw "
+             "them a little slack, or let rods give (structure.rod_model)";
+    if (misfit_of_rows(system, q) > 0)
+      return "; constraints depend on each other, and the positions fit them to fewer digits than a step "
+             "needs: give the positions all 16 digits, or solver.model = \"path\"";
+  }
   std::string step = h > 0 ? "; a smaller solver.step, or solver.adaptive = true, may get through" : "";
   if (!PinLoads::any(model.structure)) return step;
   const auto locked = PinLoads::self_locking(model.structure, model.system.node_mass(), state.t, q.data());

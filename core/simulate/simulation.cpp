@@ -13,6 +13,8 @@
 #include "core/simulate/parts.hpp"
 #include "core/simulate/stepper.hpp"
 #include "core/simulate/stretched.hpp"
+#include "core/structure/node_positions.hpp"
+#include "core/system/blocked_motion.hpp"
 
 namespace unfurl {
 namespace {
@@ -93,6 +95,8 @@ Simulation simulate_in_parts(std::shared_ptr<const Model> model, const SolverOpt
   if (std::string warning = velocity_warning(start, model->structure); !warning.empty())
     warnings.push_back(std::move(warning));
   if (std::string warning = elastic_step_warning(*model, start.state, options); !warning.empty())
+    warnings.push_back(std::move(warning));
+  if (std::string warning = misfit_warning(model->system, node_positions(model->structure)); !warning.empty())
     warnings.push_back(std::move(warning));
   const bool stretches = model->structure.quasi_static;
   double begin = thread_cpu_seconds();

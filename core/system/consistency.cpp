@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <sstream>
 
 #include "core/math/factors.hpp"
+#include "core/math/singular_values.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/system/mobility.hpp"
@@ -179,8 +181,11 @@ class Checker {
     return false;
   }
 
+  // By the tolerance of check's degrees of freedom: what has none stands still.
   void check_freedom() const {
-    if (rank_of(G_, 1e-9) < G_.cols()) return;
+    if (rank_of(G_, 0.01 * dependent_row) < G_.cols()) return;  // as nearly always, and cheaper
+    const VectorXd values = singular_values(G_);
+    if (values.size() < G_.cols() || !(values[G_.cols() - 1] > dependent_row)) return;
     std::vector<std::string> names, members;
     for (const int row : counted_rows(system_, q_)) names.push_back(name(row));
     for (auto n = names.rbegin(); n != names.rend(); ++n)  // what is held or driven by name comes first
@@ -188,7 +193,21 @@ class Checker {
     for (const auto& n : names)
       if (n.rfind("rod ", 0) == 0) members.push_back(n);
     throw StructureError("", "nothing can move: " + std::to_string(names.size()) + " constraints hold all " +
-                                 std::to_string(G_.cols()) + " coordinates; free one of " + listed(members));
+                                 std::to_string(G_.cols()) + " coordinates; " +
+                                 too_few_digits(values[G_.cols() - 1]) + "free one of " + listed(members));
+  }
+
+  // A structure that moves has rows that depend on each other exactly; positions with few digits leave a
+  // remainder. What is rigid by its make is farther from such a pose.
+  static std::string too_few_digits(double smallest) {
+    constexpr double by_rounding = 1e-3;
+    if (!(smallest < by_rounding)) return "";
+    std::ostringstream text;
+    text << std::setprecision(2) << "they nearly leave one motion (all but " << smallest
+         << " of their size): if it is meant to move, give its positions all 16 digits (an expression, "
+            "\"=...\", "
+            "has them); else ";
+    return text.str();
   }
 
   const System& system_;

@@ -14,12 +14,6 @@ namespace unfurl {
 
 namespace {
 
-// What is left of a unit row after taking out all earlier ones counts as zero below this. Entries carry
-// round-off of 1e-16 and the chains of operations behind them amplify it to 1e-13 at most; what a real
-// structure leaves is its distance from a singular pose, 3e-3 for the folded ring of six units and 1e-7 for
-// one of a thousand.
-constexpr double tolerance = 1e-11;
-
 // Beyond this the dense analysis takes seconds (its cost is cubic): the sparse one finds the same rows.
 constexpr Index max_dense_coordinates = 900;
 
@@ -115,9 +109,9 @@ Index rigid_motions(const SparseRows& G, const ConstVec& q, const std::vector<in
 // is left of a dependent row exceeds the tolerance. The singular values do not suffer from this: they say how
 // many rows depend.
 std::vector<int> dependent_rows(const MatrixXd& G, const VectorXd& values) {
-  const Index wanted = G.rows() - (values.array() > tolerance).count();
+  const Index wanted = G.rows() - (values.array() > dependent_row).count();
   std::vector<int> dependent;
-  for (double negligible = tolerance; negligible < 1e-4; negligible *= 10) {
+  for (double negligible = dependent_row; negligible < 1e-4; negligible *= 10) {
     dependent = dependent_rows(G, negligible);
     if (static_cast<Index>(dependent.size()) >= wanted) break;
   }
@@ -145,7 +139,7 @@ bool depends(const SparseRows& G, int row, const std::vector<int>& others) {
 }
 
 std::vector<int> dependent_rows(const SparseRows& G) {
-  return eliminate(G, VectorXd::Zero(G.rows()), tolerance,
+  return eliminate(G, VectorXd::Zero(G.rows()), dependent_row,
                    [&](int row, const std::vector<int>& others) { return depends(G, row, others); })
       .redundant;
 }

@@ -9,6 +9,12 @@
 
 namespace unfurl {
 
+// What is left of a unit row after taking out all earlier ones counts as zero below this. Entries carry
+// round-off of 1e-16 and the chains of operations behind them amplify it to 1e-13 at most; what a real
+// structure leaves is its distance from a singular pose, 3e-3 for the folded ring of six units and 1e-7 for
+// one of a thousand.
+inline constexpr double dependent_row = 1e-11;
+
 struct Mobility {
   Index coordinates = 0;               // 3 n
   Index constraints = 0;               // rows of G, eliminated linear ones included, implied ones not

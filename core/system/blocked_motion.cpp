@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/system/blocked_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/math/factors.hpp"
+#include "core/math/singular_values.hpp"
+#include "core/system/mobility.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr Index most_coordinates = 300;  // dense algebra within a fraction of a second
+// Singular values of unit rows. Round-off leaves 1e-15 of a dependent row; a structure that is so near to a
+// singular pose on purpose (the folded ring of a thousand units: 1e-7) has no digits left to say so.
+constexpr double round_off = 1e-14, meant = 1e-7;
+// Misfits below this let a run of usual length be right to eight digits.
+constexpr double worth_a_word = 3e-13;
+
+std::string listed_names(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 4;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i) text += (i ? ", " : "") + names[i];
+  return text + (names.size() > most ? " and " + std::to_string(names.size() - most) + " more" : "");
+}
+
+std::string rounded(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+// Node coordinates with the least |Phi| near q, by Levenberg's and Marquardt's method, without row `left_out`
+// (-1: with all): whether there is a pose.
+bool has_pose(const System& system, double t, VectorXd q, Index left_out) {
+  const double size = std::max(system.all_lengths().maxCoeff(), std::numeric_limits<double>::min());
+  const Index n = q.size(), m = system.all_constraints();
+  const auto residual = [&](const VectorXd& x) {
+    VectorXd phi(m);
+    system.all_constraint_values(t, x, phi);
+    if (left_out >= 0) phi[left_out] = 0;
+    return phi;
+  };
+  VectorXd phi = residual(q);
+  double damping = 1e-3;
+  for (int it = 0; it < 200; ++it) {
+    if (!(phi.norm() > 1e-9 * size)) return phi.allFinite();
+    MatrixXd G(system.all_jacobian(q));
+    if (left_out >= 0) G.row(left_out).setZero();
+    const MatrixXd A = G.transpose() * G + damping * MatrixXd::Identity(n, n);
+    const VectorXd next = q - Cholesky(A).solve(VectorXd(G.transpose() * phi)), there = residual(next);
+    const bool better = there.norm() < phi.norm();
+    const bool ends = better && there.norm() > (1 - 1e-6) * phi.norm();
+    damping = std::max(1e-10, damping * (better ? 0.1 : 10));
+    if (better) q = next, phi = there;
+    if (ends || damping > 1e12) break;
+  }
+  // At a limit of the reach Newton's method is slow, and a millionth of the structure is there.
+  return phi.norm() <= 1e-6 * size;
+}
+
+}  // namespace
+
+double misfit_of_rows(const System& system, const ConstVec& q) {
+  if (system.coordinates() > most_coordinates || system.all_constraints() < system.coordinates()) return 0;
+  const MatrixXd G(picked_rows(unit_rows(system, q), counted_rows(system, q)));
+  if (rank_of(G, round_off) == rank_of(G, meant)) return 0;  // as nearly always, and cheaper
+  const VectorXd values = singular_values(G);
+  double most = 0;
+  for (const double value : values)
+    if (value > round_off && value < meant) most = std::max(most, value);
+  return most;
+}
+
+std::string misfit_warning(const System& system, const ConstVec& q) {
+  const double misfit = misfit_of_rows(system, q);
+  if (misfit < worth_a_word) return "";
+  return "constraints of this structure follow from one another only to " + rounded(misfit, 2) +
+         " of their size: its positions have too few digits, and the motion is no better than they are and "
+         "worse "
+         "over time; give them all 16 digits, or solver.model = \"path\"";
+}
+
+std::string beyond_reach(const System& system, double t, double h, const ConstVec& q) {
+  if (system.coordinates() > most_coordinates || system.drives().empty()) return "";
+  const std::vector<int> sources = system.all_sources();
+  for (const double soon : {h, 4 * h, 16 * h, 0.02 * t}) {
+    if (!(soon > 0) || has_pose(system, t + soon, q, -1)) continue;
+    for (const Drive& drive : system.drives()) {
+      const Index row = std::find(sources.begin(), sources.end(), drive.constraint) - sources.begin();
+      if (row == std::ssize(sources) || !has_pose(system, t + soon, q, row)) continue;
+      const double unit = drive.angle ? 180 / std::numbers::pi : 1;
+      const auto value = [&](double when) {
+        return rounded(unit * drive.target(when), 4) + (drive.angle ? " deg" : " m");
+      };
+      return "the drive " + drive.name + " asks for " + value(t + soon) + " at t = " + rounded(t + soon, 4) +
+             " s, past what the other constraints reach (it was at " + value(t) + " at t = " + rounded(t, 4) +
+             " s): let it move less far";
+    }
+    return "";
+  }
+  return "";
+}
+
+// To second order a motion q + e v + e^2 w/2 needs G v = 0 and v^T H_k v + g_k w = 0 for every row k. With a
+// self-stress y, sum y_k g_k = 0, that leaves K(v) = sum y_k v^T H_k v = 0: where K is of one sign over the
+// null space of G, all that it does not vanish for is blocked (Connelly & Whiteley 1996: prestress
+// stability). v^T H_k v are second differences, exact but for rounding where Phi is a square.
+std::string held_at_second_order(const System& system, const ConstVec& q) {
+  const Index n = system.coordinates(), m = system.all_constraints();
+  const auto& rods = system.rod_rows();
+  if (n > most_coordinates || m == 0 || std::ranges::any_of(rods, [](int row) { return row < 0; })) return "";
+  const MatrixXd G(system.all_jacobian(q));
+  const MatrixXd V = column_complement(G.transpose(), 1e-9), Y = column_complement(G, 1e-9);
+  constexpr Index most_free = 60;
+  if (V.cols() == 0 || V.cols() > most_free || Y.cols() == 0) return "";
+  const double step = 1e-4 * std::max(system.all_lengths().maxCoeff(), std::numeric_limits<double>::min());
+  VectorXd here(m), there(m), back(m);
+  system.all_constraint_values(0.0, q, here);
+  const auto bent = [&](const VectorXd& v) -> VectorXd {
+    system.all_constraint_values(0.0, q + step * v, there);
+    system.all_constraint_values(0.0, q - step * v, back);
+    return (there + back - 2 * here) / (step * step);
+  };
+  std::vector<MatrixXd> K(static_cast<std::size_t>(Y.cols()), MatrixXd(V.cols(), V.cols()));
+  for (Index i = 0; i < V.cols(); ++i)
+    for (Index j = 0; j <= i; ++j) {
+      const VectorXd both = Y.transpose() * (bent(V.col(i) + V.col(j)) - bent(V.col(i) - V.col(j))) / 4;
+      for (Index k = 0; k < Y.cols(); ++k) {
+        MatrixXd& of = K[static_cast<std::size_t>(k)];
+        of(i, j) = of(j, i) = both[k];
+      }
+    }
+  const std::vector<std::string> all = system.all_names();
+  for (Index k = 0; k < Y.cols(); ++k) {
+    const VectorXd e = symmetric_eigen(K[static_cast<std::size_t>(k)]).values;
+    const double most = e.cwiseAbs().maxCoeff();
+    // With l the longest rod, K is some 1 / l, and second differences are good to 1e-16 / 1e-8 of that.
+    if (!(most * step > 1e-8) || (e.minCoeff() < -1e-4 * most && e.maxCoeff() > 1e-4 * most)) continue;
+    std::vector<std::string> names;
+    for (Index r = 0; r < m; ++r)
+      if (std::abs(Y(r, k)) > 1e-6 && all[static_cast<std::size_t>(r)].starts_with("rod "))
+        names.push_back(all[static_cast<std::size_t>(r)]);
+    if (!names.empty()) return listed_names(names);
+  }
+  return "";
+}
+
+}  // namespace unfurl

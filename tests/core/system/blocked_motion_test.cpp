@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Motions that no step gets through are told by what blocks them, and what is advised helps.
+#include "core/system/blocked_motion.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+
+#include "core/structure/node_positions.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace blocked_motion_test {
+
+namespace {
+
+using testing::end_positions, testing::error_of, testing::model_of, testing::run_scene;
+
+// A parallelogram with three cranks of 1.1 m, of which two would do, 1.1 rad from the x axis, with its
+// positions given to so many decimals.
+std::string three_cranks(int decimals) {
+  const double pivots[3][2] = {
+      {0, 0}, {std::sqrt(2.0), std::sqrt(0.27)}, {3.14159265358979, 1.0392304845413}};
+  std::string nodes, rods;
+  for (int k = 0; k < 3; ++k) {
+    char text[400];
+    const double x = pivots[k][0], z = pivots[k][1];
+    std::snprintf(text, sizeof text,
+                  "{name = 'A%d', position = [%.*f, 0, %.*f], fixed = true}, "
+                  "{name = 'B%d', position = [%.*f, 0, %.*f]}, ",
+                  k, decimals, x, decimals, z, k, decimals, x + 1.1 * std::cos(1.1), decimals,
+                  z + 1.1 * std::sin(1.1));
+    nodes += text;
+    std::snprintf(text, sizeof text, "{nodes = ['A%d', 'B%d'], mass = 0.5}, ", k, k);
+    rods += text;
+  }
+  return "[structure]\nkind = 'custom'\nnodes = [" + nodes + "]\nrods = [" + rods +
+         "{nodes = ['B0', 'B1'], mass = 0.3}, {nodes = ['B1', 'B2'], mass = 0.3}, "
+         "{nodes = ['B0', 'B2'], mass = 0.3}]\n"
+         "[[constraints]]\nkind = 'plane'\nnodes = ['B0', 'B1', 'B2']\nnormal = [0, 1, 0]\n"
+         "[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nend_time = 0.1\nstep = 0.01\n";
+}
+
+// Rods between two held nodes, `slack` below the line, with a load across.
+std::string in_line(const std::string& slack) {
+  return "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, "
+         "{name = 'B', position = [1, 0, -" +
+         slack +
+         "]}, {name = 'C', position = [2.5, 0, 0], fixed = true}]\n"
+         "rods = [{nodes = ['A', 'B'], mass = 1.2}, {nodes = ['B', 'C'], mass = 1}]\n"
+         "[[loads]]\nnodes = ['B']\nforce = [0, 0, -10]\n[solver]\nend_time = 0.1\nstep = 0.01\n";
+}
+
+// Two rods of 1 m as a jack: they reach 2 m.
+std::string jack(const std::string& drive) {
+  return "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, "
+         "{name = 'B', position = [0.6, 0, 0.8]}, {name = 'C', position = [1.2, 0, 0]}]\n"
+         "rods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], mass = 1.3}]\n"
+         "[[constraints]]\nkind = 'plane'\nnodes = ['B', 'C']\nnormal = [0, 1, 0]\n"
+         "[[constraints]]\nkind = 'line'\nnodes = ['C']\ndirection = [1, 0, 0]\n"
+         "[[constraints]]\nname = 'act'\nmotion = 'smooth'\nduration = 1\n" +
+         drive + "\n[solver]\nend_time = 1\nstep = 0.01\n";
+}
+
+std::string held_in(const std::string& scene) {
+  const auto model = model_of(scene);
+  return held_at_second_order(model->system, node_positions(model->structure));
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a linkage that is rigid by the digits of its positions is refused and told which are missing") {
+  for (const int decimals : {4, 6, 8}) {
+    const std::string error = error_of(three_cranks(decimals));
+    CAPTURE(decimals, error);
+    CHECK(has(error, "nothing can move"));
+    CHECK(has(error, "give its positions all 16 digits"));
+  }
+  CHECK(error_of(three_cranks(17)) == "");
+  // Rigid by its make: the second crank ends at a pivot that stands still.
+  std::string made = three_cranks(17);
+  made.insert(made.find("{nodes = ['B1', 'B2']"), "{nodes = ['B0', 'A2'], mass = 1}, ");
+  CHECK(has(error_of(made), "nothing can move"));
+  CHECK_FALSE(has(error_of(made), "digits"));
+}
+
+// Between what counts as rigid and round-off such rows cannot be held together; B1 is then off by 1e-5 m with
+// steps that get through.
+TEST_CASE("positions with too few digits for a step are warned of and all digits need no warning") {
+  for (const int decimals : {9, 10}) {
+    const Simulation run = run_scene(three_cranks(decimals));
+    CAPTURE(decimals);
+    REQUIRE_FALSE(run.warnings.empty());
+    CHECK(has(run.warnings.front(), "follow from one another only to"));
+    if (run.status == RunStatus::failed) CHECK(has(run.message, "give the positions all 16 digits"));
+  }
+  const Simulation right = run_scene(three_cranks(17));
+  CHECK(right.warnings.empty());
+  CHECK(right.status == RunStatus::completed);
+}
+
+TEST_CASE("rods in line under a load across are named and slack helps") {
+  const Simulation run = run_scene(in_line("0"));
+  CHECK(run.status == RunStatus::failed);
+  CHECK(has(run.message, "A-B, rod B-C hold each other in this pose"));
+  CHECK_FALSE(has(run.message, "smaller solver.step"));
+  CHECK(run_scene(in_line("0.02")).status == RunStatus::completed);
+}
+
+TEST_CASE("a drive past the reach of the rods is named with what it asks for") {
+  const std::string length = "kind = 'length'\nnodes = ['A', 'C']\nto = ";
+  const Simulation run = run_scene(jack(length + "3"));
+  CAPTURE(run.message);
+  CHECK(run.status == RunStatus::failed);
+  // 1.2 + 1.8 (10 u^3 - 15 u^4 + 6 u^5) = 2 at u = 0.4704.
+  CHECK(has(run.message, "the drive act asks for 2.0"));
+  CHECK(has(run.message, "at t = 0.47 s): let it move less far"));
+  CHECK_FALSE(has(run.message, "smaller solver.step"));
+  CHECK(run_scene(jack(length + "1.98")).status == RunStatus::completed);
+  // As a coordinate the same.
+  const Simulation slides =
+      run_scene(jack("kind = 'coordinate'\nnodes = ['C']\ndirection = [1, 0, 0]\nto = 2.6"));
+  CHECK(has(slides.message, "the drive act asks for 2.0"));
+}
+
+// A flat parallelogram has a self-stress and moves in two ways; a chain in line that is held at one end has no
+// self-stress.
+TEST_CASE("what moves to second order is not said to be held") {
+  const std::string chain =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, "
+      "{name = 'B', position = [1, 0, 0]}, {name = 'C', position = [2.5, 0, 0]}]\n"
+      "rods = [{nodes = ['A', 'B'], mass = 1.2}, {nodes = ['B', 'C'], mass = 1}]\n";
+  CHECK(held_in(chain) == "");
+  CHECK(held_in(three_cranks(17)) == "");
+  const std::string flat =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, "
+      "{name = 'B', position = [0.7, 0, 0]}, {name = 'C', position = [2.2, 0, 0]}, "
+      "{name = 'D', position = [1.5, 0, 0], fixed = true}]\n"
+      "rods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], mass = 1}, {nodes = ['C', 'D'], mass = "
+      "1}]\n"
+      "[[constraints]]\nkind = 'plane'\nnodes = ['B', 'C']\nnormal = [0, 1, 0]\n";
+  CHECK(held_in(flat) == "");
+  CHECK(held_in(in_line("0")) == "rod A-B, rod B-C");
+  CHECK(held_in(in_line("0.02")) == "");
+}
+
+}  // namespace blocked_motion_test
