@@ -56,7 +56,8 @@ std::optional<State> step_to_deployed(const Model& model, Integrator& integrator
 
 std::optional<double> step_to_dip(const Model& model,
                                   const std::function<std::unique_ptr<Integrator>()>& fresh,
-                                  const State& from, const State& to, double h, double margin) {
+                                  const State& from, const State& to, double h, double margin,
+                                  const Probe* behind) {
   if (!deploys_regularly(model.structure)) return std::nullopt;
   struct At {
     double length, left, rate;
@@ -73,7 +74,7 @@ std::optional<double> step_to_dip(const Model& model,
     return a.left > 0 && b.left > 0 && a.rate < 0 && b.rate > 0 &&
            a.left + 2 * a.rate * (b.length - a.length) <= 0;
   };
-  At low = at(0, from), high = at(h, to);
+  At low = behind ? at(behind->at, behind->state) : at(0, from), high = at(h, to);
   if (!may_dip(low, high)) return std::nullopt;
   const std::unique_ptr<Integrator> integrator = fresh();
   constexpr int most = 60;

@@ -171,17 +171,22 @@ bool Stepper::Loop::inside(const Probe& to, double share, State& state) {
   return integrator_->inside(now(), to.at, share, state.z, state.w);
 }
 
-// Is the step's own polynomial off the cubic of its ends by a part of the way, or of what a stop's or cable's
-// margin changes? At two of the parts: their difference may be zero at one of them.
-bool Stepper::Loop::leaves_cubic(const Probe& to, const MatrixXd& margins) {
-  constexpr double part_of_change = 0.01, rounding = 1e4;
+// Is the step's own polynomial there off the cubic of its ends by a part of the way?
+bool Stepper::Loop::off_cubic(const Probe& to, double share, State& state) {
   const State &a = now(), &b = to.state;
+  if (!inside(to, share, state)) return false;
   const double way = to.at * std::max(a.w.lpNorm<Eigen::Infinity>(), b.w.lpNorm<Eigen::Infinity>());
+  const VectorXd off = state.z - on_cubic(a, b, state.t).z;
+  return off.lpNorm<Eigen::Infinity>() > stepping::cubic_share * way;
+}
+
+// Or of what a stop's or cable's margin changes? At two of the parts: their difference may be zero at one of
+// them.
+bool Stepper::Loop::leaves_cubic(const Probe& to, const MatrixXd& margins) {
+  constexpr double rounding = 1e4;
   Probe p;
   for (const int k : {2, 5}) {
-    inside(to, static_cast<double>(k) / stepping::parts, p.state);
-    const VectorXd off = p.state.z - on_cubic(a, b, p.state.t).z;
-    if (off.lpNorm<Eigen::Infinity>() > part_of_change * way) return true;
+    if (off_cubic(to, static_cast<double>(k) / stepping::parts, p.state)) return true;
     sides_.measure(model(), p.state, false, p);
     for (Index i = 0; i < static_cast<Index>(sides_.first_friction()); ++i) {
       double least = std::min(begin_.margins[i], to.margins[i]),
@@ -190,7 +195,8 @@ bool Stepper::Loop::leaves_cubic(const Probe& to, const MatrixXd& margins) {
         least = std::min(least, margins(i, j));
         most = std::max(most, margins(i, j));
       }
-      if (std::abs(p.margins[i] - margins(i, k - 1)) > std::max(part_of_change * (most - least), rounding))
+      if (std::abs(p.margins[i] - margins(i, k - 1)) >
+          std::max(stepping::cubic_share * (most - least), rounding))
         return true;
     }
   }

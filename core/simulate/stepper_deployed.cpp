@@ -37,6 +37,40 @@ std::optional<State> Stepper::Loop::locate(double h, double latest) {
   return event;
 }
 
+// How far into a step that its ends' cubic does not tell the pose is passed first, to come back from it or to
+// stay, where the step's own polynomial leads near it.
+std::optional<double> Stepper::Loop::dip_inside(const Probe& to) {
+  State state;
+  if (!deploys_regularly(model().structure) || fold(now()) <= margin_ ||
+      !(off_cubic(to, 0.25, state) || off_cubic(to, 0.625, state)))
+    return {};
+  std::vector<double> left{fold(now()) - margin_};
+  for (int k = 1; k < stepping::fine_parts; ++k) {
+    inside(to, static_cast<double>(k) / stepping::fine_parts, state);
+    left.push_back(fold(state) - margin_);
+  }
+  left.push_back(fold(to.state) - margin_);
+  const double near_zero = 0.1 * *std::ranges::max_element(left);
+  const auto integrator = fresh_integrator();
+  const auto solve = [&](std::size_t k, Probe& probe) {
+    probe.at = to.at * static_cast<double>(k) / stepping::fine_parts;
+    probe.state = now();
+    integrator->restart();
+    return k == 0 || integrator->step(probe.state, probe.at).ok();
+  };
+  for (std::size_t k = 1; k + 1 < left.size(); ++k) {
+    if (!(left[k] < near_zero && left[k] < left[k - 1] && left[k] <= left[k + 1])) continue;
+    Probe before, after;
+    if (!solve(k - 1, before) || !solve(k + 1, after)) continue;
+    if (fold(before.state) <= margin_) return before.at;
+    if (fold(after.state) <= margin_) return after.at;
+    const auto bottom = step_to_dip(
+        model(), [this] { return fresh_integrator(); }, now(), after.state, after.at, margin_, &before);
+    if (bottom) return bottom;
+  }
+  return {};
+}
+
 // The deployed pose where this step reaches it; a step that failed without that is tried in parts. False
 // where the run ends.
 bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& event) {
@@ -60,7 +94,9 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
     return regular_ = true;
   }
   double within = h;
-  if (!crosses(to.state)) {
+  if (const auto dip = dip_inside(to)) {
+    within = *dip;
+  } else if (!crosses(to.state)) {
     const auto bottom = step_to_dip(
         model(), [this] { return fresh_integrator(); }, now(), to.state, h, margin_);
     if (!bottom) return true;

@@ -53,6 +53,8 @@ inline constexpr double straight = 1e-3;
 inline constexpr int parts = 8;
 // The same where the step covers a swing or so, of which eight stages follow one.
 inline constexpr int fine_parts = 16;
+// By so much of a way the cubic of a step's ends may be off the step's own polynomial.
+inline constexpr double cubic_share = 0.01;
 
 inline constexpr const char* too_near =
     "so near the deployed pose, where the constraints lose rank, the motion cannot be told from rounding";
@@ -273,6 +275,7 @@ class Stepper::Loop {
   std::optional<Crossing> find_crossing(Probe& to, double h);
   MatrixXd between(const Probe& to, bool cut_off);
   bool inside(const Probe& to, double share, State& state);
+  bool off_cubic(const Probe& to, double share, State& state);
   bool leaves_cubic(const Probe& to, const MatrixXd& margins);
   void warn_of_long_step(const Probe& to, const VectorXd& off, const VectorXd& fastest);
 
@@ -436,6 +439,7 @@ class Stepper::Loop {
 
   std::optional<State> locate(double h, double latest);
   bool arrives(const Probe& to);
+  std::optional<double> dip_inside(const Probe& to);
   bool find_deployed(Probe& to, double h, std::optional<State>& event);
   double uneven(const State& event);
   bool deployed(State& event, Probe& to, double h);

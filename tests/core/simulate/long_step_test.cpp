@@ -127,6 +127,19 @@ TEST_CASE("a cable goes taut where a step covers half a swing or a whole one") {
   }
 }
 
+TEST_CASE("a structure is deployed within a step that covers half a swing or a whole one") {
+  for (const double room : {0.45, 0.31, 0.496})
+    for (const Case& c : cases) {
+      INFO(c.stages << " stages, step " << c.step << " s, room " << room);
+      const Simulation run = run_scene(
+          swing("[deployment]\nmeasure = \"length O P\"\ndeployed = " + std::to_string(1 + room) + "\n"),
+          changes(c, 3));
+      REQUIRE(run.status == RunStatus::deployed);
+      // Deployed within a part of a step of 1.5 s at most, of order 8 and more: five stages are off by 1e-5.
+      CHECK(run.events.front().t == Approx(std::asin(room / speed)).epsilon(1e-4));
+    }
+}
+
 // B swings on a spring to A, which a load of 0.9 of the spring's amplitude presses on a stop: it lets go when
 // the spring pulls more, for less than a second in each swing.
 TEST_CASE("a stop lets go within a step that covers a swing") {
