@@ -25,9 +25,7 @@ std::string time_text(double t, double span) {
 }
 
 std::string deployed_text(double fraction) {
-  char text[64];
-  std::snprintf(text, sizeof text, "deployed %.0f %%", std::max(0.0, std::round(100 * fraction)));
-  return text;
+  return "deployed " + plot::format_fixed(100 * fraction, 0) + " %";
 }
 
 std::string number_text(double x) {

@@ -93,6 +93,19 @@ solver.end_time = 2
   }
 }
 
+// Two balls that fly away from where they are deployed, 1 m ahead: after 2 s at 0.5 m/s by -100 %.
+TEST_CASE("what moves away from its deployed pose is deployed by less than nothing") {
+  const DrawList list = picture(R"(structure.kind = 'custom'
+structure.nodes = [{name="P",position=[0,0,0],velocity=[-0.5,0,0]},{name="Q",position=[0,1,0],velocity=[-0.5,0,0]}]
+structure.rods = [{nodes=["P","Q"],mass=1}]
+deployment.measure = "1 coordinate P along 1 0 0"
+deployment.deployed = 1
+solver.end_time = 2
+)",
+                                "");
+  CHECK(label(list, "deployed \u2212100 %"));
+}
+
 TEST_CASE("loads have no colour of the rods' ramp, and a word beside it") {
   for (const Look& look : looks()) {
     const double least = told_apart(look);
