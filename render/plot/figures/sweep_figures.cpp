@@ -209,6 +209,33 @@ Curve sample_points(const plot::Field& field) {
   return dots;
 }
 
+// What differs by rounding is the same, as it is for a curve.
+bool varies(const ValueRange& range) {
+  return range.hi - range.lo > 1e-12 * std::max(std::abs(range.lo), std::abs(range.hi));
+}
+
+// With as many digits as tell a level from its neighbours, and four at least.
+std::string level_label(double level, const std::vector<double>& levels) {
+  double digits = 4;
+  if (levels.size() > 1) {
+    const double apart = levels[1] - levels[0];
+    const double largest = std::max(std::abs(levels.front()), std::abs(levels.back()));
+    digits = std::clamp(std::ceil(std::log10(largest / apart)) + 1, 4.0, 16.0);
+  }
+  return plot::format_number(level, static_cast<int>(digits));
+}
+
+std::string map_caption(const SweepPlan& plan, const Sweep& sweep, std::size_t measure) {
+  const std::string points = std::to_string(plan.axes[0].values.size()) + " x " +
+                             std::to_string(plan.axes[1].values.size()) + " points (dots)";
+  const ValueRange range = range_of(field_of(plan, sweep, measure));
+  if (range.lo <= range.hi && !varies(range))
+    return "The same at every dot: " + plan.measures[measure].label + " = " +
+           plot::format_number(range.lo, 4) + ", computed on a grid of " + points + ". ";
+  return "Colour and contour lines: " + plan.measures[measure].label + ", computed on a grid of " + points +
+         ", interpolated bilinearly. ";
+}
+
 Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure) {
   const plot::Field field = field_of(plan, sweep, measure);
   const ValueRange range = range_of(field);
@@ -222,7 +249,7 @@ Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
   map.y = {
       .label = plan.axes[1].title(), .log = plan.axes[1].log, .min = field.y.front(), .max = field.y.back()};
   std::vector<double> levels;
-  if (range.lo < range.hi) {
+  if (varies(range)) {
     add_cells(field, range, map);
     levels = plot::linear_ticks(range.lo, range.hi, 9).major;
   }
@@ -233,12 +260,12 @@ Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
     c.y = std::move(lines.y);
     c.color = 6;
     c.width = 0.6f;
-    c.label = plot::format_number(level, 4);
+    c.label = level_label(level, levels);
     map.curves.push_back(std::move(c));
   }
   map.curves.push_back(sample_points(field));
   f.panels = {std::move(map)};
-  if (range.lo < range.hi) f.panels.push_back(color_bar(range, levels, plan.measures[measure].label));
+  if (varies(range)) f.panels.push_back(color_bar(range, levels, plan.measures[measure].label));
   if (f.panels.size() == 1) f.rows = 1;
   return f;
 }
@@ -262,9 +289,7 @@ std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, con
     Figure f;
     if (map) {
       f = map_figure(plan, sweep, m);
-      f.caption = "Colour and contour lines: " + plan.measures[m].label + ", computed on a grid of " +
-                  std::to_string(plan.axes[0].values.size()) + " x " +
-                  std::to_string(plan.axes[1].values.size()) + " points (dots), interpolated bilinearly. ";
+      f.caption = map_caption(plan, sweep, m);
     } else {
       f.panels.push_back(curve_panel(plan, sweep, m, across));
     }

@@ -2,6 +2,9 @@
 // The figures of studies, sweeps, stress runs and of the paper, judged as the figures of runs are.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
+#include <set>
+#include <string>
 
 #include "core/scene/library.hpp"
 #include "render/plot/figure_data.hpp"
@@ -176,6 +179,45 @@ TEST_CASE("the table of a map has a row for every cell", "[figures]") {
   std::size_t cells = 0;
   for (std::size_t at = 0; (at = numbers.find("1,cell,", at)) != std::string::npos; ++at) ++cells;
   CHECK(cells == map.panels.front().cells.size());
+}
+
+// A map of base + step (i + 5 j) over a grid of 5 x 5.
+Figure map_of(double base, double step) {
+  SweepPlan plan{{find_scene("hoop6_sector"), {}}, {}, {}, {}};
+  for (const char* axis : {"structure.fold_angle=40:80:5", "structure.hinge_force=100:400:5"})
+    plan.axes.push_back(parse_axis(axis));
+  plan.measures = {find_measure("deploy_time")};
+  check_plan(plan);
+  Sweep sweep{{plan.columns(), {}}};
+  for (int k = 0; k < 25; ++k) {
+    char value[32];
+    std::snprintf(value, sizeof value, "%.17g", base + step * k);
+    sweep.table.rows.push_back({plan.axes[0].values[static_cast<std::size_t>(k / 5)],
+                                plan.axes[1].values[static_cast<std::size_t>(k % 5)], "deployed", value});
+  }
+  return sweep_figures(plan, sweep, "Ring").front();
+}
+
+TEST_CASE("no two contour lines of a map have one number", "[figures]") {
+  for (const double step : {1e-1, 1e-5, 1e-9}) {
+    const Figure map = map_of(2, step);
+    std::set<std::string> numbers;
+    std::size_t lines = 0;
+    for (const Curve& c : map.panels.front().curves)
+      if (!c.label.empty()) ++lines, numbers.insert(c.label);
+    CAPTURE(step);
+    CHECK(lines > 2);
+    CHECK(numbers.size() == lines);
+  }
+}
+
+TEST_CASE("a map of what differs by rounding alone has no colours, and says its value", "[figures]") {
+  const Figure map = map_of(5.42494, 1e-15);
+  CHECK(map.panels.size() == 1);
+  CHECK(map.panels.front().cells.empty());
+  CHECK(map.panels.front().curves.size() == 1);  // the dots
+  CHECK(map.caption.find(" = 5.425, computed on") != std::string::npos);
+  CHECK(map_of(5.42494, 1e-9).panels.size() == 2);
 }
 
 TEST_CASE("a map has a dot at every point that was computed", "[figures]") {
