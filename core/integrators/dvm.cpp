@@ -154,8 +154,12 @@ double Dvm::longest_step(const State& state, double h) {
 // Up to three stages the polynomial has no higher degree than the ends' cubic and is no better.
 bool Dvm::inside(const State& start, double h, double share, VectorXd& z, VectorXd& w) const {
   if (c_.s < 4 || !have_history_ || h != previous_h_) return false;
-  z = start.z + previous_ * c_.basis.values(share).tail(c_.s - 1);
-  w = previous_ * c_.basis.derivatives(share).tail(c_.s - 1) / h;
+  const VectorXd l = c_.basis.values(share);
+  const VectorXd slope = slopes_.transpose() * l;  // l' is the interpolant of its own values at the nodes
+  z.noalias() = previous_ * l.tail(c_.s - 1);
+  z += start.z;
+  w.noalias() = previous_ * slope.tail(c_.s - 1);
+  w /= h;
   return true;
 }
 

@@ -42,6 +42,7 @@ class Dvm final : public Integrator {
     for (VectorXd* v : {&mu_, &rate_}) v->setZero(m);
     pose_.setZero(system.coordinates());
     halfway_ = c_.basis.values(0.5);
+    slopes_ = c_.basis.derivative_matrix();
     if (eq_.at_ends) analyse_mass();
     small_ = is_small(system, c_.s);
     steerable_ = !eq_.at_ends && !system.constant_forces() && !system.elastic_rods() &&
@@ -155,6 +156,7 @@ class Dvm final : public Integrator {
   std::array<Interleaved, 4> last_;                 // momentum, phi, dX, lambda of the last iteration
   MatrixXd prolong_, momentum_to_f_, y_to_lambda_;  // -h C^-1; -C_kj / (h^2 b_k)
   double matrices_h_ = 0;                           // the step that they are for
+  MatrixXd slopes_;                                 // l_k'(c_i)
   double previous_h_ = 0;
   bool have_history_ = false;
   double left_constraint_ = 8.0;  // level of constraint error that weak modes may keep

@@ -145,14 +145,24 @@ MatrixXd Stepper::Loop::between(const Probe& to, bool cut_off) {
     margins.col(column) = p.margins;
     for (Index i = 0; i < count; ++i) fastest[i] = std::max(fastest[i], std::abs(p.rates[i]));
   };
+  // From so little of the way on margins are compared: they may change by less, of what moves together.
+  constexpr double may_differ = 1e-4;
+  const double way = fastest_way(to);
+  bool own = true, differs = false;
+  VectorXd z, w;
   for (int k = 1; k < stepping::parts; ++k) {
-    p.state = on_cubic(now(), to.state, now().t + to.at * k / stepping::parts);
+    const double share = static_cast<double>(k) / stepping::parts;
+    p.state = on_cubic(now(), to.state, now().t + to.at * share);
+    if (own && (k == 2 || k == 5)) {
+      own = integrator_->inside(now(), to.at, share, z, w);
+      differs = differs || (own && (z - p.state.z).lpNorm<Eigen::Infinity>() > may_differ * way);
+    }
     take(k - 1, 2 * k == stepping::parts);
   }
-  if (!inside(to, 1, p.state)) {
+  if (!own) {
     const VectorXd even = 0.5 * to.at * (begin_.rates + to.rates);
     if (!cut_off) warn_of_long_step(to, to.margins - begin_.margins - even, fastest);
-  } else if (leaves_cubic(to, margins)) {
+  } else if (differs && leaves_cubic(to, margins)) {
     margins.resize(count, stepping::fine_parts - 1);
     for (int k = 1; k < stepping::fine_parts; ++k) {
       inside(to, static_cast<double>(k) / stepping::fine_parts, p.state);
@@ -173,11 +183,9 @@ bool Stepper::Loop::inside(const Probe& to, double share, State& state) {
 
 // Is the step's own polynomial there off the cubic of its ends by a part of the way?
 bool Stepper::Loop::off_cubic(const Probe& to, double share, State& state) {
-  const State &a = now(), &b = to.state;
   if (!inside(to, share, state)) return false;
-  const double way = to.at * std::max(a.w.lpNorm<Eigen::Infinity>(), b.w.lpNorm<Eigen::Infinity>());
-  const VectorXd off = state.z - on_cubic(a, b, state.t).z;
-  return off.lpNorm<Eigen::Infinity>() > stepping::cubic_share * way;
+  const VectorXd off = state.z - on_cubic(now(), to.state, state.t).z;
+  return off.lpNorm<Eigen::Infinity>() > stepping::cubic_share * fastest_way(to);
 }
 
 // Or of what a stop's or cable's margin changes? At two of the parts: their difference may be zero at one of

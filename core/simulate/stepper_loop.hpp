@@ -275,6 +275,10 @@ class Stepper::Loop {
   std::optional<Crossing> find_crossing(Probe& to, double h);
   MatrixXd between(const Probe& to, bool cut_off);
   bool inside(const Probe& to, double share, State& state);
+  // Of the fastest coordinate, by its rates at the step's ends.
+  double fastest_way(const Probe& to) const {
+    return to.at * std::max(now().w.lpNorm<Eigen::Infinity>(), to.state.w.lpNorm<Eigen::Infinity>());
+  }
   bool off_cubic(const Probe& to, double share, State& state);
   bool leaves_cubic(const Probe& to, const MatrixXd& margins);
   void warn_of_long_step(const Probe& to, const VectorXd& off, const VectorXd& fastest);
