@@ -60,6 +60,15 @@ Index rank_of(const MatrixXd& A, double threshold) {
   return qr.rank();
 }
 
+bool same_rank(const MatrixXd& A, double low, double high) {
+  if (A.size() == 0) return true;
+  PivotedQr qr(A);
+  qr.setThreshold(low);
+  const Index rank = qr.rank();
+  qr.setThreshold(high);
+  return qr.rank() == rank;
+}
+
 MatrixXd column_space(const MatrixXd& A, double least) {
   if (A.size() == 0) return {A.rows(), 0};
   const PivotedQr qr(A);

@@ -41,6 +41,8 @@ MatrixXd fitted_columns(const MatrixXd& A, const MatrixXd& B);
 /// Columns whose pivot, the column less what those before it hold of it, is larger than `threshold` times the
 /// largest count; negative: than the round-off of the factorisation.
 Index rank_of(const MatrixXd& A, double threshold = -1);
+/// Whether the rank is the same by both of these thresholds.
+bool same_rank(const MatrixXd& A, double low, double high);
 
 /// Orthonormal columns that span what A's span, and those that span the rest: pivots larger than `least`
 /// count.

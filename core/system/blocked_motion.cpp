@@ -69,7 +69,7 @@ bool has_pose(const System& system, double t, VectorXd q, Index left_out) {
 double misfit_of_rows(const System& system, const ConstVec& q) {
   if (system.coordinates() > most_coordinates || system.all_constraints() < system.coordinates()) return 0;
   const MatrixXd G(picked_rows(unit_rows(system, q), counted_rows(system, q)));
-  if (rank_of(G, round_off) == rank_of(G, meant)) return 0;  // as nearly always, and cheaper
+  if (same_rank(G, round_off, meant)) return 0;  // as nearly always, and cheaper
   const VectorXd values = singular_values(G);
   double most = 0;
   for (const double value : values)
