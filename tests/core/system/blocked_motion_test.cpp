@@ -128,8 +128,8 @@ TEST_CASE("a drive past the reach of the rods is named with what it asks for") {
   CHECK(has(slides.message, "the drive act asks for 2.0"));
 }
 
-// A flat parallelogram has a self-stress and moves in two ways; a chain in line that is held at one end has no
-// self-stress.
+// A flat parallelogram has a self-stress and moves in two ways; a chain in line that is held at one end has
+// no self-stress.
 TEST_CASE("what moves to second order is not said to be held") {
   const std::string chain =
       "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, "
