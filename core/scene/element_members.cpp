@@ -168,6 +168,12 @@ bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure&
     problem(element, "nodes", "an angle needs three different nodes");
     return false;
   }
+  if (measure.nodes[0] == measure.nodes[2] && measure.nodes[1] == measure.nodes[3]) {
+    problem(
+        element, element.nodes.empty() ? "rods" : "nodes",
+        "an angle between a line and itself is 0 whatever moves; name two rods, or three different nodes");
+    return false;
+  }
   return axis_is_across(element, measure);
 }
 

@@ -263,6 +263,7 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   read_surfaces(root, scene, notes);
   read_solver(root, tree, scene, notes);
   read_render(root, tree, scene, notes);
+  root.table("variables");  // is out of the tree by now; one that is misspelt is not
   root.finish();
   if (!notes.problems.empty()) refuse(notes.problems);
   scene.warnings = std::move(notes.warnings);

@@ -376,6 +376,16 @@ TEST_CASE("what is missing is asked for by what it is: nodes, rods, the name of 
                 "forces[0].nodes: is missing; must be a list of node names"));
 }
 
+TEST_CASE("an angle of a rod with itself is refused, and a misspelt table of variables is answered") {
+  const std::string why =
+      "an angle between a line and itself is 0 whatever moves; name two rods, or three different nodes";
+  for (const char* kind : {"kind = 'torsion_spring'\nstiffness = 1\n", "kind = 'friction'\nkinetic = 1\n"})
+    CHECK(refused(force(kind + std::string("rods = ['O-A', 'O-A']\n")), "forces[0].rods: " + why));
+  for (const char* key : {"variable", "Variables"})
+    CHECK(refused(force("kind = 'drag'\nnodes = ['A']\ndamping = 1\n[" + std::string(key) + "]\nn = 1"),
+                  key + std::string(": unknown key; did you mean 'variables'?")));
+}
+
 TEST_CASE("a rigid rod that is warm at t = 0 already is named with what warms it and the cure") {
   const std::string warm = "kind = 'temperature'\nrods = ['O-A']\nexpansion = 2e-5\n";
   const std::string why =

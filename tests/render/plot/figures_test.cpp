@@ -394,6 +394,12 @@ TEST_CASE("Poisson's ratio has a figure where a structure names its strains", "[
   REQUIRE(f.panels.size() == 2);
   CHECK(f.panels[0].curves.size() == 2);
   CHECK(f.panels[1].curves.at(0).y == sheet().diagnostics.at("poisson_ratio").values);
+  // Flat, there is no strain along.
+  const Scene flat = read_scene_file(find_scene("reentrant_sheet"), {"structure.deployed_angle=0"});
+  const Run opened = run(build_structure(flat), flat.solver.step, flat.solver.end_time);
+  REQUIRE_FALSE(std::isfinite(opened.diagnostics.at("poisson_ratio").values.back()));
+  CHECK_THAT(opened.figure("poisson").caption,
+             Catch::Contains("the last that is known") && !Catch::Contains("not a number"));
 }
 
 }  // namespace unfurl
