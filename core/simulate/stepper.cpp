@@ -214,7 +214,8 @@ bool Stepper::Loop::leaves_cubic(const Probe& to, const MatrixXd& margins) {
 // Of each stop and cable once, where it is within reach of a motion that turns round within the step faster
 // than that follows. `off`: by what the step contradicts itself; `fastest`: the margins' rates.
 void Stepper::Loop::warn_of_long_step(const Probe& to, const VectorXd& off, const VectorXd& fastest) {
-  constexpr double part_of_way = 0.15, rounding = 1e4;
+  // A quarter comes of a force that begins with the step and grows with the square of time.
+  constexpr double part_of_way = 0.3, rounding = 1e4;
   if (run_.options.adaptive) return;
   for (std::size_t k = 0; k < sides_.first_friction(); ++k) {
     const auto i = static_cast<Index>(k);
