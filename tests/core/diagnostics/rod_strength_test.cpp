@@ -120,7 +120,8 @@ TEST_CASE("what cannot be a material is refused by its key") {
   CHECK_THAT(with("youngs_modulus = 0.0\n"),
              Catch::Contains("structure.youngs_modulus: must be > 0 Pa; got 0"));
   CHECK_THAT(with("youngs_modulus = -7e10\n"), Catch::Contains("structure.youngs_modulus: must be > 0 Pa"));
-  CHECK_THAT(with("youngs_modulus = nan\n"), Catch::Contains("structure.youngs_modulus: must be > 0 Pa"));
+  CHECK_THAT(with("youngs_modulus = nan\n"),
+             Catch::Contains("structure.youngs_modulus: must be a finite number > 0 Pa"));
   CHECK(with("youngs_modulus = inf\n").empty());
   CHECK_THAT(with("section = 'tube'\n"), Catch::Contains("a tube needs the thickness of its wall"));
   CHECK_THAT(with("section = 'tube'\nwall_thickness = 0.02\n"),
