@@ -356,12 +356,10 @@ void find_jumps(const Scene& scene, Structure& structure) {
   MemberFinder find(structure);
   for (const SceneElement& e : scene.forces) {
     if (!e.enabled || !may_jump(e.kind)) continue;
-    const std::vector<double>& t = e.values.vector("times");
     TimeFunction f;
-    f.kind = TimeFunction::Kind::linear, f.times = t, f.values = e.values.vector("values");
-    bool too_short = !make_jumps(f, near);
-    for (std::size_t i = 2; i < t.size(); ++i) too_short = too_short || t[i] - t[i - 2] < near;
-    if (too_short)
+    f.kind = TimeFunction::Kind::linear;
+    f.times = e.values.vector("times"), f.values = e.values.vector("values");
+    if (!make_jumps(f, near))
       find.problem(e, e.table.empty() ? "times" : "table",
                    "has points within 1e-7 of solver.step of each other and another one beside them: no step "
                    "follows so short a blow; draw it out");

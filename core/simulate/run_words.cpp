@@ -28,8 +28,7 @@ std::string cure(const Model& model, const State& state, bool latched, double h)
     if (const std::string rods = held_at_second_order(system, q); !rods.empty())
       return "; " + rods +
              " hold each other in this pose, and what looks free there is not (as rods in line are not): "
-             "draw "
-             "them a little slack, or let rods give (structure.rod_model)";
+             "draw them a little slack, or let rods give (structure.rod_model)";
     if (misfit_of_rows(system, q) > 0)
       return "; constraints depend on each other, and the positions fit them to fewer digits than a step "
              "needs: give the positions all 16 digits, or solver.model = \"path\"";

@@ -80,6 +80,7 @@ bool make_jumps(TimeFunction& f, double near) {
   const std::vector<double> t = f.times, &x = f.values;
   bool exact = true;
   for (std::size_t i = 1; i < t.size(); ++i) {
+    if (i > 1 && t[i] - t[i - 2] < near) exact = false;
     const double flank = t[i] - t[i - 1];
     if (!(flank < near) || flank == 0) continue;
     // The means of what becomes longer before and behind, and of the flank.

@@ -35,9 +35,9 @@ struct TimeFunction {
   bool moves() const { return kind != Kind::constant; }
 };
 
-// Two points of a linear function that are nearer than this to each other become a jump between them, where
-// the integral over both and their neighbours stays what it was. False where that is nowhere and a neighbour
-// is as near as makes it matter.
+// Two points of a linear function nearer than this to each other become a jump between them, where the
+// integral over both and their neighbours stays what it was. False where that is nowhere and a neighbour is
+// as near as makes it matter, or where three points are that near.
 bool make_jumps(TimeFunction& f, double near);
 
 // times ascending, at least two; as many values.

@@ -10,6 +10,7 @@
 
 #include "core/math/factors.hpp"
 #include "core/math/singular_values.hpp"
+#include "core/system/consistency.hpp"
 #include "core/system/mobility.hpp"
 
 namespace unfurl {
@@ -21,13 +22,6 @@ constexpr Index most_coordinates = 300;  // dense algebra within a fraction of a
 constexpr double round_off = 1e-14, meant = 1e-7;
 // Misfits below this let a run of usual length be right to eight digits.
 constexpr double worth_a_word = 3e-13;
-
-std::string listed_names(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 4;
-  std::string text;
-  for (std::size_t i = 0; i < names.size() && i < most; ++i) text += (i ? ", " : "") + names[i];
-  return text + (names.size() > most ? " and " + std::to_string(names.size() - most) + " more" : "");
-}
 
 std::string rounded(double value, int digits) {
   char text[32];
@@ -82,8 +76,7 @@ std::string misfit_warning(const System& system, const ConstVec& q) {
   if (misfit < worth_a_word) return "";
   return "constraints of this structure follow from one another only to " + rounded(misfit, 2) +
          " of their size: its positions have too few digits, and the motion is no better than they are and "
-         "worse "
-         "over time; give them all 16 digits, or solver.model = \"path\"";
+         "worse over time; give them all 16 digits, or solver.model = \"path\"";
 }
 
 std::string beyond_reach(const System& system, double t, double h, const ConstVec& q) {
@@ -146,7 +139,7 @@ std::string held_at_second_order(const System& system, const ConstVec& q) {
     for (Index r = 0; r < m; ++r)
       if (std::abs(Y(r, k)) > 1e-6 && all[static_cast<std::size_t>(r)].starts_with("rod "))
         names.push_back(all[static_cast<std::size_t>(r)]);
-    if (!names.empty()) return listed_names(names);
+    if (!names.empty()) return listed(names, 4);
   }
   return "";
 }

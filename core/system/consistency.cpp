@@ -14,6 +14,14 @@
 #include "core/system/mobility.hpp"
 
 namespace unfurl {
+
+std::string listed(const std::vector<std::string>& names, std::size_t most) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i) text += (i ? ", " : "") + names[i];
+  if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
+  return text;
+}
+
 namespace {
 
 constexpr Index max_coordinates = 900;
@@ -22,13 +30,6 @@ constexpr Index max_coordinates = 900;
 constexpr double violated = 1e-7;
 // Of unit rows: round-off of a dense factorisation, far below the distance of real poses from singular ones.
 constexpr double dependent = 1e-10;
-
-std::string listed(const std::vector<std::string>& names, std::size_t most = 6) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size() && i < most; ++i) text += (i ? ", " : "") + names[i];
-  if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
-  return text;
-}
 
 // Rows of unit size, and what they were divided by.
 MatrixXd dense_unit_rows(const System& system, const VectorXd& q, VectorXd& norms) {
@@ -205,8 +206,7 @@ class Checker {
     std::ostringstream text;
     text << std::setprecision(2) << "they nearly leave one motion (all but " << smallest
          << " of their size): if it is meant to move, give its positions all 16 digits (an expression, "
-            "\"=...\", "
-            "has them); else ";
+            "\"=...\", has them); else ";
     return text.str();
   }
 

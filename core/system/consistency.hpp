@@ -2,6 +2,9 @@
 // Scenes that no motion can fulfil, found before the first step.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "core/structure/structure.hpp"
 #include "core/system/system.hpp"
 
@@ -18,5 +21,8 @@ void check_consistency(const Structure& structure, const System& system);
 // for: it moves what is held, or one of them against the other. Empty where there are such velocities, and
 // for structures of more than 900 coordinates.
 std::string driven_against(const System& system, double t, const VectorXd& q);
+
+// "a, b and 3 more": so many names at most.
+std::string listed(const std::vector<std::string>& names, std::size_t most = 6);
 
 }  // namespace unfurl
