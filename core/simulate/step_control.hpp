@@ -11,16 +11,18 @@
 
 namespace unfurl {
 
-// Rates [1/s] at which a motion turns and changes: omega = max |v_b - v_a| / l over the rods of `structure`,
-// and r = |w'| / (|w| + |w'| / r_0) in the mass norm, which a motion from rest keeps below r_0.
+// Rates [1/s] at which a motion turns and changes: over the rods of `structure` the largest omega, with which
+// v h + b h^2 / 2 = alpha for h = alpha / omega, v = |v_b - v_a| / l and b = |e x (a_b - a_a)| / l of a rod
+// along e; and r = |w'| / (|w| + |w'| / r_0) in the mass norm, which a motion from rest keeps below r_0.
 //
 //     Q(z, w) = sqrt(1 + (h_0 (omega + r) / alpha)^2),     h_{n-1/2} h_{n+1/2} = (h_0 / Q(z_n, w_n))^2
 //
 // with h_0 the largest step (solver.step) and alpha the turn and relative change that a step may bring
 // (solver.turn). Q is even in w and the recursion is symmetric in its two steps, so a symmetric method stays
 // symmetric (Huang & Leimkuhler 1997; Hairer, Lubich & Wanner, Geometric Numerical Integration, VIII.3, here
-// in geometric instead of arithmetic mean, which keeps steps positive). A symplectic method is no longer
-// symplectic with it.
+// in geometric instead of arithmetic mean, which keeps steps positive). What a step differs from the wanted
+// one by, the recursion keeps in steps that alternate about it: where that is much (behind a start from rest,
+// an event), it starts anew. A symplectic method is no longer symplectic with it.
 class StepControl {
  public:
   StepControl(const Structure& structure, const System& system, const SolverOptions& options);
@@ -32,13 +34,15 @@ class StepControl {
 
  private:
   double density(const State& state);  // Q
+  double start(const State& state);
 
   const Structure& structure_;
   System system_;  // follows the states
   Index1 index1_;
   double largest_, turn_;
   double previous_ = 0;  // the last step [s]; 0 before the first
-  VectorXd acceleration_, lambda_, v_;
+  bool known_ = false;   // acceleration_ is that of the last state asked for
+  VectorXd acceleration_, lambda_, q_, v_, a_;
 };
 
 }  // namespace unfurl

@@ -11,7 +11,7 @@ using namespace unfurl;
 
 namespace large_steps_test {
 
-TEST_CASE("the ring opens in 15 steps of seven stages, slow modes of its redundant rows extrapolated") {
+TEST_CASE("the ring opens in 17 steps of seven stages, slow modes of its redundant rows extrapolated") {
   constexpr double end = 4.9;  // [s], 20 ms before it is deployed
   const auto model = testing::make_model(testing::hoop_structure());
   SolverOptions options;
@@ -29,9 +29,9 @@ TEST_CASE("the ring opens in 15 steps of seven stages, slow modes of its redunda
     ++steps;
     iterations += report.newton_iterations;
   }
-  CHECK(steps <= 16);
-  // 156; without the extrapolation it is 183, and 163 where the middle of a step is left at once.
-  CHECK(iterations <= 160);
+  CHECK(steps <= 17);
+  // 167. In 15 steps of other lengths it was 156, without the extrapolation 183.
+  CHECK(iterations <= 170);
 
   const double angle = testing::exact_hoop().angle(end) * 180 / M_PI;
   const Structure there = testing::hoop_structure({{"fold_angle", angle}});
