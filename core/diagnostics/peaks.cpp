@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -18,16 +19,20 @@ namespace unfurl {
 namespace {
 
 constexpr std::size_t most_candidates = 3, most_alone = 16;
-constexpr double good_constraint =
-    1e-4;  // of a rod's length: beyond it the quintic is no motion of the structure
+constexpr double good_constraint = 1e-4;  // of a rod's length: beyond it there is no motion of the structure
+// Of the largest velocity, what accelerations within a step may miss of its change: for the quintic, which is
+// cheap, and for a step of the method to each time.
+constexpr double good_quintic = 1e-5, good_step = 0.1;
 
 // A step with a smooth motion leads from state a to state b.
 bool joined(const Trajectory& run, std::size_t a, std::size_t b) {
   return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b) &&
-         !run.report(a).singular_event && !run.report(b).singular_event;
+         !run.report(a).singular_event;
 }
 
-// The motion around state i: two steps at most, where they are smooth.
+// The motion around state i: two steps at most, where they are smooth; of each the quintic through positions,
+// velocities and accelerations at its ends where that obeys the equations of motion, else what a step of the
+// method leads to.
 class Neighbourhood {
  public:
   Neighbourhood(const Simulation& run, std::size_t i) : run_(run), i_(i), first_(i), last_(i) {
@@ -38,25 +43,21 @@ class Neighbourhood {
     from_ = first_;
     System system = model->system;  // follows the states
     Index1 index1(system);
-    VectorXd lambda(model->system.constraints());
     for (std::size_t k = first_; k <= last_; ++k) {
-      VectorXd a(t.state(k).z.size());
-      const State& s = t.state(k);
-      system.follow(s);
-      const bool known = index1.evaluate(s, a, lambda);
-      accelerations_.push_back(known ? a : VectorXd());
+      VectorXd a;
+      accelerate(system, index1, t.state(k), t.report(k).singular_event, a);
+      accelerations_.push_back(std::move(a));
     }
-    if (!known(i)) first_ = last_ = i;
-    if (first_ < i && !(known(first_) && follows(system, index1, first_))) first_ = i;
-    if (last_ > i && !(known(last_) && follows(system, index1, i))) last_ = i;
+    if (first_ < i && !smooth(system, index1, first_)) first_ = i;
+    if (last_ > i && !smooth(system, index1, i)) last_ = i;
   }
 
   double begin() const { return run_.trajectory.time(first_); }
   double end() const { return run_.trajectory.time(last_); }
   bool empty() const { return first_ == last_; }
 
-  // Values at these times; NaN where the quintic is no motion of the structure. It misses the constraints by
-  // its own error, and redundant rows that contradict each other by d, off their common surface by d, have
+  // Values at these times; NaN where there is no motion of the structure. The quintic misses the constraints
+  // by its own error, and redundant rows that contradict each other by d, off their common surface by d, have
   // multipliers of any size: states are moved onto the constraints first.
   std::vector<double> sample(const std::vector<double>& times, const StateValues& values) const {
     const Model& model = run_.trajectory.model(i_);
@@ -70,8 +71,9 @@ class Neighbourhood {
       const System there = model.system.at(state);
       there.expand(state.z, q);
       there.all_constraint_values(t, q, phi);
-      moves.push_back(phi.size() == 0 ||
-                      phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() <= good_constraint);
+      const bool singular = t >= end() && run_.trajectory.report(last_).singular_event;
+      moves.push_back(!singular && (phi.size() == 0 ||
+                                    phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() <= good_constraint));
       if (moves.back() && phi.size() > 0) project(there, state);
       piece.trajectory.append(std::move(state), StepReport{});
     }
@@ -82,27 +84,55 @@ class Neighbourhood {
   }
 
  private:
-  bool known(std::size_t k) const {
-    return acceleration(k).size() > 0 || run_.trajectory.state(k).z.size() == 0;
+  // Accelerations at a state; nothing where they are not known.
+  static bool accelerate(System& system, Index1& index1, const State& state, bool singular, VectorXd& a) {
+    VectorXd lambda(system.constraints());
+    a.resize(state.z.size());
+    system.follow(state);
+    const bool known = a.size() == 0 || (!singular && index1.evaluate(state, a, lambda));
+    if (!known) a.resize(0);
+    return known;
   }
   const VectorXd& acceleration(std::size_t k) const { return accelerations_[k - from_]; }
 
-  // Whether the quintic from state k to the next obeys the equations of motion: accelerations at both ends
-  // and in its middle add up to the change of the velocities, by Simpson's rule. What dampers stop within a
-  // small part of the step has a first acceleration that says nothing of the rest.
-  bool follows(System& system, Index1& index1, std::size_t k) const {
-    constexpr double good_velocity = 0.1;  // of the largest
+  // Whether the step from state k on is known within, and by what. Tried by accelerations in it, which add up
+  // to the change of the velocities: by Simpson's rule of the quintic, by Boole's of steps of the method.
+  // What dampers stop within a small part of a step has a first acceleration that says nothing of the rest.
+  // Up to a singular pose, which has no acceleration, most of the step is looked at.
+  bool smooth(System& system, Index1& index1, std::size_t k) {
     const Trajectory& run = run_.trajectory;
     const State &a = run.state(k), &b = run.state(k + 1);
-    State middle = state_in(k, 0.5 * (a.t + b.t));
-    if (middle.z.size() == 0) return true;
-    system.follow(middle);
-    if (system.all_constraints() > 0) project(system, middle);
-    VectorXd accel(middle.z.size()), lambda(system.constraints());
-    if (!index1.evaluate(middle, accel, lambda)) return false;
+    if (a.z.size() == 0) return true;
+    if (acceleration(k).size() == 0) return false;
+    if (acceleration(k + 1).size() > 0 && adds_up<3>(system, index1, k, b, {1, 4, 1}, good_quintic))
+      return true;
+    by_steps_.push_back(k);
+    const bool open = acceleration(k + 1).size() == 0;
+    return adds_up<5>(system, index1, k, open ? state_in(k, a.t + 0.875 * (b.t - a.t)) : b,
+                      {7, 32, 12, 32, 7}, good_step);
+  }
+
+  // Whether the velocity's change from state k to `end` is that of the accelerations between, by a rule of
+  // these weights at equal distances, to this share of the largest velocity.
+  template <std::size_t N>
+  bool adds_up(System& system, Index1& index1, std::size_t k, const State& end,
+               const std::array<double, N>& weights, double good) const {
+    const State& a = run_.trajectory.state(k);
     const auto size = [&](const VectorXd& w) { return std::sqrt(w.dot(system.mass() * w)); };
-    const VectorXd gained = (b.t - a.t) / 6 * (acceleration(k) + 4 * accel + acceleration(k + 1));
-    return size(b.w - a.w - gained) <= good_velocity * std::max({size(a.w), size(b.w), size(middle.w)});
+    VectorXd gained = VectorXd::Zero(a.w.size()), accel;
+    double largest = std::max(size(a.w), size(end.w)), sum = 0;
+    for (std::size_t j = 0; j < N; ++j) {
+      State s = j + 1 == N ? end : state_in(k, a.t + (end.t - a.t) * static_cast<double>(j) / (N - 1));
+      if (j > 0 && j + 1 < N && system.all_constraints() > 0) {
+        system.follow(s);
+        project(system, s);
+      }
+      if (!accelerate(system, index1, s, false, accel)) return false;
+      gained += weights[j] * accel;
+      sum += weights[j];
+      largest = std::max(largest, size(s.w));
+    }
+    return size(end.w - a.w - (end.t - a.t) / sum * gained) <= good * largest;
   }
 
   State state_at(double t) const {
@@ -110,6 +140,10 @@ class Neighbourhood {
   }
   State state_in(std::size_t k, double t) const {
     const State &a = run_.trajectory.state(k), &b = run_.trajectory.state(k + 1);
+    if (t <= a.t) return a;
+    if (t >= b.t) return b;
+    if (std::find(by_steps_.begin(), by_steps_.end(), k) != by_steps_.end())
+      return run_.trajectory.state_at(t);
     const Quintic motion{a, b, acceleration(k), acceleration(k + 1), b.t - a.t};
     State state = a;
     const double u = (t - a.t) / (b.t - a.t);
@@ -123,6 +157,7 @@ class Neighbourhood {
   const Simulation& run_;
   std::size_t i_, first_, last_, from_ = 0;
   std::vector<VectorXd> accelerations_;  // at state from_ and those after it; empty where there is none
+  std::vector<std::size_t> by_steps_;    // of the steps from these states the quintic is not good enough
 };
 
 struct Vertex {
@@ -169,6 +204,41 @@ std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<dou
   take(found, most_candidates);
   take(alone, most_alone);
   return out;
+}
+
+// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule.
+bool is_resolved(const State& a, const State& b) {
+  constexpr double good = 0.02;  // half a radian of a swing
+  const VectorXd mean = (b.z - a.z) / (b.t - a.t);
+  const auto size = [](const VectorXd& w) { return w.lpNorm<Eigen::Infinity>(); };
+  return mean.size() == 0 ||
+         size(mean - 0.5 * (a.w + b.w)) <= good * std::max({size(a.w), size(b.w), size(mean)});
+}
+
+// Where steps are too long for their ends to tell of what is between, the first states of those that hold the
+// largest values: at a quarter, the middle and three quarters, of which closer() tries whether they are true.
+std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& values) {
+  constexpr std::size_t most_long = 128;  // of more of them the states themselves tell
+  const Trajectory& t = run.trajectory;
+  std::vector<std::size_t> steps;
+  for (std::size_t k = 0; k + 1 < t.size() && steps.size() <= most_long; ++k)
+    if (joined(t, k, k + 1) && !is_resolved(t.state(k), t.state(k + 1))) steps.push_back(k);
+  if (steps.size() > most_long) return {};
+  std::vector<std::pair<double, std::size_t>> found;
+  for (const std::size_t k : steps) {
+    Simulation piece{.trajectory = Trajectory({std::shared_ptr<const Model>(), &t.model(k)}),
+                     .options = run.options};
+    for (const double u : {0.25, 0.5, 0.75})
+      piece.trajectory.append(t.state_at(t.time(k) + u * (t.time(k + 1) - t.time(k))), StepReport{});
+    double most = -std::numeric_limits<double>::infinity();
+    for (const double x : values(piece))
+      if (x > most) most = x;
+    found.push_back({most, k});
+  }
+  std::ranges::stable_sort(found, std::greater(), [](const auto& f) { return f.first; });
+  steps.clear();
+  for (std::size_t k = 0; k < std::min(found.size(), most_candidates); ++k) steps.push_back(found[k].second);
+  return steps;
 }
 
 // The largest value between two times: of 9 in all of it, 9 around the largest of those, and at the top of
@@ -226,7 +296,10 @@ double largest_in_motion(const Simulation& run, const std::vector<double>& at_st
   for (const double x : at_states)
     if (!std::isnan(x) && !(x <= best)) best = x;
   if (std::isnan(best) || !values || at_states.size() != run.trajectory.size()) return best;
-  for (const std::size_t i : candidates(run.trajectory, at_states, best)) {
+  std::vector<std::size_t> around_these = candidates(run.trajectory, at_states, best);
+  for (const std::size_t i : long_steps(run, values))
+    if (std::ranges::find(around_these, i) == around_these.end()) around_these.push_back(i);
+  for (const std::size_t i : around_these) {
     const Neighbourhood around(run, i);
     if (!around.empty()) best = closer(around, values, best);
   }

@@ -17,10 +17,10 @@ namespace unfurl {
 using StateValues = std::function<std::vector<double>(const Simulation&)>;
 
 // The largest value over the motion. `at_states`: the values at the run's own states, NaN where there is
-// none. Around the largest of them and others that may top it the motion within the steps is that of the
-// quintic through positions, velocities and accelerations, and `values` is asked at a few times of it, closer
-// and closer. Steps that touch a singular pose, an impact or a change of the model have only their ends. NaN
-// where all values are.
+// none. Around the largest of them and others that may top it `values` is asked at a few times within the
+// steps, closer and closer: of the quintic through positions, velocities and accelerations, or of the run's
+// dense output where that is not good enough. Steps from a singular pose, or in which the motion changes too
+// fast for these, have only their ends. NaN where all values are.
 double largest_in_motion(const Simulation& run, const std::vector<double>& at_states,
                          const StateValues& values);
 

@@ -42,7 +42,7 @@ class PathRun {
         sides_(base_->structure, options),
         watch_(base_->structure, sides_, options.step),
         grid_(0.0, options, time_edges(base_->structure, options.step)),
-        run_{.trajectory = Trajectory(base_, options), .options = options},
+        run_{.trajectory = Trajectory(base_, closest_steps(options)), .options = options},
         last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {
     refuse_friction();
   }

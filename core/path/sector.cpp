@@ -125,7 +125,7 @@ void Sector::compare(const State& of_sector, const State& of_whole) const {
 
 Simulation Sector::whole(Simulation run) const {
   const Trajectory& from = run.trajectory;
-  Simulation out{.trajectory = Trajectory(whole_, run.options),
+  Simulation out{.trajectory = Trajectory(whole_, from.options()),
                  .status = run.status,
                  .message = std::move(run.message),
                  .warnings = std::move(run.warnings),

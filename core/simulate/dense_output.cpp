@@ -17,6 +17,14 @@ constexpr int most_pieces = 8;
 
 }  // namespace
 
+SolverOptions closest_steps(SolverOptions options) {
+  options.method = "dvm";
+  options.stages = 8;
+  options.nodes = "lobatto";
+  options.constraints_at = "nodes";
+  return options;
+}
+
 State on_cubic(const State& a, const State& b, double t) {
   const double h = b.t - a.t, u = (t - a.t) / h, v = 1 - u;
   State s = a;
@@ -48,7 +56,7 @@ void DenseOutput::give_back(Engine engine) {
 }
 
 State DenseOutput::between(const std::shared_ptr<const Model>& model, const State& a, const State& b,
-                           double t) {
+                           double t, int pieces) {
   const double h = t - a.t;
   if (!(h > 0)) return a;
   if (t >= b.t) return b;
@@ -61,7 +69,7 @@ State DenseOutput::between(const std::shared_ptr<const Model>& model, const Stat
   }
   Engine engine = borrow(model);
   bool solved = false;
-  for (int pieces = 1; pieces <= most_pieces && !solved; pieces *= 2) {
+  for (; pieces <= most_pieces && !solved; pieces *= 2) {
     state = a;
     engine.integrator->restart();
     solved = true;

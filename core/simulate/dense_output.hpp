@@ -13,6 +13,10 @@ namespace unfurl {
 
 struct Model;
 
+// For states that no step of the method led to, at round-off of the motion: steps between them that miss as
+// little of it as any here.
+SolverOptions closest_steps(SolverOptions options);
+
 // Hermite's cubic through the coordinates and rates of two states of one model: a guess, not a solution.
 State on_cubic(const State& a, const State& b, double t);
 
@@ -20,13 +24,17 @@ State on_cubic(const State& a, const State& b, double t);
 // from the earlier one to t: as accurate as the states themselves and on the constraints like them, whatever
 // the method, its order and the length of its steps, and never across an event, which has a state of its own.
 // No interpolant does that: a step of high order may turn a rod by two radians. Threads may share one.
+// `options`: those of the method that the states come from.
 class DenseOutput {
  public:
   explicit DenseOutput(const SolverOptions& options) : options_(options) {}
 
   // a.t <= t <= b.t, both states of `model`. Where no step to t can be solved (next to a singular pose), the
-  // cubic through both states, projected on the constraints.
-  State between(const std::shared_ptr<const Model>& model, const State& a, const State& b, double t);
+  // cubic through both states, projected on the constraints. Next to a singular pose a step loses digits that
+  // shorter ones keep: `pieces`, how many lead to t.
+  State between(const std::shared_ptr<const Model>& model, const State& a, const State& b, double t,
+                int pieces = 1);
+  const SolverOptions& options() const { return options_; }
 
  private:
   struct Engine {

@@ -38,6 +38,7 @@ class Trajectory {
   const Model& model() const { return *models_.front().model; }  // that of the start
   const Model& model(std::size_t i) const;                       // that state i belongs to
   const Model& last_model() const { return *models_.back().model; }
+  const SolverOptions& options() const { return dense_->options(); }
   const Structure& structure() const { return model().structure; }
   std::size_t size() const { return states_.size(); }
   bool empty() const { return states_.empty(); }
