@@ -140,25 +140,28 @@ StateForces::Close StateForces::limit_behind(std::size_t i) const {
 // By the polynomial through three poses on either side, as near as they are in a thousandth of the doubt, or
 // farther where that says more; its error is what the outer ones change. Not through a pole: there what is
 // odd about the pose falls away from it, where the forces are smooth it grows. The last state before an event
-// in a singular pose: through five poses before it and what the event says.
+// in a singular pose: through five poses before it and what the event says; where nothing follows it: through
+// six poses before it.
 void StateForces::interpolate(std::size_t i, Close& here) {
-  constexpr std::size_t far = 8;  // states on either side: short steps are many in the round-off
-  const std::vector<std::size_t> before = beside(i, -1, far), behind = beside(i, +1, far);
+  // States on either side: short steps are many in the round-off, parts of a failed one before an end more.
+  constexpr std::size_t far = 8, far_from_end = 64;
+  const std::vector<std::size_t> behind = beside(i, +1, far);
   const Close limit = behind.empty() ? limit_behind(i) : Close{};
-  const bool ends = limit.point.known;
-  if (before.empty() || (behind.empty() && !ends)) return;
+  const bool ends = limit.point.known, one_way = behind.empty();
+  const std::vector<std::size_t> before = beside(i, -1, one_way ? far_from_end : far);
+  if (before.empty()) return;
   const double t = trajectory_.time(i);
   const auto both = [&](std::size_t first, std::size_t last) {
-    return ends ? t - trajectory_.time(first)
-                : std::min(t - trajectory_.time(first), trajectory_.time(last) - t);
+    return one_way ? t - trajectory_.time(first)
+                   : std::min(t - trajectory_.time(first), trajectory_.time(last) - t);
   };
-  const double most = both(before.back(), ends ? 0 : behind.back());
+  const double most = both(before.back(), one_way ? 0 : behind.back());
   const double own = here.doubt.maxCoeff();
   constexpr double told = 0.1;  // less, and the poses may be too far apart for what happens between them
   constexpr double many = 10;   // times as much: all of these poses have round-off
   std::vector<Close> near;
   const auto look = [&](double apart) {
-    for (const double side : {-apart, ends ? -1.25 * apart : apart}) {
+    for (const double side : {-apart, one_way ? -1.25 * apart : apart}) {
       near.push_back(look_closely(i, trajectory_.state_at(t + side)));
       const Close& other = near.back();
       if (!other.point.known || (other.doubt.size() > 0 && !(1000 * other.doubt.maxCoeff() < own)))
@@ -176,16 +179,19 @@ void StateForces::interpolate(std::size_t i, Close& here) {
     return (near[k].point.lambda - near[k + 1].point.lambda).lpNorm<Eigen::Infinity>();
   };
   double least = told * own;
-  for (double apart = both(before.front(), ends ? 0 : behind.front()) / 1024; apart <= 0.5 * most;
+  for (double apart = both(before.front(), one_way ? 0 : behind.front()) / 1024; apart <= 0.5 * most;
        apart *= 2) {
     near.clear();
     if (!look(apart)) continue;
-    if (!look(1.5 * apart) || !look(2 * apart) || (!ends && odd(0) > 0.75 * odd(4) + 0.01 * own)) return;
+    if (!look(1.5 * apart) || !look(2 * apart) || (!one_way && odd(0) > 0.75 * odd(4) + 0.01 * own)) return;
     VectorXd acceleration = through(near.size(), &SolvedPoint::acceleration);
     if (ends) near.insert(near.begin(), limit), near.pop_back();
     VectorXd lambda = through(near.size(), &SolvedPoint::lambda);
     VectorXd doubt = many * (lambda - through(near.size() - 2, &SolvedPoint::lambda)).cwiseAbs();
-    if (!(doubt.maxCoeff() < least)) return;
+    if (!(doubt.maxCoeff() < least)) {
+      if (least < told * own) return;
+      continue;
+    }
     least = doubt.maxCoeff();
     here.point.acceleration = std::move(acceleration);
     here.point.lambda = std::move(lambda);

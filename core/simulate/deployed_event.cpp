@@ -39,6 +39,8 @@ constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 // Shares of a constraint's length: errors of the extrapolated pose above the first are taken away, by motions
 // of up to the second times as much.
 constexpr double extrapolated = 1e-13, fitting = 100;
+// Below this, in which a method may have drifted, the pose is that in which drives end.
+constexpr double at_rest = 1e-6;
 // Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
 constexpr int most_lengths = 40;
 
@@ -68,10 +70,11 @@ VectorXd at_zero(const std::vector<Sample>& samples, const VectorXd& shares, Vec
 
 class Locator {
  public:
-  Locator(const Trajectory& trajectory, Integrator& integrator, double h)
+  Locator(const Trajectory& trajectory, Integrator& integrator, double h, double edge)
       : trajectory_(trajectory),
         integrator_(integrator),
         h_(h),
+        edge_(edge),
         followed_(trajectory.last_model().system),
         index1_(followed_, true) {}
 
@@ -293,11 +296,25 @@ class Locator {
     out.w = at_zero(samples_, shares, &State::w);
     extrapolate_tension(out);
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
+    rest_at_edge(out);
     fit(out);
     followed_.follow(samples_.front().state);
     followed_.count_on(out);
     out.lambda = multipliers_at_deployed(index1_, samples_, out);
     return out;
+  }
+
+  // A drive that slows down to rest in the deployed pose is there when its time has come.
+  void rest_at_edge(State& state) {
+    if (system().drives().empty() || !(edge_ > state.t)) return;
+    VectorXd rate(system().constraints());
+    system().target_rate(edge_, rate);
+    State then = state;
+    then.t = edge_;
+    if (rate.lpNorm<Eigen::Infinity>() > 0 || !(error(then) < at_rest) || !(error(then) < 0.1 * error(state)))
+      return;
+    state.t = edge_;
+    if (system().constraints() >= state.w.size()) state.w.setZero();  // all of it is driven
   }
 
   // Where what is carried shakes the structure, the extrapolation leaves something of the constraints, which
@@ -326,7 +343,7 @@ class Locator {
 
   const Trajectory& trajectory_;
   Integrator& integrator_;
-  double h_;
+  double h_, edge_;
   System followed_;
   Index1 index1_;
   std::vector<Sample> samples_;
@@ -369,11 +386,13 @@ std::size_t settled_fit(const std::vector<VectorXd>& fits, double most) {
 // c where multipliers grow like c / sine towards the pose, as where rods in line bear a load across them;
 // empty where they are bounded: there c is a small share of what sine times lambda is next to the pose.
 VectorXd pole(const std::vector<NearDeployed>& samples) {
-  constexpr double not_small = 1e-2, known = 1e-2;
+  constexpr double not_small = 1e-2, known = 1e-2, settled = 0.1;
   const std::vector<VectorXd> fits = multiplier_fits(samples, 1);
   const double beside = samples.back().sine * samples.back().state.lambda.norm();
   const std::size_t best = settled_fit(fits, known * beside);
   if (best == 0 || !(fits[best].norm() > not_small * beside)) return {};
+  // Round-off of the samples, which is of that size in rings of hundreds of units, agrees with nothing.
+  if (!((fits[best] - fits[best - 1]).norm() < settled * fits[best].norm())) return {};
   return fits[best];
 }
 
@@ -384,7 +403,7 @@ VectorXd pole(const std::vector<NearDeployed>& samples) {
 // equations have corrected, they are right. Where multipliers grow without bound, the equations of the pose
 // lack what is left of them times a Jacobian that vanishes.
 VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at) {
-  constexpr double something_else = 1e-3, grows = 1e-4;
+  constexpr double something_else = 1e-3, grows = 1e-4, wild = 10;
   const VectorXd c = pole(samples);
   if (c.size() > 0)
     for (NearDeployed& sample : samples) sample.state.lambda -= c / sample.sine;
@@ -398,13 +417,19 @@ VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> sampl
   std::vector<VectorXd> fits = own;
   index1.correct(at, fits);
   const std::size_t best = settled_fit(fits, most_open * fits[0].norm());
+  // Where the pose is so near to losing more of its rank that the equations say anything, they are left out.
+  double next_to = 0;
+  for (const NearDeployed& sample : samples) next_to = std::max(next_to, sample.state.lambda.norm());
+  const std::size_t nearest = settled_fit(own, std::numeric_limits<double>::infinity());
+  if (!((fits[best] - own[nearest]).norm() <= wild * next_to)) return own[nearest];
   const bool differ =
       by_itself > 0 && (fits[best] - own[by_itself]).norm() > something_else * own[by_itself].norm();
   return differ ? own[by_itself] : fits[best];
 }
 
-std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h) {
-  return Locator(trajectory, integrator, h).locate();
+std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
+                                     double edge) {
+  return Locator(trajectory, integrator, h, edge).locate();
 }
 
 }  // namespace unfurl

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,8 +15,10 @@ namespace unfurl {
 // that lands on it does not converge. So shortened steps are solved to several small fold angles on the near
 // side, and time, coordinates, velocities and multipliers, which are smooth functions of sin(fold), are
 // extrapolated from them to 0. The trajectory's last state must lie before the event, its next step (of size
-// h) at or behind it.
-std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h);
+// h) at or behind it. Where drives come to rest in that pose, time is no smooth function of the sine: the
+// event is then at `edge`, the next time at which a drive begins or ends.
+std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
+                                     double edge = std::numeric_limits<double>::infinity());
 
 // A pose next to the deployed one, with its multipliers, and the sine of its fold angle.
 struct NearDeployed {

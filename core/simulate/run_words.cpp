@@ -29,7 +29,7 @@ std::string cure(const Model& model, const State& state, bool latched, double h)
       return "; " + rods +
              " hold each other in this pose, and what looks free there is not (as rods in line are not): "
              "draw them a little slack, or let rods give (structure.rod_model)";
-    if (misfit_of_rows(system, q) > 0)
+    if (model.structure.kind == "custom" && misfit_of_rows(system, q) > 0)
       return "; constraints depend on each other, and the positions fit them to fewer digits than a step "
              "needs: give the positions all 16 digits, or solver.model = \"path\"";
   }

@@ -96,8 +96,9 @@ Simulation simulate_in_parts(std::shared_ptr<const Model> model, const SolverOpt
     warnings.push_back(std::move(warning));
   if (std::string warning = elastic_step_warning(*model, start.state, options); !warning.empty())
     warnings.push_back(std::move(warning));
-  if (std::string warning = misfit_warning(model->system, node_positions(model->structure)); !warning.empty())
-    warnings.push_back(std::move(warning));
+  if (model->structure.kind == "custom")
+    if (std::string warning = misfit_warning(model->system, node_positions(model->structure)); !warning.empty())
+      warnings.push_back(std::move(warning));
   const bool stretches = model->structure.quasi_static;
   double begin = thread_cpu_seconds();
   Progress progress(hooks, start.state.t, options.end_time);

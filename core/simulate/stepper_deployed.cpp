@@ -9,6 +9,7 @@
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/stepper_loop.hpp"
+#include "core/structure/time_edges.hpp"
 
 namespace unfurl {
 
@@ -27,12 +28,19 @@ bool Stepper::Loop::arrives(const Probe& to) {
          std::abs(remaining_rate(model(), to.state)) * run_.options.step <= at_rest;
 }
 
+// The next time at which something begins or ends.
+double Stepper::Loop::next_edge() const {
+  for (const TimeEdge& edge : time_edges(model().structure, run_.options.step))
+    if (edge.t > now().t) return edge.t;
+  return std::numeric_limits<double>::infinity();
+}
+
 std::optional<State> Stepper::Loop::locate(double h, double latest) {
   std::optional<State> reached = step_to_deployed(model(), *fresh_integrator(), now(), h, margin_);
   if (regular_ = reached.has_value(); regular_) return reached;
   const bool dvm = run_.options.method == "dvm";
   const auto fresh = (dvm ? careful_dvm() : *find_method(run_.options.method)).make(system(), run_.options);
-  std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h);
+  std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h, next_edge());
   if (event && event->t > latest) event.reset();
   return event;
 }
@@ -103,6 +111,7 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
     within = *bottom;
   }
   event = locate(within, std::numeric_limits<double>::infinity());
+  if (event && event->t > grid_.end()) return event.reset(), true;
   return event || fail("the deployed pose was passed but its time could not be located");
 }
 

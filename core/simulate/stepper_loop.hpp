@@ -441,6 +441,7 @@ class Stepper::Loop {
     return sine > 0 && ((sine <= stepping::singular_margin && !thrown_back) || sine + 2 * within * rate <= 0);
   }
 
+  double next_edge() const;
   std::optional<State> locate(double h, double latest);
   bool arrives(const Probe& to);
   std::optional<double> dip_inside(const Probe& to);

@@ -75,8 +75,9 @@ std::string misfit_warning(const System& system, const ConstVec& q) {
   const double misfit = misfit_of_rows(system, q);
   if (misfit < worth_a_word) return "";
   return "constraints of this structure follow from one another only to " + rounded(misfit, 2) +
-         " of their size: its positions have too few digits, and the motion is no better than they are and "
-         "worse over time; give them all 16 digits, or solver.model = \"path\"";
+         " of their size: its positions have too few digits (unless they are next to a singular pose on "
+         "purpose), and the motion is no better than they are and worse over time; give them all 16 digits, "
+         "or solver.model = \"path\"";
 }
 
 std::string beyond_reach(const System& system, double t, double h, const ConstVec& q) {
