@@ -28,7 +28,7 @@ std::vector<double> energy_round_off(const Simulation& run) {
   double loads = 0;
   for (const Load& load : trajectory.structure().loads) loads += load.force.lpNorm<1>();
   double reach = 0, work = 0;  // so far; a state that is not finite leaves them as they are
-  const auto grow = [](double& most, double x) { most = x > most ? x : most; };
+  const auto grow = [](double& most, double x) { most = x > most && std::isfinite(x) ? x : most; };
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const System system = trajectory.model(i).system.at(trajectory.state(i));
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);

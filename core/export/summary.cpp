@@ -54,11 +54,11 @@ Json measures_json(const Simulation& run, const Diagnostics& diagnostics) {
   return object;
 }
 
-// The largest magnitude of what each drive gives: "motor": {"peak_torque_N_m": 2005, "peak_power_W": 812}.
+// The largest magnitude of what each drive gives: "motor": {"peak_torque_N_m": 2005, "peak_power_W": 812, "peak_energy_J": 90}.
 Json drives_json(const Simulation& run, const Diagnostics& diagnostics) {
   Json object = Json::object();
   for (const Series& column : diagnostics.columns)
-    for (const std::string_view end : {".torque_N_m", ".force_N", ".power_W"})
+    for (const std::string_view end : {".torque_N_m", ".force_N", ".power_W", ".energy_J"})
       if (column.name.ends_with(end))
         object[column.name.substr(0, column.name.size() - end.size())]["peak_" + std::string(end.substr(1))] =
             peak_of_column(run, diagnostics, column.name);

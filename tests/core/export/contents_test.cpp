@@ -431,6 +431,7 @@ end_time = 0.9
   CHECK_FALSE(json["events"][0].contains("singular_value"));
   CHECK(json["drives"]["lift"]["peak_force_N"].get<double>() == Approx(9).epsilon(1e-9));
   CHECK(json["drives"]["lift"]["peak_power_W"].get<double>() == Approx(5.4).epsilon(1e-9));
+  CHECK(json["drives"]["lift"]["peak_energy_J"].get<double>() == Approx(5.4 * 0.9).epsilon(1e-9));
   const std::size_t last = run.trajectory.size() - 1;
   for (int n = 0; n < 2; ++n)
     for (int k = 0; k < 3; ++k) {
