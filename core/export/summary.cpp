@@ -54,7 +54,8 @@ Json measures_json(const Simulation& run, const Diagnostics& diagnostics) {
   return object;
 }
 
-// The largest magnitude of what each drive gives: "motor": {"peak_torque_N_m": 2005, "peak_power_W": 812, "peak_energy_J": 90}.
+// The largest magnitude of what each drive gives: "motor": {"peak_torque_N_m": 2005, "peak_power_W": 812,
+// "peak_energy_J": 90}.
 Json drives_json(const Simulation& run, const Diagnostics& diagnostics) {
   Json object = Json::object();
   for (const Series& column : diagnostics.columns)

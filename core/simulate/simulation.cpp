@@ -97,7 +97,8 @@ Simulation simulate_in_parts(std::shared_ptr<const Model> model, const SolverOpt
   if (std::string warning = elastic_step_warning(*model, start.state, options); !warning.empty())
     warnings.push_back(std::move(warning));
   if (model->structure.kind == "custom")
-    if (std::string warning = misfit_warning(model->system, node_positions(model->structure)); !warning.empty())
+    if (std::string warning = misfit_warning(model->system, node_positions(model->structure));
+        !warning.empty())
       warnings.push_back(std::move(warning));
   const bool stretches = model->structure.quasi_static;
   double begin = thread_cpu_seconds();

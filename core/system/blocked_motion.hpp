@@ -10,8 +10,9 @@
 namespace unfurl {
 
 // Unit rows of G that depend on each other but for this share, the largest that is neither round-off nor a
-// distance that was meant: positions were given to so many digits. 0: there is none. Of positions that a scene
-// gives: those of a family have all digits, and are next to singular poses only where they are asked to be.
+// distance that was meant: positions were given to so many digits. 0: there is none. Of positions that a
+// scene gives: those of a family have all digits, and are next to singular poses only where they are asked to
+// be.
 double misfit_of_rows(const System& system, const ConstVec& q);
 
 // What a run with such rows is told of at its start; empty where they are well within round-off.
