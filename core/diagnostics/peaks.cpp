@@ -24,10 +24,21 @@ constexpr double good_constraint = 1e-4;  // of a rod's length: beyond it there 
 // cheap, and for a step of the method to each time.
 constexpr double good_quintic = 1e-5, good_step = 0.1;
 
-// A step with a smooth motion leads from state a to state b.
+// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule.
+bool is_resolved(const State& a, const State& b) {
+  constexpr double good = 0.02;  // half a radian of a swing
+  const VectorXd mean = (b.z - a.z) / (b.t - a.t);
+  const auto size = [](const VectorXd& w) { return w.lpNorm<Eigen::Infinity>(); };
+  return mean.size() == 0 ||
+         size(mean - 0.5 * (a.w + b.w)) <= good * std::max({size(a.w), size(b.w), size(mean)});
+}
+
+// A step with a smooth motion leads from state a to state b. Into a singular pose, which has no
+// accelerations, only a long one: of others the states before it tell.
 bool joined(const Trajectory& run, std::size_t a, std::size_t b) {
   return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b) &&
-         !run.report(a).singular_event;
+         !run.report(a).singular_event &&
+         !(run.report(b).singular_event && is_resolved(run.state(a), run.state(b)));
 }
 
 // The motion around state i: two steps at most, where they are smooth; of each the quintic through positions,
@@ -204,15 +215,6 @@ std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<dou
   take(found, most_candidates);
   take(alone, most_alone);
   return out;
-}
-
-// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule.
-bool is_resolved(const State& a, const State& b) {
-  constexpr double good = 0.02;  // half a radian of a swing
-  const VectorXd mean = (b.z - a.z) / (b.t - a.t);
-  const auto size = [](const VectorXd& w) { return w.lpNorm<Eigen::Infinity>(); };
-  return mean.size() == 0 ||
-         size(mean - 0.5 * (a.w + b.w)) <= good * std::max({size(a.w), size(b.w), size(mean)});
 }
 
 // Where steps are too long for their ends to tell of what is between, the first states of those that hold the
