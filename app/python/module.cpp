@@ -9,6 +9,7 @@
 #include <pybind11/stl.h>
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -21,6 +22,7 @@
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
+#include "core/simulate/singular_poses.hpp"
 #include "core/simulate/stepper.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/study/scene_variation.hpp"
@@ -76,10 +78,12 @@ std::mutex drawing;
 // A run with what a person looks at, as plain arrays. Made without the interpreter's lock.
 class Run {
  public:
-  Run(Scene scene, Simulation run, std::shared_ptr<std::mutex> use)
+  Run(Scene scene, Simulation run, std::shared_ptr<std::mutex> use,
+      const std::function<bool()>& cancelled = {})
       : run_{std::move(scene), std::move(run), {}}, use_(std::move(use)) {
     const std::lock_guard lock(*use_);
-    run_.diagnostics = judge(run_.simulation);
+    record_singular_poses(run_.simulation, cancelled);
+    run_.diagnostics = judge(run_.simulation, cancelled);
     const Trajectory& trajectory = simulation().trajectory;
     for (std::size_t i = 0; i < trajectory.size(); ++i) {
       t_.push_back(trajectory.time(i));
@@ -182,7 +186,8 @@ std::shared_ptr<Run> run_scene(const SceneSource& source, const std::vector<std:
     const py::gil_scoped_release release;
     Simulation run = simulate_as_asked(build_model(scene), scene.solver, hooks);
     if (run.status != RunStatus::stopped)
-      made = std::make_shared<Run>(std::move(scene), std::move(run), std::make_shared<std::mutex>());
+      made = std::make_shared<Run>(std::move(scene), std::move(run), std::make_shared<std::mutex>(),
+                                   hooks.cancelled);
   }
   asker.raise();
   return made;

@@ -365,3 +365,28 @@ def test_ctrl_c_ends_a_large_sweep():
     _, err = child.communicate(timeout=60)
     assert "KeyboardInterrupt" in err
     assert time.monotonic() - begin < 5
+
+
+def parallelogram(**changes):
+    """Cranks of 0.5 m at 0.3 rad that turn at 2 rad/s, without gravity: they go on doing so, through both poses in one line."""
+    angle, rate, crank = 0.3, 2.0, 0.5
+    along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    ends = [[0, 0], [1, 0], crank * along, [1, 0] + crank * along]
+    speeds = [[0, 0], [0, 0], rate * crank * across, rate * crank * across]
+    return unfurl.Structure(ends, [[0, 2], [2, 3], [1, 3]], fixed=[0, 1], velocities=speeds,
+                            set={"solver.end_time": 3.5, "solver.stages": 5, "solver.step": 0.02, **changes})
+
+
+def test_singular_poses_are_among_the_events(tmp_path):
+    # In one line at (k pi - 0.3) / 2 s. The poses are states of order 10 to round-off; a dip is located to some 1e-9 s.
+    scene = parallelogram()
+    stepper = scene.stepper()
+    while stepper.step():
+        pass
+    for run in (scene.run(), stepper.finish()):
+        assert [name for name, _ in run.events] == ["singular pose"] * 2
+        assert np.abs([t - (k * np.pi - 0.3) / 2 for k, (_, t) in enumerate(run.events, 1)]).max() < 1e-8
+        assert [(event["name"], event["t_s"]) for event in run.summary["events"]] == run.events
+    (tmp_path / "scene.toml").write_text(scene.text)
+    subprocess.run([PROGRAM, "run", tmp_path / "scene.toml", "-o", tmp_path / "out", "--quiet"], check=True)
+    assert json.load(open(tmp_path / "out/summary.json"))["events"] == run.summary["events"]
