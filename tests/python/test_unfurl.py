@@ -390,3 +390,24 @@ def test_singular_poses_are_among_the_events(tmp_path):
     (tmp_path / "scene.toml").write_text(scene.text)
     subprocess.run([PROGRAM, "run", tmp_path / "scene.toml", "-o", tmp_path / "out", "--quiet"], check=True)
     assert json.load(open(tmp_path / "out/summary.json"))["events"] == run.summary["events"]
+
+
+def test_solve_takes_the_model_that_the_program_takes():
+    # Both bracket in the same way with runs that are the same to the bit, so the answers are.
+    asked = [PROGRAM, "solve", "hoop6_sector", "--find", "structure.fold_angle", "--target", "deploy_time=4.92", "--quiet"]
+    found = subprocess.run(asked, check=True, capture_output=True, text=True).stdout
+    ring = unfurl.Scene("hoop6_sector")
+    assert found == f"structure.fold_angle = {ring.solve('structure.fold_angle', deploy_time=4.92)!r}\n"
+    # The method's own key: full, as there. What the scene says goes first.
+    full = unfurl.Scene("hoop6_sector", set={"solver.model": "full"})
+    assert found != f"structure.fold_angle = {full.solve('structure.fold_angle', deploy_time=4.92)!r}\n"
+
+
+def test_solve_refuses_what_the_program_refuses():
+    ring = unfurl.Scene("hoop6_sector")
+    with pytest.raises(unfurl.SceneError, match="did you mean 'fold_angle'"):
+        ring.solve("structure.fold_angl", deploy_time=4.92)
+    with pytest.raises(unfurl.SceneError, match="structure.fold_angle"):
+        ring.solve("structure.fold_angle", deploy_time=4.92, between=(-1000, 80))
+    with pytest.raises(unfurl.StudyError, match="takes whole numbers"):
+        ring.solve("structure.units", deploy_time=4.92)
