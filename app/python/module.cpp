@@ -170,6 +170,18 @@ std::shared_ptr<Run> run_scene(const SceneSource& source, const std::vector<std:
   return made;
 }
 
+// What a scene says that a stepper does not do.
+std::vector<std::string> idle_when_stepped(const SolverOptions& solver) {
+  std::vector<std::string> said;
+  if (solver.model == "path" || solver.model == "sector")
+    said.push_back("solver.model = \"" + solver.model +
+                   "\" does nothing here: a stepper steps the whole model");
+  if (solver.tolerance > 0)
+    said.emplace_back(
+        "solver.tolerance does nothing here: a stepper takes the stages and the step as they are");
+  return said;
+}
+
 class SteppedScene {
  public:
   explicit SteppedScene(Scene scene)
@@ -195,6 +207,11 @@ class SteppedScene {
     std::vector<std::pair<std::string, double>> found;
     for (const Event& event : stepper_.run().events) found.emplace_back(event.name, event.t);
     return found;
+  }
+  std::vector<std::string> warnings() const {
+    std::vector<std::string> said = idle_when_stepped(scene_.solver);
+    said.insert(said.end(), stepper_.run().warnings.begin(), stepper_.run().warnings.end());
+    return said;
   }
   // A solved node by its name or its index.
   int node(const py::object& key) const {
@@ -231,7 +248,11 @@ class SteppedScene {
   const Trajectory& trajectory() const { return stepper_.run().trajectory; }
   Simulation so_far() const {
     const std::lock_guard lock(*use_);
-    return stepper_.run();
+    Simulation run = stepper_.run();
+    run.warnings = warnings();
+    if (scene_.solver.model != "full" && solved_as(run).name == "full")
+      run.solved_as.why = "a stepper steps the whole model";
+    return run;
   }
   static py::array array(const VectorXd& x) {
     return py::array_t<double>({static_cast<py::ssize_t>(x.size() / 3), py::ssize_t{3}}, x.data());
@@ -339,6 +360,7 @@ void add_scene(py::module_& module) {
       .def_property_readonly("x", &SteppedScene::positions)
       .def_property_readonly("v", &SteppedScene::velocities)
       .def_property_readonly("status", &SteppedScene::status)
+      .def_property_readonly("warnings", &SteppedScene::warnings)
       .def_property_readonly("events", &SteppedScene::events);
 
   py::class_<SceneSource>(module, "SceneSource")

@@ -195,9 +195,7 @@ void print_margin(const Scene& scene, const Margin& margin, const std::vector<St
 int cmd_margin(const Arguments& arguments) {
   const Scene scene = scene_of(arguments);
   const auto factors = factors_of(arguments);
-  for (const std::string& setting : arguments.overrides)
-    if (setting.starts_with("solver.model"))
-      std::cerr << "unfurl: warning: --set " << setting << " does nothing: margins are those of the path\n";
+  warn_of_idle_sets(arguments, {"solver.model", "solver.tolerance"}, "margins are those of the path");
   const InterruptGuard guard;
   const auto model = model_of(scene, arguments);
   const Margin margin = [&] {

@@ -5,6 +5,7 @@
 
 #include "app/output/interrupt.hpp"
 #include "app/verbs/scene_run.hpp"
+#include "app/verbs/study_session.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/solve_for.hpp"
@@ -21,6 +22,7 @@ bool may_be_held(const Structure& structure) {
 }
 
 ModalPose at_start(const Scene& scene, const Arguments& arguments) {
+  warn_of_idle_sets(arguments, {"solver.model", "solver.tolerance"}, "the pose at the start is no motion's");
   auto model = model_of(scene, arguments);
   if (may_be_held(model->structure)) {
     SolverOptions first = scene.solver;

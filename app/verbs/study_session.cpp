@@ -39,12 +39,22 @@ bool ends_as_journal(std::string_view end) {
 }  // namespace
 
 void warn_of_own_steps(const Scene& scene) {
-  const auto idle = [](const char* key) {
-    std::cerr << "unfurl: warning: " << key
-              << " does nothing here: steps are equal, as the ladder has them\n";
+  const auto idle = [](const char* key, const char* why) {
+    std::cerr << "unfurl: warning: " << key << " does nothing here: " << why << "\n";
   };
-  if (scene.solver.adaptive) idle("solver.adaptive");
-  if (scene.solver.tolerance > 0) idle("solver.tolerance");
+  const char* ladder = "steps are equal, as the ladder has them";
+  if (scene.solver.adaptive) idle("solver.adaptive", ladder);
+  if (scene.solver.tolerance > 0) idle("solver.tolerance", ladder);
+  // "auto" is the full model wherever methods are asked about.
+  if (scene.solver.model == "path" || scene.solver.model == "sector")
+    idle("solver.model", "every method steps the whole model");
+}
+
+void warn_of_idle_sets(const Arguments& arguments, const std::vector<std::string>& keys,
+                       const std::string& why) {
+  for (const std::string& setting : arguments.overrides)
+    if (std::ranges::any_of(keys, [&](const std::string& key) { return setting.starts_with(key); }))
+      std::cerr << "unfurl: warning: --set " << setting << " does nothing: " << why << "\n";
 }
 
 std::vector<fs::path> journals_like(const std::string& journal, const fs::path& directory) {

@@ -26,8 +26,11 @@ std::vector<std::filesystem::path> journals_like(const std::string& journal,
 // these.
 std::string study_identity(const std::string& what, const Scene& scene);
 
-// On stderr: what the scene, or --set, says of steps that a study picks itself.
+// On stderr: what the scene, or --set, says of steps and the model that a study picks itself.
 void warn_of_own_steps(const Scene& scene);
+// On stderr: every --set of these keys of the solver, which do nothing here.
+void warn_of_idle_sets(const Arguments& arguments, const std::vector<std::string>& keys,
+                       const std::string& why);
 
 // Throws FileError, with what can be done, where DIR/scene.toml tells of other results than `identity`.
 void require_identity(const std::filesystem::path& directory, const std::string& identity,

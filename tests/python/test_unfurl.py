@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 import zlib
 from pathlib import Path
 
@@ -411,3 +412,21 @@ def test_solve_refuses_what_the_program_refuses():
         ring.solve("structure.fold_angle", deploy_time=4.92, between=(-1000, 80))
     with pytest.raises(unfurl.StudyError, match="takes whole numbers"):
         ring.solve("structure.units", deploy_time=4.92)
+
+
+def test_a_stepper_says_what_it_does_not_do():
+    idle = {"solver.model": "path", "solver.tolerance": 1e-9, "solver.end_time": 0.2}
+    with pytest.warns(UserWarning) as told:
+        stepper = unfurl.Scene("hoop6", set=idle).stepper()
+    said = ['solver.model = "path" does nothing here: a stepper steps the whole model',
+            "solver.tolerance does nothing here: a stepper takes the stages and the step as they are"]
+    assert [str(warning.message) for warning in told] == said == stepper.warnings
+    stepper.step()
+    run = stepper.finish()
+    assert run.warnings[:2] == said
+    assert run.summary["model"]["solved_as"] == "full" and run.summary["model"]["why"] == "a stepper steps the whole model"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for model in ("full", "auto"):  # what "auto" takes is up to the program
+            stepper = unfurl.Scene("hoop6", set={"solver.model": model, "solver.end_time": 0.2}).stepper()
+            assert not stepper.warnings

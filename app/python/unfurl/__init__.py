@@ -14,6 +14,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+import warnings
 from typing import Any, Iterable, Mapping, Sequence
 
 import numpy as np
@@ -181,8 +182,11 @@ class Scene:
         return Run(self._source.run(self._overrides(changes)))
 
     def stepper(self) -> Stepper:
-        """Step by step, through events, stops and latches: while s.step(): s.t, s.x, s.v."""
-        return Stepper(self._source)
+        """Step by step, through events, stops and latches: while s.step(): s.t, s.x, s.v. The whole model, in the scene's steps."""
+        stepper = Stepper(self._source)
+        for said in stepper.warnings:  # keys of the scene that do nothing here
+            warnings.warn(said, stacklevel=2)
+        return stepper
 
     def sweep(self, vary: Mapping[str, Sequence[float]], measures: Sequence[str], threads: int = 1) -> dict:
         """The measures at every point of the grid: arrays by column, the last key runs fastest."""
