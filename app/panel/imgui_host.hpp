@@ -35,10 +35,13 @@ class ImguiHost {
   bool widget_takes(Key key) const;
   // Gives the keyboard to the widgets of a pane: the left one, or (`next`) the one behind that which has it.
   void focus_pane(bool next);
+  // From the field that had the keyboard last to the next one or the one before; false: there is none, or
+  // something is typed, and ImGui's own Tab goes on.
+  bool step_on(bool back);
   bool close_popups() const;  // true: one was open
   // A frame: `draw` makes its widgets. What it throws passes when the frame is whole and the next can be
   // drawn.
-  void frame(int width, int height, double seconds, const std::function<void()>& draw) const;
+  void frame(int width, int height, double seconds, const std::function<void()>& draw);
 
   Ui& ui() { return ui_; }
   const Ui& ui() const { return ui_; }
@@ -46,6 +49,8 @@ class ImguiHost {
 
  private:
   void make_fonts();
+  bool has_place() const;
+  void begin_step() const;
 
   struct End {
     void operator()(ImGuiContext* context) const { ImGui::DestroyContext(context); }
@@ -57,6 +62,7 @@ class ImguiHost {
   std::map<int, ImFont*> figure_fonts_;  // by size in 1/64 pixels
   Ui ui_;
   int pane_ = -1;  // that was given the keyboard last
+  int step_ = 0;   // that Tab asks for in the next frame: -1, 0, 1
 };
 
 }  // namespace unfurl
