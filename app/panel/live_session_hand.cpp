@@ -53,13 +53,15 @@ void LiveSession::pull(const std::string& node, const Vec3& target) {
 void LiveSession::wiggle() {
   if (!state_.shown) return;
   state_.playback.playing = false;
+  const bool wiggled = state_.wiggled >= 0;
   hand_.wiggle(state_.shown, state_.playback.t);
   show_hand();
-  if (state_.motions == 0)
-    state_.message = "nothing moves freely here but the whole";
-  else if (state_.wiggled >= 0)
+  if (state_.wiggled >= 0)
     state_.message =
         "free motion " + std::to_string(state_.wiggled + 1) + " of " + std::to_string(state_.motions);
+  else
+    state_.message =
+        wiggled ? "after the last free motion: the run" : "nothing moves freely here but the whole";
 }
 
 void LiveSession::let_go() {
