@@ -309,12 +309,14 @@ void LiveSession::remember(const std::string& path) {
 }
 
 void LiveSession::use_view(bool only) {
-  if (!state_.shown || !state_.orbit) {
+  if (!state_.shown) return;
+  if (only && !state_.orbit && !moves_camera(state_.picture)) {
     state_.message = "the film has this view already: turn it first";
     return;
   }
-  state_.history.replace(with_camera(state_.history.now(), *state_.shown, state_.picture, *state_.orbit,
-                                     state_.playback.t, only));
+  const double t = state_.playback.t;
+  const OrbitCamera view = state_.orbit ? *state_.orbit : film_view(*state_.shown, state_.picture, t);
+  state_.history.replace(with_camera(state_.history.now(), *state_.shown, state_.picture, view, t, only));
   state_.orbit.reset();
   state_.message = only ? "this is the film's view" : "a camera key at the present time";
 }

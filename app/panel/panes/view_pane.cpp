@@ -8,6 +8,7 @@
 
 #include "app/panel/panes/panes.hpp"
 #include "app/panel/runs/comparison.hpp"
+#include "app/panel/view/film_camera.hpp"
 #include "core/diagnostics/diagnostics.hpp"
 #include "render/scene/view.hpp"
 
@@ -363,7 +364,7 @@ void draw_view_options(Ui& ui, PanelState& state, const SceneView& view) {
     if (button(ui, std::string("view ") + label, label, "look from here")) choose_preset(state, view, preset);
   }
   const auto use = [&](const char* key, const char* label, const char* help, bool only) {
-    if (button(ui, key, label, help, state.orbit.has_value()))
+    if (button(ui, key, label, help, !only || state.orbit || moves_camera(state.picture)))
       state.intents.emplace_back([only](LiveSession& s) { s.use_view(only); });
   };
   use("use view", "Use this view", "azimuth, elevation and zoom go into the scene, and into every export (V)",

@@ -16,18 +16,24 @@ double reach(const OrbitCamera& orbit) {
   return orbit.distance * std::tan(0.5 * orbit.field_of_view);
 }
 
-// The same of a film with these keys at a zoom of 1.
-double film_reach(const LiveRun& run, const RenderOptions& picture, std::vector<CameraKey> keys) {
+// The camera alone: what is written needs names that the run may not have.
+FrameStyle bare_style(const LiveRun& run, const RenderOptions& picture) {
   Scene scene = run.scene;
   scene.render = picture;
-  scene.render.follow = false;
-  scene.render.orbit = scene.render.turntable = 0;
   scene.render.inset = scene.render.trails = "";
-  for (CameraKey& key : keys) key.zoom = 1;
-  scene.render.camera_keys = std::move(keys);
   FrameStyle style = film_style(scene, run.simulation, run.diagnostics);
   style.labels = false;
-  const Camera camera = FrameBuilder(run.simulation.trajectory, style).camera();
+  return style;
+}
+
+// Half of the height that a film with these keys at a zoom of 1 sees at its target [m].
+double film_reach(const LiveRun& run, const RenderOptions& picture, std::vector<CameraKey> keys) {
+  RenderOptions still = picture;
+  still.follow = false;
+  still.orbit = still.turntable = 0;
+  for (CameraKey& key : keys) key.zoom = 1;
+  still.camera_keys = std::move(keys);
+  const Camera camera = FrameBuilder(run.simulation.trajectory, bare_style(run, still)).camera();
   return camera.parallel_height > 0 ? 0.5 * static_cast<double>(camera.parallel_height)
                                     : reach(orbit_of(camera));
 }
@@ -42,6 +48,18 @@ std::string key_text(const CameraKey& key) {
 }
 
 }  // namespace
+
+OrbitCamera film_view(const LiveRun& run, const RenderOptions& picture, double t) {
+  const Camera camera = FrameBuilder(run.simulation.trajectory, bare_style(run, picture)).build(t).camera;
+  OrbitCamera orbit = orbit_of(camera);
+  if (camera.parallel_height > 0)
+    orbit.distance = 0.5f * camera.parallel_height / std::tan(0.5f * orbit.field_of_view);
+  return orbit;
+}
+
+bool moves_camera(const RenderOptions& picture) {
+  return picture.camera_keys.size() > 1 || picture.follow || picture.orbit != 0 || picture.turntable != 0;
+}
 
 std::vector<CameraKey> keys_with(std::vector<CameraKey> others, const LiveRun& run,
                                  const RenderOptions& picture, const OrbitCamera& orbit, double t) {

@@ -13,6 +13,10 @@ namespace unfurl {
 std::vector<CameraKey> keys_with(std::vector<CameraKey> others, const LiveRun& run,
                                  const RenderOptions& picture, const OrbitCamera& orbit, double t);
 
+// Where the film's own camera is at a time, with its distance as keys mean it.
+OrbitCamera film_view(const LiveRun& run, const RenderOptions& picture, double t);
+bool moves_camera(const RenderOptions& picture);
+
 // The document with the key at the time t, beside those that there are or (`only`) in place of them; what
 // moves the camera otherwise is switched off.
 SceneDocument with_camera(SceneDocument document, const LiveRun& run, const RenderOptions& picture,

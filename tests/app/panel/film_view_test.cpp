@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The film's camera as the panel writes it.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/app/panel/panel_driver.hpp"
+
+using namespace unfurl;
+
+namespace film_view_test {
+
+namespace {
+
+std::vector<CameraKey> keys_of(PanelDriver& driver) {
+  return read_document(driver.state().history.now()).render.camera_keys;
+}
+
+}  // namespace
+
+TEST_CASE("a camera key holds what the film shows where nobody turned the view") {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  PanelDriver driver(options, "pendulum");
+  const OrbitCamera first = driver.panel().framed();
+  driver.key(Key::k);
+  driver.settle();
+  driver.key(Key::end);
+  driver.key(Key::k);
+  driver.settle();
+  const std::vector<CameraKey> held = keys_of(driver);
+  REQUIRE(held.size() == 2);
+  CHECK(held[0].time == 0);
+  CHECK(held[1].time > 1);
+  // A tenth of a degree and a thousandth of the zoom are what keys are rounded to.
+  CHECK(held[0].azimuth == Approx(held[1].azimuth).margin(0.11));
+  CHECK(held[0].elevation == Approx(held[1].elevation).margin(0.11));
+  CHECK(held[0].zoom == Approx(held[1].zoom).margin(0.0021));
+  const OrbitCamera same = driver.panel().framed();
+  CHECK(std::abs(same.azimuth - first.azimuth) < 2e-3f);
+  CHECK(std::abs(same.elevation - first.elevation) < 2e-3f);
+  CHECK(same.distance == Approx(first.distance).epsilon(3e-3));
+
+  // One that is turned, and then one between it and the first: the film's view there stays what it was.
+  driver.drag("view", 0.3, 0.6);
+  REQUIRE(driver.state().orbit);
+  driver.key(Key::k);
+  driver.settle();
+  CHECK(keys_of(driver).size() == 2);  // in place of the one at that time
+  driver.state().playback.t = 0.4 * held[1].time;
+  driver.frame();
+  const OrbitCamera between = driver.panel().framed();
+  CHECK(std::abs(between.azimuth - first.azimuth) > 0.02f);
+  driver.key(Key::k);
+  driver.settle();
+  CHECK(keys_of(driver).size() == 3);
+  const OrbitCamera after = driver.panel().framed();
+  CHECK(std::abs(after.azimuth - between.azimuth) < 2e-3f);
+  CHECK(std::abs(after.elevation - between.elevation) < 2e-3f);
+}
+
+TEST_CASE("the view of a moment is taken for all of a film whose camera moves") {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  PanelDriver driver(options, "pendulum");
+  driver.key(Key::v);
+  CHECK(driver.state().message == "the film has this view already: turn it first");
+  CHECK(keys_of(driver).empty());
+  driver.key(Key::k);
+  driver.settle();
+  driver.key(Key::end);
+  driver.drag("view", 0.3, 0.6);
+  driver.key(Key::k);
+  driver.settle();
+  const OrbitCamera last = driver.panel().framed();
+  driver.key(Key::v);
+  driver.settle();
+  CHECK(keys_of(driver).size() == 1);
+  CHECK(std::abs(driver.panel().framed().azimuth - last.azimuth) < 2e-3f);
+}
+
+}  // namespace film_view_test
