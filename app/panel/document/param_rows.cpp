@@ -157,6 +157,12 @@ double rounded_up(double x) {
   return 10 * power;
 }
 
+// Of an optional number; 0: none is usual. Aluminium, as a modulus and as what it bears.
+double usual_value(const ParamSpec& spec) {
+  if (spec.unit != "Pa") return 0.0;
+  return spec.name == "strength" ? 3e8 : 7e10;
+}
+
 std::string number_caption(double x) {
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.6g", x);
@@ -206,8 +212,15 @@ SliderRange slider_range(const ParamSpec& spec, const ParamValue& base) {
 
 SliderRange slider_range(const ParamRow& row) {
   if (!not_given(row.value)) return slider_range(row.spec, row.value);
-  const double usual = row.spec.unit == "Pa" ? 1e10 : 0.0;  // moduli and strengths
-  return slider_range(row.spec, std::isfinite(row.typical) ? row.typical : usual);
+  return slider_range(row.spec, std::isfinite(row.typical) ? row.typical : usual_value(row.spec));
+}
+
+double first_value(const ParamRow& row) {
+  const double typical = std::isfinite(row.typical) ? row.typical : usual_value(row.spec);
+  const SliderRange range = slider_range(row);
+  for (const double x : {std::round(1e6 * typical) / 1e6, typical, range.high / 10, range.low})
+    if (range_error(row.spec, x).empty()) return x;
+  return range.high;
 }
 
 bool not_given(const ParamValue& value) {

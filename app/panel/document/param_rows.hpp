@@ -49,6 +49,9 @@ struct SliderRange {
 SliderRange slider_range(const ParamSpec& spec, const ParamValue& base);
 SliderRange slider_range(const ParamRow& row);
 
+// What a number that is not given begins with: one that the parameter allows, round to a millionth.
+double first_value(const ParamRow& row);
+
 bool not_given(const ParamValue& value);  // a number without which the scene has one of its own
 
 // "help text. [0.1, 8] m; default 3": what a tooltip says of a parameter.

@@ -27,7 +27,7 @@ bool real_widget(const ParamRow& row, ParamValue& value) {
   const SliderRange range = slider_range(row);
   if (not_given(value)) {
     if (!ImGui::Button("not given", {ImGui::CalcItemWidth(), 0})) return false;
-    value = std::isfinite(row.typical) ? std::round(1e6 * row.typical) / 1e6 : 0.0;
+    value = first_value(row);
     return true;
   }
   const ImGuiSliderFlags flags =

@@ -6,6 +6,7 @@
 #include "app/panel/document/scene_entries.hpp"
 #include "app/panel/runs/export_process.hpp"
 #include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
@@ -252,6 +253,31 @@ TEST_CASE("the selected node or rod of a custom structure has rows of its own") 
   CHECK(read_document(driver.state().history.now()).custom.nodes.at(2).fixed);
   // Nodes of a family have no parameters of their own.
   CHECK(selected_section(base_scene(open_document("hoop6", {})), {Selection::Kind::node, "B0"}).rows.empty());
+}
+
+TEST_CASE("what is not given begins with a value that the parameter allows") {
+  int seen = 0;
+  for (const LibraryScene& scene : library_scenes()) {
+    const Scene base = base_scene(open_document(scene.name, {}));
+    for (const ParamSection& section : param_sections(base))
+      for (const ParamRow& row : section.rows) {
+        if (!not_given(row.value)) continue;
+        ++seen;
+        INFO(scene.name << " " << row.key);
+        const double first = first_value(row);
+        CHECK(range_error(row.spec, first) == "");
+        if (row.spec.name == "youngs_modulus") CHECK(first == 7e10);
+        if (row.spec.name == "strength") CHECK(first == 3e8);
+      }
+  }
+  CHECK(seen > 10);
+  // Of a value as small as a rounding, the value; above a limit that is none itself, something.
+  ParamRow row{"a.b", "b", positive_param("b", "m", std::numeric_limits<double>::infinity(), ""),
+               std::numeric_limits<double>::quiet_NaN()};
+  row.typical = 1e-9;
+  CHECK(first_value(row) == 1e-9);
+  row.typical = std::numeric_limits<double>::quiet_NaN();
+  CHECK(first_value(row) > 0);
 }
 
 }  // namespace entries_test

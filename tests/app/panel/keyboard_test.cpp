@@ -120,7 +120,8 @@ TEST_CASE("Enter presses buttons and switches, opens lists and takes their choic
   driver.key(Key::down);
   driver.key(press);  // the button "not given"
   driver.settle();
-  CHECK(edits().contains("structure.youngs_modulus"));
+  REQUIRE(edits().contains("structure.youngs_modulus"));
+  CHECK(std::get<double>(edits().at("structure.youngs_modulus")) == 7e10);
 }
 
 TEST_CASE("the palette finds actions and parameters, and Enter does them") {
