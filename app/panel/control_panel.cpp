@@ -121,6 +121,7 @@ void ControlPanel::take_events() {
   while (!events_.empty()) {
     const InputEvent event = std::move(events_.front());
     events_.pop_front();
+    if (event.down && (event.kind == Kind::button || event.key != Key::none)) session_.note_press();
     InputEvent seen = event;  // by widgets: nothing of a key that was for others but what is held beside it
     if (event.kind == Kind::key && event.down) seen.down = !take_key(event);
     host_->apply(seen);

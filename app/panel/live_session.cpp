@@ -18,6 +18,7 @@ namespace unfurl {
 namespace {
 
 constexpr std::size_t most_trade_points = 200;
+constexpr int presses_told = 4;  // a message outlives fewer
 
 template <class Job>
 JobState state_of(const Job& job) {
@@ -117,6 +118,7 @@ bool LiveSession::take_results() {
 
 void LiveSession::take_run(const SimulationOutcome& outcome) {
   state_.problems = outcome.problems;
+  failure_ = outcome.message;
   // What was said of the same document ("saved ...") stays when its run comes.
   const bool another = !outcome.run || (state_.shown && state_.shown->document != outcome.run->document);
   const bool saved = outcome.run && saved_ && outcome.run->document == *saved_;
@@ -133,6 +135,15 @@ void LiveSession::take_run(const SimulationOutcome& outcome) {
   const Trajectory& trajectory = state_.shown->simulation.trajectory;
   if (first) state_.playback.t = options_.at;
   state_.playback.t = std::clamp(state_.playback.t, trajectory.start_time(), trajectory.end_time());
+}
+
+// What is still so stays: that the present run failed, that an export goes on.
+void LiveSession::note_press() {
+  if (std::exchange(told_, state_.message) != state_.message) presses_ = 0;
+  const bool lasts = state_.message == failure_ || state_.exporting.running;
+  if (lasts || ++presses_ < presses_told) return;
+  state_.message.clear();
+  told_.clear();
 }
 
 void LiveSession::judge_run() {

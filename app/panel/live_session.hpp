@@ -48,6 +48,7 @@ class LiveSession {
   bool act();
   bool follow_document();
   void advance(double seconds);  // the motion plays, a hand wiggles
+  void note_press();             // of a key or button: what was said long ago is taken away
 
   bool busy() const { return state_.simulation.running || simulator_.busy() || errors_.busy(); }
   bool has_results() const { return simulator_.ready() || errors_.ready(); }  // take_results() has some
@@ -102,6 +103,8 @@ class LiveSession {
   Arrivals arrived_;
   std::optional<SimulationOutcome> outcome_;
   std::string exporting_to_;
+  std::string told_, failure_;  // the message that presses are counted since; that of the present run
+  int presses_ = 0;
   std::optional<SceneDocument> saved_;  // the last one that was
   OwnFileWatch own_file_;
   ChildProcess folder_;

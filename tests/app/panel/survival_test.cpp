@@ -90,4 +90,30 @@ TEST_CASE("an export of a scene that is in no file replaces none") {
   CHECK(export_words(document, export_kinds()[2], scratch / "out")[1] == words[1]);  // the same text
 }
 
+TEST_CASE("a message goes when some more was done, and what is still so is still said") {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  PanelDriver driver(options, "pendulum");
+  driver.key(Key::v);
+  const std::string message = driver.state().message;
+  REQUIRE_FALSE(message.empty());
+  driver.key(Key::end);
+  CHECK(driver.state().message == message);  // it can be read
+  driver.key(Key::home);
+  driver.click("view");
+  driver.click("view");
+  CHECK(driver.state().message.empty());
+  for (int i = 0; i < 4; ++i) driver.key(Key::v);  // said again
+  CHECK(driver.state().message == message);
+
+  LiveSession session(open_document("pendulum", {}), {.measure_errors = false});
+  session.state().message = "exporting";
+  session.state().exporting.running = true;
+  for (int i = 0; i < 9; ++i) session.note_press();
+  CHECK(session.state().message == "exporting");
+  session.state().exporting.running = false;
+  for (int i = 0; i < 9; ++i) session.note_press();
+  CHECK(session.state().message.empty());
+}
+
 }  // namespace unfurl::survival_test
