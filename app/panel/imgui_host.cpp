@@ -86,7 +86,7 @@ void ImguiHost::make_fonts() {
   painter_->upload_fonts(atlas);
 }
 
-void ImguiHost::apply(const InputEvent& event) const {
+void ImguiHost::apply(const InputEvent& event) {
   ImGuiIO& io = ImGui::GetIO();
   using Kind = InputEvent::Kind;
   switch (event.kind) {
@@ -94,7 +94,11 @@ void ImguiHost::apply(const InputEvent& event) const {
       io.MousePos = {event.x, event.y};
       break;
     case Kind::button:
-      if (event.button >= 0 && event.button < 3) io.MouseDown[event.button] = event.down;
+      if (event.button < 0 || event.button >= 3) break;
+      io.MouseDown[event.button] = event.down;
+      if (!event.down) break;
+      if (event.time >= 0 && pressed_[event.button] >= 0) since_ = event.time - pressed_[event.button];
+      pressed_[event.button] = event.time;
       break;
     case Kind::wheel:
       io.MouseWheelH += event.x;
@@ -178,10 +182,24 @@ bool ImguiHost::close_popups() const {
   return true;
 }
 
+// ImGui counts the time of frames: none passes for it while nothing is drawn, and where frames are slow the
+// presses and releases of a quick double click, which have one each, are far apart. Where the desktop's clock
+// is known it decides, and an event may be told of as late as a frame takes.
+void ImguiHost::judge_clicks(double seconds) {
+  constexpr double quick = 0.3;  // [s]
+  const double present = std::clamp(seconds, 0.0, 1.0), limit = quick + frame_seconds_ + present;
+  frame_seconds_ = present;
+  float& longest = ImGui::GetIO().MouseDoubleClickTime;
+  longest = static_cast<float>(limit);
+  if (since_ >= 0) longest = since_ < limit ? FLT_MAX : 0;
+  since_ = -1;
+}
+
 void ImguiHost::frame(int width, int height, double seconds, const std::function<void()>& draw) {
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 0.25));
+  judge_clicks(seconds);
   // Enter does what Space does; by itself it only begins to type.
   if (io.KeysDown[static_cast<int>(Key::enter)]) io.NavInputs[ImGuiNavInput_Activate] = 1;
   ImGui::NewFrame();

@@ -29,7 +29,7 @@ class ImguiHost {
   ImguiHost& operator=(const ImguiHost&) = delete;
 
   void make_current() const { ImGui::SetCurrentContext(context_.get()); }
-  void apply(const InputEvent& event) const;
+  void apply(const InputEvent& event);
   bool typing() const { return ImGui::GetIO().WantTextInput; }
   // The widget that has the keyboard, where one has, uses this key.
   bool widget_takes(Key key) const;
@@ -51,6 +51,7 @@ class ImguiHost {
   void make_fonts();
   bool has_place() const;
   void begin_step() const;
+  void judge_clicks(double seconds);
 
   struct End {
     void operator()(ImGuiContext* context) const { ImGui::DestroyContext(context); }
@@ -61,8 +62,10 @@ class ImguiHost {
   std::string copied_;
   std::map<int, ImFont*> figure_fonts_;  // by size in 1/64 pixels
   Ui ui_;
-  int pane_ = -1;  // that was given the keyboard last
-  int step_ = 0;   // that Tab asks for in the next frame: -1, 0, 1
+  int pane_ = -1;                                  // that was given the keyboard last
+  double pressed_[3] = {-1, -1, -1}, since_ = -1;  // when buttons were; the last press after the one before
+  double frame_seconds_ = 0;                       // of the last frame
+  int step_ = 0;                                   // that Tab asks for in the next frame: -1, 0, 1
 };
 
 }  // namespace unfurl

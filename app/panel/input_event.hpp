@@ -65,6 +65,7 @@ struct InputEvent {
   float x = 0, y = 0;  // move: pixels from the top left; wheel: steps to the right and up
   int button = 0;      // 0 left, 1 right, 2 middle
   bool down = false;   // button, key
+  double time = -1;    // button: when it was pressed, by the desktop's clock [s]; < 0: not known
   Key key = Key::none;
   bool control = false, shift = false, alt = false;  // key
   std::string text = {};                             // text: UTF-8; drop: the file's path

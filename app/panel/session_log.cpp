@@ -24,7 +24,7 @@ json json_of(const InputEvent& e) {
     case Kind::move:
       return {"move", e.x, e.y};
     case Kind::button:
-      return {"button", e.button, e.down};
+      return e.time < 0 ? json{"button", e.button, e.down} : json{"button", e.button, e.down, e.time};
     case Kind::wheel:
       return {"wheel", e.x, e.y};
     case Kind::key: {
@@ -216,6 +216,7 @@ InputEvent event_of(const json& words) {
     e.kind = Kind::button;
     e.button = words.at(1);
     e.down = words.at(2);
+    if (words.size() > 3) e.time = words[3];
   } else if (kind == "key") {
     e.kind = Kind::key;
     e.key = key_named(words.at(1).get<std::string>());

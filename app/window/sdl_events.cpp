@@ -51,6 +51,7 @@ InputEvent button_event(const SDL_MouseButtonEvent& button) {
   event.kind = InputEvent::Kind::button;
   event.button = button.button == SDL_BUTTON_LEFT ? 0 : button.button == SDL_BUTTON_RIGHT ? 1 : 2;
   event.down = button.type == SDL_MOUSEBUTTONDOWN;
+  event.time = 1e-3 * button.timestamp;
   return event;
 }
 

@@ -298,4 +298,32 @@ TEST_CASE("where lengths stay, the rest of the structure goes along and stays as
     CHECK(after.rods[i].length == Approx(before.rods[i].length).epsilon(1e-8));
 }
 
+TEST_CASE("a double click is one by the time between its presses, however long frames take") {
+  struct Clicks {
+    double between, frame;  // [s]
+    bool timed, twice;
+  };
+  // Four frames for two clicks: a quick one takes 0.8 s where each frame takes 0.2.
+  const auto clicks =
+      GENERATE(Clicks{0.1, 0.2, false, true}, Clicks{0.2, 0.25, true, true}, Clicks{0.2, 0.016, true, true},
+               Clicks{0.1, 0.016, false, true}, Clicks{5.0, 0.0, true, false}, Clicks{1.0, 0.2, true, false});
+  CAPTURE(clicks.between, clicks.frame, clicks.timed);
+  PanelDriver driver(quick(), blank_document());
+  driver.key(Key::b);
+  driver.frame();
+  driver.move_to("view", 0.85, 0.35);
+  driver.frame(1.0);
+  REQUIRE(driver.state().hovered.kind == Selection::Kind::none);
+  InputEvent event;
+  event.kind = InputEvent::Kind::button;
+  for (int i = 0; i < 4; ++i) {
+    event.down = i % 2 == 0;
+    if (clicks.timed) event.time = 10 + (i / 2) * clicks.between;
+    driver.panel().handle(event);
+  }
+  for (int i = 0; i < 4; ++i) driver.frame(clicks.frame);
+  driver.settle();
+  CHECK(driver.state().shown->scene.custom.nodes.size() == (clicks.twice ? 3 : 2));
+}
+
 }  // namespace hand_test
