@@ -21,14 +21,14 @@ namespace unfurl {
 
 namespace {
 
-// Each pose is a third as wide and half as high as a frame of the film, and all are drawn to one scale. What
-// colours of a quantity stand for has a place as large beside the last one.
+// A poster has its title, and what its sizes and colours stand for, once. Each pose is a third as wide and
+// half as high as a frame of the film, and all are drawn to one scale. What colours of a quantity stand for
+// has a place as large beside the last one.
 FrameStyle panel_style(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics) {
   FrameStyle style = film_style(scene, run, diagnostics);
-  style.title.clear();
   style.width = std::max(16, scene.render.width / 3) * scene.render.supersample;
   style.height = std::max(16, scene.render.height / 2) * scene.render.supersample;
-  style.options.legend = false;
+  style.options.title = style.options.legend = false;
   style.options.inset.clear();
   style.options.orbit = style.options.turntable = 0;
   style.options.follow = false;
@@ -38,9 +38,25 @@ FrameStyle panel_style(const Scene& scene, const Simulation& run, const Diagnost
   return style;
 }
 
-Image draw_poses(const FrameStyle& style, bool key, const Trajectory& run, std::size_t poses, int supersample,
-                 GlContext& context) {
-  const FrameBuilder builder(run, style);
+// A strip as wide as so many panels, drawn panel by panel: a picture may be wider than a driver draws.
+Image draw_banner(const FrameBuilder::Banner& banner, const FrameStyle& style, int panels, int supersample,
+                  GlContext& context) {
+  Renderer renderer(context, style.width, banner.height);
+  std::vector<Image> images;
+  for (int k = 0; k < panels; ++k) {
+    DrawList list = banner.list;
+    list.stars = 0;
+    const auto left = static_cast<float>(k * style.width);
+    for (TextLabel& label : list.labels) label.x -= left;
+    for (OverlayArea& area : list.areas) area.x0 -= left, area.x1 -= left;
+    images.push_back(
+        scaled_down(renderer.draw(list), style.width / supersample, banner.height / supersample));
+  }
+  return side_by_side(images);
+}
+
+Image draw_poses(const FrameBuilder& builder, const FrameStyle& style, bool key, const Trajectory& run,
+                 std::size_t poses, int supersample, GlContext& context) {
   Renderer renderer(context, style.width, style.height);
   std::vector<Image> images;
   const auto add = [&](DrawList list) {
@@ -72,8 +88,14 @@ int cmd_poster(const Arguments& arguments) {
   const Diagnostics diagnostics = judge_run(run);
   const FrameStyle style = panel_style(scene, run, diagnostics);
   const bool key = scene.render.legend && scene.render.colour_by != "group";
-  const Image poster = draw_poses(style, key, run.trajectory, static_cast<std::size_t>(arguments.poses),
-                                  scene.render.supersample, *context);
+  const FrameBuilder builder(run.trajectory, style);
+  Image poster = draw_poses(builder, style, key, run.trajectory, static_cast<std::size_t>(arguments.poses),
+                            scene.render.supersample, *context);
+  const int panels = arguments.poses + (key ? 1 : 0);
+  const FrameBuilder::Banner banner = builder.banner(run.trajectory.end_time(), scene.render.title,
+                                                     scene.render.legend && !key, panels * style.width);
+  if (banner.height > 0)
+    poster = stacked(draw_banner(banner, style, panels, scene.render.supersample, *context), poster);
   write_png(output, poster, has_alpha(scene.render));
   report_run(run, diagnostics, arguments);
   return exit_code_of(run, diagnostics);

@@ -92,4 +92,11 @@ Image side_by_side(const std::vector<Image>& images) {
   return out;
 }
 
+Image stacked(Image upper, const Image& lower) {
+  if (upper.width != lower.width) throw std::invalid_argument("stacked: the widths differ");
+  upper.height += lower.height;
+  upper.rgba.insert(upper.rgba.end(), lower.rgba.begin(), lower.rgba.end());
+  return upper;
+}
+
 }  // namespace unfurl

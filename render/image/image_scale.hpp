@@ -15,4 +15,7 @@ Image on_white(Image image);
 // Pictures of one height, from left to right.
 Image side_by_side(const std::vector<Image>& images);
 
+// One picture above another of the same width.
+Image stacked(Image upper, const Image& lower);
+
 }  // namespace unfurl

@@ -294,12 +294,27 @@ DrawList FrameBuilder::build(const Shot& shot) const {
   return list;
 }
 
-DrawList FrameBuilder::key(double t) const {
+DrawList FrameBuilder::key_ground(double t) const {
   DrawList list = still_;
-  list.arrows = build(t).arrows;  // tell that there are some
+  list.arrows = build(t).arrows;
+  return list;
+}
+
+DrawList FrameBuilder::key(double t) const {
+  DrawList list = key_ground(t);
   overlay_->add_key(t, list);
   list.arrows.clear();
   return list;
+}
+
+FrameBuilder::Banner FrameBuilder::banner(double t, bool title, bool legend, int width) const {
+  Banner out{0, key_ground(t)};
+  out.list.background_bottom = out.list.background_top;  // that of the pictures goes on below
+  out.list.ground.shown = false;
+  out.list.planet_half_angle = 0;
+  out.height = overlay_->add_banner(t, title, legend, width, out.list);
+  out.list.arrows.clear();
+  return out;
 }
 
 // The title in the middle of an empty picture.

@@ -53,6 +53,13 @@ class FrameBuilder {
   // What sizes, colours and signs of the picture at a time stand for, alone: for a place beside pictures
   // without.
   DrawList key(double t) const;
+  // A strip of that width above such pictures: the style's title, and what a key tells without its bar of
+  // colours.
+  struct Banner {
+    int height = 0;  // 0: nothing is written [pixels]
+    DrawList list;
+  };
+  Banner banner(double t, bool title, bool legend, int width) const;
   const Camera& camera() const { return still_.camera; }  // of the first picture
   // Width over height of the picture that the whole motion fills, within reason: 2/5 to 5/2.
   double fitting_aspect() const { return fitting_aspect_; }
@@ -65,6 +72,7 @@ class FrameBuilder {
  private:
   VectorXd placed(VectorXd whole) const;  // counted from the origin, as is what functions below are given
   Vec3 node(const VectorXd& whole, int i) const { return upright_ * whole.segment<3>(3 * i); }
+  DrawList key_ground(double t) const;  // without bodies; the arrows tell that there are some
   void add_card(DrawList& list) const;
   void choose_origin();
   void bound(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times);

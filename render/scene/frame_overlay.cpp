@@ -186,7 +186,7 @@ VectorXd FrameOverlay::solved(const VectorXd& whole) const {
 }
 
 TextLabel FrameOverlay::quiet(const DrawList& list, TextLabel label) const {
-  if (list.transparent) return label;
+  if (list.transparent || on_banner_) return label;
   const float down = (label.y + 0.5f * label.height) / height_;
   const Color &a = look_.background_top, &b = look_.background_bottom;
   label.backing = {a.r + down * (b.r - a.r), a.g + down * (b.g - a.g), a.b + down * (b.b - a.b), 0.84f};
@@ -344,7 +344,7 @@ std::vector<FrameOverlay::LegendRow> FrameOverlay::legend_rows(std::vector<Legen
 void FrameOverlay::add_legend(double t, Boxes& taken, DrawList& list) const {
   if (width_ - 2 * edge_ < 6 * small_) return;  // for signs without names
   const std::vector<LegendEntry> all = legend_entries(t, list);
-  const float y = height_ - edge_ - small_, highest = 0.6f * height_;
+  const float y = height_ - edge_ - small_, highest = on_banner_ ? 0 : 0.6f * height_;
   std::vector<LegendRow> rows = legend_rows(all, y, taken);
   for (std::size_t shown = all.size(); shown-- > 1 && rows.back().y < highest;) {
     std::vector<LegendEntry> some(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown));

@@ -22,6 +22,9 @@ class FrameOverlay {
   // whole: the positions of all nodes at the time t.
   void add(double t, const VectorXd& whole, DrawList& list) const;
   void add_key(double t, DrawList& list) const;  // what sizes, colours and signs of a picture stand for
+  // Title, thickness and legend, as wanted, on a strip that is as wide as given and as high as they need;
+  // returns that height, 0 where nothing is written [pixels].
+  int add_banner(double t, bool title, bool legend, int width, DrawList& list) const;
 
  private:
   struct Box {  // a place that is taken [pixels]
@@ -103,6 +106,7 @@ class FrameOverlay {
   const Mat3& upright_;
   // [pixels], of which supersampled pictures have more
   float width_, height_, fine_, unit_, edge_, small_, large_;
+  bool on_banner_ = false;
   std::shared_ptr<Figure> inset_;  // of the whole run
 };
 

@@ -247,10 +247,17 @@ TEST_CASE("a poster is its poses side by side") {
   const std::vector<std::string> words = {
       "poster", "hoop6_sector", "--size", "192x96", "--quiet", "--poses", "4", "-o", dir / "p.png"};
   CHECK(run_program(words).code == 0);
-  const std::string bytes = file_text(dir / "p.png");
-  REQUIRE(bytes.size() > 24);
-  CHECK(static_cast<unsigned char>(bytes[18]) * 256 + static_cast<unsigned char>(bytes[19]) == 4 * 64);
-  CHECK(static_cast<unsigned char>(bytes[23]) == 48);
+  const Image whole = read_png(dir / "p.png");
+  std::vector<std::string> bare = words;
+  bare.insert(bare.end(), {"--set", "render.title=false", "--set", "render.legend=false"});
+  CHECK(run_program(bare).code == 0);
+  const Image poses = read_png(dir / "p.png");
+  CHECK(poses.width == 4 * 64);
+  CHECK(poses.height == 48);
+  // The title and the legend are above, and change nothing below.
+  CHECK(whole.width == 4 * 64);
+  REQUIRE(whole.height > 48);
+  CHECK(std::equal(poses.rgba.begin(), poses.rgba.end(), whole.rgba.end() - 4 * 4 * 64 * 48));
   CHECK(run_program({"poster", "hoop6_sector", "-o", dir / "p.jpg"}).err ==
         "unfurl: a poster is written as .png, not '.jpg'\n");
 }

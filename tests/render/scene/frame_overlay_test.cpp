@@ -332,4 +332,67 @@ TEST_CASE("time and deployed fraction are whole in the panels of a small poster"
     }
 }
 
+namespace {
+
+FrameBuilder::Banner banner_of(const std::string& text, const FrameStyle& size, int panels, bool title = true,
+                               bool legend = true) {
+  const Scene scene = read_scene_text(text, "s.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics diagnostics = diagnose(run);
+  FrameStyle style = film_style(scene, run, diagnostics);
+  style.width = size.width, style.height = size.height;
+  style.options.supersample = size.options.supersample;
+  return FrameBuilder(run.trajectory, style)
+      .banner(run.trajectory.end_time(), title, legend, panels * size.width);
+}
+
+FrameStyle panel(int width, int height, int fine = 1) {
+  FrameStyle size;
+  size.width = fine * width, size.height = fine * height;
+  size.options.supersample = fine;
+  return size;
+}
+
+}  // namespace
+
+TEST_CASE("above a poster are its title, its legend and how thick rods are drawn") {
+  const std::string ring =
+      "title = 'Six units'\nstructure.kind = 'hoop'\nsolver.end_time = 0.2\nrender.rod_scale = 3\n";
+  const FrameBuilder::Banner both = banner_of(ring, panel(320, 270), 5),
+                             plain = banner_of(ring, panel(320, 270), 5, false, true),
+                             titled = banner_of(ring, panel(320, 270), 5, true, false);
+  for (const char* text : {"Six units", "post", "chord", "load", "rods drawn 3.0 \u00D7 as thick"}) {
+    CAPTURE(text);
+    const bool title = std::string(text) == "Six units";
+    CHECK(label(both.list, text));
+    CHECK((label(plain.list, text) == nullptr) == title);
+    CHECK((label(titled.list, text) == nullptr) != title);
+  }
+  CHECK(plain.height > 0);
+  CHECK(both.height > plain.height);
+  CHECK(both.height < 270 / 3);  // less than the poses
+  CHECK(banner_of(ring, panel(320, 270), 5, false, false).height == 0);
+  // Nothing is written on a ground of its own: the strip's is even.
+  for (const TextLabel& l : both.list.labels) CHECK(l.backing.a == 0);
+  CHECK(both.list.tubes.empty());
+  CHECK(both.list.arrows.empty());
+}
+
+TEST_CASE("what is above a poster is whole at every size") {
+  const std::string ring = "title = 'Six units'\nstructure.kind = 'hoop'\nsolver.end_time = 0.2\n";
+  for (const std::string& scene : {ring, chain(14)})
+    for (const auto& [width, height] : {std::pair{16, 16}, {53, 45}, {213, 180}, {1280, 1080}})
+      for (const int panels : {1, 3, 5})
+        for (const int fine : {1, 2}) {
+          CAPTURE(scene.substr(0, 20), width, height, panels, fine);
+          const FrameBuilder::Banner banner = banner_of(scene, panel(width, height, fine), panels);
+          CHECK(banner.height % fine == 0);
+          check_texts(banner.list, fine * panels * width, banner.height);
+          CHECK((banner.height == 0) == banner.list.labels.empty());
+          if (panels * width < 500) continue;
+          CHECK(label(banner.list, scene == ring ? "load" : "group number 13"));
+          CHECK(label(banner.list, scene == ring ? "post" : "group number 0"));
+        }
+}
+
 }  // namespace frame_overlay_test
