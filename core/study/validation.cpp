@@ -7,6 +7,7 @@
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
 #include "core/simulate/simulation.hpp"
+#include "core/study/validation_elements.hpp"
 
 namespace unfurl {
 
@@ -250,7 +251,9 @@ std::vector<ValidationRow> validate(const StudyHooks& hooks) {
   add_ladder(rows);
   stage(0.7);
   add_cables(rows);
-  stage(0.8);
+  stage(0.75);
+  add_element_benchmarks(rows);
+  stage(0.95);
   rows.push_back({"ring antenna of six units", "Kong, Ma, Xue, Ding 2023", "deployment time (s)", "4.92",
                   opening_time(run_to(ring, 6)), 0.005});
   stage(1);
