@@ -121,6 +121,9 @@ void add_aligned(const SceneElement& e, ElementAdder& to, const char* kind, std:
   if (nodes.empty()) return;
   if (nodes.size() <= base)
     return to.find.problem(e, "nodes", "must be at least " + std::to_string(base + 1));
+  for (std::size_t i = 0; i < base; ++i)  // of which the line or plane is made
+    for (std::size_t k = 0; k < i; ++k)
+      if (!to.find.apart(e, "nodes", nodes[k], nodes[i])) return;
   for (std::size_t i = base; i < nodes.size(); ++i) {
     std::vector<int> group(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(base));
     group.push_back(nodes[i]);

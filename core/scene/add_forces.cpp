@@ -48,7 +48,9 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
       break;
     case Members::three_nodes:
       one.nodes = find.nodes(e, false);
-      if (one.nodes.size() == 3) forces.push_back(one);
+      if (one.nodes.size() == 3 && find.apart(e, "nodes", one.nodes[0], one.nodes[1]) &&
+          find.apart(e, "nodes", one.nodes[1], one.nodes[2]))
+        forces.push_back(one);
       break;
     case Members::rods:
       break;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "core/scene/element_members.hpp"
 #include "core/scene/scene.hpp"
@@ -100,7 +101,7 @@ std::optional<Measure> angle_at(const SceneElement& e, MemberFinder& find, const
     find.problem(e, key, "an angle needs three different nodes");
     return {};
   }
-  if (!find.axis_is_across(e, measure, key)) return {};
+  if (!find.angle_is_defined(e, measure, key == "nodes" ? "" : key)) return {};
   measure.reference = find.initial(measure);
   return measure;
 }
@@ -152,6 +153,17 @@ std::string near_kind(const std::string& word) {
   return near.empty() ? "" : " (did you mean " + in_quotes(near) + "?)";
 }
 
+// False, a problem noted: a line that it is measured from has no direction. A deployment may begin at the
+// length 0, which acts on nothing.
+bool term_is_defined(const SceneElement& e, MemberFinder& find, const std::string& key, MeasureKind kind,
+                     const std::vector<int>& nodes) {
+  if (kind == MeasureKind::length) return key != "terms" || find.apart(e, key, nodes[0], nodes[1]);
+  if (kind != MeasureKind::dihedral) return true;
+  for (const auto& [a, b] : {std::pair(0U, 1U), {0U, 2U}, {1U, 2U}, {1U, 3U}, {2U, 3U}})
+    if (!find.apart(e, key, nodes[a], nodes[b])) return false;
+  return true;
+}
+
 std::optional<MeasureTerm> term_of(const SceneElement& e, MemberFinder& find, const std::string& given,
                                    const std::string& key) {
   const bool bare = std::any_of(term_kinds.begin(), term_kinds.end(),
@@ -198,6 +210,7 @@ std::optional<MeasureTerm> term_of(const SceneElement& e, MemberFinder& find, co
   }
   if (kind->kind == MeasureKind::coordinate && direction.isZero(0.0))
     return bad_term(e, find, key, given, "has no direction");
+  if (!term_is_defined(e, find, key, kind->kind, nodes)) return {};
   term.measure = {kind->kind, std::move(nodes), unit_of(direction), 0.0, {}};
   if (kind->kind == MeasureKind::dihedral) term.measure.reference = find.initial(term.measure);
   return term;
@@ -287,6 +300,8 @@ void add_telescope(const SceneElement& e, ElementAdder& to) {
   const std::vector<double> shares = telescope_shares(e, to.find, stages);
   if (shares.empty()) return;
   const auto stage = [&](std::size_t i) { return measure->terms[i].measure.nodes; };
+  const int first = stage(0)[0], last = stage(stages - 1)[1];
+  if (e.values.boolean("straight") && !to.find.apart(e, "nodes", first, last)) return;
   for (std::size_t i = 0; i + 1 < stages; ++i) {
     const auto a = stage(i), b = stage(i + 1);
     hold_initial(e, to,
@@ -295,7 +310,7 @@ void add_telescope(const SceneElement& e, ElementAdder& to) {
     if (e.values.boolean("straight"))
       to.structure.constraints.push_back({"collinear",
                                           e.name + " is straight (" + to.node(a[1]).name + ")",
-                                          {stage(0)[0], stage(stages - 1)[1], a[1]},
+                                          {first, last, a[1]},
                                           {},
                                           0.0,
                                           {},
@@ -345,12 +360,8 @@ std::optional<Measure> path_of(const SceneElement& e, MemberFinder& find) {
   }
   std::vector<MeasureTerm> spans;
   for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+    if (!find.apart(e, "nodes", nodes[i], nodes[i + 1])) return {};
     spans.push_back(length_term(1.0, nodes[i], nodes[i + 1]));
-    if (find.initial(spans.back().measure) > 0) continue;
-    find.problem(e, "nodes",
-                 in_quotes(e.nodes[i]) + " and " + in_quotes(e.nodes[i + 1]) +
-                     " follow each other and must not be at the same place at t = 0");
-    return {};
   }
   return sum_of(std::move(spans));
 }

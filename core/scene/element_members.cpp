@@ -64,9 +64,7 @@ std::vector<int> MemberFinder::nodes(const SceneElement& element, bool globs) {
         found.push_back(node);
         continue;
       }
-      problem(
-          element, "nodes",
-          "names " + in_quotes(structure_.nodes[static_cast<std::size_t>(node)].name) + " more than once");
+      problem(element, "nodes", "names " + in_quotes(name_of(node)) + " more than once");
       return {};
     }
     if (!matches.empty()) continue;
@@ -174,23 +172,32 @@ bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure&
         "an angle between a line and itself is 0 whatever moves; name two rods, or three different nodes");
     return false;
   }
-  return axis_is_across(element, measure);
+  return angle_is_defined(element, measure);
+}
+
+// What coordinates are rounded by is no distance.
+bool MemberFinder::apart(const SceneElement& element, const std::string& key, int a, int b) {
+  const Vec3 from = start_of(a), to = start_of(b);
+  const double rounded = 4 * std::numeric_limits<double>::epsilon() * std::max(from.norm(), to.norm());
+  if ((to - from).norm() > rounded) return true;
+  problem(element, key,
+          in_quotes(name_of(a)) + " and " + in_quotes(name_of(b)) +
+              " must not be at the same place at t = 0: there is no line through them");
+  return false;
 }
 
 // An angle about an axis is that of the projections across it: a rod along the axis has none.
-bool MemberFinder::axis_is_across(const SceneElement& element, const Measure& measure,
-                                  const std::string& key) {
-  if (measure.axis.isZero(0.0)) return true;
+bool MemberFinder::angle_is_defined(const SceneElement& element, const Measure& measure,
+                                    const std::string& key) {
+  const std::string members = !key.empty() ? key : element.nodes.empty() ? "rods" : "nodes";
   for (const std::size_t first : {0U, 2U}) {
-    const Vec3 d =
-        start_.segment<3>(3 * measure.nodes[first + 1]) - start_.segment<3>(3 * measure.nodes[first]);
-    if (measure.axis.cross(d).norm() > 1e-9 * d.norm()) continue;
-    const auto name = [&](std::size_t i) {
-      return structure_.nodes[static_cast<std::size_t>(measure.nodes[i])].name;
-    };
-    problem(element, key,
-            std::string(key == "axis" ? "" : "an axis ") + "is along the line from " +
-                in_quotes(name(first)) + " to " + in_quotes(name(first + 1)) +
+    const int from = measure.nodes[first], to = measure.nodes[first + 1];
+    if (!apart(element, members, from, to)) return false;
+    const Vec3 d = start_of(to) - start_of(from);
+    if (measure.axis.isZero(0.0) || measure.axis.cross(d).norm() > 1e-9 * d.norm()) continue;
+    problem(element, key.empty() ? "axis" : key,
+            std::string(key.empty() ? "" : "an axis ") + "is along the line from " +
+                in_quotes(name_of(from)) + " to " + in_quotes(name_of(to)) +
                 " at t = 0: there is no angle about it; give the axis of the hinge");
     return false;
   }
@@ -201,9 +208,8 @@ std::optional<Measure> length_of(const SceneElement& element, MemberFinder& find
   Measure measure;
   measure.nodes = find.nodes(element, false);
   if (measure.nodes.size() != 2) return {};
-  if (find.initial(measure) > 0) return measure;
-  find.problem(element, "nodes", "must not be at the same place at t = 0");
-  return {};
+  if (!find.apart(element, "nodes", measure.nodes[0], measure.nodes[1])) return {};
+  return measure;
 }
 
 std::optional<Measure> angle_of(const SceneElement& element, MemberFinder& find) {

@@ -39,8 +39,12 @@ class MemberFinder {
   // The angle that an entry names, with a sign where `axis` is not zero. False: a problem was noted.
   bool angle(const SceneElement& element, const Vec3& axis, Measure& measure);
 
-  // False, a problem noted: a line of the angle is along its axis.
-  bool axis_is_across(const SceneElement& element, const Measure& measure, const std::string& key = "axis");
+  // False, a problem noted for `key`: the two nodes are at one place, so that no direction leads from the one
+  // to the other.
+  bool apart(const SceneElement& element, const std::string& key, int a, int b);
+  // False, a problem noted: a line of the angle has no direction, or is along its axis. `key`: the entry's
+  // that gives both; none: those of its members and "axis".
+  bool angle_is_defined(const SceneElement& element, const Measure& measure, const std::string& key = "");
   double initial(const Measure& measure) const;  // at the structure's start
   void problem(const SceneElement& element, const std::string& key, std::string message);
   void throw_problems();  // SceneError, where there are any
@@ -51,6 +55,8 @@ class MemberFinder {
     int first, last;  // parts
   };
   std::vector<int> rods_matching(const std::string& pattern) const;
+  Vec3 start_of(int node) const { return start_.segment<3>(3 * node); }
+  const std::string& name_of(int node) const { return structure_.nodes[static_cast<std::size_t>(node)].name; }
   std::string similar_rod(const std::string& name) const;
 
   const Structure& structure_;

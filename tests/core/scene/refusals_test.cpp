@@ -78,6 +78,56 @@ TEST_CASE("an angle about an axis that its rods are parallel to is refused with 
             .empty());
 }
 
+TEST_CASE("a measure of nodes at one place is refused with its key and their names") {
+  // A and H at one place: no line goes from the one to the other, whatever is measured from it.
+  std::string points = "[structure]\nkind = 'custom'\nnodes = [\n";
+  for (const char* node : {"'A', position = [0.3, 0.1, 7]", "'H', position = [0.3, 0.1, 7]",
+                           "'B', position = [1, 0, 7]", "'C', position = [1, 1, 8]"})
+    points += std::string("{name = ") + node + ", mass = 1},\n";
+  points += "]\n";
+  struct Case {
+    std::string table, lines, key;
+  };
+  const std::string three = "\nnodes = ['A', 'H', 'B']";
+  for (const Case& c : std::vector<Case>{
+           {"forces", "kind = 'torsion_spring'\nstiffness = 1" + three, "nodes"},
+           {"forces", "kind = 'torsion_spring'\nstiffness = 1\nnodes = ['B', 'A', 'H']", "nodes"},
+           {"forces", "kind = 'torsion_spring'\nstiffness = 1\naxis = [0, 0, 1]" + three, "nodes"},
+           {"forces", "kind = 'motor'\nstall_torque = 1\nno_load_speed = 10\naxis = [0, 0, 1]" + three,
+            "nodes"},
+           {"forces", "kind = 'friction'\nkinetic = 1" + three, "nodes"},
+           {"forces", "kind = 'bending'\nstiffness = 1" + three, "nodes"},
+           {"forces", "kind = 'spring'\nstiffness = 1\nnodes = ['A', 'H']", "nodes"},
+           {"forces", "kind = 'cable'\naxial_stiffness = 1\nnodes = ['B', 'A', 'H']", "nodes"},
+           {"forces", "kind = 'combination'\nstiffness = 1\nterms = ['1 angle A H B']", "terms"},
+           {"forces", "kind = 'combination'\nstiffness = 1\nterms = ['1 angle B H A about 0 0 1']", "terms"},
+           {"forces", "kind = 'combination'\nstiffness = 1\nterms = ['1 length A H']", "terms"},
+           {"forces", "kind = 'combination'\nstiffness = 1\nterms = ['1 dihedral B A H C']", "terms"},
+           {"forces", "kind = 'combination'\nstiffness = 1\nterms = ['1 dihedral A H B C']", "terms"},
+           {"forces", "kind = 'combination'\nstiffness = 1\nterms = ['1 dihedral A B H C']", "terms"},
+           {"forces", "kind = 'combination'\nstiffness = 1\nterms = ['1 dihedral C A B H']", "terms"},
+           {"constraints", "kind = 'angle'" + three, "nodes"},
+           {"constraints", "kind = 'angle_stop'\nmax = 170" + three, "nodes"},
+           {"constraints", "kind = 'collinear'" + three, "nodes"},
+           {"constraints", "kind = 'coplanar'\nnodes = ['A', 'B', 'H', 'C']", "nodes"},
+           {"constraints", "kind = 'length'\nnodes = ['A', 'H']", "nodes"},
+           {"constraints", "kind = 'gear'\nradii = [1, 1]\nnodes = ['A', 'H', 'B', 'A', 'B', 'C']", "nodes"},
+           {"constraints", "kind = 'rack'\nradius = 1\ndirection = [1, 0, 0]\nnodes = ['A', 'H', 'B', 'C']",
+            "nodes"},
+           {"constraints", "kind = 'telescope'\nnodes = ['A', 'B', 'H']", "nodes"},
+           {"constraints", "kind = 'combination'\nterms = ['1 angle A H B']", "terms"}}) {
+    INFO(c.lines);
+    const std::string error = error_of(points + entry(c.table, c.lines));
+    INFO(error);
+    CHECK(error.find(c.table + "[0]." + c.key + ": ") != std::string::npos);
+    CHECK((error.find("'A' and 'H' must not be at the same place at t = 0") != std::string::npos ||
+           error.find("'H' and 'A' must not be at the same place at t = 0") != std::string::npos));
+  }
+  // The third of nodes in line may be where the first is, and a way may begin at nothing.
+  CHECK(error_of(points + entry("constraints", "kind = 'collinear'\nnodes = ['A', 'B', 'H']")).empty());
+  CHECK(error_of(points + "[deployment]\nmeasure = '1 length A H'\ndeployed = 1\n").empty());
+}
+
 TEST_CASE("relations of any size hold the structure where it is") {
   for (const double size : {1e-9, 1e-3, 1.0, 1e9}) {
     std::ostringstream wrong, right;
