@@ -208,6 +208,8 @@ std::string unit_of_axis(const SweepPlan& plan, const SweepAxis& axis,
 void check_plan(SweepPlan& plan) {
   if (plan.axes.empty()) throw StudyError("nothing to vary; give --vary KEY=FROM:TO:COUNT");
   if (plan.measures.empty()) throw StudyError("nothing to measure; give --measure NAME,...");
+  for (const SweepAxis& axis : plan.axes)
+    if (axis.values.empty()) throw StudyError("no value is given for " + in_quotes(axis.key));
   for (std::size_t m = 0; m < plan.measures.size(); ++m)
     for (std::size_t k = 0; k < m; ++k)
       if (plan.measures[k].column == plan.measures[m].column)

@@ -424,6 +424,10 @@ TEST_CASE("points of a grid count through its last axis first, and columns follo
                                                    "forces[0].stiffness", "outcome", "peak_speed_m_s",
                                                    "energy_J"});
   CHECK(plan.number_columns() == std::vector<std::size_t>{4, 5});
+  // Another program's list may be empty.
+  plan.axes[1].values.clear();
+  plan.axes[1].numbers.clear();
+  CHECK_THROWS_WITH(check_plan(plan), Catch::Contains("no value is given for 'gravity.acceleration[2]'"));
   // A grid of more than 1e7 points, whatever the product overflows to.
   plan.axes.clear();
   for (const char* key : {"a", "b", "c", "d"})
