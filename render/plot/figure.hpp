@@ -103,6 +103,9 @@ struct Figure {
 // 6 ink, 7 grey: told apart with every kind of colour blindness, each with a contrast of 3 or more on white.
 FigureColor palette(int i);
 inline constexpr int palette_size = 8;
+// From this index on colours are those of groups of rods, as pictures before a pale ground have them, but
+// none paler than a contrast of 3 on white.
+inline constexpr int first_group_color = 64 * palette_size;
 
 // A colour for u in [0, 1] on a map of values: from dark blue over green to yellow, evenly in lightness
 // ("viridis").

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "render/plot/group_colors.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -24,9 +26,22 @@ constexpr std::array<FigureColor, palette_size> shades{hex(0x06305A), hex(0x6B22
                                                        hex(0xC06AA3), hex(0x5E4904), hex(0x1C5C8A),
                                                        hex(0x8A7F74), hex(0x3F4A52)};
 
+// Beyond the sixth the same in other shades, as pictures have them (Look::group).
+FigureColor group_color_on_white(int k) {
+  constexpr int count = static_cast<int>(group_colors_on_pale.size());
+  const auto& [r, g, b] = group_colors_on_pale[static_cast<std::size_t>(k % count)];
+  const int round = k / count;
+  const FigureColor& to = round % 2 == 1 ? plot::ink : plot::white;
+  const float share = round == 0 ? 0.0f : round % 4 < 3 ? 0.5f : 0.75f;
+  FigureColor c{r + share * (to.r - r), g + share * (to.g - g), b + share * (to.b - b), 1};
+  while (plot::contrast_on_white(c) < 3) c = {0.99f * c.r, 0.99f * c.g, 0.99f * c.b, 1};
+  return c;
+}
+
 }  // namespace
 
 FigureColor palette(int i) {
+  if (i >= first_group_color) return group_color_on_white(i - first_group_color);
   constexpr int all = 2 * palette_size;
   const int k = (i % all + all) % all;
   return k < palette_size ? colors[static_cast<std::size_t>(k)]

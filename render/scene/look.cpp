@@ -3,18 +3,19 @@
 
 #include <algorithm>
 
+#include "render/plot/group_colors.hpp"
+
 namespace unfurl {
 namespace {
 
-// Darkened for a pale background: blue, orange, bluish green, reddish purple, sky blue, vermilion.
-constexpr GroupColors on_pale{{{0.00f, 0.37f, 0.66f, 1},
-                               {0.88f, 0.50f, 0.02f, 1},
-                               {0.00f, 0.55f, 0.40f, 1},
-                               {0.72f, 0.38f, 0.58f, 1},
-                               {0.25f, 0.62f, 0.85f, 1},
-                               {0.80f, 0.30f, 0.00f, 1}}};
+constexpr GroupColors on_pale = [] {
+  GroupColors out;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = {group_colors_on_pale[i][0], group_colors_on_pale[i][1], group_colors_on_pale[i][2], 1};
+  return out;
+}();
 
-// Lightened for a dark one.
+// The same, lightened for a dark background.
 constexpr GroupColors on_dark{{{0.36f, 0.68f, 0.94f, 1},
                                {0.96f, 0.64f, 0.12f, 1},
                                {0.10f, 0.76f, 0.56f, 1},

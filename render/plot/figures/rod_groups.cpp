@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "render/plot/figure.hpp"
+
 namespace unfurl {
 
 std::vector<RodGroup> rod_groups(const Structure& structure) {
@@ -12,13 +14,21 @@ std::vector<RodGroup> rod_groups(const Structure& structure) {
     const std::string& name = structure.rods[r].group;
     auto g =
         std::find_if(groups.begin(), groups.end(), [&](const RodGroup& have) { return have.name == name; });
-    if (g == groups.end())
-      g = groups.insert(g, {name.empty() ? "rod" : name, {}, 0, static_cast<int>(groups.size())});
+    if (g == groups.end()) g = groups.insert(g, {name.empty() ? "rod" : name, {}, 0, 0});
     g->rods.push_back(static_cast<int>(r));
     group_of[r] = static_cast<std::size_t>(g - groups.begin());
   }
-  for (const RodCopy& copy : structure.rod_copies)
+  std::vector<bool> shown(structure.rods.size(), false);
+  for (const RodCopy& copy : structure.rod_copies) {
     ++groups[group_of[static_cast<std::size_t>(copy.source)]].shown;
+    shown[static_cast<std::size_t>(copy.source)] = true;
+  }
+  // Colours go by what is shown first, as in pictures.
+  int next = first_group_color;
+  for (std::size_t r = 0; r < shown.size(); ++r)
+    if (int& color = groups[group_of[r]].color; shown[r] && color == 0) color = next++;
+  for (RodGroup& group : groups)
+    if (group.color == 0) group.color = next++;
   return groups;
 }
 
