@@ -98,6 +98,7 @@ int cmd_show(const Arguments& arguments);
 int cmd_margin(const Arguments& arguments);
 int cmd_modes(const Arguments& arguments);
 int cmd_new(const Arguments& arguments);
+int cmd_import(const Arguments& arguments);
 int cmd_verify(const Arguments& arguments);
 int cmd_completion(const Arguments& arguments);
 

@@ -107,6 +107,14 @@ constexpr Command table[] = {
      1, false, cmd_new, "",
      "unfurl new custom > mine.toml\n"
      "unfurl new hoop > ring.toml"},
+    {"import", "FILE [RODS.csv] [-o SCENE.toml]",
+     "a scene of origami (FOLD), of lines and faces (OBJ), or of nodes x,y,z and rods a,b between their "
+     "names "
+     "or numbers (CSV)",
+     1, 2, false, cmd_import, "-o --set --force --quiet",
+     "unfurl import miura.fold -o miura.toml\n"
+     "unfurl import frame.obj -o frame.toml --set variables.section_area=2e-4\n"
+     "unfurl import nodes.csv rods.csv > linkage.toml"},
 };
 
 }  // namespace

@@ -158,15 +158,16 @@ std::vector<std::vector<std::string>> csv_records(std::string_view text) {
 }
 
 std::vector<CsvRow> read_csv(std::string_view text, const std::string& file,
-                             const std::vector<CsvColumn>& columns, SceneNotes& notes) {
+                             const std::vector<CsvColumn>& columns, SceneNotes& notes,
+                             std::string_view header_line) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   if (const auto obstacle = find_bad_encoding(text); !obstacle.message.empty()) {
     notes.add(locate(text, obstacle.offset, file), "", obstacle.message);
     return {};
   }
-  Splitter splitter(text);
+  Splitter splitter(text), given(header_line);
   Record record;
-  if (!splitter.next(record)) {
+  if (!given.next(record) && !splitter.next(record)) {
     notes.add({file, 1, 1}, "", "is empty; the first line must name the columns");
     return {};
   }

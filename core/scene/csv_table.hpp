@@ -29,9 +29,10 @@ struct CsvRow {
 };
 
 // All rows that are right; what is wrong is noted with file:line. Blank lines and lines that begin with # are
-// skipped.
+// skipped. `header`: in place of a first line that names the columns.
 std::vector<CsvRow> read_csv(std::string_view text, const std::string& file,
-                             const std::vector<CsvColumn>& columns, SceneNotes& notes);
+                             const std::vector<CsvColumn>& columns, SceneNotes& notes,
+                             std::string_view header = {});
 
 // The cells of every record, the header's too, unjudged; not a last one that ends within quotes.
 std::vector<std::vector<std::string>> csv_records(std::string_view text);

@@ -2,6 +2,7 @@
 #include "core/scene/custom_reader.hpp"
 
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "core/scene/csv_table.hpp"
@@ -107,74 +108,14 @@ std::string text_cell(const CsvRow& row, std::string_view name, std::string_view
   return it == row.texts.end() || it->second.empty() ? std::string(fallback) : it->second;
 }
 
-// The rows of the file that the key names; none when there is no such key.
-std::vector<CsvRow> file_rows(TableReader& table, std::string_view key, const std::string& name,
-                              const std::string& folder, const std::vector<CsvColumn>& columns,
-                              SceneNotes& notes) {
+// The file that the key names; none when there is no such key.
+std::optional<TextFile> file_of(TableReader& table, std::string_view key, const std::string& name,
+                                const std::string& folder) {
   if (!table.has(key) || name.empty()) return {};
-  const TextFile file = read_file_beside(folder, name);
-  if (!file.error.empty()) {
-    table.problem(key, file.error);
-    return {};
-  }
-  return read_csv(file.text, file.path, columns, notes);
-}
-
-void read_nodes_file(TableReader& table, const std::string& name, const std::string& folder, CustomSpec& spec,
-                     SceneNotes& notes) {
-  static const std::vector<CsvColumn> columns = {
-      {"name", "", false, true}, {"x", "m", true, true}, {"y", "m", true, true},
-      {"z", "m", true, true},    {"vx", "m_s", true},    {"vy", "m_s", true},
-      {"vz", "m_s", true},       {"mass", "kg", true},   {"fixed", "", true, false, true}};
-  for (auto& row : file_rows(table, "nodes_file", name, folder, columns, notes)) {
-    const std::string key = entry_key("nodes", spec.nodes.size());
-    notes.locations[key] = row.where;
-    keep_to_ranges(row, key, custom_node_params(), notes);
-    spec.nodes.push_back({text_cell(row, "name", ""),
-                          {cell(row, "x", 0), cell(row, "y", 0), cell(row, "z", 0)},
-                          {cell(row, "vx", 0), cell(row, "vy", 0), cell(row, "vz", 0)},
-                          cell(row, "mass", 0),
-                          cell(row, "fixed", 0) != 0.0});
-  }
-}
-
-void read_rods_file(TableReader& table, const std::string& name, const std::string& folder, CustomSpec& spec,
-                    SceneNotes& notes) {
-  static const std::vector<CsvColumn> columns = {{"a", "", false, true},
-                                                 {"b", "", false, true},
-                                                 {"name", ""},
-                                                 {"mass", "kg", true},
-                                                 {"density", "kg_m3", true},
-                                                 {"area", "m2", true},
-                                                 {"group", ""},
-                                                 {"length", "m", true},
-                                                 {"youngs_modulus", "Pa", true},
-                                                 {"strength", "Pa", true},
-                                                 {"second_moment", "m4", true},
-                                                 {"elastic", "", true, false, true},
-                                                 {"segments", "", true},
-                                                 {"free_length", "m", true}};
-  for (auto& row : file_rows(table, "rods_file", name, folder, columns, notes)) {
-    const std::string key = entry_key("rods", spec.rods.size());
-    notes.locations[key] = row.where;
-    if (row.numbers.contains("mass") && row.numbers.contains("density"))
-      notes.add(row.where, key + ".density", mass_twice);
-    keep_to_ranges(row, key, custom_rod_params(), notes);
-    const auto elastic = cell(row, "elastic");
-    spec.rods.push_back({text_cell(row, "name", ""),
-                         {text_cell(row, "a", ""), text_cell(row, "b", "")},
-                         cell(row, "mass"),
-                         cell(row, "density", 0.0),
-                         cell(row, "area", 0.0),
-                         text_cell(row, "group", "rod"),
-                         cell(row, "length", 0.0),
-                         cell(row, "youngs_modulus", not_given),
-                         cell(row, "strength", not_given),
-                         cell(row, "second_moment", 0.0),
-                         elastic ? std::optional(*elastic != 0.0) : std::nullopt,
-                         static_cast<long>(cell(row, "segments", 0.0)),
-                         cell(row, "free_length", 0.0)});
-  }
+  TextFile file = read_file_beside(folder, name);
+  if (file.error.empty()) return file;
+  table.problem(key, file.error);
+  return {};
 }
 
 // The place of a key of an entry, of the entry, or of the whole table: the closest that is known.
@@ -267,6 +208,63 @@ const std::vector<ParamSpec>& custom_rod_params() {
   return params;
 }
 
+void add_csv_nodes(std::string_view text, const std::string& file, std::string_view header, bool named,
+                   CustomSpec& spec, SceneNotes& notes) {
+  const std::vector<CsvColumn> columns = {
+      {"name", "", false, named}, {"x", "m", true, true}, {"y", "m", true, true},
+      {"z", "m", true, true},     {"vx", "m_s", true},    {"vy", "m_s", true},
+      {"vz", "m_s", true},        {"mass", "kg", true},   {"fixed", "", true, false, true}};
+  for (auto& row : read_csv(text, file, columns, notes, header)) {
+    const std::string key = entry_key("nodes", spec.nodes.size());
+    notes.locations[key] = row.where;
+    keep_to_ranges(row, key, custom_node_params(), notes);
+    spec.nodes.push_back({text_cell(row, "name", ""),
+                          {cell(row, "x", 0), cell(row, "y", 0), cell(row, "z", 0)},
+                          {cell(row, "vx", 0), cell(row, "vy", 0), cell(row, "vz", 0)},
+                          cell(row, "mass", 0),
+                          cell(row, "fixed", 0) != 0.0});
+  }
+}
+
+void add_csv_rods(std::string_view text, const std::string& file, std::string_view header, CustomSpec& spec,
+                  SceneNotes& notes) {
+  static const std::vector<CsvColumn> columns = {{"a", "", false, true},
+                                                 {"b", "", false, true},
+                                                 {"name", ""},
+                                                 {"mass", "kg", true},
+                                                 {"density", "kg_m3", true},
+                                                 {"area", "m2", true},
+                                                 {"group", ""},
+                                                 {"length", "m", true},
+                                                 {"youngs_modulus", "Pa", true},
+                                                 {"strength", "Pa", true},
+                                                 {"second_moment", "m4", true},
+                                                 {"elastic", "", true, false, true},
+                                                 {"segments", "", true},
+                                                 {"free_length", "m", true}};
+  for (auto& row : read_csv(text, file, columns, notes, header)) {
+    const std::string key = entry_key("rods", spec.rods.size());
+    notes.locations[key] = row.where;
+    if (row.numbers.contains("mass") && row.numbers.contains("density"))
+      notes.add(row.where, key + ".density", mass_twice);
+    keep_to_ranges(row, key, custom_rod_params(), notes);
+    const auto elastic = cell(row, "elastic");
+    spec.rods.push_back({text_cell(row, "name", ""),
+                         {text_cell(row, "a", ""), text_cell(row, "b", "")},
+                         cell(row, "mass"),
+                         cell(row, "density", 0.0),
+                         cell(row, "area", 0.0),
+                         text_cell(row, "group", "rod"),
+                         cell(row, "length", 0.0),
+                         cell(row, "youngs_modulus", not_given),
+                         cell(row, "strength", not_given),
+                         cell(row, "second_moment", 0.0),
+                         elastic ? std::optional(*elastic != 0.0) : std::nullopt,
+                         static_cast<long>(cell(row, "segments", 0.0)),
+                         cell(row, "free_length", 0.0)});
+  }
+}
+
 CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes& notes,
                        std::vector<SceneElement>& constraints) {
   const std::size_t before = notes.problems.size();
@@ -281,9 +279,11 @@ CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes
     if (error.key != "youngs_modulus") table.problem(error.key, error.message);
   }
   read_nodes(table, spec, notes);
-  read_nodes_file(table, values.text("nodes_file"), folder, spec, notes);
+  if (const auto file = file_of(table, "nodes_file", values.text("nodes_file"), folder))
+    add_csv_nodes(file->text, file->path, "", true, spec, notes);
   read_rods(table, spec, notes);
-  read_rods_file(table, values.text("rods_file"), folder, spec, notes);
+  if (const auto file = file_of(table, "rods_file", values.text("rods_file"), folder))
+    add_csv_rods(file->text, file->path, "", spec, notes);
   read_constraints(table, folder, notes, constraints);
   note_problems(spec, before, table, notes);
   return spec;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "core/scene/elements.hpp"
 #include "core/scene/table_reader.hpp"
@@ -16,6 +17,13 @@ namespace unfurl {
 // Constraints of kinds that every structure may have go to `constraints`.
 CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes& notes,
                        std::vector<SceneElement>& constraints);
+
+// The rows of CSV files (csv_table.hpp) behind those that are there; the place of each goes to the notes'
+// locations. `named`: the column of names must be there.
+void add_csv_nodes(std::string_view text, const std::string& file, std::string_view header, bool named,
+                   CustomSpec& spec, SceneNotes& notes);
+void add_csv_rods(std::string_view text, const std::string& file, std::string_view header, CustomSpec& spec,
+                  SceneNotes& notes);
 
 // Keys of the entries, also for the scene writer.
 const std::vector<ParamSpec>& custom_params();

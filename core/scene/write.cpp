@@ -49,36 +49,6 @@ std::string params_text(const std::vector<ParamSpec>& specs, const ParamSet& val
   return text;
 }
 
-std::string node_text(const CustomNode& node) {
-  const auto& specs = custom_node_params();
-  std::string text = "\n[[structure.nodes]]\n" + line("name", toml_string(node.name));
-  text += line_of(specs, "position", vec_text(node.position));
-  if (!node.velocity.isZero(0.0)) text += line_of(specs, "velocity", vec_text(node.velocity));
-  if (node.mass != 0.0) text += line_of(specs, "mass", real_text(node.mass));
-  if (node.fixed) text += line("fixed", "true");
-  return text;
-}
-
-std::string rod_text(const CustomRod& rod) {
-  const auto& specs = custom_rod_params();
-  std::string text = "\n[[structure.rods]]\n";
-  if (!rod.name.empty()) text += line("name", toml_string(rod.name));
-  text += line("nodes", names_text(rod.nodes));
-  if (rod.mass) text += line_of(specs, "mass", real_text(*rod.mass));
-  if (rod.density != 0.0) text += line_of(specs, "density", real_text(rod.density));
-  if (rod.area != 0.0) text += line_of(specs, "area", real_text(rod.area));
-  if (rod.length != 0.0) text += line_of(specs, "length", real_text(rod.length));
-  if (!std::isnan(rod.youngs_modulus))
-    text += line_of(specs, "youngs_modulus", real_text(rod.youngs_modulus));
-  if (!std::isnan(rod.strength)) text += line_of(specs, "strength", real_text(rod.strength));
-  if (rod.second_moment != 0.0) text += line_of(specs, "second_moment", real_text(rod.second_moment));
-  if (rod.elastic) text += line("elastic", *rod.elastic ? "true" : "false");
-  if (rod.segments > 0) text += line("segments", std::to_string(rod.segments));
-  if (rod.free_length != 0.0) text += line_of(specs, "free_length", real_text(rod.free_length));
-  if (rod.group != "rod") text += line("group", toml_string(rod.group));
-  return text;
-}
-
 bool worth_writing(const ParamValue& value) {
   if (const auto* x = std::get_if<double>(&value)) return !std::isnan(*x);
   if (const auto* text = std::get_if<std::string>(&value)) return !text->empty();
@@ -110,8 +80,8 @@ std::string structure_text(const Scene& scene) {
     return text + params_text(family->params(), scene.structure);
   text += line("mass", toml_string(scene.custom.lumped_mass ? "lumped" : "consistent"));
   text += params_text(rod_material_params(), rod_material_values(scene.custom.material));
-  for (const auto& node : scene.custom.nodes) text += node_text(node);
-  for (const auto& rod : scene.custom.rods) text += rod_text(rod);
+  for (const auto& node : scene.custom.nodes) text += custom_node_text(node);
+  for (const auto& rod : scene.custom.rods) text += custom_rod_text(rod);
   return text;
 }
 
@@ -141,6 +111,36 @@ std::string idle_lines(const SceneElement& element, const ElementKind& kind) {
 }
 
 }  // namespace
+
+std::string custom_node_text(const CustomNode& node) {
+  const auto& specs = custom_node_params();
+  std::string text = "\n[[structure.nodes]]\n" + line("name", toml_string(node.name));
+  text += line_of(specs, "position", vec_text(node.position));
+  if (!node.velocity.isZero(0.0)) text += line_of(specs, "velocity", vec_text(node.velocity));
+  if (node.mass != 0.0) text += line_of(specs, "mass", real_text(node.mass));
+  if (node.fixed) text += line("fixed", "true");
+  return text;
+}
+
+std::string custom_rod_text(const CustomRod& rod) {
+  const auto& specs = custom_rod_params();
+  std::string text = "\n[[structure.rods]]\n";
+  if (!rod.name.empty()) text += line("name", toml_string(rod.name));
+  text += line("nodes", names_text(rod.nodes));
+  if (rod.mass) text += line_of(specs, "mass", real_text(*rod.mass));
+  if (rod.density != 0.0) text += line_of(specs, "density", real_text(rod.density));
+  if (rod.area != 0.0) text += line_of(specs, "area", real_text(rod.area));
+  if (rod.length != 0.0) text += line_of(specs, "length", real_text(rod.length));
+  if (!std::isnan(rod.youngs_modulus))
+    text += line_of(specs, "youngs_modulus", real_text(rod.youngs_modulus));
+  if (!std::isnan(rod.strength)) text += line_of(specs, "strength", real_text(rod.strength));
+  if (rod.second_moment != 0.0) text += line_of(specs, "second_moment", real_text(rod.second_moment));
+  if (rod.elastic) text += line("elastic", *rod.elastic ? "true" : "false");
+  if (rod.segments > 0) text += line("segments", std::to_string(rod.segments));
+  if (rod.free_length != 0.0) text += line_of(specs, "free_length", real_text(rod.free_length));
+  if (rod.group != "rod") text += line("group", toml_string(rod.group));
+  return text;
+}
 
 std::string idle_text(const Scene& scene) {
   std::string text;

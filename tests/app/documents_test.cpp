@@ -2,9 +2,9 @@
 // Every command in README.md and docs/ works, every scene in them can be run, and what is printed by a
 // command is what that command prints. A document's scenes are its ```toml blocks that begin with "#
 // NAME.toml" (or
-// "# NAME.toml = OTHER.toml +", which are behind each other); its commands are the lines of code that begin
-// with unfurl. Those that take long are run where UNFURL_DOCS=all is set (./dev check); elsewhere it is
-// looked up that their verb has their options.
+// "# NAME.toml = OTHER.toml +", which are behind each other), its other files blocks that begin with ```KIND
+// NAME; its commands are the lines of code that begin with unfurl. Those that take long are run where
+// UNFURL_DOCS=all is set (./dev check); elsewhere it is looked up that their verb has their options.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 struct Document {
   std::map<std::string, std::string> scenes;  // file name -> text
+  std::map<std::string, std::string> files;   // the same of others
   std::vector<std::string> commands;          // "unfurl run hoop6 -o data"
 };
 
@@ -64,14 +65,17 @@ void add_command(Document& document, std::string line) {
 Document read(const fs::path& path) {
   Document document;
   std::istringstream text(file_text(path.string()));
-  std::string block;
+  std::string block, file;
   bool toml = false;
   for (std::string line; std::getline(text, line);) {
     if (line.starts_with("```")) {
       if (toml) add_scene(document, block);
+      if (!file.empty()) document.files[file] = block;
       toml = line == "```toml";
+      const std::size_t name = line.find(' ');
+      file = name == std::string::npos ? "" : line.substr(name + 1);
       block.clear();
-    } else if (toml) {
+    } else if (toml || !file.empty()) {
       block += line + "\n";
     } else if (!document.commands.empty() && document.commands.back().ends_with('\\')) {
       document.commands.back().pop_back();
@@ -138,7 +142,8 @@ TEST_CASE("every command in the documents works") {
   for (const fs::path& page : pages()) {
     const Document document = read(page);
     const ScratchDirectory folder;
-    for (const auto& [name, text] : document.scenes) folder.write(name, text);
+    for (const auto* files : {&document.scenes, &document.files})
+      for (const auto& [name, text] : *files) folder.write(name, text);
     for (const auto& command : document.commands) {
       const auto words = words_of(command);
       INFO(page.filename().string() << ": " << command);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// unfurl import: from another program's file to a scene that is checked and run as it is.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/run_program.hpp"
+
+using namespace unfurl;
+
+namespace import_command_test {
+
+namespace {
+
+// Two parallelograms that fold at the edge between them.
+const std::string two_plates =
+    "{\"vertices_coords\": [[0, 0, 0], [0.3, 1.1, 0], [0.9, 0, 0.5], [1.2, 1.1, 0.5], [-0.8, 0.1, 0.6], "
+    "[-0.5, 1.2, 0.6]],\n\"edges_vertices\": [[0, 1]], \"edges_assignment\": [\"V\"],\n"
+    "\"faces_vertices\": [[0, 2, 3, 1], [0, 1, 5, 4]]}\n";
+
+ProgramResult refused(const std::vector<std::string>& words, int code) {
+  const ProgramResult r = run_program(words);
+  INFO(r.err);
+  CHECK(r.code == code);
+  CHECK(r.out == "");
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("a scene that import writes is checked and run as it is") {
+  const ScratchDirectory dir;
+  const std::string file = dir.write("plates.fold", two_plates), scene = dir / "plates.toml";
+  const ProgramResult made = run_program({"import", file, "-o", scene});
+  INFO(made.err);
+  REQUIRE(made.code == 0);
+  const ProgramResult check = run_program({"check", scene, "--json"});
+  REQUIRE(check.code == 0);
+  const auto json = nlohmann::json::parse(check.out);
+  CHECK(json["degrees_of_freedom"] == 1);
+  CHECK(json["redundant"].empty());
+  CHECK(run_program({"run", scene, "-o", dir / "run"}).code == 0);
+
+  // What a person has changed in it is not written over.
+  CHECK(refused({"import", file, "-o", scene}, 5).err ==
+        "unfurl: " + scene + ": is there already; --force writes over it\n");
+  const ProgramResult set =
+      run_program({"import", file, "-o", scene, "--force", "--set", "variables.density=2700", "--quiet"});
+  CHECK(set.code == 0);
+  CHECK(set.err == "");
+  CHECK(file_text(scene).find("density = 2700") != std::string::npos);
+  CHECK(run_program({"import", file}).out.starts_with("# Made by `unfurl import` of 'plates.fold': 6 nodes"));
+}
+
+TEST_CASE("import says what it reads and what it cannot") {
+  const ScratchDirectory dir;
+  const std::string nodes = dir.write("n.csv", "0,0,0\n1,0,0\n0,1,0\n"), none = dir / "none.fold";
+  CHECK(refused({"import", "mesh.stl"}, 2).err ==
+        "unfurl: import reads files that end in .fold, .obj or .csv; got 'mesh.stl'\n");
+  CHECK(refused({"import", nodes}, 2).err ==
+        "unfurl: two CSV files make a scene: unfurl import NODES.csv RODS.csv\n");
+  CHECK(refused({"import", none}, 5).err == "unfurl: cannot read " + none + ": No such file or directory\n");
+  const std::string cut = dir.write("cut.fold", two_plates.substr(0, 70));
+  CHECK(refused({"import", cut, "-o", dir / "cut.toml"}, 3).err.starts_with(cut + ":1:71: not JSON: "));
+  CHECK_FALSE(std::filesystem::exists(dir / "cut.toml"));
+}
+
+}  // namespace import_command_test
