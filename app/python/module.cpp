@@ -26,6 +26,7 @@
 #include "core/simulate/singular_poses.hpp"
 #include "core/simulate/stepper.hpp"
 #include "core/structure/structure_error.hpp"
+#include "core/study/reference.hpp"
 #include "core/study/scene_variation.hpp"
 #include "core/study/solve_for.hpp"
 #include "core/study/table.hpp"
@@ -145,6 +146,17 @@ class Run {
 void write_frame(const Run& run, double t, const std::string& file) {
   run.require_time(t);
   run.alone([&](const JudgedRun& judged) { write_still(judged, t, file); }, &drawing);
+}
+
+void film_of(const Run& run, const std::string& file) {
+  Asker asker;
+  const std::function<bool()> cancelled = [&asker] { return asker(); };
+  try {
+    run.alone([&](const JudgedRun& judged) { write_film(judged, file, cancelled); }, &drawing);
+  } catch (const Cancelled&) {
+    asker.raise();
+    throw;
+  }
 }
 
 // Where a scene comes from: a name, a file, or a text.
@@ -337,7 +349,8 @@ void add_run(py::module_& module) {
             run.alone([&](const JudgedRun& judged) { write_plot(judged, name, file, style); }, &drawing);
           },
           py::arg("name"), py::arg("file"), py::arg("style") = "screen")
-      .def("frame", &write_frame, py::arg("t"), py::arg("file"));
+      .def("frame", &write_frame, py::arg("t"), py::arg("file"))
+      .def("film", &film_of, py::arg("file"));
 }
 
 void add_scene(py::module_& module) {
@@ -366,7 +379,9 @@ void add_scene(py::module_& module) {
   py::class_<SceneSource>(module, "SceneSource")
       .def(py::init(&source_of), py::arg("scene"), py::arg("overrides"), py::arg("is_text"))
       .def("run", &run_scene, py::arg("changes"))
-      .def("sweep", &sweep_scene, py::arg("vary"), py::arg("measures"), py::arg("threads"))
+      .def("sweep", &sweep_scene, py::arg("vary"), py::arg("measures"), py::arg("threads"), py::arg("folder"))
+      .def("study", &study_scene, py::arg("largest"), py::arg("smallest"), py::arg("methods"),
+           py::arg("repeats"))
       .def("solve", &solve_scene)
       .def_property_readonly("text", [](const SceneSource& source) { return scene_text(source.read()); })
       .def_property_readonly("title", [](const SceneSource& source) { return source.read().title; });

@@ -2,6 +2,7 @@
 // What a run of the Python module writes; knows nothing of Python.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "core/diagnostics/diagnostics.hpp"
@@ -23,5 +24,7 @@ void write_plot(const JudgedRun& run, const std::string& name, const std::string
                 const std::string& style);
 // At a time within the run.
 void write_still(const JudgedRun& run, double t, const std::string& file);
+// .mp4, .webp or .gif, of the frames that `unfurl render` draws. Throws Cancelled.
+void write_film(const JudgedRun& run, const std::string& file, const std::function<bool()>& cancelled);
 
 }  // namespace unfurl

@@ -4,25 +4,114 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <mutex>
+#include <set>
 
 #include "app/python/asker.hpp"
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/measures.hpp"
+#include "core/export/atomic_file.hpp"
 #include "core/scene/build.hpp"
+#include "core/scene/text_file.hpp"
+#include "core/scene/write.hpp"
 #include "core/study/solve_for.hpp"
+#include "core/study/study.hpp"
 #include "core/study/sweep.hpp"
 #include "core/study/tolerance.hpp"
 #include "core/text/nearest_name.hpp"
+#include "core/text/version.hpp"
 
 namespace py = pybind11;
 
 namespace unfurl {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+// Cells of the columns `words` as strings, of all others as numbers.
+py::dict columns_of_table(const Table& table, const std::set<std::size_t>& words) {
+  py::dict out;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const py::str name(table.columns[c]);
+    py::list texts;
+    std::vector<double> numbers;
+    for (const auto& row : table.rows) {
+      texts.append(row[c]);
+      numbers.push_back(number_of(row[c]));
+    }
+    if (words.contains(c))
+      out[name] = texts;
+    else
+      out[name] = py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+  }
+  return out;
+}
+
+// What a scene says and a study does not do, as the program tells it.
+std::vector<std::string> idle_in_studies(const SolverOptions& solver) {
+  const std::string ladder = " does nothing here: steps are equal, as the ladder has them";
+  std::vector<std::string> said;
+  if (solver.adaptive) said.push_back("solver.adaptive" + ladder);
+  if (solver.tolerance > 0) said.push_back("solver.tolerance" + ladder);
+  if (solver.model == "path" || solver.model == "sector")
+    said.emplace_back("solver.model does nothing here: every method steps the whole model");
+  return said;
+}
+
+// The scene under a line that says what was asked and by which version: what the points in a folder belong
+// to.
+std::string identity_of(const SweepPlan& plan) {
+  std::string text = "# A sweep over";
+  std::vector<std::string> varied;
+  for (const SweepAxis& axis : plan.axes) {
+    text += " " + axis.key;
+    varied.push_back(axis.key);
+  }
+  Scene scene = plan.source.read();
+  scene.solver = study_solver(scene, varied, plan.measures);
+  return text + ", by unfurl " + version() + " in Python\n" + scene_text(scene) + "\n" +
+         unexpanded_text(plan.source);
+}
+
+// Empty: nothing is kept. Throws FileError where the folder holds anything else.
+fs::path journal_in(const fs::path& folder, const SweepPlan& plan) {
+  if (folder.empty()) return {};
+  const std::string identity = identity_of(plan);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw FileError(folder, error.value());
+  const fs::path journal = folder / "sweep.csv";
+  const TextFile known = read_text_file((folder / "scene.toml").string());
+  if (known.error.empty() ? known.text != identity : fs::exists(journal, error))
+    throw FileError(folder,
+                    "holds results of another scene, other settings or another version of unfurl; "
+                    "remove them, or use another folder");
+  if (!known.error.empty()) write_file_atomically(folder / "scene.toml", identity);
+  return journal;
+}
+
+Sweep swept(const SweepPlan& plan, const fs::path& folder, const StudyHooks& hooks) {
+  const fs::path path = journal_in(folder, plan);
+  Sweep sweep;
+  try {
+    Journal journal(path, plan.columns(), plan.axes.size(), plan.number_columns());
+    sweep = run_sweep(plan, journal, hooks);
+  } catch (const JournalMismatch& error) {
+    throw FileError(folder, std::string(error.what()) + "; other keys or measures than now?");
+  }
+  if (!path.empty() && sweep.missing.empty()) write_file_atomically(path, csv_text(sweep.table));
+  return sweep;
+}
+
+}  // namespace
+
 py::dict sweep_scene(const SceneSource& source,
                      const std::vector<std::pair<std::string, std::vector<double>>>& vary,
-                     const std::vector<std::string>& measures, int threads) {
+                     const std::vector<std::string>& measures, int threads, const std::string& folder) {
   SweepPlan plan{source, {}, {}, {}};
   for (const auto& [key, values] : vary) {
     SweepAxis axis;
@@ -47,26 +136,10 @@ py::dict sweep_scene(const SceneSource& source,
   {
     const py::gil_scoped_release release;
     check_plan(plan);
-    Journal nowhere("", plan.columns(), plan.axes.size(), plan.number_columns());
-    sweep = run_sweep(plan, nowhere, hooks);
+    sweep = swept(plan, folder, hooks);
   }
   asker.raise();
-  py::dict table;
-  for (std::size_t c = 0; c < sweep.table.columns.size(); ++c) {
-    py::list words;
-    std::vector<double> numbers;
-    for (const auto& row : sweep.table.rows) {
-      words.append(row[c]);
-      numbers.push_back(number_of(row[c]));
-    }
-    const bool text = c == plan.axes.size();
-    const py::str name(sweep.table.columns[c]);
-    if (text)
-      table[name] = words;
-    else
-      table[name] = py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
-  }
-  return table;
+  return columns_of_table(sweep.table, {plan.axes.size()});
 }
 
 double solve_scene(const SceneSource& source, const std::string& key, const std::string& measure_name,
@@ -112,6 +185,38 @@ double solve_scene(const SceneSource& source, const std::string& key, const std:
     throw;
   }
   return found;
+}
+
+py::tuple study_scene(const SceneSource& source, double largest, double smallest,
+                      const std::vector<std::string>& methods, int repeats) {
+  if ((largest != 0 || smallest != 0) && !(largest > 0 && smallest > 0))
+    throw StudyError("steps are (largest, smallest), two numbers of seconds");
+  if (repeats < 1) throw StudyError("repeats: at least 1 run is timed");
+  const Scene scene = source.read();
+  Asker asker;
+  StudyHooks hooks;
+  hooks.cancelled = [&asker] { return asker(); };
+  Study study;
+  try {
+    const py::gil_scoped_release release;
+    StudyPlan plan = plan_study(build_model(scene), scene.solver, largest, smallest, hooks);
+    keep_methods(plan, methods);
+    plan.timing.repeats = repeats;
+    Journal nowhere("", study_columns(), study_key_columns, study_number_columns());
+    study = run_study(plan, nowhere, hooks);
+  } catch (const Cancelled&) {
+    asker.raise();
+    throw;
+  }
+  asker.raise();
+  const Table table = points_table(study);
+  const auto numbers = study_number_columns();
+  std::set<std::size_t> words;
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (std::find(numbers.begin(), numbers.end(), c) == numbers.end()) words.insert(c);
+  words.erase(table.column("steps"));
+  return py::make_tuple(columns_of_table(table, words), cheapest_sentence(study),
+                        study.reference + "; " + reference_words(study), idle_in_studies(scene.solver));
 }
 
 }  // namespace unfurl

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The Python module against the command line, closed forms and its own promises: python3 -m pytest tests/python"""
 import ast
+import csv
 import gc
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
 import threading
 import time
+import types
 import warnings
 import zlib
 from pathlib import Path
@@ -430,3 +433,111 @@ def test_a_stepper_says_what_it_does_not_do():
         for model in ("full", "auto"):  # what "auto" takes is up to the program
             stepper = unfurl.Scene("hoop6", set={"solver.model": model, "solver.end_time": 0.2}).stepper()
             assert not stepper.warnings
+
+
+def frames_of(path):
+    """What a film shows, without what it says of itself."""
+    data = Path(path).read_bytes()
+    if path.suffix == ".webp":
+        at, frames = 12, []
+        while at < len(data):
+            size = int.from_bytes(data[at + 4:at + 8], "little")
+            frames += [data[at:at + 8 + size]] if data[at:at + 4] == b"ANMF" else []
+            at += 8 + size + size % 2
+        return frames
+    if path.suffix == ".gif":
+        begin = data.find(b"\x21\xfe")
+        end = begin + 2 if begin >= 0 else 0
+        while end > 0 and data[end]:
+            end += 1 + data[end]
+        return data[:begin] + data[end + 1:] if begin >= 0 else data
+    return subprocess.run(["ffmpeg", "-v", "error", "-i", path, "-f", "framemd5", "-"], check=True, capture_output=True).stdout
+
+
+@pytest.mark.parametrize("more", [{}, {"render.supersample": 2, "render.hold_start": 0.2}], ids=["plain", "more"])
+def test_a_film_is_that_of_the_program(tmp_path, more):
+    changes = {"solver.end_time": 0.4, "render.size": [64, 48], "render.fps": 10, "render.gif_width": 40, **more}
+    sets = [word for key, value in changes.items() for word in ("--set", f"{key}={json.dumps(value)}")]
+    subprocess.run([PROGRAM, "render", "hoop6_sector", "-o", tmp_path / "out", "--quiet", *sets], check=True)
+    run = unfurl.Scene("hoop6_sector", set=changes).run()
+    for kind in (".webp", ".gif") + ((".mp4",) if shutil.which("ffmpeg") else ()):
+        run.film(tmp_path / f"film{kind}")
+        frames = frames_of(tmp_path / f"film{kind}")
+        assert len(frames) > 4 and frames == frames_of(tmp_path / f"out/animation{kind}"), kind
+
+
+def test_films_that_cannot_be_made(tmp_path, monkeypatch):
+    run = unfurl.Scene("hoop6_sector", set={"solver.end_time": 0.2, "render.size": [64, 48]}).run()
+    with pytest.raises(unfurl.StudyError, match="a film is written as .mp4, .webp or .gif, not '.avi'"):
+        run.film(tmp_path / "film.avi")
+    with pytest.raises(unfurl.FileError):
+        run.film(tmp_path / "none/film.gif")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(unfurl.FileError, match="ffmpeg"):
+        run.film(tmp_path / "film.mp4")
+    assert not list(tmp_path.iterdir())
+
+
+def test_ctrl_c_ends_a_long_film(tmp_path):
+    code = ("import sys, unfurl\nrun = unfurl.Scene('hoop6', set={'render.fps': 1000, 'render.size': [64, 48]}).run()\n"
+            "print('ready', flush=True)\nrun.film(sys.argv[1])")
+    child = subprocess.Popen([sys.executable, "-c", code, tmp_path / "film.webp"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    child.stdout.readline()
+    time.sleep(1.0)
+    child.send_signal(signal.SIGINT)
+    _, err = child.communicate(timeout=60)
+    assert "KeyboardInterrupt" in err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_study_is_that_of_the_program(tmp_path):
+    asked = ["--steps", "0.08:0.02", "--methods", "rk4_projected", "--repeats", "1", "--set", "solver.end_time=0.8"]
+    subprocess.run([PROGRAM, "study", "pendulum", "-o", tmp_path / "out", "--quiet", *asked], check=True)
+    with open(tmp_path / "out/study.csv") as file:
+        rows = list(csv.DictReader(file))
+    pendulum = unfurl.Scene("pendulum", set={"solver.end_time": 0.8})
+    study = pendulum.study((0.08, 0.02), methods=["rk4_projected"], repeats=1)
+    assert list(study) == list(rows[0])
+    assert study["setting"] == [row["setting"] for row in rows]
+    for name in ("steps", "position_error_m"):  # costs differ from time to time
+        assert np.array_equal(study[name], [float(row[name]) for row in rows])
+    assert study.sentence.startswith("The cheapest setting for 0.001 m is ") and study.reference
+    with pytest.raises(unfurl.StudyError, match="did you mean 'rk4_projected'"):
+        pendulum.study(methods=["rk4_projectd"])
+    for steps in ((0.01, 0.08), (-0.08, 0.01), (0.08, float("nan"))):
+        with pytest.raises(unfurl.StudyError):
+            pendulum.study(steps)
+    with pytest.warns(UserWarning, match="solver.model does nothing here: every method steps the whole model"):
+        unfurl.Scene("pendulum", set={"solver.end_time": 0.8, "solver.model": "path"}).study((0.08, 0.04), ["rk4_projected"], 1)
+
+
+def test_a_sweep_keeps_its_points(tmp_path):
+    asked = ["--vary", "structure.fold_angle=40,55,70", "--measure", "deploy_time"]
+    subprocess.run([PROGRAM, "sweep", "hoop6_sector", "-o", tmp_path / "shell", "--quiet", *asked], check=True)
+    ring, folder = unfurl.Scene("hoop6_sector"), tmp_path / "points"
+    table = ring.sweep({"structure.fold_angle": [40, 55, 70]}, ["deploy_time"], out=folder)
+    kept = (folder / "sweep.csv").read_text()
+    assert kept == (tmp_path / "shell/sweep.csv").read_text()
+    # A point that is there is not computed again, one that is not is.
+    head, first, *rest = kept.splitlines(keepends=True)
+    (folder / "sweep.csv").write_text(head + first.replace(repr(float(table["deploy_time_s"][0])), "123.25"))
+    again = ring.sweep({"structure.fold_angle": [40, 55, 70]}, ["deploy_time"], out=folder)
+    assert again["deploy_time_s"][0] == 123.25 and np.array_equal(again["deploy_time_s"][1:], table["deploy_time_s"][1:])
+    for other, measure in ((unfurl.Scene("hoop6_sector", set={"structure.hinge_force": 200}), "deploy_time"), (ring, "peak_energy")):
+        with pytest.raises(unfurl.FileError):
+            other.sweep({"structure.fold_angle": [40, 55, 70]}, [measure], out=folder)
+    assert len((folder / "sweep.csv").read_text().splitlines()) == 4
+
+
+def test_tables_of_other_packages(monkeypatch):
+    run = unfurl.Scene("pendulum", set={"solver.end_time": 0.1}).run()
+    for name in ("xarray", "pandas"):
+        monkeypatch.setitem(sys.modules, name, None)  # not installed
+        with pytest.raises(ImportError, match=f"to_{name}\\(\\) needs the Python package {name}"):
+            getattr(run, f"to_{name}")()
+    monkeypatch.setitem(sys.modules, "xarray", types.SimpleNamespace(Dataset=lambda data, coords, attrs: (data, coords, attrs)))
+    data, coords, _ = run.to_xarray()
+    sizes = {name: len(values) for name, values in coords.items()}
+    for dimensions, values in data.values():
+        assert values.shape == tuple(sizes[name] for name in dimensions)
+    assert data["x_m"][1] is run.x.array and data["kinetic_energy_J"][0] == ("t_s",)

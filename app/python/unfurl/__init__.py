@@ -22,7 +22,7 @@ import numpy as np
 from . import _unfurl
 from ._unfurl import Error, FileError, GraphicsError, NotFound, SceneError, StructureError, StudyError, UnreadableScene, __version__, measures, scenes
 
-__all__ = ["Scene", "Structure", "Run", "Named", "Stepper", "Error", "SceneError", "StructureError", "StudyError", "FileError",
+__all__ = ["Scene", "Structure", "Run", "Named", "Study", "Stepper", "Error", "SceneError", "StructureError", "StudyError", "FileError",
            "GraphicsError", "NotFound", "UnreadableScene", "measures", "scenes", "__version__"]
 
 
@@ -41,6 +41,15 @@ def _toml(value: Any) -> str:
     if isinstance(value, Iterable):
         return "[" + ", ".join(_toml(v) for v in value) + "]"
     raise TypeError(f"{value!r} is no value of a scene: a number, a word, a list or a dict is")
+
+
+def _needed(package: str, by: str):
+    """A package that not everybody has."""
+    import importlib
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise ImportError(f"{by}() needs the Python package {package}, which is not installed (python3-{package}, or pip install {package})") from error
 
 
 class Named:
@@ -120,14 +129,28 @@ class Run:
         """The picture of the structure at a time of the run, as PNG: what a film of the scene shows then."""
         self._run.frame(t, os.fspath(file))
 
+    def film(self, file: str | os.PathLike) -> None:
+        """The film of the run as the scene's [render] has it: .mp4 (by ffmpeg), .webp or .gif."""
+        self._run.film(os.fspath(file))
+
     def export(self, format: str, directory: str | os.PathLike) -> None:
         """vtk, gltf, csv, npy, mat or html."""
         self._run.export(format, os.fspath(directory))
 
     def to_pandas(self):
         """The series as a DataFrame over time."""
-        import pandas
+        pandas = _needed("pandas", "to_pandas")
         return pandas.DataFrame(self.series, index=pandas.Index(self.t, name="t_s"))
+
+    def to_xarray(self):
+        """Positions, velocities, rod forces and the series as a Dataset over time, nodes and rods by name."""
+        xarray = _needed("xarray", "to_xarray")
+        places = ("t_s", "node", "axis")
+        data = {"x_m": (places, self.x.array), "v_m_s": (places, self.v.array), "rod_force_N": (("t_s", "rod"), self.rod_force.array),
+                "rod_force_unique": (("t_s", "rod"), self.rod_force_unique.array)}
+        data.update({name: (("t_s",), values) for name, values in self.series.items()})
+        return xarray.Dataset(data, coords={"t_s": self.t, "node": self.nodes, "rod": self.rods, "axis": ["x", "y", "z"]},
+                              attrs={"title": self.title})
 
     def _repr_html_(self) -> str:
         import html
@@ -153,6 +176,15 @@ class Svg(str):
 
     def _repr_svg_(self) -> str:
         return str(self)
+
+
+class Study(dict):
+    """What methods cost and how far they are off: the columns of study.csv by name; `sentence` names the cheapest settings for
+    errors, `reference` says what they are measured against."""
+
+    def __init__(self, columns: Mapping[str, Any], sentence: str, reference: str):
+        super().__init__(columns)
+        self.sentence, self.reference = sentence, reference
 
 
 class Scene:
@@ -188,10 +220,21 @@ class Scene:
             warnings.warn(said, stacklevel=2)
         return stepper
 
-    def sweep(self, vary: Mapping[str, Sequence[float]], measures: Sequence[str], threads: int = 1) -> dict:
-        """The measures at every point of the grid: arrays by column, the last key runs fastest."""
+    def sweep(self, vary: Mapping[str, Sequence[float]], measures: Sequence[str], threads: int = 1, out: str | os.PathLike | None = None) -> dict:
+        """The measures at every point of the grid: arrays by column, the last key runs fastest.
+
+        With out=, a folder, finished points are kept in its sweep.csv: after Ctrl-C the same call does only what is missing.
+        """
         axes = [(key, [float(x) for x in values]) for key, values in vary.items()]
-        return self._source.sweep(axes, list(measures), threads)
+        return self._source.sweep(axes, list(measures), threads, "" if out is None else os.fspath(out))
+
+    def study(self, steps: tuple[float, float] | None = None, methods: Sequence[str] = (), repeats: int = 5) -> Study:
+        """Speed against accuracy of all methods, or of those named, in steps from the largest to the smallest [s]."""
+        largest, smallest = steps or (0.0, 0.0)
+        columns, sentence, reference, idle = self._source.study(float(largest), float(smallest), list(methods), int(repeats))
+        for said in idle:
+            warnings.warn(said, stacklevel=2)
+        return Study(columns, sentence, reference)
 
     def solve(self, key: str, between: tuple[float, float] | None = None, **target: float) -> float:
         """The value of the key for which a measure takes a value: ring.solve("structure.fold_angle", deploy_time=4.92)."""
