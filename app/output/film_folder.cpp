@@ -87,6 +87,10 @@ void FilmFolder::claim() const {
   if (!holds_this()) forget_films();
 }
 
+void FilmFolder::fit(const Scene& shown) {
+  size_ = {shown.render.width, shown.render.height};
+}
+
 fs::path FilmFolder::frame(std::size_t index) const {
   std::array<char, 32> name{};
   std::snprintf(name.data(), name.size(), "frame_%05zu.png", index);

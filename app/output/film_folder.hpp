@@ -33,6 +33,8 @@ class FilmFolder {
   void claim() const;
 
   std::filesystem::path frame(std::size_t index) const;  // frames/frame_00012.png
+  // Frames have the size of this one: a film of the motion's shape knows it when the motion is known.
+  void fit(const Scene& shown);
   // Is it there, whole and of the film's size? What was once found so is not read again.
   bool finished(std::size_t index) const;
   // Is DIR/film ("animation.webp") there, as it was made with these settings from the frames as they are?

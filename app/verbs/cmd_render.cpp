@@ -38,7 +38,7 @@ int cmd_render(const Arguments& arguments) {
                       arguments.join ? DirectoryLock::Use::joined : DirectoryLock::Use::shareable);
   const std::filesystem::path& directory = output.path();
   DirectoryLock& lock = output.lock();
-  const FilmFolder folder(directory, scene, arguments.gpu);
+  FilmFolder folder(directory, scene, arguments.gpu);
   if (folder.holds_another() && !arguments.force)
     throw FileError(directory,
                     "holds frames of another film (the scene, its settings or the program changed); "
@@ -59,6 +59,7 @@ int cmd_render(const Arguments& arguments) {
   folder.claim();
   lock.share();
   const Scene shown = fitted(scene, run);
+  folder.fit(shown);
   FrameMemory memory;
   const auto team = join_team(arguments, directory);
   if (team) {

@@ -159,7 +159,7 @@ int render_mode(const Arguments& arguments) {
 
   OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
   const std::string which = "mode " + std::to_string(arguments.mode) + " at " + exact_number(vibration.t);
-  const FilmFolder folder(output.path(), shown, arguments.gpu, which);
+  FilmFolder folder(output.path(), shown, arguments.gpu, which);
   if (!folder.holds_this() && !folder.fresh() && !arguments.force)
     throw FileError(output.path(),
                     "holds frames of another film or other results; use --force to start "
@@ -170,6 +170,7 @@ int render_mode(const Arguments& arguments) {
   output.lock().share();
   const Simulation run = swinging(pose, mode, shown.render);
   const Scene framed = fitted(shown, run);
+  folder.fit(framed);
   write_modes(output.path(), scene, pose, vibration, *context, style);
   FrameMemory memory;
   if (arguments.encode_only)

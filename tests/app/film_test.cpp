@@ -52,6 +52,31 @@ TEST_CASE("slices share one film, and the last one makes the animations") {
   CHECK(fs::exists(out + "/animation.webp"));
 }
 
+// Their size is not that of the scene but of the motion, which is known when it is simulated.
+TEST_CASE("frames of the motion's shape make films, and are found again") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out";
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--frames", "0:2"}, {}, {}}) {
+    std::vector<std::string> words = film(out, more);
+    words.push_back("--fit");
+    const ProgramResult r = run_program(words);
+    INFO(r.err);
+    CHECK(r.code == 0);
+  }
+  CHECK(frames_in(out) == 5);
+  CHECK(fs::exists(out + "/animation.webp"));
+  const auto drawn = fs::last_write_time(frame(out, 3));
+  std::vector<std::string> again = film(out, {"--fit"});
+  CHECK(run_program(again).code == 0);
+  CHECK(fs::last_write_time(frame(out, 3)) == drawn);
+  const std::string mode = dir / "mode";
+  CHECK(run_program({"render", "hoop6_sector", "--mode", "2", "--at", "4.1", "--set",
+                     "structure.youngs_modulus=7e10", "--fps", "2", "--size", "96x64", "--fit", "--quiet",
+                     "-o", mode})
+            .code == 0);
+  CHECK(fs::exists(mode + "/animation.webp"));
+}
+
 TEST_CASE("a plan is of the part that is asked for") {
   const ScratchDirectory dir;
   const auto plan = [&](std::vector<std::string> more) {
