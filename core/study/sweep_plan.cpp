@@ -203,6 +203,17 @@ std::string unit_of_axis(const SweepPlan& plan, const SweepAxis& axis,
   std::rethrow_exception(first);
 }
 
+// "structure.angle (1000000) x structure.length (300)".
+[[noreturn]] void refuse_grid(const SweepPlan& plan) {
+  double points = 1;
+  std::string product;
+  for (const SweepAxis& axis : plan.axes) {
+    points *= static_cast<double>(axis.values.size());
+    product += (product.empty() ? "" : " x ") + axis.key + " (" + std::to_string(axis.values.size()) + ")";
+  }
+  throw StudyError("the grid has more than 1e7 points, " + short_number(points, 4) + ": " + product);
+}
+
 }  // namespace
 
 void check_plan(SweepPlan& plan) {
@@ -215,7 +226,7 @@ void check_plan(SweepPlan& plan) {
       if (plan.measures[k].column == plan.measures[m].column)
         throw StudyError("the measure " + in_quotes(plan.measures[m].name) + " is asked for twice");
   add_uniqueness(plan.measures);
-  if (plan.points() > max_points) throw StudyError("the grid has more than 1e7 points");
+  if (plan.points() > max_points) refuse_grid(plan);
   const Scene scene = plan.source.read();
   for (std::size_t a = 0; a < plan.axes.size(); ++a)
     for (std::size_t b = 0; b < a; ++b) {

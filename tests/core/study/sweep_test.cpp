@@ -149,7 +149,7 @@ TEST_CASE("a plan is refused with its reason, and says which forces are unique")
         "'structure.units' takes whole numbers; 6.5 is none: give a COUNT that leads to some, or list them "
         "(structure.units=4,6,12)");
   CHECK(refusal({"structure.fold_angle=40:80:4000", "solver.step=0.01:0.02:2501"}, {"deploy_time"}) ==
-        "the grid has more than 1e7 points");
+        "the grid has more than 1e7 points, 1e7: structure.fold_angle (4000) x solver.step (2501)");
   CHECK(refusal(angle, {"peak_tension", "deploy_time"}) == "peak_tension deploy_time peak_tension_unique ");
   CHECK(refusal(angle, {"peak_tension_unique", "peak_tension"}) == "peak_tension_unique peak_tension ");
 }
