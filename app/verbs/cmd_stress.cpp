@@ -52,7 +52,7 @@ int cmd_stress(const Arguments& arguments) {
   {
     const StudyHooks hooks = session.hooks();
     Journal journal(team ? team->journal() : session.journal(), stress_columns(), stress_key_columns,
-                    stress_number_columns());
+                    stress_number_columns(), is_stress_cell);
     found = alone_or_joined(
         team.get(), arguments, journal, hooks,
         [&](Journal& all, const StudyHooks& own) { return run_stress(plan, all, own); },

@@ -193,7 +193,7 @@ std::optional<Sweep> compute(const SweepPlan& plan, const StudySession& session,
     if (!arguments.study.merge.empty())
       return merge_sweep(plan, journals_in(arguments.study.merge, identity));
     Journal journal(team ? team->journal() : session.journal(), plan.columns(), plan.axes.size(),
-                    plan.number_columns());
+                    plan.number_columns(), [&](const auto& row) { return plan.is_finished(row); });
     return alone_or_joined(
         team, arguments, journal, hooks,
         [&](Journal& all, const StudyHooks& own) { return run_sweep(plan, all, own); },

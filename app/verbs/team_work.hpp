@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "app/command.hpp"
@@ -40,6 +41,11 @@ bool work_together(Team& team, const Arguments& arguments, const Done& done) {
   return false;
 }
 
+inline void warn_of_damage(const Journal& journal) {
+  for (const std::string& text : journal.damage())
+    std::cerr << "unfurl: warning: " << text << " and was not taken: what it stood for is computed anew\n";
+}
+
 // What `run(journal, hooks)` finds over this process's journal, or with a team over its own and those of the
 // others, until `whole(result)`. None: another worker writes the results, or a person interrupted the wait.
 template <class Run, class Whole>
@@ -52,7 +58,10 @@ auto alone_or_joined(Team* team, const Arguments& arguments, Journal& journal, S
       journal.take_in(team->journals_of_others());
       return whole(run(journal, shared));
     });
+    warn_of_damage(journal);
     if (!writes) return std::nullopt;
+  } else {
+    warn_of_damage(journal);
   }
   return run(journal, hooks);
 }

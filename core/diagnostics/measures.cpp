@@ -181,6 +181,21 @@ bool of_method(std::string_view column) {
          column == "newton_iterations";
 }
 
+// What every run has: a finite number, and none below 0.
+bool every_run_has(std::string_view measure) {
+  constexpr std::array names{"peak_rod_force", "peak_tension", "peak_compression", "energy",
+                             "peak_energy",    "peak_speed",   "energy_error",     "constraint_error",
+                             "end_time",       "cpu",          "newton_iterations"};
+  return measure.ends_with("_unique") || std::find(names.begin(), names.end(), measure) != names.end();
+}
+
+// Columns that are finite in every state of every run.
+bool every_state_has(std::string_view column) {
+  constexpr std::array names{"kinetic_energy_J", "potential_energy_J", "work_J"};
+  return of_method(column) || column.starts_with("axial_force_") ||
+         std::find(names.begin(), names.end(), column) != names.end();
+}
+
 std::string with_unit(std::string_view label, std::string_view unit) {
   return std::string(label) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
 }
@@ -195,6 +210,14 @@ std::string suffix(std::string_view unit) {
 
 std::span<const NamedMeasure> named_measures() {
   return measure_table;
+}
+
+bool may_be(const RunMeasure& measure, double value, bool deployed) {
+  if (measure.name == "deploy_time") return !(value < 0) && (!deployed || std::isfinite(value));
+  const std::size_t colon = measure.name.find(':');
+  if (colon != std::string::npos)
+    return std::isfinite(value) || !every_state_has(std::string_view(measure.name).substr(colon + 1));
+  return !every_run_has(measure.name) || (std::isfinite(value) && value >= 0);
 }
 
 std::string uniqueness_of(std::string_view measure) {

@@ -29,6 +29,9 @@ struct NamedMeasure {
 };
 // To add one: a function and a row.
 std::span<const NamedMeasure> named_measures();
+// Whether a run that has an answer, and is deployed or not, may have this value: not a negative time, nor
+// none of what every run has.
+bool may_be(const RunMeasure& measure, double value, bool deployed);
 
 // The measure that says whether this one is unique (1) or one choice of many (0): "peak_rod_force_unique" of
 // "peak_rod_force". Empty where there is none.

@@ -11,8 +11,12 @@
 namespace unfurl {
 
 Journal::Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys,
-                 std::vector<std::size_t> numbers)
-    : path_(std::move(path)), columns_(std::move(columns)), keys_(keys), numbers_(std::move(numbers)) {
+                 std::vector<std::size_t> numbers, std::function<bool(const Row&)> finished)
+    : path_(std::move(path)),
+      columns_(std::move(columns)),
+      keys_(keys),
+      numbers_(std::move(numbers)),
+      finished_(std::move(finished)) {
   if (path_.empty()) return;
   take_in(path_);
   std::string text = csv_line(columns_);
@@ -40,14 +44,36 @@ void Journal::take_in(const std::filesystem::path& path) {
         path.string() +
         ": holds results with other columns, of another version or another question; use another "
         "directory, or --force to begin anew");
+  Damage damage;
   decltype(rows_) found;  // of a key that is there twice the later row, as append() would have it
   for (std::size_t i = 1; i < records.size(); ++i) {
     auto& row = records[i];
-    if (row.size() != columns_.size()) continue;
-    if (!std::ranges::all_of(numbers_, [&](std::size_t c) { return is_number(row[c]); })) continue;
+    if (!is_result(row)) {
+      if (damage.lines++ == 0) damage.first = i + 1;
+      continue;
+    }
     found.insert_or_assign({row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_)}, row);
   }
   rows_.merge(found);
+  if (damage.lines > 0) damage_[path] = damage;
+}
+
+bool Journal::is_result(const Row& row) const {
+  return row.size() == columns_.size() &&
+         std::ranges::all_of(numbers_, [&](std::size_t c) { return is_number(row[c]); }) &&
+         (!finished_ || finished_(row));
+}
+
+std::vector<std::string> Journal::damage() const {
+  std::vector<std::string> texts;
+  for (const auto& [path, found] : damage_) {
+    const std::string first = std::to_string(found.first);
+    texts.push_back(path.string() + ": " +
+                    (found.lines == 1 ? "line " + first + " is no finished result"
+                                      : std::to_string(found.lines) + " lines, the first of them line " +
+                                            first + ", are no finished results"));
+  }
+  return texts;
 }
 
 const std::vector<std::string>* Journal::find(const std::vector<std::string>& key) const {

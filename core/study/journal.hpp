@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <map>
 
 #include "core/study/table.hpp"
@@ -21,10 +22,11 @@ struct JournalMismatch : Error {
 // kill or a full disk left torn is dropped at the next opening. An empty path keeps nothing.
 class Journal {
  public:
-  // Reads what is there; a row whose cells in the columns `numbers` (indices) are not all numbers is no
-  // result. Throws JournalMismatch where its columns are others, FileError.
+  using Row = std::vector<std::string>;
+  // Reads what is there; a row whose cells in the columns `numbers` (indices) are not all numbers, or that
+  // `finished` does not take, is no result. Throws JournalMismatch where its columns are others, FileError.
   Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys,
-          std::vector<std::size_t> numbers = {});
+          std::vector<std::size_t> numbers = {}, std::function<bool(const Row&)> finished = {});
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
@@ -38,12 +40,22 @@ class Journal {
     for (const auto& other : others) take_in(other);
   }
   std::size_t size() const { return rows_.size(); }
+  // Of each file that was read with whole lines that are no results: "DIR/sweep.csv: line 3 is no finished
+  // result".
+  std::vector<std::string> damage() const;
 
  private:
+  bool is_result(const Row& row) const;
+
   std::filesystem::path path_;
   std::vector<std::string> columns_;
   std::size_t keys_;
   std::vector<std::size_t> numbers_;
+  std::function<bool(const Row&)> finished_;
+  struct Damage {
+    std::size_t lines = 0, first = 0;
+  };
+  std::map<std::filesystem::path, Damage> damage_;
   std::map<std::vector<std::string>, std::vector<std::string>> rows_;
   std::FILE* file_ = nullptr;
 };

@@ -2,6 +2,7 @@
 #include "core/study/measured_run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -42,7 +43,21 @@ std::string outcome_of(const Simulation& run, bool too_slow, double error) {
   return "ok";
 }
 
+constexpr std::array outcomes{"ok", "too slow", "solver failed", "other motion", "not trusted"};
+
 }  // namespace
+
+bool is_possible(const MeasuredRun& run) {
+  if (std::ranges::find(outcomes, run.outcome) == outcomes.end()) return false;
+  for (const long count : {run.newton_iterations, run.factorisations, run.linear_solves})
+    if (count < 0) return false;
+  for (const double time : {run.step, run.cpu_min, run.cpu_median, run.cpu_max})
+    if (!(std::isfinite(time) && time >= 0)) return false;
+  for (const double error : {run.position_error, run.constraint_max, run.constraint_relative_max,
+                             run.constraint_velocity_max, run.energy_error})
+    if (error < 0 || (run.ok() && !std::isfinite(error))) return false;
+  return run.steps >= 1 && run.repeats >= 1 && run.cpu_min <= run.cpu_median && run.cpu_median <= run.cpu_max;
+}
 
 void measure_invariants(const Simulation& run, MeasuredRun& out) {
   const Diagnostics books = diagnose_books(run);

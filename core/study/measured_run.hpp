@@ -47,6 +47,10 @@ MeasuredRun measure_run(const std::shared_ptr<const Model>& model, SolverOptions
 
 double deployment_time(const Simulation& run);  // of the event "deployed" [s]; NaN: there was none
 
+// Whether measure_run() can have given it: an outcome that there is, no negative number and, of a run that is
+// ok, none that is not finite.
+bool is_possible(const MeasuredRun& run);
+
 // Errors that a run shows about itself, written into `out`; where they are beyond what judge() trusts, a good
 // outcome becomes "not trusted".
 void measure_invariants(const Simulation& run, MeasuredRun& out);

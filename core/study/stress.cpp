@@ -226,6 +226,19 @@ std::vector<std::size_t> stress_number_columns() {
   return number_columns(cell_columns);
 }
 
+bool is_stress_cell(const std::vector<std::string>& row) {
+  const std::vector<std::string> names = stress_columns();
+  const auto verdict = static_cast<std::size_t>(std::ranges::find(names, "verdict") - names.begin());
+  if (std::ranges::none_of(verdicts(), [&](Verdict v) { return to_string(v) == row[verdict]; })) return false;
+  const StressCell cell = cell_of(row);
+  for (const double time : {cell.run.step, cell.run.cpu_median})
+    if (!(std::isfinite(time) && time >= 0)) return false;
+  for (const double error : {cell.run.position_error, cell.run.constraint_relative_max, cell.run.energy_error,
+                             cell.run.kinetic_energy_max})
+    if (error < 0 || (cell.verdict == Verdict::right && !std::isfinite(error))) return false;
+  return true;
+}
+
 Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& hooks) {
   std::vector<Site> sites;
   for (const Extreme& extreme : plan.extremes)

@@ -73,7 +73,8 @@ Stress run_stress(const StressPlan& plan, Journal& journal, const StudyHooks& ho
 
 std::vector<std::string> stress_columns();
 inline constexpr std::size_t stress_key_columns = 4;
-std::vector<std::size_t> stress_number_columns();  // whose cells are numbers
+std::vector<std::size_t> stress_number_columns();          // whose cells are numbers
+bool is_stress_cell(const std::vector<std::string>& row);  // such as run_stress() leaves
 
 Table cells_table(const Stress& stress);
 Table summary_table(const StressPlan& plan, const Stress& stress);  // verdicts per setting

@@ -116,6 +116,11 @@ std::vector<std::size_t> study_number_columns() {
   return number_columns(point_columns);
 }
 
+bool is_study_point(const std::vector<std::string>& row) {
+  const Setting any;
+  return is_possible(run_of(any, row));
+}
+
 Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks) {
   Study study;
   study.end = plan.end;

@@ -77,8 +77,9 @@ struct Study {
 Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks);
 
 std::vector<std::string> study_columns();
-inline constexpr std::size_t study_key_columns = 2;  // setting, steps
-std::vector<std::size_t> study_number_columns();     // whose cells are numbers
+inline constexpr std::size_t study_key_columns = 2;        // setting, steps
+std::vector<std::size_t> study_number_columns();           // whose cells are numbers
+bool is_study_point(const std::vector<std::string>& row);  // such as run_study() leaves
 
 // "two methods agree to 1e-12 m", "agrees with itself to ...": what is known of the reference.
 std::string reference_words(const Study& study);

@@ -181,7 +181,8 @@ std::size_t unanswered(const SweepPlan& plan, const Sweep& sweep) {
 Sweep merge_sweep(const SweepPlan& plan, const std::vector<std::filesystem::path>& journals) {
   std::vector<std::unique_ptr<Journal>> open;
   for (const auto& path : journals)
-    open.push_back(std::make_unique<Journal>(path, plan.columns(), plan.axes.size(), plan.number_columns()));
+    open.push_back(std::make_unique<Journal>(path, plan.columns(), plan.axes.size(), plan.number_columns(),
+                                             [&](const auto& row) { return plan.is_finished(row); }));
   SweepPlan whole = plan;
   whole.shard = {};
   std::vector<std::string> conflicts;
@@ -201,6 +202,8 @@ Sweep merge_sweep(const SweepPlan& plan, const std::vector<std::filesystem::path
     }
     return first;
   });
+  for (const auto& journal : open)
+    for (const std::string& text : journal->damage()) conflicts.push_back(text + " and was left out");
   sweep.conflicts = std::move(conflicts);
   return sweep;
 }

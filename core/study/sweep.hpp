@@ -43,6 +43,8 @@ struct SweepPlan {
   std::vector<std::string> key(std::size_t point) const;  // its values; the last axis runs fastest
   std::vector<std::string> columns() const;               // keys, outcome, measures
   std::vector<std::size_t> number_columns() const;        // those of the measures
+  // A row that a run of this sweep can leave: an outcome that there is, measures that can be.
+  bool is_finished(const std::vector<std::string>& row) const;
 };
 
 // Throws StudyError (no axis, no measure, a key twice, too many points), SceneError where a value

@@ -175,6 +175,16 @@ std::vector<std::size_t> SweepPlan::number_columns() const {
   return numbers;
 }
 
+bool SweepPlan::is_finished(const std::vector<std::string>& row) const {
+  const std::string& outcome = row[axes.size()];
+  if (outcome == "failed" || outcome == "invalid") return true;
+  const bool deployed = outcome == to_string(RunStatus::deployed);
+  if (!deployed && outcome != to_string(RunStatus::completed)) return false;
+  for (std::size_t m = 0; m < measures.size(); ++m)
+    if (!may_be(measures[m], number_of(row[axes.size() + 1 + m]), deployed)) return false;
+  return true;
+}
+
 namespace {
 
 // Beside each force that may not be unique, unless it is asked for anyway, whether it is.

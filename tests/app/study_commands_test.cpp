@@ -114,6 +114,26 @@ TEST_CASE("shards of a sweep merge into the whole") {
   CHECK(missing.err.find("--merge", at) == std::string::npos);
 }
 
+TEST_CASE("damaged rows of an earlier sweep are told of and computed anew") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> sweep = {"sweep",     "pendulum", "--vary", "structure.angle=10,20,30",
+                                          "--measure", "energy",   "--set",  "solver.end_time=0.3",
+                                          "-o",        dir / "out"};
+  REQUIRE(run_program(sweep).code == 0);
+  const std::string right = file_text(dir / "out/sweep.csv");
+  const std::size_t begin = right.find("\n20,") + 1, end = right.find('\n', begin);
+  REQUIRE(begin > 1);
+  for (const char* row : {"20,banana,0.12", "20,completed,nan", "20,completed,inf", "20,completed,-1"}) {
+    INFO(row);
+    std::ofstream(dir / "out/sweep.csv") << right.substr(0, begin) << row << right.substr(end);
+    const ProgramResult again = run_program(sweep);
+    CHECK(again.code == 0);
+    CHECK(again.err.find("sweep.csv: line 3 is no finished result and was not taken") != std::string::npos);
+    CHECK(file_text(dir / "out/sweep.csv") == right);
+  }
+  CHECK(run_program(sweep).err.find("no finished result") == std::string::npos);
+}
+
 TEST_CASE("shards that do not agree on a point are named when they are merged") {
   const ScratchDirectory dir;
   const std::vector<std::string> sweep = {"sweep",     "pendulum",    "--vary", "structure.angle=20,40",

@@ -93,6 +93,29 @@ TEST_CASE("a result torn within quotes is dropped") {
   CHECK(Journal(file.path, {"n", "value"}, 1).find({"2"}) == nullptr);
 }
 
+TEST_CASE("rows that no work leaves are no results and are told of with their line") {
+  const File file;
+  const std::vector<std::string> columns = {"n", "value"};
+  const auto read = [&] {
+    return Journal(file.path, columns, 1, {1}, [](const Journal::Row& row) { return row[1] != "-1"; });
+  };
+  { Journal(file.path, columns, 1).append({"1", "0.5"}); }
+  CHECK(read().damage().empty());
+  std::ofstream(file.path, std::ios::app) << "2,-1\n3,0.25\n4,abc\n5,6,7\n8,0.1";  // the last is torn
+  {
+    const Journal journal = read();
+    CHECK(journal.size() == 2);
+    CHECK_FALSE(journal.find({"2"}));
+    CHECK(journal.find({"3"}));
+    CHECK(journal.damage() == std::vector<std::string>{file.path.string() +
+                                                       ": 3 lines, the first of them line 3, are no finished "
+                                                       "results"});
+  }
+  CHECK(read().damage().empty());  // the file was written without them
+  std::ofstream(file.path, std::ios::app) << "2,-1\n";
+  CHECK(read().damage() == std::vector<std::string>{file.path.string() + ": line 4 is no finished result"});
+}
+
 TEST_CASE("a journal of other columns is refused") {
   const File file;
   { Journal(file.path, {"n", "value"}, 1).append({"1", "0.5"}); }

@@ -101,6 +101,38 @@ TEST_CASE("a second study takes its points from the journal") {
   CHECK(points_table(first).rows == points_table(second).rows);
 }
 
+TEST_CASE("rows of a study that no run leaves are no points of it") {
+  StudyPlan plan = small_plan();
+  plan.settings.resize(1);
+  Journal journal({}, study_columns(), study_key_columns);
+  const Table points = points_table(run_study(plan, journal, {}));
+  REQUIRE_FALSE(points.rows.empty());
+  for (const auto& row : points.rows) CHECK(is_study_point(row));
+  const auto with = [&](const char* column, const char* cell) {
+    auto row = points.rows.front();
+    row[points.column(column)] = cell;
+    return row;
+  };
+  REQUIRE(points.rows.front()[points.column("outcome")] == "ok");
+  CHECK(is_study_point(with("outcome", "too slow")));
+  for (const auto& [column, cell] : {std::pair("outcome", "banana"),
+                                     {"outcome", ""},
+                                     {"position_error_m", "nan"},
+                                     {"position_error_m", "-1"},
+                                     {"position_error_m", "inf"},
+                                     {"energy_error_max_J", "nan"},
+                                     {"cpu_median_s", "-5"},
+                                     {"cpu_median_s", "nan"},
+                                     {"cpu_min_s", "inf"},
+                                     {"step_s", "-0.1"},
+                                     {"repeats", "-1"},
+                                     {"repeats", "0"},
+                                     {"factorisations", "-3"}}) {
+    INFO(column << " = " << cell);
+    CHECK_FALSE(is_study_point(with(column, cell)));
+  }
+}
+
 TEST_CASE("a study tells how far it is, and at its end that it is done") {
   StudyPlan plan = small_plan();
   plan.settings.resize(2);

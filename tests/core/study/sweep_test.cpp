@@ -279,6 +279,32 @@ TEST_CASE("a value that no scene takes is a row of its own wherever it stands in
   CHECK(sweep.table.rows[1][1] != "invalid");
 }
 
+TEST_CASE("rows of a sweep that no run leaves are not finished") {
+  SweepPlan plan = ring_plan();
+  plan.measures.clear();
+  for (const char* name : {"deploy_time", "energy", "stress_margin", "max:energy_balance_J"})
+    plan.measures.push_back(find_measure(name));
+  using Row = std::vector<std::string>;
+  // A run that ends before it is deployed would be deployed later (inf), and margins may have no bound.
+  for (const Row& row :
+       {Row{"40", "deployed", "5.6", "12", "nan", "-1e-9"}, Row{"40", "completed", "inf", "0", "inf", "0"},
+        Row{"40", "completed", "nan", "0", "-1", "0"}, Row{"40", "failed", "nan", "nan", "nan", "nan"},
+        Row{"40", "invalid", "nan", "nan", "nan", "nan"}}) {
+    INFO(csv_line(row));
+    CHECK(plan.is_finished(row));
+  }
+  for (const Row& row :
+       {Row{"40", "banana", "5.6", "12", "1", "0"}, Row{"40", "", "5.6", "12", "1", "0"},
+        Row{"40", "stopped", "5.6", "12", "1", "0"}, Row{"40", "deployed", "inf", "12", "1", "0"},
+        Row{"40", "deployed", "nan", "12", "1", "0"}, Row{"40", "deployed", "-1", "12", "1", "0"},
+        Row{"40", "completed", "-inf", "12", "1", "0"}, Row{"40", "completed", "inf", "nan", "1", "0"},
+        Row{"40", "completed", "inf", "inf", "1", "0"}, Row{"40", "completed", "inf", "-12", "1", "0"},
+        Row{"40", "completed", "inf", "12", "1", "nan"}}) {
+    INFO(csv_line(row));
+    CHECK_FALSE(plan.is_finished(row));
+  }
+}
+
 TEST_CASE("unknown measures and keys are named") {
   CHECK_THROWS_WITH(find_measure("deploytime"), Catch::Contains("did you mean 'deploy_time'"));
   CHECK_THROWS_WITH(find_measure("max:kinetic_energy"), Catch::Contains("did you mean 'kinetic_energy_J'"));
