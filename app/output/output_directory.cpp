@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/output/output_directory.hpp"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 #include <thread>
 
@@ -93,7 +96,21 @@ OwnDirectory::~OwnDirectory() {
   std::cerr << "\n";
 }
 
+namespace {
+
+void refuse_long_name(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const long most = ::pathconf(folder.c_str(), _PC_NAME_MAX);  // below 0: no limit, or not known
+  const std::size_t length = file.filename().native().size();
+  if (most < 0 || length <= static_cast<std::size_t>(most)) return;
+  throw FileError(file, "the name has " + std::to_string(length) + " bytes; names there have at most " +
+                            std::to_string(most));
+}
+
+}  // namespace
+
 void require_writable(const fs::path& file) {
+  refuse_long_name(file);
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) throw FileError(file, "is a directory");
   try {

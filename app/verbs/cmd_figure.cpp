@@ -48,6 +48,13 @@ void require_data(const FigureKind& kind, const Scene& scene, const Simulation& 
     throw UsageError("the scene " + scene.name + " has no data for the figure " + in_quotes(kind.name));
 }
 
+// With what is written beside it.
+void require_writable_figure(const std::filesystem::path& output) {
+  require_writable(output);
+  for (const auto& beside : figure_data_files(output)) require_writable(beside);
+  refuse_other_data(output);
+}
+
 }  // namespace
 
 int cmd_figure(const Arguments& arguments) {
@@ -57,7 +64,7 @@ int cmd_figure(const Arguments& arguments) {
   const bool file = single_file(output, arguments);
   const Scene scene = scene_of(arguments);
   auto model = model_of(scene, arguments);
-  if (file) require_writable(output);
+  if (file) require_writable_figure(output);
   // A directory may hold whatever it does: nothing but figures of ours is replaced in it.
   OwnDirectory directory(file ? "" : arguments.output, true, "figure", DirectoryLock::Use::shareable);
   if (!file) directory.lock().share();

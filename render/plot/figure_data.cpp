@@ -95,22 +95,28 @@ std::string figure_caption(const Figure& figure) {
 
 // Tables of a run or of the user's own are not for us to replace. A caption is ours where it stands beside a
 // table of ours.
+std::array<std::filesystem::path, 2> figure_data_files(const std::filesystem::path& picture) {
+  return {beside(picture, ".csv"), beside(picture, ".caption.txt")};
+}
+
 void refuse_other_data(const std::filesystem::path& picture) {
-  const std::filesystem::path table = beside(picture, ".csv"), caption = beside(picture, ".caption.txt");
+  const auto [table, caption] = figure_data_files(picture);
   std::ifstream file(table, std::ios::binary);
   std::string line;
   const bool there = file && std::getline(file, line);
   if (there && line + '\n' != figure_csv_header)
     throw FileError(table,
                     "holds other data, which the figure's numbers would replace; name the figure otherwise");
-  if (!there && std::filesystem::exists(caption))
+  std::error_code ignored;
+  if (!there && std::filesystem::exists(caption, ignored))
     throw FileError(caption, "is not of a figure, whose caption would replace it; name the figure otherwise");
 }
 
 void write_figure_data(const Figure& figure, const std::filesystem::path& picture) {
   refuse_other_data(picture);
-  write_file_atomically(beside(picture, ".csv"), figure_csv(figure));
-  write_file_atomically(beside(picture, ".caption.txt"), figure_caption(figure));
+  const auto [table, caption] = figure_data_files(picture);
+  write_file_atomically(table, figure_csv(figure));
+  write_file_atomically(caption, figure_caption(figure));
 }
 
 }  // namespace unfurl

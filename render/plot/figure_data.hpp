@@ -2,6 +2,7 @@
 // What stands beside the picture of a figure: the numbers drawn and its caption.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -21,11 +22,14 @@ std::string figure_csv(const Figure& figure);
 // Title and caption as one paragraph.
 std::string figure_caption(const Figure& figure);
 
+// NAME.csv and NAME.caption.txt beside the picture NAME.png.
+std::array<std::filesystem::path, 2> figure_data_files(const std::filesystem::path& picture);
+
 // Throws FileError where the files beside the picture are there and are not those of a figure: to be asked
 // before the picture is written.
 void refuse_other_data(const std::filesystem::path& picture);
 
-// NAME.csv and NAME.caption.txt beside the picture NAME.png. Throws FileError, also where NAME.csv is
+// Writes both. Throws FileError, also where NAME.csv is
 // something else than the table of a figure.
 void write_figure_data(const Figure& figure, const std::filesystem::path& picture);
 

@@ -218,6 +218,28 @@ TEST_CASE("every figure that is asked for by name must be there to be made") {
   CHECK_FALSE(fs::exists(dir / "out/poisson.svg"));
 }
 
+TEST_CASE("a figure whose file or caption would have too long a name is refused before the run") {
+  // File systems here take names of 255 bytes; ".caption.txt" has 8 more than ".svg".
+  const ScratchDirectory dir;
+  for (const std::size_t length : {244, 247, 251, 300}) {
+    const std::string stem(length, 'a');
+    const ProgramResult r = run_program(
+        {"figure", "pendulum", "energy", "--set", "solver.end_time=0.1", "-o", dir / (stem + ".svg")});
+    INFO(length << " " << r.err);
+    CHECK(r.code == 5);
+    CHECK(r.err.find(length > 251 ? stem + ".svg: the name has 304 bytes"
+                                  : stem + ".caption.txt: the name has ") != std::string::npos);
+    CHECK(r.err.find("at most 255") != std::string::npos);
+    CHECK(r.err.find(" steps") == std::string::npos);  // nothing was run
+    CHECK(files_in(dir / "").empty());
+  }
+  const std::string longest(243, 'a');
+  CHECK(run_program(
+            {"figure", "pendulum", "energy", "--set", "solver.end_time=0.1", "-o", dir / (longest + ".svg")})
+            .code == 0);
+  CHECK(files_in(dir / "").size() == 3);
+}
+
 TEST_CASE("a figure is not drawn where its numbers would replace other data") {
   const ScratchDirectory dir;
   const std::string table = dir.write("f.csv", "mass,price\n1,2\n"), picture = dir.write("f.png", "mine");
