@@ -76,8 +76,18 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
   return text.str();
 }
 
+namespace {
+
+// The same number of stages in a period, of which more follow it to a higher order: eight by the usual three
+// in a step. Fewer stages stand for no shorter steps.
+double followed_share_of(const SolverOptions& options) {
+  return followed_share * (options.method == "dvm" ? std::max(1.0, 0.5 * (options.stages - 1)) : 1.0);
+}
+
+}  // namespace
+
 std::string cable_step_warning(const OneSided& sides, std::size_t i, const System& system, const State& state,
-                               double step) {
+                               const SolverOptions& options) {
   PushResponses responses(system, state);
   if (!responses.ok()) return {};
   responses.add(sides.cable_length(i), 1.0, sides.cable_length(i).reference());
@@ -86,15 +96,16 @@ std::string cable_step_warning(const OneSided& sides, std::size_t i, const Syste
   const double k = spring_law(sides.cable(i), state.t, q.data()).stiffness, c = sides.cable(i).damping,
                by_force = responses.matrix()(0, 0), square = k * by_force;
   const double period = 2 * pi / std::sqrt(square);
-  if (!(step > followed_share * period) || c * by_force > 2 * std::sqrt(square)) return {};
+  const double followed = period * followed_share_of(options);
+  if (!(options.step > followed) || c * by_force > 2 * std::sqrt(square)) return {};
   std::ostringstream text;
   text.precision(3);
   text
       << "what " << sides.cable(i).name << " holds swings on it in " << period << " s, which the step of "
-      << step
+      << options.step
       << " s does not resolve: how far it stretches, how long it pulls and what it throws back are not to be "
          "trusted; solver.step = "
-      << followed_share * period << ", or solver.model = \"auto\" where the structure moves in one way only";
+      << followed << ", or solver.model = \"auto\" where the structure moves in one way only";
   return text.str();
 }
 

@@ -19,8 +19,9 @@ double fastest_elastic_period(const Model& model, const State& state);
 // there is to choose; empty: nothing. Of a method that damps what it does not resolve, nothing.
 std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options);
 
-// The same of cable i, which begins to pull: of how what it holds back swings on it.
+// The same of cable i, which begins to pull: of how what it holds back swings on it. More stages of dvm
+// follow in a longer step what fewer would not.
 std::string cable_step_warning(const OneSided& sides, std::size_t i, const System& system, const State& state,
-                               double step);
+                               const SolverOptions& options);
 
 }  // namespace unfurl

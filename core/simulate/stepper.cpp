@@ -235,7 +235,7 @@ void Stepper::Loop::warn_of_long_step(const Probe& to, const VectorXd& off, cons
 void Stepper::Loop::warn_of_cable(std::size_t i, const State& state) {
   const std::string begin = "what " + sides_.cable(i).name + " holds ";
   if (std::ranges::any_of(run_.warnings, [&](const std::string& w) { return w.starts_with(begin); })) return;
-  std::string told = cable_step_warning(sides_, i, base_->system.at(state), state, run_.options.step);
+  std::string told = cable_step_warning(sides_, i, base_->system.at(state), state, run_.options);
   if (!told.empty()) run_.warnings.push_back(std::move(told));
 }
 

@@ -105,6 +105,50 @@ TEST_CASE("a contact that steps do not resolve is warned of") {
   }
 }
 
+// A bob of 1 kg on a rod, held by a winch's cable of 5000 N: it swings on it in 76 ms. Steps of 1/35 s are
+// more than a quarter of that, and with four stages right to 1e-9 m against short steps of five.
+TEST_CASE("more stages follow in a step what fewer would not, and are not warned of") {
+  const std::string winch = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "X", position = [0, 0, 1], fixed = true},
+         {name = "bob", position = [0.6, 0, -0.8], mass = 1}]
+rods = [{nodes = ["O", "bob"], mass = 1}]
+[[constraints]]
+kind = "plane"
+nodes = ["bob"]
+normal = [0, 1, 0]
+[[forces]]
+kind = "winch"
+name = "w"
+nodes = ["X", "bob"]
+stall_torque = 2
+no_load_speed = 3000
+drum_radius = 0.05
+inertia = 1e-3
+axial_stiffness = 5000
+damping = 20
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+end_time = 1
+step = 0.0285714285714285714
+)";
+  const auto warned = [](const Simulation& run) {
+    return std::ranges::any_of(run.warnings, [](const std::string& w) {
+      return w.starts_with("what w cable holds swings on it in ");
+    });
+  };
+  const auto bob = [](const Simulation& run) { return VectorXd(testing::end_positions(run).segment<3>(6)); };
+  const Simulation exact = testing::run_scene(winch, {"solver.stages=5", "solver.step=0.002"}),
+                   four = testing::run_scene(winch, {"solver.stages=4"}),
+                   three = testing::run_scene(winch, {"solver.stages=3"});
+  CHECK((bob(four) - bob(exact)).norm() < 1e-9);
+  CHECK_FALSE(warned(four));
+  CHECK(warned(three));
+  CHECK(warned(testing::run_scene(winch, {"solver.method=rk4", "solver.stages=4", "solver.end_time=0.1"})));
+}
+
 // s = 10 u^3 - 15 u^4 + 6 u^5 of one degree in 40 ms, four steps: the inertia of 2 kg m^2 takes
 // P = 2 a^2 s' s'' / T^3, equal to the last digit at the states on both sides of the middle, and none of its
 // peaks is at a state.
