@@ -29,6 +29,11 @@ std::string cure(const Model& model, const State& state, bool latched, double h)
       return "; " + rods +
              " hold each other in this pose, and what looks free there is not (as rods in line are not): "
              "draw them a little slack, or let rods give (structure.rod_model)";
+    VectorXd v(model.system.coordinates());
+    system.expand_rate(state.w, v);
+    if (of_no_branch(system, q, v))
+      return "; the velocities lead into none of the motions that go on from this pose, where constraints "
+             "depend on each other: give those of one of them, or none";
     if (model.structure.kind == "custom" && misfit_of_rows(system, q) > 0)
       return "; constraints depend on each other, and the positions fit them to fewer digits than a step "
              "needs: give the positions all 16 digits, or solver.model = \"path\"";

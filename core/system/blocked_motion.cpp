@@ -145,4 +145,23 @@ std::string held_at_second_order(const System& system, const ConstVec& q) {
   return "";
 }
 
+// As above: of a motion that goes on, y . (v^T H v) vanishes for every self-stress y. What two cranks in line
+// with their coupler leave of it is of the size of the curvatures, not of their round-off.
+bool of_no_branch(const System& system, const ConstVec& q, const ConstVec& v) {
+  const Index m = system.all_constraints();
+  const double speed = v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
+  if (system.coordinates() > most_coordinates || m == 0 || !(speed > 0) || system.rheonomic()) return false;
+  const MatrixXd Y = column_complement(MatrixXd(system.all_jacobian(q)), 1e-9);
+  if (Y.cols() == 0) return false;
+  const double step = 1e-4 * std::max(system.all_lengths().maxCoeff(), std::numeric_limits<double>::min());
+  const VectorXd way = step / speed * v;
+  VectorXd here(m), there(m), back(m);
+  system.all_constraint_values(0.0, q, here);
+  system.all_constraint_values(0.0, q + way, there);
+  system.all_constraint_values(0.0, q - way, back);
+  const VectorXd bent = there + back - 2 * here;
+  constexpr double rounding = 1e-6;
+  return (Y.transpose() * bent).norm() > rounding * std::max(bent.norm(), step * 1e-4);
+}
+
 }  // namespace unfurl

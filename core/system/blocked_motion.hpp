@@ -26,4 +26,8 @@ std::string beyond_reach(const System& system, double t, double h, const ConstVe
 // second: rods in line between two held nodes. Empty: there are none.
 std::string held_at_second_order(const System& system, const ConstVec& q);
 
+// No motion goes on from q with the velocities v, though they fit the constraints to first order: two
+// branches meet there, and v is of neither.
+bool of_no_branch(const System& system, const ConstVec& q, const ConstVec& v);
+
 }  // namespace unfurl

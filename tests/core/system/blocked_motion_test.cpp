@@ -149,4 +149,37 @@ TEST_CASE("what moves to second order is not said to be held") {
   CHECK(held_in(in_line("0.02")) == "");
 }
 
+// Cranks of 1 m and a coupler of 2 m in line: with velocities b and c of their ends across the line they bend
+// by b^2, (c - b)^2 / 2 and c^2, pulled by tensions of one size: b^2 + (c - b)^2 / 2 - c^2 = 0 is c = b, the
+// parallelogram, or c = -3 b, the crossed one.
+TEST_CASE("velocities that are of no branch are said to be so") {
+  const auto cranks = [](double b, double c) {
+    char text[700];
+    std::snprintf(
+        text, sizeof text,
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true},\n"
+        "{name = 'B', position = [1, 0, 0], velocity = [0, %g, 0]},\n"
+        "{name = 'C', position = [3, 0, 0], velocity = [0, %g, 0]},\n"
+        "{name = 'D', position = [2, 0, 0], fixed = true}]\n"
+        "rods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], mass = 1}, {nodes = ['C', 'D'], "
+        "mass = 1}]\n[[constraints]]\nkind = 'plane'\nnodes = ['B', 'C']\nnormal = [0, 0, 1]\n"
+        "[solver]\nstep = 0.01\nend_time = 0.1\n",
+        b, c);
+    return std::string(text);
+  };
+  for (const auto& [b, c] : {std::pair(1.0, -1.0), {1.0, 2.0}, {0.0, 1.0}}) {
+    const Simulation run = run_scene(cranks(b, c));
+    CAPTURE(b, c, run.message);
+    CHECK(run.status == RunStatus::failed);
+    CHECK(has(run.message, "the velocities lead into none of the motions that go on from this pose"));
+    CHECK_FALSE(has(run.message, "smaller solver.step"));
+  }
+  for (const auto& [b, c] : {std::pair(1.0, 1.0), {1.0, -3.0}}) {
+    const auto model = model_of(cranks(b, c));
+    VectorXd v = VectorXd::Zero(model->system.coordinates());
+    v[4] = b, v[7] = c;
+    CHECK_FALSE(of_no_branch(model->system, node_positions(model->structure), v));
+  }
+}
+
 }  // namespace blocked_motion_test
