@@ -268,20 +268,16 @@ void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
 }
 
 // On a ground of its own: the structure may be behind it.
-void draw_state_line(const Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame) {
+void draw_state_line(Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame) {
   const LiveRun& run = *state.shown;
   const std::string title = shortened(run.scene.title, frame.size.x - ui.px(40));
-  char facts[160];
-  std::snprintf(facts, sizeof facts, " at %.4g s, %ld steps, %.3g s of CPU time",
-                run.simulation.trajectory.end_time(), run.simulation.steps, run.simulation.cpu_s);
   const bool failed = run.simulation.status == RunStatus::failed;
-  std::string line = failed ? "the solver failed " + run.simulation.message
-                            : std::string(to_string(run.simulation.status)) + facts;
+  std::string line = state_sentence(run);
   if (state.playback.playing && state.frames_per_second > 0) {
-    std::snprintf(facts, sizeof facts, ", %.0f frames/s", state.frames_per_second);
-    line += facts;
+    char rate[40];
+    std::snprintf(rate, sizeof rate, ", %.0f frames/s", state.frames_per_second);
+    line.insert(std::min(line.find('\n'), line.size()), rate);
   }
-  if (run.coarse) line = "coarse: one sector with longer steps; the whole is being simulated";
   if (const std::string note = view.scale_note(); !note.empty()) line += "\n" + note;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float pad = ui.px(7), room = frame.size.x - ui.px(40);
@@ -294,6 +290,8 @@ void draw_state_line(const Ui& ui, const PanelState& state, const SceneView& vie
   list.AddText(ui.bold, ui.bold->FontSize, at, ui.color(ui.theme.text), title.c_str());
   list.AddText(ui.regular, ui.regular->FontSize, {at.x, at.y + ui.bold->FontSize + ui.px(4)},
                ui.color(failed ? ui.theme.error : ui.theme.dim), line.c_str(), nullptr, room);
+  ui.places["state line"] = {at.x - pad, at.y - pad, at.x + wide + pad,
+                             at.y + ui.bold->FontSize + ui.px(4) + text.y + pad};
 }
 
 // A and B side by side, on the left below the title: the legend stands at the bottom.
@@ -318,7 +316,7 @@ void draw_comparison(Ui& ui, const PanelState& state, const Frame& frame) {
   columns[0] -= std::min(over, columns[0] - ui.px(40));
   width -= over;
   const float height = 2 * pad + line * static_cast<float>(rows.size() + 1);
-  const ImVec2 low(frame.low.x + ui.px(10), frame.low.y + ui.px(108));
+  const ImVec2 low(frame.low.x + ui.px(10), static_cast<float>(ui.places.at("state line").y1) + ui.px(6));
   list.AddRectFilled(low, {low.x + width, low.y + height}, ui.color(ui.theme.window, 0.92f), ui.px(6));
   list.AddRect(low, {low.x + width, low.y + height}, ui.color(ui.theme.rule), ui.px(6));
   float y = low.y + pad;

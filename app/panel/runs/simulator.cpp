@@ -2,6 +2,7 @@
 #include "app/panel/runs/simulator.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -95,6 +96,17 @@ SimulationOutcome outcome_of(const SceneDocument& document, const Simulator::Tas
 }
 
 }  // namespace
+
+std::string state_sentence(const LiveRun& run) {
+  const Simulation& simulation = run.simulation;
+  if (run.coarse) return "coarse: one sector with longer steps; the whole is being simulated";
+  if (simulation.status == RunStatus::failed) return "the solver failed " + simulation.message;
+  char facts[160];
+  std::snprintf(facts, sizeof facts, " at %.4g s, %ld steps, %.3g s of CPU time",
+                simulation.trajectory.end_time(), simulation.steps, simulation.cpu_s);
+  const SolvedAs solved = solved_as(simulation);
+  return std::string(to_string(simulation.status)) + facts + "\nmodel " + solved.name + ": " + solved.why;
+}
 
 Simulator::Simulator(std::function<void()> wake) : Worker(outcome_of, std::move(wake)) {}
 

@@ -25,6 +25,9 @@ struct LiveRun {
   bool coarse = false;  // of a large structure something quick, until its own run is there
 };
 
+// How the run ended, what it cost, and which model was solved and why: "deployed at 4.92 s, ...".
+std::string state_sentence(const LiveRun& run);
+
 struct SimulationOutcome {
   long id = 0;                         // of the request
   std::shared_ptr<const LiveRun> run;  // null: the scene is at fault, and why follows

@@ -80,24 +80,6 @@ TEST_CASE("the free motions of a pose are shown one after the other") {
   CHECK(driver.state().message == "free motion 1 of 1");
 }
 
-TEST_CASE("a structure without a free motion says so") {
-  SceneDocument triangle;
-  triangle.name = "triangle.toml";
-  triangle.text = std::make_shared<const std::string>(
-      "[structure]\nkind = \"custom\"\n"
-      "nodes = [{name = \"A\", position = [0, 0, 0], fixed = true},\n"
-      "         {name = \"B\", position = [1, 0, 0], fixed = true},\n"
-      "         {name = \"C\", position = [0, 1, 0], fixed = true},\n"
-      "         {name = \"D\", position = [0, 0, 1], mass = 1}]\n"
-      "rods = [{nodes = [\"A\", \"D\"], mass = 1}, {nodes = [\"B\", \"D\"], mass = 1},\n"
-      "        {nodes = [\"C\", \"D\"], mass = 1}]\n"
-      "[solver]\nstep = 0.05\nend_time = 0.2\n");
-  PanelDriver driver(quick(), triangle);
-  driver.key(Key::w);
-  CHECK(driver.state().message == "nothing moves freely here but the whole");
-  CHECK_FALSE(driver.state().pose);
-}
-
 TEST_CASE("nodes and rods are added, moved, connected and deleted as lines of TOML, and undone") {
   PanelDriver driver(quick(), blank_document());
   const SceneDocument start = driver.state().history.now();

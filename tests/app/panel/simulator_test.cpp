@@ -42,6 +42,26 @@ TEST_CASE("a background simulation is the command line's") {
   CHECK_FALSE(simulator.busy());
 }
 
+TEST_CASE("a run says which model was solved and why, in the summary's words") {
+  struct Asked {
+    const char *key, *value, *sentence;
+  };
+  const auto asked =
+      GENERATE(Asked{"solver.model", "full", "model full: solver.model = \"full\""},
+               Asked{"solver.model", "auto", "model path: one degree of freedom; solver.model = \"auto\""},
+               Asked{"structure.model", "sector", "model sector: structure.model = \"sector\""});
+  SceneDocument document = hoop(0.05);
+  document.edits[asked.key] = std::string(asked.value);
+  Simulator simulator;
+  simulator.submit(document);
+  const auto outcome = outcome_of(simulator);
+  REQUIRE(outcome);
+  REQUIRE(outcome->run);
+  const std::string sentence = state_sentence(*outcome->run);
+  CHECK(sentence.starts_with("deployed at 4.9"));
+  CHECK(sentence.find(std::string("\n") + asked.sentence) != std::string::npos);
+}
+
 TEST_CASE("only the newest of many requests comes out, and stale work is not finished") {
   Simulator simulator;
   long last = 0;

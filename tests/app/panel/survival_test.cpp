@@ -106,7 +106,8 @@ TEST_CASE("a message goes when some more was done, and what is still so is still
   for (int i = 0; i < 4; ++i) driver.key(Key::v);  // said again
   CHECK(driver.state().message == message);
 
-  LiveSession session(open_document("pendulum", {}), {.measure_errors = false});
+  LiveSession session(open_document("pendulum", {}),
+                      {.at = 0, .measure_errors = false, .wake = {}, .picture = {}});
   session.state().message = "exporting";
   session.state().exporting.running = true;
   for (int i = 0; i < 9; ++i) session.note_press();
