@@ -104,7 +104,6 @@ bool ControlPanel::take_key(const InputEvent& event) {
   const bool anywhere = event.control && (event.key == Key::p || event.key == Key::o || event.key == Key::q);
   if (escape && host_->close_popups()) return true;
   if (host_->typing() && !(escape && box) && !anywhere) return false;
-  if (event.key == Key::tab && !event.control && host_->step_on(event.shift)) return true;
   if (host_->widget_takes(event.key) && !(escape && box)) return false;
   if (event.key == Key::tab || event.key == Key::f6) {
     host_->focus_pane(event.key == Key::f6);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <exception>
 #include <iterator>
-#include <string_view>
 #include <utility>
 
 #include "app/panel/panes/figure_cards.hpp"
@@ -137,31 +136,6 @@ bool ImguiHost::widget_takes(Key key) const {
   return has && std::find(std::begin(used), std::end(used), key) != std::end(used);
 }
 
-// The keyboard is, or was before the mouse, in a box or among parameters: not in the view, nor in a bar.
-bool ImguiHost::has_place() const {
-  const ImGuiWindow* window = context_->NavWindow;
-  if (context_->NavId == 0 || window == nullptr || !window->WasActive) return false;
-  const ImGuiWindow& root = *window->RootWindow;
-  const std::string_view name = root.Name;
-  return name == "scene" || name == "figures" || (root.Flags & ImGuiWindowFlags_NoBringToFrontOnFocus) == 0;
-}
-
-bool ImguiHost::step_on(bool back) {
-  if (context_->ActiveId != 0 || context_->OpenPopupStack.Size > 0 || !has_place()) return false;
-  step_ = back ? -1 : 1;
-  return true;
-}
-
-// What ImGui does itself while something is typed; else its Tab would begin at the window's first field.
-void ImguiHost::begin_step() const {
-  ImGui::NavMoveRequestSubmit(ImGuiDir_None, step_ < 0 ? ImGuiDir_Up : ImGuiDir_Down,
-                              ImGuiNavMoveFlags_Tabbing,
-                              ImGuiScrollFlags_KeepVisibleEdgeX | ImGuiScrollFlags_KeepVisibleEdgeY);
-  context_->NavTabbingDir = step_;
-  context_->NavTabbingCounter = -1;
-  context_->NavTabbingResultFirst.Clear();
-}
-
 void ImguiHost::focus_pane(bool next) {
   constexpr const char* panes[] = {"scene", "figures", "timeline", "bar", "view"};
   constexpr int count = static_cast<int>(std::size(panes));
@@ -203,9 +177,6 @@ void ImguiHost::frame(int width, int height, double seconds, const std::function
   // Enter does what Space does; by itself it only begins to type.
   if (io.KeysDown[static_cast<int>(Key::enter)]) io.NavInputs[ImGuiNavInput_Activate] = 1;
   ImGui::NewFrame();
-  const int step = context_->NavWindow != nullptr ? step_ : 0;
-  if (step != 0) begin_step();
-  step_ = 0;
   std::exception_ptr thrown;
   try {
     ImGui::PushFont(ui_.regular);
@@ -217,8 +188,6 @@ void ImguiHost::frame(int width, int height, double seconds, const std::function
   ImGui::ErrorCheckEndFrameRecover(nullptr);  // does nothing after a frame that came to its end
   context_->FontStack.clear();                // which it leaves as it is
   ImGui::Render();
-  // Behind the last field, and from a button, which is none, on to the first.
-  if (step > 0 && context_->NavMoveResultLocal.ID == 0) context_->NavTabbingCounter = 1;
   if (thrown) std::rethrow_exception(thrown);
 }
 

@@ -35,9 +35,6 @@ class ImguiHost {
   bool widget_takes(Key key) const;
   // Gives the keyboard to the widgets of a pane: the left one, or (`next`) the one behind that which has it.
   void focus_pane(bool next);
-  // From the field that had the keyboard last to the next one or the one before; false: there is none, or
-  // something is typed, and ImGui's own Tab goes on.
-  bool step_on(bool back);
   bool close_popups() const;  // true: one was open
   // A frame: `draw` makes its widgets. What it throws passes when the frame is whole and the next can be
   // drawn.
@@ -49,8 +46,6 @@ class ImguiHost {
 
  private:
   void make_fonts();
-  bool has_place() const;
-  void begin_step() const;
   void judge_clicks(double seconds);
 
   struct End {
@@ -65,7 +60,6 @@ class ImguiHost {
   int pane_ = -1;                                  // that was given the keyboard last
   double pressed_[3] = {-1, -1, -1}, since_ = -1;  // when buttons were; the last press after the one before
   double frame_seconds_ = 0;                       // of the last frame
-  int step_ = 0;                                   // that Tab asks for in the next frame: -1, 0, 1
 };
 
 }  // namespace unfurl

@@ -40,64 +40,6 @@ TEST_CASE("Tab reaches the parameters, a value is typed, Esc leaves, and keys me
   CHECK(driver.state().playback.t == driver.state().shown->simulation.trajectory.end_time());
 }
 
-// As in every form: what comes after a value that Enter ended is the next value.
-TEST_CASE("Tab after Enter goes on from the value that was typed") {
-  PanelOptions options = PanelDriver::small();
-  options.measure_errors = false;
-  PanelDriver driver(options, "pendulum");
-  const auto& edits = [&]() -> const auto& {
-    return driver.state().history.now().edits;
-  };
-  driver.key(Key::tab);
-  driver.key(Key::tab);
-  driver.type("0.5");
-  driver.key(Key::enter);
-  driver.key(Key::tab);
-  driver.type("0.6");
-  driver.key(Key::enter);
-  driver.key(Key::tab, false, true);  // and back
-  driver.type("0.7");
-  driver.key(Key::enter);
-  driver.settle();
-  REQUIRE(edits().size() == 2);
-  CHECK(std::get<double>(edits().at("structure.length")) == 0.7);
-  CHECK(std::get<double>(edits().at("structure.rod_mass")) == 0.6);
-  // From a slider that the mouse led, too; from the view to the first parameter.
-  driver.drag("structure.length", 0.5, 0.6);
-  driver.settle();
-  driver.key(Key::tab);
-  driver.type("0.8");
-  driver.key(Key::enter);
-  driver.settle();
-  CHECK(std::get<double>(edits().at("structure.rod_mass")) == 0.8);
-  CHECK_FALSE(edits().contains("title"));
-  driver.click("view");
-  driver.key(Key::tab);
-  driver.type("x");
-  driver.key(Key::enter);
-  driver.settle();
-  CHECK(edits().contains("title"));
-}
-
-TEST_CASE("Tab stays in a box where something was typed") {
-  PanelOptions options = PanelDriver::small();
-  options.measure_errors = false;
-  PanelDriver driver(options);
-  driver.key(Key::e);
-  driver.frame();
-  driver.click("scene path");
-  driver.key(Key::a, true);
-  driver.type("mine.toml");
-  driver.key(Key::enter);
-  driver.key(Key::tab);
-  driver.type("7");
-  driver.key(Key::enter);
-  driver.settle();
-  CHECK(driver.state().export_path == "mine.toml");
-  CHECK(driver.state().export_output == "7");
-  CHECK(driver.state().history.now().edits.empty());
-}
-
 TEST_CASE("Enter presses buttons and switches, opens lists and takes their choices") {
   PanelOptions options = PanelDriver::small();
   options.measure_errors = false;
