@@ -71,12 +71,11 @@ void RunAhead::find_forces(const Trajectory& piece) {
     solver_.emplace(*seen_);
     flow_.emplace(*seen_, true);
   }
-  const std::size_t first = seen_->size();
   for (std::size_t k = 0; k < piece.size(); ++k) {
     if (&piece.model(k) != &seen_->last_model()) seen_->change_model(shared(piece.model(k)));
     seen_->append(piece.state(k), piece.report(k));
   }
-  for (std::size_t i = first; i < seen_->size(); ++i) {
+  for (std::size_t i = forces_.size(); i < seen_->size() && !interrupted_for(0.5); ++i) {
     if (i > 0) flow_->step_to(i, &*solver_);
     forces_.push_back(solver_->at(i));
   }

@@ -31,7 +31,9 @@ class RunAhead {
   void take(const Trajectory& run);
   void leave_out(std::size_t size);  // states from here on
   const std::vector<SolvedPoint>& forces() const { return forces_; }
-  const EnergyFlow* flow() const { return flow_ ? &flow_->so_far() : nullptr; }
+  const EnergyFlow* flow() const {  // of a whole run
+    return flow_ && seen_ && forces_.size() == seen_->size() ? &flow_->so_far() : nullptr;
+  }
   const RowsAhead& rows() const { return rows_; }
   const std::optional<Mobility>& mobility() const { return mobility_; }
 

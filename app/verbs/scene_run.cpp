@@ -161,14 +161,17 @@ void warn_of_run(const Simulation& run, const Diagnostics& diagnostics) {
 
 void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arguments& arguments) {
   warn_of_run(run, diagnostics);
-  if (run.status == RunStatus::stopped) std::cerr << "unfurl: interrupted; what is finished is kept\n";
+  if (run.status == RunStatus::stopped || !diagnostics.whole())
+    std::cerr << "unfurl: interrupted; what is finished is kept\n";
   if (arguments.quiet) return;
   std::ostringstream text;
   text << std::setprecision(9) << to_string(run.status) << " at " << run.trajectory.end_time()
        << " s: " << run.steps << (run.steps == 1 ? " step, " : " steps, ") << std::setprecision(3)
-       << run.cpu_s << " s of CPU time, constraint error "
-       << largest_magnitude(diagnostics.at("constraint_max_m").values) << " m, energy balance "
-       << largest_magnitude(diagnostics.at("energy_balance_J").values) << " J\n";
+       << run.cpu_s << " s of CPU time";
+  if (diagnostics.left_open == 0)
+    text << ", constraint error " << largest_magnitude(diagnostics.at("constraint_max_m").values)
+         << " m, energy balance " << largest_magnitude(diagnostics.at("energy_balance_J").values) << " J";
+  text << "\n";
   if (const std::string note = ending_note(run, diagnostics); !note.empty()) text << note << "\n";
   std::cerr << text.str();
 }
@@ -182,7 +185,7 @@ Diagnostics judge_run(Simulation& run, const KnownAhead& ahead) {
 
 int exit_code_of(const Simulation& run, const Diagnostics& diagnostics) {
   if (run.status == RunStatus::failed) return exit_solver_failed;
-  return run.status == RunStatus::stopped || diagnostics.left_open > 0 ? exit_interrupted : exit_ok;
+  return run.status == RunStatus::stopped || !diagnostics.whole() ? exit_interrupted : exit_ok;
 }
 
 }  // namespace unfurl

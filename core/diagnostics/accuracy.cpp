@@ -235,6 +235,16 @@ std::string without_bound(const Trajectory& run) {
   return {};
 }
 
+std::string words_of_interruption(const Diagnostics& d) {
+  if (d.left_open >= d.t.size())
+    return "interrupted before the run was judged: series, rod forces and measures are empty";
+  if (d.left_open == 0) return "interrupted before it was known which forces are unique";
+  std::ostringstream text;
+  text << "interrupted: the run was judged up to t = " << d.t[d.t.size() - d.left_open - 1]
+       << " s only: what follows is empty in series and rod forces, and so are measures of the whole run";
+  return text.str();
+}
+
 }  // namespace
 
 std::string mistrust(const Simulation& run, const Diagnostics& d) {
@@ -242,12 +252,7 @@ std::string mistrust(const Simulation& run, const Diagnostics& d) {
 }
 
 std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnostics& d) {
-  if (d.left_open > 0) {
-    std::ostringstream text;
-    text << "the run was judged up to t = " << d.t[d.t.size() - std::min(d.left_open + 1, d.t.size())]
-         << " s only: what follows is empty in series and rod forces";
-    return {text.str()};
-  }
+  if (!d.whole()) return {words_of_interruption(d)};
   std::vector<std::string> warnings;
   const bool dvm = run.options.method == "dvm";
   const double off = largest_magnitude(d.at("energy_balance_J").values), turned = energy_turned_over(d);

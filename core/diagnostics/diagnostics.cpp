@@ -382,6 +382,7 @@ class StateTable {
 
   Diagnostics finish(const ForceUniqueness* uniqueness) {
     if (uniqueness) mark_unique(run_.trajectory, *uniqueness, doubtful_, out_);
+    if (!uniqueness && look_ == Look::all) leave_unique_open(out_);
     leave_open(run_.trajectory, out_);
     for (Series& column : out_.columns)
       if (column.unit == "J")
@@ -465,15 +466,15 @@ Diagnostics diagnosed(const Simulation& run, Look look, const ForceUniqueness* u
 Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled, const KnownAhead& ahead) {
   std::optional<ForceUniqueness> uniqueness;
   const auto find_uniqueness = [&] {
+    if (cancelled && cancelled()) return;
     if (ahead.name_poses) ahead.name_poses();
     uniqueness.emplace(run);
   };
-  const bool shared = any_elastic(run.trajectory.structure());
-  if (shared) find_uniqueness();
-  StateTable table(run, Look::all, shared ? &*uniqueness : nullptr, ahead);
+  if (any_elastic(run.trajectory.structure())) find_uniqueness();
+  StateTable table(run, Look::all, uniqueness ? &*uniqueness : nullptr, ahead);
   table.fill(cancelled);
-  if (!shared) find_uniqueness();
-  return table.finish(&*uniqueness);
+  if (!uniqueness) find_uniqueness();
+  return table.finish(uniqueness ? &*uniqueness : nullptr);
 }
 
 Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniqueness& known) {

@@ -2,6 +2,7 @@
 // What a run shows about itself, as series over its accepted steps. One function and one row per diagnostic.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <span>
 #include <string>
@@ -34,6 +35,12 @@ struct Diagnostics {
   std::vector<char> rod_shown;
   const Series* find(std::string_view name) const;  // nullptr where the scene has no such column
   const Series& at(std::string_view name) const;    // throws std::out_of_range
+  // Whether what is unique was looked for; else the columns that would say it are NaN.
+  bool unique_known() const {
+    const Series* unique = find("axial_force_max_unique");
+    return !unique || unique->values.empty() || !std::isnan(unique->values.front());
+  }
+  bool whole() const { return left_open == 0 && unique_known(); }
   bool shows(Index rod) const { return rod_shown.empty() || rod_shown[static_cast<std::size_t>(rod)] != 0; }
 };
 
@@ -56,7 +63,8 @@ struct KnownAhead {
 // drive_work_J impact_loss_J, axial_stress_max_Pa axial_stress_min_Pa stress_ratio_max buckling_ratio_max (a
 // modulus), latch_force_max_N latch_torque_max_N_m; of drives NAME.angle_rad NAME.torque_N_m NAME.power_W
 // NAME.torque_unique (or NAME.value_m NAME.force_N ...); the structure's own lengths and poisson_ratio.
-// `cancelled` is asked before every state: once it says so, the rest stays NaN.
+// `cancelled` is asked before every state and before what is unique is looked for: once it says so, the rest
+// stays NaN.
 Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled = {},
                      const KnownAhead& ahead = {});
 

@@ -206,6 +206,14 @@ void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness
                            : 0.0;
 }
 
+void leave_unique_open(Diagnostics& d) {
+  d.force_unique.setConstant(false);
+  std::fill(d.rod_unique.begin(), d.rod_unique.end(), char{0});
+  for (Series& column : d.columns)
+    if (column.name.ends_with("_unique"))
+      std::fill(column.values.begin(), column.values.end(), std::numeric_limits<double>::quiet_NaN());
+}
+
 PeakForce peak_rod_force(const Diagnostics& d, Pull pull) {
   constexpr double equal = 1e-9;  // of the peak: what multipliers of redundant rows carry of round-off
   const auto size = [pull](double force) {

@@ -89,6 +89,9 @@ using DoubtfulStates = std::map<std::size_t, VectorXd>;
 void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
                  const DoubtfulStates& doubtful, Diagnostics& diagnostics);
 
+// The same where nobody looked for it: nothing is called unique, and the columns are NaN.
+void leave_unique_open(Diagnostics& diagnostics);
+
 // The largest axial force among all rods that are shown, and states: its magnitude, or of tensions or
 // compressions alone.
 enum class Pull { either, tension, compression };

@@ -51,6 +51,7 @@ double peak_force(const Simulation& run, const Diagnostics& d) {
 
 template <Pull pull>
 double peak_unique(const Simulation&, const Diagnostics& d) {
+  if (!d.whole()) return no_value;
   return peak_rod_force(d, pull).unique ? 1.0 : 0.0;
 }
 
@@ -61,6 +62,7 @@ double peak_stress(const Simulation& run, const Diagnostics& d) {
 
 template <double (*quantity)(const Rod&, double)>
 double worst_unique(const Simulation& run, const Diagnostics& d) {
+  if (!d.whole()) return no_value;
   return worst_rod(run.trajectory.structure(), d, quantity).unique ? 1.0 : 0.0;
 }
 
@@ -90,7 +92,8 @@ std::vector<double> speeds(const Simulation& run) {
   return fastest;
 }
 
-double peak_speed(const Simulation& run, const Diagnostics&) {
+double peak_speed(const Simulation& run, const Diagnostics& d) {
+  if (d.left_open > 0) return no_value;
   return largest_in_motion(run, speeds(run), speeds);
 }
 

@@ -320,6 +320,7 @@ RememberedExtremes::~RememberedExtremes() {
 }
 
 double extreme_of(const Simulation& run, const Diagnostics& d, std::string_view column, bool largest) {
+  if (d.left_open > 0) return std::numeric_limits<double>::quiet_NaN();  // it may lie in what was not judged
   const double sign = largest ? 1.0 : -1.0;
   if (!remembered) return extreme_of_column(run, d, column, sign);
   const auto [found, made] = remembered->found_.try_emplace({&d, std::string(column), largest}, 0.0);

@@ -90,20 +90,25 @@ Json forces_json(const Simulation& run, const Diagnostics& diagnostics) {
   const auto shown = std::find_if(structure.rod_copies.begin(), structure.rod_copies.end(),
                                   [&](const RodCopy& copy) { return copy.source == peak.rod; });
   Json forces = {{"rods", structure.rod_copies.size()}, {"unique_rods", unique_rods(structure, diagnostics)}};
+  if (!diagnostics.whole()) forces["unique_rods"] = Json();
+  if (diagnostics.left_open > 0) return forces;
   if (shown == structure.rod_copies.end()) return forces;
   forces["peak_rod_force_N"] = find_measure("peak_rod_force").value(run, diagnostics);
   forces["peak_rod"] = shown->name;
   forces["peak_t_s"] = peak.t;
-  forces["peak_unique"] = peak.unique;
+  forces["peak_unique"] = diagnostics.whole() ? Json(peak.unique) : Json();
   return forces;
 }
 
 // What each support gives at most: "A": {"peak_N": 29.4, "t_s": 0.7, "unique": true}.
 Json reactions_json(const Structure& structure, const Diagnostics& diagnostics) {
   Json object = Json::object();
+  if (diagnostics.left_open > 0) return object;
   for (const PeakReaction& peak : peak_reactions(structure, diagnostics))
     object[structure.nodes[static_cast<std::size_t>(peak.node)].name] = {
-        {"peak_N", peak.force_N}, {"t_s", peak.t}, {"unique", peak.unique}};
+        {"peak_N", peak.force_N},
+        {"t_s", peak.t},
+        {"unique", diagnostics.whole() ? Json(peak.unique) : Json()}};
   return object;
 }
 
@@ -119,7 +124,7 @@ Json strength_json(const Simulation& run, const Diagnostics& diagnostics) {
                                     [&](const RodCopy& copy) { return copy.source == worst.rod; });
     entry["rod"] = shown == structure.rod_copies.end() ? Json() : Json(shown->name);
     entry["t_s"] = worst.t;
-    entry["unique"] = worst.unique;
+    entry["unique"] = diagnostics.whole() ? Json(worst.unique) : Json();
   };
   add("axial_stress", axial_stress, find_measure("peak_stress").value(run, diagnostics),
       [](Json& entry, double value) { entry["peak_Pa"] = value; });
@@ -163,7 +168,8 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
     if (diagnostics.find(column)) summary["forces"][key] = largest_of_column(run, diagnostics, column);
   if (Json supports = reactions_json(model.structure, diagnostics); !supports.empty())
     summary["reactions"] = std::move(supports);
-  if (any_elastic(model.structure)) summary["strength"] = strength_json(run, diagnostics);
+  if (any_elastic(model.structure) && diagnostics.left_open == 0)
+    summary["strength"] = strength_json(run, diagnostics);
   summary["events"] = Json::array();
   for (const auto& event : run.events) {
     summary["events"].push_back({{"name", event.name}, {"t_s", event.t}, {"text", event.name}});

@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/energy_flow.hpp"
+#include "core/export/summary.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/simulate/singular_poses.hpp"
+#include "core/system/mobility.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -33,7 +36,7 @@ TEST_CASE("diagnostics that are cancelled keep what they have and leave the rest
   for (std::size_t c = 0; c < whole.columns.size(); ++c) {
     REQUIRE(part.columns[c].values.size() == whole.t.size());
     for (std::size_t i = 0; i < whole.t.size(); ++i) {
-      if (i >= 20)
+      if (i >= 20 || whole.columns[c].name.ends_with("_unique"))  // nobody looked for what is unique
         CHECK(std::isnan(part.columns[c].values[i]));
       else
         CHECK(part.columns[c].values[i] == whole.columns[c].values[i]);
@@ -43,7 +46,33 @@ TEST_CASE("diagnostics that are cancelled keep what they have and leave the rest
   CHECK(part.axial_force.bottomRows(31).array().isNaN().all());
   const auto warnings = accuracy_warnings(run, part);
   REQUIRE(warnings.size() == 1);
-  CHECK(warnings[0].find("judged up to t = 0.19 s only") != std::string::npos);
+  CHECK(warnings[0].find("interrupted: the run was judged up to t = 0.19 s only") != std::string::npos);
+}
+
+TEST_CASE("what an interrupted diagnosis did not look at is null in the summary and called neither nor") {
+  const Simulation run = simulate(make_model(hoop_structure()), dvm_options(3, 0.01, 0.5));
+  const Mobility mobility = analyse_mobility(run.trajectory.model().system, run.trajectory.node_positions(0));
+  const auto size = static_cast<int>(run.trajectory.size());
+  for (const int judged : {0, 20, size}) {
+    int states = 0;
+    bool asked = false;
+    KnownAhead ahead;
+    ahead.name_poses = [&] { asked = true; };
+    const Diagnostics d = diagnose(
+        run, [&] { return ++states > judged; }, ahead);
+    CHECK_FALSE(asked);  // what is unique takes long to find
+    CHECK_FALSE(d.unique_known());
+    const auto summary = nlohmann::json::parse(summary_json("hoop", run, d, mobility, {}));
+    INFO(judged << summary.dump(1));
+    CHECK(summary["warnings"][0].get<std::string>().starts_with("interrupted"));
+    for (const char* name : {"peak_rod_force_unique", "peak_tension_unique", "stress_margin_unique"})
+      CHECK(summary["measures"][name].is_null());
+    CHECK(summary["forces"]["unique_rods"].is_null());
+    CHECK((!summary["forces"].contains("peak_unique") || summary["forces"]["peak_unique"].is_null()));
+    CHECK(summary["measures"]["peak_rod_force_N"].is_null() == (judged < size));
+    CHECK(summary["measures"]["energy_J"].is_null() == (judged < size));
+    CHECK(summary["errors"]["constraint_max_m"].is_null() == (judged < size));
+  }
 }
 
 TEST_CASE("angles are in degrees as well, as scenes have them") {
