@@ -130,19 +130,26 @@ TEST_CASE("a new entry of every kind is sound TOML with members of the structure
     for (const auto& [table, kind] : kinds) {
       INFO(name << " " << table << " " << kind);
       // A pendulum has one rod: no angle between two; only the ring deploys and can latch.
-      const bool no_angle =
-          std::string(name) == "pendulum" &&
-          (kind.starts_with("angle") || kind == "torsion_spring" || kind == "bending" || kind == "motor");
+      const bool no_angle = std::string(name) == "pendulum" &&
+                            (kind.starts_with("angle") || kind == "torsion_spring" || kind == "bending" ||
+                             kind == "motor" || kind == "joint_damping");
       if (no_angle || (kind == "latch" && std::string(name) != "hoop6")) {
         CHECK_THROWS_AS(new_entry(document, table, kind, {}), SceneError);
         continue;
       }
-      const SceneDocument with = with_entry(document, new_entry(document, table, kind, {}));
+      std::string entry;
+      try {
+        entry = new_entry(document, table, kind, {});
+      } catch (const SceneError&) {  // first_values_test.cpp says which may be
+        CHECK(table == "constraints");
+        continue;
+      }
+      const SceneDocument with = with_entry(document, entry);
       const Scene scene = base_scene(with);
       CHECK(scene.loads.size() + scene.forces.size() + scene.constraints.size() ==
             1 + base_scene(document).loads.size() + base_scene(document).forces.size() +
                 base_scene(document).constraints.size());
-      if (table != "constraints") CHECK_NOTHROW(build_structure(scene));
+      CHECK_NOTHROW(build_structure(scene));
     }
   }
 }
@@ -165,7 +172,7 @@ TEST_CASE("a new entry acts on what is selected") {
   }
 }
 
-TEST_CASE("a new drive or stop begins at what its members measure, whatever they are called") {
+TEST_CASE("a new drive or stop follows what its members measure, whatever they are called") {
   const std::string scene =
       "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'up_stop'\nposition = [0, 0, 3]\nmass = 1\n"
       "[[structure.nodes]]\nname = 'foot'\nposition = [0, 0, 0]\nfixed = true\n";
@@ -173,14 +180,16 @@ TEST_CASE("a new drive or stop begins at what its members measure, whatever they
   document.text = std::make_shared<const std::string>(scene);
   const Selection up{Selection::Kind::node, "up_stop"};
   CHECK(new_entry(document, "constraints", "length", up).find("to = 2.7,") != std::string::npos);
-  CHECK(new_entry(document, "constraints", "length_stop", up).ends_with("min = 3.0}"));
-  CHECK(new_entry(document, "constraints", "coordinate_stop", up).ends_with("min = 3.0}"));
+  CHECK(new_entry(document, "constraints", "length_stop", up).ends_with("min = 2.7}"));
+  CHECK(new_entry(document, "constraints", "coordinate_stop", up).ends_with("min = 2.9}"));
 }
 
 TEST_CASE("what is offered has a name and a sentence, and a cable is a spring that only pulls") {
   for (const char* table : {"loads", "forces", "constraints"})
     for (const ElementOffer& offer : element_offers(table)) {
       INFO(offer.kind);
+      if (offer.table != "loads")
+        CHECK(find_kind(offer.table == "forces" ? scene_forces() : scene_constraints(), offer.kind));
       CHECK(offer.name.size() > 3);
       CHECK(offer.sentence.size() > 10);
     }
