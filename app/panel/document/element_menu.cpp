@@ -15,7 +15,6 @@ const std::vector<ElementOffer>& known_offers() {
       {"constraints", "angle", "Motor", "turns a hinge, or the fold, smoothly to an angle in a given time"},
       {"constraints", "length", "Actuator", "brings two nodes to a distance in a given time"},
       {"constraints", "coordinate", "Linear drive", "moves a node along a direction in a given time"},
-      {"constraints", "latch", "Latch", "snaps in at the deployed pose and holds it"},
       {"constraints", "angle_stop", "Hinge stop",
        "an angle cannot leave its limits; what hits them rebounds"},
       {"constraints", "length_stop", "Distance stop", "two nodes come no nearer, or no farther, than this"},
@@ -48,7 +47,7 @@ std::vector<ElementOffer> element_offers(std::string_view table) {
   if (table == "loads") return {known_offers().front()};
   const auto& kinds = table == "forces" ? scene_forces() : scene_constraints();
   for (const ElementOffer& offer : known_offers())
-    if (offer.table == table && find_kind(kinds, offer.kind)) offers.push_back(offer);
+    if (offer.table == table) offers.push_back(offer);
   for (const ElementKind& kind : kinds) {
     if (std::any_of(offers.begin(), offers.end(), [&](const auto& o) { return o.kind == kind.kind; }))
       continue;
