@@ -216,6 +216,7 @@ class Host {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     remember();
+    throw_if_interrupted();
     return exit_ok;
   }
 
@@ -239,6 +240,7 @@ class Host {
     const double used = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
     std::printf("idle for %.0f s: %.3f s of CPU time (%.2f %%), %d frames\n", idle, used, 100 * used / idle,
                 frames);
+    throw_if_interrupted();
     return exit_ok;
   }
 

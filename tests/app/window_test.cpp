@@ -313,6 +313,23 @@ TEST_CASE("a session in a window is recorded, and has the same states without on
   CHECK(replay.out.find(": the same\n") != std::string::npos);
 }
 
+TEST_CASE("a signal ends the window with 130 and a word, and what it remembers is kept") {
+  if (tools_missing()) return;
+  const XServer server;
+  for (const int signal : {SIGTERM, SIGINT}) {
+    const ScratchDirectory scratch;
+    const pid_t window = open_window(server, scratch, "pendulum --dark");
+    REQUIRE(server.tool("search --sync --name Unfurl") == 0);
+    // At rest it waits for events.
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    ::kill(window, signal);
+    INFO(signal);
+    CHECK(end_of(window, 10) == 130);
+    CHECK(file_text(scratch / "log") == "unfurl: interrupted; what is finished is kept\n");
+    CHECK(load_settings(scratch / "config/unfurl/window.json").dark);
+  }
+}
+
 TEST_CASE("a display that goes away ends the window with its exit code, in one line") {
   if (tools_missing()) return;
   const ScratchDirectory scratch;
