@@ -78,6 +78,24 @@ Table stuck_table(const Margin& margin, const std::vector<StuckHinge>& hinges) {
   return table;
 }
 
+const char* load_unit(const MarginLoad& load) {
+  return load.turns ? "N m" : "N";
+}
+
+const char* speed_unit(const MarginLoad& load) {
+  return load.turns ? "rad/s" : "m/s";
+}
+
+Table loads_table(const Margin& margin) {
+  Table table{{"name", "kind", place_column(margin), "load", "load_unit", "speed", "speed_unit", "energy_J"},
+              {}};
+  for (const MarginLoad& load : margin.loads)
+    table.rows.push_back({load.name, load.kind, exact_number(place(margin, margin.end_fold, margin.end_s)),
+                          exact_number(load.load), load_unit(load), exact_number(load.speed),
+                          speed_unit(load), exact_number(load.energy)});
+  return table;
+}
+
 using Json = nlohmann::ordered_json;
 
 std::string end_in_words(const Margin& margin) {
@@ -114,6 +132,20 @@ Json sources_json(const Margin& margin) {
   return sources;
 }
 
+Json loads_json(const Margin& margin) {
+  Json loads = Json::array();
+  for (const MarginLoad& load : margin.loads)
+    loads.push_back({{"name", load.name},
+                     {"kind", load.kind},
+                     {"at", place(margin, margin.end_fold, margin.end_s)},
+                     {"load", load.load},
+                     {"load_unit", load_unit(load)},
+                     {"speed", load.speed},
+                     {"speed_unit", speed_unit(load)},
+                     {"energy_J", load.energy}});
+  return loads;
+}
+
 // A margin without bound is null.
 Json margin_json(const Scene& scene, const Margin& margin, const std::vector<StuckHinge>& hinges,
                  bool stuck) {
@@ -129,7 +161,8 @@ Json margin_json(const Scene& scene, const Margin& margin, const std::vector<Stu
       {"ends_at", place(margin, last.fold_angle, last.s)},
       {"stalls_at", margin.end == MarginEnd::stalls ? Json(place(margin, last.fold_angle, last.s)) : Json()},
       {"force_unit", margin.unit},
-      {"sources", sources_json(margin)}};
+      {"sources", sources_json(margin)},
+      {"loads", loads_json(margin)}};
   if (!stuck) return json;
   json["stuck"] = Json::array();
   for (const StuckHinge& h : hinges)
@@ -164,6 +197,25 @@ void print_sources(const Margin& margin) {
               << short_number(margin.worst.forces[static_cast<Index>(k)], 6) << "\n";
 }
 
+void print_loads(const Margin& margin) {
+  if (margin.loads.empty()) return;
+  std::vector<std::string_view> names;
+  for (const MarginLoad& load : margin.loads) names.push_back(load.name);
+  const int width = name_column(names);
+  std::cout << std::left << std::setw(width) << "stop or latch" << std::setw(20) << "load at rest"
+            << std::setw(20) << "met at"
+            << "with (J)\n";
+  for (const MarginLoad& load : margin.loads) {
+    std::cout << std::setw(width) << load.name << std::setw(20)
+              << words(load.load) + (std::isfinite(load.load) ? std::string(" ") + load_unit(load) : "");
+    if (std::isnan(load.speed))
+      std::cout << "it is not reached\n";
+    else
+      std::cout << std::setw(20) << short_number(load.speed, 6) + " " + speed_unit(load)
+                << short_number(load.energy, 6) << "\n";
+  }
+}
+
 void print_hinges(const Margin& margin, const std::vector<StuckHinge>& hinges, const std::string& unit) {
   std::vector<std::string_view> names;
   for (const StuckHinge& hinge : hinges) names.push_back(hinge.name);
@@ -184,6 +236,7 @@ void print_margin(const Scene& scene, const Margin& margin, const std::vector<St
             << ", dynamic margin " << words(margin.dynamic_min) << "; "
             << told_end(margin, short_number(place(margin, last.fold_angle, last.s), 6) + unit) << "\n";
   print_sources(margin);
+  print_loads(margin);
   if (!hinges.empty())
     print_hinges(margin, hinges, unit);
   else if (stuck)
@@ -218,6 +271,7 @@ int cmd_margin(const Arguments& arguments) {
   StudySession session(arguments, "margins", study_identity(asked, scene), "margin.csv");
   session.write("margin.csv", csv_text(poses_table(margin)));
   session.write("motion.csv", csv_text(motion_table(margin)));
+  session.write("loads.csv", csv_text(loads_table(margin)));
   if (arguments.study.stuck) session.write("stuck.csv", csv_text(stuck_table(margin, hinges)));
   session.write("margin.json", margin_json(scene, margin, hinges, arguments.study.stuck).dump(2) + "\n");
   session.write(margin_figure(margin, scene.title));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/math/golden_section.hpp"
+#include "core/path/margin_loads.hpp"
 #include "core/path/margin_motion.hpp"
 #include "core/path/path_scope.hpp"
 #include "core/path/path_time.hpp"
@@ -18,6 +19,7 @@ constexpr long far_enough = 64;  // pieces of the path, to the deployed pose
 constexpr double rounding = 1e-13;
 // A measure that changes by less, of what is left of it, over a piece of the path is stationary.
 constexpr double stationary = 1e-9;
+constexpr double same_end = 1e-8;  // of the way: the motion gets there
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::shared_ptr<const Path> path_for_margins(const std::shared_ptr<const Model>& model) {
@@ -53,6 +55,7 @@ class MarginMaker {
     if (!end_) end_ = out_.motion.back().s;
     take_dynamic();
     take_points();
+    take_loads();
     return std::move(out_);
   }
 
@@ -189,6 +192,19 @@ class MarginMaker {
     const double b = worst + 1 == out_.points.end() ? worst->s : (worst + 1)->s;
     const double at = golden_section([&](double s) { return static_margin(s, time_at(s)); }, a, b, 60);
     if (const MarginPoint refined = point(at); refined.margin < out_.worst.margin) out_.worst = refined;
+  }
+
+  void take_loads() {
+    out_.end_s = *end_;
+    out_.end_fold = fold_angle(*end_);
+    const Pose at = pose(*end_);
+    const double push = out_.sense * motion_.law().at_rest(out_.sense * *end_, time_at(*end_)).Q;
+    WayEnd end{out_.sense, *end_, at.q, at.dq, structure_.sectors * push, 0.0};
+    double way = 0;
+    motion_.at(motion_.t(), way, end.speed);
+    if (out_.end == MarginEnd::other_way || *end_ - way > same_end * *end_)
+      end.speed = std::numeric_limits<double>::quiet_NaN();
+    out_.loads = loads_at_end(structure_, motion_, end, options_.at_deployed == "latch");
   }
 
   const Structure& structure_;

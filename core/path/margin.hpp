@@ -49,6 +49,17 @@ enum class MarginEnd {
   other_way,  // the motion sets out against the way, and is not followed
 };
 
+// What a stop or a latch that the way ends on has to bear there, with the factors. At rest it is what drives
+// less what resists, dry friction and dampers aside, by virtual work on what the stop limits or the latch
+// holds: one that pushes on is borne, one that pulls back by latches alone.
+struct MarginLoad {
+  std::string name, kind;  // "stop", "cable", "latch"
+  bool turns = false;      // of an angle: [N m] and [rad/s]; else [N] and [m/s]
+  double load = 0.0;       // pushes on, < 0: pulls back; infinite where what it acts on is stationary
+  double speed = 0.0;      // of what it acts on, as it is met; NaN: the motion does not get there
+  double energy = 0.0;     // kinetic, of the whole structure or, of one of several latches, its share [J]
+};
+
 struct Margin {
   std::vector<MarginSource> sources;
   std::string unit;  // of forces: "N m" per radian of fold angle, else "N/kg^1/2" per s
@@ -62,6 +73,8 @@ struct Margin {
   MarginEnd end = MarginEnd::stalls;
   std::string stop;    // that bars the way, in the motion or, where it ends before, behind that
   double sense = 1.0;  // s of the path by s here
+  double end_fold = std::numeric_limits<double>::quiet_NaN(), end_s = 0.0;  // of the way
+  std::vector<MarginLoad> loads;                                            // there
 };
 
 // From the pose at the start to the deployed one, or to an end stop before it; where there is none, as far as

@@ -129,6 +129,17 @@ std::optional<std::pair<double, std::string>> MarginMotion::barred(double sense,
   return first;
 }
 
+std::vector<MarginMotion::Met> MarginMotion::met(double sense, double end) const {
+  std::vector<Met> out;
+  for (std::size_t i = 0; i < sides_.stops().size(); ++i) {
+    const double closing = -sense * watch_.gap_slope(i, sense * end), touching = sides_.touching(i);
+    const double gap = watch_.gap(i, sense * end) * touching;
+    if (closing > 0 && std::abs(gap) <= same_place * end * closing + touching)
+      out.push_back({&sides_.stops()[i], closing, watch_.gap(i, 0.0) * touching - gap});
+  }
+  return out;
+}
+
 // Waits until it sets out; false: it does not, or not this way.
 bool MarginMotion::set_out(double end_time, bool first) {
   const auto free = release(motion_.s(), motion_.t(), end_time);

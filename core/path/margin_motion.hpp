@@ -29,6 +29,13 @@ class MarginMotion {
   std::optional<Release> release(double s, double from, double end) const;
   // The first place on the way where a stop bars it, and which.
   std::optional<std::pair<double, std::string>> barred(double sense, double end) const;
+  // Stops that a way ends on there, how fast their gaps close by it, and what they have closed by from the
+  // start.
+  struct Met {
+    const StopSide* stop;
+    double closing, change;
+  };
+  std::vector<Met> met(double sense, double end) const;
 
   // goal: where it arrives; nothing: where it is at the end time. At rest it waits until the end time;
   // patience: it is followed for so many of those while it moves.

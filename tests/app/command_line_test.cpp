@@ -221,6 +221,22 @@ TEST_CASE("margin: drives against resistances by source, in words, JSON and file
   const ProgramResult unknown = run_program({"margin", "hoop6", "--factor", "wind=2"});
   CHECK(unknown.code == 2);
   CHECK(contains(unknown.err, "nothing that acts is called 'wind'"));
+  const ProgramResult latched = run_program({"margin", "hoop6", "--json", "--set", "structure.fold_angle=60",
+                                             "--set", "solver.at_deployed=latch", "-o", dir / "latched"});
+  REQUIRE(latched.code == 0);
+  const auto loads = nlohmann::json::parse(latched.out)["loads"];
+  REQUIRE(loads.size() == 2);
+  // All 12 hinges about the fold angle, then one of them by its own height: 12 f l, and f.
+  CHECK(loads[0]["kind"] == "latch");
+  CHECK(loads[0]["load"].get<double>() == Approx(12 * 200 * 3).epsilon(1e-8));
+  CHECK(loads[0]["load_unit"] == "N m");
+  CHECK(loads[0]["energy_J"].get<double>() == Approx(12 * 200 * 3 * std::sin(pi / 3)).epsilon(1e-6));
+  CHECK(loads[1]["load"].get<double>() == Approx(200).epsilon(1e-8));
+  CHECK(loads[1]["load_unit"] == "N");
+  CHECK(contains(file_text(dir / "latched" + "/loads.csv"), "name,kind,fold_angle_deg,load,load_unit,speed"));
+  CHECK(contains(file_text(dir / "latched" + "/figures/margin.caption.txt"),
+                 "7200 N m at rest, and is met at"));
+  CHECK(contains(run_program({"margin", "hoop6", "--set", "solver.at_deployed=latch"}).out, "stop or latch"));
   CHECK(run_program({"margin", "hoop6", "--factor", "loads"}).code == 2);
 }
 

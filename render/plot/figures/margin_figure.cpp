@@ -48,6 +48,17 @@ std::string words(double margin) {
   return std::isfinite(margin) ? plot::format_number(margin, 4) : "without bound";
 }
 
+// "bar bears 12 N m at rest, and is met at 0.4 rad/s with 3 J."
+std::string told(const MarginLoad& load) {
+  const bool pulls = load.load < 0;
+  std::string out = load.name + (pulls ? " holds " : " bears ") + words(std::abs(load.load));
+  if (std::isfinite(load.load)) out += load.turns ? " N m" : " N";
+  if (pulls) out += " back";
+  if (std::isnan(load.speed)) return out + " at rest, and is not reached.";
+  return out + " at rest, and is met at " + plot::format_number(load.speed, 4) +
+         (load.turns ? " rad/s" : " m/s") + " with " + plot::format_number(load.energy, 4) + " J.";
+}
+
 }  // namespace
 
 Figure margin_figure(const Margin& margin, const std::string& title) {
@@ -86,6 +97,8 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
   for (const MarginSource& source : margin.sources)
     if (source.factor != 1.0)
       figure.caption += " " + source.name + " times " + plot::format_number(source.factor, 4) + ".";
+  for (const MarginLoad& load : margin.loads)
+    figure.caption += (load.kind == "stop" ? " Stop " : " ") + told(load);
   return figure;
 }
 

@@ -38,4 +38,16 @@ TEST_CASE("the caption of a margin says how the motion ends, and none where ther
   CHECK_THAT(caption(MarginEnd::time, 0.25), Catch::Contains("at 0.9 deg when its time is up."));
 }
 
+TEST_CASE("the caption of a margin tells what stops and latches bear", "[figure]") {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Margin margin;
+  margin.points = {{0.0, 1.2, VectorXd(0), 0.7}};
+  margin.worst = margin.points[0];
+  margin.motion = {{0.0, 0.0, 1.2, 0.1, 0.2, 0.1}};
+  margin.loads = {{"bar", "stop", true, 12.5, 0.4, 3.0}, {"latch", "latch", false, -7.0, none, none}};
+  const std::string caption = margin_figure(margin, "a scene").caption;
+  CHECK_THAT(caption, Catch::Contains("Stop bar bears 12.5 N m at rest, and is met at 0.4 rad/s with 3 J."));
+  CHECK_THAT(caption, Catch::Contains("latch holds 7 N back at rest, and is not reached."));
+}
+
 }  // namespace unfurl::margin_caption_test
