@@ -54,7 +54,7 @@ constexpr Command table[] = {
      "unfurl solve hoop6 --find structure.hinge_force --target deploy_time=4"},
     {"reproduce", "-o DIR, or FILE [-o DIR]",
      "the paper's tables and figures, beside ours; or a file again from the receipt in it", 0, 1, false,
-     cmd_reproduce, "-o --validation --style --font --dpi --force --threads --quiet",
+     cmd_reproduce, "-o --validation --export --style --font --dpi --force --threads --quiet",
      "unfurl reproduce -o paper\n"
      "unfurl reproduce --validation -o validation\n"
      "unfurl reproduce energy.pdf"},

@@ -127,10 +127,10 @@ std::vector<WrittenFiles::Verdict> WrittenFiles::verify(const fs::path& director
   for (const auto& [name, known] : lines) {
     const Descriptor parent = parent_in(directory, name);
     const std::string now = parent ? checksum_in(parent.get(), fs::path(name).filename().string()) : "";
-    Verdict verdict{name, now.empty() ? Verdict::missing : Verdict::changed};
+    Verdict verdict{name, now.empty() ? Verdict::missing : Verdict::changed, known.begin()->owner};
     for (const Line& line : known) {
       if (now.empty()) break;
-      if (line.checksum == now) verdict.kind = Verdict::same;
+      if (line.checksum == now) verdict.kind = Verdict::same, verdict.owner = line.owner;
       if (line.checksum == any_content && verdict.kind == Verdict::changed) verdict.kind = Verdict::growing;
     }
     verdicts.push_back(std::move(verdict));

@@ -58,6 +58,7 @@ class WrittenFiles final : public FileWatcher {
     enum Kind { same, changed, missing, growing };
     std::string name;
     Kind kind;
+    std::string owner;  // of the line that fits its bytes, or of one
   };
   static std::vector<Verdict> verify(const std::filesystem::path& directory);
 

@@ -44,6 +44,8 @@ int reproduce_validation(const Arguments& arguments) {
 int cmd_reproduce(const Arguments& arguments) {
   if (!arguments.names.empty()) return reproduce_file(arguments);
   if (arguments.output.empty()) throw UsageError("-o is missing; usage: unfurl reproduce -o DIR, or FILE");
+  if (!arguments.exports.empty())
+    throw UsageError("--export is for unfurl reproduce FILE; unfurl run SCENE --export exports a run");
   const InterruptGuard guard;
   if (arguments.study.validation) return reproduce_validation(arguments);
   StudySession session(arguments, "reproducing", "", "runs.csv");

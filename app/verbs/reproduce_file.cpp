@@ -2,13 +2,17 @@
 // unfurl reproduce FILE: a picture, figure, film or page made again from the receipt in it.
 #include "app/verbs/reproduce_file.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "app/output/command_line.hpp"
 #include "app/output/output_directory.hpp"
 #include "app/output/receipt.hpp"
+#include "app/output/receipt_formats.hpp"
+#include "app/output/written_files.hpp"
 #include "core/text/version.hpp"
 #include "render/image/child_process.hpp"
 
@@ -51,6 +55,73 @@ std::vector<std::string> only(const std::string& file, const std::string& verb) 
   return words;
 }
 
+// The directory of results around a file: the next one above it with a list of what unfurl wrote there.
+std::optional<fs::path> results_with(const fs::path& absolute) {
+  std::error_code error;
+  for (fs::path folder = absolute.parent_path(); folder.has_relative_path(); folder = folder.parent_path())
+    if (fs::exists(folder / WrittenFiles::list_name, error)) return folder;
+  return std::nullopt;
+}
+
+// The receipt of a figure that the same command wrote into the directory: that with the table's own name,
+// else any.
+std::optional<Receipt> receipt_of_figure(const fs::path& folder, const WrittenFiles::Verdict& table,
+                                         const std::vector<WrittenFiles::Verdict>& listed) {
+  const std::string own_figure = fs::path(table.name).replace_extension(".svg").string();
+  std::optional<Receipt> found;
+  for (const WrittenFiles::Verdict& other : listed) {
+    const bool own = other.name == own_figure;
+    if (other.owner != table.owner || !other.name.ends_with(".svg") || (found && !own) ||
+        other.kind != WrittenFiles::Verdict::same)
+      continue;
+    auto receipt = receipt_of(folder / other.name);
+    if (receipt && !receipt->command.empty() && !receipt->file.empty()) found = std::move(receipt);
+  }
+  return found;
+}
+
+// Tables carry no receipt themselves: a figure beside them does or, of a run, scene.toml says all.
+Receipt receipt_beside(const fs::path& file) {
+  const std::string extension = file.extension().string();
+  if (takes_note(extension) || extension == ".mp4")
+    throw FileError(file, "carries no receipt: it was not made by unfurl, or another program wrote it anew");
+  const std::string none = "carries no receipt, as files of its kind do not, and ";
+  std::error_code error;
+  const fs::path absolute = fs::absolute(file, error).lexically_normal();
+  const auto folder = results_with(absolute);
+  if (!folder) throw FileError(file, none + "lies in no directory of results (.unfurl) that has its command");
+  const std::string name = absolute.lexically_relative(*folder).string();
+  const auto listed = WrittenFiles::verify(*folder);
+  const auto own = std::ranges::find(listed, name, &WrittenFiles::Verdict::name);
+  if (own == listed.end())
+    throw FileError(file, none + "is not in the list of what unfurl wrote there (.unfurl)");
+  Receipt receipt;
+  if (extension == ".csv") {
+    if (const auto figure = receipt_of_figure(*folder, *own, listed)) {
+      receipt = *figure;
+    } else if (own->owner == "run" && name.find('/') == std::string::npos) {
+      receipt.command = {"run", "scene"};
+      receipt.name = "scene";
+      receipt.scene = bytes_of(*folder / "scene.toml");
+    }
+  }
+  if (receipt.command.empty())
+    throw FileError(file, none +
+                              "nothing beside it has its command; unfurl verify tells whether it is as "
+                              "unfurl wrote it");
+  receipt.file = name;
+  return receipt;
+}
+
+// Formats that the command shall write, too.
+void add_exports(const std::vector<std::string>& formats, std::vector<std::string>& words) {
+  if (formats.empty()) return;
+  if (words.front() != "run" && words.front() != "render")
+    throw UsageError("--export is for what unfurl run or unfurl render has made; this is made by unfurl " +
+                     words.front());
+  for (const std::string& format : formats) words.insert(words.end(), {"--export", format});
+}
+
 }  // namespace
 
 int reproduce_file(const Arguments& arguments) {
@@ -59,15 +130,15 @@ int reproduce_file(const Arguments& arguments) {
         "a file is made again as its receipt says: with its path, --style, --font, --dpi and --validation "
         "mean nothing");
   const fs::path file = arguments.names.front();
-  const auto receipt = receipt_of(file);
-  if (!receipt || receipt->command.empty())
-    throw FileError(file, "carries no receipt: it was not made by unfurl, or another program wrote it anew");
-  if (receipt->build != checksum_of_this_program())
+  auto receipt = receipt_of(file);
+  if (!receipt || receipt->command.empty()) receipt = receipt_beside(file);
+  if (!receipt->build.empty() && receipt->build != checksum_of_this_program())
     std::cerr << "unfurl: warning: made by another build (unfurl " << receipt->version
               << "); its bytes may differ\n";
+  std::vector<std::string> words = receipt->command;
+  add_exports(arguments.exports, words);
   const TemporaryFolder scratch;
   const fs::path into = arguments.output.empty() ? scratch.path / "out" : fs::path(arguments.output);
-  std::vector<std::string> words = receipt->command;
   if (!receipt->name.empty()) {
     const fs::path scene = scratch.path / (receipt->name + ".toml");
     write_file_atomically(scene, receipt->scene);

@@ -84,6 +84,64 @@ TEST_CASE("a figure of its own, with options, is made again where it is asked fo
   CHECK(neither.err.find("carries no receipt") != std::string::npos);
 }
 
+TEST_CASE("a table carries no receipt, and is made again from what lies beside it") {
+  const ScratchDirectory dir;
+  REQUIRE(
+      run_program({"run", "pendulum", "-o", dir / "run", "--set", "solver.end_time=0.3", "--quiet"}).code ==
+      0);
+  REQUIRE(run_program({"render", "pendulum", "-o", dir / "film", "--size", "32x32", "--fps", "4", "--set",
+                       "solver.end_time=0.5", "--quiet"})
+              .code == 0);
+  REQUIRE(run_program({"sweep", "pendulum", "--vary", "structure.angle=10,20", "--measure", "energy", "-o",
+                       dir / "sweep", "--quiet"})
+              .code == 0);
+  REQUIRE(run_program({"margin", "hoop6", "-o", dir / "margin", "--factor", "loads=0.9", "--quiet"}).code ==
+          0);
+  for (const char* table : {"run/series.csv", "run/trajectory.csv", "film/series.csv", "sweep/sweep.csv",
+                            "margin/margin.csv", "margin/loads.csv"}) {
+    INFO(table);
+    const ProgramResult again = run_program({"reproduce", dir / table});
+    INFO(again.err);
+    CHECK(again.code == 0);
+    CHECK(again.out.starts_with("the same, byte by byte"));
+  }
+  // What was changed since is not the same; what has nothing beside it says so, and is not taken for another
+  // program's.
+  dir.write("run/series.csv", "t_s\n0\n");
+  CHECK(run_program({"reproduce", dir / "run/series.csv"}).code == 7);
+  const ProgramResult summary = run_program({"reproduce", dir / "run/summary.json"});
+  CHECK(summary.code == 5);
+  CHECK(summary.err.find("as files of its kind do not") != std::string::npos);
+  CHECK(summary.err.find("another program") == std::string::npos);
+  const ProgramResult foreign = run_program({"reproduce", dir.write("run/own.csv", "x\n1\n")});
+  CHECK(foreign.code == 5);
+  CHECK(foreign.err.find("is not in the list of what unfurl wrote there") != std::string::npos);
+}
+
+TEST_CASE("reproduce exports what it makes again, where the command can") {
+  const ScratchDirectory dir;
+  REQUIRE(
+      run_program({"run", "pendulum", "-o", dir / "run", "--set", "solver.end_time=0.3", "--quiet"}).code ==
+      0);
+  const ProgramResult page =
+      run_program({"reproduce", dir / "run/series.csv", "-o", dir / "again", "--export", "html"});
+  INFO(page.err);
+  CHECK(page.code == 0);
+  CHECK(fs::exists(dir / "again/viewer.html"));
+  REQUIRE(run_program({"figure", "pendulum", "energy", "-o", dir / "e.svg", "--set", "solver.end_time=0.3",
+                       "--quiet"})
+              .code == 0);
+  const ProgramResult figure =
+      run_program({"reproduce", dir / "e.svg", "-o", dir / "no", "--export", "html"});
+  CHECK(figure.code == 2);
+  CHECK(figure.err.find("this is made by unfurl figure") != std::string::npos);
+  CHECK_FALSE(fs::exists(dir / "no"));
+  const ProgramResult paper = run_program({"reproduce", "-o", dir / "no", "--export", "html"});
+  CHECK(paper.code == 2);
+  CHECK(paper.err.find("--export is for unfurl reproduce FILE") != std::string::npos);
+  CHECK_FALSE(fs::exists(dir / "no"));
+}
+
 TEST_CASE("every byte of a sealed file counts, its receipt's own too") {
   const ScratchDirectory dir;
   REQUIRE(run_program({"render", "pendulum", "-o", dir / "film", "--size", "32x32", "--fps", "4", "--set",
