@@ -47,6 +47,12 @@ SolveOptions options_of(const Arguments& arguments, const SceneSource& source, c
     throw UsageError(in_quotes(study.find) +
                      " takes whole numbers, which cannot be searched; unfurl sweep --vary " + study.find +
                      "=A,B,C shows the measure over some of them");
+  if (const std::string other = other_than_number(scene, study.find); !other.empty()) try {
+      source.read({study.find + "=1"});
+    } catch (const SceneError&) {
+      throw UsageError(in_quotes(study.find) + " takes no number: it is " + other +
+                       " in this scene, and only numbers can be searched");
+    }
   SolveOptions options;
   if (!study.between.empty()) {
     const std::size_t colon = study.between.find(':');

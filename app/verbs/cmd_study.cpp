@@ -83,6 +83,11 @@ int cmd_study(const Arguments& arguments) {
   warn_of_own_steps(scene);
   auto model = model_of(scene, arguments);
   const InterruptGuard guard;
+  // What cannot be studied is told before anything is written.
+  StudyHooks asking;
+  asking.cancelled = interrupted;
+  StudyPlan plan = plan_study(std::move(model), scene.solver, range.from, range.to, asking);
+  keep_methods(plan, arguments.study.methods);
   const int repeats = arguments.study.repeats > 0 ? arguments.study.repeats : TimingOptions{}.repeats;
   // Errors of another largest step are of other times, and go into no curve with these.
   const std::string asked = "A study from steps of " +
@@ -90,8 +95,6 @@ int cmd_study(const Arguments& arguments) {
                             std::to_string(repeats) + " repeats";
   StudySession session(arguments, "measuring", study_identity(asked, scene), "study.csv");
   const StudyHooks hooks = session.hooks();
-  StudyPlan plan = plan_study(std::move(model), scene.solver, range.from, range.to, hooks);
-  keep_methods(plan, arguments.study.methods);
   plan.timing.repeats = repeats;
   const auto team = join_team(arguments, session.directory());
   std::optional<Study> found;

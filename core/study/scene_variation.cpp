@@ -120,6 +120,12 @@ std::optional<double> scene_number(const Scene& scene, const std::string& key) {
   return std::nullopt;
 }
 
+std::string other_than_number(const Scene& scene, const std::string& key) {
+  if (key.starts_with(of_variables) || scene_number(scene, key)) return "";
+  const TomlTree at = value_in(scene, key);
+  return at.kind == TomlTree().kind ? "" : at.describe();
+}
+
 bool is_whole_number(const Scene& scene, const std::string& key) {
   return value_in(scene, key).kind == TomlTree::Kind::integer;
 }

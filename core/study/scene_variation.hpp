@@ -45,6 +45,8 @@ SolverOptions study_solver(const Scene& scene, const std::vector<std::string>& v
 std::optional<double> scene_number(const Scene& scene, const std::string& key);
 // Do two keys lead to the same place, by whatever name, or one of them into the other?
 bool keys_overlap(const Scene& scene, const std::string& a, const std::string& b);
+// What stands at a key that is no number, as "the text 'full'"; empty where there is a number, or nothing.
+std::string other_than_number(const Scene& scene, const std::string& key);
 // Is that a parameter of whole numbers (which cannot be searched, nor lie between two of them)?
 bool is_whole_number(const Scene& scene, const std::string& key);
 

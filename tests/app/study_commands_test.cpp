@@ -468,7 +468,37 @@ TEST_CASE("solve finds numbers of forces, and says what is wrong with either end
 TEST_CASE("options of other verbs are refused") {
   const ProgramResult r = run_program({"check", "hoop6", "--shard", "1/2"});
   CHECK(r.code == 2);
-  CHECK(r.err == "unfurl: unfurl check has no option '--shard'\n");
+  CHECK(r.err == "unfurl: unfurl check has no option '--shard'; unfurl sweep has it\n");
+}
+
+TEST_CASE("a study that is refused leaves nothing behind") {
+  const ScratchDirectory dir;
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"--methods", "rk5"}, {"--steps", "0.1:0.2"}, {"--steps", "90:0.1"}}) {
+    std::vector<std::string> words{"study", "pendulum", "-o", dir / "out"};
+    words.insert(words.end(), wrong.begin(), wrong.end());
+    const ProgramResult r = run_program(words);
+    INFO(r.err);
+    CHECK(r.code == 2);
+    CHECK_FALSE(std::filesystem::exists(dir / "out"));
+  }
+}
+
+TEST_CASE("solve says of a key that takes no number what it is") {
+  for (const std::vector<std::string>& where :
+       {std::vector<std::string>{}, std::vector<std::string>{"--between", "1:2"}}) {
+    std::vector<std::string> words{"solve",           "hoop6",    "--find",
+                                   "structure.model", "--target", "deploy_time=4.92"};
+    words.insert(words.end(), where.begin(), where.end());
+    const ProgramResult r = run_program(words);
+    CHECK(r.code == 2);
+    CHECK(r.err.find("unfurl: 'structure.model' takes no number: it is ") == 0);
+    CHECK(r.err.find("--set") == std::string::npos);
+  }
+  // A key that is not there keeps its own message.
+  const ProgramResult unknown =
+      run_program({"solve", "hoop6", "--find", "structure.modl", "--target", "deploy_time=4.92"});
+  CHECK(unknown.err.find("did you mean 'model'?") != std::string::npos);
 }
 
 TEST_CASE("a tolerance is met and the estimate is in the summary") {
