@@ -119,9 +119,15 @@ constexpr std::string_view entry_note =
 constexpr std::string_view column_note =
     "A drive NAME adds NAME.angle_rad, NAME.angle_deg, NAME.torque_N_m and NAME.power_W (of a length "
     "NAME.value_m and NAME.force_N), a support NAME.reaction_N with _x_N, _y_N, _z_N and _unique, a "
-    "structure its own lengths. Energies of dampers, drives and impacts "
+    "structure its own lengths (column_pitch_m) and surfaces (surface_rms_m of a mesh_reflector: what its "
+    "front "
+    "net is off the paraboloid). Energies of dampers, drives and impacts "
     "and what belongs to "
     "a fold angle are there where the scene has them.";
+
+constexpr std::string_view measure_note =
+    "Every column is one with max:, min: or final: before it, those of drives and supports and a structure's "
+    "own, too, as final:surface_rms_m of a mesh_reflector; unfurl list columns.";
 
 constexpr std::string_view surface_note =
     "An entry of [[surfaces]] spans its nodes, named in order around the edge; it is shown only, without "
@@ -142,7 +148,7 @@ constexpr List lists[] = {{"structures", structure_items},
                           {"forces", force_items, entry_note},
                           {"looks", look_items},
                           {"surfaces", surface_items, surface_note},
-                          {"measures", measure_items},
+                          {"measures", measure_items, measure_note},
                           {"columns", column_items, column_note}};
 
 constexpr std::size_t line_width = 80;

@@ -259,6 +259,11 @@ RunMeasure find_measure(const std::string& name, const std::vector<std::string>&
             [of, f = s.of](const Simulation& run, const Diagnostics& d) { return f(run, d, of); },
             of_method(of) ? MeasureNeeds::method : MeasureNeeds::states};
   }
+  // A column, with or without its unit.
+  for (const std::string& column : columns)
+    if (column == name || column.starts_with(name + "_"))
+      throw StudyError("no measure " + in_quotes(name) + "; it is a column of series.csv, over time: max:" +
+                       column + ", min:" + column + " or final:" + column);
   throw StudyError("no measure " + in_quotes(name) + did_you_mean(name, known) +
                    " (or max:, min:, final: and a column of series.csv)");
 }

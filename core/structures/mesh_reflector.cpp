@@ -64,8 +64,8 @@ void find_net_form(Nets& net) {
   if (!(vertex > 0)) {
     std::ostringstream text;
     text << "is too short: the front and the rear net would meet in the middle; it must be > "
-         << net.radius * net.radius / (2 * net.focal) - 2 * net.height
-         << " m more than post_length, or post_length that much longer";
+         << net.radius * net.radius / (4 * net.height) << " m, or post_length > "
+         << net.radius * net.radius / (2 * net.focal) << " m";
     throw StructureError("focal_length", text.str());
   }
   // The edge has no ties: it hangs between the corners and the rings inside.

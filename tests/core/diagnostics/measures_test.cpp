@@ -179,4 +179,12 @@ end_time = 0.02
   }
 }
 
+TEST_CASE("a measure that is a column by its name says how it is measured") {
+  const std::vector<std::string> columns{"t_s", "surface_rms_m"};
+  for (const char* name : {"surface_rms", "surface_rms_m"})
+    CHECK_THROWS_WITH(find_measure(name, columns),
+                      Catch::Contains("max:surface_rms_m, min:surface_rms_m or final:surface_rms_m"));
+  CHECK_THROWS_WITH(find_measure("surface", {"t_s"}), Catch::Contains("no measure 'surface'"));
+}
+
 }  // namespace measures_test
