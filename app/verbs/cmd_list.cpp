@@ -199,7 +199,8 @@ int list_keys(const std::string& table, const Arguments& arguments) {
     names.push_back(row.name);
     if (table.empty()) tables.push_back(&row);
   }
-  if (tables.empty()) throw UsageError("no table of keys " + in_quotes(table) + did_you_mean(table, names));
+  if (tables.empty())
+    throw UsageError("no table of keys " + in_quotes(table) + did_you_mean(table, names, "unfurl list keys"));
   std::cout << (arguments.json       ? keys_json(tables)
                 : arguments.markdown ? keys_markdown(tables)
                                      : keys_text(tables));
@@ -238,7 +239,7 @@ int cmd_list(const Arguments& arguments) {
   if (keys) return list_keys(name, arguments);
   for (const List& list : lists)
     if (list.name == name) return list_items(list, arguments);
-  throw UsageError("no list " + in_quotes(name) + did_you_mean(name, list_names()));
+  throw UsageError("no list " + in_quotes(name) + did_you_mean(name, list_names(), "unfurl help list"));
 }
 
 }  // namespace unfurl

@@ -52,14 +52,16 @@ std::string_view nearest_name(std::string_view given, const std::vector<std::str
   return "";
 }
 
-std::string did_you_mean(std::string_view given, const std::vector<std::string_view>& known) {
+std::string did_you_mean(std::string_view given, const std::vector<std::string_view>& known,
+                         std::string_view all) {
   if (const auto near = nearest_name(given, known); !near.empty())
     return "; did you mean " + in_quotes(near) + "?";
   if (known.empty()) return "";
   std::string text = "; known: ";
   constexpr std::size_t most = 12;
   for (std::size_t i = 0; i < std::min(most, known.size()); ++i) text.append(i ? ", " : "").append(known[i]);
-  return known.size() > most ? text + ", ..." : text;
+  if (known.size() <= most) return text;
+  return text + ", ..." + (all.empty() ? "" : "; " + std::string(all) + " tells all");
 }
 
 std::string_view name_before_unit(std::string_view given, const std::vector<std::string_view>& known) {

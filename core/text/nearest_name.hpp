@@ -13,8 +13,10 @@ namespace unfurl {
 // naming.
 std::string_view nearest_name(std::string_view given, const std::vector<std::string_view>& known);
 
-// "; did you mean 'post_length'?", or without a near name "; known: a, b, c" (shortened after a dozen).
-std::string did_you_mean(std::string_view given, const std::vector<std::string_view>& known);
+// "; did you mean 'post_length'?", or without a near name "; known: a, b, c" (shortened after a dozen, and
+// then with the command that lists all, if there is one).
+std::string did_you_mean(std::string_view given, const std::vector<std::string_view>& known,
+                         std::string_view all = "");
 
 // The known name that `given` is with another unit behind it, as in "mass_g" or "x (mm)": a rename alone
 // would change the value. Empty: there is none, or another name is nearer.

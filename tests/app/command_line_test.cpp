@@ -86,6 +86,7 @@ TEST_CASE("usage errors") {
 TEST_CASE("a scene from a pipe is shown, swept and solved as one from a file") {
   const ScratchDirectory dir;
   const std::string path =
+  CHECK(contains(run_program({"list", "foo"}).err, ", ...; unfurl help list tells all"));
       dir.write("s.toml",
                 "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], "
                 "fixed = true}, {name = 'B', position = [0.6, 0, 0.8]}]\nrods = [{nodes = "

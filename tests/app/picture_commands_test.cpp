@@ -180,6 +180,25 @@ TEST_CASE("figures that cannot be made say why") {
   ProgramResult r = error({"figure", "hoop6", "energi", "-o", dir / "x.png"});
   CHECK(r.code == 2);
   CHECK(r.err == "unfurl: no figure 'energi'; did you mean 'energy'?\n");
+  // Names from elsewhere lead on, to a figure, to the verb that draws it, or to the list.
+  const std::pair<const char*, const char*> elsewhere[] = {
+      {"forces", "; did you mean 'rod_forces'?"},
+      {"Poisson-ratio", "; did you mean 'poisson'?"},
+      {"phase_portrait", "; did you mean 'phase'?"},
+      {"step_histogram", "; did you mean 'steps'?"},
+      {"singular_values", "; did you mean 'jacobian'?"},
+      {"pose_strip", "; did you mean 'poses'?"},
+      {"torque", "; did you mean 'drives'?"},
+      {"work_precision", " of a run; unfurl study SCENE -o DIR draws it"},
+      {"work-precision", " of a run; unfurl study SCENE -o DIR draws it"},
+      {"margins", " of a run; unfurl margin SCENE -o DIR draws it"}};
+  for (const auto& [name, leads] : elsewhere) {
+    r = error({"figure", "hoop6", name, "-o", dir / "x.png"});
+    CHECK(r.code == 2);
+    CHECK(r.err == "unfurl: no figure '" + std::string(name) + "'" + leads + "\n");
+  }
+  r = error({"figure", "hoop6", "zzzzzzzz", "-o", dir / "x.png"});
+  CHECK(r.err.find(", ...; unfurl list figures tells all\n") != std::string::npos);
   r = error({"figure", "hoop6", "energy", "-o", dir / "x.eps"});
   CHECK(r.code == 2);
   CHECK(r.err == "unfurl: a figure is written as .png, .svg or .pdf, not '.eps'\n");

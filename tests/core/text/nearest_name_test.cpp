@@ -98,6 +98,7 @@ TEST_CASE("a dozen known names are listed, of more there is no end") {
   CHECK(did_you_mean("zzzz", known) == dozen);
   known.push_back("n");
   CHECK(did_you_mean("zzzz", known) == dozen + ", ...");
+  CHECK(did_you_mean("zzzz", known, "unfurl list letters") == dozen + ", ...; unfurl list letters tells all");
   // Who wrote eighty letters may have meant something, who wrote more has pasted something else.
   const std::string eighty(80, 'x'), name(79, 'x');
   CHECK(nearest_name(eighty, {name}) == name);
