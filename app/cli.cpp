@@ -52,10 +52,13 @@ void refuse_unknown_options(const CLI::App& parser, const Command& command) {
   }
 }
 
-// WIDTHxHEIGHT as the list that the key wants; anything else stays, for the key's own message.
+// WIDTHxHEIGHT as the list that the key wants. Throws UsageError.
 std::string list_of_size(const std::string& text) {
   const std::size_t cross = text.find('x');
-  if (cross == std::string::npos || text.find_first_not_of("0123456789x") != std::string::npos) return text;
+  const double width = number_of(text.substr(0, cross));
+  const double height = cross == std::string::npos ? 0 : number_of(text.substr(cross + 1));
+  if (text.find_first_not_of("0123456789x") != std::string::npos || !(width >= 1) || !(height >= 1))
+    throw UsageError("--size is WxH, two whole numbers of pixels, such as 1280x720; got " + in_quotes(text));
   return "[" + text.substr(0, cross) + ", " + text.substr(cross + 1) + "]";
 }
 
@@ -108,11 +111,25 @@ void refuse_doubled_keys(const CLI::App& parser, const std::vector<std::string>&
   }
 }
 
+// "; unfurl run and unfurl render have it", where they are few.
+std::string verbs_that_take(std::string_view option) {
+  constexpr std::size_t few = 3;
+  std::vector<std::string> verbs;
+  for (const Command& command : commands())
+    if (shows(command, option)) verbs.push_back("unfurl " + std::string(command.name));
+  if (verbs.empty() || verbs.size() > few) return "";
+  std::string text = "; ";
+  for (std::size_t i = 0; i < verbs.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == verbs.size() ? " and " : ", ") + verbs[i];
+  return text + (verbs.size() == 1 ? " has it" : " have it");
+}
+
 // An option of another verb.
 void refuse_foreign_options(const CLI::App& parser, const Command& command) {
   for (const OwnOption& own : own_options())
     if (parser.count(std::string(own.name)) > 0 && !takes(command, own.name))
-      throw UsageError("unfurl " + std::string(command.name) + " has no option " + in_quotes(own.name));
+      throw UsageError("unfurl " + std::string(command.name) + " has no option " + in_quotes(own.name) +
+                       verbs_that_take(own.name));
 }
 
 // Those that say more of another option, without it.

@@ -58,8 +58,16 @@ TEST_CASE("usage errors") {
               "unfurl: --threads: must be a whole number from 1 to 1024; got '1.5'");
   check_error({"view", "hoop6", "--picture", "x.jpg"}, 2,
               "unfurl: a picture of the window is written as .png, not '.jpg'");
-  check_error({"check", "hoop6", "--frames", "0:2"}, 2, "unfurl: unfurl check has no option '--frames'");
+  check_error({"check", "hoop6", "--frames", "0:2"}, 2,
+              "unfurl: unfurl check has no option '--frames'; unfurl render has it");
   check_error({"check", "hoop6", "-o", "x"}, 2, "unfurl: unfurl check has no option '-o'");
+  check_error({"sweep", "hoop6", "--plan"}, 2,
+              "unfurl: unfurl sweep has no option '--plan'; unfurl run and unfurl render have it");
+  // By the option's own name, which is all that was typed.
+  for (const char* size : {"640X360", "640,360", "640", "0x0", "640x", "x360", "6x4x3", "[640, 360]"})
+    check_error({"render", "hoop6", "-o", "x", "--size", size}, 2,
+                "unfurl: --size is WxH, two whole numbers of pixels, such as 1280x720; got '" +
+                    std::string(size) + "'");
   check_error({"run", "hoop6"}, 2, "unfurl: -o DIR is missing (or --json, for the summary alone)");
   for (const char* verb : {"modes", "margin"})
     for (const std::vector<std::string>& idle : {std::vector<std::string>{"--style", "slide"},
@@ -78,6 +86,7 @@ TEST_CASE("usage errors") {
               "unfurl: unexpected argument 'hoop12'; usage: unfurl check SCENE");
   check_error({"--quiet", "run"}, 2, "unfurl: a command comes first, then its options; see unfurl --help");
   check_error({"list", "method"}, 2, "unfurl: no list 'method'; did you mean 'methods'?");
+  CHECK(contains(run_program({"list", "foo"}).err, ", ...; unfurl help list tells all"));
   CHECK(run_program({"run", "hoop6", "--threads", "0"}).code == 2);
   CHECK(run_program({"run", "hoop6", "--threads", "many"}).code == 2);
 }
@@ -86,7 +95,6 @@ TEST_CASE("usage errors") {
 TEST_CASE("a scene from a pipe is shown, swept and solved as one from a file") {
   const ScratchDirectory dir;
   const std::string path =
-  CHECK(contains(run_program({"list", "foo"}).err, ", ...; unfurl help list tells all"));
       dir.write("s.toml",
                 "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], "
                 "fixed = true}, {name = 'B', position = [0.6, 0, 0.8]}]\nrods = [{nodes = "
@@ -213,15 +221,6 @@ TEST_CASE("margin: drives against resistances by source, in words, JSON and file
   const ProgramResult text = run_program(scene);
   CHECK(contains(text.out, "hoop6: static margin "));
   CHECK(contains(text.out, "the motion arrives"));
-  const ProgramResult full = run_program({"margin", "hoop6", "--set", "solver.model=full"});
-  CHECK(full.code == 0);
-  CHECK(contains(full.err, "--set solver.model=full does nothing: margins are those of the path"));
-  const ProgramResult chain = run_program({"margin", "chain"});
-  CHECK(chain.code == 3);
-  CHECK(contains(chain.err, "no margin: the structure has 32 degrees of freedom"));
-  const ProgramResult unknown = run_program({"margin", "hoop6", "--factor", "wind=2"});
-  CHECK(unknown.code == 2);
-  CHECK(contains(unknown.err, "nothing that acts is called 'wind'"));
   const ProgramResult latched = run_program({"margin", "hoop6", "--json", "--set", "structure.fold_angle=60",
                                              "--set", "solver.at_deployed=latch", "-o", dir / "latched"});
   REQUIRE(latched.code == 0);
@@ -238,6 +237,15 @@ TEST_CASE("margin: drives against resistances by source, in words, JSON and file
   CHECK(contains(file_text(dir / "latched" + "/figures/margin.caption.txt"),
                  "7200 N m at rest, and is met at"));
   CHECK(contains(run_program({"margin", "hoop6", "--set", "solver.at_deployed=latch"}).out, "stop or latch"));
+  const ProgramResult full = run_program({"margin", "hoop6", "--set", "solver.model=full"});
+  CHECK(full.code == 0);
+  CHECK(contains(full.err, "--set solver.model=full does nothing: margins are those of the path"));
+  const ProgramResult chain = run_program({"margin", "chain"});
+  CHECK(chain.code == 3);
+  CHECK(contains(chain.err, "no margin: the structure has 32 degrees of freedom"));
+  const ProgramResult unknown = run_program({"margin", "hoop6", "--factor", "wind=2"});
+  CHECK(unknown.code == 2);
+  CHECK(contains(unknown.err, "nothing that acts is called 'wind'"));
   CHECK(run_program({"margin", "hoop6", "--factor", "loads"}).code == 2);
 }
 
