@@ -46,6 +46,7 @@ class Expansion {
       reading_.clear();
     } else {
       note(*table, "variables", "must be a table, [variables]; got " + table->describe());
+      none_is_known_ = true;
     }
     std::erase_if(root.entries, [](const auto& entry) { return entry.key == "variables"; });
   }
@@ -77,7 +78,10 @@ class Expansion {
     const std::string key = std::string(of_variables) + name;
     if (!is_variable_name(name))
       return note(tree, key, "must be a letter, then letters, digits or _, and no constant or function");
-    if (const auto value = value_of(tree, key)) variables_[name] = *value;
+    if (const auto value = value_of(tree, key))
+      variables_[name] = *value;
+    else
+      wrong_.insert(name);
   }
 
   // The number that a value is or works out to; nothing where that is noted.
@@ -93,6 +97,8 @@ class Expansion {
     try {
       return evaluate(text, variables_);
     } catch (const ExpressionError& error) {
+      // What is wrong with a variable has been said where it stands.
+      if (!error.unknown.empty() && (none_is_known_ || wrong_.contains(error.unknown))) return std::nullopt;
       const std::string why = below_.contains(error.unknown) ? why_not_below(error.unknown) : error.what();
       note(
           at, key,
@@ -241,6 +247,8 @@ class Expansion {
   std::set<std::string> keys_;
   std::map<std::string, const TomlTree*, std::less<>> below_;  // variables that are not worked out yet
   std::string reading_;                                        // the one that is
+  std::set<std::string> wrong_;                                // variables that are there, but have no value
+  bool none_is_known_ = false;                                 // because [variables] is no table
   bool braces_ = false;
   std::size_t turns_ = 0;
 };

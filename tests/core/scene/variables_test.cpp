@@ -132,6 +132,19 @@ TEST_CASE("values are written back into scenes with variables") {
   CHECK(read(entry.text).custom.nodes[3].mass == 2.0);
 }
 
+TEST_CASE("a wrong variable is told once, and not again wherever it is used") {
+  const std::string once = mistakes(with(polygon, "n = 5", "n = \"=5 +\""));
+  CHECK(once.starts_with("polygon.toml:"));
+  CHECK(once.find("variables.n: in the expression") != std::string::npos);
+  CHECK(once.find("no variable") == std::string::npos);
+  // Nor of what is worked out of it; another mistake stays.
+  const std::string two = mistakes(with(with(polygon, "n = 5", "n = [5]"), "\"=2*radius\"", "\"=2*q\""));
+  CHECK(two.find("variables.n: must be a finite number") != std::string::npos);
+  CHECK(two.find("no variable 'q'") != std::string::npos);
+  CHECK(two.find("'n'") == std::string::npos);
+  CHECK(mistakes(with(polygon, "[variables]\n", "[variablez]\n")).find("no variable") != std::string::npos);
+}
+
 TEST_CASE("mistakes in variables and repeats have a place") {
   CHECK(mistakes(with(polygon, "cos(2*pi*i/n)", "cos(2*pi*i/m)"))
             .starts_with("polygon.toml:9:13: structure.nodes[0].position[0]: in the expression "
