@@ -15,7 +15,7 @@ namespace {
 // is known to the root of round-off where it turns back.
 constexpr double stationary_at_end = 1e-6;
 constexpr double deployed_there = 1e-8;  // of what is left there
-constexpr double alike = 1e-6;           // of the rates of latches
+constexpr double same_rates = 1e-6;           // of the rates of latches
 
 class EndLoads {
  public:
@@ -53,7 +53,7 @@ class EndLoads {
       sum += structure_.sectors * rate * rate;
     }
     const std::string all = std::to_string(std::lround(structure_.sectors * double(forms.size())));
-    const bool same = most - least <= alike * most;
+    const bool same = most - least <= same_rates * most;
     return {(same ? "each of " : "most loaded of ") + all + " latches",
             "latch",
             false,
