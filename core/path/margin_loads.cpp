@@ -15,7 +15,7 @@ namespace {
 // is known to the root of round-off where it turns back.
 constexpr double stationary_at_end = 1e-6;
 constexpr double deployed_there = 1e-8;  // of what is left there
-constexpr double same_rates = 1e-6;           // of the rates of latches
+constexpr double same_rates = 1e-6;      // of the rates of latches
 
 class EndLoads {
  public:

@@ -16,7 +16,7 @@ constexpr double longest_timed = 5, longest_repeated = 0.1;
 constexpr std::size_t most_known = 32, most_waiting = 64;
 constexpr double most_known_bytes = 128e6, most_waiting_bytes = 128e6;
 
-double bytes_of(const LiveRun& run) {
+double memory_of(const LiveRun& run) {
   const auto states = static_cast<double>(run.simulation.trajectory.size());
   const Structure& structure = run.simulation.trajectory.structure();
   const auto numbers = static_cast<double>(6 * structure.nodes.size() + 2 * structure.rods.size());
@@ -56,7 +56,7 @@ void ErrorMeter::measure(std::shared_ptr<const LiveRun> run) {
   double bytes = 0;
   std::size_t keep = 0;  // of the latest
   for (auto it = waiting_.rbegin(); it != waiting_.rend() && keep < most_waiting; ++it, ++keep)
-    if (bytes += bytes_of(**it); bytes > most_waiting_bytes && keep > 0) break;
+    if (bytes += memory_of(**it); bytes > most_waiting_bytes && keep > 0) break;
   waiting_.erase(waiting_.begin(), waiting_.end() - static_cast<std::ptrdiff_t>(keep));
   if (!same || !worker_.busy()) begin();
 }
