@@ -101,7 +101,7 @@ TEST_CASE("what friction and a test rig add is measured beside the scene") {
     throw std::logic_error("unreachable");
   };
   const SceneSource rig{find_scene("hoop6"),
-                        {"gravity.acceleration=[0,0,-9.81]", "solver.end_time=6",
+                        {"structure.units=4", "gravity.acceleration=[0,0,-9.81]", "solver.end_time=6",
                          "forces[0]={kind=\"offload\", nodes=[\"*\"], trolley=\"following\"}",
                          "forces[1]={kind=\"friction\", fold_angle=true, kinetic=20, static=25}"}};
   const auto models = compare_models(rig, 1, {});
@@ -117,7 +117,7 @@ TEST_CASE("what friction and a test rig add is measured beside the scene") {
   CHECK(smooth.deployment_time < test.deployment_time - 1e-3);
   // From trolleys that stay the ring is pulled back.
   const SceneSource fixed{find_scene("hoop6"),
-                          {"gravity.acceleration=[0,0,-9.81]", "solver.end_time=9",
+                          {"structure.units=4", "gravity.acceleration=[0,0,-9.81]", "solver.end_time=9",
                            "forces[0]={kind=\"offload\", nodes=[\"*\"], length=40}"}};
   const auto pulled = compare_models(fixed, 1, {});
   CHECK(pulled.front().deployment_time >
