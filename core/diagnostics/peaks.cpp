@@ -220,12 +220,13 @@ std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<dou
 // Where steps are too long for their ends to tell of what is between, the first states of those that hold the
 // largest values: at a quarter, the middle and three quarters, of which closer() tries whether they are true.
 std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& values) {
-  constexpr std::size_t most_long = 128;  // of more of them the states themselves tell
+  // Of more of them, and of single ones among many, the states themselves tell.
+  constexpr std::size_t most_long = 128, few = 8;
   const Trajectory& t = run.trajectory;
   std::vector<std::size_t> steps;
   for (std::size_t k = 0; k + 1 < t.size() && steps.size() <= most_long; ++k)
     if (joined(t, k, k + 1) && !is_resolved(t.state(k), t.state(k + 1))) steps.push_back(k);
-  if (steps.size() > most_long) return {};
+  if (steps.size() > most_long || (t.size() > 2 * most_long && few * steps.size() < t.size())) return {};
   std::vector<std::pair<double, std::size_t>> found;
   for (const std::size_t k : steps) {
     Simulation piece{.trajectory = Trajectory({std::shared_ptr<const Model>(), &t.model(k)}),

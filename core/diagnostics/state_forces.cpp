@@ -147,9 +147,9 @@ void StateForces::interpolate(std::size_t i, Close& here) {
   constexpr std::size_t far = 8, far_from_end = 64;
   const std::vector<std::size_t> behind = beside(i, +1, far);
   const Close limit = behind.empty() ? limit_behind(i) : Close{};
-  const bool ends = limit.point.known, one_way = behind.empty();
+  const bool ends = limit.point.known, one_way = behind.empty(), at_end = one_way && !ends;
   const std::vector<std::size_t> before = beside(i, -1, one_way ? far_from_end : far);
-  if (before.empty()) return;
+  if (before.empty() || (at_end && before.size() <= far)) return;  // single states are no run's end
   const double t = trajectory_.time(i);
   const auto both = [&](std::size_t first, std::size_t last) {
     return one_way ? t - trajectory_.time(first)
@@ -189,7 +189,7 @@ void StateForces::interpolate(std::size_t i, Close& here) {
     VectorXd lambda = through(near.size(), &SolvedPoint::lambda);
     VectorXd doubt = many * (lambda - through(near.size() - 2, &SolvedPoint::lambda)).cwiseAbs();
     if (!(doubt.maxCoeff() < least)) {
-      if (least < told * own) return;
+      if (!at_end || least < told * own) return;
       continue;
     }
     least = doubt.maxCoeff();
