@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
-#include <ranges>
 #include <string_view>
 #include <utility>
 
@@ -95,9 +94,14 @@ class SceneOfShape {
     return "nodes = " + toml_value(list) + "\n";
   }
 
-  void note_bare_nodes() {
+  std::size_t nodes_kept() const {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < used_.size(); ++i) count += kept(i) ? 0 : 1;
+    for (std::size_t i = 0; i < used_.size(); ++i) count += kept(i) ? 1 : 0;
+    return count;
+  }
+
+  void note_bare_nodes() {
+    const std::size_t count = used_.size() - nodes_kept();
     if (count > 0)
       shape_.notes.push_back(std::to_string(count) + " vertices at which no rod ends are left out");
   }
@@ -108,12 +112,10 @@ class SceneOfShape {
 
   std::string head() const {
     const CustomSpec& spec = shape_.spec;
-    const auto nodes = static_cast<std::size_t>(std::ranges::count_if(
-        std::views::iota(std::size_t{0}, used_.size()), [&](std::size_t i) { return kept(i); }));
-    std::string text =
-        remark("Made by `unfurl import` of " + file_name() + ": " + std::to_string(nodes) + " nodes, " +
-               std::to_string(spec.rods.size()) + " rods, " + std::to_string(shape_.plates.size()) +
-               " plates. Units are SI, coordinates in metres; `unfurl list keys` has every key.");
+    std::string text = remark(
+        "Made by `unfurl import` of " + file_name() + ": " + std::to_string(nodes_kept()) + " nodes, " +
+        std::to_string(spec.rods.size()) + " rods, " + std::to_string(shape_.plates.size()) +
+        " plates. Units are SI, coordinates in metres; `unfurl list keys` has every key.");
     for (const std::string& note : shape_.notes) text += remark("Note: " + note + ".");
     return text +
            "title = " + toml_string(title_that_says(std::filesystem::path(shape_.file).stem().string())) +

@@ -17,9 +17,10 @@ class MemberChoices {
   MemberChoices(const Structure& structure, const Selection& selected, const FreeReach& reach)
       : structure_(structure), reach_(reach), order_(structure.nodes.size()) {
     std::iota(order_.begin(), order_.end(), 0);
-    std::ranges::stable_partition(order_, [&](int node) { return reach_.moves(node); });
+    std::stable_partition(order_.begin(), order_.end(), [&](int node) { return reach_.moves(node); });
     for (std::size_t i = 0; i < structure.rods.size(); ++i) rods_.push_back(i);
-    std::ranges::stable_partition(rods_, [&](std::size_t r) { return rod_moves(structure.rods[r]); });
+    std::stable_partition(rods_.begin(), rods_.end(),
+                          [&](std::size_t r) { return rod_moves(structure.rods[r]); });
     firsts_ = order_;
     if (selected.kind == Selection::Kind::node)
       for (const int node : order_)
