@@ -30,6 +30,8 @@ struct StudyArguments {
   std::string find, target, between;  // --find KEY --target NAME=VALUE --between LOW:HIGH
 };
 
+inline constexpr const char* scene_of_the_window = "hoop6";  // where none is named
+
 // What only the window takes.
 struct ViewArguments {
   std::string picture;               // --picture FILE: draw the panel into it, without a window

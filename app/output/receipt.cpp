@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/output/receipt.hpp"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -29,6 +31,14 @@ Shown& shown() {
   return shown;
 }
 
+// The program or, loaded into another one (Python's), the module.
+std::string file_of_this_code() {
+  Dl_info found{};
+  const bool module = ::dladdr(static_cast<const void*>(&shown().mutex), &found) != 0 &&
+                      found.dli_fname != nullptr && fs::path(found.dli_fname).extension() == ".so";
+  return module ? found.dli_fname : "/proc/self/exe";
+}
+
 // Without the characters that mean something in XML and HTML.
 std::string plain(const std::string& json) {
   std::string text;
@@ -42,7 +52,7 @@ std::string plain(const std::string& json) {
 std::string checksum_of_this_program() {
   static const std::string sum = [] {
     Checksum build;
-    build.add(read_text_file("/proc/self/exe").text);
+    build.add(read_text_file(file_of_this_code()).text);
     return build.text();
   }();
   return sum;
@@ -52,7 +62,7 @@ std::vector<std::string> command_of_result(std::vector<std::string> kept, const 
                                            const std::string& scene_name) {
   for (const char* option :
        {"-o", "--output", "--set", "--tolerance", "--size", "--fps", "--look", "--supersample", "--frames",
-        "--lease", "--shard", "--merge", "--threads", "--export", "--script", "--jobs"})
+        "--lease", "--shard", "--merge", "--threads", "--export", "--script", "--jobs", "--picture"})
     kept = without_option(kept, option);
   std::erase_if(kept, [](const std::string& word) {
     return word == "--transparent" || word == "--join" || word == "--quiet" || word == "--json" ||
@@ -111,6 +121,12 @@ void ReceiptWriter::finish(const fs::path& temporary, const fs::path& target) {
   if (extension != ".mp4") file = with_note(std::move(file), extension, note(target));
   file = sealed(std::move(file), extension);
   replace_bytes(temporary, file);
+}
+
+std::string command_in_words(const Receipt& receipt) {
+  const std::vector<std::string>& words = receipt.command;
+  if (words.size() < 3 || words[0] != from_python) return as_typed(words);
+  return "Python, " + words[1] + ": " + words[2];
 }
 
 std::string bytes_of(const fs::path& file) {

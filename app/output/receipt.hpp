@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/export/atomic_file.hpp"
@@ -14,13 +15,19 @@ namespace unfurl {
 
 // What was read from a file.
 struct Receipt {
-  std::string version, build;        // of the program; the build is the checksum of its executable
-  std::vector<std::string> command;  // verb, scene, and what else decides about the file
-  std::string name;                  // the word of it that is the scene; empty: the command has none
-  std::string file;                  // its name in the directory of -o; empty: -o named it
-  std::string scene;                 // its text, every --set in it
+  std::string version, build;  // of the program; the build is the checksum of its executable
+  // Verb, scene, and what else decides about the file; of the Python module `from_python`, the scene's name
+  // and a call.
+  std::vector<std::string> command;
+  std::string name;   // the word of it that is the scene; empty: the command has none
+  std::string file;   // its name in the directory of -o; empty: -o named it
+  std::string scene;  // its text, every --set in it
   std::map<std::string, double> errors;
 };
+
+inline constexpr std::string_view from_python = "python";
+// For a person: "unfurl figure hoop6 energy", "Python, hoop6: run().plot("energy")".
+std::string command_in_words(const Receipt& receipt);
 
 // Every byte of a file. Throws FileError where it cannot be read.
 std::string bytes_of(const std::filesystem::path& file);
@@ -29,7 +36,7 @@ std::optional<Receipt> receipt_of(const std::filesystem::path& file);
 // Is every byte of a file with a receipt as it was written?
 bool as_written(const std::filesystem::path& file);
 
-std::string checksum_of_this_program();
+std::string checksum_of_this_program();  // or of the Python module
 
 // While it lives, every file of a format that takes a note gets a receipt before it gets its name.
 class ReceiptWriter final : public FileFinisher {

@@ -57,8 +57,8 @@ std::mutex drawing;
 class Run {
  public:
   Run(Scene scene, Simulation run, std::shared_ptr<std::mutex> use,
-      const std::function<bool()>& cancelled = {})
-      : run_{std::move(scene), std::move(run), {}}, use_(std::move(use)) {
+      const std::function<bool()>& cancelled = {}, const std::string& made_by = "run()")
+      : run_{std::move(scene), std::move(run), {}, made_by}, use_(std::move(use)) {
     const std::lock_guard lock(*use_);
     record_singular_poses(run_.simulation, cancelled);
     run_.diagnostics = judge(run_.simulation, cancelled);
@@ -253,7 +253,9 @@ class SteppedScene {
   }
   std::shared_ptr<Run> finish() const {
     const py::gil_scoped_release release;
-    return std::make_shared<Run>(scene_, so_far(), use_);
+    const char* made_by =
+        forces_.empty() ? "stepper().finish()" : "stepper(), with forces set between steps, finish()";
+    return std::make_shared<Run>(scene_, so_far(), use_, std::function<bool()>(), made_by);
   }
 
  private:

@@ -10,7 +10,9 @@
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
 #include "core/export/summary.hpp"
+#include "core/math/largest.hpp"
 #include "core/scene/write.hpp"
+#include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
 #include "render/gl/context.hpp"
 #include "render/image/png.hpp"
@@ -20,6 +22,22 @@
 #include "render/ui/write_figure.hpp"
 
 namespace unfurl {
+
+namespace {
+
+std::string python_text(const std::string& word) {
+  return "\"" + word + "\"";
+}
+
+}  // namespace
+
+RunReceipt::RunReceipt(const JudgedRun& run, const std::string& call, const std::string& output)
+    : writer_({std::string(from_python), run.scene.name, run.made_by + "." + call}, run.scene.name, output) {
+  receipt_scene(run.scene.name, scene_text(run.scene));
+  const auto most = [&](const char* column) { return largest_magnitude(run.diagnostics.at(column).values); };
+  receipt_errors(
+      {{"constraint_error_m", most("constraint_max_m")}, {"energy_balance_J", most("energy_balance_J")}});
+}
 
 std::string summary_of(const JudgedRun& run) {
   const Trajectory& trajectory = run.simulation.trajectory;
@@ -35,6 +53,7 @@ void write_export(const JudgedRun& run, const std::string& format, const std::st
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw FileError(directory, error.value());
+  const RunReceipt receipt(run, "export(" + python_text(format) + ")", directory);
   const Scene& scene = run.scene;
   const std::string text = scene_text(scene);
   const ExportedLooks looks = exported_looks(scene, run.simulation.trajectory);
@@ -67,12 +86,14 @@ void write_plot(const JudgedRun& run, const std::string& name, const std::string
   const std::string extension = std::filesystem::path(file).extension().string();
   if (extension != ".png" && extension != ".svg" && extension != ".pdf")
     throw StudyError("a figure is written as .png, .svg or .pdf, not " + in_quotes(extension));
+  const RunReceipt receipt(run, "plot(" + python_text(name) + ", style=" + python_text(style) + ")", file);
   write_figure(kind->make(run.simulation, run.diagnostics), file, options);
 }
 
 void write_still(const JudgedRun& run, double t, const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension().string();
   if (extension != ".png") throw StudyError("a frame is written as .png, not " + in_quotes(extension));
+  const RunReceipt receipt(run, "frame(" + exact_number(t) + ")", file);
   const auto context = make_offscreen_context();
   const Image image = still(run.scene, run.simulation, run.diagnostics, t, *context);
   write_png(file, image, has_alpha(run.scene.render));

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "app/output/receipt.hpp"
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/scene/scene.hpp"
 #include "core/simulate/simulation.hpp"
@@ -15,6 +16,16 @@ struct JudgedRun {
   Scene scene;
   Simulation simulation;
   Diagnostics diagnostics;
+  std::string made_by = "run()";  // the call of the scene that gave it
+};
+
+// While it lives, what is written gets the receipt of this run; `call`: of it, that writes. One at a time.
+class RunReceipt {
+ public:
+  RunReceipt(const JudgedRun& run, const std::string& call, const std::string& output);
+
+ private:
+  ReceiptWriter writer_;
 };
 
 // All throw what derives from Error where a person can mend it.

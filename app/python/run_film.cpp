@@ -112,6 +112,7 @@ void write_film(const JudgedRun& run, const std::string& file, const std::functi
   if (!webp && !gif && !mp4)
     throw StudyError("a film is written as .mp4, .webp or .gif, not " + in_quotes(extension));
   FrameSource frames(run, cancelled);
+  const RunReceipt receipt(run, "film()", file);
   if (webp) write_webp(frames, file);
   if (gif) write_gif(frames, file);
   if (mp4) write_mp4(frames, file);

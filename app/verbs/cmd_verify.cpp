@@ -51,7 +51,7 @@ int verify_by_receipt(const fs::path& file) {
     std::cerr << "unfurl: the file is not as it was written\n";
     return exit_verification_failed;
   }
-  std::cout << "1 file as written by unfurl " << receipt->version << ": " << as_typed(receipt->command)
+  std::cout << "1 file as written by unfurl " << receipt->version << ": " << command_in_words(*receipt)
             << "\n";
   return exit_ok;
 }

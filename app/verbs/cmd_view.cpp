@@ -6,10 +6,13 @@
 
 #include "app/command.hpp"
 #include "app/output/output_directory.hpp"
+#include "app/output/receipt.hpp"
 #include "app/panel/control_panel.hpp"
 #include "app/panel/panel_bench.hpp"
 #include "app/panel/session_log.hpp"
 #include "app/window/window.hpp"
+#include "core/math/largest.hpp"
+#include "core/scene/write.hpp"
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
 #include "render/gl/context.hpp"
@@ -59,9 +62,16 @@ void require_time_of_run(double t, const LiveRun* run) {
 
 int draw_picture(SceneDocument document, const Scene& scene, const Arguments& arguments) {
   require_writable_png(arguments.view.picture, "a picture of the window");
+  receipt_scene(scene.name, scene_text(scene));
   OffscreenPanel offscreen(std::move(document), arguments, scene.render.width, scene.render.height);
   offscreen.panel.settle();
-  require_time_of_run(start_of(arguments), offscreen.panel.state().shown.get());
+  const LiveRun* run = offscreen.panel.state().shown.get();
+  require_time_of_run(start_of(arguments), run);
+  if (run) {
+    const Diagnostics& d = run->diagnostics;
+    receipt_errors({{"constraint_error_m", largest_magnitude(d.at("constraint_max_m").values)},
+                    {"energy_balance_J", largest_magnitude(d.at("energy_balance_J").values)}});
+  }
   write_png(arguments.view.picture, offscreen.panel.picture().read());
   return exit_ok;
 }
@@ -115,7 +125,7 @@ void refuse_contradictions(const Arguments& arguments) {
 int cmd_view(const Arguments& arguments) {
   refuse_contradictions(arguments);
   if (!arguments.view.replay.empty()) return replay(arguments);
-  const std::string name = arguments.names.empty() ? "hoop6" : arguments.names.front();
+  const std::string name = arguments.names.empty() ? scene_of_the_window : arguments.names.front();
   SceneDocument document = open_document(name, arguments.overrides);
   // What is wrong with the scene is said here, before a window opens.
   const Scene scene = read_document(document);

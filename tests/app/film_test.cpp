@@ -18,10 +18,10 @@ namespace {
 
 // Five small frames of a short run.
 std::vector<std::string> film(const std::string& out, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> words = {"render", "hoop6_sector",  "--set",   "solver.end_time=0.2",
-                                    "--size", "96x64",         "--fps",   "20",
-                                    "--set",  "render.hold=0", "--quiet", "-o",
-                                    out};
+  std::vector<std::string> words = {
+      "render", "hoop6_sector", "--set", "solver.end_time=0.2", "--size",  "96x64",
+      "--fps",  "20",           "--set", "render.hold=0",       "--quiet", "--dpi",
+      "60",     "-o",           out};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }

@@ -96,9 +96,9 @@ TEST_CASE("studies and films are shared like a sweep") {
   const ScratchDirectory dir;
   const std::vector<std::vector<std::string>> commands = {
       {"study", "double_pendulum", "--set", "solver.end_time=0.4", "--steps", "0.05:0.01", "--repeats", "1",
-       "--methods", "dvm,rk4", "--threads", "1", "--quiet"},
-      {"render", "double_pendulum", "--set", "solver.end_time=0.4", "--size", "96x64", "--fps", "30",
-       "--threads", "1", "--quiet"}};
+       "--methods", "dvm,rk4", "--dpi", "60", "--threads", "1", "--quiet"},
+      {"render", "double_pendulum", "--set", "solver.end_time=0.4", "--size", "96x64", "--fps", "30", "--dpi",
+       "60", "--threads", "1", "--quiet"}};
   const char* results[] = {"study.md", "animation.webp"};
   for (std::size_t i = 0; i < commands.size(); ++i) {
     std::string words;

@@ -15,9 +15,18 @@ namespace picture_commands_test {
 namespace {
 
 // Three small frames of a short run.
-const std::vector<std::string> small = {"hoop6_sector",         "--set",  "solver.end_time=0.1", "--set",
-                                        "render.size=[96, 64]", "--set",  "render.fps=20",       "--set",
-                                        "render.hold=0",        "--quiet"};
+const std::vector<std::string> small = {"hoop6_sector",
+                                        "--set",
+                                        "solver.end_time=0.1",
+                                        "--set",
+                                        "render.size=[96, 64]",
+                                        "--set",
+                                        "render.fps=20",
+                                        "--set",
+                                        "render.hold=0",
+                                        "--dpi",
+                                        "60",
+                                        "--quiet"};
 
 std::vector<std::string> with(const std::vector<std::string>& first, std::vector<std::string> rest) {
   std::vector<std::string> all = first;

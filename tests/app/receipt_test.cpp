@@ -28,7 +28,7 @@ TEST_CASE("a file of every format carries its receipt, and is made again from it
   const std::string film = dir / "film";
   REQUIRE(run_program({"render", "pendulum", "-o", film, "--size", "96x64", "--fps", "10", "--set",
                        "solver.end_time=0.5", "--set", "structure.length=0.7", "--export", "gltf,html",
-                       "--quiet"})
+                       "--dpi", "60", "--quiet"})
               .code == 0);
   for (const char* name :
        {"figures/energy.pdf", "figures/energy.svg", "figures/energy.png", "frames/frame_00003.png",
@@ -39,7 +39,7 @@ TEST_CASE("a file of every format carries its receipt, and is made again from it
     fs::copy_file(fs::path(film) / name, copy, fs::copy_options::overwrite_existing);
     const auto receipt = receipt_of(copy);
     REQUIRE(receipt);
-    CHECK(receipt->command == std::vector<std::string>{"render", "pendulum"});
+    CHECK(receipt->command == std::vector<std::string>{"render", "pendulum", "--dpi", "60"});
     CHECK(receipt->file == name);
     CHECK(receipt->name == "pendulum");
     CHECK(receipt->scene == file_text(film + "/scene.toml"));
@@ -56,6 +56,29 @@ TEST_CASE("a file of every format carries its receipt, and is made again from it
     bytes[bytes.size() / 3] = static_cast<char>(bytes[bytes.size() / 3] ^ 1);
     dir.write(fs::path(copy).filename().string(), bytes);
     CHECK(run_program({"verify", copy}).code == 7);
+  }
+}
+
+TEST_CASE("a picture of the window carries its receipt, and says why it is not made again") {
+  const ScratchDirectory dir;
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"view", "pendulum", "--set", "structure.length=0.7", "--at", "0.2"},
+        std::vector<std::string>{"view", "--dark", "--set", "solver.end_time=0.3"}}) {
+    const std::string png = dir / (std::to_string(words.size()) + ".png");
+    std::vector<std::string> asked = words;
+    asked.insert(asked.end(), {"--picture", png, "--size", "640x400"});
+    REQUIRE(run_program(asked).code == 0);
+    const auto receipt = receipt_of(png);
+    REQUIRE(receipt);
+    CHECK(receipt->command.front() == "view");
+    CHECK(receipt->command.at(1) == (words[1] == "pendulum" ? "pendulum" : "hoop6"));
+    CHECK(receipt->scene.find(words[1] == "pendulum" ? "length = 0.7" : "end_time = 0.3") <
+          receipt->scene.size());
+    CHECK(run_program({"verify", png}).code == 0);
+    const ProgramResult again = run_program({"reproduce", png});
+    CHECK(again.code == 5);
+    CHECK(again.err.find("was made by unfurl view " + receipt->command.at(1)) != std::string::npos);
+    CHECK(again.err.find("how long things took") != std::string::npos);
   }
 }
 
@@ -90,13 +113,14 @@ TEST_CASE("a table carries no receipt, and is made again from what lies beside i
       run_program({"run", "pendulum", "-o", dir / "run", "--set", "solver.end_time=0.3", "--quiet"}).code ==
       0);
   REQUIRE(run_program({"render", "pendulum", "-o", dir / "film", "--size", "32x32", "--fps", "4", "--set",
-                       "solver.end_time=0.5", "--quiet"})
+                       "solver.end_time=0.5", "--dpi", "60", "--quiet"})
               .code == 0);
   REQUIRE(run_program({"sweep", "pendulum", "--vary", "structure.angle=10,20", "--measure", "energy", "-o",
-                       dir / "sweep", "--quiet"})
+                       dir / "sweep", "--dpi", "60", "--quiet"})
               .code == 0);
-  REQUIRE(run_program({"margin", "hoop6", "-o", dir / "margin", "--factor", "loads=0.9", "--quiet"}).code ==
-          0);
+  REQUIRE(run_program(
+              {"margin", "hoop6", "-o", dir / "margin", "--factor", "loads=0.9", "--dpi", "60", "--quiet"})
+              .code == 0);
   for (const char* table : {"run/series.csv", "run/trajectory.csv", "film/series.csv", "sweep/sweep.csv",
                             "margin/margin.csv", "margin/loads.csv"}) {
     INFO(table);
@@ -145,7 +169,7 @@ TEST_CASE("reproduce exports what it makes again, where the command can") {
 TEST_CASE("every byte of a sealed file counts, its receipt's own too") {
   const ScratchDirectory dir;
   REQUIRE(run_program({"render", "pendulum", "-o", dir / "film", "--size", "32x32", "--fps", "4", "--set",
-                       "solver.end_time=0.5", "--export", "gltf,html", "--quiet"})
+                       "solver.end_time=0.5", "--export", "gltf,html", "--dpi", "60", "--quiet"})
               .code == 0);
   std::mt19937 random(5);  // a seed
   for (const char* name :

@@ -19,6 +19,7 @@ using Words = std::vector<std::string>;
 
 Words quick(const std::string& verb, const std::string& out, const Words& more = {}) {
   Words words{verb, "pendulum", "--set", "solver.end_time=0.1", "--quiet", "-o", out};
+  if (verb != "run") words.insert(words.end(), {"--dpi", "60"});
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -62,10 +63,10 @@ TEST_CASE("files of somebody else in the directory outlive every verb, with and 
       quick("run", dir / "out", {"--export", "csv,npy,vtk,gltf"}),
       {"figure", "pendulum", "energy", "trajectory", "--set", "solver.end_time=0.1", "--quiet", "-o",
        dir / "out"},
-      {"study", "pendulum", "--steps", "0.1:0.05", "--methods", "rk4", "--repeats", "1", "--quiet", "-o",
-       dir / "out"},
-      {"sweep", "pendulum", "--vary", "solver.step=0.05,0.1", "--measure", "energy", "--quiet", "-o",
-       dir / "out"},
+      {"study", "pendulum", "--steps", "0.1:0.05", "--methods", "rk4", "--repeats", "1", "--dpi", "60",
+       "--quiet", "-o", dir / "out"},
+      {"sweep", "pendulum", "--vary", "solver.step=0.05,0.1", "--measure", "energy", "--dpi", "60", "--quiet",
+       "-o", dir / "out"},
   };
   for (const Words& command : commands) {
     fs::remove_all(dir / "out");

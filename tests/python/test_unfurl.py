@@ -5,6 +5,7 @@ import csv
 import gc
 import json
 import os
+import re
 import resource
 import shutil
 import signal
@@ -541,3 +542,36 @@ def test_tables_of_other_packages(monkeypatch):
     for dimensions, values in data.values():
         assert values.shape == tuple(sizes[name] for name in dimensions)
     assert data["x_m"][1] is run.x.array and data["kinetic_energy_J"][0] == ("t_s",)
+
+
+def test_what_python_writes_carries_its_receipt(tmp_path):
+    ring = unfurl.Scene("hoop6_sector", set={"solver.end_time": 0.2, "render.size": [64, 48], "render.fps": 10})
+    run = ring.run()
+    for kind in ("svg", "pdf", "png"):
+        run.plot("energy", tmp_path / f"plot.{kind}")
+    run.frame(0.1, tmp_path / "frame.png")
+    for kind in ("webp", "gif") + (("mp4",) if shutil.which("ffmpeg") else ()):
+        run.film(tmp_path / f"film.{kind}")
+    run.export("gltf", tmp_path)
+    run.export("html", tmp_path)
+    files = sorted(tmp_path.iterdir())
+    assert len(files) >= 8
+    for file in files:
+        whole = subprocess.run([PROGRAM, "verify", file], capture_output=True, text=True)
+        assert whole.returncode == 0 and "Python, hoop6_sector: run()." in whole.stdout, (file, whole.stderr)
+        again = subprocess.run([PROGRAM, "reproduce", file], capture_output=True, text=True)
+        assert again.returncode == 5 and "was made by Python, hoop6_sector: run()." in again.stderr
+        data = bytearray(file.read_bytes())
+        data[len(data) // 3] ^= 1
+        (tmp_path / ("changed" + file.suffix)).write_bytes(data)
+        changed = subprocess.run([PROGRAM, "verify", tmp_path / ("changed" + file.suffix)], capture_output=True)
+        assert changed.returncode in (5, 7)  # 5 where the byte is one of the receipt itself
+    note = json.loads(re.search(r'\{"unfurl_receipt".*\}(?=<)', (tmp_path / "plot.svg").read_text())[0])
+    assert note["command"] == ["python", "hoop6_sector", 'run().plot("energy", style="screen")']
+    assert note["scene"] == ring.text and note["unfurl"] == unfurl.__version__
+    assert note["errors"]["energy_balance_J"] == np.abs(run.series["energy_balance_J"]).max()
+    # Forces that were set between steps are in no scene: it is said that there were some.
+    stepper = ring.stepper()
+    stepper.force[0] = [0, 0, 1]
+    stepper.step()
+    assert "with forces set between steps" in stepper.finish().plot("energy")

@@ -82,7 +82,7 @@ finished "$job"
 cmp one/sweep.csv many/sweep.csv
 say "a sweep by an array of three tasks, one requeued: the bytes of one process"
 
-film="render pendulum --size 64x48 --fps 10 --set solver.end_time=1 --quiet"
+film="render pendulum --dpi 60 --size 64x48 --fps 10 --set solver.end_time=1 --quiet"
 # shellcheck disable=SC2086
 "$unfurl" $film -o film
 job=$(sbatch --parsable --array=1-3 --wrap "exec '$unfurl' $film --threads 1 -o joined --join --lease 5")
