@@ -280,7 +280,7 @@ def pixels(path):
 def test_a_frame_is_that_of_the_film(tmp_path, more):
     changes = {"solver.end_time": 0.2, "render.size": [64, 48], "render.fps": 20, "render.hold": 0, **more}
     sets = [word for key, value in changes.items() for word in ("--set", f"{key}={json.dumps(value)}")]
-    subprocess.run([PROGRAM, "render", "hoop6_sector", "-o", tmp_path / "out", "--quiet", *sets], check=True)
+    subprocess.run([PROGRAM, "render", "hoop6_sector", "-o", tmp_path / "out", "--quiet", "--dpi", "60", *sets], check=True)
     run = unfurl.Scene("hoop6_sector", set=changes).run()
     first = 2 if "render.hold_start" in more else 0  # 0.1 s of film at rest
     for k in (0, 2, 4):  # at 0, 0.1 and 0.2 s
@@ -459,7 +459,7 @@ def frames_of(path):
 def test_a_film_is_that_of_the_program(tmp_path, more):
     changes = {"solver.end_time": 0.4, "render.size": [64, 48], "render.fps": 10, "render.gif_width": 40, **more}
     sets = [word for key, value in changes.items() for word in ("--set", f"{key}={json.dumps(value)}")]
-    subprocess.run([PROGRAM, "render", "hoop6_sector", "-o", tmp_path / "out", "--quiet", *sets], check=True)
+    subprocess.run([PROGRAM, "render", "hoop6_sector", "-o", tmp_path / "out", "--quiet", "--dpi", "60", *sets], check=True)
     run = unfurl.Scene("hoop6_sector", set=changes).run()
     for kind in (".webp", ".gif") + ((".mp4",) if shutil.which("ffmpeg") else ()):
         run.film(tmp_path / f"film{kind}")
