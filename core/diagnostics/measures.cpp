@@ -6,9 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/peaks.hpp"
-#include "core/diagnostics/rod_strength.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "core/diagnostics/vibration.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/initial_state.hpp"
@@ -50,9 +49,9 @@ double peak_force(const Simulation& run, const Diagnostics& d) {
 }
 
 template <Pull pull>
-double peak_unique(const Simulation&, const Diagnostics& d) {
+double peak_unique(const Simulation& run, const Diagnostics& d) {
   if (!d.whole()) return no_value;
-  return peak_rod_force(d, pull).unique ? 1.0 : 0.0;
+  return peak_rod_force(run, d, pull).unique ? 1.0 : 0.0;
 }
 
 double peak_stress(const Simulation& run, const Diagnostics& d) {
@@ -63,7 +62,7 @@ double peak_stress(const Simulation& run, const Diagnostics& d) {
 template <double (*quantity)(const Rod&, double)>
 double worst_unique(const Simulation& run, const Diagnostics& d) {
   if (!d.whole()) return no_value;
-  return worst_rod(run.trajectory.structure(), d, quantity).unique ? 1.0 : 0.0;
+  return worst_rod(run, d, quantity).unique ? 1.0 : 0.0;
 }
 
 double last_frequency(const Simulation& run, const Diagnostics&) {

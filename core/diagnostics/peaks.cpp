@@ -24,9 +24,9 @@ constexpr double good_constraint = 1e-4;  // of a rod's length: beyond it there 
 // cheap, and for a step of the method to each time.
 constexpr double good_quintic = 1e-5, good_step = 0.1;
 
-// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule.
-bool is_resolved(const State& a, const State& b) {
-  constexpr double good = 0.02;  // half a radian of a swing
+// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule: 0.02 is half a
+// radian of a swing, 0.002 a sixth.
+bool is_resolved(const State& a, const State& b, double good) {
   const VectorXd mean = (b.z - a.z) / (b.t - a.t);
   const auto size = [](const VectorXd& w) { return w.lpNorm<Eigen::Infinity>(); };
   return mean.size() == 0 ||
@@ -38,7 +38,7 @@ bool is_resolved(const State& a, const State& b) {
 bool joined(const Trajectory& run, std::size_t a, std::size_t b) {
   return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b) &&
          !run.report(a).singular_event &&
-         !(run.report(b).singular_event && is_resolved(run.state(a), run.state(b)));
+         !(run.report(b).singular_event && is_resolved(run.state(a), run.state(b), 0.02));
 }
 
 // The motion around state i: two steps at most, where they are smooth; of each the quintic through positions,
@@ -171,17 +171,13 @@ class Neighbourhood {
   std::vector<std::size_t> by_steps_;    // of the steps from these states the quintic is not good enough
 };
 
-struct Vertex {
-  double t, value;
-};
-
 // Of the parabola through three points, within their times; the middle one where there is none.
-Vertex vertex(const std::array<double, 3>& t, const std::array<double, 3>& x) {
+PeakInMotion vertex(const std::array<double, 3>& t, const std::array<double, 3>& x) {
   const double left = (x[1] - x[0]) / (t[1] - t[0]), right = (x[2] - x[1]) / (t[2] - t[1]);
   const double bend = (right - left) / (t[2] - t[0]);
-  if (!(bend < 0)) return {t[1], x[1]};
+  if (!(bend < 0)) return {x[1], t[1]};
   const double at = std::clamp(0.5 * (t[0] + t[1]) - left / (2 * bend), t[0], t[2]);
-  return {at, x[0] + (at - t[0]) * (left + bend * (at - t[1]))};
+  return {x[0] + (at - t[0]) * (left + bend * (at - t[1])), at};
 }
 
 // States around which the motion may top `best`: local maxima whose parabola reaches it, the highest first.
@@ -225,7 +221,7 @@ std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& va
   const Trajectory& t = run.trajectory;
   std::vector<std::size_t> steps;
   for (std::size_t k = 0; k + 1 < t.size() && steps.size() <= most_long; ++k)
-    if (joined(t, k, k + 1) && !is_resolved(t.state(k), t.state(k + 1))) steps.push_back(k);
+    if (joined(t, k, k + 1) && !is_resolved(t.state(k), t.state(k + 1), 0.002)) steps.push_back(k);
   if (steps.size() > most_long || (t.size() > 2 * most_long && few * steps.size() < t.size())) return {};
   std::vector<std::pair<double, std::size_t>> found;
   for (const std::size_t k : steps) {
@@ -244,27 +240,56 @@ std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& va
   return steps;
 }
 
-// The largest value between two times: of 9 in all of it, 9 around the largest of those, and at the top of
-// the parabola there.
-double closer(const Neighbourhood& around, const StateValues& values, double best) {
-  double begin = around.begin(), end = around.end();
-  for (int round = 0; round < 2; ++round) {
-    std::vector<double> times;
-    for (int k = 0; k <= 8; ++k) times.push_back(begin + (end - begin) * k / 8);
-    const std::vector<double> x = around.sample(times, values);
-    std::size_t at = x.size();
-    for (std::size_t k = 0; k < x.size(); ++k)
-      if (!std::isnan(x[k]) && (at == x.size() || x[k] > x[at])) at = k;
-    if (at == x.size()) return best;
-    best = std::max(best, x[at]);
-    if (at > 0 && at + 1 < x.size() && std::isfinite(x[at - 1]) && std::isfinite(x[at + 1]) && round == 1) {
-      const Vertex top = vertex({times[at - 1], times[at], times[at + 1]}, {x[at - 1], x[at], x[at + 1]});
-      const double there = around.sample({top.t}, values).front(), above = top.value - x[at];
-      // A corner has no parabola; next to a singular pose one state by itself may say anything.
-      best = std::max(best, std::abs(there - x[at]) <= 2 * above ? there : top.value);
+// Values at 9 times of a span, both ends among them.
+struct Samples {
+  Samples(const Neighbourhood& around, double begin, double end, const StateValues& of) {
+    for (int k = 0; k <= 8; ++k) t.push_back(begin + (end - begin) * k / 8);
+    x = around.sample(t, of);
+  }
+  // The largest, and those that are no smaller than their neighbours and could reach `best` beside them; the
+  // highest first.
+  std::vector<std::size_t> tops(double best) const {
+    std::vector<std::pair<double, std::size_t>> found;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      if (std::isnan(x[k]) || (k > 0 && x[k - 1] > x[k]) || (k + 1 < x.size() && x[k + 1] > x[k])) continue;
+      const double reach = has_both(k) ? std::max(x[k], parabola(k).value) : x[k];
+      found.push_back({reach, k});
     }
-    begin = times[at > 0 ? at - 1 : 0];
-    end = times[std::min(at + 1, times.size() - 1)];
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<std::size_t> out;
+    for (std::size_t k = 0; k < std::min(found.size(), most_candidates); ++k)
+      if (k == 0 || found[k].first >= best) out.push_back(found[k].second);
+    return out;
+  }
+  bool has_both(std::size_t k) const {
+    return k > 0 && k + 1 < x.size() && std::isfinite(x[k - 1]) && std::isfinite(x[k + 1]);
+  }
+  PeakInMotion parabola(std::size_t k) const {
+    return vertex({t[k - 1], t[k], t[k + 1]}, {x[k - 1], x[k], x[k + 1]});
+  }
+
+  std::vector<double> t, x;
+};
+
+// The largest value of what is around a state: of 9 in all of it, 9 around each of those that may lead to it,
+// and at the top of the parabola there.
+PeakInMotion closer(const Neighbourhood& around, const StateValues& values, PeakInMotion best) {
+  const auto take = [&best](double x, double t) {
+    if (x > best.value) best = {x, t};
+  };
+  const Samples all(around, around.begin(), around.end(), values);
+  for (std::size_t k = 0; k < all.x.size(); ++k) take(all.x[k], all.t[k]);
+  for (const std::size_t k : all.tops(best.value)) {
+    const Samples some(around, all.t[k > 0 ? k - 1 : 0], all.t[std::min(k + 1, all.t.size() - 1)], values);
+    for (std::size_t j = 0; j < some.x.size(); ++j) take(some.x[j], some.t[j]);
+    for (const std::size_t at : some.tops(best.value)) {
+      if (!some.has_both(at)) continue;
+      const PeakInMotion top = some.parabola(at);
+      const double there = around.sample({top.t}, values).front(), above = top.value - some.x[at];
+      // A corner has no parabola; next to a singular pose one state by itself may say anything.
+      take(std::abs(there - some.x[at]) <= 2 * above ? there : top.value, top.t);
+    }
   }
   return best;
 }
@@ -276,9 +301,10 @@ bool of_the_state(const Series& column) {
          column.name != "step_s" && column.name != "newton_iterations";
 }
 
-double extreme_of_column(const Simulation& run, const Diagnostics& d, std::string_view name, double sign) {
+PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std::string_view name,
+                                double sign) {
   const Series* column = d.find(name);
-  if (!column) return std::numeric_limits<double>::quiet_NaN();
+  if (!column) return {};
   const auto signed_values = [sign](const Series& series) {
     std::vector<double> out = series.values;
     for (double& x : out) x *= sign;
@@ -287,19 +313,23 @@ double extreme_of_column(const Simulation& run, const Diagnostics& d, std::strin
   const StateValues values = [&](const Simulation& piece) {
     return signed_values((column->unit == "J" ? diagnose_energies(piece) : diagnose_states(piece)).at(name));
   };
-  return sign *
-         largest_in_motion(run, signed_values(*column), of_the_state(*column) ? values : StateValues());
+  PeakInMotion top =
+      top_of_motion(run, signed_values(*column), of_the_state(*column) ? values : StateValues());
+  top.value *= sign;
+  return top;
 }
 
 }  // namespace
 
-double largest_in_motion(const Simulation& run, const std::vector<double>& at_states,
-                         const StateValues& values) {
-  double best = std::numeric_limits<double>::quiet_NaN();
-  for (const double x : at_states)
-    if (!std::isnan(x) && !(x <= best)) best = x;
-  if (std::isnan(best) || !values || at_states.size() != run.trajectory.size()) return best;
-  std::vector<std::size_t> around_these = candidates(run.trajectory, at_states, best);
+PeakInMotion top_of_motion(const Simulation& run, const std::vector<double>& at_states,
+                           const StateValues& values) {
+  const bool of_run = at_states.size() == run.trajectory.size();
+  PeakInMotion best;
+  for (std::size_t i = 0; i < at_states.size(); ++i)
+    if (const double x = at_states[i]; !std::isnan(x) && !(x <= best.value))
+      best = {x, of_run ? run.trajectory.time(i) : best.t};
+  if (std::isnan(best.value) || !values || !of_run) return best;
+  std::vector<std::size_t> around_these = candidates(run.trajectory, at_states, best.value);
   for (const std::size_t i : long_steps(run, values))
     if (std::ranges::find(around_these, i) == around_these.end()) around_these.push_back(i);
   for (const std::size_t i : around_these) {
@@ -307,6 +337,26 @@ double largest_in_motion(const Simulation& run, const std::vector<double>& at_st
     if (!around.empty()) best = closer(around, values, best);
   }
   return best;
+}
+
+double largest_in_motion(const Simulation& run, const std::vector<double>& at_states,
+                         const StateValues& values) {
+  return top_of_motion(run, at_states, values).value;
+}
+
+VectorXd rod_forces_within_step(const Simulation& run, double t) {
+  const Trajectory& states = run.trajectory;
+  VectorXd forces;
+  for (std::size_t i = 0; i + 1 < states.size() && states.time(i) < t; ++i)
+    if (t < states.time(i + 1)) {
+      const Neighbourhood around(run, i);
+      if (t < around.end())
+        around.sample({t}, [&](const Simulation& piece) {
+          forces = diagnose_states(piece).axial_force.row(0).transpose();
+          return std::vector<double>(piece.trajectory.size());
+        });
+    }
+  return forces;
 }
 
 namespace {
@@ -320,21 +370,23 @@ RememberedExtremes::~RememberedExtremes() {
   remembered = before_;
 }
 
-double extreme_of(const Simulation& run, const Diagnostics& d, std::string_view column, bool largest) {
-  if (d.left_open > 0) return std::numeric_limits<double>::quiet_NaN();  // it may lie in what was not judged
+PeakInMotion extreme_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column,
+                               bool largest) {
+  if (diagnostics.left_open > 0) return {};  // it may lie in what was not judged
   const double sign = largest ? 1.0 : -1.0;
-  if (!remembered) return extreme_of_column(run, d, column, sign);
-  const auto [found, made] = remembered->found_.try_emplace({&d, std::string(column), largest}, 0.0);
-  if (made) found->second = extreme_of_column(run, d, column, sign);
+  if (!remembered) return looked_for_extreme(run, diagnostics, column, sign);
+  const auto [found, made] =
+      remembered->found_.try_emplace({&diagnostics, std::string(column), largest}, PeakInMotion());
+  if (made) found->second = looked_for_extreme(run, diagnostics, column, sign);
   return found->second;
 }
 
 double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {
-  return extreme_of(run, diagnostics, column, true);
+  return extreme_of_column(run, diagnostics, column, true).value;
 }
 
 double smallest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {
-  return extreme_of(run, diagnostics, column, false);
+  return extreme_of_column(run, diagnostics, column, false).value;
 }
 
 double peak_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -16,11 +17,18 @@ namespace unfurl {
 // One value per state of a run: a function of the state alone, not of what went before.
 using StateValues = std::function<std::vector<double>(const Simulation&)>;
 
+struct PeakInMotion {
+  double value = std::numeric_limits<double>::quiet_NaN();  // NaN: there is none
+  double t = std::numeric_limits<double>::quiet_NaN();      // [s], of a state or within a step
+};
+
 // The largest value over the motion. `at_states`: the values at the run's own states, NaN where there is
 // none. Around the largest of them and others that may top it `values` is asked at a few times within the
 // steps, closer and closer: of the quintic through positions, velocities and accelerations, or of the run's
 // dense output where that is not good enough. Steps from a singular pose, or in which the motion changes too
 // fast for these, have only their ends. NaN where all values are.
+PeakInMotion top_of_motion(const Simulation& run, const std::vector<double>& at_states,
+                           const StateValues& values);
 double largest_in_motion(const Simulation& run, const std::vector<double>& at_states,
                          const StateValues& values);
 
@@ -28,8 +36,14 @@ double largest_in_motion(const Simulation& run, const std::vector<double>& at_st
 // steps (energies that went in or out, errors, counts) are taken at the states.
 double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
 double smallest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
+PeakInMotion extreme_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column,
+                               bool largest);
 // The larger magnitude of both.
 double peak_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
+
+// Axial forces of the rods of the solved structure at a time within a step [N], as peaks see the motion
+// there; none where no step is around it.
+VectorXd rod_forces_within_step(const Simulation& run, double t);
 
 // While one of these lives, largest and smallest values that this thread has found are not looked for again:
 // several measures of a run, which stays as it is meanwhile, begin with the same ones.
@@ -42,9 +56,9 @@ class RememberedExtremes {
 
  private:
   RememberedExtremes* before_;
-  std::map<std::tuple<const Diagnostics*, std::string, bool>, double> found_;
-  friend double extreme_of(const Simulation& run, const Diagnostics& d, std::string_view column,
-                           bool largest);
+  std::map<std::tuple<const Diagnostics*, std::string, bool>, PeakInMotion> found_;
+  friend PeakInMotion extreme_of_column(const Simulation& run, const Diagnostics& diagnostics,
+                                        std::string_view column, bool largest);
 };
 
 }  // namespace unfurl

@@ -11,6 +11,7 @@
 
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/measures.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
 #include "core/export/motion_keys.hpp"
@@ -205,7 +206,7 @@ void add_words(const ExportJob& job, Page& page) {
   };
   facts("constraint error", largest("constraint_max_m") + " m");
   facts("energy balance", "off by " + largest("energy_balance_J") + " J at most");
-  if (const PeakForce peak = peak_rod_force(job.diagnostics); peak.rod >= 0)
+  if (const PeakForce peak = peak_rod_force(run, job.diagnostics); peak.rod >= 0)
     facts("peak rod force", short_text(std::copysign(
                                 find_measure("peak_rod_force").value(run, job.diagnostics), peak.force_N)) +
                                 " N" + doubt_about(peak, job.diagnostics));

@@ -11,6 +11,7 @@
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/peaks.hpp"
 #include "core/diagnostics/reactions.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "core/math/largest.hpp"
 #include "core/text/version.hpp"
@@ -82,11 +83,11 @@ Json final_json(const Trajectory& trajectory) {
           {"velocities_m_s", by_node(trajectory.structure(), trajectory.velocities(last))}};
 }
 
-// Peaks are those of the motion, as in the measures; which rod and when, as the states show it. The rod that
-// carries the peak by the name of its first copy.
+// Peaks are those of the motion, as in the measures. The rod that carries the peak by the name of its first
+// copy.
 Json forces_json(const Simulation& run, const Diagnostics& diagnostics) {
   const Structure& structure = run.trajectory.structure();
-  const PeakForce peak = peak_rod_force(diagnostics);
+  const PeakForce peak = peak_rod_force(run, diagnostics);
   const auto shown = std::find_if(structure.rod_copies.begin(), structure.rod_copies.end(),
                                   [&](const RodCopy& copy) { return copy.source == peak.rod; });
   Json forces = {{"rods", structure.rod_copies.size()}, {"unique_rods", unique_rods(structure, diagnostics)}};
@@ -117,7 +118,7 @@ Json strength_json(const Simulation& run, const Diagnostics& diagnostics) {
   const Structure& structure = run.trajectory.structure();
   Json strength;
   const auto add = [&](const char* name, double (*quantity)(const Rod&, double), double peak, auto&& values) {
-    const WorstRod worst = worst_rod(structure, diagnostics, quantity);
+    const WorstRod worst = worst_rod(run, diagnostics, quantity);
     Json& entry = strength[name];
     values(entry, peak);
     const auto shown = std::find_if(structure.rod_copies.begin(), structure.rod_copies.end(),

@@ -13,6 +13,7 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/measures.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/path/path.hpp"
 #include "core/scene/build.hpp"
@@ -194,7 +195,7 @@ Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hoo
   out.deployment_time = deployment_time(*first);
   const double begin = thread_cpu_seconds();
   const Diagnostics found = diagnose(*first, hooks.cancelled);
-  const PeakForce peak = peak_rod_force(found);
+  const PeakForce peak = peak_rod_force(*first, found);
   out.cpu_forces = thread_cpu_seconds() - begin;
   out.peak_force = peak.rod < 0 ? nan : find_measure("peak_rod_force").value(*first, found);
   out.peak_unique = peak.unique;

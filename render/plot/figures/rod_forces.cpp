@@ -2,6 +2,7 @@
 #include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/measures.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/rod_bands.hpp"
@@ -23,7 +24,7 @@ std::string uniqueness_sentence(const Structure& structure, const Diagnostics& d
 }
 
 std::string peak_sentence(const Simulation& run, const Diagnostics& d) {
-  const PeakForce peak = peak_rod_force(d);
+  const PeakForce peak = peak_rod_force(run, d);
   if (peak.rod < 0 || only_round_off(run, d)) return " Largest magnitude 0 N.";
   const double force = find_measure("peak_rod_force").value(run, d);
   return " Largest magnitude " + plot::format_number(force, 4) + " N" +

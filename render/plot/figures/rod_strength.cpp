@@ -4,6 +4,7 @@
 #include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/rod_bands.hpp"
 #include "render/plot/figures/run_facts.hpp"
@@ -25,18 +26,17 @@ std::string peak_sentences(const Simulation& run, const Diagnostics& d) {
   const Structure& structure = run.trajectory.structure();
   if (only_round_off(run, d)) return " Largest stress 0 MPa.";
   std::string text;
-  if (const WorstRod worst = worst_rod(structure, d, axial_stress); worst.rod >= 0) {
+  if (const WorstRod worst = worst_rod(run, d, axial_stress); worst.rod >= 0) {
     const double stress = find_measure("peak_stress").value(run, d);
     text += " Largest stress " + plot::format_number(1e-6 * stress, 4) + " MPa" +
             at_rod(structure, worst, stress) + ".";
   }
-  if (const WorstRod worst = worst_rod(structure, d, stress_ratio);
-      any_strength(structure) && worst.rod >= 0) {
+  if (const WorstRod worst = worst_rod(run, d, stress_ratio); any_strength(structure) && worst.rod >= 0) {
     const double share = largest_of_column(run, d, "stress_ratio_max");
     text += " Largest share of the strength " + plot::format_number(share, 3) +
             at_rod(structure, worst, share) + margin_text(share) + ".";
   }
-  if (const WorstRod worst = worst_rod(structure, d, buckling_ratio); worst.rod >= 0) {
+  if (const WorstRod worst = worst_rod(run, d, buckling_ratio); worst.rod >= 0) {
     const double share = largest_of_column(run, d, "buckling_ratio_max");
     if (share > 0)
       text += " Largest share of Euler's load " + plot::format_number(share, 3) +

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/rod_peaks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace unfurl {
+
+namespace {
+
+// The shown rod that bears most at a time within a step; -1: there is none, or that is no time within one.
+struct Bearer {
+  Index rod = -1;
+  double force_N = 0.0;
+  bool unique = false;
+};
+
+Bearer bearer(const Simulation& run, const Diagnostics& d, double t,
+              const std::function<double(Index rod, double force)>& size) {
+  Bearer found;
+  if (d.t.size() != run.trajectory.size()) return found;
+  const VectorXd forces = rod_forces_within_step(run, t);
+  for (Index r = 0; r < forces.size(); ++r)
+    if (d.shows(r) && !std::isnan(size(r, forces[r])) &&
+        (found.rod < 0 || size(r, forces[r]) > size(found.rod, found.force_N)))
+      found = {r, forces[r], false};
+  if (found.rod < 0) return found;
+  const Index after = std::upper_bound(d.t.begin(), d.t.end(), t) - d.t.begin();
+  found.unique = d.force_unique(after - 1, found.rod) && d.force_unique(after, found.rod);
+  return found;
+}
+
+PeakInMotion larger_magnitude(const PeakInMotion& a, const PeakInMotion& b) {
+  return std::isnan(a.value) || std::abs(b.value) > std::abs(a.value) ? b : a;
+}
+
+}  // namespace
+
+PeakForce peak_rod_force(const Simulation& run, const Diagnostics& d, Pull pull) {
+  PeakForce peak = peak_rod_force(d, pull);
+  if (peak.rod < 0 || d.left_open > 0) return peak;
+  PeakInMotion top;
+  if (pull != Pull::compression) top = extreme_of_column(run, d, "axial_force_max_N", true);
+  if (pull != Pull::tension)
+    top = larger_magnitude(top, extreme_of_column(run, d, "axial_force_min_N", false));
+  const Bearer there = bearer(run, d, top.t, [pull](Index, double force) {
+    return pull == Pull::either ? std::abs(force) : pull == Pull::tension ? force : -force;
+  });
+  if (there.rod >= 0) peak = {there.force_N, there.rod, top.t, peak.unique && there.unique};
+  return peak;
+}
+
+WorstRod worst_rod(const Simulation& run, const Diagnostics& d,
+                   double (*quantity)(const Rod&, double force)) {
+  const Structure& structure = run.trajectory.structure();
+  WorstRod worst = worst_rod(structure, d, quantity);
+  if (worst.rod < 0 || d.left_open > 0) return worst;
+  const PeakInMotion top =
+      quantity == axial_stress
+          ? larger_magnitude(extreme_of_column(run, d, "axial_stress_max_Pa", true),
+                             extreme_of_column(run, d, "axial_stress_min_Pa", false))
+          : extreme_of_column(run, d, quantity == stress_ratio ? "stress_ratio_max" : "buckling_ratio_max",
+                              true);
+  const auto of = [&](Index r, double force) {
+    return quantity(structure.rods[static_cast<std::size_t>(r)], force);
+  };
+  const Bearer there = bearer(run, d, top.t, [&](Index r, double force) { return std::abs(of(r, force)); });
+  if (there.rod >= 0)
+    worst = {of(there.rod, there.force_N), there.rod, top.t, there.unique && !d.axial_force.hasNaN()};
+  return worst;
+}
+
+}  // namespace unfurl

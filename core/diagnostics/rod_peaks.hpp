@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which rod bears the largest force of a motion, and when, within steps too.
+#pragma once
+
+#include "core/diagnostics/force_uniqueness.hpp"
+#include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/rod_strength.hpp"
+
+namespace unfurl {
+
+// As peak_rod_force() and worst_rod() of the states, but of the motion: where the peak lies within a step,
+// the rod that bears most there. Its force is then unique where it is at both ends of the step.
+PeakForce peak_rod_force(const Simulation& run, const Diagnostics& diagnostics, Pull pull = Pull::either);
+// `quantity`: axial_stress, stress_ratio or buckling_ratio.
+WorstRod worst_rod(const Simulation& run, const Diagnostics& diagnostics,
+                   double (*quantity)(const Rod&, double force));
+
+}  // namespace unfurl
