@@ -36,6 +36,11 @@ void PathLaw::look_from(double s) {
   high_ = reach(*here + 1)->b;
 }
 
+double PathLaw::known_place(const PathPiece& piece, double x) const {
+  while (x > -0.99 && !in_reach(0.5 * (piece.a + piece.b) + 0.5 * x * (piece.b - piece.a))) x = 0.5 * (x - 1);
+  return x;
+}
+
 ScalarLaw::Value PathLaw::at(double s, double v, double t) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const PathTable::Segment* here = in_reach(s);

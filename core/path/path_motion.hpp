@@ -29,6 +29,9 @@ class PathLaw : public ScalarLaw {
   bool timed() const;  // a load changes with time
   // Trial steps from s see no further than the pieces next to that of s, so that none is traced in vain.
   void look_from(double s);
+  // x in [-1, 1] of the first piece, or nearer to its begin where it leads on to a pose that nothing can be
+  // tabulated to.
+  double known_place(const PathPiece& piece, double x) const;
 
  protected:
   const PathTable::Segment* in_reach(double s) const {

@@ -134,7 +134,7 @@ class PathRun {
     const double length = piece->b - piece->a;
     const double speed = std::sqrt(std::abs(law_->at(0.0, 0.0, 0.0).Q) * length) + std::abs(motion_.v());
     compare_equations(*piece, -1, speed);
-    for (const double on_the_way : {-0.37, 0.61}) compare_equations(*piece, on_the_way, speed);
+    for (const double way : {-0.37, 0.61}) compare_equations(*piece, law_->known_place(*piece, way), speed);
     law_->look_from(0.0);
   }
 
