@@ -147,8 +147,21 @@ std::filesystem::path behind_links(const std::filesystem::path& path) {
   return file && at.extension() == path.extension() ? at : path;
 }
 
+namespace {
+
+// Devices, pipes and sockets: a file in their place would take them from everybody.
+bool is_no_file(const std::filesystem::path& path) {
+  struct stat there {};
+  return ::lstat(path.c_str(), &there) == 0 && (S_ISCHR(there.st_mode) || S_ISBLK(there.st_mode) ||
+                                                S_ISFIFO(there.st_mode) || S_ISSOCK(there.st_mode));
+}
+
+}  // namespace
+
 PendingFile::PendingFile(std::filesystem::path target) : target_(std::move(target)) {
   if (!target_.has_filename()) throw FileError(target_, EISDIR);
+  if (is_no_file(target_))
+    throw FileError(target_, "is a device, a pipe or a socket: no file takes its place; name another one");
   while (file_ < 0) {
     temporary_ = random_name(target_.parent_path());
     file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);

@@ -134,6 +134,15 @@ TEST_CASE("files that are written together get their names when all are whole, o
   CHECK(std::distance(fs::directory_iterator(scratch.path), {}) == 2);
 }
 
+TEST_CASE("a pipe is not replaced by a file") {
+  const ScratchFolder scratch;
+  const fs::path pipe = scratch.path / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK(failure(pipe, "x").find("no file takes its place") != std::string::npos);
+  CHECK(fs::is_fifo(pipe));
+  CHECK(entries(scratch.path) == 1);
+}
+
 TEST_CASE("a link in the place of a file is replaced, what it leads to stays") {
   const ScratchFolder scratch;
   write_file_atomically(scratch.path / "precious", "mine");
