@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/scene/toml_tree.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {
@@ -160,7 +161,7 @@ std::vector<std::vector<std::string>> csv_records(std::string_view text) {
 std::vector<CsvRow> read_csv(std::string_view text, const std::string& file,
                              const std::vector<CsvColumn>& columns, SceneNotes& notes,
                              std::string_view header_line) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text = without_byte_order_mark(text);
   if (const auto obstacle = find_bad_encoding(text); !obstacle.message.empty()) {
     notes.add(locate(text, obstacle.offset, file), "", obstacle.message);
     return {};

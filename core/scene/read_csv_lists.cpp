@@ -9,6 +9,7 @@
 #include "core/scene/custom_reader.hpp"
 #include "core/scene/imported_shape.hpp"
 #include "core/scene/text_file.hpp"
+#include "core/scene/toml_tree.hpp"
 #include "core/text/name_index.hpp"
 #include "core/text/nearest_name.hpp"
 
@@ -23,10 +24,11 @@ std::optional<double> csv_number(const std::string& cell) {
 }
 
 // What the columns are where the first line holds numbers already; empty: it names them.
-std::string_view header_of(const std::string& text, bool nodes) {
+std::string_view header_of(std::string_view text, bool nodes) {
+  text = without_byte_order_mark(text);
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    const auto records = csv_records(std::string_view(text).substr(at, end - at));
+    const auto records = csv_records(text.substr(at, end - at));
     at = end + 1;
     if (records.empty()) continue;
     const auto& cells = records.front();

@@ -38,7 +38,7 @@ const Value& one_of(const std::pair<std::string_view, Value> (&rows)[count], con
   place.fail("must be one of " + known + "; got " + fold_value(given));
 }
 
-FoldJson parse_fold(const std::string& text, const std::string& file) {
+FoldJson parse_fold(std::string_view text, const std::string& file) {
   if (const auto obstacle = find_bad_encoding(text); !obstacle.message.empty())
     ImportPlace{locate(text, obstacle.offset, file), ""}.fail(obstacle.message);
   try {
@@ -149,7 +149,7 @@ class FoldReader {
 }  // namespace
 
 ImportedShape read_fold(const std::string& text, const std::string& file) {
-  const FoldJson json = parse_fold(text, file);
+  const FoldJson json = parse_fold(without_byte_order_mark(text), file);
   return FoldReader(json, file).read();
 }
 

@@ -69,7 +69,8 @@ void read_obj_line(const std::vector<std::string_view>& words, const ImportPlace
 
 }  // namespace
 
-ImportedShape read_obj(const std::string& text, const std::string& file) {
+ImportedShape read_obj(const std::string& marked, const std::string& file) {
+  const std::string_view text = without_byte_order_mark(marked);
   if (const auto obstacle = find_bad_encoding(text); !obstacle.message.empty())
     ImportPlace{locate(text, obstacle.offset, file), ""}.fail(obstacle.message);
   ImportedShape shape;
@@ -78,7 +79,7 @@ ImportedShape read_obj(const std::string& text, const std::string& file) {
   int number = 0, first = 1;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    std::string_view line = std::string_view(text).substr(at, end - at);
+    std::string_view line = text.substr(at, end - at);
     at = end + 1;
     ++number;
     if (line.ends_with('\r')) line.remove_suffix(1);

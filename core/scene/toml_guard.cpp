@@ -71,6 +71,10 @@ TextObstacle find_deep_nesting(std::string_view text) {
 
 }  // namespace
 
+std::string_view without_byte_order_mark(std::string_view text) {
+  return text.substr(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+}
+
 TextObstacle find_bad_encoding(std::string_view text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     return {0, "the file is UTF-16 (it starts with that byte-order mark); save it as UTF-8"};

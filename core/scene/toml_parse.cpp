@@ -103,7 +103,7 @@ std::size_t assertion_offset(std::string_view text) {
 }  // namespace
 
 TomlTree parse_toml(std::string_view text, const std::string& file) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text = without_byte_order_mark(text);
   if (const TextObstacle obstacle = find_toml_obstacle(text); !obstacle.message.empty())
     throw SceneError({{locate(text, obstacle.offset, file), "", obstacle.message}});
   try {

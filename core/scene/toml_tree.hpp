@@ -45,6 +45,8 @@ struct TextObstacle {
   std::size_t offset = 0;  // byte
   std::string message;     // empty: none
 };
+// The text behind the byte-order mark that some editors begin UTF-8 with.
+std::string_view without_byte_order_mark(std::string_view text);
 TextObstacle find_bad_encoding(std::string_view text);   // not UTF-8, a foreign byte-order mark, a zero byte
 TextObstacle find_toml_obstacle(std::string_view text);  // these, and keys or brackets nested past reason
 

@@ -245,6 +245,25 @@ TEST_CASE(
   CHECK(model_of(braced.text)->structure.nodes[1].name == "}B{{");
 }
 
+TEST_CASE("a byte-order mark is no part of an imported file") {
+  const std::string mark = "\xEF\xBB\xBF", csv = "0,0,0\n1,0,0\n0.4,0.9,0\n0.3,0.4,0.8\n",
+                    rods = "0,1\n1,2\n2,0\n0,3\n";
+  for (const std::string& text : {std::string("v 0 0 0\nv 1 0 0\nv 0.1 1 0\nv 0 0.2 1\nl 1 2\nl 2 3\n"),
+                                  std::string("v 0 0 0\nv 1 0 0\nv 0.1 1 0\nv 0 0.2 1\nf 2 3 4\nf 1 2 3\n"),
+                                  std::string("# by hand\nv 0 0 0\nv 1 0 0\nl 1 2\n")})
+    CHECK(imported(mark + text, "t.obj").text == imported(text, "t.obj").text);
+  CHECK(imported(mark + miura_fold({}), "m.fold").text == imported(miura_fold({}), "m.fold").text);
+  for (const std::string head : {"", "# by hand\n"}) {
+    const std::string expected = imported(csv, "n.csv", rods).text;
+    CHECK(imported(mark + head + csv, "n.csv", mark + head + rods).text == expected);
+    CHECK(imported(mark + head + "x,y,z\n" + csv, "n.csv", mark + head + "a,b\n" + rods).text == expected);
+  }
+  // Columns count from the first character behind it.
+  CHECK(refusal(mark + "v 0 0 nan\n", "t.obj").starts_with("t.obj:1:1: v: a coordinate"));
+  CHECK(refusal(mark + "[NaN]", "m.fold").starts_with("m.fold:1:2: not JSON"));
+  CHECK(refusal(mark, "t.obj") == "t.obj: v: there are no vertices, lines v X Y Z");
+}
+
 TEST_CASE("units of a FOLD file are taken to metres") {
   const std::string text = with(miura_fold({}), "\"file_spec\": 1.1", "\"frame_unit\": \"mm\"");
   const Vec3 x = model_of(imported(text, "m.fold").text)->structure.nodes[8].position;
