@@ -38,9 +38,30 @@ const Value& one_of(const std::pair<std::string_view, Value> (&rows)[count], con
   place.fail("must be one of " + known + "; got " + fold_value(given));
 }
 
+constexpr std::size_t most_brackets = 64;  // a FOLD file needs 5
+
+// What is deeply nested cannot be written into a message: that is recursive.
+TextObstacle find_deep_brackets(std::string_view text) {
+  std::size_t open = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '\\')
+      ++i;
+    else if (c == '"')
+      quoted = !quoted;
+    else if (!quoted && (c == '[' || c == '{') && ++open > most_brackets)
+      return {i, "brackets nested too deeply"};
+    else if (!quoted && (c == ']' || c == '}') && open > 0)
+      --open;
+  }
+  return {};
+}
+
 FoldJson parse_fold(std::string_view text, const std::string& file) {
-  if (const auto obstacle = find_bad_encoding(text); !obstacle.message.empty())
-    ImportPlace{locate(text, obstacle.offset, file), ""}.fail(obstacle.message);
+  for (const auto find : {find_bad_encoding, find_deep_brackets})
+    if (const auto obstacle = find(text); !obstacle.message.empty())
+      ImportPlace{locate(text, obstacle.offset, file), ""}.fail(obstacle.message);
   try {
     return FoldJson::parse(text);
   } catch (const FoldJson::parse_error& error) {

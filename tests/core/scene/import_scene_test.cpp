@@ -264,6 +264,21 @@ TEST_CASE("a byte-order mark is no part of an imported file") {
   CHECK(refusal(mark, "t.obj") == "t.obj: v: there are no vertices, lines v X Y Z");
 }
 
+TEST_CASE("a FOLD file that is nested past reason is refused where it is") {
+  for (const std::size_t depth : {65U, 2000000U}) {
+    const std::string open(depth, '['), close(depth, ']');
+    CHECK(refusal("{\"vertices_coords\":\n" + open + close + "}", "m.fold") ==
+          "m.fold:2:64: brackets nested too deeply");
+    CHECK(refusal(open + close, "m.fold") == "m.fold:1:65: brackets nested too deeply");
+    CHECK(refusal(open, "m.fold") == "m.fold:1:65: brackets nested too deeply");
+  }
+  // Brackets side by side or in text are none, and keys that are not read may be nested as others write them.
+  const std::string text = "\"note\": \"" + std::string(100, '[') + "\\\"" + std::string(100, '{') +
+                           "\", \"own:tree\": " + std::string(60, '[') + std::string(60, ']');
+  CHECK(imported(with(miura_fold({}), "\"file_spec\": 1.1", text), "m.fold").text ==
+        imported(miura_fold({}), "m.fold").text);
+}
+
 TEST_CASE("units of a FOLD file are taken to metres") {
   const std::string text = with(miura_fold({}), "\"file_spec\": 1.1", "\"frame_unit\": \"mm\"");
   const Vec3 x = model_of(imported(text, "m.fold").text)->structure.nodes[8].position;
