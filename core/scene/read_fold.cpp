@@ -8,6 +8,7 @@
 #include "core/scene/imported_shape.hpp"
 #include "core/scene/toml_tree.hpp"
 #include "core/text/nearest_name.hpp"
+#include "core/text/utf8.hpp"
 
 namespace unfurl {
 
@@ -24,7 +25,7 @@ constexpr std::pair<std::string_view, const char*> fold_assignments[] = {
 
 std::string fold_value(const FoldJson& value) {
   const std::string text = value.dump(-1, ' ', false, FoldJson::error_handler_t::replace);
-  return text.size() > 60 ? text.substr(0, 60) + "..." : text;
+  return text.size() > 60 ? text.substr(0, utf8_cut(text, 60)) + "..." : text;
 }
 
 template <std::size_t count, class Value>

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "core/text/utf8.hpp"
+
 namespace unfurl {
 
 namespace {
@@ -78,7 +80,7 @@ std::string in_quotes(std::string_view name) {
   constexpr std::size_t most = 60;
   constexpr std::string_view hex = "0123456789abcdef";
   std::string text = "'";
-  for (std::size_t i = 0; i < std::min(most, name.size()); ++i) {
+  for (std::size_t i = 0; i < utf8_cut(name, most); ++i) {
     const auto byte = static_cast<unsigned char>(name[i]);
     if (byte < 0x20 || byte == 0x7f)
       text.append("\\x").append(1, hex[byte >> 4]).append(1, hex[byte & 15]);

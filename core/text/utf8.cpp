@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/text/utf8.hpp"
 
+#include <algorithm>
+
 namespace unfurl {
 
 std::size_t utf8_length(std::string_view text, std::size_t at) {
@@ -25,6 +27,13 @@ char32_t next_code_point(std::string_view text, std::size_t& at) {
   char32_t c = length == 1 ? lead : lead & (0x7FU >> length);
   for (std::size_t k = 1; k < length; ++k) c = c << 6 | (static_cast<unsigned char>(text[at++]) & 0x3FU);
   return c;
+}
+
+std::size_t utf8_cut(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return text.size();
+  for (std::size_t back = 1; back <= std::min<std::size_t>(3, most); ++back)
+    if (utf8_length(text, most - back) > back) return most - back;
+  return most;
 }
 
 std::u16string utf16(std::string_view utf8) {

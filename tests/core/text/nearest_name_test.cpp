@@ -120,4 +120,21 @@ TEST_CASE("every byte has its place in quotes") {
   CHECK(in_quotes(name + "z") == "'" + name + "...'");
 }
 
+TEST_CASE("a long name is cut between two characters") {
+  // Characters of 1 to 4 bytes, so that byte 60 is at every place within one.
+  for (const std::string character : {"e", "\xC3\xA9", "\xE6\x8A\x98", "\xF0\x9F\x93\x90"})
+    for (std::size_t ahead = 50; ahead <= 61; ++ahead) {
+      const std::string given = std::string(ahead, 'a') + character + std::string(20, 'b');
+      const std::size_t n = character.size();
+      // As many whole characters as have room in 60 bytes.
+      const std::string kept = ahead >= 60       ? std::string(60, 'a')
+                               : ahead + n <= 60 ? given.substr(0, 60)
+                                                 : std::string(ahead, 'a');
+      CHECK(in_quotes(given) == "'" + kept + "...'");
+    }
+  // What is no UTF-8 is cut at the byte.
+  CHECK(in_quotes(std::string(80, '\xA9')) == "'" + std::string(60, '\xA9') + "...'");
+  CHECK(in_quotes(std::string(59, 'a') + "\xC3z") == "'" + std::string(59, 'a') + "\xC3...'");
+}
+
 }  // namespace nearest_name_test
