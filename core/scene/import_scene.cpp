@@ -221,7 +221,7 @@ class SceneOfShape {
   // Mountains and valleys are springs that fold on, flat edges are held; the others turn freely.
   std::string folds() {
     std::string welded, folded;
-    std::size_t flat = 0, contrary = 0, count = 0;
+    std::size_t flat = 0, contrary = 0, count = 0, further = 0;
     for (const ImportedCrease& crease : shape_.creases()) {
       const std::string& group = shape_.spec.rods[crease.rod].group;
       const bool mountain = group == "mountain";
@@ -231,8 +231,13 @@ class SceneOfShape {
       for (const int node : nodes) term += " " + name(node);
       term = "terms = [" + toml_string(term) + "]\n";
       if (group == "flat" || group == "join")
-        welded += entry_lines("constraints", "combination", group + " " + edge, term);
+        welded += entry_lines(
+            "constraints", "combination",
+            group + " " + edge + (crease.further < 0 ? "" : " plate " + std::to_string(crease.further)),
+            term);
       if (!mountain && group != "valley") continue;
+      further += crease.further < 0 ? 0 : 1;
+      if (crease.further >= 0) continue;
       const double angle = angle_between(nodes);
       const bool is_flat = pi - std::abs(angle) < flat_fold;
       ++count;
@@ -248,6 +253,11 @@ class SceneOfShape {
       crease_length_ += lengths_[crease.rod];
     }
     note_folds(count, flat, contrary);
+    if (further > 0)
+      shape_.notes.push_back(
+          std::to_string(further) +
+          " times a plate is the third or a further one at a mountain or valley, where it turns freely: the "
+          "spring is between the first two");
     if (!welded.empty()) welded = "\n" + remark("Edges that do not fold.") + welded.substr(1);
     if (!folded.empty())
       folded = "\n" +

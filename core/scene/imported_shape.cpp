@@ -57,11 +57,15 @@ void require_flat(const ImportedShape& shape, const std::vector<int>& plate, con
                " % of its size out of one plane, and a plate is flat (to 1 %); split it into triangles");
 }
 
-// Of a plate, the node that is furthest from a line.
+// Of a plate that goes around from a to b, the node that is furthest from the line of both on the side where
+// the plate is: at a notch others lie beyond it.
 int furthest(const ImportedShape& shape, const std::vector<int>& plate, int a, int b) {
-  const Vec3 along = (shape.at(b) - shape.at(a)).normalized();
-  return *std::ranges::max_element(
-      plate, {}, [&](int node) { return (shape.at(node) - shape.at(a)).cross(along).squaredNorm(); });
+  const Vec3& from = shape.at(a);
+  Vec3 area = Vec3::Zero();
+  for (std::size_t i = 0; i < plate.size(); ++i)
+    area += (shape.at(plate[i]) - from).cross(shape.at(plate[(i + 1) % plate.size()]) - from);
+  const Vec3 inward = area.stableNormalized().cross((shape.at(b) - from).stableNormalized());
+  return *std::ranges::max_element(plate, {}, [&](int node) { return inward.dot(shape.at(node) - from); });
 }
 
 }  // namespace
@@ -127,27 +131,27 @@ std::vector<ImportedCrease> ImportedShape::creases() const {
     int plate = -1;
     bool along = false;  // it goes around from the rod's first node to its second
   };
-  std::vector<std::array<Side, 2>> sides(spec.rods.size());
+  std::vector<std::vector<Side>> sides(spec.rods.size());
   for (std::size_t p = 0; p < plates.size(); ++p)
     for (std::size_t i = 0; i < plates[p].size(); ++i) {
       const int a = plates[p][i], b = plates[p][(i + 1) % plates[p].size()];
       const auto low = static_cast<std::uint64_t>(std::min(a, b)),
                  high = static_cast<std::uint64_t>(std::max(a, b));
       const std::size_t rod = rods_.at(low << 32U | high);
-      auto& both = sides[rod];
-      Side& side = both[0].plate < 0 ? both[0] : both[1];
-      if (side.plate < 0) side = {static_cast<int>(p), ends_[rod][0] == a};
+      sides[rod].push_back({static_cast<int>(p), ends_[rod][0] == a});
     }
   std::vector<ImportedCrease> found;
-  for (std::size_t rod = 0; rod < sides.size(); ++rod) {
-    auto [first, second] = sides[rod];
-    if (second.plate < 0) continue;
-    if (!first.along) std::swap(first, second);
-    const auto off = [&](const Side& side) {
-      return furthest(*this, plates[static_cast<std::size_t>(side.plate)], ends_[rod][0], ends_[rod][1]);
-    };
-    found.push_back({rod, ends_[rod], off(first), off(second)});
-  }
+  for (std::size_t rod = 0; rod < sides.size(); ++rod)
+    for (std::size_t k = 1; k < sides[rod].size(); ++k) {
+      Side left = sides[rod][0], right = sides[rod][k];
+      if (!left.along) std::swap(left, right);
+      const std::array<int, 2>& ends = ends_[rod];
+      const auto off = [&](const Side& side) {
+        return furthest(*this, plates[static_cast<std::size_t>(side.plate)], ends[side.along ? 0 : 1],
+                        ends[side.along ? 1 : 0]);
+      };
+      found.push_back({rod, ends, off(left), off(right), k > 1 ? sides[rod][k].plate : -1});
+    }
   return found;
 }
 

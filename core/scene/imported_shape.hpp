@@ -26,7 +26,8 @@ struct ImportPlace {
 struct ImportedCrease {
   std::size_t rod;
   std::array<int, 2> ends;
-  int left, right;  // nodes of both plates, off the edge; the left one goes around from end 0 to end 1
+  int left, right;   // nodes of both plates, off the edge; the left one goes around from end 0 to end 1
+  int further = -1;  // the plate, where two meet there already
 };
 
 struct ImportedShape {
@@ -42,7 +43,7 @@ struct ImportedShape {
   // A rigid plate of n nodes: rods along its edges, of `group` where they are new, and n - 3 diagonals from
   // one of the nodes; with n - 3 times "in one plane" that is 3 n - 6, as many as a rigid body's shape takes.
   void add_plate(const std::vector<int>& nodes, const std::string& group, const ImportPlace& place);
-  // Of every rod between two plates; where more meet, of the first two.
+  // Of every rod between two plates; where more meet, of the first one with each of the others.
   std::vector<ImportedCrease> creases() const;
 
   const Vec3& at(int node) const { return spec.nodes[static_cast<std::size_t>(node)].position; }

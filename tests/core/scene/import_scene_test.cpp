@@ -181,6 +181,64 @@ TEST_CASE("folds that cannot begin and folds against their letters are told") {
         std::abs(fold_at(run.trajectory.node_positions(0), f.w, f.l, f.r)) + 0.2);
 }
 
+TEST_CASE("a flap in the notch of a concave plate folds as its letter says") {
+  // A U with a flap at the bottom of its notch, from V5 to V4 along y = 1; its tip is at the height z.
+  const std::string prongs =
+      "[[0, 0, 0], [3, 0, 0], [3, 3, 0], [2, 3, 0], [2, 1, 0], [1, 1, 0], [1, 3, 0], [0, 3, 0]";
+  const auto fold = [&](const char* letter, double z, int first) {
+    std::string face;
+    for (int k = 0; k < 8; ++k) face += (k ? ", " : "") + std::to_string((first + k) % 8);
+    return imported("{\"vertices_coords\": " + prongs + ", [1.5, 1.7, " + number(z) +
+                        "]], \"edges_vertices\": [[4, 5]], \"edges_assignment\": [\"" + letter +
+                        "\"], \"faces_vertices\": [[" + face + "], [5, 4, 8]]}",
+                    "u.fold");
+  };
+  struct Case {
+    const char* letter;
+    double z;
+    const char* note;  // how it begins
+    double turn;       // the way that the flap goes
+  };
+  // Seen from above, where faces go counterclockwise, a valley folds up and a mountain down. Folded the other
+  // way already it goes on as it is.
+  const Case cases[] = {
+      {"V", 0.1, "", 1},     {"M", -0.1, "", -1}, {"M", 0.1, "1 mountains or valleys are f", 1},
+      {"V", -0.1, "1 ", -1}, {"V", 0, "all ", 1}, {"M", 0, "all mountains", -1}};
+  for (const Case& c : cases) {
+    const ImportedScene scene = fold(c.letter, c.z, c.z > 0 ? 0 : 3);
+    CAPTURE(c.letter, c.z);
+    CHECK(scene.notes.size() == (c.note[0] ? 1 : 0));
+    for (const std::string& note : scene.notes) CHECK(note.starts_with(c.note));
+    const Simulation run = run_scene(scene.text);
+    const VectorXd last = run.trajectory.node_positions(run.trajectory.size() - 1);
+    const double angle = std::atan2(last[3 * 8 + 2], last[3 * 8 + 1] - 1), before = std::atan2(c.z, 0.7);
+    CHECK(c.turn * (angle - before) > 0.2);
+    CHECK(last.head(24).isApprox(run.trajectory.node_positions(0).head(24), 1e-12));  // the U is held
+  }
+}
+
+TEST_CASE("of three plates at an edge that does not fold all are held and at a fold that is told") {
+  const auto book = [&](const char* letter) {
+    return imported(
+        std::string("{\"vertices_coords\": [[0, 0, 0], [0.3, 1.2, 0.1], [1.1, 0.4, 0], [-0.8, 0.7, "
+                    "0.3], [0.2, 0.5, 0.9]],\n"
+                    "\"edges_vertices\": [[0, 1]], \"edges_assignment\": [\"") +
+            letter + "\"], \"faces_vertices\": [[0, 2, 1], [1, 3, 0], [0, 4, 1]]}",
+        "book.fold");
+  };
+  // 15 coordinates, 7 rods; held at one leaf the two others turn, or as one body it floats.
+  for (const char* letter : {"F", "J", "U", "V"}) {
+    CAPTURE(letter);
+    const bool held = letter[0] == 'F' || letter[0] == 'J';
+    const ImportedScene scene = book(letter);
+    const Mobility m = mobility_of(scene.text);
+    CHECK(m.degrees_of_freedom == (held ? 6 : 2));
+    CHECK(m.redundant.empty());
+    CHECK(scene.notes.size() == (letter[0] == 'U' ? 0 : 1));
+  }
+  CHECK(book("V").notes[0].starts_with("1 times a plate is the third"));
+}
+
 TEST_CASE("a face of any shape is one rigid plate without a redundant row") {
   std::mt19937 dice(8203);
   std::uniform_real_distribution<double> any(0.0, 1.0);
