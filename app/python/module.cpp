@@ -382,8 +382,7 @@ void add_scene(py::module_& module) {
       .def(py::init(&source_of), py::arg("scene"), py::arg("overrides"), py::arg("is_text"))
       .def("run", &run_scene, py::arg("changes"))
       .def("sweep", &sweep_scene, py::arg("vary"), py::arg("measures"), py::arg("threads"), py::arg("folder"))
-      .def("study", &study_scene, py::arg("largest"), py::arg("smallest"), py::arg("methods"),
-           py::arg("repeats"))
+      .def("study", &study_scene, py::arg("steps"), py::arg("methods"), py::arg("repeats"))
       .def("solve", &solve_scene)
       .def_property_readonly("text", [](const SceneSource& source) { return scene_text(source.read()); })
       .def_property_readonly("title", [](const SceneSource& source) { return source.read().title; });

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "app/python/asker.hpp"
@@ -143,16 +144,19 @@ py::dict sweep_scene(const SceneSource& source,
 }
 
 double solve_scene(const SceneSource& source, const std::string& key, const std::string& measure_name,
-                   double target, double low, double high) {
+                   double target, const std::optional<std::pair<double, double>>& between) {
   const Scene scene = source.read();
   const RunMeasure measure = find_measure(measure_name, columns_of(build_model(scene)));
   if (is_whole_number(scene, key))
     throw StudyError(in_quotes(key) + " takes whole numbers, which cannot be searched");
   SolveOptions options;
-  options.low = low;
-  options.high = high;
-  if (low < high) {
-    for (const double end : {low, high}) source.read({key + "=" + exact_number(end)});
+  if (between) {
+    options.low = between->first;
+    options.high = between->second;
+    if (!(options.low < options.high))
+      throw StudyError("between is (low, high) with low < high; got (" + exact_number(options.low) + ", " +
+                       exact_number(options.high) + ")");
+    for (const double end : {options.low, options.high}) source.read({key + "=" + exact_number(end)});
   } else {
     const auto start = scene_number(scene, key);
     if (!start) source.read({key + "=1"});  // an unknown key has a better message
@@ -187,9 +191,10 @@ double solve_scene(const SceneSource& source, const std::string& key, const std:
   return found;
 }
 
-py::tuple study_scene(const SceneSource& source, double largest, double smallest,
+py::tuple study_scene(const SceneSource& source, const std::optional<std::pair<double, double>>& steps,
                       const std::vector<std::string>& methods, int repeats) {
-  if ((largest != 0 || smallest != 0) && !(largest > 0 && smallest > 0))
+  const auto [largest, smallest] = steps.value_or(std::pair(0.0, 0.0));
+  if (steps && !(largest > 0 && smallest > 0))
     throw StudyError("steps are (largest, smallest), two numbers of seconds");
   if (repeats < 1) throw StudyError("repeats: at least 1 run is timed");
   const Scene scene = source.read();

@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,14 +19,15 @@ pybind11::dict sweep_scene(const SceneSource& source,
                            const std::vector<std::pair<std::string, std::vector<double>>>& vary,
                            const std::vector<std::string>& measures, int threads, const std::string& folder);
 
-// The value of the key for which the measure is `target`. low < high: it is looked for between them.
+// The value of the key for which the measure is `target`: between two numbers, the lower one first, or else
+// around the scene's own.
 double solve_scene(const SceneSource& source, const std::string& key, const std::string& measure_name,
-                   double target, double low, double high);
+                   double target, const std::optional<std::pair<double, double>>& between);
 
-// Errors and costs of all methods, or of those named, over a ladder of steps from `largest` to `smallest`
-// [s]; 0: as `unfurl study` has it. The columns of study.csv, and in words the cheapest settings and the
+// Errors and costs of all methods, or of those named, over a ladder of steps from the largest to the smallest
+// [s], or else as `unfurl study` has it. The columns of study.csv, and in words the cheapest settings and the
 // reference.
-pybind11::tuple study_scene(const SceneSource& source, double largest, double smallest,
+pybind11::tuple study_scene(const SceneSource& source, const std::optional<std::pair<double, double>>& steps,
                             const std::vector<std::string>& methods, int repeats);
 
 }  // namespace unfurl

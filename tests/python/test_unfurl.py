@@ -416,6 +416,10 @@ def test_solve_refuses_what_the_program_refuses():
         ring.solve("structure.fold_angle", deploy_time=4.92, between=(-1000, 80))
     with pytest.raises(unfurl.StudyError, match="takes whole numbers"):
         ring.solve("structure.units", deploy_time=4.92)
+    # A range is looked in or refused: a search from the scene's own value would find one outside it.
+    for between in ((80, 70), (80, 80), (0, 0), (70, float("nan"))):
+        with pytest.raises(unfurl.StudyError, match="between is \\(low, high\\) with low < high; got "):
+            ring.solve("structure.fold_angle", deploy_time=4.92, between=between)
 
 
 def test_a_stepper_says_what_it_does_not_do():
@@ -505,7 +509,7 @@ def test_a_study_is_that_of_the_program(tmp_path):
     assert study.sentence.startswith("The cheapest setting for 0.001 m is ") and study.reference
     with pytest.raises(unfurl.StudyError, match="did you mean 'rk4_projected'"):
         pendulum.study(methods=["rk4_projectd"])
-    for steps in ((0.01, 0.08), (-0.08, 0.01), (0.08, float("nan"))):
+    for steps in ((0.01, 0.08), (-0.08, 0.01), (0.08, float("nan")), (0, 0)):
         with pytest.raises(unfurl.StudyError):
             pendulum.study(steps)
     with pytest.warns(UserWarning, match="solver.model does nothing here: every method steps the whole model"):

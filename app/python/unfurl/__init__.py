@@ -230,8 +230,10 @@ class Scene:
 
     def study(self, steps: tuple[float, float] | None = None, methods: Sequence[str] = (), repeats: int = 5) -> Study:
         """Speed against accuracy of all methods, or of those named, in steps from the largest to the smallest [s]."""
-        largest, smallest = steps or (0.0, 0.0)
-        columns, sentence, reference, idle = self._source.study(float(largest), float(smallest), list(methods), int(repeats))
+        if steps is not None:
+            largest, smallest = steps
+            steps = float(largest), float(smallest)
+        columns, sentence, reference, idle = self._source.study(steps, list(methods), int(repeats))
         for said in idle:
             warnings.warn(said, stacklevel=2)
         return Study(columns, sentence, reference)
@@ -241,8 +243,10 @@ class Scene:
         if len(target) != 1:
             raise TypeError("one measure with its value is the target: deploy_time=4.92")
         (measure, value), = target.items()
-        low, high = between or (0.0, 0.0)
-        return self._source.solve(key, measure, float(value), float(low), float(high))
+        if between is not None:
+            low, high = between
+            between = float(low), float(high)
+        return self._source.solve(key, measure, float(value), between)
 
     def __repr__(self):
         return f"<scene {self.title!r}>"
