@@ -246,13 +246,12 @@ int dispatch(const std::vector<std::string>& words) {
   Arguments& a = parsed.arguments;
   for (std::string* file : {&a.output, &a.view.picture, &a.view.record}) *file = behind_links(*file).string();
   std::optional<ReceiptWriter> receipts;
-  if (shows(command, "-o")) receipts.emplace(words, a.names.empty() ? "" : a.names.front(), a.output);
+  if (shows(command, "-o")) receipts.emplace(words, place_of_first_name(words), a.output);
   if (!a.view.picture.empty()) {
     std::vector<std::string> shown = words;
     const bool own = a.names.empty() && a.view.replay.empty();
     if (own) shown.emplace(shown.begin() + 1, scene_of_the_window);
-    receipts.emplace(shown, a.names.empty() ? (own ? scene_of_the_window : "") : a.names.front(),
-                     a.view.picture);
+    receipts.emplace(shown, place_of_first_name(shown), a.view.picture);
   }
   const WrittenReport report(a.view.picture.empty() ? a.output : a.view.picture);
   const int code = command.run(a);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/own_options.hpp"
 
+#include <algorithm>
+
 namespace unfurl {
 
 namespace {
@@ -138,6 +140,19 @@ bool shows(const Command& command, std::string_view option) {
     rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
   }
   return false;
+}
+
+std::size_t place_of_first_name(const std::vector<std::string>& words) {
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (word.size() < 2 || word.front() != '-') return i;
+    const std::string_view name = word == "--output" ? "-o" : std::string_view(word);
+    // "-oDIR" and "--size=8x8" have their values in them.
+    if (std::ranges::any_of(rows,
+                            [&](const OwnOption& row) { return row.name == name && !row.value.empty(); }))
+      ++i;
+  }
+  return 0;
 }
 
 }  // namespace unfurl

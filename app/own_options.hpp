@@ -3,6 +3,7 @@
 // command_table.cpp.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -34,5 +35,8 @@ struct OwnOption {
 std::span<const OwnOption> own_options();
 bool takes(const Command& command, std::string_view option);  // false: it would mean nothing there
 bool shows(const Command& command, std::string_view option);  // it stands in the verb's help
+// Which word of a command line is the first name behind the verb, words[0]: neither an option nor the value
+// of one. 0: there is none.
+std::size_t place_of_first_name(const std::vector<std::string>& words);
 
 }  // namespace unfurl

@@ -58,8 +58,9 @@ std::string checksum_of_this_program() {
   return sum;
 }
 
-std::vector<std::string> command_of_result(std::vector<std::string> kept, const std::string& scene_word,
+std::vector<std::string> command_of_result(std::vector<std::string> kept, std::size_t scene_at,
                                            const std::string& scene_name) {
+  if (scene_at > 0 && !scene_name.empty()) kept.at(scene_at) = scene_name;
   for (const char* option :
        {"-o", "--output", "--set", "--tolerance", "--size", "--fps", "--look", "--supersample", "--frames",
         "--lease", "--shard", "--merge", "--threads", "--export", "--script", "--jobs", "--picture"})
@@ -68,8 +69,6 @@ std::vector<std::string> command_of_result(std::vector<std::string> kept, const 
     return word == "--transparent" || word == "--join" || word == "--quiet" || word == "--json" ||
            word == "--force" || word == "--encode-only";
   });
-  const auto scene = std::find(kept.begin(), kept.end(), scene_word);
-  if (scene != kept.end() && !scene_name.empty()) *scene = scene_name;
   return kept;
 }
 
@@ -84,10 +83,8 @@ void receipt_errors(std::map<std::string, double> errors) {
   shown().errors = std::move(errors);
 }
 
-ReceiptWriter::ReceiptWriter(std::vector<std::string> words, std::string scene, std::string output)
-    : words_(std::move(words)),
-      scene_word_(std::move(scene)),
-      output_(fs::path(std::move(output)).lexically_normal()) {
+ReceiptWriter::ReceiptWriter(std::vector<std::string> words, std::size_t scene_at, std::string output)
+    : words_(std::move(words)), scene_at_(scene_at), output_(fs::path(std::move(output)).lexically_normal()) {
   before_ = finish_files(this);
 }
 
@@ -102,7 +99,7 @@ std::string ReceiptWriter::note(const fs::path& target) {
   scene.add(shown().scene);
   nlohmann::ordered_json json = {{"unfurl", version()},
                                  {"build", checksum_of_this_program()},
-                                 {"command", command_of_result(words_, scene_word_, shown().name)}};
+                                 {"command", command_of_result(words_, scene_at_, shown().name)}};
   if (!shown().name.empty()) json["name"] = shown().name;
   if (inside != "." && !inside.empty() && *inside.begin() != "..") json["file"] = inside.string();
   if (!shown().scene.empty()) json["scene_hash"] = scene.text(), json["scene"] = shown().scene;

@@ -2,6 +2,7 @@
 // What a picture, figure, film or page says of its origin: the program, the command, the scene, the errors.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -41,8 +42,9 @@ std::string checksum_of_this_program();  // or of the Python module
 // While it lives, every file of a format that takes a note gets a receipt before it gets its name.
 class ReceiptWriter final : public FileFinisher {
  public:
-  // The words of the command line, from the verb on, which of them is the scene, and what follows -o.
-  ReceiptWriter(std::vector<std::string> words, std::string scene, std::string output);
+  // The words of the command line, from the verb on, which of them is the scene (0: none), and what follows
+  // -o.
+  ReceiptWriter(std::vector<std::string> words, std::size_t scene_at, std::string output);
   ~ReceiptWriter();
   ReceiptWriter(const ReceiptWriter&) = delete;
   ReceiptWriter& operator=(const ReceiptWriter&) = delete;
@@ -52,7 +54,7 @@ class ReceiptWriter final : public FileFinisher {
 
  private:
   std::vector<std::string> words_;
-  std::string scene_word_;
+  std::size_t scene_at_;
   std::filesystem::path output_;
   FileFinisher* before_ = nullptr;
 };
@@ -60,9 +62,9 @@ class ReceiptWriter final : public FileFinisher {
 // What files that are written from now on say of their scene, and of the run that they show.
 void receipt_scene(const std::string& name, const std::string& text);
 void receipt_errors(std::map<std::string, double> errors);
-// The command as results tell it: the scene by its name, without what only says where and by whom the work is
-// done, and without what is in the scene's text already.
-std::vector<std::string> command_of_result(std::vector<std::string> words, const std::string& scene_word,
+// The command as results tell it: the scene, words[scene_at] (0: there is none), by its name, without what
+// only says where and by whom the work is done, and without what is in the scene's text already.
+std::vector<std::string> command_of_result(std::vector<std::string> words, std::size_t scene_at,
                                            const std::string& scene_name);
 
 }  // namespace unfurl

@@ -32,7 +32,7 @@ std::string python_text(const std::string& word) {
 }  // namespace
 
 RunReceipt::RunReceipt(const JudgedRun& run, const std::string& call, const std::string& output)
-    : writer_({std::string(from_python), run.scene.name, run.made_by + "." + call}, run.scene.name, output) {
+    : writer_({std::string(from_python), run.scene.name, run.made_by + "." + call}, 1, output) {
   receipt_scene(run.scene.name, scene_text(run.scene));
   const auto most = [&](const char* column) { return largest_magnitude(run.diagnostics.at(column).values); };
   receipt_errors(

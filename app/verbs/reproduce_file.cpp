@@ -13,6 +13,7 @@
 #include "app/output/receipt.hpp"
 #include "app/output/receipt_formats.hpp"
 #include "app/output/written_files.hpp"
+#include "app/own_options.hpp"
 #include "core/text/version.hpp"
 #include "render/image/child_process.hpp"
 
@@ -153,11 +154,8 @@ int reproduce_file(const Arguments& arguments) {
   if (!receipt->name.empty()) {
     const fs::path scene = scratch.path / (receipt->name + ".toml");
     write_file_atomically(scene, receipt->scene);
-    for (std::string& word : words)
-      if (word == receipt->name) {
-        word = scene.string();
-        break;
-      }
+    const std::size_t at = place_of_first_name(words);
+    if (at > 0 && words[at] == receipt->name) words[at] = scene.string();
   }
   const bool alone = receipt->file.empty();
   const fs::path made = into / (alone ? fs::path(file).filename() : fs::path(receipt->file));

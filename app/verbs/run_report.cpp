@@ -5,6 +5,7 @@
 
 #include "app/output/command_line.hpp"
 #include "app/output/receipt.hpp"
+#include "app/own_options.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "core/diagnostics/ending.hpp"
 #include "core/diagnostics/measures.hpp"
@@ -69,8 +70,9 @@ void add_figures(const fs::path& directory, Report& report) {
 void write_run_report(const fs::path& directory, const Scene& scene, const Simulation& run,
                       const Diagnostics& diagnostics, const Arguments& arguments) {
   Report report{scene.title};
-  report.paragraph("Made by unfurl " + version() + " with `" +
-                   as_typed(command_of_result(arguments.words, arguments.names.front(), scene.name)) + "`.");
+  report.paragraph(
+      "Made by unfurl " + version() + " with `" +
+      as_typed(command_of_result(arguments.words, place_of_first_name(arguments.words), scene.name)) + "`.");
   std::error_code error;
   const std::uintmax_t film = fs::file_size(directory / "animation.webp", error);
   if (!error && film <= largest_film) report.picture("animation.webp", "The motion.");

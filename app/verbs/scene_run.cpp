@@ -15,6 +15,7 @@
 #include "app/output/interrupt.hpp"
 #include "app/output/progress.hpp"
 #include "app/output/receipt.hpp"
+#include "app/own_options.hpp"
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/ending.hpp"
 #include "core/export/atomic_file.hpp"
@@ -142,7 +143,7 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
                    const Arguments& arguments) {
   const std::string text = scene_text(scene);
   const std::string command =
-      as_typed(command_of_result(arguments.words, arguments.names.front(), scene.name));
+      as_typed(command_of_result(arguments.words, place_of_first_name(arguments.words), scene.name));
   const double interval = scene.render.speed / scene.render.fps;
   const ExportedLooks looks = exported_looks(scene, run.trajectory);
   const std::vector<std::string> about_text = warnings_about_text(scene);

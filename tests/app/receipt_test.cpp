@@ -8,6 +8,7 @@
 #include <random>
 
 #include "app/output/receipt_formats.hpp"
+#include "app/own_options.hpp"
 #include "tests/app/run_program.hpp"
 
 using namespace unfurl;
@@ -243,7 +244,43 @@ TEST_CASE("the command of a receipt is the same wherever and by whomever the wor
       {"render", "-o", "x", "--frames", "0:4", "my/ring.toml", "--threads", "2", "--quiet"},
       {"render", "my/ring.toml", "--set", "solver.step=0.1", "--size=64x64", "--join", "--lease", "3", "-o",
        "y"}};
-  for (const auto& words : ways) CHECK(command_of_result(words, "my/ring.toml", "ring") == plain);
+  for (const auto& words : ways) CHECK(command_of_result(words, place_of_first_name(words), "ring") == plain);
+}
+
+TEST_CASE("which word of a command is the scene is known by its place") {
+  const std::pair<std::vector<std::string>, std::size_t> commands[] = {
+      {{"figure", "slide", "energy", "--style", "slide"}, 1},
+      {{"figure", "--style", "slide", "slide", "energy"}, 3},
+      {{"figure", "--style=slide", "-oslide", "slide"}, 3},
+      {{"figure", "--output", "slide", "--set", "title='slide'", "--quiet", "slide"}, 6},
+      {{"render", "--transparent", "slide"}, 2},
+      {{"view", "--dark", "--picture", "slide"}, 0},
+      {{"reproduce"}, 0}};
+  for (const auto& command : commands) {
+    INFO(command.first.back());
+    CHECK(place_of_first_name(command.first) == command.second);
+  }
+  CHECK(command_of_result(commands[1].first, 3, "ring") ==
+        std::vector<std::string>{"figure", "--style", "slide", "ring", "energy"});
+}
+
+TEST_CASE("a scene that is called as another word of the command is made again") {
+  const ScratchDirectory dir;
+  const std::string pendulum = file_text(std::string(UNFURL_ROOT) + "/assets/scenes/pendulum.toml");
+  const std::string figure = dir.write("figure.toml", pendulum), slide = dir.write("slide.toml", pendulum),
+                    energy = dir.write("energy.toml", pendulum);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"figure", figure, "energy"},
+        std::vector<std::string>{"figure", "--style", "slide", slide, "energy"},
+        std::vector<std::string>{"figure", "--style=slide", energy, "energy"}}) {
+    std::vector<std::string> asked = words;
+    asked.insert(asked.end(), {"-o", dir / "a.svg", "--set", "solver.end_time=0.2", "--quiet"});
+    REQUIRE(run_program(asked).code == 0);
+    const ProgramResult again = run_program({"reproduce", dir / "a.svg"});
+    INFO(words[1] << ": " << again.err);
+    CHECK(again.code == 0);
+    CHECK(again.out.starts_with("the same, byte by byte"));
+  }
 }
 
 }  // namespace receipt_test
