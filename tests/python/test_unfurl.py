@@ -72,6 +72,20 @@ def test_flat_structures_stay_in_their_plane():
     assert np.abs(lengths - np.hypot(0.6, 0.7)).max() < 1e-13
 
 
+def test_velocities_are_those_of_their_nodes():
+    # Free nodes without rods or loads keep the velocities that they were given.
+    given = np.array([[0.0, 0, 0], [0, 0, 1], [0, 0, 2], [3, 4, 5]])
+
+    def masses(velocities):
+        return unfurl.Structure(np.eye(4, 3), np.empty((0, 2), int), velocities=velocities, set={
+            "solver.end_time": 0.1, **{f"structure.nodes[{i}].mass": 1 for i in range(4)}})
+    assert np.array_equal(masses(given).run().v[0], given)
+    assert np.array_equal(masses(given[:, :2]).run().v[0], given * [1, 1, 0])
+    for wrong in (given.T, given.ravel(), np.ones((4, 5)), np.ones((4, 1)), np.ones(4), given[:3], 1.0):
+        with pytest.raises(ValueError, match="velocities are rows of 2 or 3 components, one row a node \\(4\\); got the shape"):
+            masses(wrong)
+
+
 def test_views_cannot_be_written_into_and_outlive_their_run():
     run = unfurl.Scene("pendulum", set={"solver.end_time": 0.3}).run()
     x, energy = np.asarray(run.x), run.series["kinetic_energy_J"]

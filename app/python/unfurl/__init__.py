@@ -269,7 +269,9 @@ def Structure(nodes, rods, fixed: Sequence[int] = (), mass: float | Sequence[flo
         raise ValueError(f"a rod names node {ends.max() if ends.max() >= len(points) else ends.min()}; there are 0 to {len(points) - 1}")
     flat = points.shape[1] == 2
     points = np.column_stack([points, np.zeros(len(points))]) if flat else points
-    speeds = None if velocities is None else np.asarray(velocities, dtype=float).reshape(len(points), -1)
+    speeds = None if velocities is None else np.asarray(velocities, dtype=float)
+    if speeds is not None and speeds.shape not in ((len(points), 2), (len(points), 3)):
+        raise ValueError(f"velocities are rows of 2 or 3 components, one row a node ({len(points)}); got the shape {speeds.shape}")
     masses = np.broadcast_to(np.asarray(mass, dtype=float), len(ends))
     table = {"kind": "custom",
              "nodes": [{"name": f"n{i}", "position": p.tolist(), **({} if speeds is None else {"velocity": [*speeds[i], 0.0][:3]})} for i, p in enumerate(points)],
