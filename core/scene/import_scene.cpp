@@ -326,6 +326,7 @@ std::string import_format(const std::string& file) {
 
 ImportedScene import_scene(const std::vector<TextFile>& files) {
   ImportedShape shape = shape_of(files);
+  shape.flatten();
   SceneOfShape scene(shape);
   std::string text = scene.text(true);
   if (const auto problems = problems_of(shape, text); !problems.empty()) {

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t most_plate_nodes = 100;
 constexpr double least_length = 1e-100;  // [m]: squares of shorter and much longer ones are 0 or infinite
 // Sine of an angle below which three nodes count as in one line, and share of a plate's size by which its
-// nodes may be out of one plane (they are moved into it then, as rods of given lengths are fitted).
+// nodes may be out of one plane (flatten() moves them into it).
 constexpr double in_line = 1e-6, out_of_plane = 0.01;
 
 double sine(const Vec3& u, const Vec3& v) {
@@ -122,6 +122,7 @@ void ImportedShape::add_plate(const std::vector<int>& nodes, const std::string& 
         "has too many vertices in one line for diagonals from one of them to hold it; leave out those " +
         std::string("in the middle of its sides, or split it into triangles"));
   require_flat(*this, plate, place);
+  plate_places_.push_back(place);
   for (std::size_t i = 0; i < n; ++i) add_rod(nodes[i], nodes[(i + 1) % n], group, place);
   for (std::size_t i = 2; i + 1 < n; ++i) add_rod(plate[0], plate[i], "diagonal", place);
 }

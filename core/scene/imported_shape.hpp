@@ -43,12 +43,16 @@ struct ImportedShape {
   // A rigid plate of n nodes: rods along its edges, of `group` where they are new, and n - 3 diagonals from
   // one of the nodes; with n - 3 times "in one plane" that is 3 n - 6, as many as a rigid body's shape takes.
   void add_plate(const std::vector<int>& nodes, const std::string& group, const ImportPlace& place);
+  // Moves nodes as little as puts those of every plate into one plane, and notes how far; fails at the plate
+  // that is least flat where that takes more than small moves. For once all plates are there.
+  void flatten();
   // Of every rod between two plates; where more meet, of the first one with each of the others.
   std::vector<ImportedCrease> creases() const;
 
   const Vec3& at(int node) const { return spec.nodes[static_cast<std::size_t>(node)].position; }
 
  private:
+  std::vector<ImportPlace> plate_places_;
   std::map<std::array<double, 3>, std::size_t> places_;
   std::unordered_map<std::uint64_t, std::size_t> rods_;  // by both ends, the lower one first
   std::vector<std::array<int, 2>> ends_;
