@@ -88,6 +88,75 @@ void quad(Skin& skin, const std::vector<Vec3>& e, int cells) {
     }
 }
 
+double turn_at(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& up) {
+  return up.dot((b - a).cross(c - a));
+}
+
+// Whether lines from the middle to the edge leave what is within it: it is about flat (what is folded up
+// has no inside), and some of its edge goes around the middle the other way.
+bool has_notch(const std::vector<Vec3>& edge, const Vec3& middle, const Vec3& area, double diameter) {
+  constexpr double flat = 0.05, round_off = 1e-9;
+  if (!(area.norm() > round_off * diameter * diameter)) return false;
+  const Vec3 up = area.normalized();
+  bool back = false;
+  for (std::size_t i = 0; i < edge.size(); ++i) {
+    const Vec3 &p = edge[i], &q = edge[(i + 1) % edge.size()], &next = edge[(i + 2) % edge.size()];
+    if (std::abs(up.dot(p - middle)) > flat * diameter) return false;
+    // Of four nodes opposite edges are joined instead, which a corner to within is enough to spoil.
+    const double turn = edge.size() == 4 ? turn_at(p, q, next, up) : turn_at(middle, p, q, up);
+    back = back || turn < -round_off * diameter * diameter;
+  }
+  return back;
+}
+
+// Triangles between its nodes alone, each cut from the edge that is left (G. H. Meisters, Amer. Math. Monthly
+// 82, 1975): of all corners without a node in them that whose least angle is widest. Empty: it crosses
+// itself.
+std::vector<int> clipped_ears(const std::vector<Vec3>& edge, const Vec3& up) {
+  constexpr double in_line = 1e-9, no_ear = -1;
+  std::vector<int> left(edge.size()), triangles;
+  for (std::size_t i = 0; i < edge.size(); ++i) left[i] = static_cast<int>(i);
+  const auto at = [&](int i) -> const Vec3& { return edge[static_cast<std::size_t>(i)]; };
+  const auto quality = [&](int a, int b, int c) {
+    const double turn = turn_at(at(a), at(b), at(c), up), sides = (at(b) - at(a)).squaredNorm() +
+                                                                  (at(c) - at(b)).squaredNorm() +
+                                                                  (at(a) - at(c)).squaredNorm();
+    if (std::abs(turn) <= in_line * sides) return 0.0;
+    if (turn < 0) return no_ear;
+    for (const int i : left)
+      if (i != a && i != b && i != c && turn_at(at(a), at(b), at(i), up) >= 0 &&
+          turn_at(at(b), at(c), at(i), up) >= 0 && turn_at(at(c), at(a), at(i), up) >= 0)
+        return no_ear;
+    return turn / sides;
+  };
+  while (left.size() >= 3) {
+    const std::size_t n = left.size();
+    std::size_t best = 0;
+    double most = no_ear;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double q = quality(left[(k + n - 1) % n], left[k], left[(k + 1) % n]);
+      if (!(q > most)) continue;
+      most = q, best = k;
+    }
+    if (most == no_ear) return {};
+    for (const std::size_t k : {best + n - 1, best, best + 1}) triangles.push_back(left[k % n]);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
+  }
+  return triangles;
+}
+
+// Cells are squares of the plane, so many along the diameter. False: it crosses itself.
+bool clipped(Skin& skin, const std::vector<Vec3>& edge, const Vec3& middle, const Vec3& up, double diameter,
+             int cells) {
+  const std::vector<int> triangles = clipped_ears(edge, up);
+  if (triangles.empty()) return false;
+  const Vec3 across = (edge[1] - edge[0]).normalized(), along = up.cross(across).normalized();
+  for (const Vec3& p : edge)
+    add(skin, p, cells * across.dot(p - middle) / diameter, cells * along.dot(p - middle) / diameter);
+  for (const int i : triangles) skin.triangles.push_back(static_cast<std::uint32_t>(i));
+  return true;
+}
+
 // The mean of the triangles around each vertex.
 void find_normals(Skin& skin) {
   for (std::size_t i = 0; i + 2 < skin.triangles.size(); i += 3) {
@@ -127,11 +196,15 @@ Skin skin_of(const SceneSurface& surface, const std::vector<Vec3>& given, bool t
   Vec3 down = Vec3::Zero();
   if (surface.shape == "paraboloid" && area.norm() > 0)
     down = -diameter / (16 * surface.focal_ratio) * area.normalized();
-  if (edge.size() == 4 && surface.shape == "flat")
+  const bool flat = surface.shape == "flat";
+  skin.square = edge.size() == 4;
+  if (flat && has_notch(edge, middle, area, diameter) &&
+      clipped(skin, edge, middle, area.normalized(), diameter, surface.cells))
+    skin.square = true;
+  else if (edge.size() == 4 && flat)
     quad(skin, edge, surface.cells);
   else
     fan(skin, edge, middle, down, surface.cells);
-  skin.square = edge.size() == 4;
   find_normals(skin);
   return skin;
 }

@@ -24,9 +24,10 @@ bool is_turned(const std::vector<Vec3>& edge);
 bool is_turned(const std::vector<Vec3>& first, const std::vector<Vec3>& last);
 
 // `edge`: the places of its nodes [m], z up. A flat one is straight lines between the middle of its edge and
-// the edge (with four nodes: between opposite edges). A paraboloid sinks below those lines by
-// depth (1 - s^2), s from 0 in the middle to 1 at the edge, depth = D / (16 F) for the diameter D of the ring
-// and F = focal_ratio, to its back.
+// the edge (with four nodes: between opposite edges), or where these would leave what is within the edge, as
+// at a notch, triangles between nodes. A paraboloid sinks below those lines by depth (1 - s^2), s from 0 in
+// the middle to 1 at the edge, depth = D / (16 F) for the diameter D of the ring and F = focal_ratio, to its
+// back.
 Skin skin_of(const SceneSurface& surface, const std::vector<Vec3>& edge, bool turned);
 
 }  // namespace unfurl

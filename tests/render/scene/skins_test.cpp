@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/scene/skins.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -43,6 +45,72 @@ TEST_CASE("a paraboloid has its focus where its ratio says") {
     const Vec3 at = v.at.cast<double>(), focus(center.x(), center.y(), lowest + focal_length);
     CHECK((at - focus).norm() == Approx(at.z() - (lowest - focal_length)).margin(2e-6));
   }
+}
+
+TEST_CASE("a surface with notches covers what is within its edge once and nothing else") {
+  // A U, a comb, a dart and a spiral, in a plane somewhere and around either way; their areas by hand.
+  struct Shape {
+    std::vector<Vec3> edge;
+    double area;
+  };
+  const Shape shapes[] = {
+      {{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}}, 7},
+      {{{0, 0, 0},
+        {5, 0, 0},
+        {5, 2, 0},
+        {4, 2, 0},
+        {4, 1, 0},
+        {3, 1, 0},
+        {3, 2, 0},
+        {2, 2, 0},
+        {2, 1, 0},
+        {1, 1, 0},
+        {1, 2, 0},
+        {0, 2, 0}},
+       8},
+      {{{0, 0, 0}, {2, 1, 0}, {0, 2, 0}, {1.5, 1, 0}}, 0.5},
+      {{{0, 0, 0},
+        {4, 0, 0},
+        {4, 4, 0},
+        {1, 4, 0},
+        {1, 2, 0},
+        {2, 2, 0},
+        {2, 3, 0},
+        {3, 3, 0},
+        {3, 1, 0},
+        {0, 1, 0}},
+       10}};
+  const Mat3 turns[] = {Eigen::Quaterniond(0.8, 0.3, -0.4, 0.2).normalized().toRotationMatrix(),
+                        Mat3::Identity()};
+  for (const Shape& shape : shapes)
+    for (const bool back : {false, true})
+      for (const Mat3& turn : turns) {
+        std::vector<Vec3> edge;
+        for (const Vec3& p : shape.edge) edge.push_back(turn * p + Vec3(0.3, -2, 1));
+        if (back) std::ranges::reverse(edge);
+        SceneSurface surface;
+        surface.kind = "membrane";
+        const Skin skin = skin_of(surface, edge, is_turned(edge));
+        CAPTURE(edge.size(), back);
+        // Triangles of n nodes that turn one way and have the area of the shape together lie side by side in
+        // it.
+        REQUIRE(skin.triangles.size() == 3 * (edge.size() - 2));
+        double sum = 0;
+        const Vec3 up = skin.vertices.front().normal.cast<double>();
+        for (std::size_t i = 0; i < skin.triangles.size(); i += 3) {
+          const auto at = [&](std::size_t k) -> Vec3 {
+            return skin.vertices[skin.triangles[i + k]].at.cast<double>();
+          };
+          const double twice = up.dot((at(1) - at(0)).cross(at(2) - at(0)));
+          CHECK(twice > -1e-5);  // none where nodes are in one line
+          sum += 0.5 * twice;
+        }
+        CHECK(sum == Approx(shape.area).epsilon(1e-5));  // single precision at 5 m
+      }
+  // What lines from its middle stay within is drawn as ever, dents and all.
+  const std::vector<Vec3> star = {{1, 0, 0},  {0.4, 0.4, 0},   {0, 1, 0},  {-0.4, 0.4, 0},
+                                  {-1, 0, 0}, {-0.4, -0.4, 0}, {0, -1, 0}, {0.4, -0.4, 0}};
+  CHECK(skin_of(SceneSurface(), star, false).vertices.size() > 400);
 }
 
 TEST_CASE("a panel is spanned between its edges, whichever way its nodes go around") {
