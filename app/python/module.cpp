@@ -8,6 +8,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
@@ -204,6 +205,7 @@ class SteppedScene {
     return goes_on_ = stepper_.step();
   }
   bool advance_to(double t) {
+    if (std::isnan(t)) throw py::value_error("a stepper advances to a time [s], not to NaN");
     const py::gil_scoped_release release;
     const std::lock_guard lock(*use_);
     return goes_on_ = stepper_.advance_to(t);
@@ -234,7 +236,10 @@ class SteppedScene {
         if (nodes[i].name == name && !nodes[i].ghost) return static_cast<int>(i);
       throw py::key_error("no solved node is called " + name);
     }
-    const auto index = key.cast<py::ssize_t>();
+    if (PyIndex_Check(key.ptr()) == 0)
+      throw py::type_error("a node goes by its name or its index, not by " + std::string(py::repr(key)));
+    const py::ssize_t index = PyNumber_AsSsize_t(key.ptr(), PyExc_IndexError);
+    if (PyErr_Occurred() != nullptr) throw py::error_already_set();
     if (index < 0 || index >= static_cast<py::ssize_t>(nodes.size()))
       throw py::index_error("no solved node has the index " + std::to_string(index));
     return static_cast<int>(index);

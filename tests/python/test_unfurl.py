@@ -136,6 +136,11 @@ def test_forces_are_set_between_steps():
             stepper.step()
             x, v = x + 0.1 * v + 0.0025 * force, v + 0.05 * force
             assert np.abs(stepper.x[0] - x).max() < 1e-13
+        for key, error in ((None, TypeError), (1.5, TypeError), (b"P", TypeError), (-1, IndexError), (1, IndexError), (10**30, IndexError)):
+            with pytest.raises(error):
+                stepper.force[key]
+        with pytest.raises(ValueError, match="advances to a time"):
+            stepper.advance_to(np.nan)
         with pytest.raises(KeyError):
             stepper.force["Q"] = [1, 0, 0]
         with pytest.raises(ValueError):
@@ -316,6 +321,11 @@ def test_what_a_person_can_mend_is_an_error_of_unfurl(tmp_path):
         with pytest.raises(IndexError, match="is not within the run"):
             run.frame(t, tmp_path / "g.png")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_an_array_of_no_dimension_is_a_value():
+    for end in (np.array(0.25), np.float64(0.25), np.asarray([0.25, 1])[0]):
+        assert unfurl.Scene("pendulum", set={"solver.end_time": end}).text == unfurl.Scene("pendulum", set={"solver.end_time": 0.25}).text
 
 
 def test_any_text_is_a_value():

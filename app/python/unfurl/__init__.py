@@ -28,6 +28,8 @@ __all__ = ["Scene", "Structure", "Run", "Named", "Study", "Stepper", "Error", "S
 
 def _toml(value: Any) -> str:
     """A Python value as TOML; strings that are no words stand in quotes."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (int, np.integer)):
