@@ -35,10 +35,23 @@ std::string endless_sentence(const SweepPlan& plan, const Sweep& sweep, std::siz
   const auto endless = std::count_if(sweep.table.rows.begin(), sweep.table.rows.end(), [&](const auto& row) {
     return std::isinf(number_of(row[plan.axes.size() + 1 + measure]));
   });
-  return endless == 0
-             ? ""
-             : " Infinite in " + std::to_string(endless) +
-                   (endless == 1 ? " of them, which is not drawn." : " of them, which are not drawn.");
+  return endless == 0 ? ""
+                      : " Infinite in " + std::to_string(endless) +
+                            (endless == 1 ? " of the runs, which is not drawn."
+                                          : " of the runs, which are not drawn.");
+}
+
+// Beside runs that ended deployed: in how many others that was still to come, as peaks and sums of those are
+// not of a whole deployment.
+std::string undeployed_sentence(const SweepPlan& plan, const Sweep& sweep) {
+  const auto runs = [&](const char* outcome) {
+    return std::ranges::count_if(sweep.table.rows,
+                                 [&](const auto& row) { return row[plan.axes.size()] == outcome; });
+  };
+  const auto open = runs("completed");
+  if (open == 0 || runs("deployed") == 0) return {};
+  return " " + std::to_string(open) + " of them ended before " +
+         (open == 1 ? "its structure was deployed." : "their structures were deployed.");
 }
 
 // Of a force: in how many of the runs the rigid model does not determine it.
@@ -295,8 +308,8 @@ std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, con
     }
     f.name = "sweep_" + file_name(plan.measures[m].name);
     f.title = heading(plan.measures[m].label) + ": " + scene;
-    f.caption +=
-        count_sentence(plan, sweep) + endless_sentence(plan, sweep, m) + uniqueness_sentence(plan, sweep, m);
+    f.caption += count_sentence(plan, sweep) + undeployed_sentence(plan, sweep) +
+                 endless_sentence(plan, sweep, m) + uniqueness_sentence(plan, sweep, m);
     if (f.panels[0].y.zeros_at_floor) {
       std::vector<double> drawn;
       for (const Curve& c : f.panels[0].curves) drawn.insert(drawn.end(), c.y.begin(), c.y.end());

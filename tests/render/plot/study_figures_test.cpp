@@ -163,11 +163,34 @@ TEST_CASE("a sweep's figure says how many runs never get there, and names thirds
     for (const std::string& chord : plan.axes[1].values)
       sweep.table.rows.push_back({post, chord, "completed", chord == "3" ? "inf" : "4.9"});
   const Figure figure = sweep_figures(plan, sweep, "Ring").front();
-  CHECK(figure.caption == "20 runs. Infinite in 5 of them, which are not drawn.");
+  CHECK(figure.caption == "20 runs. Infinite in 5 of the runs, which are not drawn.");
   const auto& curves = figure.panels[0].curves;
   REQUIRE(curves.size() == 4);
   CHECK(curves[0].label == "chord rod length = 2 m");
   CHECK(curves[1].label == "chord rod length = 2.33333 m");
+}
+
+TEST_CASE("a sweep's figure says how many runs ended before the deployed pose", "[figures]") {
+  SweepPlan plan{{find_scene("hoop6_sector"), {}}, {parse_axis("structure.fold_angle=40,50,60,70")}, {}, {}};
+  plan.measures = {find_measure("peak_energy"), find_measure("deploy_time")};
+  check_plan(plan);
+  const auto captions = [&](const std::vector<std::string>& outcomes) {
+    Sweep sweep{{plan.columns(), {}}};
+    for (std::size_t i = 0; i < outcomes.size(); ++i)
+      sweep.table.rows.push_back(
+          {plan.axes[0].values[i], outcomes[i], "300", outcomes[i] == "deployed" ? "4.9" : "inf"});
+    std::vector<std::string> said;
+    for (const Figure& figure : sweep_figures(plan, sweep, "Ring")) said.push_back(figure.caption);
+    REQUIRE(said.size() == 2);
+    return said;
+  };
+  const std::vector<std::string> one = captions({"deployed", "completed", "deployed", "deployed"});
+  CHECK(one[0] == "4 runs. 1 of them ended before its structure was deployed.");
+  CHECK(one[1] == one[0] + " Infinite in 1 of the runs, which is not drawn.");
+  CHECK(captions({"deployed", "completed", "deployed", "completed"})[0] ==
+        "4 runs. 2 of them ended before their structures were deployed.");
+  CHECK(captions({"deployed", "deployed", "deployed", "deployed"})[0] == "4 runs.");
+  CHECK(captions({"completed", "completed", "completed", "completed"})[0] == "4 runs.");  // as all are
 }
 
 TEST_CASE("the table of a map has a row for every cell", "[figures]") {
