@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "core/math/drawing_origin.hpp"
 #include "core/structure/upright.hpp"
@@ -317,17 +318,36 @@ FrameBuilder::Banner FrameBuilder::banner(double t, bool title, bool legend, int
   return out;
 }
 
-// The title in the middle of an empty picture.
+// The title in the middle of an empty picture. Where one line of it has no room it is broken, as headings
+// are; what is longer than the picture is high ends in dots.
 void FrameBuilder::add_card(DrawList& list) const {
   list.ground.shown = false;
+  if (style_.title.empty()) return;
+  constexpr float bold = 1.12f, line = 1.35f;
   const auto w = static_cast<float>(style_.width), h = static_cast<float>(style_.height);
-  const float most = 0.09f * std::min(w, h), wide = static_cast<float>(plot::text_width(style_.title, 1.0));
-  const float size = std::round(std::min(most, 0.8f * w / std::max(1.0f, 1.12f * wide)));
-  if (style_.title.empty() || size < 4) return;
-  list.labels.push_back({0.5f * w, 0.5f * h - 0.75f * size, size, look_->ink, style_.title, 0.5f, true});
-  Color rule = look_->groups->front();
-  list.areas.push_back(
-      {0.5f * w - 0.06f * w, 0.5f * h + 0.6f * size, 0.5f * w + 0.06f * w, 0.5f * h + 0.66f * size, rule});
+  const auto fine = static_cast<float>(std::max(style_.options.supersample, 1));
+  const auto one = static_cast<float>(plot::text_width(style_.title, 1.0));
+  const float side = std::min(w, h), room = 0.8f * w;
+  const float least = std::max(0.055f * side, 7 * fine);
+  const float size = std::round(std::max(least, std::min(0.09f * side, room / std::max(1.0f, bold * one))));
+  if (room < 4 * size) return;  // of dots alone
+  const auto wide = static_cast<double>(size * bold / static_cast<float>(plot::line_height));
+  std::vector<std::string> lines = plot::wrap_text(style_.title, wide, static_cast<double>(room));
+  const auto most = static_cast<std::size_t>(std::max(1.0f, 0.8f * h / (line * size)));
+  if (lines.size() > most) {
+    lines[most - 1] =
+        plot::shorten_text(lines[most - 1] + ' ' + lines[most], wide, static_cast<double>(room));
+    lines.resize(most);
+  }
+  const float down = 0.5f * line * size * static_cast<float>(lines.size() - 1);
+  float y = 0.5f * h - 0.75f * size - down;
+  for (const std::string& text : lines) {
+    list.labels.push_back({0.5f * w, y, size, look_->ink, text, 0.5f, true});
+    y += line * size;
+  }
+  const Color rule = look_->groups->front();
+  const float below = 0.5f * h + down;
+  list.areas.push_back({0.44f * w, below + 0.6f * size, 0.56f * w, below + 0.66f * size, rule});
 }
 
 Color FrameBuilder::rod_color(double t, const RodCopy& rod) const {

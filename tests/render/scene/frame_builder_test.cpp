@@ -10,6 +10,7 @@
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/simulate/simulation.hpp"
+#include "render/plot/text_metrics.hpp"
 #include "render/scene/view.hpp"
 
 using namespace unfurl;
@@ -352,6 +353,54 @@ TEST_CASE("a dimension line says its length to three digits, however small it is
     if (label.text.ends_with(" m")) text = label.text;
   INFO(text);
   CHECK(std::stod("0" + text) == Approx(1.44 * size).epsilon(1e-9));
+}
+
+namespace {
+
+// The words of a card's lines; each line is inside the picture and below the one before.
+std::string words_of_card(const DrawList& list, const FrameStyle& style) {
+  std::string words;
+  float bottom = 0;
+  for (const TextLabel& label : list.labels) {
+    const auto wide = static_cast<float>(
+        plot::text_width(label.text, static_cast<double>(label.height) / plot::line_height));
+    CHECK(wide <= static_cast<float>(style.width));
+    CHECK(label.y >= bottom);
+    bottom = label.y + label.height;
+    words += (words.empty() ? "" : " ") + label.text;
+  }
+  CHECK(bottom <= static_cast<float>(style.height));
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("a title card has the whole title in letters that can be read and its rule below") {
+  const Simulation r = run(ring);
+  const auto [width, height] = GENERATE(std::pair(320, 180), std::pair(1280, 720), std::pair(360, 640));
+  FrameStyle style;
+  style.width = width, style.height = height;
+  for (const char* title :
+       {"A short title",
+        "A mast of two hundred units, which opens along its axis in free fall, with its hinges "
+        "rubbing and its cables slack, until it meets the latches of its last bay"}) {
+    style.title = title;
+    Shot card;
+    card.card = true;
+    const DrawList list = FrameBuilder(r.trajectory, style).build(card);
+    CAPTURE(width, height, title);
+    REQUIRE_FALSE(list.labels.empty());
+    CHECK(words_of_card(list, style) == title);
+    CHECK(list.labels.front().height >= 7);  // pixels: smaller letters are not told apart
+    REQUIRE(list.areas.size() == 1);
+    CHECK(list.areas[0].y0 > list.labels.back().y + 0.9f * list.labels.back().height);
+    CHECK(list.areas[0].y1 - list.areas[0].y0 > 0);
+  }
+  style.title.clear();
+  for (int k = 0; k < 400; ++k) style.title += "without end ";
+  Shot card;
+  card.card = true;
+  CHECK(words_of_card(FrameBuilder(r.trajectory, style).build(card), style).ends_with("\u2026"));
 }
 
 }  // namespace frame_builder_test
