@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <numeric>
@@ -68,6 +69,13 @@ class SceneOfShape {
     }
     note_bare_nodes();
     folds_ = folds();
+  }
+
+  // The node of the shape that is entry i of the scene.
+  std::size_t given_node(std::size_t i) const {
+    for (std::size_t node = 0; node < used_.size(); ++node)
+      if (kept(node) && i-- == 0) return node;
+    return std::string::npos;
   }
 
   std::string text(bool held) const {
@@ -297,8 +305,23 @@ ImportedShape shape_of(const std::vector<TextFile>& files) {
   return read_csv_lists(first, files.back());
 }
 
-// What only the whole tells is said of the file that it came from; empty: it can be run.
-std::vector<SceneProblem> problems_of(const ImportedShape& shape, const std::string& text) {
+// Where the entry of "structure.nodes[3]..." of the scene comes from. Nodes that are left out have no entry.
+SourceLocation origin_of(const std::string& key, const ImportedShape& shape, const SceneOfShape& scene) {
+  const auto entry = [&](std::string_view list) -> std::size_t {
+    std::size_t i = std::string::npos;
+    if (key.starts_with(list)) std::from_chars(key.data() + list.size(), key.data() + key.size(), i);
+    return i;
+  };
+  if (const std::size_t rod = entry("structure.rods["); rod < shape.rod_places.size())
+    return shape.rod_places[rod];
+  if (const std::size_t node = scene.given_node(entry("structure.nodes[")); node < shape.node_places.size())
+    return shape.node_places[node];
+  return {shape.file, 0, 0};
+}
+
+// What only the whole tells is said of where it came from; empty: it can be run.
+std::vector<SceneProblem> problems_of(const ImportedShape& shape, const SceneOfShape& scene,
+                                      const std::string& text) {
   const SourceLocation file{shape.file, 0, 0};
   if (text.size() > max_text_file_bytes)
     return {
@@ -307,7 +330,7 @@ std::vector<SceneProblem> problems_of(const ImportedShape& shape, const std::str
     build_model(read_scene_text(text, shape.file));
   } catch (const SceneError& error) {
     std::vector<SceneProblem> problems = error.problems();
-    for (SceneProblem& problem : problems) problem.where = file;
+    for (SceneProblem& problem : problems) problem.where = origin_of(problem.key, shape, scene);
     return problems;
   }
   return {};
@@ -329,10 +352,10 @@ ImportedScene import_scene(const std::vector<TextFile>& files) {
   shape.flatten();
   SceneOfShape scene(shape);
   std::string text = scene.text(true);
-  if (const auto problems = problems_of(shape, text); !problems.empty()) {
+  if (const auto problems = problems_of(shape, scene, text); !problems.empty()) {
     shape.notes.emplace_back("held in space nothing of it could move, so that it floats");
     text = scene.text(false);
-    if (!problems_of(shape, text).empty()) throw SceneError(problems);
+    if (!problems_of(shape, scene, text).empty()) throw SceneError(problems);
   }
   return {std::move(text), std::move(shape.notes)};
 }

@@ -34,7 +34,9 @@ struct ImportedShape {
   std::string file;
   CustomSpec spec;
   std::vector<std::vector<int>> plates;  // nodes around the edge, the first three not in one line
-  std::vector<std::string> notes;        // what a person should know of how it was read
+  // Lines of nodes and rods, where they have some.
+  std::vector<SourceLocation> node_places, rod_places;
+  std::vector<std::string> notes;  // what a person should know of how it was read
 
   // These fail where the place holds what nothing can be built of.
   void add_node(CustomNode node, const ImportPlace& place);

@@ -19,7 +19,8 @@ namespace {
 
 std::optional<double> csv_number(const std::string& cell) {
   double x = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
+  const char* begin = cell.data() + (cell.size() > 1 && cell[0] == '+' && cell[1] != '-' ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), x);
   return error == std::errc() && end == cell.data() + cell.size() ? std::optional(x) : std::nullopt;
 }
 
@@ -37,6 +38,12 @@ std::string_view header_of(std::string_view text, bool nodes) {
     return cells.size() == 4 ? "name,x,y,z" : "x,y,z";
   }
   return "";
+}
+
+// What a scene would read as an expression.
+void refuse_expression(const std::string& text, const char* key, const SourceLocation& where) {
+  if (text.starts_with('='))
+    ImportPlace{where, key}.fail(in_quotes(text) + " begins with =, as expressions do; give it another name");
 }
 
 void throw_problems(const SceneNotes& notes) {
@@ -90,6 +97,8 @@ ImportedShape read_csv_lists(const TextFile& nodes, const TextFile& rods) {
     CustomNode& node = found.nodes[i];
     if (node.name.empty()) node.name = "V" + std::to_string(i);
     const ImportPlace place{notes.locations.at("structure.nodes[" + std::to_string(i) + "]"), "name"};
+    refuse_expression(node.name, "name", place.where);
+    shape.node_places.push_back(place.where);
     if (names.add(node.name) >= 0) place.fail("there is already a node " + in_quotes(node.name));
     shape.add_node(node, {place.where, ""});
   }
@@ -99,6 +108,9 @@ ImportedShape read_csv_lists(const TextFile& nodes, const TextFile& rods) {
   if (!by_name) name_ends(found, found.nodes, rods.path);
   for (std::size_t r = 0; r < found.rods.size(); ++r) {
     const ImportPlace place{notes.locations.at("structure.rods[" + std::to_string(r) + "]"), ""};
+    refuse_expression(found.rods[r].name, "name", place.where);
+    refuse_expression(found.rods[r].group, "group", place.where);
+    shape.rod_places.push_back(place.where);
     int ends[2];
     for (std::size_t k = 0; k < 2; ++k) {
       ends[k] = names.find(found.rods[r].nodes[k]);

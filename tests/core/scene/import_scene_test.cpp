@@ -290,6 +290,8 @@ TEST_CASE(
   CHECK(imported("V0,0,0,0\nV1,1,0,0\nV2,0.4,0.9,0\nV3,0.3,0.4,0.8\n", "n.csv",
                  "a,b\nV0,V1\nV1,V2\nV2,V0\nV0,V3\n")
             .text == expected);
+  CHECK(imported("+0.0,+0.0,+0.0\n+1,+0,+0\n0.4,+9e-1,0\n0.3,0.4,0.8\n", "n.csv", "+0,+1\n1,2\n2,0\n0,3\n")
+            .text == expected);
   // What the columns say is kept: nothing is assumed, nothing else held; braces are not expressions.
   const ImportedScene own = imported("name,x,y,z,mass,fixed\nA{},0,0,0,0,true\nB,0,0,2,1.5,false\n", "n.csv",
                                      "a,b,mass,group\nA{},B,0.5,leg\n");
@@ -416,6 +418,14 @@ TEST_CASE("OBJ and CSV files of which nothing can be built are refused with the 
   CHECK(refusal("0,0\n", "n.csv", "0,1\n").starts_with("n.csv:1:1: has 2 cells; the header has 3"));
   CHECK(refusal("name,x,y,z\nA,0,0,0\nA,1,0,0\n", "n.csv", "a,b\nA,B\n") ==
         "n.csv:3:1: name: there is already a node 'A'");
+  const std::string three = "x,y,z\n0,0,0\n\n1,0,0\n0.4,0.9,0\n";
+  CHECK(refusal(three, "n.csv", "a,b,area\n0,1,1e-4\n\n1,2,1e-4\n").find("n.csv") == std::string::npos);
+  CHECK(refusal(three, "n.csv", "a,b,area\n0,1,1e-4\n\n1,2,1e-4\n").find("rods.csv:4:1: structure.rods[1]") !=
+        std::string::npos);
+  CHECK(refusal("name,x,y,z\nA,0,0,0\n=z,1,0,0\n", "n.csv", "a,b\nA,=z\n") ==
+        "n.csv:3:1: name: '=z' begins with =, as expressions do; give it another name");
+  CHECK(refusal(three, "n.csv", "a,b,group\n0,1,=g\n") ==
+        "rods.csv:2:1: group: '=g' begins with =, as expressions do; give it another name");
   CHECK(refusal("name,x,y,z\nA,0,0,0\nB,1,0,0\n", "n.csv", "a,b\nA,C\n")
             .starts_with("rods.csv:2:1: there is no node 'C'"));
 }
