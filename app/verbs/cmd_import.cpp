@@ -35,9 +35,10 @@ std::vector<TextFile> files_to_import(const std::vector<std::string>& names) {
 int cmd_import(const Arguments& arguments) {
   const std::filesystem::path output(arguments.output);
   if (!output.empty()) {
-    if (std::filesystem::exists(output) && !arguments.force)
-      throw FileError(output, "is there already; --force writes over it");
     require_writable(output);
+    std::error_code error;
+    if (std::filesystem::exists(output, error) && !arguments.force)
+      throw FileError(output, "is there already; --force writes over it");
   }
   ImportedScene scene = import_scene(files_to_import(arguments.names));
   if (!arguments.overrides.empty())

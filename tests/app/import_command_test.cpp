@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl import: from another program's file to a scene that is checked and run as it is.
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -63,6 +65,20 @@ TEST_CASE("import says what it reads and what it cannot") {
   const std::string cut = dir.write("cut.fold", two_plates.substr(0, 70));
   CHECK(refused({"import", cut, "-o", dir / "cut.toml"}, 3).err.starts_with(cut + ":1:71: not JSON: "));
   CHECK_FALSE(std::filesystem::exists(dir / "cut.toml"));
+  // Names that no file can have, and what a file would take the place of.
+  const std::string plates = dir.write("plates.fold", two_plates), pipe = dir / "pipe",
+                    long_name = std::string(300, 'a') + ".toml";
+  CHECK(refused({"import", plates, "-o", dir / long_name}, 5).err.find("the name has 305 bytes") !=
+        std::string::npos);
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  for (const bool force : {false, true}) {
+    std::vector<std::string> words = {"import", plates, "-o", pipe};
+    if (force) words.emplace_back("--force");
+    CHECK(refused(words, 5).err == "unfurl: " + pipe + ": is not a regular file\n");
+    words[3] = dir / "";
+    CHECK(refused(words, 5).err == "unfurl: " + words[3] + ": is a directory\n");
+  }
+  CHECK(std::filesystem::is_fifo(pipe));
 }
 
 }  // namespace import_command_test
