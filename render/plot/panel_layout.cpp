@@ -73,10 +73,17 @@ void equalise(PanelLayout& out) {
 }
 
 std::vector<std::string> y_label_lines(const Axis& axis, double height) {
+  constexpr std::size_t most = 3;
   std::vector<std::string> lines = wrap_text(axis.label, label_size, height);
-  if (lines.size() > 2) {
-    lines[1] = shorten_text(lines[1] + " " + lines[2], label_size, height);
-    lines.resize(2);
+  if (lines.size() > most) {
+    lines[most - 1] = shorten_text(lines[most - 1] + " " + lines[most], label_size, height);
+    lines.resize(most);
+  } else if (lines.size() == most) {  // of like lengths, so that no sign or number is alone in the last one
+    for (double share = 0.95; share > 0.3; share -= 0.05) {
+      std::vector<std::string> narrower = wrap_text(axis.label, label_size, share * height);
+      if (narrower.size() > most) break;
+      lines = std::move(narrower);
+    }
   }
   return lines;
 }

@@ -114,6 +114,26 @@ TEST_CASE("curves keep their place: points land where the axes say", "[figure]")
   CHECK(line[1].y == Approx(p.frame.y1 - 0.75 * p.frame.height()));
 }
 
+// What follows the unit says how signs are meant.
+TEST_CASE("the label of a low axis is whole", "[figure]") {
+  for (const char* label : {"axial stress (MPa), tension > 0", "axial force (N), tension > 0"})
+    for (const double height_mm : {60.0, 40.0, 34.0}) {
+      CAPTURE(label, height_mm);
+      Figure figure;
+      figure.height_mm = height_mm;
+      figure.panels.resize(1);
+      figure.panels[0].y.label = label;
+      Curve c;
+      c.x = {0, 1}, c.y = {-50, 100};
+      figure.panels[0].curves.push_back(c);
+      std::string said;
+      const plot::FigureLayout layout = plot::lay_out(figure);
+      for (const plot::Label& l : layout.panels[0].labels)
+        if (l.style.upward) said += (said.empty() ? "" : " ") + l.text;
+      CHECK(said == label);
+    }
+}
+
 TEST_CASE("equal scales are equal", "[figure]") {
   Figure figure;
   figure.panels.resize(1);
