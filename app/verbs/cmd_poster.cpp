@@ -60,8 +60,8 @@ Image draw_poses(const FrameBuilder& builder, const FrameStyle& style, bool key,
   Renderer renderer(context, style.width, style.height);
   std::vector<Image> images;
   const auto add = [&](DrawList list) {
-    list.ground.grid = false;  // its lines would break where two poses meet
-    list.stars = 0;
+    list.ground.grid = false;  // its lines would break where two poses meet, as the Earth's limb would
+    list.stars = list.planet_half_angle = 0;
     images.push_back(scaled_down(renderer.draw(list), style.width / supersample, style.height / supersample));
   };
   for (const double t : pose_times(run, poses)) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "render/image/png.hpp"
 #include "tests/app/run_program.hpp"
 
 using namespace unfurl;
@@ -136,6 +137,24 @@ TEST_CASE("EGL draws the same pixels as OSMesa, and steps in where that is missi
   REQUIRE(run_program(with(poster, {dir / "none.png"}), none).code == 0);
   CHECK(file_text(dir / "osmesa.png") == file_text(dir / "egl.png"));
   CHECK(file_text(dir / "osmesa.png") == file_text(dir / "none.png"));
+}
+
+// Where panels meet, what is behind the poses goes on: below what is written it differs from row to row only.
+TEST_CASE("a poster has no Earth whose limb would break where two poses meet") {
+  const ScratchDirectory dir;
+  const std::string file = dir / "poster.png";
+  REQUIRE(run_program({"poster", "pendulum", "-o", file, "--poses", "3", "--look", "space", "--size", "96x64",
+                       "--set", "render.title=false", "--set", "render.legend=false", "--set",
+                       "solver.end_time=0.2", "--quiet"})
+              .code == 0);
+  const Image poster = read_png(file);
+  REQUIRE(poster.width == 96);
+  const auto at = [&](int x, int y) { return poster.rgba.data() + 4 * (y * poster.width + x); };
+  for (const int seam : {32, 64})
+    for (int y = 2 * poster.height / 3; y < poster.height; ++y) {
+      CAPTURE(seam, y);
+      CHECK(std::equal(at(seam - 1, y), at(seam - 1, y) + 4, at(0, y)));
+    }
 }
 
 TEST_CASE("without OSMesa and EGL pictures end before the work, SVG and data do not need it") {
