@@ -229,12 +229,13 @@ void FrameOverlay::add_heading(double t, const Parts& wanted, const std::functio
     placed(list.labels.size() > first + 1 ? Part::second_line : Part::title);
   }
   const float line = fine_ * std::round(0.85f * small_ / fine_);
-  const auto add = [&](Part part, float size, const std::string& text) {
+  const auto add = [&](Part part, float size, const std::string& text, int most = 1) {
     if (text.empty()) return;
-    add_line_of_heading(heading, size, text, 1, list);
+    add_line_of_heading(heading, size, text, most, list);
     placed(part);
   };
-  if (wanted.contains(Part::thickness)) add(Part::thickness, small_, scale_text(looks_));
+  constexpr int factor_lines = 3;  // without its number the text says nothing
+  if (wanted.contains(Part::thickness)) add(Part::thickness, small_, scale_text(looks_), factor_lines);
   if (wanted.contains(Part::method)) {
     const SolverOptions& solver = style_.run->options;
     std::string text = solver.method;

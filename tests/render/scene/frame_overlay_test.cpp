@@ -395,4 +395,22 @@ TEST_CASE("what is above a poster is whole at every size") {
         }
 }
 
+TEST_CASE("the factor of thickness is whole beside the poses of a narrow poster") {
+  const Scene scene = read_scene_text(
+      "structure.kind = 'hoop'\nsolver.end_time = 0.2\n[render]\nrod_scale = 3\ncolour_by = 'speed'\n",
+      "s.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics diagnostics = diagnose(run);
+  FrameStyle style = film_style(scene, run, diagnostics);
+  for (const auto& [width, height] : {std::pair{120, 320}, {100, 200}, {320, 270}}) {
+    CAPTURE(width, height);
+    style.width = width, style.height = height;
+    const DrawList list = FrameBuilder(run.trajectory, style).key(run.trajectory.end_time());
+    std::string said;
+    for (const TextLabel& l : list.labels) said += l.text + " ";
+    CHECK_THAT(said, Catch::Contains("rods drawn 3.0 \u00D7 as thick"));
+    check_texts(list, width, height);
+  }
+}
+
 }  // namespace frame_overlay_test
