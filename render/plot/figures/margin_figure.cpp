@@ -83,10 +83,20 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
     moving.x.push_back(along(margin, r.fold_angle, r.s));
     moving.y.push_back(drawn(r.margin()));
   }
+  const auto shown = [](const Curve& curve) {
+    return std::ranges::any_of(curve.y, [](double y) { return std::isfinite(y); });
+  };
+  const bool any = shown(still) || shown(moving);
   margins.curves = {std::move(still), std::move(moving)};
   margins.lines.push_back({0.0, true, "", zero_line});
   Figure figure{"margin", "Margins: " + title, "", 2, 1, {std::move(forces), std::move(margins)}};
   figure.height_mm = 150;
+  if (!any) {  // hardly anything resists
+    figure.panels.pop_back();
+    figure.rows = 1;
+    figure.height_mm = 85;
+    figure.panels[0].x.shown = true;
+  }
   const MarginReach& last = margin.motion.back();
   figure.caption = "Least static margin " + words(margin.worst.margin) + " at " +
                    plot::format_number(along(margin, margin.worst.fold_angle, margin.worst.s), 4) +
@@ -94,6 +104,7 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
                    told_end(margin, plot::format_number(along(margin, last.fold_angle, last.s), 4) +
                                         (folds ? " deg" : "")) +
                    ".";
+  if (!any) figure.caption += " No margin is as low as 20, and none is drawn.";
   for (const MarginSource& source : margin.sources)
     if (source.factor != 1.0)
       figure.caption += " " + source.name + " times " + plot::format_number(source.factor, 4) + ".";

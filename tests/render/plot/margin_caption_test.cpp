@@ -38,6 +38,25 @@ TEST_CASE("the caption of a margin says how the motion ends, and none where ther
   CHECK_THAT(caption(MarginEnd::time, 0.25), Catch::Contains("at 0.9 deg when its time is up."));
 }
 
+TEST_CASE("where no margin can be drawn there is no axis of margins", "[figure]") {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  for (const double least : {infinite, 21.0, 19.0}) {
+    CAPTURE(least);
+    Margin margin;
+    margin.sources = {{"loads", "load"}};
+    margin.points = {{0.0, 1.2, VectorXd::Constant(1, 2.0), infinite},
+                     {0.5, 0.6, VectorXd::Constant(1, 3.0), least}};
+    margin.worst = margin.points[1];
+    margin.motion = {{0.0, 0.0, 1.2, 0.1, 0.2, 0.0}};  // nothing is taken up: without bound
+    margin.dynamic_min = infinite;
+    const Figure figure = margin_figure(margin, "a scene");
+    CHECK(figure.panels.size() == (least > 20 ? 1 : 2));
+    CHECK(static_cast<std::size_t>(figure.rows) == figure.panels.size());
+    CHECK(figure.panels.back().x.shown);
+    CHECK((figure.caption.find("No margin is as low as 20") != std::string::npos) == (least > 20));
+  }
+}
+
 TEST_CASE("the caption of a margin tells what stops and latches bear", "[figure]") {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   Margin margin;
