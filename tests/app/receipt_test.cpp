@@ -141,6 +141,14 @@ TEST_CASE("a table carries no receipt, and is made again from what lies beside i
   const ProgramResult foreign = run_program({"reproduce", dir.write("run/own.csv", "x\n1\n")});
   CHECK(foreign.code == 5);
   CHECK(foreign.err.find("is not in the list of what unfurl wrote there") != std::string::npos);
+  // A figure that was put beside other results is known by its receipt.
+  fs::copy_file(dir / "film/figures/energy.svg", dir / "run/put.svg");
+  CHECK(run_program({"verify", dir / "run/put.svg"}).code == 0);
+  std::string bytes = file_text(dir / "run/put.svg");
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  dir.write("run/put.svg", bytes);
+  CHECK(run_program({"verify", dir / "run/put.svg"}).code == 7);
+  CHECK(run_program({"verify", dir / "run/own.csv"}).code == 5);
 }
 
 TEST_CASE("reproduce exports what it makes again, where the command can") {
