@@ -24,9 +24,9 @@ constexpr double good_constraint = 1e-4;  // of a rod's length: beyond it there 
 // cheap, and for a step of the method to each time.
 constexpr double good_quintic = 1e-5, good_step = 0.1;
 
-// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule: 0.02 is half a
-// radian of a swing, 0.002 a sixth.
-bool is_resolved(const State& a, const State& b, double good) {
+// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule.
+bool is_resolved(const State& a, const State& b) {
+  constexpr double good = 0.02;  // half a radian of a swing
   const VectorXd mean = (b.z - a.z) / (b.t - a.t);
   const auto size = [](const VectorXd& w) { return w.lpNorm<Eigen::Infinity>(); };
   return mean.size() == 0 ||
@@ -38,7 +38,7 @@ bool is_resolved(const State& a, const State& b, double good) {
 bool joined(const Trajectory& run, std::size_t a, std::size_t b) {
   return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b) &&
          !run.report(a).singular_event &&
-         !(run.report(b).singular_event && is_resolved(run.state(a), run.state(b), 0.02));
+         !(run.report(b).singular_event && is_resolved(run.state(a), run.state(b)));
 }
 
 // The motion around state i: two steps at most, where they are smooth; of each the quintic through positions,
@@ -221,7 +221,7 @@ std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& va
   const Trajectory& t = run.trajectory;
   std::vector<std::size_t> steps;
   for (std::size_t k = 0; k + 1 < t.size() && steps.size() <= most_long; ++k)
-    if (joined(t, k, k + 1) && !is_resolved(t.state(k), t.state(k + 1), 0.002)) steps.push_back(k);
+    if (joined(t, k, k + 1) && !is_resolved(t.state(k), t.state(k + 1))) steps.push_back(k);
   if (steps.size() > most_long || (t.size() > 2 * most_long && few * steps.size() < t.size())) return {};
   std::vector<std::pair<double, std::size_t>> found;
   for (const std::size_t k : steps) {

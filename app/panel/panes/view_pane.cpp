@@ -270,7 +270,9 @@ void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
 // On a ground of its own: the structure may be behind it.
 void draw_state_line(Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame) {
   const LiveRun& run = *state.shown;
+  ImGui::PushFont(ui.bold);  // that of the title: it is wider than the other
   const std::string title = shortened(run.scene.title, frame.size.x - ui.px(40));
+  ImGui::PopFont();
   const bool failed = run.simulation.status == RunStatus::failed;
   std::string line = state_sentence(run);
   if (state.playback.playing && state.frames_per_second > 0) {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "core/diagnostics/rod_peaks.hpp"
+#include "core/diagnostics/force_uniqueness.hpp"
 #include "render/plot/ticks.hpp"
 
 namespace unfurl {
@@ -31,7 +31,7 @@ double deployed_at(const LiveRun& run) {
 }
 
 double peak_force(const LiveRun& run) {
-  const PeakForce peak = peak_rod_force(run.simulation, run.diagnostics);
+  const PeakForce peak = peak_rod_force(run.diagnostics);
   return peak.rod < 0 ? none : std::abs(peak.force_N);
 }
 
@@ -104,8 +104,8 @@ std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b, const Tra
   }
   for (ComparisonRow& row : rows) {
     if (row.label != "peak rod force") continue;
-    if (!peak_rod_force(a.simulation, a.diagnostics).unique) row.a += "*";
-    if (!peak_rod_force(b.simulation, b.diagnostics).unique) row.b += "*";
+    if (!peak_rod_force(a.diagnostics).unique) row.a += "*";
+    if (!peak_rod_force(b.diagnostics).unique) row.b += "*";
     if (row.a.ends_with("*") || row.b.ends_with("*")) row.label += " (* not unique)";
   }
   return rows;

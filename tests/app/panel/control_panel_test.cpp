@@ -415,4 +415,14 @@ TEST_CASE("the panel fits pictures from small to large") {
   }
 }
 
+TEST_CASE("a long title ends within the view") {
+  SceneDocument document = open_document("hoop6", {});
+  const std::string title(GENERATE(30, 60, 200), 'n');
+  document.overrides = {"solver.step=0.05", "title=\"" + title + "\""};
+  PanelDriver driver(PanelDriver::small(), std::move(document));
+  const plot::Rect view = driver.panel().place("view"), line = driver.panel().place("state line");
+  CHECK(line.x0 >= view.x0);
+  CHECK(line.x1 <= view.x1);
+}
+
 }  // namespace control_panel_test
