@@ -206,6 +206,7 @@ void add_words(const ExportJob& job, Page& page) {
   };
   facts("constraint error", largest("constraint_max_m") + " m");
   facts("energy balance", "off by " + largest("energy_balance_J") + " J at most");
+  const RememberedExtremes once;
   if (const PeakForce peak = peak_rod_force(run, job.diagnostics); peak.rod >= 0)
     facts("peak rod force", short_text(std::copysign(
                                 find_measure("peak_rod_force").value(run, job.diagnostics), peak.force_N)) +

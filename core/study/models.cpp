@@ -195,6 +195,7 @@ Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hoo
   out.deployment_time = deployment_time(*first);
   const double begin = thread_cpu_seconds();
   const Diagnostics found = diagnose(*first, hooks.cancelled);
+  const RememberedExtremes once;
   const PeakForce peak = peak_rod_force(*first, found);
   out.cpu_forces = thread_cpu_seconds() - begin;
   out.peak_force = peak.rod < 0 ? nan : find_measure("peak_rod_force").value(*first, found);

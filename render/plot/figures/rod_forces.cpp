@@ -24,6 +24,7 @@ std::string uniqueness_sentence(const Structure& structure, const Diagnostics& d
 }
 
 std::string peak_sentence(const Simulation& run, const Diagnostics& d) {
+  const RememberedExtremes once;
   const PeakForce peak = peak_rod_force(run, d);
   if (peak.rod < 0 || only_round_off(run, d)) return " Largest magnitude 0 N.";
   const double force = find_measure("peak_rod_force").value(run, d);

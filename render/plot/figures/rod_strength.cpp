@@ -25,6 +25,7 @@ std::string margin_text(double ratio) {
 std::string peak_sentences(const Simulation& run, const Diagnostics& d) {
   const Structure& structure = run.trajectory.structure();
   if (only_round_off(run, d)) return " Largest stress 0 MPa.";
+  const RememberedExtremes once;
   std::string text;
   if (const WorstRod worst = worst_rod(run, d, axial_stress); worst.rod >= 0) {
     const double stress = find_measure("peak_stress").value(run, d);
