@@ -268,7 +268,7 @@ TEST_CASE("every figure that is asked for by name must be there to be made") {
 TEST_CASE("a figure whose file or caption would have too long a name is refused before the run") {
   // File systems here take names of 255 bytes; ".caption.txt" has 8 more than ".svg".
   const ScratchDirectory dir;
-  for (const std::size_t length : {244, 247, 251, 300}) {
+  for (const std::size_t length : {244u, 247u, 251u, 300u}) {
     const std::string stem(length, 'a');
     const ProgramResult r = run_program(
         {"figure", "pendulum", "energy", "--set", "solver.end_time=0.1", "-o", dir / (stem + ".svg")});
