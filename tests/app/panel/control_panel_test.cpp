@@ -417,7 +417,7 @@ TEST_CASE("the panel fits pictures from small to large") {
 
 TEST_CASE("a long title ends within the view") {
   SceneDocument document = open_document("hoop6", {});
-  const std::string title(GENERATE(30, 60, 200), 'n');
+  const std::string title(GENERATE(30u, 60u, 200u), 'n');
   document.overrides = {"solver.step=0.05", "title=\"" + title + "\""};
   PanelDriver driver(PanelDriver::small(), std::move(document));
   const plot::Rect view = driver.panel().place("view"), line = driver.panel().place("state line");
