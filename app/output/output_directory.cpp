@@ -112,10 +112,7 @@ void refuse_long_name(const fs::path& file) {
 void require_writable(const fs::path& file) {
   refuse_long_name(file);
   std::error_code ignored;
-  const fs::file_status there = fs::status(file, ignored);
-  if (fs::is_directory(there)) throw FileError(file, "is a directory");
-  // A file takes its place: a device or a pipe would be lost.
-  if (fs::exists(there) && !fs::is_regular_file(there)) throw FileError(file, "is not a regular file");
+  if (fs::is_directory(file, ignored)) throw FileError(file, "is a directory");
   try {
     const PendingFile pending(file);
     write_file_atomically(pending.name(), std::string_view("can this directory be written to?\n"),

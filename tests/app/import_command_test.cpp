@@ -74,7 +74,9 @@ TEST_CASE("import says what it reads and what it cannot") {
   for (const bool force : {false, true}) {
     std::vector<std::string> words = {"import", plates, "-o", pipe};
     if (force) words.emplace_back("--force");
-    CHECK(refused(words, 5).err == "unfurl: " + pipe + ": is not a regular file\n");
+    CHECK(refused(words, 5).err ==
+          "unfurl: " + pipe +
+              ": is a device, a pipe or a socket: no file takes its place; name another one\n");
     words[3] = dir / "";
     CHECK(refused(words, 5).err == "unfurl: " + words[3] + ": is a directory\n");
   }
