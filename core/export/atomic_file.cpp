@@ -161,7 +161,7 @@ bool is_no_file(const std::filesystem::path& path) {
 PendingFile::PendingFile(std::filesystem::path target) : target_(std::move(target)) {
   if (!target_.has_filename()) throw FileError(target_, EISDIR);
   if (is_no_file(target_))
-    throw FileError(target_, "is a device, a pipe or a socket: no file takes its place; name another one");
+    throw FileError(target_, "is a device, a pipe or a socket, which no file replaces; name another one");
   while (file_ < 0) {
     temporary_ = random_name(target_.parent_path());
     file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);

@@ -76,7 +76,7 @@ TEST_CASE("import says what it reads and what it cannot") {
     if (force) words.emplace_back("--force");
     CHECK(refused(words, 5).err ==
           "unfurl: " + pipe +
-              ": is a device, a pipe or a socket: no file takes its place; name another one\n");
+              ": is a device, a pipe or a socket, which no file replaces; name another one\n");
     words[3] = dir / "";
     CHECK(refused(words, 5).err == "unfurl: " + words[3] + ": is a directory\n");
   }
