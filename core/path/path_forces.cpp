@@ -175,7 +175,9 @@ Index PathForces::add_measure(const Measure& measure) {
 Index PathForces::add_remaining() {
   remaining_angles_ = angle_count_;
   angle_count_ += structure_.deployment.first_angles().size();
-  return remaining_ = columns_++;
+  remaining_ = columns_;
+  columns_ += structure_.deployment.measured ? 1 : 2;
+  return remaining_;
 }
 
 VectorXd PathForces::first_angles() const {
@@ -231,8 +233,17 @@ void PathForces::evaluate(const VectorXd& q, const VectorXd& dq, VectorXd& angle
   VectorXd own = angles.segment(remaining_angles_, structure_.deployment.first_angles().size());
   structure_.deployment.count_on(q, own);
   angles.segment(remaining_angles_, own.size()) = own;
-  value[remaining_] = structure_.deployment.remaining(q, own);
+  const Deployment& d = structure_.deployment;
   scale[remaining_] = 1.0;
+  if (d.measured) {
+    value[remaining_] = d.remaining(q, own);
+    return;
+  }
+  const double c = std::cos(d.deployed_fold_angle), s = std::sin(d.deployed_fold_angle),
+               sine = d.fold_sine(q), cosine = d.fold_cosine(q);
+  value[remaining_] = c * sine - s * cosine;
+  value[remaining_ + 1] = c * cosine + s * sine;
+  scale[remaining_ + 1] = 1.0;
 }
 
 }  // namespace unfurl

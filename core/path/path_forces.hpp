@@ -48,7 +48,9 @@ class PathForces final : public PathFunctions {
   PathForces(const Structure& structure, const System& system, bool separately);
 
   Index add_measure(const Measure& measure);  // its column; before a table is made
-  Index add_remaining();                      // of the deployment: 0 in the deployed pose
+  // Of the deployment: what remains of a measure, or sine and, behind it, cosine of the angle to the deployed
+  // pose, of which remaining_of_fold() is not smooth.
+  Index add_remaining();
 
   const std::vector<Source>& sources() const { return sources_; }
   const std::vector<Cable>& cables() const { return cables_; }

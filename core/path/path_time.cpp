@@ -187,7 +187,10 @@ std::optional<double> deployed_pose(const Path& path, const Deployment& deployme
       PathLook now{piece->at(x[at]), 0, last.angles};
       deployment.count_on(piece->q.col(at), now.angles);
       now.left = deployment.remaining(piece->q.col(at), now.angles);
-      if (looks > 0 && now.left <= 0) return search.crossing(last, now);
+      if (looks > 0 && now.left <= 0) {
+        if (deployment.is_passed(last.left, now.left)) return search.crossing(last, now);
+        looks = 0;  // through the opposite pose: deployed comes from the other side
+      }
       if (looks > 1 && last.left <= before.left && last.left < now.left)
         if (const auto dip = search.dip(before, now)) return search.crossing(before, *dip);
       looks += looks > 0 || now.left > 0;

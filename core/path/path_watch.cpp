@@ -18,6 +18,7 @@ constexpr double never_moves = 1e-11;  // over a piece of the path, of a turn or
 PathWatch::PathWatch(const Structure& structure, const OneSided& sides, double step, bool deployed)
     : sides_(sides),
       deploys_(deployed && !structure.deployment.empty()),
+      folds_(!structure.deployment.measured),
       step_(step),
       shift_(sides.stops().size(), 0.0),
       margin_(singular_margin) {
@@ -43,6 +44,13 @@ void PathWatch::begin(const State& start, const System& system) {
   const double fold = remaining(0.0);
   if (fold > deployed_already) margin_ = std::min(singular_margin, 0.1 * fold);
   armed_ = fold > margin_;
+}
+
+ValueAndSlope PathWatch::remaining_at(double s) const {
+  ValueAndSlope m = law_->table().at(deployed_column_, s);
+  if (!folds_) return m;
+  const double cosine = law_->table().at(deployed_column_ + 1, s).value;
+  return {remaining_of_fold(m.value, cosine), cosine >= 0 ? m.slope : -m.slope};
 }
 
 bool PathWatch::clear(const PathMotion& motion, double t) const {
@@ -106,7 +114,7 @@ void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out, Vecto
     if (sides_.slip(i) != 0)
       out[static_cast<Index>(i)] = sides_.slip(i) * friction_slope(i, s) * v / sides_.zero_rate(i);
   if (deployed_column_ < 0 || deployed_) return;
-  const ValueAndSlope m = law_->table().at(deployed_column_, s);
+  const ValueAndSlope m = remaining_at(s);
   out[out.size() - 1] = m.value;
   rates[out.size() - 1] = m.slope * v;
 }
@@ -146,6 +154,7 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
   for (const double t1 : looked_at(motion, from, to)) {
     margins(motion, t1, b, rates_b);
     if (a[deployed] > margin_) armed_ = true;
+    if (armed_ && folds_ && b[deployed] <= 0 && !is_fold_passed(a[deployed], b[deployed])) armed_ = false;
     const auto below = [&](Index i, double m) { return i < deployed ? m < -1 : armed_ && m <= 0; };
     for (Index i = 0; i <= deployed; ++i) {
       double end = t1, left = b[i];

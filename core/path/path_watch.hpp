@@ -30,7 +30,7 @@ class PathWatch {
 
   // The deployed pose was further away than the margin at that time.
   bool clear(const PathMotion& motion, double t) const;
-  double remaining(double s) const { return law_->table().at(deployed_column_, s).value; }  // sine
+  double remaining(double s) const { return remaining_at(s).value; }  // as of the deployment
   // Whether the motion touches this stop, now, and goes on into it.
   bool meets(const PathMotion& motion, std::size_t stop) const;
   double gap_slope(std::size_t stop, double s) const;  // by s
@@ -44,6 +44,7 @@ class PathWatch {
   bool friction_moves(std::size_t i) const;
 
  private:
+  ValueAndSlope remaining_at(double s) const;
   // With their rates where those follow from the pose and the speed, 0 otherwise.
   void margins(const PathMotion& motion, double t, VectorXd& out, VectorXd& rates) const;
   double margin(const PathMotion& motion, double t, Index i) const;
@@ -55,7 +56,7 @@ class PathWatch {
   double zero_of(const PathMotion& motion, Index i, double a, double b) const;
 
   const OneSided& sides_;
-  bool deploys_;
+  bool deploys_, folds_;  // by a fold angle
   double step_;
   const PathLaw* law_ = nullptr;
   std::vector<Index> stop_columns_;

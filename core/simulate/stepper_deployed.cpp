@@ -58,6 +58,8 @@ std::optional<double> Stepper::Loop::dip_inside(const Probe& to) {
     left.push_back(fold(state) - margin_);
   }
   left.push_back(fold(to.state) - margin_);
+  for (std::size_t k = 1; k < left.size(); ++k)
+    if (left[k - 1] > 0 && left[k] <= 0 && !deployment_.is_passed(left[k - 1], left[k])) return {};
   const double near_zero = 0.1 * *std::ranges::max_element(left);
   const auto integrator = fresh_integrator();
   const auto solve = [&](std::size_t k, Probe& probe) {

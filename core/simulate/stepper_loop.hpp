@@ -427,7 +427,8 @@ class Stepper::Loop {
 
   bool crosses(const State& next) {
     if (deployment_.empty() || deployed_) return false;
-    return fold(now()) > margin_ && fold(next) <= margin_;
+    const double before = fold(now()), after = fold(next);
+    return before > margin_ && after <= margin_ && deployment_.is_passed(before, after);
   }
 
   // Could the fold angle reach zero within a time? Where sine * rate is constant, after sine / (2 rate). Not

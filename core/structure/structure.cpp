@@ -72,9 +72,15 @@ double Deployment::fraction(const ConstVec& q, const VectorXd& angles) const {
   return beyond(fold_angle(q)) / beyond(deployed_fold_angle);
 }
 
+double remaining_of_fold(double sine, double cosine) {
+  return cosine >= 0 ? sine : std::copysign(2 - std::abs(sine), sine);
+}
+
 double Deployment::remaining(const ConstVec& q, const VectorXd& angles) const {
   if (measured) return (deployed - measured_value(*this, q, angles)) / (deployed - stowed);
-  return std::cos(deployed_fold_angle) * fold_sine(q) - std::sin(deployed_fold_angle) * fold_cosine(q);
+  const double c = std::cos(deployed_fold_angle), s = std::sin(deployed_fold_angle), sine = fold_sine(q),
+               cosine = fold_cosine(q);
+  return remaining_of_fold(c * sine - s * cosine, c * cosine + s * sine);
 }
 
 double Deployment::remaining_rate(const ConstVec& q, const ConstVec& v) const {
@@ -84,8 +90,20 @@ double Deployment::remaining_rate(const ConstVec& q, const ConstVec& v) const {
     function.value_and_gradient(q.data(), gradient.data());
     return -function.rate(gradient.data(), v.data()) / (deployed - stowed);
   }
-  return std::cos(deployed_fold_angle) * fold_sine.rate(v) -
-         std::sin(deployed_fold_angle) * fold_cosine.rate(v);
+  const double c = std::cos(deployed_fold_angle), s = std::sin(deployed_fold_angle),
+               rate = c * fold_sine.rate(v) - s * fold_cosine.rate(v);
+  return c * fold_cosine(q) + s * fold_sine(q) >= 0 ? rate : -rate;
+}
+
+bool is_fold_passed(double left_before, double left_after) {
+  const auto angle = [](double left) {
+    return std::abs(left) <= 1 ? std::asin(left) : std::copysign(pi - std::asin(2 - std::abs(left)), left);
+  };
+  return angle(left_before) - angle(left_after) < pi;
+}
+
+bool Deployment::is_passed(double left_before, double left_after) const {
+  return measured || is_fold_passed(left_before, left_after);
 }
 
 std::vector<char> shown_rods(const Structure& structure) {

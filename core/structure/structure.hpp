@@ -209,14 +209,22 @@ struct Deployment {
   // pose is taken to be within half a turn of the middle of both values.
   double fraction(const ConstVec& q, const VectorXd& angles = {}) const;
   // sin(fold - deployed), or 1 - fraction of a measure, of which the deployed event is the zero, and its rate
-  // [1/s]; the sine is linear.
+  // [1/s]; the sine is linear. Beyond a right angle the sine falls again, and is zero in the pose opposite
+  // to the deployed one: there it is sign (2 - |sine|), which goes on to +-2 at half a turn.
   double remaining(const ConstVec& q, const VectorXd& angles = {}) const;
   double remaining_rate(const ConstVec& q, const ConstVec& v) const;
+  bool is_passed(double left_before, double left_after) const;  // is_fold_passed(), of a measure always
   // The measure's angles that count turns: those at t = 0, and in a pose from those of one that is less than
   // half a turn away.
   VectorXd first_angles() const;
   void count_on(const ConstVec& q, VectorXd& angles) const;
 };
+
+// What remains of a fold, by sine and cosine of the angle to the deployed pose (Deployment::remaining()).
+double remaining_of_fold(double sine, double cosine);
+// Whether between two poses, of which the first has something left and the second nothing, the deployed one
+// lies, and not that opposite to it: on the shorter way.
+bool is_fold_passed(double left_before, double left_after);
 
 // A length of the whole that is reported where a structure has it: `name` with its unit is a column of the
 // series.
