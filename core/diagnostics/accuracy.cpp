@@ -7,6 +7,7 @@
 
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/good_part.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/integrators/stage_equations.hpp"
 #include "core/math/largest.hpp"
@@ -235,6 +236,24 @@ std::string without_bound(const Trajectory& run) {
   return {};
 }
 
+// Of a run that goes through singular poses; empty where its rods' forces are bounded there.
+std::string without_bound_on_the_way(const Simulation& run, const Diagnostics& d) {
+  if (std::ranges::none_of(run.events, [](const Event& e) { return e.kind == "singular_pose"; })) return {};
+  const RememberedExtremes once;
+  const PeakInMotion most = extreme_of_column(run, d, "axial_force_max_N", true),
+                     least = extreme_of_column(run, d, "axial_force_min_N", false);
+  if (most.bounded && least.bounded) return {};
+  const PeakForce peak = peak_rod_force(run, d, most.bounded ? Pull::compression : Pull::tension);
+  if (peak.rod < 0) return {};
+  std::ostringstream text;
+  text.precision(6);
+  text << "the force of rod " << run.trajectory.structure().rods[static_cast<std::size_t>(peak.rod)].name
+       << " grows without bound towards a singular pose beside t = " << peak.t
+       << " s, which is passed on the way: its peak there, and what follows from it, is that of the nearest "
+          "pose that was looked at, and larger with shorter steps";
+  return text.str();
+}
+
 std::string words_of_interruption(const Diagnostics& d) {
   if (d.left_open >= d.t.size())
     return "interrupted before the run was judged: series, rod forces and measures are empty";
@@ -286,6 +305,8 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
   }
   if (std::string text_of_forces = without_bound(run.trajectory); !text_of_forces.empty())
     warnings.push_back(std::move(text_of_forces));
+  if (std::string on_the_way = without_bound_on_the_way(run, d); !on_the_way.empty())
+    warnings.push_back(std::move(on_the_way));
   return warnings;
 }
 

@@ -268,6 +268,26 @@ struct Samples {
   PeakInMotion parabola(std::size_t k) const {
     return vertex({t[k - 1], t[k], t[k + 1]}, {x[k - 1], x[k], x[k + 1]});
   }
+  std::size_t highest() const {
+    std::size_t k = 0;
+    for (std::size_t j = 0; j < x.size(); ++j)
+      if (x[j] > x[k] || std::isnan(x[k])) k = j;
+    return k;
+  }
+  // Whether the values rise to the highest as to a pole 1 / |t - t*| within one time of it, in three times on
+  // a side: pure ones by 3/2 or 2 at least, beside what else acts by less.
+  bool has_pole() const {
+    const std::size_t k = highest();
+    const auto rises = [&](std::size_t far, std::size_t near) {
+      const double first = x[near] / x[far], second = x[k] / x[near];
+      return x[far] > 0 && ((first >= 1.5 && second > 1) || (first >= 1.2 && second >= 1.6));
+    };
+    return (k >= 2 && rises(k - 2, k - 1)) || (k + 2 < x.size() && rises(k + 2, k + 1));
+  }
+  bool is_sharp() const {
+    const std::size_t k = highest();
+    return has_both(k) && x[k] > 1.1 * std::min(x[k - 1], x[k + 1]);
+  }
 
   std::vector<double> t, x;
 };
@@ -283,6 +303,9 @@ PeakInMotion closer(const Neighbourhood& around, const StateValues& values, Peak
   for (const std::size_t k : all.tops(best.value)) {
     const Samples some(around, all.t[k > 0 ? k - 1 : 0], all.t[std::min(k + 1, all.t.size() - 1)], values);
     for (std::size_t j = 0; j < some.x.size(); ++j) take(some.x[j], some.t[j]);
+    bool pole = some.has_pole();
+    if (const std::size_t top = some.highest(); !pole && some.is_sharp())
+      pole = Samples(around, some.t[top - 1], some.t[top + 1], values).has_pole();
     for (const std::size_t at : some.tops(best.value)) {
       if (!some.has_both(at)) continue;
       const PeakInMotion top = some.parabola(at);
@@ -290,6 +313,7 @@ PeakInMotion closer(const Neighbourhood& around, const StateValues& values, Peak
       // A corner has no parabola; next to a singular pose one state by itself may say anything.
       take(std::abs(there - some.x[at]) <= 2 * above ? there : top.value, top.t);
     }
+    if (pole && best.t >= some.t.front() && best.t <= some.t.back()) best.bounded = false;
   }
   return best;
 }

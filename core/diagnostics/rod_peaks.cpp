@@ -48,6 +48,7 @@ PeakForce peak_rod_force(const Simulation& run, const Diagnostics& d, Pull pull)
     return pull == Pull::either ? std::abs(force) : pull == Pull::tension ? force : -force;
   });
   if (there.rod >= 0) peak = {there.force_N, there.rod, top.t, peak.unique && there.unique};
+  peak.unique = peak.unique && top.bounded;
   return peak;
 }
 
@@ -68,6 +69,7 @@ WorstRod worst_rod(const Simulation& run, const Diagnostics& d,
   const Bearer there = bearer(run, d, top.t, [&](Index r, double force) { return std::abs(of(r, force)); });
   if (there.rod >= 0)
     worst = {of(there.rod, there.force_N), there.rod, top.t, there.unique && !d.axial_force.hasNaN()};
+  worst.unique = worst.unique && top.bounded;
   return worst;
 }
 

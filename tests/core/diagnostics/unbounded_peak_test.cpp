@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Forces that grow without bound towards a singular pose on the way have no peak, and a run says so.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
+#include "core/path/path_run.hpp"
+#include "core/scene/library.hpp"
+#include "core/simulate/singular_poses.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace unbounded_peak_test {
+
+namespace {
+
+bool warns(const Simulation& run, const Diagnostics& d) {
+  return std::ranges::any_of(accuracy_warnings(run, d), [](const std::string& w) {
+    return w.find("grows without bound towards a singular pose beside t = ") != std::string::npos;
+  });
+}
+
+Simulation with_poses(Simulation run) {
+  record_singular_poses(run);
+  return run;
+}
+
+// Two scissors in a row, pulled towards the bundle, in which all of their bars lie on each other.
+const std::string scissors = R"toml(
+variables = {L = 0.5, th = 0.5}
+structure.kind = "custom"
+structure.nodes = [{name = "A0", position = [0,0,0], fixed = true},
+  {name = "B0", position = [0,0,"=2*L*cos(th)"]},
+  {repeat = {i = "0:2"}, name = "M{i}", position = ["=(2*i+1)*L*sin(th)",0,"=L*cos(th)"]},
+  {repeat = {i = "1:3"}, name = "A{i}", position = ["=2*i*L*sin(th)",0,0]},
+  {repeat = {i = "1:3"}, name = "B{i}", position = ["=2*i*L*sin(th)",0,"=2*L*cos(th)"]}]
+structure.rods = [{repeat = {i = "0:2"}, nodes = ["A{i}","M{i}"], mass = 0.2},
+  {repeat = {i = "0:2"}, nodes = ["M{i}","B{i+1}"], mass = 0.2},
+  {repeat = {i = "0:2"}, nodes = ["B{i}","M{i}"], mass = 0.2},
+  {repeat = {i = "0:2"}, nodes = ["M{i}","A{i+1}"], mass = 0.2}]
+constraints = [{kind = "plane", nodes = ["*"], normal = [0,1,0]},
+  {repeat = {i = "0:2"}, kind = "collinear", nodes = ["A{i}","B{i+1}","M{i}"]},
+  {repeat = {i = "0:2"}, kind = "collinear", nodes = ["B{i}","A{i+1}","M{i}"]},
+  {kind = "line", nodes = ["B0"], direction = [0,0,1]}]
+loads = [{nodes = ["A2"], force = [-4,0,0]}]
+solver = {stages = 6, end_time = 0.7}
+)toml";
+
+}  // namespace
+
+// Beside the poses in which the windows of the ladder are in line its rods bear c / |t - t*|, with the same c
+// whatever the steps: 0.10 to 0.12 N s on both sides, of states up to 0.3 ms from them.
+TEST_CASE("the peak of a force that has no bound is not unique, and a run says so") {
+  for (const double step : {0.02, 0.01, 0.005}) {
+    INFO(step);
+    const Scene scene = read_scene_file(find_scene("ladder"), {"solver.step=" + std::to_string(step)});
+    const Simulation run = with_poses(simulate(build_model(scene), scene.solver));
+    const Diagnostics d = diagnose(run);
+    const PeakForce peak = peak_rod_force(run, d);
+    CHECK_FALSE(peak.unique);
+    CHECK(warns(run, d));
+    double nearest = 1;
+    for (const Event& e : run.events)
+      if (e.kind == "singular_pose") nearest = std::min(nearest, std::abs(e.t - peak.t));
+    CHECK(std::abs(peak.force_N) * nearest > 0.08);  // what other poses add, 25 N and less, at 1 ms
+    CHECK(std::abs(peak.force_N) * nearest < 0.15);
+  }
+}
+
+// By numbers of its own for the multipliers: 1.5 N over the angle to the bundle.
+TEST_CASE("a bundle of scissors is passed with a force that has no bound, full and along the path") {
+  for (const bool path : {false, true})
+    for (const double step : {0.05, 0.01, 0.002}) {
+      INFO(path << " " << step);
+      const Scene scene = read_scene_text(scissors, "s.toml", {"solver.step=" + std::to_string(step)});
+      const auto model = build_model(scene);
+      const Simulation run =
+          with_poses(path ? simulate_on_path(model, scene.solver) : simulate(model, scene.solver));
+      const Diagnostics d = diagnose(run);
+      CHECK_FALSE(peak_rod_force(run, d).unique);
+      CHECK(warns(run, d));
+    }
+}
+
+// Smooth peaks, and those of steps that are too long for them, a corner of a drive's force and a blow.
+TEST_CASE("a peak that has a bound is as unique as it was") {
+  for (const char* name :
+       {"pendulum", "four_bar", "double_pendulum", "hoberman", "hoop6_sector", "scissor_mast"})
+    for (const char* step : {"solver.step=0.01", "solver.step=0.05"}) {
+      INFO(name << " " << step);
+      const Scene scene = read_scene_file(find_scene(name), {step});
+      const Simulation run = with_poses(simulate(build_model(scene), scene.solver));
+      const Diagnostics d = diagnose(run);
+      CHECK(peak_rod_force(run, d).unique == peak_rod_force(d).unique);
+      CHECK_FALSE(warns(run, d));
+      CHECK(extreme_of_column(run, d, "axial_force_max_N", true).bounded);
+      CHECK(extreme_of_column(run, d, "axial_force_min_N", false).bounded);
+    }
+}
+
+}  // namespace unbounded_peak_test
