@@ -59,7 +59,7 @@ ExportedLooks exported_looks(const Scene& scene, const Trajectory& run) {
     for (const ShownSurface& s : shown) {
       std::vector<Vec3> edge;
       for (const int n : s.nodes) edge.push_back(up * pose.segment<3>(3 * n));
-      Skin skin = skin_of(s.surface, edge, s.turned);
+      Skin skin = skin_of(s.surface, edge, s.plan);
       const Eigen::Matrix3f back = up.transpose().cast<float>();
       for (SkinVertex& v : skin.vertices) v.at = back * v.at, v.normal = back * v.normal;
       surfaces.push_back(exported_surface(skin, s.surface.kind));

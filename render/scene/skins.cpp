@@ -32,6 +32,12 @@ Vec3 middle_of(const std::vector<Vec3>& edge) {
   return middle;
 }
 
+double diameter_of(const std::vector<Vec3>& edge, const Vec3& middle) {
+  double diameter = 0;
+  for (const Vec3& p : edge) diameter += 2 * (p - middle).norm() / static_cast<double>(edge.size());
+  return diameter;
+}
+
 // Area vector of a polygon around its middle.
 Vec3 area_of(const std::vector<Vec3>& edge, const Vec3& middle) {
   Vec3 area = Vec3::Zero();
@@ -129,32 +135,43 @@ std::vector<int> clipped_ears(const std::vector<Vec3>& edge, const Vec3& up) {
         return no_ear;
     return turn / sides;
   };
+  // What keeps a corner from being an ear is a node with more than half a turn, which no cut takes away, or
+  // one on its triangle's edge: both neighbours of what is cut off are judged anew, and all where none is
+  // left.
+  std::vector<double> found(left.size());
+  const auto judge = [&](std::size_t k) {
+    const std::size_t n = left.size();
+    found[k % n] = quality(left[(k + n - 1) % n], left[k % n], left[(k + 1) % n]);
+  };
+  const auto judge_all = [&] {
+    for (std::size_t k = 0; k < left.size(); ++k) judge(k);
+  };
+  const auto most = [&] { return static_cast<std::size_t>(std::ranges::max_element(found) - found.begin()); };
+  judge_all();
   while (left.size() >= 3) {
     const std::size_t n = left.size();
-    std::size_t best = 0;
-    double most = no_ear;
-    for (std::size_t k = 0; k < n; ++k) {
-      const double q = quality(left[(k + n - 1) % n], left[k], left[(k + 1) % n]);
-      if (!(q > most)) continue;
-      most = q, best = k;
+    std::size_t best = most();
+    if (!(found[best] > no_ear)) {
+      judge_all();
+      best = most();
+      if (!(found[best] > no_ear)) return {};
     }
-    if (most == no_ear) return {};
     for (const std::size_t k : {best + n - 1, best, best + 1}) triangles.push_back(left[k % n]);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
+    found.erase(found.begin() + static_cast<std::ptrdiff_t>(best));
+    judge(best + left.size() - 1);
+    judge(best);
   }
   return triangles;
 }
 
-// Cells are squares of the plane, so many along the diameter. False: it crosses itself.
-bool clipped(Skin& skin, const std::vector<Vec3>& edge, const Vec3& middle, const Vec3& up, double diameter,
-             int cells) {
-  const std::vector<int> triangles = clipped_ears(edge, up);
-  if (triangles.empty()) return false;
-  const Vec3 across = (edge[1] - edge[0]).normalized(), along = up.cross(across).normalized();
-  for (const Vec3& p : edge)
-    add(skin, p, cells * across.dot(p - middle) / diameter, cells * along.dot(p - middle) / diameter);
-  for (const int i : triangles) skin.triangles.push_back(static_cast<std::uint32_t>(i));
-  return true;
+// Cells are squares of the plane, so many along the diameter.
+void cut_up(Skin& skin, const std::vector<int>& cut, const std::vector<Vec3>& edge, const Vec3& middle,
+            const Vec3& area, double diameter, int cells) {
+  const Vec3 across = (edge[1] - edge[0]).stableNormalized(), along = area.cross(across).stableNormalized();
+  const double cell = diameter > 0 ? diameter / cells : 1.0;
+  for (const Vec3& p : edge) add(skin, p, across.dot(p - middle) / cell, along.dot(p - middle) / cell);
+  for (const int i : cut) skin.triangles.push_back(static_cast<std::uint32_t>(i));
 }
 
 // The mean of the triangles around each vertex.
@@ -171,37 +188,36 @@ void find_normals(Skin& skin) {
 
 }  // namespace
 
-bool is_turned(const std::vector<Vec3>& edge) {
-  const Vec3 area = area_of(edge, middle_of(edge));
-  return area.z() < -0.05 * area.norm();
+SkinPlan plan_of(const SceneSurface& surface, const std::vector<Vec3>& first, const std::vector<Vec3>& last) {
+  const bool folded = area_of(last, middle_of(last)).norm() < 0.5 * area_of(first, middle_of(first)).norm();
+  std::vector<Vec3> edge = folded ? first : last;
+  const Vec3 middle = middle_of(edge), seen = area_of(edge, middle);
+  SkinPlan plan;
+  plan.turned = seen.z() < -0.05 * seen.norm();
+  if (plan.turned) std::ranges::reverse(edge);
+  const Vec3 area = area_of(edge, middle);
+  if (surface.shape == "flat" && has_notch(edge, middle, area, diameter_of(edge, middle)))
+    plan.cut = clipped_ears(edge, area.normalized());
+  return plan;
 }
 
-bool is_turned(const std::vector<Vec3>& first, const std::vector<Vec3>& last) {
-  const double at_first = area_of(first, middle_of(first)).norm(),
-               at_last = area_of(last, middle_of(last)).norm();
-  return is_turned(at_last < 0.5 * at_first ? first : last);
-}
-
-Skin skin_of(const SceneSurface& surface, const std::vector<Vec3>& given, bool turned) {
+Skin skin_of(const SceneSurface& surface, const std::vector<Vec3>& given, const SkinPlan& plan) {
   Skin skin;
   const Coat coat = coat_of(surface);
   skin.weave = coat.weave, skin.front = coat.front, skin.back = coat.back;
   skin.opacity = surface.opacity > 0 ? static_cast<float>(surface.opacity) : coat.opacity;
   if (given.size() < 3) return skin;
   std::vector<Vec3> edge = given;
-  if (turned) std::ranges::reverse(edge);
+  if (plan.turned) std::ranges::reverse(edge);
   const Vec3 middle = middle_of(edge), area = area_of(edge, middle);
-  double diameter = 0;
-  for (const Vec3& p : edge) diameter += 2 * (p - middle).norm() / static_cast<double>(edge.size());
+  const double diameter = diameter_of(edge, middle);
   Vec3 down = Vec3::Zero();
   if (surface.shape == "paraboloid" && area.norm() > 0)
     down = -diameter / (16 * surface.focal_ratio) * area.normalized();
-  const bool flat = surface.shape == "flat";
-  skin.square = edge.size() == 4;
-  if (flat && has_notch(edge, middle, area, diameter) &&
-      clipped(skin, edge, middle, area.normalized(), diameter, surface.cells))
-    skin.square = true;
-  else if (edge.size() == 4 && flat)
+  skin.square = edge.size() == 4 || !plan.cut.empty();
+  if (!plan.cut.empty())
+    cut_up(skin, plan.cut, edge, middle, area, diameter, surface.cells);
+  else if (edge.size() == 4 && surface.shape == "flat")
     quad(skin, edge, surface.cells);
   else
     fan(skin, edge, middle, down, surface.cells);

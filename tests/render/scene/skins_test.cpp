@@ -36,7 +36,7 @@ TEST_CASE("a paraboloid has its focus where its ratio says") {
   surface.kind = "paraboloid", surface.shape = "paraboloid", surface.focal_ratio = ratio;
   // 48 nodes: every point of the fan lies on a ray from the middle to a node.
   const std::vector<Vec3> edge = ring(48, radius, center);
-  const Skin skin = skin_of(surface, edge, is_turned(edge));
+  const Skin skin = skin_of(surface, edge, plan_of(surface, edge, edge));
   REQUIRE(skin.vertices.size() > 400);
   double lowest = 1e9;
   for (const SkinVertex& v : skin.vertices) lowest = std::min(lowest, static_cast<double>(v.at.z()));
@@ -90,7 +90,7 @@ TEST_CASE("a surface with notches covers what is within its edge once and nothin
         if (back) std::ranges::reverse(edge);
         SceneSurface surface;
         surface.kind = "membrane";
-        const Skin skin = skin_of(surface, edge, is_turned(edge));
+        const Skin skin = skin_of(surface, edge, plan_of(surface, edge, edge));
         CAPTURE(edge.size(), back);
         // Triangles of n nodes that turn one way and have the area of the shape together lie side by side in
         // it.
@@ -110,7 +110,23 @@ TEST_CASE("a surface with notches covers what is within its edge once and nothin
   // What lines from its middle stay within is drawn as ever, dents and all.
   const std::vector<Vec3> star = {{1, 0, 0},  {0.4, 0.4, 0},   {0, 1, 0},  {-0.4, 0.4, 0},
                                   {-1, 0, 0}, {-0.4, -0.4, 0}, {0, -1, 0}, {0.4, -0.4, 0}};
-  CHECK(skin_of(SceneSurface(), star, false).vertices.size() > 400);
+  CHECK(skin_of(SceneSurface(), star, plan_of(SceneSurface(), star, star)).vertices.size() > 400);
+}
+
+TEST_CASE("a surface keeps its triangles while a notch comes and goes") {
+  // A corner that swings in the plane from outside to within the others.
+  const std::vector<Vec3> kite = {{0, 0, 0}, {2, 0, 0}, {1.6, 1.6, 0}, {0, 2, 0}},
+                          dart = {{0, 0, 0}, {2, 0, 0}, {0.9, 0.9, 0}, {0, 2, 0}};
+  SceneSurface surface;
+  surface.kind = "membrane";
+  for (const bool opens : {false, true}) {
+    const SkinPlan plan = plan_of(surface, opens ? dart : kite, opens ? kite : dart);
+    CHECK(plan.cut.empty() == opens);  // as it is in the last pose
+    const Skin one = skin_of(surface, kite, plan), other = skin_of(surface, dart, plan);
+    CHECK(one.triangles == other.triangles);
+    CHECK(one.vertices.size() == other.vertices.size());
+    CHECK(one.vertices.size() == (opens ? 81 : 4));  // 8 x 8 parts; the nodes
+  }
 }
 
 TEST_CASE("a panel is spanned between its edges, whichever way its nodes go around") {
@@ -118,8 +134,8 @@ TEST_CASE("a panel is spanned between its edges, whichever way its nodes go arou
   SceneSurface surface;
   surface.kind = "solar_panel";
   const std::vector<Vec3> back(edge.rbegin(), edge.rend());
-  for (const Skin& skin :
-       {skin_of(surface, edge, is_turned(edge)), skin_of(surface, back, is_turned(back))}) {
+  for (const Skin& skin : {skin_of(surface, edge, plan_of(surface, edge, edge)),
+                           skin_of(surface, back, plan_of(surface, back, back))}) {
     for (const SkinVertex& v : skin.vertices) {
       const double x = static_cast<double>(v.at.x()) / 2, y = static_cast<double>(v.at.y());
       const double z = (1 - y) * ((1 - x) * 1 + x * 1.3) + y * ((1 - x) * 0.8 + x * 1);
@@ -202,7 +218,7 @@ TEST_CASE("a mesh lets light through and shades the floor, a panel does not") {
     surface.kind = kind;
     // High above: its shadow is below it, the camera sees the floor past it.
     list.skins = {
-        skin_of(surface, {{-1.5, -1.5, 3.0}, {1.5, -1.5, 3.0}, {1.5, 1.5, 3.0}, {-1.5, 1.5, 3.0}}, false)};
+        skin_of(surface, {{-1.5, -1.5, 3.0}, {1.5, -1.5, 3.0}, {1.5, 1.5, 3.0}, {-1.5, 1.5, 3.0}}, {})};
     return brightness(renderer.draw(list), seen);
   };
   const int mesh = with("mesh"), panel = with("solar_panel");
