@@ -51,7 +51,7 @@ void add_shown(std::vector<Vec3>& pose, const std::vector<ShownSurface>& surface
                const Appearance& looks) {
   for (const ShownSurface& shown : surfaces) {
     const std::vector<Vec3> edge = edge_of(shown, pose);
-    pose.push_back(skin_of(shown.surface, edge, shown.turned).vertices.front().at.cast<double>());
+    pose.push_back(skin_of(shown.surface, edge, shown.plan).vertices.front().at.cast<double>());
   }
   for (std::size_t n = 0; support_depth > 0 && n < looks.fixed.size(); ++n)
     if (looks.fixed[n] && looks.joint_radius[n] > 0) pose.push_back(pose[n] - support_depth * Vec3::UnitZ());
@@ -72,7 +72,6 @@ FrameBuilder::FrameBuilder(const Trajectory& trajectory, FrameStyle style)
   prepare_still(prepare_camera());
   prepare_ghosts();
   prepare_trails();
-  overlay_ = std::make_unique<FrameOverlay>(trajectory_, style_, *look_, looks_, field_.get(), upright_);
 }
 FrameBuilder::~FrameBuilder() = default;
 FrameBuilder::FrameBuilder(FrameBuilder&&) noexcept = default;
@@ -115,10 +114,11 @@ double FrameBuilder::prepare_camera() {
     times.push_back(trajectory_.time(i));
   }
   for (ShownSurface& shown : style_.surfaces)
-    shown.turned = is_turned(edge_of(shown, poses.front()), edge_of(shown, poses.back()));
+    shown.plan = plan_of(shown.surface, edge_of(shown, poses.front()), edge_of(shown, poses.back()));
   bound(poses, times);
   looks_ = appearance_of(s, shown_radius_, style_.options.rod_scale);
   const double thickest = looks_.joint_radius.empty() ? 0.0 : *std::ranges::max_element(looks_.joint_radius);
+  overlay_ = std::make_unique<FrameOverlay>(trajectory_, style_, *look_, looks_, field_.get(), upright_);
   prepare_hardware(poses, times);
   for (auto& pose : poses) add_shown(pose, style_.surfaces, hardware_->support_depth(), looks_);
   bound(poses, times);
@@ -129,6 +129,10 @@ double FrameBuilder::prepare_camera() {
       add_dimension_ends(pose, 1.15 * dimension_gap * drawn_radius(shown_radius_, thickest));
   framing.aspect = static_cast<double>(style_.width) / style_.height;
   if (!style_.options.inset.empty() && style_.diagnostics) framing.margins.right = 0.27;
+  // Two lines at the left may stand beside what is in the middle; more, or of small pictures, may not.
+  constexpr double beside = 0.16, most = 0.4;
+  if (const double heading = overlay_->heading_bottom(); heading > beside)
+    framing.margins.top = std::min(heading, most);
   const auto all = [&](const std::function<void(const Vec3&)>& visit) {
     for (const auto& pose : poses)
       for (const Vec3& p : pose) visit(p);
@@ -374,7 +378,7 @@ void FrameBuilder::add_bodies(double t, const std::vector<Vec3>& at, DrawList& l
   hardware_->add(t, at, colors, list);
   for (const ShownSurface& shown : style_.surfaces) {
     const std::vector<Vec3> edge = edge_of(shown, at);
-    list.skins.push_back(skin_of(shown.surface, edge, shown.turned));
+    list.skins.push_back(skin_of(shown.surface, edge, shown.plan));
   }
 }
 

@@ -85,17 +85,15 @@ FrameOverlay::FrameOverlay(const Trajectory& trajectory, const FrameStyle& style
   prepare_inset();
 }
 
-void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
+FrameOverlay::Parts FrameOverlay::wanted() const {
   const RenderOptions& options = style_.options;
-  if (look_.dimensions || options.dimensions) add_dimensions(whole, list);
-  add_names(whole, list);
-  Parts wanted;
+  Parts parts;
   const auto want = [&](bool on, Part part) {
-    if (on) wanted.insert(part);
+    if (on) parts.insert(part);
   };
   want(options.time, Part::status);
   want(!style_.title.empty() && options.title, Part::title);
-  want(wanted.contains(Part::title), Part::second_line);
+  want(parts.contains(Part::title), Part::second_line);
   want(options.legend && field_, Part::color_bar);
   want(options.legend, Part::legend);
   want(inset_ != nullptr, Part::inset);
@@ -104,7 +102,22 @@ void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
   want(options.errors && style_.diagnostics, Part::errors);
   want(options.scale_bar, Part::scale_bar);
   want(options.axes, Part::axes);
-  write(t, whole, wanted, list);
+  return parts;
+}
+
+void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
+  if (look_.dimensions || style_.options.dimensions) add_dimensions(whole, list);
+  add_names(whole, list);
+  write(t, whole, wanted(), list);
+}
+
+double FrameOverlay::heading_bottom() const {
+  DrawList list;
+  add_heading(
+      trajectory_.start_time(), wanted(), [](Part) {}, list);
+  float bottom = 0;
+  for (const TextLabel& label : list.labels) bottom = std::max(bottom, label.y + label.height);
+  return static_cast<double>(bottom / height_);
 }
 
 void FrameOverlay::add_key(double t, DrawList& list) const {

@@ -21,6 +21,8 @@ class FrameOverlay {
 
   // whole: the positions of all nodes at the time t.
   void add(double t, const VectorXd& whole, DrawList& list) const;
+  // Where what is written at the top ends, as a share of the picture's height; 0: nothing is.
+  double heading_bottom() const;
   void add_key(double t, DrawList& list) const;  // what sizes, colours and signs of a picture stand for
   // Title, thickness and legend, as wanted, on a strip that is as wide as given and as high as they need;
   // returns that height, 0 where nothing is written [pixels].
@@ -71,6 +73,7 @@ class FrameOverlay {
   };
   void add_line_of_heading(Heading& heading, float size, const std::string& text, int most,
                            DrawList& list) const;
+  Parts wanted() const;
   // Everything that is wanted and has room.
   void write(double t, const VectorXd& whole, Parts wanted, DrawList& list) const;
   std::vector<Piece> write_all(double t, const VectorXd& whole, const Parts& wanted, DrawList& list) const;

@@ -57,6 +57,37 @@ const TextLabel* label(const DrawList& list, const std::string& end) {
 
 }  // namespace
 
+TEST_CASE("a heading of many lines or in a small picture stands above the structure") {
+  const std::string scene =
+      "title = 'A ring of six bars with a title that takes two lines of a picture of this width, as some "
+      "do'\n"
+      "structure.kind = 'hoop'\nstructure.fold_angle = 85.0\nsolver.end_time = 2\n[render]\nmethod = true\n"
+      "errors = true\n";
+  const Scene read = read_scene_text(scene, "ring.toml");
+  const Simulation run = simulate(build_model(read), read.solver);
+  const Diagnostics diagnostics = diagnose(run);
+  for (const auto& [width, height] : {std::pair(1280, 720), {640, 360}, {320, 180}, {400, 300}})
+    for (const char* camera : {"", "follow"}) {
+      CAPTURE(width, camera);
+      FrameStyle style = film_style(read, run, diagnostics);
+      style.width = width, style.height = height;
+      style.options.follow = *camera != 0;
+      const FrameBuilder builder(run.trajectory, style);
+      for (const double t : {0.0, 1.0, 2.0}) {
+        const DrawList list = builder.build(t);
+        float heading = 0;
+        for (const TextLabel& l : list.labels)
+          if (l.y < 0.4f * static_cast<float>(height)) heading = std::max(heading, l.y + l.height);
+        CHECK(heading > 0.16f * static_cast<float>(height));
+        float highest = 1e9f;
+        for (const Tube& tube : list.tubes)
+          for (const Vec3f& end : {tube.a, tube.b})
+            highest = std::min(highest, project(list.camera, width, height, end).y());
+        CHECK(highest >= std::min(heading, 0.4f * static_cast<float>(height)) - 1);
+      }
+    }
+}
+
 TEST_CASE("a scale bar says for which depth it holds, but where it holds for all") {
   CHECK(label(ring("scale_bar = true\n"), " m in the middle"));
   const DrawList parallel = ring("scale_bar = true\nprojection = \"orthographic\"\n");
