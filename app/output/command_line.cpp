@@ -25,11 +25,12 @@ std::string as_typed(const std::vector<std::string>& words) {
 }
 
 std::vector<std::string> without_option(const std::vector<std::string>& words, const std::string& option) {
+  const std::string joined = option.size() == 2 ? option : option + "=";  // -oFILE, --dpi=200
   std::vector<std::string> kept;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == option)
       ++i;
-    else if (!words[i].starts_with(option + "="))
+    else if (!words[i].starts_with(joined))
       kept.push_back(words[i]);
   }
   return kept;

@@ -144,6 +144,8 @@ int reproduce_file(const Arguments& arguments) {
   auto receipt = receipt_of(file);
   if (!receipt || receipt->command.empty()) receipt = receipt_beside(file);
   refuse_what_is_not_repeated(file, *receipt);
+  if (fs::path(receipt->name + ".toml").filename() != receipt->name + ".toml")
+    throw FileError(file, "has a receipt that unfurl did not write, in which a scene's name is a path");
   if (!receipt->build.empty() && receipt->build != checksum_of_this_program())
     std::cerr << "unfurl: warning: made by another build (unfurl " << receipt->version
               << "); its bytes may differ\n";

@@ -133,6 +133,16 @@ void remove_abandoned(const std::filesystem::path& unfinished) {
   ::close(file);
 }
 
+namespace {
+
+// What the system shows as files: what stands there is for it to make.
+bool is_systems_own(const std::filesystem::path& path) {
+  const std::string text = path.string();
+  return text.starts_with("/dev/") || text.starts_with("/proc/");
+}
+
+}  // namespace
+
 std::filesystem::path behind_links(const std::filesystem::path& path) {
   namespace fs = std::filesystem;
   constexpr int most = 40;  // as the system follows
@@ -140,7 +150,7 @@ std::filesystem::path behind_links(const std::filesystem::path& path) {
   fs::path at = path;
   for (int i = 0; i < most && fs::is_symlink(fs::symlink_status(at, error)); ++i) {
     const fs::path to = fs::read_symlink(at, error);
-    if (error) return path;
+    if (error || is_systems_own(to)) return path;
     at = to.is_absolute() ? to : at.parent_path() / to;
   }
   const bool file = !fs::is_symlink(fs::symlink_status(at, error)) && !fs::is_directory(at, error);
@@ -149,11 +159,13 @@ std::filesystem::path behind_links(const std::filesystem::path& path) {
 
 namespace {
 
-// Devices, pipes and sockets: a file in their place would take them from everybody.
+// Devices, pipes and sockets, and links to them: a file in their place would take them from everybody.
 bool is_no_file(const std::filesystem::path& path) {
   struct stat there {};
-  return ::lstat(path.c_str(), &there) == 0 && (S_ISCHR(there.st_mode) || S_ISBLK(there.st_mode) ||
-                                                S_ISFIFO(there.st_mode) || S_ISSOCK(there.st_mode));
+  std::error_code error;
+  return is_systems_own(std::filesystem::read_symlink(path, error)) ||
+         (::stat(path.c_str(), &there) == 0 && (S_ISCHR(there.st_mode) || S_ISBLK(there.st_mode) ||
+                                                S_ISFIFO(there.st_mode) || S_ISSOCK(there.st_mode)));
 }
 
 }  // namespace

@@ -81,6 +81,15 @@ TEST_CASE("import says what it reads and what it cannot") {
     CHECK(refused(words, 5).err == "unfurl: " + words[3] + ": is a directory\n");
   }
   CHECK(std::filesystem::is_fifo(pipe));
+  // Links to such: as /dev/stdout is one, and by another extension than what it leads to.
+  for (const char* to : {"/dev/null", "/proc/self/fd/1", "pipe"}) {
+    const std::string link = dir / "link.toml";
+    std::filesystem::create_symlink(to, link);
+    CHECK(refused({"import", plates, "-o", link, "--force"}, 5).err.find("which no file replaces") !=
+          std::string::npos);
+    CHECK(std::filesystem::read_symlink(link) == to);
+    std::filesystem::remove(link);
+  }
 }
 
 }  // namespace import_command_test

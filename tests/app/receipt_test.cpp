@@ -251,7 +251,8 @@ TEST_CASE("the command of a receipt is the same wherever and by whomever the wor
       {"render", "my/ring.toml", "-o", "film"},
       {"render", "-o", "x", "--frames", "0:4", "my/ring.toml", "--threads", "2", "--quiet"},
       {"render", "my/ring.toml", "--set", "solver.step=0.1", "--size=64x64", "--join", "--lease", "3", "-o",
-       "y"}};
+       "y"},
+      {"render", "my/ring.toml", "-ofilm"}};
   for (const auto& words : ways) CHECK(command_of_result(words, place_of_first_name(words), "ring") == plain);
 }
 
@@ -288,6 +289,28 @@ TEST_CASE("a scene that is called as another word of the command is made again")
     INFO(words[1] << ": " << again.err);
     CHECK(again.code == 0);
     CHECK(again.out.starts_with("the same, byte by byte"));
+  }
+}
+
+// A picture that comes from somebody else writes nowhere but where it is asked to.
+TEST_CASE("a receipt in which a scene's name leads elsewhere is refused") {
+  const ScratchDirectory dir;
+  const std::string svg = dir / "a.svg", mine = dir.write("mine.toml", "precious");
+  REQUIRE(run_program({"figure", "pendulum", "energy", "-o", svg, "--set", "solver.end_time=0.2", "--quiet"})
+              .code == 0);
+  for (const std::string& name : {dir / "mine", std::string("../mine")}) {
+    std::string text = file_text(svg);
+    const std::string old = R"("name":"pendulum")";
+    REQUIRE(text.find(old) != std::string::npos);
+    text.replace(text.find(old), old.size(), "\"name\":\"" + name + "\"");
+    const std::string other = dir.write("other.svg", sealed(text, ".svg"));
+    REQUIRE(run_program({"verify", other}).code == 0);
+    const ProgramResult again = run_program({"reproduce", other});
+    INFO(name);
+    CHECK(again.code == 5);
+    CHECK(again.err == "unfurl: " + other +
+                           ": has a receipt that unfurl did not write, in which a scene's name is a path\n");
+    CHECK(file_text(mine) == "precious");
   }
 }
 
