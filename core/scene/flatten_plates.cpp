@@ -23,7 +23,7 @@ namespace {
 constexpr double flat_already = 1e-9;  // height of a flat plate over its size, beside the round-off of x
 constexpr double coordinate_round_off = 1e-15;  // of x over the largest coordinate
 constexpr double flat_enough = 1e-3;            // of that
-constexpr double most_moved = 0.05;  // of the largest plate's size: the nearest flat shape is another one
+constexpr double most_moved = 0.05;  // of the sizes of the plates around: nearest flat is another shape
 constexpr double added_to_diagonal = 1e-12;  // to the diagonal of J J^T, whose entries are 1
 constexpr int most_steps = 20;
 
@@ -63,7 +63,7 @@ struct AllHeights {
   std::vector<PlateHeights> plates;
   std::vector<std::size_t> which;  // of the shape's plates
   std::size_t worst = 0;           // in `which`
-  double worst_off = 0.0, size = 0.0;
+  double worst_off = 0.0;
   std::size_t bent = 0;  // plates that are not flat already
   Index rows = 0;
 };
@@ -76,7 +76,6 @@ AllHeights all_heights(const ImportedShape& shape) {
     all.which.push_back(p);
     const PlateHeights& plate = all.plates.back();
     all.rows += plate.r.size();
-    all.size = std::max(all.size, plate.size);
     all.bent += plate.off > 1.0 ? 1 : 0;
     if (plate.off <= all.worst_off) continue;
     all.worst = all.which.size() - 1;
@@ -118,7 +117,6 @@ void ImportedShape::flatten() {
   if (bent == 0) return;
   const std::vector<CustomNode> given = spec.nodes;
   VectorXd dx = VectorXd::Zero(3 * static_cast<Index>(given.size()));
-  double moved = 0.0;
   bool sound = true;
   for (int k = 0; k < most_steps && sound && all.worst_off > flat_enough; ++k) {
     sound = step_flatter(all, *this, dx);
@@ -128,9 +126,15 @@ void ImportedShape::flatten() {
     all = all_heights(*this);
     if (all.worst_off < 1.0 && all.worst_off > 0.5 * before) break;  // round-off
   }
-  for (std::size_t i = 0; i < given.size(); ++i)
-    moved = std::max(moved, (spec.nodes[i].position - given[i].position).norm());
-  if (!sound || !(all.worst_off <= 1.0) || !(moved <= most_moved * all.size))
+  double moved = 0.0;
+  bool far = false;
+  for (std::size_t p = 0; p < all.plates.size(); ++p)
+    for (const int node : plates[all.which[p]]) {
+      const double way = (at(node) - given[static_cast<std::size_t>(node)].position).norm();
+      moved = std::max(moved, way);
+      far = far || !(way <= most_moved * all.plates[p].size);
+    }
+  if (!sound || !(all.worst_off <= 1.0) || far)
     plate_places_[first].fail(
         "its vertices are not in one plane, and no small moves put those of all faces into planes; give "
         "them with more digits, or split it into triangles");

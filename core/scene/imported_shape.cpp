@@ -57,6 +57,25 @@ void require_flat(const ImportedShape& shape, const std::vector<int>& plate, con
                " % of its size out of one plane, and a plate is flat (to 1 %); split it into triangles");
 }
 
+// Seen along the normal of its first corner with an area: two sides that do not meet at a node have points in
+// common.
+void require_simple(const ImportedShape& shape, const std::vector<int>& plate, const ImportPlace& place) {
+  const std::size_t n = plate.size();
+  const auto corner = [&](std::size_t i) -> const Vec3& { return shape.at(plate[i % n]); };
+  const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).stableNormalized();
+  const auto side = [&](std::size_t i, const Vec3& p) {  // of the line from i to i + 1
+    return normal.dot((corner(i + 1) - corner(i)).cross(p - corner(i)));
+  };
+  const auto parts = [&](std::size_t i, std::size_t k) {  // the ends of k
+    const double a = side(i, corner(k)), b = side(i, corner(k + 1));
+    return (a > 0 && b < 0) || (a < 0 && b > 0);
+  };
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = i + 2; k < n && (k + 1) % n != i; ++k)
+      if (parts(i, k) && parts(k, i))
+        place.fail("its sides cross each other; name its vertices in the order that goes around it");
+}
+
 // Of a plate that goes around from a to b, the node that is furthest from the line of both on the side where
 // the plate is: at a notch others lie beyond it.
 int furthest(const ImportedShape& shape, const std::vector<int>& plate, int a, int b) {
@@ -122,6 +141,7 @@ void ImportedShape::add_plate(const std::vector<int>& nodes, const std::string& 
         "has too many vertices in one line for diagonals from one of them to hold it; leave out those " +
         std::string("in the middle of its sides, or split it into triangles"));
   require_flat(*this, plate, place);
+  require_simple(*this, plate, place);
   plate_places_.push_back(place);
   for (std::size_t i = 0; i < n; ++i) add_rod(nodes[i], nodes[(i + 1) % n], group, place);
   for (std::size_t i = 2; i + 1 < n; ++i) add_rod(plate[0], plate[i], "diagonal", place);

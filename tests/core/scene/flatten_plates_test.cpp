@@ -125,4 +125,26 @@ TEST_CASE("faces that are far from flat are refused with their place") {
   CHECK(square("0.1").starts_with("t.obj:7:1: f: its vertices are"));
 }
 
+TEST_CASE("a saddle of flat faces is no flat sheet, whatever else is in its file") {
+  // z = c (x - 3) (y - 3): each unit face is off its plane by less than 1 %, the nearest sheet of flat ones
+  // is up to 7 c away, which a face of 1 m is not moved by and one of 100 m would be.
+  constexpr double c = 0.0135;
+  std::string saddle;
+  for (int i = 0; i < 7; ++i)
+    for (int j = 0; j < 7; ++j) saddle += vertex(Vec3(i, j, c * (i - 3) * (j - 3)));
+  const std::string far = vertex(Vec3(200, 0, 0)) + vertex(Vec3(300, 0, 0)) + vertex(Vec3(300, 100, 0)) +
+                          vertex(Vec3(200, 100, 0));
+  std::string faces;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      faces += "f";
+      for (const int k : {7 * i + j, 7 * i + j + 7, 7 * i + j + 8, 7 * i + j + 1})
+        faces += " " + std::to_string(k + 1);
+      faces += "\n";
+    }
+  for (const std::string& text : {saddle + faces, saddle + far + faces + "f 50 51 52 53\n"})
+    CHECK_THROWS_WITH(imported(text), Catch::Contains("no small moves put those of all faces into planes"));
+  CHECK_NOTHROW(imported(far + "f 1 2 3 4\n"));
+}
+
 }  // namespace flatten_plates_test

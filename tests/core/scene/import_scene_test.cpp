@@ -391,6 +391,12 @@ TEST_CASE("FOLD files of which nothing can be built are refused with the key") {
   CHECK(refused("{\"vertices_coords\": [[0, 0, 0], [1, 0, 0], [1, 1, 0.1], [0, 1, 0]], \"faces_vertices\": "
                 "[[0, 1, 2, 3]]}")
             .starts_with("m.fold: faces_vertices[0]: its vertices are"));
+  for (const char* order : {"0, 2, 1, 3", "0, 1, 3, 2", "3, 1, 2, 0"})
+    CHECK(
+        refused("{\"vertices_coords\": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], \"faces_vertices\": [[" +
+                std::string(order) + "]]}") ==
+        "m.fold: faces_vertices[0]: its sides cross each other; name its vertices in the order that goes "
+        "around it");
   CHECK(refused("{\"vertices_coords\": [[0, 0, 0], [1e200, 0, 0]], \"edges_vertices\": [[0, 1]]}")
             .starts_with("m.fold: vertices_coords[1]: a coordinate must be less than 1e+100 m in size"));
   CHECK(refused("{\"vertices_coords\": [[0, 0, 0], [1e-200, 0, 0]], \"edges_vertices\": [[0, 1]]}") ==
