@@ -97,7 +97,8 @@ class Search {
   bool advance(Side& side) {
     if (!side.open) return false;
     const Evaluation next = at(side.last.x + side.stride);
-    if (took_too_long() && !opposite(side.last, next)) {
+    const bool met = exact(next) || opposite(side.last, next);  // of a plateau from above, too
+    if (took_too_long() && !met) {
       too_long_ = short_number(next.x, 9);
       side.open = false;
       return false;
@@ -108,7 +109,7 @@ class Search {
       side.open = std::abs(side.stride) > 1e-9 * std::max(std::abs(side.last.x), 1e-3);
       return false;
     }
-    if (opposite(side.last, next)) {
+    if (met) {
       a_ = side.last, b_ = next;
       return true;
     }

@@ -33,6 +33,18 @@ TEST_CASE("a root between two ends is found on either side of where the scene st
   CHECK(exact.high == 2.5);
 }
 
+// What a stop takes of a swing that no longer meets it: exactly nothing, from some parameter on.
+TEST_CASE("a plateau on the target is met from above and from below, on either side") {
+  for (const double sign : {1.0, -1.0})
+    for (const double side : {1.0, -1.0}) {
+      const auto f = [&](double x) { return 4.0 + sign * std::max(0.0, 1.0 - side * x); };
+      const Solved s = solve_for(f, 4, {.start = 0.2 * side}, {});
+      CHECK(s.value == 4.0);
+      CHECK(side * s.x >= 1.0);
+      CHECK(s.evaluations.size() < 40);
+    }
+}
+
 // Of a measure that falls, and of one that jitters in its last digits, the best may lie at an end or outside.
 TEST_CASE("the bracket of a root begins with its lower end and holds the value") {
   const auto jitter = [](double x) { return 1e-15 * std::sin(1e17 * x); };
