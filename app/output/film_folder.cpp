@@ -42,6 +42,7 @@ nlohmann::json record_of(const fs::path& directory) {
 std::string film_fingerprint(const Scene& scene, bool gpu, const std::string& part) {
   Scene bare = scene;
   bare.render = without_encoding(scene.render);
+  bare.locations.erase("render.mp4");  // asked for or not
   Checksum hash;
   hash.add(scene_text(bare));
   hash.add(text_of("/proc/self/exe"));  // another build may draw otherwise
@@ -57,7 +58,9 @@ FilmFolder::FilmFolder(fs::path directory, const Scene& scene, bool gpu, const s
       size_(scene.render.width, scene.render.height) {
   Checksum hash;
   hash.add(fingerprint_);
-  hash.add(scene_text(scene));
+  Scene wanted = scene;
+  wanted.locations.erase("render.mp4");
+  hash.add(scene_text(wanted));
   encoding_ = hash.text();
 }
 

@@ -101,7 +101,11 @@ std::string custom_text() {
                                                       {"mass", "1.0"},
                                                       {"density", ""},
                                                       {"area", ""},
-                                                      {"length", ""}});
+                                                      {"length", ""},
+                                                      {"youngs_modulus", ""},  // left out, these are those
+                                                      {"strength", ""},        // of all rods
+                                                      {"elastic", ""},
+                                                      {"segments", ""}});
   text += "\n[[structure.rods]]\nname = \"lower\"\nnodes = [\"B\", \"C\"]\nmass = 0.5\n\n" +
           comment("What else holds; `unfurl list keys constraints` gives every kind.") +
           "[[constraints]]\nkind = \"plane\"\nnodes = [\"B\", \"C\"]\nnormal = [0, 1, 0]\n";
@@ -132,7 +136,7 @@ std::string scene_template(std::string_view kind) {
   text += "\n" + comment("Forces and constraints: `unfurl list forces`, `unfurl list constraints`.");
   text += commented_out(table_lines(table_named("loads"), {{"nodes", "[]"}, {"force", "[0, 0, -1]"}}));
   text += table_lines(table_named("solver"), {{"end_time", custom ? "4.0" : ""}});
-  return text + table_lines(table_named("render"), {});
+  return text + table_lines(table_named("render"), {{"mp4", ""}});  // left out, where there is ffmpeg
 }
 
 }  // namespace unfurl

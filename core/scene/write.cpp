@@ -89,8 +89,14 @@ std::string solver_text(const Scene& scene) {
   return "\n[solver]\n" + params_text(solver_params(), solver_values(scene.solver));
 }
 
-std::string render_text(const RenderOptions& render) {
+std::string render_text(const Scene& scene) {
+  const RenderOptions& render = scene.render;
   std::string text = "\n[render]\n" + params_text(render_params(), render_values(render));
+  // Said, it is asked for; left out, it is made where ffmpeg is.
+  const std::string film = "\nmp4 = true\n";
+  if (const std::size_t at = text.find(film);
+      at != std::string::npos && !scene.locations.contains("render.mp4"))
+    text.insert(at + 1, "# ");
   for (const CameraKey& key : render.camera_keys)
     text += "\n[[render.camera_keys]]\n" + params_text(camera_key_params(), camera_key_values(key));
   for (const GroupMaterial& entry : render.materials)
@@ -202,7 +208,7 @@ std::string scene_text(const Scene& scene) {
   for (const SceneSurface& surface : scene.surfaces)
     text += "\n[[surfaces]]\n" + line("nodes", names_text(surface.nodes)) +
             params_text(surface_params(), surface_values(surface));
-  return text + solver_text(scene) + render_text(scene.render);
+  return text + solver_text(scene) + render_text(scene);
 }
 
 }  // namespace unfurl

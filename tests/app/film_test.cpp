@@ -199,6 +199,11 @@ TEST_CASE("without ffmpeg there is no MP4, which is an error only for who asked 
   const ProgramResult asked = run_program(film(dir / "out", {"--set", "render.mp4=true"}), bare);
   CHECK(asked.code == 5);
   CHECK(asked.err.find("no ffmpeg in the PATH") != std::string::npos);
+  // Nor does a scene ask for it that the program wrote.
+  CHECK(run_program({"render", dir / "out/scene.toml", "-o", dir / "again", "--quiet"}, bare).code == 0);
+  CHECK(run_program({"new", "hoop"}).out.find("\nmp4 = ") == std::string::npos);
+  CHECK(run_program({"show", "hoop6", "--all", "--set", "render.mp4=true"}).out.find("\nmp4 = true\n") !=
+        std::string::npos);
 }
 
 TEST_CASE("a record of a film that is nonsense is that of no film") {
@@ -287,6 +292,24 @@ TEST_CASE("a poster is its poses side by side") {
   CHECK(std::equal(poses.rgba.begin(), poses.rgba.end(), whole.rgba.end() - 4 * 4 * 64 * 48));
   CHECK(run_program({"poster", "hoop6_sector", "-o", dir / "p.jpg"}).err ==
         "unfurl: a poster is written as .png, not '.jpg'\n");
+}
+
+TEST_CASE("a poster has its scale bar and its axes once, in the first pose") {
+  const ScratchDirectory dir;
+  const auto poster = [&](const std::vector<std::string>& changes) {
+    std::vector<std::string> words = {"poster",  "pendulum", "--size", "900x480",    "--quiet",
+                                      "--poses", "3",        "-o",     dir / "p.png"};
+    for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
+    REQUIRE(run_program(words).code == 0);
+    return read_png(dir / "p.png");
+  };
+  const Image without = poster({}), with = poster({"render.scale_bar=true", "render.axes=true"});
+  REQUIRE(with.rgba.size() == without.rgba.size());
+  int last = -1;  // column that differs
+  for (std::size_t i = 0; i < with.rgba.size(); ++i)
+    if (with.rgba[i] != without.rgba[i]) last = std::max(last, static_cast<int>(i / 4) % with.width);
+  CHECK(last >= 0);
+  CHECK(last < 300);
 }
 
 TEST_CASE("a poster says what its colours stand for, and has one scale whatever camera keys do") {

@@ -123,6 +123,25 @@ TEST_CASE("show prints a scene as it stands, and with changes in their places") 
   CHECK(run_program({"check", dir.write("all.toml", all)}).code == 0);
 }
 
+// What a rod leaves out is that of all rods.
+TEST_CASE("in a new custom scene a rod is as the structure says") {
+  const ScratchDirectory dir;
+  std::string text = run_program({"new", "custom"}).out;
+  const auto give = [&](const std::string& key, const std::string& value) {
+    const std::size_t at = text.find("\n" + key + " = ");
+    REQUIRE(at != std::string::npos);
+    text.replace(at, text.find('\n', at + 1) - at, "\n" + key + " = " + value);
+    CHECK(text.find("\n" + key + " = ", at + 1) == std::string::npos);  // once, of the structure
+  };
+  give("youngs_modulus", "7e10");
+  give("strength", "1e8");
+  give("rod_model", "\"elastic\"");
+  CHECK(text.find("\nelastic = ") == std::string::npos);
+  CHECK(run_program({"check", dir.write("new.toml", text), "--set", "structure.rods[0].area=1e-4", "--set",
+                     "structure.rods[1].area=1e-4"})
+            .code == 0);
+}
+
 TEST_CASE("a new scene of every kind runs") {
   const auto kinds = nlohmann::json::parse(run_program({"list", "structures", "--json"}).out);
   for (const auto& kind : kinds) {
