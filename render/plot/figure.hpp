@@ -46,6 +46,7 @@ struct Axis {
   double min = 0, max = 0;  // min == max: from the data
   bool shown = true;        // false: no tick labels and no axis label (a panel that shares the one below)
   bool degrees = false;     // ticks at multiples of 15, 30, 45, ...
+  bool whole = false;       // a count: ticks at whole numbers
   // Log axes leave out values <= 0. True: exact zeros are drawn at the bottom edge instead; say so in the
   // caption.
   bool zeros_at_floor = false;

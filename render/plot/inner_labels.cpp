@@ -77,8 +77,10 @@ void add_line_label(const ReferenceLine& line, const std::vector<double>& others
   const Spot spot = best_of(obstacles, boxes);
   if (spot.hidden >= touches_text) return;
   obstacles.add_box(spot.box);
-  out.labels.push_back(
-      {{spot.box.x0, spot.box.y0 + ascent * small_size}, text, {small_size, readable(palette(line.color))}});
+  out.labels.push_back({{spot.box.x0, spot.box.y0 + ascent * small_size},
+                        text,
+                        {small_size, readable(palette(line.color))},
+                        spot.hidden > 0});
 }
 
 // On a map the lines of a level are broken for its value, once, away from the edges and from other values.

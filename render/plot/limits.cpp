@@ -68,7 +68,8 @@ Limits log_limits(const Extent& e, AxisOf which, bool zeros_at_floor) {
 Limits linear_limits(const Extent& e, AxisOf which) {
   if (e.empty()) return {0.0, 1.0};
   const double size = std::max(std::abs(e.lo), std::abs(e.hi)), range = e.hi - e.lo;
-  if (range <= 1e-12 * size || range < smallest) {
+  const double rounding = which == AxisOf::x ? 1e-12 : 1e-9;  // of values, of what computed them
+  if (range <= rounding * size || range < smallest) {
     const double air = size > smallest ? 0.1 * size : 1.0;
     return {e.lo - air, e.hi + air};
   }

@@ -93,6 +93,8 @@ class PanelPainter {
     const Point* last = nullptr;
     for (const Point& p : piece) {
       if (last && std::hypot(p.x - last->x, p.y - last->y) < 4) continue;
+      if (!panel_.cells.empty())  // of any colour
+        canvas_.marker(c.marker, p, 1.6 * marker_radius * c.marker_size, white);
       canvas_.marker(c.marker, p, marker_radius * c.marker_size, palette(c.color));
       last = &p;
     }

@@ -16,6 +16,7 @@ constexpr double half_digit = cap_height * small_size / 2;
 
 Ticks ticks_of(const Axis& axis, const Limits& l, int most) {
   if (axis.log) return log_ticks(l.lo, l.hi, most);
+  if (axis.whole) return whole_ticks(l.lo, l.hi, most);
   return axis.degrees ? degree_ticks(l.lo, l.hi, most) : linear_ticks(l.lo, l.hi, most);
 }
 
@@ -72,6 +73,12 @@ void equalise(PanelLayout& out) {
   widen(y, out.frame.height());
 }
 
+std::string in_one_line(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + " ";
+  return text;
+}
+
 std::vector<std::string> y_label_lines(const Axis& axis, double height) {
   constexpr std::size_t most = 3;
   std::vector<std::string> lines = wrap_text(axis.label, label_size, height);
@@ -81,7 +88,8 @@ std::vector<std::string> y_label_lines(const Axis& axis, double height) {
   } else if (lines.size() == most) {  // of like lengths, so that no sign or number is alone in the last one
     for (double share = 0.95; share > 0.3; share -= 0.05) {
       std::vector<std::string> narrower = wrap_text(axis.label, label_size, share * height);
-      if (narrower.size() > most) break;
+      if (narrower.size() > most || in_one_line(narrower) != in_one_line(lines))
+        break;  // nothing is left out for it
       lines = std::move(narrower);
     }
   }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "render/plot/style.hpp"
 
@@ -45,6 +47,22 @@ void part(const Stroke& front, const Stroke& behind, Canvas& canvas) {
               {front.a.x + (u + half) * dx, front.a.y + (u + half) * dy}, {white, front.width + 2 * gap});
 }
 
+// Joints hide no rods: of those that are drawn short they are small, but no thinner than a rod.
+double largest_joint(const Panel& panel, const PanelLayout& layout) {
+  constexpr double most = 0.2;  // of the median length of the rods
+  if (panel.segments.empty()) return std::numeric_limits<double>::infinity();
+  std::vector<double> lengths;
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const Segment& s : panel.segments) {
+    lengths.push_back(
+        std::hypot(layout.x.scale(s.x1) - layout.x.scale(s.x0), layout.y.scale(s.y1) - layout.y.scale(s.y0)));
+    thinnest = std::min<double>(thinnest, s.width);
+  }
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return std::max(most * *middle, 0.5 * thinnest);
+}
+
 }  // namespace
 
 void paint_pose(const Panel& panel, const PanelLayout& layout, Canvas& canvas) {
@@ -59,11 +77,12 @@ void paint_pose(const Panel& panel, const PanelLayout& layout, Canvas& canvas) {
   const auto faded = [&](int color, double depth) {
     return lighter(palette(color), farthest * static_cast<float>((nearest - depth) / range));
   };
+  const double most_radius = largest_joint(panel, layout);
   std::vector<Stroke> drawn;
   for (const Item& item : items) {
     if (item.dot) {
       const Dot& d = *item.dot;
-      canvas.circle({x(d.x), y(d.y)}, d.radius, faded(d.color, d.depth));
+      canvas.circle({x(d.x), y(d.y)}, std::min<double>(d.radius, most_radius), faded(d.color, d.depth));
       continue;
     }
     const Segment& s = *item.segment;

@@ -80,6 +80,20 @@ Ticks linear_ticks(double lo, double hi, int most) {
   return out;
 }
 
+Ticks whole_ticks(double lo, double hi, int most) {
+  Ticks out = linear_ticks(lo, hi, most);
+  const auto broken = [](double v) { return v != std::round(v); };
+  std::erase_if(out.minor, broken);
+  if (std::ranges::none_of(out.major, broken)) return out;
+  // Steps below 1: whole numbers are fewer.
+  out = {};
+  for (double v = std::ceil(lo); v <= hi; ++v) {
+    out.major.push_back(v + 0.0);
+    out.labels.push_back(format_fixed(v, 0));
+  }
+  return out;
+}
+
 Ticks degree_ticks(double lo, double hi, int most) {
   static constexpr std::array choices{Step{1, 0, 2},   Step{2, 0, 2},   Step{5, 0, 5},  Step{10, 0, 2},
                                       Step{15, 0, 3},  Step{30, 0, 3},  Step{45, 0, 3}, Step{90, 0, 3},

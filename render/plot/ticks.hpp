@@ -18,6 +18,8 @@ struct Ticks {
 Ticks linear_ticks(double lo, double hi, int most);
 // Ticks at multiples of 1, 2, 5, 10, 15, 30, 45, 90, ... degrees; below a degree as linear_ticks.
 Ticks degree_ticks(double lo, double hi, int most);
+// As linear_ticks, but at whole numbers only.
+Ticks whole_ticks(double lo, double hi, int most);
 // Ticks at powers of ten, every k-th where there are more than `most`; the minor ones are the powers between,
 // or the multiples 2..9. 0 < lo < hi. A range inside one decade gets linear ticks.
 Ticks log_ticks(double lo, double hi, int most);

@@ -63,7 +63,7 @@ std::string told(const MarginLoad& load) {
 
 Figure margin_figure(const Margin& margin, const std::string& title) {
   const bool folds = margin.unit == "N m";
-  const std::string across = folds ? "fold angle (deg)" : "way along the path (m kg^1/2)";
+  const std::string across = folds ? "fold angle (\u00B0)" : "way along the path (m kg^1/2)";
   Panel forces, margins;
   forces.title = "Drives above, resistances below zero";
   forces.y.label = folds ? "torque about the fold angle (N m)" : "force along the path (N/kg^1/2)";

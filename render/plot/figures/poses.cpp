@@ -127,7 +127,9 @@ class PosePainter {
   }
 
  private:
-  static int line_color(const std::string& group) { return group == "spring" ? 7 : 6; }
+  static int line_color(const std::string& group) {  // about as pictures have them
+    return group == "spring" ? 7 : group == "net" ? 6 : 1;
+  }
 
   const Structure& structure_;
   std::vector<ShownLine> lines_;

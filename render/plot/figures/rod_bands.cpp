@@ -125,6 +125,23 @@ std::string whose_peak(const Structure& structure, const RodPeak& peak) {
          (peak.unique ? "" : open_force) + ")";
 }
 
+void mark_peak(double t, double value, Panel& p) {
+  constexpr double seen = 0.005;  // beyond the line's own width
+  double most = 0;
+  const auto look = [&most](const std::vector<double>& values) {
+    for (const double x : values)
+      if (std::isfinite(x)) most = std::max(most, std::abs(x));
+  };
+  for (const Curve& curve : p.curves) look(curve.y);
+  for (const Band& band : p.bands) look(band.lower), look(band.upper);
+  if (!(std::abs(value) > (1 + seen) * most)) return;
+  Curve mark;
+  mark.label = "largest, within a step";
+  mark.x = {t}, mark.y = {value};
+  mark.color = 6, mark.marker = Marker::diamond, mark.width = 0;
+  p.curves.push_back(std::move(mark));
+}
+
 bool each_rod_alone(const Structure& structure) {
   return structure.rods.size() <= 6 && rod_groups(structure).size() == 1;
 }

@@ -24,6 +24,8 @@ struct RodPeak {
   bool unique;
 };
 std::string whose_peak(const Structure& structure, const RodPeak& peak);
+// A mark where a peak that the caption names lies beyond all that the panel draws: within a step.
+void mark_peak(double t, double value, Panel& panel);
 bool each_rod_alone(const Structure& structure);
 double largest_finite(const MatrixXd& values);  // magnitude; 0 where there is none
 

@@ -23,13 +23,20 @@ std::string uniqueness_sentence(const Structure& structure, const Diagnostics& d
          "; shown is the choice of least norm, scaled by mass.";
 }
 
-std::string peak_sentence(const Simulation& run, const Diagnostics& d) {
+// What it names is marked in the panel.
+std::string peak_sentence(const Simulation& run, const Diagnostics& d, Panel& panel) {
   const RememberedExtremes once;
   const PeakForce peak = peak_rod_force(run, d);
   if (peak.rod < 0 || only_round_off(run, d)) return " Largest magnitude 0 N.";
   const double force = find_measure("peak_rod_force").value(run, d);
+  mark_peak(peak.t, peak.force_N, panel);
   return " Largest magnitude " + plot::format_number(force, 4) + " N" +
-         whose_peak(run.trajectory.structure(), {force, peak.force_N, peak.rod, peak.t, peak.unique}) + ".";
+         whose_peak(run.trajectory.structure(), {force, peak.force_N, peak.rod, peak.t, peak.unique}) + "." +
+         (extreme_of_column(run, d, "axial_force_max_N", true).bounded &&
+                  extreme_of_column(run, d, "axial_force_min_N", false).bounded
+              ? ""
+              : " Forces grow without bound towards a singular pose on the way: the largest is that of the "
+                "nearest pose that was looked at.");
 }
 
 }  // namespace
@@ -48,7 +55,7 @@ Figure rod_forces_figure(const Simulation& run, const Diagnostics& d) {
     f.caption =
         "Axial force of the rods by group, tension positive, the mean over a rod's length: one line where "
         "the forces of a group differ by less than its width, else the range between the extremes.";
-  f.caption += uniqueness_sentence(structure, d) + peak_sentence(run, d) + " " + method_sentence(run);
+  f.caption += uniqueness_sentence(structure, d) + peak_sentence(run, d, p) + " " + method_sentence(run);
   f.panels.push_back(std::move(p));
   return f;
 }

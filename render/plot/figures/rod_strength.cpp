@@ -21,14 +21,15 @@ std::string margin_text(double ratio) {
   return ratio > 0 ? ", a margin of " + plot::format_number(margin_of(ratio), 3) : "";
 }
 
-// Values are those of the motion, as in summary.json.
-std::string peak_sentences(const Simulation& run, const Diagnostics& d) {
+// Values are those of the motion, as in summary.json; marked in the panels.
+std::string peak_sentences(const Simulation& run, const Diagnostics& d, Panel& stresses, Panel& buckling) {
   const Structure& structure = run.trajectory.structure();
   if (only_round_off(run, d)) return " Largest stress 0 MPa.";
   const RememberedExtremes once;
   std::string text;
   if (const WorstRod worst = worst_rod(run, d, axial_stress); worst.rod >= 0) {
     const double stress = find_measure("peak_stress").value(run, d);
+    mark_peak(worst.t, 1e-6 * worst.value, stresses);
     text += " Largest stress " + plot::format_number(1e-6 * stress, 4) + " MPa" +
             at_rod(structure, worst, stress) + ".";
   }
@@ -39,9 +40,11 @@ std::string peak_sentences(const Simulation& run, const Diagnostics& d) {
   }
   if (const WorstRod worst = worst_rod(run, d, buckling_ratio); worst.rod >= 0) {
     const double share = largest_of_column(run, d, "buckling_ratio_max");
-    if (share > 0)
+    if (share > 0) {
+      mark_peak(worst.t, share, buckling);
       text += " Largest share of Euler's load " + plot::format_number(share, 3) +
               at_rod(structure, worst, share) + margin_text(share) + ".";
+    }
   }
   return text;
 }
@@ -69,7 +72,7 @@ Figure rod_strength_figure(const Simulation& run, const Diagnostics& d) {
   f.caption =
       "Axial stress of the rods, force over area, and their compression as a share of Euler's load with "
       "pinned ends, both of the mean force over a rod's length.";
-  f.caption += peak_sentences(run, d) + " " + method_sentence(run);
+  f.caption += peak_sentences(run, d, stress, buckling) + " " + method_sentence(run);
   f.panels.push_back(std::move(stress));
   f.panels.push_back(std::move(buckling));
   return f;

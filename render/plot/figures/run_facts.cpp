@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "render/plot/ticks.hpp"
 
@@ -68,17 +71,22 @@ std::string events_sentence(const Simulation& run) {
   const int decimals =
       span > 0 ? static_cast<int>(std::clamp(std::ceil(6 - std::log10(span)), 6.0, 300.0)) : 6;
   const auto seconds = [&](double t) { return plot::format_fixed(t, decimals) + " s"; };
-  std::string text;
+  std::vector<std::pair<double, std::string>> told;
   const std::vector<EventGroup> groups = event_groups(run);
   for (std::size_t k = 0; k < std::min(groups.size(), most_named); ++k) {
     const EventGroup& group = groups[k];
+    const std::string name = " Event \u201C" + group.name + "\u201D ";
     if (group.times.size() > most_named) {
-      text += " Event \u201C" + group.name + "\u201D " + std::to_string(group.times.size()) +
-              " times, from " + seconds(group.times.front()) + " to " + seconds(group.times.back()) + ".";
+      told.emplace_back(group.times.front(), name + std::to_string(group.times.size()) + " times, from " +
+                                                 seconds(group.times.front()) + " to " +
+                                                 seconds(group.times.back()) + ".");
       continue;
     }
-    for (const double t : group.times) text += " Event \u201C" + group.name + "\u201D at " + seconds(t) + ".";
+    for (const double t : group.times) told.emplace_back(t, name + "at " + seconds(t) + ".");
   }
+  std::stable_sort(told.begin(), told.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string text;
+  for (const auto& event : told) text += event.second;
   if (groups.size() <= most_named) return text;
   std::vector<double> rest;
   for (std::size_t k = most_named; k < groups.size(); ++k)

@@ -60,6 +60,7 @@ void add_bars(const Histogram& h, int color, Panel& p) {
   p.bands.push_back(std::move(bars));
   p.curves.push_back(std::move(outline));
   p.y.label = "steps";
+  p.y.whole = true;
   p.y.max = 1.08 * std::max(1.0, *std::max_element(h.counts.begin(), h.counts.end()));
 }
 
@@ -93,6 +94,7 @@ Figure steps_figure(const Simulation& run, const Diagnostics& diagnostics) {
   Panel &left = f.panels[0], &right = f.panels[1];
   left.x.label = "step (s)";
   right.x.label = "Newton iterations";
+  right.x.whole = true;
   f.caption = std::to_string(h.size()) + " steps.";
   if (!h.empty()) {
     const auto [lo, hi] = std::minmax_element(h.begin(), h.end());
@@ -102,10 +104,11 @@ Figure steps_figure(const Simulation& run, const Diagnostics& diagnostics) {
     std::vector<double> edges;
     for (double x = -0.5; x < most + 1; ++x) edges.push_back(x);
     add_bars(histogram(iterations, std::move(edges)), 1, right);
+    const std::string average = plot::format_number(mean(iterations), 3);
     const std::string shortest = plot::format_number(*lo, 3), longest = plot::format_number(*hi, 3);
     f.caption = std::to_string(h.size()) + (h.size() == 1 ? " step" : " steps") +
-                (shortest == longest ? " of " : " from " + shortest + " s to ") + longest + " s, " +
-                plot::format_number(mean(iterations), 3) + " Newton iterations a step on average, " +
+                (shortest == longest ? " of " : " from " + shortest + " s to ") + longest + " s, " + average +
+                (average == "1" ? " Newton iteration" : " Newton iterations") + " a step on average, " +
                 plot::format_number(most, 3) +
                 " at most; left: how many steps are how long, right: how many take how many iterations.";
   }

@@ -49,7 +49,8 @@ std::string undeployed_sentence(const SweepPlan& plan, const Sweep& sweep) {
                                  [&](const auto& row) { return row[plan.axes.size()] == outcome; });
   };
   const auto open = runs("completed");
-  if (open == 0 || runs("deployed") == 0) return {};
+  const auto goes_on = [](const SweepAxis& axis) { return axis.key == "solver.at_deployed"; };
+  if (std::ranges::any_of(plan.axes, goes_on) || open == 0 || runs("deployed") == 0) return {};
   return " " + std::to_string(open) + " of them ended before " +
          (open == 1 ? "its structure was deployed." : "their structures were deployed.");
 }

@@ -15,9 +15,13 @@ namespace {
 
 using Catch::Contains;
 
-std::string caption(const std::string& figure, const std::string& scene) {
+Figure drawn(const std::string& figure, const std::string& scene) {
   const Simulation run = testing::run_scene(scene);
-  return find_figure(figure)->make(run, diagnose(run)).caption;
+  return find_figure(figure)->make(run, diagnose(run));
+}
+
+std::string caption(const std::string& figure, const std::string& scene) {
+  return drawn(figure, scene).caption;
 }
 
 double number_behind(const std::string& words, const std::string& text) {
@@ -55,6 +59,22 @@ TEST_CASE("captions of rods have the peaks of the motion", "[figures]") {
   for (const double step : {0.15, 0.005})
     CHECK(number_behind(" MPa (rod O-P at ", caption("rod_strength", swing(step))) ==
           Approx(1.8540746773013719 * std::sqrt(2 / (3 * 9.81))).margin(1e-4));
+}
+
+// Steps of 0.3 s have no state near the lowest point, which the curve then does not show.
+TEST_CASE("a peak within a step is marked where the curves do not reach it", "[figures]") {
+  for (const char* name : {"rod_forces", "rod_strength"})
+    for (const double step : {0.005, 0.28}) {
+      INFO(name << " " << step);
+      const Figure f = drawn(name, swing(step));
+      const auto& curves = f.panels[0].curves;
+      const auto mark = std::ranges::find(curves, "largest, within a step", &Curve::label);
+      REQUIRE((mark == curves.end()) == (step < 0.01));
+      if (mark == curves.end()) continue;
+      REQUIRE(mark->x.size() == 1);
+      CHECK(mark->y[0] == Approx(14.715).epsilon(3e-3));  // some 1.5 rad of swing in a step
+      CHECK(mark->x[0] == Approx(1.8540746773013719 * std::sqrt(2 / (3 * 9.81))).margin(2e-3));
+    }
 }
 
 // A mass m moved by A in T along s(u) = 10 u^3 - 15 u^4 + 6 u^5 takes the power m A^2 / T^3 s'(u) s''(u).
@@ -127,6 +147,13 @@ TEST_CASE("captions name the first events and count the others", "[figures]") {
   const std::string many = with_events(19);
   CHECK_THAT(many, Contains("\u201Cstop 4\u201D at") && !Contains("stop 5"));
   CHECK_THAT(many, Contains(" 14 more events from 0.050000") && Contains(" to 0.180000"));
+  // In the order of time, whatever they are called.
+  with_events(4);
+  for (const std::size_t k : {std::size_t{0}, std::size_t{2}}) run.events[k].name = "cable pulls";
+  CHECK_THAT(
+      find_figure("deployment")->make(run, diagnose(run)).caption,
+      Contains("\u201Ccable pulls\u201D at 0.0000000 s. Event \u201Cstop 1\u201D at 0.0100000 s. Event "
+               "\u201Ccable pulls\u201D at 0.0200000 s. Event \u201Cstop 3\u201D at 0.0300000 s."));
 }
 
 }  // namespace unfurl::caption_peaks_test

@@ -116,8 +116,11 @@ TEST_CASE("curves keep their place: points land where the axes say", "[figure]")
 
 // What follows the unit says how signs are meant.
 TEST_CASE("the label of a low axis is whole", "[figure]") {
-  for (const char* label : {"axial stress (MPa), tension > 0", "axial force (N), tension > 0"})
+  for (const char* label : {"axial stress (MPa), tension > 0", "axial force (N), tension > 0",
+                            "largest bay second_membrane_support third_membrane_support"})
     for (const double height_mm : {60.0, 40.0, 34.0}) {
+      if (height_mm < 50 && std::string(label).find('_') != std::string::npos)
+        continue;  // a word has no room
       CAPTURE(label, height_mm);
       Figure figure;
       figure.height_mm = height_mm;

@@ -191,6 +191,17 @@ TEST_CASE("a sweep's figure says how many runs ended before the deployed pose", 
         "4 runs. 2 of them ended before their structures were deployed.");
   CHECK(captions({"deployed", "deployed", "deployed", "deployed"})[0] == "4 runs.");
   CHECK(captions({"completed", "completed", "completed", "completed"})[0] == "4 runs.");  // as all are
+  // A run that goes on from the deployed pose has the same outcome as one that did not come to it.
+  plan.axes = {parse_axis("solver.step=0.01,0.02"), parse_axis("solver.at_deployed=stop,pass")};
+  check_plan(plan);
+  Sweep sweep{{plan.columns(), {}}};
+  for (const char* step : {"0.01", "0.02"})
+    for (const char* then : {"stop", "pass"})
+      sweep.table.rows.push_back({step, then, *then == 's' ? "deployed" : "completed", "300", "4.9"});
+  const std::vector<Figure> figures = sweep_figures(plan, sweep, "Ring");
+  REQUIRE(figures.size() == 2);
+  CHECK(figures[0].caption.starts_with("4 runs."));
+  CHECK(figures[0].caption.find("ended before") == std::string::npos);
 }
 
 TEST_CASE("the table of a map has a row for every cell", "[figures]") {

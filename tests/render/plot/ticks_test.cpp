@@ -80,6 +80,21 @@ TEST_CASE("many decades are labelled at multiples of a stride", "[ticks]") {
   CHECK(log_ticks(2, 7, 6).major == Values{2, 3, 4, 5, 6, 7});  // inside a decade: as on a linear axis
 }
 
+TEST_CASE("counts have ticks at whole numbers, labelled as such", "[ticks]") {
+  CHECK(whole_ticks(0, 1.08, 6).major == std::vector<double>{0, 1});
+  CHECK(whole_ticks(0, 1.08, 6).minor.empty());
+  CHECK(whole_ticks(-0.5, 2.5, 8).labels == std::vector<std::string>{"0", "1", "2"});
+  for (const double hi : {0.5, 1.08, 2.16, 3.3, 7.5, 21.0, 108.0, 5400.0, 3e6})
+    for (int most = 1; most <= 12; ++most) {
+      CAPTURE(hi, most);
+      const Ticks ticks = whole_ticks(-0.5, hi, most);
+      CHECK(std::ssize(ticks.major) <= most);
+      CHECK(ticks.labels.size() == ticks.major.size());
+      for (const auto* of : {&ticks.major, &ticks.minor})
+        for (const double v : *of) CHECK(v == std::round(v));
+    }
+}
+
 TEST_CASE("ranges without extent have no ticks", "[ticks]") {
   CHECK(linear_ticks(1, 1, 5).major.empty());
   CHECK(linear_ticks(2, 1, 5).major.empty());
