@@ -58,8 +58,9 @@ constexpr Command table[] = {
      "unfurl reproduce -o paper\n"
      "unfurl reproduce --validation -o validation\n"
      "unfurl reproduce energy.pdf"},
-    {"poster", "SCENE -o FILE.png", "a strip of poses side by side, from start to end", 1, 1, true,
-     cmd_poster,
+    {"poster", "SCENE -o FILE.png",
+     "a strip of poses side by side, from start to end; each a third as wide and half as high as --size", 1,
+     1, true, cmd_poster,
      "-o --set --tolerance --poses --size --look --supersample --transparent --threads --gpu --quiet",
      "unfurl poster hoop6 -o poster.png --size 960x540 --poses 4"},
     {"check", "SCENE", "validate; print coordinates, constraints, rank, redundant ones, degrees of freedom",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <optional>
 
 #include "app/command.hpp"
 #include "app/output/interrupt.hpp"
@@ -55,8 +56,14 @@ Image draw_banner(const FrameBuilder::Banner& banner, const FrameStyle& style, i
   return side_by_side(images);
 }
 
+// One scale bar and one set of axes hold for all poses: they stand in the first.
 Image draw_poses(const FrameBuilder& builder, const FrameStyle& style, bool key, const Trajectory& run,
                  std::size_t poses, int supersample, GlContext& context) {
+  FrameStyle plain = style;
+  plain.options.scale_bar = plain.options.axes = false;
+  const bool differs = style.options.scale_bar || style.options.axes;
+  std::optional<FrameBuilder> others;
+  if (differs && poses > 1) others.emplace(run, plain);
   Renderer renderer(context, style.width, style.height);
   std::vector<Image> images;
   const auto add = [&](DrawList list) {
@@ -66,7 +73,7 @@ Image draw_poses(const FrameBuilder& builder, const FrameStyle& style, bool key,
   };
   for (const double t : pose_times(run, poses)) {
     throw_if_interrupted();
-    add(builder.build(t));
+    add((others && !images.empty() ? *others : builder).build(t));
   }
   if (key) add(builder.key(run.end_time()));
   return side_by_side(images);
