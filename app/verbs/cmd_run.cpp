@@ -13,6 +13,7 @@
 #include "app/verbs/plan.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/unfinished_run.hpp"
+#include "core/diagnostics/peaks.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/parts.hpp"
 #include "core/simulate/singular_poses.hpp"
@@ -62,6 +63,7 @@ int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, O
   ahead.take(run.trajectory);
   const Diagnostics diagnostics = judged(run, ahead);
   ahead.leave_out(run.trajectory.size());
+  const RememberedExtremes once;  // of the summary and of what is said
   // An earlier run's results stay until these are whole: the disk may be full.
   const std::string summary =
       write_data(directory, scene, run, diagnostics, as_typed(arguments.words), ahead, true, [&] {

@@ -389,9 +389,11 @@ thread_local RememberedExtremes* remembered = nullptr;
 
 }  // namespace
 
-RememberedExtremes::RememberedExtremes() : before_(std::exchange(remembered, this)) {}
+RememberedExtremes::RememberedExtremes() : outermost_(remembered == nullptr) {
+  if (outermost_) remembered = this;
+}
 RememberedExtremes::~RememberedExtremes() {
-  remembered = before_;
+  if (outermost_) remembered = nullptr;
 }
 
 PeakInMotion extreme_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column,

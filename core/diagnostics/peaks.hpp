@@ -49,7 +49,8 @@ double peak_of_column(const Simulation& run, const Diagnostics& diagnostics, std
 VectorXd rod_forces_within_step(const Simulation& run, double t);
 
 // While one of these lives, largest and smallest values that this thread has found are not looked for again:
-// several measures of a run, which stays as it is meanwhile, begin with the same ones.
+// several measures of a run, which stays as it is meanwhile, begin with the same ones. One within another
+// shares what that has found.
 class RememberedExtremes {
  public:
   RememberedExtremes();
@@ -58,7 +59,7 @@ class RememberedExtremes {
   RememberedExtremes& operator=(const RememberedExtremes&) = delete;
 
  private:
-  RememberedExtremes* before_;
+  bool outermost_;
   std::map<std::tuple<const Diagnostics*, std::string, bool>, PeakInMotion> found_;
   friend PeakInMotion extreme_of_column(const Simulation& run, const Diagnostics& diagnostics,
                                         std::string_view column, bool largest);
