@@ -12,6 +12,7 @@
 #include "render/scene/color_map.hpp"
 #include "render/scene/film_style.hpp"
 #include "render/scene/look.hpp"
+#include "render/scene/view.hpp"
 
 using namespace unfurl;
 
