@@ -278,6 +278,7 @@ struct Samples {
   // a side: pure ones by 3/2 or 2 at least, beside what else acts by less.
   bool has_pole() const {
     const std::size_t k = highest();
+    if (k == 0 || k + 1 == x.size()) return false;  // at an end of the motion around, where it is what it is
     const auto rises = [&](std::size_t far, std::size_t near) {
       const double first = x[near] / x[far], second = x[k] / x[near];
       return x[far] > 0 && ((first >= 1.5 && second > 1) || (first >= 1.2 && second >= 1.6));
