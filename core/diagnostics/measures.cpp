@@ -202,6 +202,30 @@ std::string with_unit(std::string_view label, std::string_view unit) {
   return std::string(label) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
 }
 
+// "kinetic_energy_J": "kinetic energy (J)"; what stands before a dot is somebody's name.
+std::string column_label(std::string_view column) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 12> units{{{"_N_m", "N m"},
+                                                                                 {"_rad_s", "rad/s"},
+                                                                                 {"_deg_s", "deg/s"},
+                                                                                 {"_m_s", "m/s"},
+                                                                                 {"_rad", "rad"},
+                                                                                 {"_deg", "deg"},
+                                                                                 {"_Pa", "Pa"},
+                                                                                 {"_N", "N"},
+                                                                                 {"_J", "J"},
+                                                                                 {"_W", "W"},
+                                                                                 {"_m", "m"},
+                                                                                 {"_s", "s"}}};
+  const auto* found = std::find_if(units.begin(), units.end(),
+                                   [&](const auto& unit) { return column.ends_with(unit.first); });
+  const bool has = found != units.end();
+  std::string label(column.substr(0, column.size() - (has ? found->first.size() : 0)));
+  const std::size_t dot = label.rfind('.');
+  std::replace(label.begin() + static_cast<std::ptrdiff_t>(dot == std::string::npos ? 0 : dot), label.end(),
+               '_', ' ');
+  return with_unit(label, has ? found->second : "");
+}
+
 std::string suffix(std::string_view unit) {
   std::string text;
   for (const char c : unit) text += c == '/' ? '_' : c;
@@ -229,6 +253,10 @@ std::string uniqueness_of(std::string_view measure) {
   return known ? name : "";
 }
 
+bool may_have_no_bound(std::string_view measure) {
+  return !uniqueness_of(measure).empty() || measure.find(":axial_") != std::string_view::npos;
+}
+
 std::vector<std::string> columns_of(const std::shared_ptr<const Model>& model) {
   Simulation start{.trajectory = Trajectory(model)};
   start.trajectory.append(initial_state(model->structure, model->system).state, StepReport{});
@@ -254,7 +282,7 @@ RunMeasure find_measure(const std::string& name, const std::vector<std::string>&
     if (there.empty()) there = diagnostic_names();
     if (std::find(there.begin(), there.end(), of) == there.end())
       throw StudyError("no column " + in_quotes(of) + " to measure" + did_you_mean(of, there));
-    return {name, std::string(s.name) + "_" + of, std::string(s.label) + of,
+    return {name, std::string(s.name) + "_" + of, std::string(s.label) + column_label(of),
             [of, f = s.of](const Simulation& run, const Diagnostics& d) { return f(run, d, of); },
             of_method(of) ? MeasureNeeds::method : MeasureNeeds::states};
   }

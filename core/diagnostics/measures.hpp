@@ -14,6 +14,10 @@ namespace unfurl {
 // What a measure is taken from: a run's events alone, its states, or what its method makes of it.
 enum class MeasureNeeds { events, states, method };
 
+// A force or a stress: next to singular poses on the way, which a run must have been searched for, it may
+// have no bound.
+bool may_have_no_bound(std::string_view measure);
+
 struct RunMeasure {
   std::string name;    // "deploy_time", or "max:kinetic_energy_J"
   std::string column;  // with the unit as suffix: "deploy_time_s"

@@ -33,11 +33,24 @@ bool is_resolved(const State& a, const State& b) {
          size(mean - 0.5 * (a.w + b.w)) <= good * std::max({size(a.w), size(b.w), size(mean)});
 }
 
+// The last state up to that time, or the first.
+std::size_t state_before(const Trajectory& run, double t) {
+  std::size_t low = 0, high = run.size();
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    (run.time(middle) <= t ? low : high) = middle;
+  }
+  return low;
+}
+
+bool follows(const Trajectory& run, std::size_t a, std::size_t b) {
+  return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b);
+}
+
 // A step with a smooth motion leads from state a to state b. Into a singular pose, which has no
 // accelerations, only a long one: of others the states before it tell.
 bool joined(const Trajectory& run, std::size_t a, std::size_t b) {
-  return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b) &&
-         !run.report(a).singular_event &&
+  return follows(run, a, b) && !run.report(a).singular_event &&
          !(run.report(b).singular_event && is_resolved(run.state(a), run.state(b)));
 }
 
@@ -46,9 +59,16 @@ bool joined(const Trajectory& run, std::size_t a, std::size_t b) {
 // method leads to.
 class Neighbourhood {
  public:
-  Neighbourhood(const Simulation& run, std::size_t i) : run_(run), i_(i), first_(i), last_(i) {
+  enum class Of { smooth_steps, all_steps };  // the latter as the method has them, whatever they lead through
+  Neighbourhood(const Simulation& run, std::size_t i, Of of = Of::smooth_steps)
+      : run_(run), i_(i), first_(i), last_(i), all_(of == Of::all_steps) {
     const Trajectory& t = run.trajectory;
     const Model* model = &t.model(i);
+    if (all_) {
+      while (first_ > 0 && i - first_ < 8 && follows(t, first_ - 1, first_)) --first_;
+      while (last_ + 1 < t.size() && last_ - i < 8 && follows(t, last_, last_ + 1)) ++last_;
+      return;
+    }
     if (i > 0 && joined(t, i - 1, i)) first_ = i - 1;
     if (i + 1 < t.size() && joined(t, i, i + 1)) last_ = i + 1;
     from_ = first_;
@@ -118,6 +138,7 @@ class Neighbourhood {
     if (acceleration(k + 1).size() > 0 && adds_up<3>(system, index1, k, b, {1, 4, 1}, good_quintic))
       return true;
     by_steps_.push_back(k);
+    if (run_.solved_as.name == "path") return true;  // its motion is known at any time
     const bool open = acceleration(k + 1).size() == 0;
     return adds_up<5>(system, index1, k, open ? state_in(k, a.t + 0.875 * (b.t - a.t)) : b,
                       {7, 32, 12, 32, 7}, good_step);
@@ -147,6 +168,7 @@ class Neighbourhood {
   }
 
   State state_at(double t) const {
+    if (all_) return run_.trajectory.state_at(t);
     return state_in(t < run_.trajectory.time(i_) || last_ == i_ ? first_ : i_, t);
   }
   State state_in(std::size_t k, double t) const {
@@ -167,6 +189,7 @@ class Neighbourhood {
 
   const Simulation& run_;
   std::size_t i_, first_, last_, from_ = 0;
+  bool all_;
   std::vector<VectorXd> accelerations_;  // at state from_ and those after it; empty where there is none
   std::vector<std::size_t> by_steps_;    // of the steps from these states the quintic is not good enough
 };
@@ -236,7 +259,8 @@ std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& va
   }
   std::ranges::stable_sort(found, std::greater(), [](const auto& f) { return f.first; });
   steps.clear();
-  for (std::size_t k = 0; k < std::min(found.size(), most_candidates); ++k) steps.push_back(found[k].second);
+  for (std::size_t k = 0; k < std::min(found.size(), 2 * most_candidates); ++k)
+    steps.push_back(found[k].second);
   return steps;
 }
 
@@ -268,28 +292,6 @@ struct Samples {
   PeakInMotion parabola(std::size_t k) const {
     return vertex({t[k - 1], t[k], t[k + 1]}, {x[k - 1], x[k], x[k + 1]});
   }
-  std::size_t highest() const {
-    std::size_t k = 0;
-    for (std::size_t j = 0; j < x.size(); ++j)
-      if (x[j] > x[k] || std::isnan(x[k])) k = j;
-    return k;
-  }
-  // Whether the values rise to the highest as to a pole 1 / |t - t*| within one time of it, in three times on
-  // a side: pure ones by 3/2 or 2 at least, beside what else acts by less.
-  bool has_pole() const {
-    const std::size_t k = highest();
-    if (k == 0 || k + 1 == x.size()) return false;  // at an end of the motion around, where it is what it is
-    const auto rises = [&](std::size_t far, std::size_t near) {
-      const double first = x[near] / x[far], second = x[k] / x[near];
-      return x[far] > 0 && ((first >= 1.5 && second > 1) || (first >= 1.2 && second >= 1.6));
-    };
-    return (k >= 2 && rises(k - 2, k - 1)) || (k + 2 < x.size() && rises(k + 2, k + 1));
-  }
-  bool is_sharp() const {
-    const std::size_t k = highest();
-    return has_both(k) && x[k] > 1.1 * std::min(x[k - 1], x[k + 1]);
-  }
-
   std::vector<double> t, x;
 };
 
@@ -304,9 +306,6 @@ PeakInMotion closer(const Neighbourhood& around, const StateValues& values, Peak
   for (const std::size_t k : all.tops(best.value)) {
     const Samples some(around, all.t[k > 0 ? k - 1 : 0], all.t[std::min(k + 1, all.t.size() - 1)], values);
     for (std::size_t j = 0; j < some.x.size(); ++j) take(some.x[j], some.t[j]);
-    bool pole = some.has_pole();
-    if (const std::size_t top = some.highest(); !pole && some.is_sharp())
-      pole = Samples(around, some.t[top - 1], some.t[top + 1], values).has_pole();
     for (const std::size_t at : some.tops(best.value)) {
       if (!some.has_both(at)) continue;
       const PeakInMotion top = some.parabola(at);
@@ -314,9 +313,70 @@ PeakInMotion closer(const Neighbourhood& around, const StateValues& values, Peak
       // A corner has no parabola; next to a singular pose one state by itself may say anything.
       take(std::abs(there - some.x[at]) <= 2 * above ? there : top.value, top.t);
     }
-    if (pole && best.t >= some.t.front() && best.t <= some.t.back()) best.bounded = false;
   }
   return best;
+}
+
+// Next to a singular pose no value is known; nearest to it, on one side, three at a distance, twice and four
+// times it. Where their differences double, as those of c / |t - t*| do whatever else acts, the values rise
+// without bound: the largest.
+PeakInMotion rise_towards(const Neighbourhood& around, const StateValues& values, double t, double side) {
+  constexpr double doubled = 1.6, seen = 0.05;  // of the value itself
+  const double span = around.end() - around.begin();
+  for (double d = span / 1024; d < span; d *= 2) {
+    const std::array<double, 3> times{t + side * d, t + side * 2 * d, t + side * 4 * d};
+    if (times[2] < around.begin() || times[2] > around.end()) break;
+    const std::vector<double> x = around.sample({times.begin(), times.end()}, values);
+    if (std::isnan(x[0])) continue;
+    const double near = x[0] - x[1], far = x[1] - x[2];
+    if (far > 0 && near >= doubled * far && near >= seen * x[0]) return {x[0], times[0], false};
+    break;
+  }
+  return {};
+}
+
+// Where 1 / value would be 0 by its slope from a time on, in the sense in which it falls; NaN where it does
+// not.
+double pole_ahead(const Neighbourhood& around, const StateValues& values, double t, double sense) {
+  const double ahead = 1e-3 * (around.end() - around.begin());
+  for (double back = 0; back < 200 * ahead;
+       back = std::max(2 * back, ahead)) {  // out of where no value is known
+    const double near = t - sense * back, far = near - sense * ahead;
+    if (std::min(far, near) < around.begin() || std::max(far, near) > around.end()) break;
+    const std::vector<double> x = around.sample({far, near}, values);
+    if (std::isnan(x[0]) || std::isnan(x[1])) continue;
+    if (!(x[0] > 0 && x[1] > x[0])) break;
+    return near + sense * ahead / (x[1] / x[0] - 1);
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+// Beside the largest value that was found, and beside the singular poses that the run tells of, one may be
+// larger the nearer it is looked for.
+PeakInMotion without_bound(const Simulation& run, const StateValues& values, const PeakInMotion& best) {
+  constexpr int most_poses = 64;
+  const auto around = [&](double t) {
+    const Trajectory& states = run.trajectory;
+    std::size_t i = state_before(states, t);
+    if (i + 1 < states.size() && states.time(i + 1) - t < t - states.time(i)) ++i;
+    return Neighbourhood(run, i, Neighbourhood::Of::all_steps);
+  };
+  PeakInMotion found;
+  const auto look = [&](const Neighbourhood& there, double t) {
+    for (const double side : {-1.0, 1.0})
+      if (const PeakInMotion rise = rise_towards(there, values, t, side);
+          std::isnan(found.value) || rise.value > found.value)
+        found = rise;
+  };
+  if (const Neighbourhood there = around(best.t); best.value > 0 && !there.empty())
+    for (const double sense : {-1.0, 1.0})
+      if (const double t = pole_ahead(there, values, best.t, sense); t > there.begin() && t < there.end())
+        look(there, t);
+  int poses = 0;
+  for (const Event& event : run.events)
+    if (event.kind == "singular_pose" && poses++ < most_poses)
+      if (const Neighbourhood there = around(event.t); !there.empty()) look(there, event.t);
+  return found;
 }
 
 // Whether a column is a function of the state alone.
@@ -324,6 +384,15 @@ bool of_the_state(const Series& column) {
   if (column.unit == "J") return column.name == "kinetic_energy_J" || column.name == "potential_energy_J";
   return !column.name.starts_with("constraint_") && !column.name.ends_with("_unique") &&
          column.name != "step_s" && column.name != "newton_iterations";
+}
+
+// Of a piece alone an angle begins anew within a turn: on from that of the run's state before.
+void count_on(const Trajectory& run, const Simulation& piece, const std::vector<double>& known, double turn,
+              std::vector<double>& values) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const std::size_t i = state_before(run, piece.trajectory.time(k));
+    if (i < known.size()) values[k] += turn * std::round((known[i] - values[k]) / turn);
+  }
 }
 
 PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std::string_view name,
@@ -336,7 +405,11 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
     return out;
   };
   const StateValues values = [&](const Simulation& piece) {
-    return signed_values((column->unit == "J" ? diagnose_energies(piece) : diagnose_states(piece)).at(name));
+    std::vector<double> out =
+        signed_values((column->unit == "J" ? diagnose_energies(piece) : diagnose_states(piece)).at(name));
+    if (name == "fold_angle_rad") count_on(run.trajectory, piece, signed_values(*column), 2 * pi, out);
+    if (name == "fold_angle_deg") count_on(run.trajectory, piece, signed_values(*column), 360, out);
+    return out;
   };
   PeakInMotion top =
       top_of_motion(run, signed_values(*column), of_the_state(*column) ? values : StateValues());
@@ -360,6 +433,10 @@ PeakInMotion top_of_motion(const Simulation& run, const std::vector<double>& at_
   for (const std::size_t i : around_these) {
     const Neighbourhood around(run, i);
     if (!around.empty()) best = closer(around, values, best);
+  }
+  if (const PeakInMotion rise = without_bound(run, values, best); !std::isnan(rise.value)) {
+    if (rise.value > best.value) best = rise;
+    best.bounded = false;
   }
   return best;
 }
