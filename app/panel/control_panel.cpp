@@ -18,6 +18,7 @@ namespace {
 // Fewer frames a second than 30, and that so many times in a row.
 constexpr double slow_frame = 1.0 / 30;
 constexpr int slow_enough = 3;
+constexpr int until_typing = 4;  // frames that the text field of a box that opens takes to get the keyboard
 constexpr float bar_height = 46, timeline_height = 58;  // [points]
 
 }  // namespace
@@ -117,7 +118,14 @@ bool ControlPanel::take_key(const InputEvent& event) {
 // Up to the next press or release of a button or key, so that a click shorter than a frame is seen.
 void ControlPanel::take_events() {
   using Kind = InputEvent::Kind;
+  const bool box = state().palette_open || state().files_open || state().export_open;
+  box_frames_ = box ? box_frames_ + 1 : 0;
+  const bool waits = box && box_frames_ <= until_typing && !host_->typing();
   while (!events_.empty()) {
+    if (waits && (events_.front().kind == Kind::key || events_.front().kind == Kind::text)) {
+      keep_drawing(true);
+      break;
+    }
     const InputEvent event = std::move(events_.front());
     events_.pop_front();
     if (event.down && (event.kind == Kind::button || event.key != Key::none)) session_.note_press();

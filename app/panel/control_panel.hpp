@@ -91,6 +91,7 @@ class ControlPanel {
   DrawDamage damage_;
   double painted_ = 0;
   int slow_frames_ = 0;  // in a row, while something moves
+  int box_frames_ = 0;   // since a box with a text field is open
   std::unique_ptr<Framebuffer> picture_;
   SceneView view_;
   FigureCards cards_;

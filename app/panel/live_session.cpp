@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/panel/document/file_list.hpp"
 #include "app/panel/document/scene_entries.hpp"
 #include "app/panel/view/film_camera.hpp"
 #include "core/export/atomic_file.hpp"
@@ -34,6 +35,23 @@ std::string absolute(const std::string& path) {
   std::error_code unknown;
   const auto whole = std::filesystem::absolute(path, unknown);
   return unknown ? path : whole.lexically_normal().string();
+}
+
+std::filesystem::file_time_type written(const std::string& file) {
+  std::error_code unknown;
+  return std::filesystem::last_write_time(file, unknown);
+}
+
+// Why a file that the document names is not there, where it goes into another folder than that of `from`;
+// else empty.
+std::string lacking_file(const SceneDocument& document, const SceneDocument& from) {
+  if (absolute(document.folder) != absolute(from.folder)) try {
+      read_document(document);
+    } catch (const SceneError& error) {
+      for (const SceneProblem& problem : error.problems())
+        if (problem.message.starts_with("cannot read ")) return problem.message;
+    }
+  return "";
 }
 
 }  // namespace
@@ -166,9 +184,19 @@ void LiveSession::update_picture() {
   }
 }
 
+// Since they were read. In a replay they are as they are.
+bool LiveSession::named_files_changed() const {
+  return !options_.replayed && std::ranges::any_of(named_files_, [](const auto& file) {
+    return file.second != written(file.first);
+  });
+}
+
 // What the widgets are of.
 void LiveSession::describe() {
+  for (auto& [file, when] : named_files_) when = written(file);  // looked at before they are read
   state_.base = base_scene(state_.history.now());
+  std::erase_if(named_files_, [&](const auto& file) { return !state_.base.files.contains(file.first); });
+  for (const std::string& file : state_.base.files) named_files_.try_emplace(file, written(file));
   state_.described = state_.selected;
   state_.sections = param_sections(state_.base, state_.selected);
   const Scene& base = state_.base;
@@ -195,10 +223,11 @@ bool LiveSession::act() {
 // A change of the scene asks for its simulation.
 bool LiveSession::follow_document() {
   const SceneDocument& now = state_.history.now();
-  const bool other = state_.described != state_.selected;
-  if (submitted_ && *submitted_ == now && !other) return false;
-  if (other || !submitted_ || *submitted_->text != *now.text || submitted_->overrides != now.overrides ||
-      submitted_->added != now.added) {
+  const bool other = state_.described != state_.selected, reread = submitted_ && named_files_changed();
+  if (submitted_ && *submitted_ == now && !other && !reread) return false;
+  if (reread) state_.message = "files that the scene names were changed: read again";
+  if (other || reread || !submitted_ || *submitted_->text != *now.text ||
+      submitted_->overrides != now.overrides || submitted_->added != now.added) {
     try {
       describe();
     } catch (const SceneError& error) {
@@ -207,8 +236,8 @@ bool LiveSession::follow_document() {
       state_.described = state_.selected;
     }
   }
-  if (submitted_ && *submitted_ == now) return true;
-  const bool same_run = submitted_ && simulated_part(*submitted_) == simulated_part(now);
+  if (submitted_ && *submitted_ == now && !reread) return true;
+  const bool same_run = submitted_ && !reread && simulated_part(*submitted_) == simulated_part(now);
   submitted_ = now;
   if (same_run) {
     update_picture();
@@ -225,7 +254,7 @@ void LiveSession::start_study() {
 }
 
 void LiveSession::start_export(bool replace, bool as_shown) {
-  const std::string output = state_.export_output;
+  const std::string output = state_.export_output = at_home(state_.export_output);
   const SceneDocument& now = state_.history.now();
   if (!as_shown && own_file_now() == OwnFile::changed) {
     state_.question = {
@@ -260,7 +289,8 @@ OwnFile LiveSession::own_file_now() const {
   return options_.replayed ? state_.own_file : own_file(state_.history.now(), last_saved());
 }
 
-void LiveSession::save(const std::string& path) {
+void LiveSession::save(const std::string& typed) {
+  const std::string path = at_home(typed);
   std::error_code unknown;
   const bool own = path == state_.history.now().path;
   if (own ? own_file_now() != OwnFile::changed : !std::filesystem::exists(path, unknown))
@@ -274,6 +304,10 @@ void LiveSession::save(const std::string& path) {
 void LiveSession::save_now(const std::string& path) {
   bool anew = false;
   const SceneDocument saved = saved_document(state_.history.now(), path, anew);
+  if (const std::string lacks = lacking_file(saved, state_.history.now()); !lacks.empty()) {
+    state_.message = "not saved: " + lacks + "; the scene names that file: copy it there first";
+    return;
+  }
   if (!options_.replayed) write_file_atomically(behind_links(path), *saved.text);
   state_.history.saved(saved);
   saved_ = saved;
@@ -306,7 +340,7 @@ void LiveSession::open(const SceneDocument& document) {
 }
 
 void LiveSession::open_file(const std::string& path) {
-  open(open_document(path, {}));
+  open(open_document(at_home(path), {}));
   remember(state_.history.now().path);
 }
 
@@ -348,8 +382,18 @@ void LiveSession::ask_to_close() {
 }
 
 void LiveSession::close_or_ask() {
+  const auto discard = [](LiveSession& s) { s.state().closed = true; };
   if (!has_unsaved()) {
-    state_.closed = true;
+    const int back = state_.history.steps_to_left();
+    if (back == 0) {
+      state_.closed = true;
+      return;
+    }
+    const auto go_back = [back](LiveSession& s) {
+      for (int i = 0; i < back; ++i) s.state().history.undo();
+    };
+    state_.question = {"A scene that was open before has changes that are in no file.",
+                       {{"Back to it", go_back}, {"Discard", discard}, {"Cancel", {}}}};
     return;
   }
   const std::string name = std::filesystem::path(state_.history.now().name).filename().string();
@@ -357,9 +401,8 @@ void LiveSession::close_or_ask() {
     s.save_or_ask();
     s.state().closed = !s.has_unsaved();
   };
-  state_.question = {
-      name + " has changes that are in no file.",
-      {{"Save", save}, {"Discard", [](LiveSession& s) { s.state().closed = true; }}, {"Cancel", {}}}};
+  state_.question = {name + " has changes that are in no file.",
+                     {{"Save", save}, {"Discard", discard}, {"Cancel", {}}}};
 }
 
 void LiveSession::screenshot() {

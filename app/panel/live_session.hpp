@@ -89,6 +89,7 @@ class LiveSession {
   void remember(const std::string& path);
   const SceneDocument* last_saved() const { return saved_ ? &*saved_ : nullptr; }
   OwnFile own_file_now() const;
+  bool named_files_changed() const;
   bool has_unsaved() const;
   void close_or_ask();  // of changes
   void show_hand();
@@ -107,6 +108,8 @@ class LiveSession {
   int presses_ = 0;
   std::optional<SceneDocument> saved_;  // the last one that was
   OwnFileWatch own_file_;
+  std::map<std::string, std::filesystem::file_time_type>
+      named_files_;  // CSV files of the scene, as they were read
   ChildProcess folder_;
   Hand hand_;
   ExportProcess export_;

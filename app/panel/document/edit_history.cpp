@@ -42,7 +42,25 @@ void EditHistory::replace(SceneDocument document) {
 
 void EditHistory::saved(SceneDocument document) {
   end_gesture();
+  const std::string before = now_.path;
+  if (before != document.path)
+    for (std::vector<SceneDocument>* steps : {&past_, &future_})
+      for (auto step = steps->rbegin(); step != steps->rend() && step->path == before; ++step) {
+        step->path = document.path;
+        step->name = document.name;
+        step->folder = document.folder;
+      }
   now_ = std::move(document);
+}
+
+int EditHistory::steps_to_left() const {
+  const SceneDocument* next = &now_;
+  int steps = 0;
+  for (auto past = past_.rbegin(); past != past_.rend(); next = &*past, ++past) {
+    ++steps;
+    if (past->path != next->path && is_edited(*past)) return steps;
+  }
+  return 0;
 }
 
 bool EditHistory::step(std::vector<SceneDocument>& from, std::vector<SceneDocument>& to) {

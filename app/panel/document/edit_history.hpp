@@ -21,8 +21,12 @@ class EditHistory {
   void change(const std::string& gesture, SceneDocument document);
   void forget(const std::string& key);   // back to the file's value
   void replace(SceneDocument document);  // another scene, or none of the edits
-  void saved(SceneDocument document);    // the same scene, now in a file: no step
+  // The same scene, now in a file: no step. With a new name what undo and redo lead to has that name, too.
+  void saved(SceneDocument document);
   void end_gesture() { gesture_.clear(); }
+
+  // How many steps back there is another scene that was left with changes which are in no file; 0: nowhere.
+  int steps_to_left() const;
 
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }

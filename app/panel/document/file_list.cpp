@@ -9,15 +9,10 @@ namespace unfurl {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-// "~/x" means a folder of one's own.
 std::string at_home(const std::string& typed) {
   const char* home = std::getenv("HOME");
   return typed.starts_with("~/") && home != nullptr ? home + typed.substr(1) : typed;
 }
-
-}  // namespace
 
 std::vector<FileEntry> matching_files(const std::string& typed) {
   const std::string whole = at_home(typed);

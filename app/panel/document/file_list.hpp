@@ -14,6 +14,8 @@ struct FileEntry {
   bool operator==(const FileEntry&) const = default;
 };
 
+// "~/x" means a folder of one's own: "/home/me/x".
+std::string at_home(const std::string& typed);
 // Folders and .toml files that begin as what is typed, by name; first "../" where nothing of a name is typed.
 // Empty where the folder cannot be read.
 std::vector<FileEntry> matching_files(const std::string& typed);

@@ -7,6 +7,7 @@
 #include "app/panel/panes/figure_cards.hpp"
 #include "app/panel/panes/ui.hpp"
 #include "app/panel/view/scene_view.hpp"
+#include "core/scene/expression.hpp"
 
 namespace unfurl {
 
@@ -45,7 +46,13 @@ std::vector<PaletteItem> palette_items(const PanelState& state, const std::strin
 
 // A row of the left pane, with its menu and what is wrong with it.
 void draw_row(Ui& ui, PanelState& state, const ParamRow& row);
+// What is typed into a number's widget: an expression may have the scene's variables.
+struct Typing {
+  const Variables& variables;
+  bool typed = false;        // there is a text field
+  std::string problem = {};  // with what stands in it: the value stays
+};
 // The same without: label and widget. Returns whether the value changed.
-bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong);
+bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong, Typing& typing);
 
 }  // namespace unfurl

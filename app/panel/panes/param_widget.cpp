@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One row of the left pane: a label and the widget that a parameter's kind asks for.
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 
 #include "app/panel/panes/panes.hpp"
+#include "core/study/table.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 
@@ -14,15 +18,50 @@ namespace {
 constexpr std::size_t longest_text = 4096;
 constexpr std::size_t most_numbers = 4;  // that a vector has a field for each of
 
-// Seven digits and the unit. ImGui takes the digits for the smallest number of a logarithmic slider too.
-std::string format_of(const ParamSpec& spec, const SliderRange& range) {
+// Seven digits. ImGui takes them for the smallest number of a logarithmic slider too.
+std::string digits_of(const SliderRange& range) {
   const double smallest = range.logarithmic && range.low > 0 ? std::log10(range.low) : 0.0;
-  const int digits = std::clamp(static_cast<int>(std::ceil(-smallest)) + 1, 7, 15);
+  return "%." + std::to_string(std::clamp(static_cast<int>(std::ceil(-smallest)) + 1, 7, 15)) + "g";
+}
+std::string format_of(const ParamSpec& spec, const SliderRange& range) {
   const std::string unit = unit_caption(spec.unit);
-  return "%." + std::to_string(digits) + "g" + (unit.empty() || unit == "°" ? "" : " ") + unit;
+  return digits_of(range) + (unit.empty() || unit == "°" ? "" : " ") + unit;
 }
 
-bool real_widget(const ParamRow& row, ParamValue& value) {
+// Whether a slider is a text field now (a click with Ctrl, Enter), in which ImGui takes the first number for
+// the whole.
+bool is_typed(const char* label) {
+  return ImGui::TempInputIsActive(ImGui::GetID(label));
+}
+
+// That text field: a number or an expression, as scenes have them, and nothing else.
+bool typed_widget(const char* label, const std::string& digits, double& x, Typing& typing) {
+  const ImVec2 low = ImGui::GetCursorScreenPos(), size(ImGui::CalcItemWidth(), ImGui::GetFrameHeight());
+  const ImRect place(low, {low.x + size.x, low.y + size.y});
+  const ImGuiID id = ImGui::GetID(label);
+  ImGui::ItemSize(place, ImGui::GetStyle().FramePadding.y);
+  if (!ImGui::ItemAdd(place, id, &place, ImGuiItemFlags_Inputable)) return false;
+  char text[256];
+  std::snprintf(text, sizeof text, digits.c_str(), x);
+  const std::string shown = text;
+  ImGui::TempInputText(place, id, label, text, sizeof text, ImGuiInputTextFlags_AutoSelectAll);
+  typing.typed = true;
+  if (text == shown) return false;
+  std::string_view meant(text);
+  meant.remove_prefix(std::min(meant.find_first_not_of(" ="), meant.size()));
+  try {
+    const double now = evaluate(meant, typing.variables);
+    if (now == x) return false;
+    x = now;
+    ImGui::MarkItemEdited(id);
+    return true;
+  } catch (const ExpressionError& error) {
+    typing.problem = in_quotes(text) + " is no number: " + error.what();
+    return false;
+  }
+}
+
+bool real_widget(const ParamRow& row, ParamValue& value, Typing& typing) {
   double x = std::get<double>(value);
   const SliderRange range = slider_range(row);
   if (not_given(value)) {
@@ -33,6 +72,11 @@ bool real_widget(const ParamRow& row, ParamValue& value) {
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_NoRoundToFormat | (range.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
   const std::string format = format_of(row.spec, range);
+  if (is_typed("##value")) {
+    if (!typed_widget("##value", digits_of(range), x, typing)) return false;
+    value = x;
+    return true;
+  }
   if (!ImGui::SliderScalar("##value", ImGuiDataType_Double, &x, &range.low, &range.high, format.c_str(),
                            flags))
     return false;
@@ -45,9 +89,20 @@ bool real_widget(const ParamRow& row, ParamValue& value) {
   return true;
 }
 
-bool integer_widget(const ParamRow& row, ParamValue& value) {
+bool integer_widget(const ParamRow& row, ParamValue& value, Typing& typing) {
   const SliderRange range = slider_range(row);
   auto x = static_cast<ImS64>(std::get<long>(value));
+  if (is_typed("##value")) {
+    constexpr double exact = 9007199254740992.0;  // 2^53
+    auto number = static_cast<double>(x);
+    if (!typed_widget("##value", "%.16g", number, typing)) return false;
+    if (number != std::floor(number) || std::abs(number) > exact) {
+      typing.problem = exact_number(number) + " is no whole number";
+      return false;
+    }
+    value = static_cast<long>(number);
+    return true;
+  }
   const auto low = static_cast<ImS64>(range.low), high = static_cast<ImS64>(range.high);
   if (!ImGui::SliderScalar("##value", ImGuiDataType_S64, &x, &low, &high, "%lld")) return false;
   value = static_cast<long>(x);
@@ -115,29 +170,43 @@ bool numbers_widget(ParamValue& value) {
   return true;
 }
 
-bool vector_widget(const ParamRow& row, ParamValue& value) {
+bool vector_widget(const ParamRow& row, ParamValue& value, Typing& typing) {
   auto& numbers = std::get<std::vector<double>>(value);
   if (row.spec.length == 0 || numbers.size() > most_numbers) return numbers_widget(value);
   const SliderRange range = slider_range(row);
   const float speed = static_cast<float>((range.high - range.low) / 400);
-  return ImGui::DragScalarN("##value", ImGuiDataType_Double, numbers.data(), static_cast<int>(numbers.size()),
-                            speed, nullptr, nullptr, "%.4g", ImGuiSliderFlags_NoRoundToFormat);
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+  bool changed = false;
+  ImGui::BeginGroup();
+  ImGui::PushMultiItemsWidths(static_cast<int>(numbers.size()), ImGui::CalcItemWidth());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0) ImGui::SameLine(0, gap);
+    ImGui::PushID(static_cast<int>(i));
+    changed |= is_typed("##value")
+                   ? typed_widget("##value", "%.15g", numbers[i], typing)
+                   : ImGui::DragScalar("##value", ImGuiDataType_Double, &numbers[i], speed, nullptr, nullptr,
+                                       "%.4g", ImGuiSliderFlags_NoRoundToFormat);
+    ImGui::PopID();
+    ImGui::PopItemWidth();
+  }
+  ImGui::EndGroup();
+  return changed;
 }
 
-bool widget(Ui& ui, const ParamRow& row, ParamValue& value) {
+bool widget(Ui& ui, const ParamRow& row, ParamValue& value, Typing& typing) {
   switch (row.spec.kind) {
     case ParamKind::boolean:
       return ImGui::Checkbox("##value", &std::get<bool>(value));
     case ParamKind::integer:
-      return integer_widget(row, value);
+      return integer_widget(row, value, typing);
     case ParamKind::real:
-      return real_widget(row, value);
+      return real_widget(row, value, typing);
     case ParamKind::choice:
       return choice_widget(ui, row, value);
     case ParamKind::text:
       return text_field(std::get<std::string>(value));
     case ParamKind::vector:
-      return vector_widget(row, value);
+      return vector_widget(row, value, typing);
     case ParamKind::names:
       return names_widget(value);
   }
@@ -146,7 +215,7 @@ bool widget(Ui& ui, const ParamRow& row, ParamValue& value) {
 
 }  // namespace
 
-bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong) {
+bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong, Typing& typing) {
   ImGui::PushID(row.key.c_str());
   const float full = ImGui::GetContentRegionAvail().x;
   const float label = std::floor(0.44f * full);
@@ -159,7 +228,7 @@ bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong) {
   ImGui::SameLine(ImGui::GetCursorStartPos().x + label);
   ImGui::SetNextItemWidth(full - label);
   if (wrong) ImGui::PushStyleColor(ImGuiCol_Border, ui.theme.error);
-  const bool changed = widget(ui, row, value);
+  const bool changed = widget(ui, row, value, typing);
   if (wrong) ImGui::PopStyleColor();
   ui.note(row.key);
   ImGui::PopID();

@@ -64,7 +64,14 @@ void draw_row(Ui& ui, PanelState& state, const ParamRow& row) {
     ImGui::SetKeyboardFocusHere();
     state.reveal.clear();
   }
-  if (draw_param(ui, row, value, !wrong.empty())) state.history.edit(row.key, value);
+  const Variables variables(state.base.variables.begin(), state.base.variables.end());
+  Typing typing{variables};
+  if (draw_param(ui, row, value, !wrong.empty(), typing)) state.history.edit(row.key, value);
+  const std::string about = row.label + ": ";
+  if (!typing.problem.empty())
+    state.message = about + typing.problem;
+  else if (typing.typed && state.message.starts_with(about))
+    state.message.clear();
   if (revealed) ImGui::SetScrollHereY();
   if (ImGui::IsItemDeactivated()) state.history.end_gesture();
   reset_menu(ui, state, row);

@@ -285,15 +285,18 @@ void draw_state_line(Ui& ui, const PanelState& state, const SceneView& view, con
   const float pad = ui.px(7), room = frame.size.x - ui.px(40);
   const ImVec2 at(frame.low.x + ui.px(17), frame.low.y + ui.px(52));
   const ImVec2 text = ImGui::CalcTextSize(line.c_str(), nullptr, false, room);
-  const float wide = std::max(text.x, ui.bold->CalcTextSizeA(ui.bold->FontSize, FLT_MAX, 0, title.c_str()).x);
-  list.AddRectFilled({at.x - pad, at.y - pad},
-                     {at.x + wide + pad, at.y + ui.bold->FontSize + ui.px(4) + text.y + pad},
-                     ui.color(ui.theme.window, 0.72f), ui.px(5));
+  const std::string warned = shortened(warning_sentence(run), room);
+  const float titled = ui.bold->CalcTextSizeA(ui.bold->FontSize, FLT_MAX, 0, title.c_str()).x;
+  const float wide = std::max({text.x, titled, ImGui::CalcTextSize(warned.c_str()).x});
+  const float below = at.y + ui.bold->FontSize + ui.px(4) + text.y;
+  const float end = below + (warned.empty() ? 0 : ui.regular->FontSize + ui.px(2)) + pad;
+  list.AddRectFilled({at.x - pad, at.y - pad}, {at.x + wide + pad, end}, ui.color(ui.theme.window, 0.72f),
+                     ui.px(5));
   list.AddText(ui.bold, ui.bold->FontSize, at, ui.color(ui.theme.text), title.c_str());
   list.AddText(ui.regular, ui.regular->FontSize, {at.x, at.y + ui.bold->FontSize + ui.px(4)},
                ui.color(failed ? ui.theme.error : ui.theme.dim), line.c_str(), nullptr, room);
-  ui.places["state line"] = {at.x - pad, at.y - pad, at.x + wide + pad,
-                             at.y + ui.bold->FontSize + ui.px(4) + text.y + pad};
+  list.AddText({at.x, below + ui.px(2)}, ui.color(ui.theme.warning), warned.c_str());
+  ui.places["state line"] = {at.x - pad, at.y - pad, at.x + wide + pad, end};
 }
 
 // A and B side by side, on the left below the title: the legend stands at the bottom.

@@ -133,17 +133,16 @@ std::string own_program() {
 
 namespace {
 
-// A file of its own for what the program prints.
+// A file of its own for what the program prints; it has no name that could be left behind.
 struct Log {
   std::string name = (fs::temp_directory_path() / "unfurl_export_XXXXXX").string();
   int file = ::mkostemp(name.data(), O_CLOEXEC);
   Log() {
     if (file < 0) throw FileError(name, errno);
-  }
-  ~Log() {
-    ::close(file);
     ::unlink(name.c_str());
+    name = "/proc/self/fd/" + std::to_string(file);
   }
+  ~Log() { ::close(file); }
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
 };

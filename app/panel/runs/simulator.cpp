@@ -97,6 +97,12 @@ SimulationOutcome outcome_of(const SceneDocument& document, const Simulator::Tas
 
 }  // namespace
 
+std::string warning_sentence(const LiveRun& run) {
+  const std::size_t count = run.warnings.size();
+  if (count == 0) return "";
+  return (count == 1 ? "1 warning: " : std::to_string(count) + " warnings: ") + run.warnings.front();
+}
+
 std::string state_sentence(const LiveRun& run) {
   const Simulation& simulation = run.simulation;
   if (run.coarse) return "coarse: one sector with longer steps; the whole is being simulated";

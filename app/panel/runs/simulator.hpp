@@ -27,6 +27,8 @@ struct LiveRun {
 
 // How the run ended, what it cost, and which model was solved and why: "deployed at 4.92 s, ...".
 std::string state_sentence(const LiveRun& run);
+// "2 warnings: ", and the first of them; empty: none.
+std::string warning_sentence(const LiveRun& run);
 
 struct SimulationOutcome {
   long id = 0;                         // of the request

@@ -104,6 +104,37 @@ TEST_CASE("the palette finds actions and parameters, and Enter does them") {
   CHECK_FALSE(driver.panel().has_place("use view"));
 }
 
+// A slider with the keyboard is a text field.
+TEST_CASE("what is typed into a number is the whole of it, as in a scene") {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  PanelDriver driver(options, "pendulum");
+  const auto typed = [&](const std::string& key, const std::string& text) {
+    driver.state().reveal = key;
+    for (int i = 0; i < 4; ++i) driver.frame();
+    driver.type(text);
+    driver.frame();
+    driver.key(Key::enter);
+    driver.settle();
+    const auto& edits = driver.state().history.now().edits;
+    const auto found = edits.find(key);
+    return found == edits.end() ? ParamValue(false) : found->second;
+  };
+  const auto length = [&](const std::string& text) { return typed("structure.length", text); };
+  CHECK(length("1.5") == ParamValue(1.5));
+  CHECK(length("1/4") == ParamValue(0.25));
+  CHECK(length("=2*pi") == ParamValue(2 * pi));
+  CHECK(length("3e-1") == ParamValue(0.3));
+  for (const char* wrong : {"150 cm", "0x10", "1.5.2", "abc", "2*"}) {
+    INFO(wrong);
+    CHECK(length(wrong) == ParamValue(0.3));
+    CHECK(driver.state().message.find(std::string("'") + wrong + "' is no number") != std::string::npos);
+  }
+  CHECK(typed("solver.stages", "6/2") == ParamValue(3L));
+  CHECK(typed("solver.stages", "7/2") == ParamValue(3L));
+  CHECK(driver.state().message.find("3.5 is no whole number") != std::string::npos);
+}
+
 TEST_CASE("every action has a name, and no two have one key") {
   for (const Action& a : actions()) {
     CHECK_FALSE(a.help.empty());
