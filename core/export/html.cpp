@@ -211,7 +211,7 @@ void add_words(const ExportJob& job, Page& page) {
     facts("peak rod force", short_text(std::copysign(
                                 find_measure("peak_rod_force").value(run, job.diagnostics), peak.force_N)) +
                                 " N" + doubt_about(peak, job.diagnostics));
-  if (!job.command.empty()) facts("command", std::string(job.command));
+  if (!job.command.empty()) facts("command, of the scene below", std::string(job.command));
   facts("made by", "Unfurl " + version());
   page["events"] = page["warnings"] = Page::array();
   for (const Event& event : run.events) page["events"].push_back({{"name", event.name}, {"t", event.t}});

@@ -301,6 +301,8 @@ const std::vector<ParamSpec>& motor_params() {
 const std::vector<ParamSpec>& winch_params() {
   static const std::vector<ParamSpec> params = [] {
     std::vector<ParamSpec> all = motor_own_params("m");
+    for (ParamSpec& spec : all)
+      if (spec.name == "to") spec.help = "smooth: the value in the end: the length drawn in since t = 0";
     ParamSpec radius = positive_param("drum_radius", "m", 1.0, "of the drum that draws the cable in"),
               inertia = positive_param("inertia", "kg m^2", 1.0, "of rotor and drum, at the motor");
     radius.required = inertia.required = true;

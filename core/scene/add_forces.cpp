@@ -209,6 +209,7 @@ void add_cable(const SceneElement& e, ElementAdder& to) {
   }
   if (cable.rest < path * (1 - 1e-9)) {
     std::ostringstream text;
+    text.precision(15);  // a number to be given
     text << "is shorter than the path of the cable at t = 0, which is " << path
          << " m; give axial_stiffness, so that it can stretch, or at least that length";
     return to.find.problem(e, "length", text.str());

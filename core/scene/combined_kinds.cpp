@@ -431,6 +431,7 @@ void give_deployment(const Scene& scene, Structure& structure) {
     find.problem(e, "deployed", "must be less than a turn away from stowed");
   else if (!((d.deployed - initial) / way > 1e-9)) {
     std::ostringstream text;
+    text.precision(15);
     text << "is reached already at t = 0, where the measure is " << initial / unit;
     find.problem(e, "deployed", text.str());
   }

@@ -110,9 +110,10 @@ std::string text_cell(const CsvRow& row, std::string_view name, std::string_view
 
 // The file that the key names; none when there is no such key.
 std::optional<TextFile> file_of(TableReader& table, std::string_view key, const std::string& name,
-                                const std::string& folder) {
+                                const std::string& folder, SceneNotes& notes) {
   if (!table.has(key) || name.empty()) return {};
   TextFile file = read_file_beside(folder, name);
+  notes.files.insert(file.path);
   if (file.error.empty()) return file;
   table.problem(key, file.error);
   return {};
@@ -279,10 +280,10 @@ CustomSpec read_custom(TableReader& table, const std::string& folder, SceneNotes
     if (error.key != "youngs_modulus") table.problem(error.key, error.message);
   }
   read_nodes(table, spec, notes);
-  if (const auto file = file_of(table, "nodes_file", values.text("nodes_file"), folder))
+  if (const auto file = file_of(table, "nodes_file", values.text("nodes_file"), folder, notes))
     add_csv_nodes(file->text, file->path, "", true, spec, notes);
   read_rods(table, spec, notes);
-  if (const auto file = file_of(table, "rods_file", values.text("rods_file"), folder))
+  if (const auto file = file_of(table, "rods_file", values.text("rods_file"), folder, notes))
     add_csv_rods(file->text, file->path, "", spec, notes);
   read_constraints(table, folder, notes, constraints);
   note_problems(spec, before, table, notes);

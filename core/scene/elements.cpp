@@ -21,6 +21,7 @@ void read_table(TableReader& entry, ParamSet& values, const std::string& folder,
   if (!values.vector("times").empty())
     return entry.problem("table", "give either table, or times and values");
   const TextFile file = read_file_beside(folder, name);
+  notes.files.insert(file.path);
   if (!file.error.empty()) return entry.problem("table", file.error);
   std::vector<double> times, sizes;
   for (const auto& row : read_csv(file.text, file.path, columns, notes)) {

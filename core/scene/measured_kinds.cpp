@@ -153,6 +153,7 @@ void push_stop(const SceneElement& e, ElementAdder& to, Measure measure) {
                       "the hinge");
     if (lower ? initial >= limit - round_off : initial <= limit + round_off) continue;
     std::ostringstream text;
+    text.precision(15);
     text << "is passed already at t = 0, where the value is " << initial / unit;
     to.find.problem(e, key, text.str());
   }
@@ -169,6 +170,7 @@ void add_clearance(const SceneElement& e, ElementAdder& to) {
   const double clearance = e.values.real("clearance"), initial = to.find.initial(measure);
   if (initial > clearance * (1 + 1e-9)) {
     std::ostringstream text;
+    text.precision(15);
     text << "is passed already at t = 0, where the nodes are " << initial << " m apart";
     return to.find.problem(e, "clearance", text.str());
   }

@@ -269,6 +269,7 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   scene.warnings = std::move(notes.warnings);
   scene.locations = std::move(notes.locations);
   scene.units = std::move(notes.units);
+  scene.files = std::move(notes.files);
   return scene;
 }
 

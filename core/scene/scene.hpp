@@ -44,6 +44,7 @@ struct Scene {
   std::vector<SceneProblem> warnings;               // what is given and does nothing
   std::map<std::string, SourceLocation> locations;  // dotted key -> where it was given, for later messages
   std::map<std::string, std::string> units;         // of the keys that overrides change: dotted key -> unit
+  std::set<std::string> files;                      // that it names, as paths
 };
 
 }  // namespace unfurl

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,7 @@ struct SceneNotes {
   std::vector<SceneProblem> warnings;               // what is given and does nothing
   std::map<std::string, SourceLocation> locations;  // dotted key -> place of its value
   std::map<std::string, std::string> units;         // of what overrides change: dotted key -> unit
+  std::set<std::string> files;                      // that were read beside the scene's own
 
   void add(const SourceLocation& where, std::string key, std::string message);
 };

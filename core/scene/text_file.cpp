@@ -33,7 +33,7 @@ std::string outside_error(const std::string& folder, const std::string& name) {
 
 }  // namespace
 
-TextFile read_text_file(const std::string& path, TextSource source) {
+TextFile read_text_file(const std::string& path, TextSource source, std::size_t most) {
   TextFile result{path, "", ""};
   // Opening a pipe that nobody writes to waits, unless it is told not to.
   const int descriptor =
@@ -58,14 +58,18 @@ TextFile read_text_file(const std::string& path, TextSource source) {
   std::vector<char> block(std::size_t{1} << 16U);
   while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get())) {
     result.text.append(block.data(), n);
-    if (result.text.size() > max_text_file_bytes) {
-      result.error = "is larger than " + std::to_string(max_text_file_bytes >> 20U) + " MB";
+    if (result.text.size() > most) {
+      result.error = "is larger than " + std::to_string(most >> 20U) + " MB";
       result.text.clear();
       return result;
     }
   }
   if (std::ferror(file.get())) result.error = "cannot be read";
   return result;
+}
+
+TextFile read_result_file(const std::string& path) {
+  return read_text_file(path, TextSource::regular_file, std::string().max_size());
 }
 
 TextFile read_file_beside(const std::string& folder, const std::string& name) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace unfurl {
@@ -17,9 +18,12 @@ struct TextFile {
 // directory of results names may not: it could wait for ever.
 enum class TextSource { regular_file, pipe_too };
 
-// The whole file. Refuses what is not readable as a file and more than max_text_file_bytes (also of an
-// endless device).
-TextFile read_text_file(const std::string& path, TextSource source = TextSource::regular_file);
+// The whole file. Refuses what is not readable as a file and more than `most` bytes (also of an endless
+// device).
+TextFile read_text_file(const std::string& path, TextSource source = TextSource::regular_file,
+                        std::size_t most = max_text_file_bytes);
+// One of our own, of any size.
+TextFile read_result_file(const std::string& path);
 
 // A file whose name is relative to the folder and that lies inside it, links followed.
 TextFile read_file_beside(const std::string& folder, const std::string& name);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/variables.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -79,7 +81,7 @@ class Expansion {
     if (!is_variable_name(name))
       return note(tree, key, "must be a letter, then letters, digits or _, and no constant or function");
     if (const auto value = value_of(tree, key))
-      variables_[name] = *value;
+      variables_[name] = is_expression(tree) ? without_rounding(*value) : *value;
     else
       wrong_.insert(name);
   }
@@ -136,6 +138,13 @@ class Expansion {
     return words;
   }
 
+  // 2.1 / 0.7 is 3 but for rounding, and means 3 where things are counted and named.
+  static double without_rounding(double value) {
+    constexpr double share = 8 * std::numeric_limits<double>::epsilon();
+    const double whole = std::round(value);
+    return std::abs(value - whole) <= share * std::max(1.0, std::abs(value)) ? whole : value;
+  }
+
   static void become(TomlTree& tree, double value) {
     constexpr double exact = 9007199254740992.0;  // 2^53: every whole number up to here is a double
     tree.text.clear();
@@ -159,7 +168,7 @@ class Expansion {
         return note(tree, key, "a brace stands alone in " + in_quotes(text) + "; write it twice to mean it");
       const auto value = evaluated(tree, text.substr(i + 1, end - i - 1), key);
       if (!value) return;
-      filled += shortest_number(*value);
+      filled += shortest_number(without_rounding(*value));
       keys_.insert(key);
       i = end;
     }
@@ -230,9 +239,11 @@ class Expansion {
            "must be a range \"FROM:END\", END not included, or a list of numbers; got " + range.describe());
       return values;
     }
-    const auto from = evaluated(range, std::string_view(range.text).substr(0, colon), key);
-    const auto end = evaluated(range, std::string_view(range.text).substr(colon + 1), key);
+    auto from = evaluated(range, std::string_view(range.text).substr(0, colon), key);
+    auto end = evaluated(range, std::string_view(range.text).substr(colon + 1), key);
     if (!from || !end) return values;
+    from = without_rounding(*from);
+    end = without_rounding(*end);
     if (*end < *from)
       note(range, key, "must not end before it begins; got " + in_quotes(range.text));
     else if (*end - *from > static_cast<double>(max_turns))
@@ -271,6 +282,14 @@ void refuse_unknown_variable(const TomlTree& root, const std::string& override_t
   problems.push_back(std::move(problem));
 }
 
+void refuse_all_variables(std::vector<SceneProblem>& problems) {
+  SceneProblem problem;
+  problem.where.file = override_source;
+  problem.key = "variables";
+  problem.message = "are changed one by one: variables.NAME=VALUE";
+  problems.push_back(std::move(problem));
+}
+
 }  // namespace
 
 bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& overrides,
@@ -287,6 +306,8 @@ bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& 
   if (!problems.empty()) return false;
   apply_overrides(root, then, problems);
   const std::size_t before = problems.size();
+  if (root.find("variables"))
+    refuse_all_variables(problems);  // they are worked out by now, and out of the tree
   expansion.leave_braces();
   expansion.expand(root, "");
   if (worked_out) worked_out->keys = expansion.keys();

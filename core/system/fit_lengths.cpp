@@ -123,7 +123,7 @@ void fit_lengths(Structure& structure, bool eliminate_linear) {
        << structure.nodes[mover].name << "); the length furthest off was that of " << rod.name << ", by "
        << off * rod.length << " m";
   for (std::size_t i = 0; i < moved.nodes.size(); ++i) structure.nodes[i].position = moved.nodes[i].position;
-  structure.notes.push_back(note.str());
+  if (most > 0) structure.notes.push_back(note.str());
 }
 
 }  // namespace unfurl

@@ -160,8 +160,8 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
   const std::vector<int> dependent = dense ? dependent_rows(full, values) : dependent_rows(G);
 
   mobility.rank = G.rows() - static_cast<Index>(dependent.size());
-  mobility.degrees_of_freedom = mobility.coordinates - mobility.rank;
-  mobility.count = mobility.coordinates - mobility.constraints;
+  mobility.degrees_of_freedom = mobility.coordinates - mobility.rank - system.integrals();
+  mobility.count = mobility.coordinates - mobility.constraints - system.integrals();
   mobility.rigid_motions = rigid_motions(G, q, system.ghosts());
   const auto names = system.all_names();
   for (const int row : dependent) {

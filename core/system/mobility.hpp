@@ -21,9 +21,9 @@ struct Mobility {
   Index rank = 0;                      // of G
   std::vector<std::string> redundant;  // rows that follow from the rows before them, in order
   std::vector<int> redundant_rows;     // the same by number
-  Index degrees_of_freedom = 0;        // coordinates - rank
-  Index count = 0;                     // coordinates - constraints: Maxwell's count, blind to redundant rows
-  Index rigid_motions = 0;             // of the degrees of freedom: motions of the whole as one rigid body
+  Index degrees_of_freedom = 0;        // coordinates - rank, but for the integrals of controllers
+  Index count = 0;          // the same with constraints for rank: Maxwell's count, blind to redundant rows
+  Index rigid_motions = 0;  // of the degrees of freedom: motions of the whole as one rigid body
   // Of G with rows of unit length; how far the pose is from one in which more can move. NaN: too large a
   // structure.
   double smallest_singular_value = 0;

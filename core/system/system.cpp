@@ -257,6 +257,9 @@ Index System::coordinates() const {
 const std::vector<int>& System::ghosts() const {
   return data_->ghosts;
 }
+Index System::integrals() const {
+  return std::ssize(data_->integrators);
+}
 Index System::solved_coordinates() const {
   return data_->B.cols();
 }

@@ -53,9 +53,10 @@ class System {
 
   Index coordinates() const;               // 3 n, of all solved nodes
   const std::vector<int>& ghosts() const;  // nodes that are nowhere in space (Node::ghost)
-  Index solved_coordinates() const;        // size of z
-  Index constraints() const;               // m, rows of Phi: those that are kept
-  Index linear_constraints() const;        // how many rows were eliminated or could be
+  Index integrals() const;           // coordinates that are integrals of controllers: nothing moves with them
+  Index solved_coordinates() const;  // size of z
+  Index constraints() const;         // m, rows of Phi: those that are kept
+  Index linear_constraints() const;  // how many rows were eliminated or could be
   bool eliminated() const;
 
   // Node coordinates and velocities from the solved ones, and back (exact where q fulfils the linear

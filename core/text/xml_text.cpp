@@ -32,7 +32,8 @@ std::string printable_text(std::string_view text) {
     const std::size_t from = at;
     const char32_t c = next_code_point(text, at);
     const bool sequence = utf8_length(text, from) > 0;
-    const bool control = (c < 0x20 && c != '\n' && c != '\t') || (c >= 0x7F && c < 0xA0);
+    const bool line_end = c == '\r' && at < text.size() && text[at] == '\n';
+    const bool control = (c < 0x20 && c != '\n' && c != '\t' && !line_end) || (c >= 0x7F && c < 0xA0);
     const bool turns = (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
     char code[16];
     if (sequence && !control && !turns) {
@@ -40,7 +41,8 @@ std::string printable_text(std::string_view text) {
       continue;
     }
     const auto number = sequence ? static_cast<unsigned>(c) : static_cast<unsigned char>(text[from]);
-    std::snprintf(code, sizeof code, turns ? "\\u%04x" : "\\x%02x", number);
+    // What TOML and JSON take for the character, where they have left it as it is.
+    std::snprintf(code, sizeof code, sequence && c >= 0x7F ? "\\u%04x" : "\\x%02x", number);
     out += code;
   }
   return out;

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
@@ -82,6 +83,23 @@ TEST_CASE("repeated entries stand once for every value") {
   }
   CHECK(scene.custom.nodes[5].position.z() == 2.5);
   CHECK_NOTHROW(build_model(scene));
+}
+
+// 2.1 / 0.7 is 3.0000000000000004 in doubles, 2.7 / 0.3 is 9.000000000000002.
+TEST_CASE("a count that is whole but for rounding is whole") {
+  for (const auto& [length, cell, count] :
+       {std::tuple{"2.1", "0.7", 3}, std::tuple{"2.7", "0.3", 9}, std::tuple{"2.0", "0.5", 4}}) {
+    INFO(length << " / " << cell);
+    const Scene scene =
+        read_scene_text(std::string("[variables]\nL = ") + length + "\ncell = " + cell +
+                            "\nn = '=L/cell'\n[structure]\nkind = 'custom'\n[[structure.nodes]]\n"
+                            "repeat = {i = '0:n'}\nname = 'N{i}'\nposition = ['=i', '=i*i', 0]\n"
+                            "fixed = true\n[[structure.rods]]\nrepeat = {i = '0:n'}\n"
+                            "nodes = ['N{i}', 'N{(i+1)%n}']\nmass = 1\n",
+                        "s.toml");
+    CHECK(scene.custom.nodes.size() == static_cast<std::size_t>(count));
+    CHECK(scene.custom.rods.back().nodes.back() == "N0");
+  }
 }
 
 TEST_CASE("two variables of a repeat: the last one runs fastest") {
