@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -22,20 +24,50 @@
 namespace unfurl {
 namespace {
 
+// A comment of any length, as ffmpeg reads it: one argument takes 128 kB at most.
+std::string metadata_text(const std::string& comment) {
+  std::string text = ";FFMETADATA1\ncomment=";
+  for (const char c : comment) {
+    if (std::string_view("=;#\\\n").find(c) != std::string_view::npos) text += '\\';
+    text += c;
+  }
+  return text + "\n";
+}
+
+// A file without a name that a child can read; -1: see errno.
+int nameless_file(const std::string& text) {
+  const int file = ::memfd_create("unfurl", 0);
+  std::size_t done = 0;
+  while (file >= 0 && done < text.size()) {
+    const ssize_t written = ::write(file, text.data() + done, text.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      const int error = errno;
+      ::close(file);
+      errno = error;
+      return -1;
+    }
+    done += static_cast<std::size_t>(written);
+  }
+  return file;
+}
+
 // What makes of pictures of any size a film that every player shows.
 std::vector<std::string> ffmpeg_arguments(const std::string& file, int width, int height, double fps,
-                                          const std::string& comment) {
+                                          int metadata) {
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   std::ostringstream rate;
   rate << fps;
   return {"ffmpeg", "-y", "-loglevel", "quiet", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", size,
-          "-framerate", rate.str(), "-i", "pipe:0", "-vf",
+          "-framerate", rate.str(), "-i", "pipe:0", "-f", "ffmetadata", "-i",
+          "file:/proc/self/fd/" + std::to_string(metadata), "-map_metadata", "1", "-vf",
           "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
           // What the numbers mean, or players guess: the colours of high-definition television.
           "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv",
           "-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-threads",
           "2",  // x264's result depends on how many it uses
-          "-movflags", "+faststart", "-metadata", "comment=" + comment, "-f", "mp4", file};
+          "-movflags", "+faststart", "-f", "mp4",
+          "file:" + file};  // a colon in a name is no protocol, a dash no option
 }
 
 // A program that takes no frame, or does not write on after the last one, for so long hangs [s].
@@ -75,8 +107,11 @@ void Mp4Pipe::Process::start(int width, int height, double fps) {
     ::fcntl(input, F_SETFL, O_NONBLOCK);
     FileFinisher* finisher = file_finisher();
     const std::string comment = finisher ? finisher->note(target) : "";
-    error = ffmpeg.start(ffmpeg_arguments(file->name().string(), width, height, fps, comment),
-                         {.input = ends[1]});
+    const int metadata = nameless_file(metadata_text(comment));
+    error = metadata < 0 ? errno
+                         : ffmpeg.start(ffmpeg_arguments(file->name().string(), width, height, fps, metadata),
+                                        {.input = ends[1]});
+    if (metadata >= 0) ::close(metadata);
     ::close(ends[1]);
   }
   if (error != 0) problem = "cannot start ffmpeg: " + std::generic_category().message(error);

@@ -62,15 +62,18 @@ std::vector<std::string> wrap_text(std::string_view text, double size, double wi
   return lines;
 }
 
-std::string shorten_text(std::string_view text, double size, double width) {
-  if (text_width(text, size) <= width) return std::string(text);
+std::string shorten_text(std::string_view given, double size, double width) {
+  std::string text(given);
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';  // the end of a title's line
+  if (text_width(text, size) <= width) return text;
   static constexpr std::string_view ellipsis = "\u2026";
   std::size_t keep = 0;
   for (std::size_t at = 0; at < text.size(); keep = at) {
     next_code_point(text, at);
-    if (text_width(text.substr(0, at), size) + text_width(ellipsis, size) > width) break;
+    if (text_width(std::string_view(text).substr(0, at), size) + text_width(ellipsis, size) > width) break;
   }
-  return std::string(text.substr(0, keep)) + std::string(ellipsis);
+  return text.substr(0, keep) + std::string(ellipsis);
 }
 
 }  // namespace unfurl::plot

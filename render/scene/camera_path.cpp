@@ -27,20 +27,27 @@ ViewAngles preset(const std::string& name, const MotionBounds& bounds) {
   return automatic_view(bounds);
 }
 
-// A value of the keys at a time: through each key with the mean slope there (Catmull-Rom), constant outside.
-double between(const std::vector<CameraKey>& keys, double CameraKey::*value, double t) {
-  if (t <= keys.front().time) return keys.front().*value;
-  if (t >= keys.back().time) return keys.back().*value;
+// A value of the keys at a time, constant outside: smooth through each key and between two of them never
+// beyond either (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980: the slope is the harmonic mean of those
+// beside it).
+template <class Value>
+double between(const std::vector<CameraKey>& keys, const Value& value, double t) {
+  if (t <= keys.front().time) return value(keys.front());
+  if (t >= keys.back().time) return value(keys.back());
   std::size_t i = 0;
   while (keys[i + 1].time <= t) ++i;
+  const auto step = [&](std::size_t k) { return keys[k + 1].time - keys[k].time; };
+  const auto rise = [&](std::size_t k) { return (value(keys[k + 1]) - value(keys[k])) / step(k); };
   const auto slope = [&](std::size_t k) {
-    const std::size_t a = k == 0 ? k : k - 1, b = std::min(k + 1, keys.size() - 1);
-    if (k == a || k == b) return 0.0;  // starts and ends at rest
-    return (keys[b].*value - keys[a].*value) / (keys[b].time - keys[a].time);
+    if (k == 0 || k + 1 == keys.size()) return 0.0;  // starts and ends at rest
+    const double before = rise(k - 1), behind = rise(k);
+    if (!(before * behind > 0)) return 0.0;
+    const double a = step(k - 1) + 2 * step(k), b = 2 * step(k - 1) + step(k);
+    return (a + b) / (a / before + b / behind);
   };
-  const double h = keys[i + 1].time - keys[i].time, u = (t - keys[i].time) / h, w = 1 - u;
-  return keys[i].*value * (1 + 2 * u) * w * w + slope(i) * h * u * w * w +
-         keys[i + 1].*value * (3 - 2 * u) * u * u - slope(i + 1) * h * w * u * u;
+  const double h = step(i), u = (t - keys[i].time) / h, w = 1 - u;
+  return value(keys[i]) * (1 + 2 * u) * w * w + slope(i) * h * u * w * w +
+         value(keys[i + 1]) * (3 - 2 * u) * u * u - slope(i + 1) * h * w * u * u;
 }
 
 // Of a sample: the states within the window around it, first and end.
@@ -293,13 +300,18 @@ Camera CameraPath::following(double t) const {
 }
 
 double CameraPath::elevation(double t) const {
-  return std::clamp(between(keys_, &CameraKey::elevation, t), -90.0, 90.0) * radians_per_degree;
+  return std::clamp(between(
+                        keys_, [](const CameraKey& key) { return key.elevation; }, t),
+                    -90.0, 90.0) *
+         radians_per_degree;
 }
 
 ViewAngles CameraPath::angles(const Shot& shot) const {
   ViewAngles view = start_;
   if (!keys_.empty()) {
-    view.azimuth = between(keys_, &CameraKey::azimuth, shot.t) * radians_per_degree;
+    view.azimuth = between(
+                       keys_, [](const CameraKey& key) { return key.azimuth; }, shot.t) *
+                   radians_per_degree;
     view.elevation = elevation(shot.t);
   }
   view.azimuth += orbit_ * shot.progress + 2 * pi * shot.turn;
@@ -311,7 +323,9 @@ Camera CameraPath::at(const Shot& shot) const {
   if (follow_ && !turning) return following(shot.t);
   if (!turning) return still_;
   Framing framing = framing_;
-  if (!keys_.empty()) framing.zoom *= std::max(0.01, between(keys_, &CameraKey::zoom, shot.t));
+  if (!keys_.empty())
+    framing.zoom *= std::exp(between(
+        keys_, [](const CameraKey& key) { return std::log(std::max(0.01, key.zoom)); }, shot.t));
   if (follow_places_.empty())
     return centered_camera(bounds_, bounds_.center, distance_, angles(shot), framing);
   const double span = times_.back() - times_.front();

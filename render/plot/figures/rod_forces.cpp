@@ -30,10 +30,13 @@ std::string peak_sentence(const Simulation& run, const Diagnostics& d, Panel& pa
   if (peak.rod < 0 || only_round_off(run, d)) return " Largest magnitude 0 N.";
   const double force = find_measure("peak_rod_force").value(run, d);
   mark_peak(peak.t, peak.force_N, panel);
+  const bool bounded = extreme_of_column(run, d, "axial_force_max_N", true).bounded &&
+                       extreme_of_column(run, d, "axial_force_min_N", false).bounded;
   return " Largest magnitude " + plot::format_number(force, 4) + " N" +
-         whose_peak(run.trajectory.structure(), {force, peak.force_N, peak.rod, peak.t, peak.unique}) + "." +
-         (extreme_of_column(run, d, "axial_force_max_N", true).bounded &&
-                  extreme_of_column(run, d, "axial_force_min_N", false).bounded
+         whose_peak(run.trajectory.structure(),
+                    {force, peak.force_N, peak.rod, peak.t, peak.unique || !bounded}) +
+         "." +
+         (bounded
               ? ""
               : " Forces grow without bound towards a singular pose on the way: the largest is that of the "
                 "nearest pose that was looked at.");

@@ -104,15 +104,18 @@ std::string span_sentence(const Study& study) {
 
 Figure work_precision_figure(const Study& study, const std::string& scene) {
   Figure f;
+  const bool once = std::ranges::all_of(study.curves, [](const StudyCurve& curve) {
+    return std::ranges::all_of(curve.runs, [](const MeasuredRun& run) { return run.repeats <= 1; });
+  });
   f.name = "work_precision";
   f.title = "Speed against accuracy: " + scene;
   f.columns = 3;
   f.width_mm = 215;
   f.height_mm = 95;
-  f.caption =
-      "Largest error of a node's position against CPU time (median of repeated runs; a thin line from "
-      "the fastest to the slowest) and against the number of linear solves. " +
-      span_sentence(study);
+  f.caption = std::string("Largest error of a node's position against CPU time ") +
+              (once ? "(of one run each) "
+                    : "(median of repeated runs; a thin line from the fastest to the slowest) ") +
+              "and against the number of linear solves. " + span_sentence(study);
   Panel time = log_panel("CPU time (s)", "position error (m)");
   Panel solves = log_panel("linear solves", "position error (m)");
   for (std::size_t i = 0; i < study.curves.size(); ++i) {

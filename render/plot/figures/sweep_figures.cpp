@@ -5,8 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <string>
+#include <utility>
 
+#include "core/text/utf8.hpp"
 #include "render/plot/contours.hpp"
 #include "render/plot/figures/run_facts.hpp"
 #include "render/plot/ticks.hpp"
@@ -67,7 +71,7 @@ std::string uniqueness_sentence(const SweepPlan& plan, const Sweep& sweep, std::
   if (open == 0) return {};
   return " Not unique in " + std::to_string(open) +
          " of them: there the rigid model does not determine this force, and shown is the choice of least "
-         "norm.";
+         "norm, or it has no bound beside a singular pose.";
 }
 
 bool is_flag(const RunMeasure& measure) {
@@ -77,7 +81,8 @@ bool is_flag(const RunMeasure& measure) {
 std::string file_name(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == ':' || c == '/'; }, '_');
-  return text;
+  constexpr std::size_t longest = 100;  // of 255 that file systems take
+  return text.substr(0, utf8_cut(text, longest));
 }
 
 // Values over more than three decades are read on a log axis; exact zeros then stand at its bottom edge.
@@ -114,7 +119,11 @@ Panel curve_panel(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
   Panel p;
   p.x.label = axis.title();
   p.x.log = axis.log;
+  p.x.whole = axis.whole && !axis.log;
   p.y.label = plan.measures[measure].label;
+  std::map<std::pair<std::string, std::string>, const std::vector<std::string>*> rows;
+  for (const auto& row : sweep.table.rows)
+    rows.try_emplace({row[across], plan.axes.size() == 2 ? row[1 - across] : ""}, &row);
   const std::size_t families = plan.axes.size() == 2 ? plan.axes[1 - across].values.size() : 1;
   for (std::size_t f = 0; f < families; ++f) {
     Curve c;
@@ -122,12 +131,10 @@ Panel curve_panel(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
     c.marker = markers[f % markers.size()];
     if (families > 1) c.label = plan.axes[1 - across].title(f);
     for (const std::size_t i : in_order(axis.numbers)) {
-      const auto row = std::find_if(sweep.table.rows.begin(), sweep.table.rows.end(), [&](const auto& r) {
-        return r[across] == axis.values[i] &&
-               (families == 1 || r[1 - across] == plan.axes[1 - across].values[f]);
-      });
+      const auto row =
+          rows.find({axis.values[i], plan.axes.size() == 2 ? plan.axes[1 - across].values[f] : ""});
       c.x.push_back(axis.numbers[i]);
-      c.y.push_back(row == sweep.table.rows.end() ? nan : value_of(plan, *row, measure));
+      c.y.push_back(row == rows.end() ? nan : value_of(plan, *row->second, measure));
     }
     p.curves.push_back(std::move(c));
   }
@@ -181,7 +188,7 @@ void add_cells(const plot::Field& field, const ValueRange& range, Panel& p) {
           const double wx = field.x[i + 1] - field.x[i], wy = field.y[j + 1] - field.y[j];
           p.cells.push_back({field.x[i] + wx * u(da), field.y[j] + wy * v(db), field.x[i] + wx * u(da + 1),
                              field.y[j] + wy * v(db + 1), map_color(range.share(value)),
-                             plot::format_number(value, 6)});
+                             exact_number(value)});
         }
 }
 
@@ -262,6 +269,8 @@ Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
       .label = plan.axes[0].title(), .log = plan.axes[0].log, .min = field.x.front(), .max = field.x.back()};
   map.y = {
       .label = plan.axes[1].title(), .log = plan.axes[1].log, .min = field.y.front(), .max = field.y.back()};
+  map.x.whole = plan.axes[0].whole && !map.x.log;
+  map.y.whole = plan.axes[1].whole && !map.y.log;
   std::vector<double> levels;
   if (varies(range)) {
     add_cells(field, range, map);
@@ -308,6 +317,8 @@ std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, con
       f.panels.push_back(curve_panel(plan, sweep, m, across));
     }
     f.name = "sweep_" + file_name(plan.measures[m].name);
+    while (std::ranges::any_of(figures, [&](const Figure& other) { return other.name == f.name; }))
+      f.name += "_";
     f.title = heading(plan.measures[m].label) + ": " + scene;
     f.caption += count_sentence(plan, sweep) + undeployed_sentence(plan, sweep) +
                  endless_sentence(plan, sweep, m) + uniqueness_sentence(plan, sweep, m);

@@ -178,6 +178,45 @@ TEST_CASE("an MP4 of odd size is made even and has every frame") {
                   file.string() + "\"") == "tv\nbt709\nbt709\nbt709\n");
 }
 
+// Linux takes 128 kB in one word of a command.
+TEST_CASE("an MP4 takes a note of any length with any characters") {
+  if (testing::lacks(ffmpeg_available(), "MP4 (apt-get install ffmpeg)")) return;
+  struct Noting final : FileFinisher {
+    std::string text;
+    std::string note(const fs::path&) override { return text; }
+    void finish(const fs::path&, const fs::path&) override {}
+  } noting;
+  for (int i = 0; noting.text.size() < 300'000; ++i)
+    noting.text += std::to_string(i) + " a=b; #c \\ \"d\" \u00e9\n";
+  const ScratchFolder scratch;
+  const fs::path file = scratch.path / "a.mp4";
+  FileFinisher* before = finish_files(&noting);
+  Mp4Pipe film(file, 64, 48, 25.0);
+  for (int k = 0; k < 3; ++k) film.add(moving_square(64, 48, k));
+  CHECK(film.finish() == "");
+  finish_files(before);
+  std::ifstream made(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(made), {}};
+  CHECK(bytes.find(noting.text) != std::string::npos);
+}
+
+// "a:b" would be a protocol, "-dash" an option.
+TEST_CASE("an MP4 goes into a folder of any name") {
+  if (testing::lacks(ffmpeg_available(), "MP4 (apt-get install ffmpeg)")) return;
+  const ScratchFolder scratch;
+  const fs::path here = fs::current_path();
+  fs::current_path(scratch.path);
+  for (const char* folder : {"2026-11-27T08:00", "a:b", "-dash", "p%d q#1"}) {
+    INFO(folder);
+    fs::create_directory(folder);
+    Mp4Pipe film(fs::path(folder) / "a.mp4", 64, 48, 25.0);
+    for (int k = 0; k < 3; ++k) film.add(moving_square(64, 48, k));
+    CHECK(film.finish() == "");
+    CHECK(fs::exists(fs::path(folder) / "a.mp4"));
+  }
+  fs::current_path(here);
+}
+
 TEST_CASE("an MP4 that fails is a warning and leaves nothing behind") {
   const ScratchFolder scratch;
   const fs::path bin = scratch.path / "bin";

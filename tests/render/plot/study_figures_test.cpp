@@ -211,8 +211,21 @@ TEST_CASE("the table of a map has a row for every cell", "[figures]") {
   const Figure map = sweep_figures(plan, sweep_of(plan), "Ring").front();
   const std::string numbers = figure_csv(map);
   std::size_t cells = 0;
-  for (std::size_t at = 0; (at = numbers.find("1,cell,", at)) != std::string::npos; ++at) ++cells;
+  for (std::size_t at = 0; (at = numbers.find("1,cell,", at)) != std::string::npos; ++at, ++cells)
+    CHECK(is_number(numbers.substr(at + 7, numbers.find(',', at + 7) - at - 7)));
   CHECK(cells == map.panels.front().cells.size());
+}
+
+TEST_CASE("values that are whole numbers stand at whole ticks", "[figures]") {
+  SweepPlan plan{{find_scene("hoop6"), {"solver.step=0.05"}}, {}, {}, {}};
+  plan.axes.push_back(parse_axis("structure.units=4,5,6"));
+  plan.measures.push_back(find_measure("end_time"));
+  check_plan(plan);
+  Sweep sweep{{plan.columns(), {}}};
+  for (const char* units : {"4", "5", "6"}) sweep.table.rows.push_back({units, "deployed", "3"});
+  const std::vector<Figure> figures = sweep_figures(plan, sweep, "Ring");
+  REQUIRE(figures.size() == 1);
+  CHECK(figures[0].panels.at(0).x.whole);
 }
 
 // A map of base + step (i + 5 j) over a grid of 5 x 5.

@@ -63,6 +63,7 @@ TEST_CASE("wrapped lines fit and lose no word", "[text]") {
 
 TEST_CASE("shortened text ends in an ellipsis and fits", "[text]") {
   CHECK(shorten_text("short", 7, 100) == "short");
+  CHECK(shorten_text("two\nlines", 7, 100) == "two lines");
   const std::string cut = shorten_text("fold angle \u00B0\u00B0\u00B0\u00B0\u00B0\u00B0\u00B0", 7, 50);
   CHECK(text_width(cut, 7) <= 50);
   CHECK(cut.ends_with("\u2026"));

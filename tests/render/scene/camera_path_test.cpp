@@ -137,6 +137,30 @@ TEST_CASE("camera keys are passed at their times") {
         1e-5f);  // rests before the first
 }
 
+// Equal keys stay equal between their times, and no key is overshot on the way to one that is like it.
+TEST_CASE("between two camera keys the camera never goes beyond either") {
+  const Simulation run = ring();
+  RenderOptions options;
+  options.camera_keys = {{0, 0, 80, 1}, {1, 0, 90, 1}, {2, 90, 90, 20}};
+  const FrameBuilder frames = builder(run, options);
+  const auto distance = [&](double t) {
+    const Camera camera = frames.build(t).camera;
+    return (camera.eye - camera.target).norm();
+  };
+  const float whole = distance(0);
+  float nearest = whole;
+  for (int k = 0; k <= 40; ++k) {
+    const double t = 0.05 * k;
+    INFO(t);
+    CHECK(distance(t) <= whole * 1.0001f);  // rounding of single precision
+    CHECK(distance(t) >= whole / 20 * 0.9999f);
+    if (t <= 1) CHECK(distance(t) == Approx(whole).epsilon(1e-4));
+    CHECK(distance(t) <= nearest * 1.0001f);  // towards the last key, never back
+    nearest = std::min(nearest, distance(t));
+    if (t <= 1) CHECK(std::abs(direction(frames.build(t).camera).y()) < 1e-5f);  // not turned yet
+  }
+}
+
 TEST_CASE("turntable and hold come after the motion") {
   const Simulation run = ring();
   RenderOptions options;
