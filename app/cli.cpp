@@ -106,7 +106,7 @@ void refuse_doubled_keys(const CLI::App& parser, const std::vector<std::string>&
     if (!target || parser.count(std::string(own.name)) == 0) continue;
     const std::string key(target->key);
     for (const auto& text : overrides)
-      if (text.starts_with(key + "="))
+      if (text.starts_with(key + "=") || text.starts_with(key + "["))
         throw UsageError(std::string(own.name) + " and --set " + key + " say the same key: give one of them");
   }
 }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -65,7 +66,7 @@ OwnDirectory::OwnDirectory(const std::string& path, bool force, const std::strin
   std::error_code error;
   if (fs::exists(path_, error) && !fs::is_directory(path_, error))
     throw FileError(path_, "is a file; -o names a directory");
-  fs::create_directories(path_, error);
+  made_ = fs::create_directories(path_, error);
   if (error) throw FileError(path_, error.value());
   const bool empty = holds_nothing(path_);
   // Another worker may have begun a moment ago.
@@ -85,9 +86,44 @@ OwnDirectory::OwnDirectory(const std::string& path, bool force, const std::strin
   if (lock_->alone()) remove_unfinished(path_);
 }
 
+namespace {
+
+// Lines that are not empty, with or without the comments that say what was asked of a scene.
+std::string lines_in(const std::string& text, bool comments) {
+  std::istringstream lines(text);
+  std::string out;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty() && line != "# mp4 = true" && (comments || !line.starts_with('#'))) out += line + "\n";
+  return out;
+}
+
+}  // namespace
+
+void OwnDirectory::require_scene(const std::string& text, bool force) {
+  if (!written_) return;
+  const char* name = "scene.toml";
+  const TextFile there = read_text_file((path_ / name).string());
+  // A study's comment may come to the same scene of a run, but not go.
+  if (!there.error.empty() || there.text == text || lines_in(there.text, true) == lines_in(text, false))
+    return;
+  const std::string owner = written_->other_owner(name);
+  if (owner.empty()) return;
+  if (!force)
+    throw FileError(path_, "holds results of unfurl " + owner +
+                               ", whose scene.toml this would replace; use another directory, or --force");
+  written_->keep_aside(name);
+}
+
 OwnDirectory::~OwnDirectory() {
   if (!written_) return;
   const auto kept = written_->kept();
+  // What was refused before anything was written leaves nothing.
+  if (made_ && lock_->alone() && written_->is_empty()) {
+    std::error_code error;
+    written_.reset();
+    fs::remove(path_ / WrittenFiles::list_name, error);
+    fs::remove(path_, error);
+  }
   if (kept.empty()) return;
   const std::string_view first = kept.front();
   std::cerr << "unfurl: warning: " << first.substr(0, first.rfind(".kept-"))

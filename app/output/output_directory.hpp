@@ -23,6 +23,10 @@ class OwnDirectory {
   OwnDirectory(const OwnDirectory&) = delete;
   OwnDirectory& operator=(const OwnDirectory&) = delete;
 
+  // DIR/scene.toml will hold this text. Throws FileError where results of another verb are of another scene
+  // that stands there; with `force` it is kept aside.
+  void require_scene(const std::string& text, bool force);
+
   const std::filesystem::path& path() const { return path_; }
   DirectoryLock& lock() { return *lock_; }
   WrittenFiles& written() { return *written_; }
@@ -31,6 +35,7 @@ class OwnDirectory {
   std::filesystem::path path_;
   std::optional<DirectoryLock> lock_;
   std::optional<WrittenFiles> written_;
+  bool made_ = false;  // by this one
 };
 
 // Throws FileError, naming the file, where it could not be written now: no such directory, no permission,

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 struct Shown {
   std::mutex mutex;
   std::string name, scene;
+  SceneOptions options = SceneOptions::in_text;
   std::map<std::string, double> errors;
 };
 Shown& shown() {
@@ -59,23 +60,27 @@ std::string checksum_of_this_program() {
 }
 
 std::vector<std::string> command_of_result(std::vector<std::string> kept, std::size_t scene_at,
-                                           const std::string& scene_name) {
+                                           const std::string& scene_name, SceneOptions options) {
   if (scene_at > 0 && !scene_name.empty()) kept.at(scene_at) = scene_name;
-  for (const char* option :
-       {"-o", "--output", "--set", "--tolerance", "--size", "--fps", "--look", "--supersample", "--frames",
-        "--lease", "--shard", "--merge", "--threads", "--export", "--script", "--jobs", "--picture"})
+  for (const char* option : {"-o", "--output", "--frames", "--lease", "--shard", "--merge", "--threads",
+                             "--export", "--script", "--jobs", "--picture"})
     kept = without_option(kept, option);
   std::erase_if(kept, [](const std::string& word) {
-    return word == "--transparent" || word == "--join" || word == "--quiet" || word == "--json" ||
-           word == "--force" || word == "--encode-only";
+    return word == "--join" || word == "--quiet" || word == "--json" || word == "--force" ||
+           word == "--encode-only";
   });
+  if (options == SceneOptions::in_command) return kept;
+  for (const char* option : {"--set", "--tolerance", "--size", "--fps", "--look", "--supersample"})
+    kept = without_option(kept, option);
+  std::erase(kept, "--transparent");
   return kept;
 }
 
-void receipt_scene(const std::string& name, const std::string& text) {
+void receipt_scene(const std::string& name, const std::string& text, SceneOptions options) {
   const std::lock_guard lock(shown().mutex);
   shown().name = name;
   shown().scene = text;
+  shown().options = options;
 }
 
 void receipt_errors(std::map<std::string, double> errors) {
@@ -97,9 +102,10 @@ std::string ReceiptWriter::note(const fs::path& target) {
   const fs::path inside = target.lexically_normal().lexically_relative(output_);
   Checksum scene;
   scene.add(shown().scene);
-  nlohmann::ordered_json json = {{"unfurl", version()},
-                                 {"build", checksum_of_this_program()},
-                                 {"command", command_of_result(words_, scene_at_, shown().name)}};
+  nlohmann::ordered_json json = {
+      {"unfurl", version()},
+      {"build", checksum_of_this_program()},
+      {"command", command_of_result(words_, scene_at_, shown().name, shown().options)}};
   if (!shown().name.empty()) json["name"] = shown().name;
   if (inside != "." && !inside.empty() && *inside.begin() != "..") json["file"] = inside.string();
   if (!shown().scene.empty()) json["scene_hash"] = scene.text(), json["scene"] = shown().scene;
@@ -112,8 +118,8 @@ std::string ReceiptWriter::note(const fs::path& target) {
 void ReceiptWriter::finish(const fs::path& temporary, const fs::path& target) {
   const std::string extension = target.extension().string();
   if (!takes_note(extension)) return;
-  TextFile read = read_text_file(temporary.string());
-  if (!read.error.empty()) return;  // too large for a note: it is what it would be without
+  TextFile read = read_result_file(temporary.string());
+  if (!read.error.empty()) return;  // no longer there: whoever wanted it is told
   std::string file = std::move(read.text);
   if (extension != ".mp4") file = with_note(std::move(file), extension, note(target));
   file = sealed(std::move(file), extension);
@@ -127,7 +133,7 @@ std::string command_in_words(const Receipt& receipt) {
 }
 
 std::string bytes_of(const fs::path& file) {
-  TextFile text = read_text_file(file.string());
+  TextFile text = read_result_file(file.string());
   if (!text.error.empty()) throw FileError(file, text.error);
   return std::move(text.text);
 }

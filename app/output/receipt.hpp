@@ -59,12 +59,17 @@ class ReceiptWriter final : public FileFinisher {
   FileFinisher* before_ = nullptr;
 };
 
-// What files that are written from now on say of their scene, and of the run that they show.
-void receipt_scene(const std::string& name, const std::string& text);
+// What files that are written from now on say of their scene, and of the run that they show. Options that
+// change the scene, as --set does, are in its text already or, where that is as it was read, stay in the
+// command.
+enum class SceneOptions { in_text, in_command };
+void receipt_scene(const std::string& name, const std::string& text,
+                   SceneOptions options = SceneOptions::in_text);
 void receipt_errors(std::map<std::string, double> errors);
 // The command as results tell it: the scene, words[scene_at] (0: there is none), by its name, without what
 // only says where and by whom the work is done, and without what is in the scene's text already.
 std::vector<std::string> command_of_result(std::vector<std::string> words, std::size_t scene_at,
-                                           const std::string& scene_name);
+                                           const std::string& scene_name,
+                                           SceneOptions options = SceneOptions::in_text);
 
 }  // namespace unfurl

@@ -245,6 +245,22 @@ bool WrittenFiles::ours(const std::string& name) const {
   return found->second.contains({any_content, owner_}) || found->second.contains({sum, owner_});
 }
 
+std::string WrittenFiles::other_owner(const std::string& name) const {
+  if (ours(name)) return "";
+  const std::lock_guard lock(mutex_);
+  const auto found = lines_.find(name);
+  const std::string sum = checksum_in(AT_FDCWD, (directory_ / name).string());
+  if (found == lines_.end() || sum.empty()) return "";
+  for (const Line& line : found->second)
+    if (line.checksum == sum) return line.owner;
+  return "";
+}
+
+bool WrittenFiles::is_empty() const {
+  const std::lock_guard lock(mutex_);
+  return lines_.empty();
+}
+
 void WrittenFiles::remove(const std::string& name) {
   if (!ours(name)) return;
   fs::path path = name;

@@ -38,6 +38,9 @@ class WrittenFiles final : public FileWatcher {
 
   // Has DIR/name a line of this owner, and is it a file with the checksum of one?
   bool ours(const std::string& name) const;
+  // Whose, where DIR/name has no line of this owner that fits it, and one of another; else empty.
+  std::string other_owner(const std::string& name) const;
+  bool is_empty() const;  // nothing was listed
   // Removes what is ours, but nothing behind a link, and directories that are empty then. The list forgets
   // it. What lies in the folder `but` stays.
   void remove_all(const std::string& but = "");

@@ -210,26 +210,38 @@ class SteppedScene {
     const std::lock_guard lock(*use_);
     return goes_on_ = stepper_.advance_to(t);
   }
-  double time() const { return stepper_.time(); }
-  py::array positions() const { return array(trajectory().positions(trajectory().size() - 1)); }
-  py::array velocities() const { return array(trajectory().velocities(trajectory().size() - 1)); }
+  // Another thread may be stepping.
+  template <class Part>
+  auto alone(const Part& part) const {
+    const py::gil_scoped_release release;
+    const std::lock_guard lock(*use_);
+    return part();
+  }
+  double time() const {
+    return alone([this] { return stepper_.time(); });
+  }
+  py::array positions() const {
+    return array(alone([this] { return trajectory().positions(trajectory().size() - 1); }));
+  }
+  py::array velocities() const {
+    return array(alone([this] { return trajectory().velocities(trajectory().size() - 1); }));
+  }
   std::string status() const {
-    const bool ended = !goes_on_ || time() >= stepper_.run().options.end_time;
-    return ended ? std::string(to_string(stepper_.run().status)) : "running";
+    return alone([this] { return running() ? "running" : std::string(to_string(stepper_.run().status)); });
   }
   std::vector<std::pair<std::string, double>> events() const {
-    std::vector<std::pair<std::string, double>> found;
-    for (const Event& event : stepper_.run().events) found.emplace_back(event.name, event.t);
-    return found;
+    return alone([this] {
+      std::vector<std::pair<std::string, double>> found;
+      for (const Event& event : stepper_.run().events) found.emplace_back(event.name, event.t);
+      return found;
+    });
   }
   std::vector<std::string> warnings() const {
-    std::vector<std::string> said = idle_when_stepped(scene_.solver);
-    said.insert(said.end(), stepper_.run().warnings.begin(), stepper_.run().warnings.end());
-    return said;
+    return alone([this] { return all_warnings(); });
   }
   // A solved node by its name or its index.
   int node(const py::object& key) const {
-    const auto& nodes = trajectory().structure().nodes;
+    const auto& nodes = alone([this] { return &trajectory().structure(); })->nodes;
     if (py::isinstance<py::str>(key)) {
       const auto name = key.cast<std::string>();
       for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -253,22 +265,32 @@ class SteppedScene {
     forces_[of] = force;
   }
   Vec3 force(const py::object& key) const {
-    const auto found = forces_.find(node(key));
-    return found == forces_.end() ? Vec3(Vec3::Zero()) : found->second;
+    return alone([this, of = node(key)] {
+      const auto found = forces_.find(of);
+      return found == forces_.end() ? Vec3(Vec3::Zero()) : found->second;
+    });
   }
   std::shared_ptr<Run> finish() const {
+    const bool forced = alone([this] { return !forces_.empty(); });
     const py::gil_scoped_release release;
     const char* made_by =
-        forces_.empty() ? "stepper().finish()" : "stepper(), with forces set between steps, finish()";
+        !forced ? "stepper().finish()" : "stepper(), with forces set between steps, finish()";
     return std::make_shared<Run>(scene_, so_far(), use_, std::function<bool()>(), made_by);
   }
 
  private:
   const Trajectory& trajectory() const { return stepper_.run().trajectory; }
+  bool running() const { return goes_on_ && stepper_.time() < stepper_.run().options.end_time; }
+  std::vector<std::string> all_warnings() const {
+    std::vector<std::string> said = idle_when_stepped(scene_.solver);
+    said.insert(said.end(), stepper_.run().warnings.begin(), stepper_.run().warnings.end());
+    return said;
+  }
   Simulation so_far() const {
     const std::lock_guard lock(*use_);
     Simulation run = stepper_.run();
-    run.warnings = warnings();
+    if (running()) run.status = RunStatus::stopped;
+    run.warnings = all_warnings();
     if (scene_.solver.model != "full" && solved_as(run).name == "full")
       run.solved_as.why = "a stepper steps the whole model";
     return run;

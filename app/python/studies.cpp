@@ -18,6 +18,7 @@
 #include "core/scene/build.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
+#include "core/simulate/singular_poses.hpp"
 #include "core/study/solve_for.hpp"
 #include "core/study/study.hpp"
 #include "core/study/sweep.hpp"
@@ -100,6 +101,7 @@ Sweep swept(const SweepPlan& plan, const fs::path& folder, const StudyHooks& hoo
   Sweep sweep;
   try {
     Journal journal(path, plan.columns(), plan.axes.size(), plan.number_columns());
+    journal.require_asked(plan.asked(), folder, "ask for them, too, or use another folder");
     sweep = run_sweep(plan, journal, hooks);
   } catch (const JournalMismatch& error) {
     throw FileError(folder, std::string(error.what()) + "; other keys or measures than now?");
@@ -174,6 +176,7 @@ double solve_scene(const SceneSource& source, const std::string& key, const std:
       const Scene changed = source.read({key + "=" + exact_number(x)});
       Simulation run =
           simulate_as_asked(build_model(changed), study_solver(changed, {key}, {measure}), hooks);
+      if (may_have_no_bound(measure.name)) record_singular_poses(run);
       const Diagnostics diagnostics = judge(run);
       return run.status == RunStatus::failed ? NAN : measure.value(run, diagnostics);
     } catch (const SceneError&) {

@@ -42,7 +42,8 @@ std::vector<std::string> whole_sweep(const Arguments& arguments) {
   std::vector<std::string> words = arguments.words;
   for (const char* option : {"--script", "--jobs", "--shard", "--merge", "--threads"})
     words = without_option(words, option);
-  std::erase(words, "--quiet");
+  // Tasks that begin again keep what is finished, and what --merge puts together stays.
+  std::erase_if(words, [](const std::string& word) { return word == "--quiet" || word == "--force"; });
   return words;
 }
 
@@ -114,7 +115,11 @@ std::string shard_of(const std::string& text) {
                step = number_in(engine.step).value_or(1);
     const auto count = number_in(engine.count), last = number_in(engine.last);
     const long index = (*task - first) / std::max(step, 1L) + 1;
-    if (!told.empty()) return std::to_string(index) + "/" + told;
+    const long tasks = count ? *count : last ? (*last - first) / std::max(step, 1L) + 1 : index;
+    // Of an array of other tasks than the shares, some were submitted again: each has the share of its
+    // number.
+    const bool some = engine.first && !told.empty() && std::to_string(tasks) != told;
+    if (!told.empty()) return std::to_string(some ? *task : index) + "/" + told;
     if (count) return std::to_string(index) + "/" + std::to_string(*count);
     if (last) return std::to_string(index) + "/" + std::to_string((*last - first) / std::max(step, 1L) + 1);
   }

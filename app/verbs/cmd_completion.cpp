@@ -63,7 +63,8 @@ bool takes_scene(const Command& command) {
 }
 
 std::string listed(std::string_view list) {
-  return "unfurl list " + std::string(list) + " 2>/dev/null | sed -n 's/^\\([a-z][a-z0-9_-]*\\).*/\\1/p'";
+  return "unfurl list " + std::string(list) +
+         " 2>/dev/null | sed -n '/^$/q;s/^\\([a-z][a-z0-9_-]*\\).*/\\1/p'";
 }
 
 std::string bash_completion() {

@@ -36,6 +36,7 @@ int cmd_render(const Arguments& arguments) {
         "--join shares the frames by itself and replaces nothing; leave out --frames and --force");
   OwnDirectory output(arguments.output, arguments.force, "run",
                       arguments.join ? DirectoryLock::Use::joined : DirectoryLock::Use::shareable);
+  output.require_scene(scene_text(scene), arguments.force);
   const std::filesystem::path& directory = output.path();
   DirectoryLock& lock = output.lock();
   FilmFolder folder(directory, scene, arguments.gpu);

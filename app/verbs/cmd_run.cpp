@@ -140,6 +140,7 @@ int cmd_run(const Arguments& arguments) {
     built.solver.adaptive = true;  // no number of states is too large to be kept
   auto model = model_of(built, arguments);
   OwnDirectory output(arguments.output, arguments.force, "run");
+  output.require_scene(scene_text(scene), arguments.force);
   const std::filesystem::path& directory = output.path();
   const bool film = !directory.empty() && keeps_film(directory, scene, arguments.force);
 

@@ -18,6 +18,7 @@
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/write.hpp"
+#include "core/simulate/singular_poses.hpp"
 #include "core/study/scene_variation.hpp"
 #include "core/study/solve_for.hpp"
 #include "core/study/tolerance.hpp"
@@ -90,13 +91,15 @@ std::string result_json(const StudyArguments& study, const Target& target, const
   return json.dump(2) + "\n";
 }
 
-void write_results(const std::filesystem::path& directory, const std::string& key, const SceneSource& source,
+void write_results(OwnDirectory& output, bool force, const std::string& key, const SceneSource& source,
                    const Target& target, const Solved& solved) {
+  const std::filesystem::path& directory = output.path();
   Table table{{key, target.measure.column}, {}};
   for (const Evaluation& e : solved.evaluations)
     table.rows.push_back({exact_number(e.x), exact_number(e.value)});
   Scene found = source.read({key + "=" + exact_number(solved.x)});
   found.solver = study_solver(found, {key}, {target.measure});
+  output.require_scene(scene_text(found), force);
   write_file_atomically(directory / "scene.toml", scene_text(found));
   write_file_atomically(directory / "solve.csv", csv_text(table));
 }
@@ -112,10 +115,12 @@ int cmd_solve(const Arguments& arguments) {
   const Target target = target_of(study.target, scene);
   const SolveOptions options = options_of(arguments, source, scene);
   const bool between = options.low < options.high;
-  source.read({study.find + "=" + exact_number(between ? options.low : options.start)});
+  const Scene first = source.read({study.find + "=" + exact_number(between ? options.low : options.start)});
+  if (const std::string why = idle_key_text(first, study.find); !why.empty())
+    std::cerr << "unfurl: warning: --find " << why << "\n";
   if (between) source.read({study.find + "=" + exact_number(options.high)});
 
-  const OwnDirectory output(arguments.output, arguments.force, "solve");
+  OwnDirectory output(arguments.output, arguments.force, "solve");
 
   const InterruptGuard guard;
   SimulationHooks hooks;
@@ -129,6 +134,7 @@ int cmd_solve(const Arguments& arguments) {
       const auto model = build_model(changed);
       moved[x] = note_of_moved_nodes(model->structure);
       Simulation run = simulate_as_asked(model, study_solver(changed, {study.find}, {target.measure}), hooks);
+      if (may_have_no_bound(target.measure.name)) record_singular_poses(run);
       const Diagnostics diagnostics = judge(run);
       if (run.status == RunStatus::failed) return std::numeric_limits<double>::quiet_NaN();
       if (!flag.empty()) unique[x] = find_measure(flag).value(run, diagnostics) != 0.0;
@@ -143,7 +149,7 @@ int cmd_solve(const Arguments& arguments) {
     const Solved solved = solve_for(objective, target.value, options, asking);
     if (const std::string& said = moved[solved.x]; !said.empty())
       std::cerr << "unfurl: warning: " << said << "\n";
-    if (!output.path().empty()) write_results(output.path(), study.find, source, target, solved);
+    if (!output.path().empty()) write_results(output, arguments.force, study.find, source, target, solved);
     std::optional<bool> solved_force;
     if (const auto at = unique.find(solved.x); at != unique.end()) solved_force = at->second;
     if (arguments.json)

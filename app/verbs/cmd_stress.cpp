@@ -2,6 +2,7 @@
 // unfurl stress SCENE -o DIR: stability at the extremes.
 #include "app/command.hpp"
 #include "app/output/interrupt.hpp"
+#include "app/output/receipt.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/study_session.hpp"
 #include "app/verbs/team_work.hpp"
@@ -41,8 +42,9 @@ void add_long_runs(const Stress& stress, Report& report) {
 }  // namespace
 
 int cmd_stress(const Arguments& arguments) {
-  const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
-  const Scene scene = scene_of(arguments);
+  const SceneSource source = scene_source(find_scene(arguments.names.front()), arguments.overrides);
+  const Scene scene = source.read();
+  receipt_scene(scene.name, scene_text(scene));
   warn_of_own_steps(scene);
   const StressPlan plan = plan_stress(source, arguments.study.extremes);
   const InterruptGuard guard;

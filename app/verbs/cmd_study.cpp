@@ -50,7 +50,7 @@ Report study_report(const Study& study, const Scene& scene, const std::vector<st
 }
 
 int study_models(const Arguments& arguments) {
-  const SceneSource source{find_scene(arguments.names.front()), arguments.overrides};
+  const SceneSource source = scene_source(find_scene(arguments.names.front()), arguments.overrides);
   const Scene scene = source.read();
   const InterruptGuard guard;
   StudySession session(arguments, "measuring", scene_text(scene), "models.csv");
@@ -96,6 +96,8 @@ int cmd_study(const Arguments& arguments) {
   StudySession session(arguments, "measuring", study_identity(asked, scene), "study.csv");
   const StudyHooks hooks = session.hooks();
   plan.timing.repeats = repeats;
+  Journal earlier({}, study_columns(), study_key_columns, study_number_columns(), is_study_point);
+  session.require_asked(earlier, [&](const auto& row) { return asks_for(plan, row); });
   const auto team = join_team(arguments, session.directory());
   std::optional<Study> found;
   {

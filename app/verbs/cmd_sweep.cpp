@@ -123,20 +123,58 @@ int code_of_answers(const SweepPlan& plan, const Sweep& sweep) {
   return failed ? exit_solver_failed : exit_scene_invalid;
 }
 
+// Keys that do nothing in any point, of those that are looked at.
+void warn_of_idle_axes(const SweepPlan& plan, const Arguments& arguments) {
+  constexpr std::size_t looked_at = 200, refused = 5;
+  const std::size_t points = plan.points(), stride = points / looked_at + 1;
+  for (std::size_t k = 0; k < plan.axes.size(); ++k) {
+    const std::string& key = plan.axes[k].key;
+    if (std::ranges::any_of(arguments.overrides, [&](const auto& set) { return set.starts_with(key + "="); }))
+      std::cerr << "unfurl: warning: --set " << key << " does nothing: --vary changes the key\n";
+    std::string why;
+    std::size_t wrong = 0;
+    for (std::size_t point = 0; point < points && wrong < refused; point += stride) {
+      const auto values = plan.key(point);
+      std::vector<std::string> changes;
+      for (std::size_t a = 0; a < values.size(); ++a) changes.push_back(plan.axes[a].key + "=" + values[a]);
+      try {
+        why = idle_key_text(plan.source.read(changes), key);
+      } catch (const SceneError&) {
+        ++wrong;
+        continue;
+      }
+      if (why.empty()) break;
+    }
+    if (!why.empty()) std::cerr << "unfurl: warning: --vary " << why << "\n";
+  }
+}
+
 std::string journal_name(const Shard& shard) {
   if (shard.count == 1) return "sweep.csv";
   return "sweep_" + std::to_string(shard.index) + "_of_" + std::to_string(shard.count) + ".csv";
+}
+
+bool by_variables(const SweepPlan& plan) {
+  return std::any_of(plan.axes.begin(), plan.axes.end(),
+                     [](const SweepAxis& axis) { return axis.key.starts_with("variables."); });
 }
 
 // The scene, and what was asked of it as comments: what the points in a directory belong to.
 std::string identity(const Scene& scene, const SweepPlan& plan) {
   std::string text = "A sweep over";
   for (const auto& axis : plan.axes) text += " " + axis.key;
-  const bool by_variables = std::any_of(plan.axes.begin(), plan.axes.end(), [](const SweepAxis& axis) {
-    return axis.key.starts_with("variables.");
-  });
   return study_identity(text, scene) + "\n" + idle_text(scene) +
-         (by_variables ? unexpanded_text(plan.source) : "");
+         (by_variables(plan) ? unexpanded_text(plan.source) : "");
+}
+
+// A scene that is written out has no variables any more: over those a sweep is made again from the text that
+// was read, where that stands alone.
+void receipt_of_sweep(const Scene& scene, const SweepPlan& plan) {
+  const SceneSource& source = plan.source;
+  if (by_variables(plan) && scene.files.empty())
+    receipt_scene(scene.name, source.text ? *source.text : bytes_of(source.path), SceneOptions::in_command);
+  else
+    receipt_scene(scene.name, scene_text(scene));
 }
 
 // What a whole sweep is of: a title that names what is varied would speak of one point.
@@ -157,6 +195,16 @@ std::vector<fs::path> journals_in(const std::vector<std::string>& directories, c
     found.insert(found.end(), here.begin(), here.end());
   }
   return found;
+}
+
+// Is it, or does it hold, one of them?
+bool is_merged(const std::vector<std::string>& directories, const std::string& output) {
+  std::error_code error;
+  const fs::path into = fs::weakly_canonical(output, error);
+  return std::ranges::any_of(directories, [&](const std::string& directory) {
+    const fs::path whole = fs::weakly_canonical(directory, error);
+    return std::mismatch(into.begin(), into.end(), whole.begin(), whole.end()).first == into.end();
+  });
 }
 
 // Of how many shares these directories hold journals: the largest number in their names, 1 where none says.
@@ -189,11 +237,14 @@ std::string cure(const SweepPlan& plan, const Sweep& sweep, const Arguments& arg
 // None: another worker writes the results.
 std::optional<Sweep> compute(const SweepPlan& plan, const StudySession& session, const StudyHooks& hooks,
                              const Arguments& arguments, const std::string& identity, Team* team) {
+  const auto finished = [&](const auto& row) { return plan.is_finished(row); };
   try {
+    Journal earlier({}, plan.columns(), plan.axes.size(), plan.number_columns(), finished);
+    session.require_asked(earlier, plan.asked());
     if (!arguments.study.merge.empty())
       return merge_sweep(plan, journals_in(arguments.study.merge, identity));
     Journal journal(team ? team->journal() : session.journal(), plan.columns(), plan.axes.size(),
-                    plan.number_columns(), [&](const auto& row) { return plan.is_finished(row); });
+                    plan.number_columns(), finished);
     return alone_or_joined(
         team, arguments, journal, hooks,
         [&](Journal& all, const StudyHooks& own) { return run_sweep(plan, all, own); },
@@ -208,6 +259,9 @@ std::optional<Sweep> compute(const SweepPlan& plan, const StudySession& session,
 int cmd_sweep(const Arguments& arguments) {
   if (arguments.join && (!arguments.study.shard.empty() || !arguments.study.merge.empty()))
     throw UsageError("--join shares the points by itself; leave out --shard and --merge");
+  if (arguments.force && is_merged(arguments.study.merge, arguments.output))
+    throw UsageError(
+        "--force would remove the points that --merge puts together; leave it out, or use another -o");
   if (!arguments.study.script.empty() && !arguments.study.merge.empty())
     throw UsageError("--script prints a job that computes and then merges by itself; leave out --merge");
   const SweepPlan plan = plan_of(arguments);
@@ -217,7 +271,8 @@ int cmd_sweep(const Arguments& arguments) {
   }
   Scene scene = plan.source.read();
   scene.solver = solver_of(plan, scene);
-  receipt_scene(scene.name, scene_text(scene));
+  receipt_of_sweep(scene, plan);
+  warn_of_idle_axes(plan, arguments);
   const InterruptGuard guard;
   const std::string name = identity(scene, plan);
   StudySession session(arguments, "sweeping", name, journal_name(plan.shard));

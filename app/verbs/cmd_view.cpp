@@ -55,7 +55,9 @@ struct OffscreenPanel {
 
 // Beyond the end of the run the window would stand at its end.
 void require_time_of_run(double t, const LiveRun* run) {
-  if (!run || t <= run->simulation.trajectory.end_time()) return;
+  if (!run || t <= run->simulation.trajectory.end_time() ||
+      short_number(t, 6) == short_number(run->simulation.trajectory.end_time(), 6))
+    return;
   throw UsageError("--at takes a time from 0 to " + short_number(run->simulation.trajectory.end_time(), 6) +
                    " s; got " + short_number(t, 6));
 }

@@ -31,7 +31,9 @@ namespace {
 constexpr std::size_t palette_samples = 24;  // frames that the GIF's colours are chosen from
 
 // What a person types who has the frames and wants this film of them.
-std::string command_by_hand(const std::filesystem::path& directory, const std::string& film, double fps) {
+std::string command_by_hand(const std::filesystem::path& given, const std::string& film, double fps) {
+  // "a:b" would be a protocol, "-o" an option.
+  const std::filesystem::path directory = given.is_relative() ? "." / given : given;
   std::ostringstream text;
   std::string folder = (directory / "frames").string();
   for (std::size_t i = 0; (i = folder.find('%', i)) != std::string::npos; i += 2) folder.insert(i, 1, '%');

@@ -45,7 +45,10 @@ double time_of_pose(const std::string& at, const Simulation& run) {
       throw NotFound("--at deployed: the run fails before the deployed pose");
     throw UsageError("--at deployed: the run does not reach the deployed pose");
   }
-  const double t = number_of(at);
+  double t = number_of(at);
+  // The end as it is told, in six digits.
+  if (t > trajectory.end_time() && short_number(t, 6) == short_number(trajectory.end_time(), 6))
+    t = trajectory.end_time();
   if (run.status == RunStatus::failed && t > trajectory.end_time())
     throw NotFound("--at " + at + ": the run is good up to " + short_number(trajectory.end_time(), 6) +
                    " s only");

@@ -158,6 +158,7 @@ int render_mode(const Arguments& arguments) {
   const Scene shown = shown_scene(scene, title_of(scene, vibration, mode, arguments.mode), arguments);
 
   OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
+  output.require_scene(scene_text(scene), arguments.force);
   const std::string which = "mode " + std::to_string(arguments.mode) + " at " + exact_number(vibration.t);
   FilmFolder folder(output.path(), shown, arguments.gpu, which);
   if (!folder.holds_this() && !folder.fresh() && !arguments.force)

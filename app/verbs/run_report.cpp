@@ -72,7 +72,8 @@ void write_run_report(const fs::path& directory, const Scene& scene, const Simul
   Report report{scene.title};
   report.paragraph(
       "Made by unfurl " + version() + " with `" +
-      as_typed(command_of_result(arguments.words, place_of_first_name(arguments.words), scene.name)) + "`.");
+      as_typed(command_of_result(arguments.words, place_of_first_name(arguments.words), scene.name)) +
+      "` of the scene as it stands at the end of this page.");
   std::error_code error;
   const std::uintmax_t film = fs::file_size(directory / "animation.webp", error);
   if (!error && film <= largest_film) report.picture("animation.webp", "The motion.");

@@ -57,6 +57,12 @@ void warn_of_idle_sets(const Arguments& arguments, const std::vector<std::string
       std::cerr << "unfurl: warning: --set " << setting << " does nothing: " << why << "\n";
 }
 
+std::string idle_key_text(const Scene& scene, const std::string& key) {
+  for (const SceneProblem& warning : scene.warnings)
+    if (warning.key == key && warning.message.starts_with("does nothing")) return key + " " + warning.message;
+  return "";
+}
+
 std::vector<fs::path> journals_like(const std::string& journal, const fs::path& directory) {
   const std::string begin = journal.substr(0, journal.find_first_of("_."));
   std::vector<fs::path> found;
@@ -83,14 +89,11 @@ void require_identity(const fs::path& directory, const std::string& identity, co
     return text.substr(std::min(text.find('\n'), text.size()));
   };
   const bool same_scene = below_heading(scene.text) == below_heading(identity);
-  throw FileError(
-      directory,
-      std::string(
-          same_scene
-              ? "holds results of another version of unfurl or other --repeats or, of a study, another "
-                "largest step; "
-              : "holds results of another scene or other settings; ") +
-          cure);
+  throw FileError(directory, std::string(same_scene ? "holds results of another version of unfurl, of "
+                                                      "another --vary or --repeats or, of a study, another "
+                                                      "largest step; "
+                                                    : "holds results of another scene or other settings; ") +
+                                 cure);
 }
 
 StudySession::StudySession(const Arguments& arguments, std::string task, const std::string& identity,
@@ -115,6 +118,7 @@ void StudySession::begin(const std::string& identity) {
                     "is on a file system without locks, so --force could remove what another "
                     "unfurl is writing; use another directory");
   if (arguments_.force && output_.lock().alone()) begin_anew(identity);
+  if (!identity.empty()) output_.require_scene(identity, arguments_.force);
   const bool begun = arguments_.join ? fs::exists(directory() / "scene.toml", error)
                                      : !journals_like(journal_, directory()).empty();
   if (begun) require_identity(directory(), identity, "use another directory, or --force to begin anew");
@@ -145,6 +149,12 @@ StudyHooks StudySession::hooks() {
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
   hooks.threads = arguments_.threads > 0 ? arguments_.threads : std::max(1, cores);
   return hooks;
+}
+
+void StudySession::require_asked(Journal& nowhere,
+                                 const std::function<bool(const Journal::Row&)>& asked) const {
+  nowhere.take_in(journal());
+  nowhere.require_asked(asked, directory(), "ask for them, too, or use another -o, or --force to begin anew");
 }
 
 void StudySession::write(const std::string& name, const std::string& text) const {

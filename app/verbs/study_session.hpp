@@ -11,6 +11,7 @@
 #include "app/output/output_directory.hpp"
 #include "app/output/progress.hpp"
 #include "core/scene/scene.hpp"
+#include "core/study/journal.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/report.hpp"
 #include "render/plot/figure.hpp"
@@ -32,6 +33,9 @@ void warn_of_own_steps(const Scene& scene);
 void warn_of_idle_sets(const Arguments& arguments, const std::vector<std::string>& keys,
                        const std::string& why);
 
+// "solver.rho_inf: does nothing with method = 'dvm'", where the scene says that of the key; else empty.
+std::string idle_key_text(const Scene& scene, const std::string& key);
+
 // Throws FileError, with what can be done, where DIR/scene.toml tells of other results than `identity`.
 void require_identity(const std::filesystem::path& directory, const std::string& identity,
                       const std::string& cure);
@@ -47,6 +51,10 @@ class StudySession {
   StudyHooks hooks();
   const std::filesystem::path& directory() const { return output_.path(); }
   std::filesystem::path journal() const { return directory() / journal_; }
+
+  // Throws FileError where the journal has results that `asked` does not take; `nowhere` is an empty one of
+  // its kind.
+  void require_asked(Journal& nowhere, const std::function<bool(const Journal::Row&)>& asked) const;
 
   void write(const std::string& name, const std::string& text) const;  // DIR/name
   // DIR/figures/NAME.svg, .pdf and .png, its numbers and caption, as --style and --dpi say; returns

@@ -33,7 +33,7 @@ Journal::~Journal() {
 void Journal::take_in(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return;
-  const TextFile file = read_text_file(path.string());
+  const TextFile file = read_result_file(path.string());
   if (!file.error.empty()) throw FileError(path, file.error);
   const std::size_t whole = file.text.rfind('\n');
   if (whole == std::string::npos) return;
@@ -74,6 +74,15 @@ std::vector<std::string> Journal::damage() const {
                                             first + ", are no finished results"));
   }
   return texts;
+}
+
+void Journal::require_asked(const std::function<bool(const Row&)>& asked,
+                            const std::filesystem::path& directory, const std::string& cure) const {
+  const auto lost = std::ranges::count_if(rows_, [&](const auto& known) { return !asked(known.second); });
+  if (lost > 0)
+    throw FileError(directory, "holds " + std::to_string(lost) +
+                                   (lost == 1 ? " result that is" : " results that are") +
+                                   " not asked for now and would be lost; " + cure);
 }
 
 const std::vector<std::string>* Journal::find(const std::vector<std::string>& key) const {

@@ -40,6 +40,10 @@ class Journal {
     for (const auto& other : others) take_in(other);
   }
   std::size_t size() const { return rows_.size(); }
+  // Throws FileError, with what can be done, where there are results that `asked` does not take: a command
+  // that asks for fewer than an earlier one would write over them.
+  void require_asked(const std::function<bool(const Row&)>& asked, const std::filesystem::path& directory,
+                     const std::string& cure) const;
   // Of each file that was read with whole lines that are no results: "DIR/sweep.csv: line 3 is no finished
   // result".
   std::vector<std::string> damage() const;

@@ -175,9 +175,9 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
   const Index in_space = space_coordinates(model->structure);
   for (const TimeEdge& edge : time_edges(model->structure, end / intervals))
     if (edge.impact && edge.t > 0 && edge.t < end)
-      throw ReferenceError(
-          "there is no reference across the time of " + short_number(edge.t, 6) +
-          " s, where the velocity of a drive jumps; an earlier solver.end_time, or a ramp, helps");
+      throw ReferenceError("there is no reference across the time of " + short_number(edge.t, 6) +
+                           " s, where the velocity or the acceleration of a drive jumps; an earlier "
+                           "solver.end_time, or a ramp, helps");
   goal = std::max(goal, 64 * std::numeric_limits<double>::epsilon() * size);
   Best best = tighten(extrapolated(*model, end, intervals, hooks), goal);
   if (best.solution && !(size > 0)) size = farthest(*best.solution, in_space);

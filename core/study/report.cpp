@@ -81,6 +81,11 @@ void Report::listing(std::string text) {
   blocks.push_back({ReportBlock::Kind::listing, std::move(text)});
 }
 
+// A destination with spaces is one in brackets only.
+std::string markdown_link(const std::string& file) {
+  return file.find_first_of(" ()") == std::string::npos ? file : "<" + file + ">";
+}
+
 std::string report_markdown(const Report& report) {
   std::string text = "# " + markdown_line(report.title) + "\n";
   for (const ReportBlock& block : report.blocks) {
@@ -90,7 +95,7 @@ std::string report_markdown(const Report& report) {
     if (block.kind == ReportBlock::Kind::table)
       text += (block.text.empty() ? "" : markdown_line(block.text) + "\n\n") + markdown_text(block.table);
     if (block.kind == ReportBlock::Kind::picture)
-      text += "![" + markdown_line(block.text) + "](" + block.file + ")\n";
+      text += "![" + markdown_line(block.text) + "](" + markdown_link(block.file) + ")\n";
     if (block.kind == ReportBlock::Kind::listing) text += "```\n" + block.text + "```\n";
   }
   return text;

@@ -121,6 +121,14 @@ bool is_study_point(const std::vector<std::string>& row) {
   return is_possible(run_of(any, row));
 }
 
+bool asks_for(const StudyPlan& plan, const std::vector<std::string>& row) {
+  const auto has = [](const auto& all, const std::string& cell, const auto& text) {
+    return std::ranges::any_of(all, [&](const auto& one) { return text(one) == cell; });
+  };
+  return has(plan.settings, row[0], [](const Setting& setting) { return setting.name; }) &&
+         has(plan.ladder.steps, row[1], [](long steps) { return std::to_string(steps); });
+}
+
 Study run_study(const StudyPlan& plan, Journal& journal, const StudyHooks& hooks) {
   Study study;
   study.end = plan.end;

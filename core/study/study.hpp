@@ -52,6 +52,8 @@ struct StudyPlan {
 StudyPlan plan_study(std::shared_ptr<const Model> model, const SolverOptions& scene, double largest_step,
                      double smallest_step, const StudyHooks& hooks);
 
+// Is it a row of this study's points?
+bool asks_for(const StudyPlan& plan, const std::vector<std::string>& row);
 // Leaves only settings of these methods; none named: all stay. Throws StudyError with the nearest
 // name of an unknown one.
 void keep_methods(StudyPlan& plan, const std::vector<std::string>& methods);

@@ -10,6 +10,7 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/path/path.hpp"
 #include "core/scene/build.hpp"
+#include "core/simulate/singular_poses.hpp"
 #include "core/study/measured_run.hpp"
 #include "core/study/parallel_for.hpp"
 #include "core/study/path_sweep.hpp"
@@ -25,6 +26,8 @@ namespace {
 Diagnostics asked_of(const SweepPlan& plan, Simulation& run) {
   const bool states = std::any_of(plan.measures.begin(), plan.measures.end(),
                                   [](const RunMeasure& m) { return m.needs != MeasureNeeds::events; });
+  if (std::ranges::any_of(plan.measures, [](const RunMeasure& m) { return may_have_no_bound(m.name); }))
+    record_singular_poses(run);
   return states || run.solved_as.name != "path" ? judge(run) : Diagnostics{};
 }
 

@@ -2,6 +2,7 @@
 // A scene over a grid of parameters: measures of every run.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,7 +19,8 @@ struct SweepAxis {
   std::vector<std::string> values;  // as TOML
   std::vector<double> numbers;      // the same; empty where one is no number
   bool log = false;
-  std::string unit;  // of the values; check_plan finds it
+  bool whole = false;  // it takes whole numbers, and
+  std::string unit;    // has this unit; check_plan finds both
 
   std::string title() const;                   // "fold angle (°)", for figures
   std::string title(std::size_t value) const;  // "fold angle = 30°", "solver method = dvm"
@@ -45,6 +47,8 @@ struct SweepPlan {
   std::vector<std::size_t> number_columns() const;        // those of the measures
   // A row that a run of this sweep can leave: an outcome that there is, measures that can be.
   bool is_finished(const std::vector<std::string>& row) const;
+  // Is a row one of the whole grid's?
+  std::function<bool(const std::vector<std::string>&)> asked() const;
 };
 
 // Throws StudyError (no axis, no measure, a key twice, too many points), SceneError where a value

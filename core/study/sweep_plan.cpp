@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -92,10 +93,23 @@ std::string SweepAxis::title() const {
 
 std::string SweepAxis::title(std::size_t value) const {
   std::string text = values[value];
-  if (!numbers.empty() && text.size() > 8) {  // thirds have sixteen digits
+  // Thirds have sixteen digits: as few as keep the values apart.
+  const auto with = [&](int digits, double x) {
     std::ostringstream few;
-    few << std::setprecision(6) << numbers[value];
-    text = few.str();
+    few << std::setprecision(digits) << x;
+    return few.str();
+  };
+  if (!numbers.empty() && text.size() > 8) {
+    int digits = 6;
+    const auto first =
+        numbers.begin() + static_cast<std::ptrdiff_t>(value - std::min(value, std::size_t{20}));
+    const auto last = numbers.begin() + static_cast<std::ptrdiff_t>(std::min(value + 21, numbers.size()));
+    const auto met = [&] {  // among those around it
+      return std::count_if(first, last,
+                           [&](double x) { return with(digits, x) == with(digits, numbers[value]); });
+    };
+    while (digits < 17 && met() > 1) ++digits;
+    text = with(digits, numbers[value]);
   }
   const std::string space = unit.empty() || unit == "deg" ? "" : " ";
   return words(key) + " = " + text + space + typeset(unit);
@@ -175,6 +189,16 @@ std::vector<std::size_t> SweepPlan::number_columns() const {
   return numbers;
 }
 
+std::function<bool(const std::vector<std::string>&)> SweepPlan::asked() const {
+  std::vector<std::set<std::string>> values;
+  for (const SweepAxis& axis : axes) values.emplace_back(axis.values.begin(), axis.values.end());
+  return [values](const std::vector<std::string>& row) {
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (!values[k].contains(row[k])) return false;
+    return true;
+  };
+}
+
 bool SweepPlan::is_finished(const std::vector<std::string>& row) const {
   const std::string& outcome = row[axes.size()];
   if (outcome == "failed" || outcome == "invalid") return true;
@@ -247,10 +271,11 @@ void check_plan(SweepPlan& plan) {
                          " are names of the same thing, or one is part of the other: vary one of them");
     }
   const auto& known = scene.units;
-  for (const SweepAxis& axis : plan.axes) {
+  for (SweepAxis& axis : plan.axes) {
+    axis.whole = is_whole_number(scene, axis.key);
     const auto broken =
         std::ranges::find_if(axis.numbers, [](double number) { return number != std::floor(number); });
-    if (broken != axis.numbers.end() && is_whole_number(scene, axis.key))
+    if (broken != axis.numbers.end() && axis.whole)
       throw StudyError(in_quotes(axis.key) + " takes whole numbers; " +
                        axis.values[static_cast<std::size_t>(broken - axis.numbers.begin())] +
                        " is none: give a COUNT that leads to some, or list them (" + axis.key + "=4,6,12)");

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/study/report.hpp"
@@ -51,6 +52,8 @@ TEST_CASE("what is printable passes a stream as it is, what is a command is writ
     target << "m\u00e8tres, \u4e2d\u6587, tabs\tand\nlines" << std::flush << "\x1b[2J" << '\x07' << "\xff";
   }
   CHECK(target.str() == "m\u00e8tres, \u4e2d\u6587, tabs\tand\nlines\\x1b[2J\\x07\\xff");
+  CHECK(printable_text("a\r\nb\rc") == "a\r\nb\\x0dc");
+  CHECK(printable_text("\x7f\u0085") == "\\u007f\\u0085");
   CHECK(target.good());
   CHECK_FALSE(commands_in(printable_text(evil)));
 }
@@ -63,6 +66,23 @@ TEST_CASE("a stream that fails says so through the filter") {
     closed << "x\n" << std::flush;
   }
   CHECK(closed.fail());
+}
+
+TEST_CASE("what is shown as TOML or JSON is that, whatever is in the scene") {
+  const ScratchDirectory dir;
+  const std::string odd =
+      dir.write("odd.toml", "title = \"d\\u007fel, \\u0085\"\r\n[structure]\r\nkind = \"pendulum\"\r\n");
+  const ProgramResult json = run_program({"check", odd, "--json"});
+  CHECK(json.code == 0);
+  CHECK(nlohmann::json::parse(json.out, nullptr, false).is_object());
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--all"}, {"--set", "structure.bob_mass=3"}}) {
+    std::vector<std::string> words = {"show", odd};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult shown = run_program(words);
+    INFO(shown.out);
+    CHECK(run_program({"check", dir.write("again.toml", shown.out)}).code == 0);
+  }
 }
 
 TEST_CASE("titles and paths reach neither the terminal nor a report as commands") {

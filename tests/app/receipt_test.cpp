@@ -151,6 +151,34 @@ TEST_CASE("a table carries no receipt, and is made again from what lies beside i
   CHECK(run_program({"verify", dir / "run/own.csv"}).code == 5);
 }
 
+// A scene that is written out has no variables any more: its text as it was read is what is kept, and what
+// changed it.
+TEST_CASE("a sweep over variables is made again") {
+  const ScratchDirectory dir;
+  const std::string scene =
+      dir.write("own.toml",
+                "[variables]\nL = 1\nm = 2\n[structure]\nkind = \"custom\"\n"
+                "nodes = [{name = \"A\", position = [0, 0, 0], fixed = true}, {name = \"B\", position = "
+                "[\"=L\", 0, 0]}]\n"
+                "rods = [{nodes = [\"A\", \"B\"], mass = \"=m\"}]\n[gravity]\nacceleration = [0, 0, -10]\n"
+                "[solver]\nstep = 0.01\nend_time = 0.1\n");
+  REQUIRE(run_program({"sweep", scene, "--vary", "variables.L=1,2", "--set", "variables.m=3",
+                       "--set=solver.step=0.02", "--measure", "max:kinetic_energy_J", "-o", dir / "sweep",
+                       "--dpi", "60", "--quiet"})
+              .code == 0);
+  fs::remove(scene);
+  for (const char* name : {"sweep/sweep.csv", "sweep/figures/sweep_max_kinetic_energy_J.svg"}) {
+    INFO(name);
+    const ProgramResult again = run_program({"reproduce", dir / name});
+    INFO(again.err);
+    CHECK(again.code == 0);
+    CHECK(again.out.starts_with("the same, byte by byte"));
+  }
+  const auto receipt = receipt_of(dir / "sweep/figures/sweep_max_kinetic_energy_J.svg");
+  REQUIRE(receipt);
+  CHECK(receipt->scene.find("L = 1") != std::string::npos);
+}
+
 TEST_CASE("reproduce exports what it makes again, where the command can") {
   const ScratchDirectory dir;
   REQUIRE(

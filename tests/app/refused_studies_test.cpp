@@ -30,6 +30,151 @@ TEST_CASE("damaged rows of an earlier sweep are told of and computed anew") {
   CHECK(run_program(sweep).err.find("no finished result") == std::string::npos);
 }
 
+TEST_CASE("results that are not asked for again are not written over") {
+  const ScratchDirectory dir;
+  struct Case {
+    const char* file;
+    std::vector<std::string> words, more, fewer, again;
+  };
+  const Case cases[] = {{"sweep.csv",
+                         {"sweep", "pendulum", "--measure", "energy", "--set", "solver.end_time=0.3"},
+                         {"--vary", "structure.angle=10:30:3"},
+                         {"--vary", "structure.angle=10,30"},
+                         {"--vary", "structure.angle=5:30:6"}},
+                        {"study.csv",
+                         {"study", "pendulum", "--steps", "0.05:0.02", "--set", "solver.end_time=0.3"},
+                         {"--methods", "rk4,rk4_projected"},
+                         {"--methods", "rk4"},
+                         {"--methods", "rk4,rk4_projected,rk4_baumgarte"}}};
+  for (const Case& c : cases) {
+    INFO(c.file);
+    const auto run = [&](const std::vector<std::string>& asked, bool force) {
+      std::vector<std::string> words = c.words;
+      words.insert(words.end(), asked.begin(), asked.end());
+      words.insert(words.end(), {"-o", dir / c.file, "--dpi", "40", "--quiet"});
+      if (force) words.push_back("--force");
+      return run_program(words);
+    };
+    const std::string table = dir / c.file + "/" + c.file;
+    REQUIRE(run(c.more, false).code == 0);
+    const std::string before = file_text(table);
+    const ProgramResult refused = run(c.fewer, false);
+    INFO(refused.err);
+    CHECK(refused.code == 5);
+    CHECK(refused.err.find(
+              "not asked for now and would be lost; ask for them, too, or use another -o, or --force") !=
+          std::string::npos);
+    CHECK(file_text(table) == before);
+    CHECK(run(c.again, false).code == 0);
+    CHECK(file_text(table).size() > before.size());
+    CHECK(run(c.fewer, true).code == 0);
+    CHECK(file_text(table).size() < before.size());
+  }
+}
+
+TEST_CASE("shards are not removed by the command that merges them") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> sweep = {"sweep",     "pendulum", "--vary", "structure.angle=10,20,30",
+                                          "--measure", "energy",   "--set",  "solver.end_time=0.3",
+                                          "--quiet",   "-o",       dir / "s"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = sweep;
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  REQUIRE(with({"--shard", "1/2"}).code == 0);
+  REQUIRE(with({"--shard", "2/2"}).code == 0);
+  const ProgramResult refused = with({"--merge", dir / "s/../s", "--force"});
+  CHECK(refused.code == 2);
+  CHECK(refused.err.find("--force would remove the points that --merge puts together") != std::string::npos);
+  CHECK(with({"--merge", dir / "s"}).code == 0);
+  CHECK(std::filesystem::exists(dir / "s/sweep.csv"));
+}
+
+TEST_CASE("a directory whose scene other results need takes no other scene") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> run = {"run",    "pendulum", "-o", dir / "o", "--set", "solver.end_time=0.1",
+                                        "--quiet"};
+  const auto with = [&](const std::vector<std::string>& verb, const std::vector<std::string>& more) {
+    std::vector<std::string> words = verb;
+    words.insert(words.end(), {"-o", dir / "o", "--set", "solver.end_time=0.1", "--dpi", "40", "--quiet"});
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  const std::vector<std::string> study = {"study", "pendulum", "--methods", "rk4", "--steps", "0.05:0.02"};
+  const std::vector<std::string> sweep = {"sweep",     "pendulum", "--vary", "structure.bob_mass=1,2",
+                                          "--measure", "energy"};
+  REQUIRE(run_program(run).code == 0);
+  for (const auto& [verb, more] : {std::pair{study, std::vector<std::string>{"--set", "structure.angle=20"}},
+                                   std::pair{sweep, std::vector<std::string>{}}}) {
+    const ProgramResult refused = with(verb, more);
+    INFO(refused.err);
+    CHECK(refused.code == 5);
+    CHECK(refused.err.find("holds results of unfurl run, whose scene.toml this would replace") !=
+          std::string::npos);
+  }
+  CHECK(with(study, {}).code == 0);  // of the same scene
+  CHECK(run_program({"reproduce", dir / "o/series.csv"}).code == 0);
+  const ProgramResult back = run_program(run);  // would take what the study needs to go on
+  CHECK(back.code == 5);
+  CHECK(back.err.find("holds results of unfurl study, whose") != std::string::npos);
+  CHECK(with(study, {}).code == 0);
+  CHECK(with(sweep, {"--force"}).code == 0);
+  CHECK(std::filesystem::exists(dir / "o/scene.toml.kept-1"));
+}
+
+TEST_CASE("a run that is refused leaves no directory") {
+  const ScratchDirectory dir;
+  const ProgramResult refused =
+      run_program({"run", "bricard", "-o", dir / "o", "--set", "solver.model=path"});
+  INFO(refused.err);
+  CHECK(refused.code == 3);
+  CHECK_FALSE(std::filesystem::exists(dir / "o"));
+}
+
+TEST_CASE("keys that are varied or solved for and do nothing are told of") {
+  const ScratchDirectory dir;
+  const auto sweep = [&](const std::vector<std::string>& vary) {
+    std::vector<std::string> words = {"sweep",  "pendulum", "--measure",
+                                      "energy", "--set",    "solver.end_time=0.1"};
+    for (const std::string& axis : vary) words.insert(words.end(), {"--vary", axis});
+    static int count = 0;
+    words.insert(words.end(), {"-o", dir / std::to_string(++count), "--dpi", "40"});
+    return run_program(words).err;
+  };
+  CHECK(sweep({"solver.rho_inf=0,0.5"}).find("--vary solver.rho_inf does nothing with method = 'dvm'") !=
+        std::string::npos);
+  CHECK(sweep({"solver.rho_inf=0,0.5", "solver.method=dvm,generalized_alpha"}).find("does nothing") ==
+        std::string::npos);
+  CHECK(run_program({"sweep", "pendulum", "--measure", "energy", "--set", "structure.bob_mass=3", "--vary",
+                     "structure.bob_mass=1,2", "-o", dir / "twice", "--dpi", "40"})
+            .err.find("--set structure.bob_mass does nothing: --vary changes the key") != std::string::npos);
+  const ProgramResult solved = run_program({"solve", "pendulum", "--find", "solver.rho_inf", "--target",
+                                            "energy=3", "--set", "solver.end_time=0.1"});
+  CHECK(solved.code == 4);
+  CHECK(solved.err.find("--find solver.rho_inf does nothing with method = 'dvm'") != std::string::npos);
+  CHECK(run_program({"run", "pendulum", "-o", dir / "o", "--size", "64x64", "--set", "render.size[0]=128"})
+            .code == 2);
+}
+
+TEST_CASE("measures whose names differ in what files cannot have keep a figure each") {
+  const ScratchDirectory dir;
+  const std::string scene =
+      dir.write("two.toml",
+                "[structure]\nkind = 'custom'\nnodes = [{name = 's:1', position = [0, 0, 0], fixed = true}, "
+                "{name = 's_1', "
+                "position = [2, 0, 0], fixed = true}, {name = 'B c', position = [1, 0, 0.5], mass = 1}]\n"
+                "rods = [{nodes = ['s:1', 'B c'], mass = 1}]\n[gravity]\nacceleration = [0, 0, -10]\n"
+                "[solver]\nend_time = 0.1\nstep = 0.02\n");
+  REQUIRE(run_program({"sweep", scene, "--vary", "structure.nodes[2].mass=1,2", "--measure",
+                       "max:s:1.reaction_N,max:s_1.reaction_N", "-o", dir / "out", "--dpi", "40", "--quiet"})
+              .code == 0);
+  CHECK(std::filesystem::exists(dir / "out/figures/sweep_max_s_1.reaction_N.svg"));
+  CHECK(std::filesystem::exists(dir / "out/figures/sweep_max_s_1.reaction_N_.svg"));
+  CHECK(file_text(dir / "out/sweep.md").find("](figures/sweep_max_s_1.reaction_N_.png)") !=
+        std::string::npos);
+}
+
 TEST_CASE("a study that is refused leaves nothing behind") {
   const ScratchDirectory dir;
   for (const std::vector<std::string>& wrong :

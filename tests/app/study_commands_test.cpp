@@ -46,7 +46,7 @@ TEST_CASE("study writes points, a report and figures, and goes on where it stopp
   CHECK(file_text(dir / "out/study.csv") == points);  // CPU times and all: nothing was measured again
   const ProgramResult repeated = run_program(asked + std::vector<std::string>{"--repeats", "2"});
   CHECK(repeated.code == 5);
-  CHECK(repeated.err.find("holds results of another version of unfurl or other --repeats") !=
+  CHECK(repeated.err.find("holds results of another version of unfurl, of another --vary or --repeats") !=
         std::string::npos);
   // Errors are compared at times that are spaced as the largest step says: none of others come in between.
   auto finer = command;
@@ -153,6 +153,13 @@ TEST_CASE("a task of a job array knows its shard") {
   CHECK(shard("auto", {"PMI_RANK=0", "PMI_SIZE=3"}) == "sweep_1_of_3");
   CHECK(shard("auto", {"SLURM_PROCID=2", "SLURM_NTASKS=4"}) == "sweep_3_of_4");
   CHECK(shard("auto/6", {"PBS_ARRAY_INDEX=6"}) == "sweep_6_of_6");
+  CHECK(shard("auto/4", {"SLURM_ARRAY_TASK_ID=0", "SLURM_ARRAY_TASK_MIN=0", "SLURM_ARRAY_TASK_COUNT=4"}) ==
+        "sweep_1_of_4");
+  // Submitted again by itself (sbatch --array=3).
+  CHECK(shard("auto/4", {"SLURM_ARRAY_TASK_ID=3", "SLURM_ARRAY_TASK_MIN=3", "SLURM_ARRAY_TASK_COUNT=1"}) ==
+        "sweep_3_of_4");
+  CHECK(shard("auto/4", {"SGE_TASK_ID=4", "SGE_TASK_FIRST=2", "SGE_TASK_LAST=4", "SGE_TASK_STEPSIZE=2"}) ==
+        "sweep_4_of_4");
   CHECK(shard("auto", {"PBS_ARRAY_INDEX=6"}).find("--shard auto/N") != std::string::npos);
   CHECK(shard("auto", {"SGE_TASK_ID=undefined"}).find("no job array is around") != std::string::npos);
   CHECK(shard("automatic", {}).find("a shard is I/N, auto, or auto/N; got 'automatic'") != std::string::npos);
@@ -176,6 +183,9 @@ TEST_CASE("job scripts repeat the sweep with a share for every task and end in a
             .find("seq 5 | parallel -q --halt soon,fail=1 " + same + " --threads 1 --quiet --shard {}/5\n" +
                   same + " --merge D\n") != std::string::npos);
   CHECK(script("snakemake").find("expand(\"D.shard_{i}_done\", i=range(1, 6))") != std::string::npos);
+  // Tasks that begin again keep what is finished, whatever the sweep began with.
+  CHECK(run_program(sweep + std::vector<std::string>{"--force", "--script", "parallel", "--jobs", "5"}).out ==
+        script("parallel"));
   CHECK(run_program(sweep + std::vector<std::string>{"--script", "slrm"}).err ==
         "unfurl: no script for 'slrm'; did you mean 'slurm'?\n");
 }

@@ -333,12 +333,33 @@ def test_any_text_is_a_value():
         assert unfurl.Scene("pendulum", set={"title": title}).title == title
 
 
+def test_a_stepper_is_read_in_one_thread_while_another_steps_it():
+    stepper = unfurl.Scene("pendulum", set={"solver.end_time": 0.4, "solver.step": 1e-5}).stepper()
+    done, seen = threading.Event(), []
+
+    def read():
+        while not done.is_set():
+            x, t = stepper.x, stepper.t
+            seen.append((t, float(np.linalg.norm(x[-1])), stepper.status, len(stepper.events), len(stepper.warnings)))
+
+    readers = [threading.Thread(target=read) for _ in range(3)]
+    for reader in readers:
+        reader.start()
+    while stepper.step():
+        pass
+    done.set()
+    for reader in readers:
+        reader.join()
+    assert all(0 <= t <= 0.4 for t, *_ in seen) and len(seen) > 10
+
+
 def test_a_stepper_says_how_far_it_is_and_gives_a_run_as_a_scene_does():
     stepper = unfurl.Scene("pendulum", set={"solver.end_time": 0.2}).stepper()
     assert isinstance(stepper, unfurl.Stepper) and stepper.status == "running"
     stepper.step()
     assert stepper.status == "running"
     early = stepper.finish()
+    assert early.status == "stopped"
     while stepper.step():
         pass
     assert stepper.status == "completed"
@@ -555,6 +576,8 @@ def test_a_sweep_keeps_its_points(tmp_path):
     for other, measure in ((unfurl.Scene("hoop6_sector", set={"structure.hinge_force": 200}), "deploy_time"), (ring, "peak_energy")):
         with pytest.raises(unfurl.FileError):
             other.sweep({"structure.fold_angle": [40, 55, 70]}, [measure], out=folder)
+    with pytest.raises(unfurl.FileError, match="1 result that is not asked for now and would be lost; ask for them, too"):
+        ring.sweep({"structure.fold_angle": [40, 55]}, ["deploy_time"], out=folder)
     assert len((folder / "sweep.csv").read_text().splitlines()) == 4
 
 
