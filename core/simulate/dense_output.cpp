@@ -16,7 +16,8 @@ constexpr double too_short =
 constexpr int most_pieces = 8;
 constexpr int closest_stages = 8;
 
-// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule: half a radian of a swing.
+// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule: half a radian of a
+// swing.
 bool is_short(const State& a, const State& b) {
   constexpr double good = 0.02;
   const VectorXd mean = (b.z - a.z) / (b.t - a.t);

@@ -75,6 +75,14 @@ TEST_CASE("ranges run evenly from end to end, log ranges by equal factors") {
   CHECK(parse_axis("a=1,inf").numbers.empty());  // no place on an axis of numbers
 }
 
+TEST_CASE("values that differ in late digits only have names that differ") {
+  const SweepAxis axis = parse_axis("structure.length=1.0000001,1.0000002,3");
+  CHECK(axis.title(0) == "length = 1.0000001");
+  CHECK(axis.title(1) == "length = 1.0000002");
+  const SweepAxis thirds = parse_axis("structure.length=0:1:4");
+  CHECK(thirds.title(1) == "length = 0.333333");
+}
+
 TEST_CASE("what is no axis is told why") {
   const struct {
     const char *axis, *why;
