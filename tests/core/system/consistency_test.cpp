@@ -76,4 +76,30 @@ nodes = ['A', 'B', 'P']
   CHECK_THAT(error, Catch::Contains("nothing can move: 9 constraints hold all 9 coordinates"));
 }
 
+// Soon and late, once and back again; a table that says the same at all times moves nothing.
+TEST_CASE("a structure that only warming rods move runs however fast or late they warm") {
+  const std::string rod = R"([structure]
+kind = 'custom'
+nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', position = [1, 0, 0]}]
+rods = [{name = 'r', nodes = ['A', 'B'], mass = 1}]
+constraints = [{kind = 'line', nodes = ['B'], direction = [1, 0, 0]}]
+[[forces]]
+kind = 'temperature'
+rods = ['r']
+expansion = 0.001
+change = 10
+)";
+  const auto warmed = [&](const std::string& times, const std::string& values) {
+    return rod + "times = [" + times + "]\nvalues = [" + values + "]\n";
+  };
+  for (const char* times : {"0, 1e-6, 2e-6", "0, 0.05, 0.1", "50, 55, 60", "1e6, 2e6, 3e6"})
+    for (const char* values : {"0, 0.5, 1", "0, 1, 0"}) CHECK(testing::error_of(warmed(times, values)) == "");
+  CHECK_THAT(testing::error_of(warmed("0, 1, 2", "0, 0, 0")), Catch::Contains("nothing can move"));
+  const Simulation run =
+      testing::run_scene(warmed("0, 0.05, 0.1", "0, 0.5, 1"), {"solver.step=0.001", "solver.end_time=0.12"});
+  REQUIRE(run.status == RunStatus::completed);
+  // 1 m (1 + 0.001 / K * 10 K), to round-off.
+  CHECK(testing::end_positions(run)[3] == Approx(1.01).epsilon(1e-14));
+}
+
 }  // namespace consistency_test
