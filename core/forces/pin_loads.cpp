@@ -73,45 +73,12 @@ void PinLoads::add_pin(const Structure& structure, std::size_t force, int rod, i
   const auto before = static_cast<int>(std::count_if(structure.rods.begin(), structure.rods.begin() + rod,
                                                      [](const Rod& r) { return r.gives; }));
   const bool gives = structure.rods[static_cast<std::size_t>(rod)].gives;
-  Pin pin{force,
-          MeasureFunction(f.measure, structure.deployment),
-          followed,
-          f.kinetic,
-          arm(f),
-          f.slip,
-          rod,
-          f.measure.nodes[0],
-          f.measure.nodes[1],
-          gives ? -1 : rod - before,
-          gives ? before : -1};
-  for (std::size_t i = 0; i < bare_.forces.size(); ++i) {
-    const Force& other = bare_.forces[i];
-    if (arm(structure.forces[i]) > 0) continue;
-    if (!acts_on(pin, other.measure) &&
-        !(other.kind == "joint_damping" && other.nodes == std::vector{pin.hinge}))
-      continue;
-    Structure alone = bare_;  // the others keep their places, but are of no kind
-    for (std::size_t k = 0; k < alone.forces.size(); ++k)
-      if (k != i) alone.forces[k].kind.clear();
-    for (const ForceKind& kind : force_kinds())
-      if (kind.kind == other.kind)
-        if (auto block = kind.make(alone, node_mass)) pin.couples.push_back(std::move(block));
-  }
-  Index r = 0;
-  for (const auto& block : constraints_)
-    for (int k = 0; k < block->rows(); ++k, ++r)
-      if (const int source = block->source(k);
-          source >= 0 && acts_on(pin, bare_.constraints[static_cast<std::size_t>(source)].measure) &&
-          bare_.constraints[static_cast<std::size_t>(source)].kind == "measure")
-        pin.couple_rows.push_back(r);
-  pins_.push_back(std::move(pin));
-}
-
-// Is it an angle of the rod at the hinge?
-bool PinLoads::acts_on(const Pin& pin, const Measure& measure) const {
-  if (measure.kind != MeasureKind::angle) return false;
-  const auto& n = measure.nodes;
-  return (n[0] == pin.hinge && n[1] == pin.other) || (n[2] == pin.hinge && n[3] == pin.other);
+  std::vector<char> apart;
+  for (const Force& any : structure.forces) apart.push_back(arm(any) > 0);
+  pins_.push_back({force, MeasureFunction(f.measure, structure.deployment), followed, f.kinetic, arm(f),
+                   f.slip, rod, f.measure.nodes[0], f.measure.nodes[1], gives ? -1 : rod - before,
+                   gives ? before : -1,
+                   RodCouples(bare_, node_mass, constraints_, rod, f.measure.nodes[0], apart)});
 }
 
 SparseRows PinLoads::jacobian(const double* q) const {
@@ -131,24 +98,19 @@ SparseRows PinLoads::jacobian(const double* q) const {
   return G;
 }
 
-Vec3 PinLoads::linear_load(const Pin& pin, const double* q, const SparseRows& G, const Response& r) const {
+Vec3 PinLoads::linear_load(const Pin& pin, const double* q, const Response& r) const {
   const Rod& rod = bare_.rods[static_cast<std::size_t>(pin.rod)];
   const Vec3 here = r.a.segment<3>(3 * pin.hinge), there = r.a.segment<3>(3 * pin.other);
   Vec3 load = bare_.lumped_mass ? Vec3(rod.mass / 2 * here) : Vec3(rod.mass / 6 * (2 * here + there));
   if (pin.row >= 0)
     load +=
         r.lambda[rod_row_ + pin.row] / rod.length * (node_vector(q, pin.hinge) - node_vector(q, pin.other));
-  for (const Index row : pin.couple_rows)
-    for (int k = 0; k < 3; ++k) load[k] -= r.lambda[row] * G.coeff(row, 3 * pin.other + k);
-  return load + r.friction.segment<3>(3 * pin.other);
+  return load + pin.couples.of_rows(q, r.lambda);
 }
 
 Vec3 PinLoads::given_load(const Pin& pin, const Moment& at, const double* q, const double* v) const {
   const Rod& rod = bare_.rods[static_cast<std::size_t>(pin.rod)];
-  Vec3 load = -rod.mass / 2 * bare_.gravity;
-  VectorXd force = VectorXd::Zero(mass_.rows());
-  for (const auto& couple : pin.couples) couple->add(at, q, v, 1.0, force.data());
-  load += force.segment<3>(3 * pin.other);
+  const Vec3 load = -rod.mass / 2 * bare_.gravity + pin.couples.of_forces(at, q, v);
   if (pin.giving < 0) return load;
   std::vector<double> pull;
   if (!at.tension) {
@@ -176,15 +138,12 @@ std::vector<PinLoads::Response> PinLoads::responses(const Moment& at, const doub
   SaddleSolver saddle(mass_, G);
   if (!saddle.factorise(G)) return {};
   std::vector<Response> out;
-  const auto respond = [&](const VectorXd& f, const VectorXd& g, const VectorXd& friction) {
-    out.push_back({VectorXd(n), VectorXd(rows_), friction});
+  const auto respond = [&](const VectorXd& f, const VectorXd& g) {
+    out.push_back({VectorXd(n), VectorXd(rows_)});
     saddle.solve(f, g, out.back().a, out.back().lambda);
   };
-  respond(force, -bias, VectorXd::Zero(n));
-  for (const Pin& pin : pins_) {
-    force = unit_torque(pin, at, q, pin.slip);
-    respond(force, VectorXd::Zero(rows_), force);
-  }
+  respond(force, -bias);
+  for (const Pin& pin : pins_) respond(unit_torque(pin, at, q, pin.slip), VectorXd::Zero(rows_));
   return out;
 }
 
@@ -203,9 +162,9 @@ std::vector<double> PinLoads::longest_arms(double t, const double* q) const {
   SaddleSolver saddle(mass_, G);
   if (!saddle.factorise(G)) return out;
   for (const Pin& pin : pins_) {
-    Response r{VectorXd(mass_.rows()), VectorXd(rows_), unit_torque(pin, t, q, 1.0)};
-    saddle.solve(r.friction, VectorXd::Zero(rows_), r.a, r.lambda);
-    out[pin.force] = 1 / linear_load(pin, q, G, r).norm();
+    Response r{VectorXd(mass_.rows()), VectorXd(rows_)};
+    saddle.solve(unit_torque(pin, t, q, 1.0), VectorXd::Zero(rows_), r.a, r.lambda);
+    out[pin.force] = 1 / (linear_load(pin, q, r) - pin.couples.of_measure(pin.force, q)).norm();
   }
   return out;
 }
@@ -246,12 +205,10 @@ PinLoads::Loads PinLoads::evaluate(const Moment& at, const double* q, const doub
   for (std::size_t k = 0; k < count && !all.empty(); ++k) {
     const Pin& pin = pins_[k];
     tau[k] = pin.slip ? pin.kinetic : 0.0;
-    loads[k].push_back(given_load(pin, at, q, v) + linear_load(pin, q, G, all[0]));
-    for (std::size_t i = 0; i < count; ++i) {
-      Response r = all[i + 1];
-      if (pins_[i].hinge != pin.hinge || pins_[i].other != pin.other) r.friction.setZero();
-      loads[k].push_back(linear_load(pin, q, G, r));
-    }
+    loads[k].push_back(given_load(pin, at, q, v) + linear_load(pin, q, all[0]));
+    for (std::size_t i = 0; i < count; ++i)
+      loads[k].push_back(linear_load(pin, q, all[i + 1]) -
+                         pins_[i].slip * pin.couples.of_measure(pins_[i].force, q));
   }
   for (int round = 0; round < most_rounds && !all.empty(); ++round) {
     double change = 0;

@@ -8,14 +8,16 @@
 #include "core/constraints/constraint.hpp"
 #include "core/forces/elastic_rods.hpp"
 #include "core/forces/force.hpp"
+#include "core/forces/rod_couples.hpp"
 #include "core/structure/measure.hpp"
 
 namespace unfurl {
 
 // The forces that load hinges whose dry friction is mu r |F| (friction.hpp). F is that with which the pin
 // pulls the rod R from the hinge h to the first node A of the angle: of R's share M_R of the mass matrix, its
-// length (its row of G, or what it pulls with where it gives), and the couples C that act on R at the hinge,
-// springs, motors, dampers, friction and rows of its angle, each a force at A and its opposite at h,
+// length (its row of G, or what it pulls with where it gives), and the couples C that act on R wherever their
+// hinges are, of springs, motors, dampers, friction and rows of its angles, also in sums, each a force at A
+// and its opposite at h (rod_couples.hpp),
 //
 //     F = (M_R (a - g))_h + lambda_R dPhi_R/dx_h + C_A     or with N d|d|/dx_h in place of the second,
 //
@@ -68,18 +70,16 @@ class PinLoads {
     double kinetic, arm;
     int slip, rod, hinge, other;
     int row, giving;  // its place among the rods that do not give, and among those that do; one of them is -1
-    std::vector<std::unique_ptr<ForceBlock>> couples = {};  // of the forces on R at the hinge
-    std::vector<Index> couple_rows = {};
+    RodCouples couples;
   };
-  // Of accelerations, multipliers and node forces of the friction that go with each other.
+  // Of accelerations and multipliers that go with each other.
   struct Response {
-    VectorXd a, lambda, friction;
+    VectorXd a, lambda;
   };
   void add_pin(const Structure& structure, std::size_t force, int rod, int followed,
                const SparseRows& node_mass);
-  bool acts_on(const Pin& pin, const Measure& measure) const;
   // The part of F that is linear in them, and the rest.
-  Vec3 linear_load(const Pin& pin, const double* q, const SparseRows& G, const Response& r) const;
+  Vec3 linear_load(const Pin& pin, const double* q, const Response& r) const;
   Vec3 given_load(const Pin& pin, const Moment& at, const double* q, const double* v) const;
   // From the other node to the hinge, of length one.
   static Vec3 along(const Pin& pin, const double* q) {

@@ -231,28 +231,57 @@ std::string pin_problem(const Structure& structure, const System& system, const 
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
     if (!is_fixed(structure, static_cast<int>(i)) && !(mass[3 * static_cast<Index>(i)] > 0))
       return "needs nodes with mass, and " + in_quotes(structure.nodes[i].name) + " has none";
-  if (rod.gives) return too_few_stages(structure, mass, rod, solver);
+  if (rod.gives)
+    if (const std::string problem = too_few_stages(structure, mass, rod, solver); !problem.empty())
+      return problem;
   const VectorXd q = node_positions(structure);
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   system.jacobian(q, G, scratch);
+  const std::vector<char> told = determined_rows(G);
+  const RodCouples::Line line(structure, r, force.measure.nodes[0]);
+  const std::vector<int> sources = system.sources();
+  for (std::size_t i = 0; i < told.size(); ++i)
+    if (const int c = sources[i]; !told[i] && c >= 0)
+      if (const Constraint& holds = structure.constraints[static_cast<std::size_t>(c)];
+          holds.kind == "measure" && line.tells(holds.measure))
+        return "needs the force of the pin, and so the torque of " + in_quotes(holds.name) +
+               ", which others leave open here: give a constant torque by kinetic, or remove one of them";
   const int row = system.rod_rows()[static_cast<std::size_t>(r)];
-  if (row < 0 || determined_rows(G)[static_cast<std::size_t>(row)]) return "";
+  if (row < 0 || told[static_cast<std::size_t>(row)]) return "";
   return "needs the force of the pin, which rigid rods leave open here (" + in_quotes(rod.name) +
          " is one of more rods than hold the structure): give a constant torque by kinetic, or rods that "
          "give "
          "(rod_model = \"elastic\")";
 }
 
-void check_pins(const Scene& scene, const Structure& structure, const System& system) {
+// What acts on nodes of plates, or of all of the structure, counts on nodes in a pin's force.
+void note_plates(Structure& structure, const Force& force) {
+  const RodCouples::Line line(structure, PinLoads::rod_of(structure, force), force.measure.nodes[0]);
+  const auto note = [&](const std::string& name, const Measure& measure) {
+    if (line.beside(measure, structure.deployment))
+      structure.notes.push_back(
+          "friction " + in_quotes(force.name) + ": " + in_quotes(name) +
+          " acts on nodes (a dihedral, the fold angle); its torque does not count in the "
+          "pin's force");
+  };
+  for (const Force& f : structure.forces) note(f.name, f.measure);
+  for (const Constraint& c : structure.constraints)
+    if (c.kind == "measure") note(c.name, c.measure);
+  for (const Stop& stop : structure.stops) note(stop.name, stop.measure);
+}
+
+void check_pins(const Scene& scene, Structure& structure, const System& system) {
   const auto refuse_friction = [&](const std::string& name, const std::string& problem) {
     if (problem.empty()) return;
     for (const SceneElement& e : scene.forces)
       if (e.enabled && e.name == name) throw SceneError({{e.where, e.key + ".pin_friction", problem}});
   };
   for (const Force& force : structure.forces)
-    if (PinLoads::arm(force) > 0)
+    if (PinLoads::arm(force) > 0) {
       refuse_friction(force.name, pin_problem(structure, system, scene.solver, force));
+      note_plates(structure, force);
+    }
   const auto locked =
       PinLoads::self_locking(structure, system.node_mass(), 0.0, node_positions(structure).data());
   refuse_friction(locked.friction, locked.problem);
