@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -112,6 +113,12 @@ void OwnDirectory::require_scene(const std::string& text, bool force) {
     throw FileError(path_, "holds results of unfurl " + owner +
                                ", whose scene.toml this would replace; use another directory, or --force");
   written_->keep_aside(name);
+}
+
+void OwnDirectory::require_files(std::initializer_list<const char*> names) const {
+  std::error_code unknown;
+  for (const char* name : names)
+    if (written_ && fs::is_directory(path_ / name, unknown)) throw FileError(path_ / name, EISDIR);
 }
 
 OwnDirectory::~OwnDirectory() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -26,6 +27,8 @@ class OwnDirectory {
   // DIR/scene.toml will hold this text. Throws FileError where results of another verb are of another scene
   // that stands there; with `force` it is kept aside.
   void require_scene(const std::string& text, bool force);
+  // Throws FileError where one of these is a directory: hours of work would end there.
+  void require_files(std::initializer_list<const char*> names) const;
 
   const std::filesystem::path& path() const { return path_; }
   DirectoryLock& lock() { return *lock_; }

@@ -37,6 +37,7 @@ int cmd_render(const Arguments& arguments) {
   OwnDirectory output(arguments.output, arguments.force, "run",
                       arguments.join ? DirectoryLock::Use::joined : DirectoryLock::Use::shareable);
   output.require_scene(scene_text(scene), arguments.force);
+  output.require_files({"scene.toml", "series.csv", "trajectory.csv", "rod_forces.csv", "summary.json"});
   const std::filesystem::path& directory = output.path();
   DirectoryLock& lock = output.lock();
   FilmFolder folder(directory, scene, arguments.gpu);

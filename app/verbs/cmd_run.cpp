@@ -141,6 +141,7 @@ int cmd_run(const Arguments& arguments) {
   auto model = model_of(built, arguments);
   OwnDirectory output(arguments.output, arguments.force, "run");
   output.require_scene(scene_text(scene), arguments.force);
+  output.require_files({"scene.toml", "series.csv", "trajectory.csv", "rod_forces.csv", "summary.json"});
   const std::filesystem::path& directory = output.path();
   const bool film = !directory.empty() && keeps_film(directory, scene, arguments.force);
 

@@ -119,6 +119,7 @@ void StudySession::begin(const std::string& identity) {
                     "unfurl is writing; use another directory");
   if (arguments_.force && output_.lock().alone()) begin_anew(identity);
   if (!identity.empty()) output_.require_scene(identity, arguments_.force);
+  output_.require_files({"scene.toml", journal_.c_str()});
   const bool begun = arguments_.join ? fs::exists(directory() / "scene.toml", error)
                                      : !journals_like(journal_, directory()).empty();
   if (begun) require_identity(directory(), identity, "use another directory, or --force to begin anew");

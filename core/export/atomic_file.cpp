@@ -171,7 +171,9 @@ bool is_no_file(const std::filesystem::path& path) {
 }  // namespace
 
 PendingFile::PendingFile(std::filesystem::path target) : target_(std::move(target)) {
-  if (!target_.has_filename()) throw FileError(target_, EISDIR);
+  std::error_code unknown;
+  if (!target_.has_filename() || std::filesystem::is_directory(target_, unknown))
+    throw FileError(target_, EISDIR);
   if (is_no_file(target_))
     throw FileError(target_, "is a device, a pipe or a socket, which no file replaces; name another one");
   while (file_ < 0) {

@@ -123,6 +123,24 @@ TEST_CASE("a directory whose scene other results need takes no other scene") {
   CHECK(std::filesystem::exists(dir / "o/scene.toml.kept-1"));
 }
 
+TEST_CASE("a directory where a table should be is told of before anything is done") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> run = {"run",    "pendulum", "-o", dir / "o", "--set", "solver.end_time=0.1",
+                                        "--quiet"};
+  REQUIRE(run_program(run).code == 0);
+  const std::string summary = file_text(dir / "o/summary.json");
+  std::filesystem::remove(dir / "o/trajectory.csv");
+  std::filesystem::create_directories(dir / "o/trajectory.csv/mine");
+  std::vector<std::string> other = run;
+  other.insert(other.end(), {"--set", "structure.bob_mass=9"});
+  const ProgramResult refused = run_program(other);
+  CHECK(refused.code == 5);
+  CHECK(refused.err.find("o/trajectory.csv: ") != std::string::npos);
+  CHECK(refused.err.find("directory") != std::string::npos);
+  CHECK(file_text(dir / "o/summary.json") == summary);
+  CHECK(std::filesystem::exists(dir / "o/trajectory.csv/mine"));
+}
+
 TEST_CASE("a run that is refused leaves no directory") {
   const ScratchDirectory dir;
   const ProgramResult refused =

@@ -238,8 +238,8 @@ TEST_CASE("a fold angle counts on within steps as it does at states") {
                                          "solver.stages=6", std::string("solver.step=") + step});
     const Simulation run = simulate(build_model(scene), scene.solver);
     const Diagnostics d = diagnose(run);
-    CHECK(find_measure("min:fold_angle_deg").value(run, d) == Approx(84).margin(1e-6));
-    // The top is that of a quintic through states a third of a second apart.
+    // Tops are those of quintics through states up to a third of a second apart.
+    CHECK(find_measure("min:fold_angle_deg").value(run, d) == Approx(84).margin(0.2));
     CHECK(find_measure("max:fold_angle_deg").value(run, d) == Approx(276).margin(0.2));
     CHECK(find_measure("max:fold_angle_rad").value(run, d) == Approx(276 * pi / 180).margin(0.004));
   }
