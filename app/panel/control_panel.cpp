@@ -122,7 +122,8 @@ void ControlPanel::take_events() {
   box_frames_ = box ? box_frames_ + 1 : 0;
   const bool waits = box && box_frames_ <= until_typing && !host_->typing();
   while (!events_.empty()) {
-    if (waits && (events_.front().kind == Kind::key || events_.front().kind == Kind::text)) {
+    const InputEvent& next = events_.front();
+    if (waits && (next.kind == Kind::text || (next.kind == Kind::key && next.key != Key::escape))) {
       keep_drawing(true);
       break;
     }
