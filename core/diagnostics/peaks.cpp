@@ -335,47 +335,31 @@ PeakInMotion rise_towards(const Neighbourhood& around, const StateValues& values
   return {};
 }
 
-// Where 1 / value would be 0 by its slope from a time on, in the sense in which it falls; NaN where it does
-// not.
-double pole_ahead(const Neighbourhood& around, const StateValues& values, double t, double sense) {
-  const double ahead = 1e-3 * (around.end() - around.begin());
-  for (double back = 0; back < 200 * ahead;
-       back = std::max(2 * back, ahead)) {  // out of where no value is known
-    const double near = t - sense * back, far = near - sense * ahead;
-    if (std::min(far, near) < around.begin() || std::max(far, near) > around.end()) break;
-    const std::vector<double> x = around.sample({far, near}, values);
-    if (std::isnan(x[0]) || std::isnan(x[1])) continue;
-    if (!(x[0] > 0 && x[1] > x[0])) break;
-    return near + sense * ahead / (x[1] / x[0] - 1);
+// Beside the singular poses that a run tells of, those whose states hold the largest values first, a force
+// may be larger the nearer it is looked for.
+PeakInMotion without_bound(const Simulation& run, const std::vector<double>& at_states,
+                           const StateValues& values) {
+  constexpr std::size_t most_poses = 3;
+  std::vector<std::pair<double, double>> poses;  // value beside it, time
+  for (const Event& event : run.events) {
+    if (event.kind != "singular_pose") continue;
+    const std::size_t i = state_before(run.trajectory, event.t),
+                      behind = std::min(i + 1, at_states.size() - 1);
+    const double most = larger(at_states[i], at_states[behind]);
+    poses.push_back({std::isnan(most) ? -std::numeric_limits<double>::infinity() : most, event.t});
   }
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
-// Beside the largest value that was found, and beside the singular poses that the run tells of, one may be
-// larger the nearer it is looked for.
-PeakInMotion without_bound(const Simulation& run, const StateValues& values, const PeakInMotion& best) {
-  constexpr int most_poses = 64;
-  const auto around = [&](double t) {
-    const Trajectory& states = run.trajectory;
-    std::size_t i = state_before(states, t);
-    if (i + 1 < states.size() && states.time(i + 1) - t < t - states.time(i)) ++i;
-    return Neighbourhood(run, i, Neighbourhood::Of::all_steps);
-  };
+  std::ranges::stable_sort(poses, std::greater(), [](const auto& pose) { return pose.first; });
   PeakInMotion found;
-  const auto look = [&](const Neighbourhood& there, double t) {
+  for (std::size_t k = 0; k < std::min(poses.size(), most_poses); ++k) {
+    const double t = poses[k].second;
+    const std::size_t before = state_before(run.trajectory, t);
+    const bool nearer = before + 1 < at_states.size() &&
+                        run.trajectory.time(before + 1) - t < t - run.trajectory.time(before);
+    const Neighbourhood around(run, before + (nearer ? 1 : 0), Neighbourhood::Of::all_steps);
     for (const double side : {-1.0, 1.0})
-      if (const PeakInMotion rise = rise_towards(there, values, t, side);
-          std::isnan(found.value) || rise.value > found.value)
-        found = rise;
-  };
-  if (const Neighbourhood there = around(best.t); best.value > 0 && !there.empty())
-    for (const double sense : {-1.0, 1.0})
-      if (const double t = pole_ahead(there, values, best.t, sense); t > there.begin() && t < there.end())
-        look(there, t);
-  int poses = 0;
-  for (const Event& event : run.events)
-    if (event.kind == "singular_pose" && poses++ < most_poses)
-      if (const Neighbourhood there = around(event.t); !there.empty()) look(there, event.t);
+      if (const PeakInMotion rise = rise_towards(around, values, t, side); !(rise.value <= found.value))
+        if (!std::isnan(rise.value)) found = rise;
+  }
   return found;
 }
 
@@ -384,6 +368,12 @@ bool of_the_state(const Series& column) {
   if (column.unit == "J") return column.name == "kinetic_energy_J" || column.name == "potential_energy_J";
   return !column.name.starts_with("constraint_") && !column.name.ends_with("_unique") &&
          column.name != "step_s" && column.name != "newton_iterations";
+}
+
+// Or a stress, or a share of what a rod bears.
+bool is_force(const Series& column) {
+  return column.unit == "N" || column.unit == "N m" || column.unit == "Pa" ||
+         column.name.ends_with("_ratio_max");
 }
 
 // Of a piece alone an angle begins anew within a turn: on from that of the run's state before.
@@ -411,8 +401,13 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
     if (name == "fold_angle_deg") count_on(run.trajectory, piece, signed_values(*column), 360, out);
     return out;
   };
-  PeakInMotion top =
-      top_of_motion(run, signed_values(*column), of_the_state(*column) ? values : StateValues());
+  const std::vector<double> at_states = signed_values(*column);
+  PeakInMotion top = top_of_motion(run, at_states, of_the_state(*column) ? values : StateValues());
+  if (is_force(*column) && at_states.size() == run.trajectory.size())
+    if (const PeakInMotion rise = without_bound(run, at_states, values); !std::isnan(rise.value)) {
+      if (!(rise.value <= top.value)) top = rise;
+      top.bounded = false;
+    }
   top.value *= sign;
   return top;
 }
@@ -433,10 +428,6 @@ PeakInMotion top_of_motion(const Simulation& run, const std::vector<double>& at_
   for (const std::size_t i : around_these) {
     const Neighbourhood around(run, i);
     if (!around.empty()) best = closer(around, values, best);
-  }
-  if (const PeakInMotion rise = without_bound(run, values, best); !std::isnan(rise.value)) {
-    if (rise.value > best.value) best = rise;
-    best.bounded = false;
   }
   return best;
 }
