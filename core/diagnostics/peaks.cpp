@@ -350,7 +350,7 @@ PeakInMotion without_bound(const Simulation& run, const std::vector<double>& at_
   }
   std::ranges::stable_sort(poses, std::greater(), [](const auto& pose) { return pose.first; });
   PeakInMotion found;
-  for (std::size_t k = 0; k < std::min(poses.size(), most_poses); ++k) {
+  for (std::size_t k = 0; k < std::min(poses.size(), most_poses) && std::isnan(found.value); ++k) {
     const double t = poses[k].second;
     const std::size_t before = state_before(run.trajectory, t);
     const bool nearer = before + 1 < at_states.size() &&
