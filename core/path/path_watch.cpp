@@ -112,7 +112,7 @@ void PathWatch::margins(const PathMotion& motion, double t, VectorXd& out, Vecto
   }
   for (std::size_t i = sides_.first_friction(); i < sides_.first_motor(); ++i)
     if (sides_.slip(i) != 0)
-      out[static_cast<Index>(i)] = sides_.slip(i) * friction_slope(i, s) * v / sides_.zero_rate(i);
+      out[static_cast<Index>(i)] = sides_.slip(i) * friction_slope(i, s) * v / sides_.rounded_rate(i);
   if (deployed_column_ < 0 || deployed_) return;
   const ValueAndSlope m = remaining_at(s);
   out[out.size() - 1] = m.value;

@@ -18,6 +18,11 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 1e-8;        // of the largest push
 constexpr double rate_rounding = 1e-14;  // of the largest rate
+// Of an acceleration, of all that it is the sum of; of one that no push changes, of what cancels where it
+// does not: it is told by no more than PushResponses::movable() tells.
+constexpr double sum_rounding = 1e-12, immovable_rounding = 1e-6;
+// Of the forces: where one falls to zero is located to a share of that (one_sided.cpp), either way.
+constexpr double located = 1e-9;
 
 class Change {
  public:
@@ -38,7 +43,11 @@ class Change {
     const PushResponses& responses = acting->responses;
     if (!responses.ok()) return failed("the constraint matrix cannot be factorised where modes change");
     D_ = responses.matrix();
-    for (Index i = 0; i < D_.rows(); ++i) movable_.push_back(responses.movable(i));
+    spread_.resize(D_.rows());
+    for (Index i = 0; i < D_.rows(); ++i) {
+      movable_.push_back(responses.movable(i));
+      spread_[i] = responses.spread(i);
+    }
     settle(responses);
     if (!strike(responses, rests)) return std::move(out_);
     // What is asked of motors and how cables are stretched may have jumped with the rates.
@@ -128,12 +137,17 @@ class Change {
 
   // Friction that turns round where it hardly moves anything, as a slider at its dead centre: what the
   // method's error left of the rate is not for an impulse to take, which would stop all else; the motion goes
-  // through. More than friction gives in a step is no settling.
+  // through. More than friction gives in a step is no settling, unless it counts as zero all the same and
+  // stops nothing that is faster.
   bool passes(Index r, double rate) {
     const std::size_t i = side(r);
     if (!sides_.is_friction(i) || sides_.active(i)) return false;
-    const double step = sides_.touching(i) / sides_.zero_rate(i);
-    return passes_[static_cast<std::size_t>(r)] = std::abs(rate) > D_(r, r) * sides_.holding(i) * step;
+    return passes_[static_cast<std::size_t>(r)] =
+               std::abs(rate) > given_in_step(r) && std::abs(rate) * spread_[r] > sides_.zero_rate(i);
+  }
+  double given_in_step(Index r) const {
+    const std::size_t i = side(r);
+    return D_(r, r) * sides_.holding(i) * sides_.touching(i) / sides_.zero_rate(i);
   }
 
   // The stops that are approached, all at once. False where there is no answer.
@@ -169,11 +183,18 @@ class Change {
     return true;
   }
 
-  // Does friction move, or does a stop stay out of it, whatever the forces are?
+  // Does friction move, or does a stop stay out of it, whatever the forces are? By rates that count as zero,
+  // where a hold or a crossing says so; else by those that rounding leaves, or friction takes within a step:
+  // what goes on so slowly for longer moves.
   bool at_rest(Index r, double rate) const {
     const std::size_t i = side(r);
-    if (sides_.is_friction(i)) return std::abs(rate) <= 1.0001 * sides_.zero_rate(i);
-    return rate <= sides_.zero_rate(i) || (struck_[static_cast<std::size_t>(r)] && rate <= 0);
+    const bool struck = struck_[static_cast<std::size_t>(r)];
+    double zero = sides_.zero_rate(i);
+    if (!crossed(r) && !sides_.active(i) && !struck)
+      zero = std::max(2 * sides_.rounded_rate(i),
+                      sides_.is_friction(i) ? std::min(zero, given_in_step(r)) : 0.0);
+    if (sides_.is_friction(i)) return std::abs(rate) <= 1.0001 * zero;
+    return rate <= zero || (struck && rate <= 0);
   }
 
   // A stop that is left so slowly that the way back ends before the gap counts.
@@ -184,23 +205,30 @@ class Change {
 
   bool choose(const PushResponses& responses) {
     const VectorXd rate = responses.rates(out_.state.w);
-    b_ = responses.accelerations(out_.state);
+    PushResponses::Accelerations by_themselves = responses.accelerations(base_.structure, out_.state);
+    b_ = std::move(by_themselves.value);
     if (b_.size() != count()) {
       out_.failure = "the constraint matrix cannot be factorised where modes change";
       return false;
     }
-    bool still_there = true;
-    for (Index r = 0; r < count(); ++r)
-      still_there = still_there && std::abs(b_[r]) <= sides_.zero_acceleration(side(r));
+    rounds_ = sum_rounding * by_themselves.terms;
+    multiplier_ = by_themselves.largest_multiplier;
+    bool still_there = true;  // and nothing that held has broken, which moves something
+    for (Index r = 0; r < count(); ++r) {
+      if (!movable(r))
+        rounds_[r] = std::max(rounds_[r], immovable_rounding * by_themselves.of_coordinates[r]);
+      still_there = still_there && std::abs(b_[r]) <= rounds_[r] && !(crossed(r) && sides_.active(side(r)));
+    }
     if (still_there) b_.setZero();
-    low_ = high_ = VectorXd::Zero(count());
+    low_ = high_ = solution_.x = VectorXd::Zero(count());
     rests_.assign(rows_.size(), false);
     slips_.assign(rows_.size(), 0);
     std::vector<Index> leaving;  // what sticks and cannot any more, and what stands by it
     for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r), k = static_cast<std::size_t>(r);
       if (passes_[k]) {
-        slide(r, b_[r] > 0 ? 1 : -1);
+        slide(r,
+              std::abs(b_[r]) > rounds_[r] || sides_.slip(i) == 0 ? (b_[r] > 0 ? 1 : -1) : -sides_.slip(i));
         continue;
       }
       if (!at_rest(r, rate[r]) && !falls_back(r, rate[r])) {
@@ -208,8 +236,8 @@ class Change {
         continue;
       }
       if (!movable(r)) {
-        if (sides_.is_stop(i) && crossed(r) && b_[r] < -sides_.zero_acceleration(i)) return fail_at(r);
-        if (sides_.is_friction(i) && std::abs(b_[r]) > sides_.zero_acceleration(i))
+        if (sides_.is_stop(i) && crossed(r) && b_[r] < -rounds_[r]) return fail_at(r);
+        if (sides_.is_friction(i) && std::abs(b_[r]) > rounds_[r])
           slide(r, b_[r] > 0 ? 1 : -1);
         else if (sides_.is_friction(i) && crossed(r))
           slide(r, sides_.away_from_kink(i, system_, out_.state));
@@ -233,6 +261,18 @@ class Change {
       if (!solve()) return false;
     }
     return true;
+  }
+
+  // What rounding leaves of a row's acceleration, with the pushes.
+  double zero_acceleration(Index r) const {
+    return rounds_[r] + sum_rounding * D_.row(r).cwiseAbs().dot(solution_.x.transpose().cwiseAbs());
+  }
+
+  // What a force gives that was located as zero.
+  double located_acceleration(Index r) const {
+    const double arm = sides_.stops().touching() / sides_.touching(side(r));  // of what turns
+    return zero_acceleration(r) + located * (D_(r, r) * arm * multiplier_ +
+                                             D_.row(r).cwiseAbs().dot(solution_.x.transpose().cwiseAbs()));
   }
 
   // Frictions that hold together let go together: all whose force is at its limit, and they alone.
@@ -263,7 +303,7 @@ class Change {
   bool come_back(Index r) {
     const std::size_t i = side(r), k = static_cast<std::size_t>(r);
     const double sense = sides_.is_friction(i) ? slips_[k] : 1;
-    const double away = sense * solution_.w[r], zero = sides_.zero_acceleration(i);
+    const double away = sense * solution_.w[r], zero = located_acceleration(r);
     const bool others_hold =
         sides_.is_friction(i) && std::abs(away) <= zero && !independent(D_, solution_.held, r);
     if (rests_[k] || (away >= -zero && !others_hold)) return false;
@@ -287,8 +327,7 @@ class Change {
       bool any = false;
       for (Index r = 0; r < count(); ++r) {
         if (!rests_[static_cast<std::size_t>(r)] || !sides_.is_friction(side(r))) continue;
-        if (solution_.held[static_cast<std::size_t>(r)] ||
-            std::abs(solution_.w[r]) <= sides_.zero_acceleration(side(r)))
+        if (solution_.held[static_cast<std::size_t>(r)] || std::abs(solution_.w[r]) <= zero_acceleration(r))
           continue;
         slide(r, solution_.w[r] > 0 ? 1 : -1);
         any = true;
@@ -320,8 +359,7 @@ class Change {
                           [&](Index r) { return sides_.is_friction(side(r)) && bears(r); });
     for (const Index r : order) {
       const auto k = static_cast<std::size_t>(r);
-      if (!rests_[k] || solution_.held[k] || !wants(r) || solution_.w[r] > sides_.zero_acceleration(side(r)))
-        continue;
+      if (!rests_[k] || solution_.held[k] || !wants(r) || solution_.w[r] > zero_acceleration(r)) continue;
       if (independent(D_, solution_.held, r))
         solution_.held[k] = true;
       else if (sides_.is_stop(side(r)))
@@ -401,7 +439,8 @@ class Change {
   std::vector<bool> struck_, passes_, rests_, movable_;
   std::vector<int> slips_;
   MatrixXd D_;
-  VectorXd b_, low_, high_;
+  VectorXd spread_, b_, rounds_, low_, high_;
+  double multiplier_ = 0;
   BoxSolution solution_;
 };
 

@@ -364,8 +364,9 @@ void OneSided::measure_friction(const VectorXd& q, const VectorXd& v, const Stat
   const Friction& f = friction(i);
   gradient_.resize(static_cast<Index>(f.function.stencil().size()));
   f.function.value_and_gradient(q.data(), gradient_.data(), near(i, state));
-  const double rate = f.function.rate(gradient_.data(), v.data()) / zero_rate(i);
-  probe.margins[static_cast<Index>(i)] = f.slip != 0 ? f.slip * rate : 2 - std::abs(rate);
+  const double rate = f.function.rate(gradient_.data(), v.data());
+  probe.margins[static_cast<Index>(i)] =
+      f.slip != 0 ? f.slip * rate / rounded_rate(i) : 2 - std::abs(rate) / zero_rate(i);
 }
 
 void OneSided::measure(const Model& model, const State& state, bool forces, Probe& probe) {

@@ -34,8 +34,9 @@ namespace unfurl {
 //     motor     one part of its law               margin: its room (forces/motor.hpp)
 //
 // A margin that falls below zero ends the mode. Margins come in units of what counts as zero: 1e-11 of the
-// structure's length, a step's part of that for rates, or a part of the largest multiplier. A cable with
-// damping c pulls with n where it is both stretched and n > 0, so that it never pushes.
+// structure's length, a part of the largest multiplier, for friction that slips 1e-13 of the length in a step
+// and a hundred times that where it stands. A cable with damping c pulls with n where it is both stretched
+// and n > 0, so that it never pushes.
 class OneSided {
  public:
   OneSided(const Structure& structure, const SolverOptions& options);
@@ -98,11 +99,12 @@ class OneSided {
   void stick(std::size_t i, const System& system, const State& state);
   // Of those that stand by those that stick: c_ji of friction_hold.hpp, frictions by frictions.
   void set_shares(MatrixXd c) { shares_ = std::move(c); }
-  // What counts as zero, of what a stop or friction acts along, of its rates and accelerations: what comes to
-  // a zero length, or angle, in a step.
+  // What counts as zero, of what a stop or friction acts along and of its rates: what comes to a zero length,
+  // or angle, in a step. Of accelerations nothing does but what rounding leaves of what they are the sum of.
   double touching(std::size_t i) const { return stops_.touching(measure(i)); }
   double zero_rate(std::size_t i) const { return touching(i) / step_; }
-  double zero_acceleration(std::size_t i) const { return zero_rate(i) / step_; }
+  // Of rates at which nothing holds: what rounding the length leaves in a step.
+  double rounded_rate(std::size_t i) const { return rounded_share * zero_rate(i); }
   // As fast as the fastest coordinate is [m/s], or as that turns [rad/s].
   double fastest(std::size_t i, const State& state) const {
     return state.w.lpNorm<Eigen::Infinity>() * touching(i) / stops_.touching();
@@ -124,6 +126,7 @@ class OneSided {
   std::shared_ptr<const Model> lock_held(const Model& base, double t);
 
  private:
+  static constexpr double rounded_share = 0.01;
   struct Cable {
     std::size_t force;  // of the structure
     std::string name;

@@ -5,6 +5,7 @@
 
 #include "core/integrators/index1.hpp"
 #include "core/math/factors.hpp"
+#include "core/simulate/force_sizes.hpp"
 
 namespace unfurl {
 
@@ -90,16 +91,28 @@ VectorXd PushResponses::impulses_of(const VectorXd& dw, VectorXd& lambda, double
   return P;
 }
 
-VectorXd PushResponses::accelerations(const State& state) const {
+double PushResponses::spread(Index i) const {
+  const Row& row = rows_[static_cast<std::size_t>(i)];
+  return row.n.lpNorm<Eigen::Infinity>() * row.a.lpNorm<Eigen::Infinity>() / row.n.dot(row.a);
+}
+
+// n . w' = a . F + ..., and by what rounds in F it is off.
+PushResponses::Accelerations PushResponses::accelerations(const Structure& structure,
+                                                          const State& state) const {
   VectorXd acceleration(state.w.size()), lambda = VectorXd::Zero(system_.constraints()), v(q_.size());
   Index1 index1(system_);
   if (!index1.evaluate(state, acceleration, lambda)) return {};
   system_.expand_rate(state.w, v);
-  VectorXd out(size());
+  const VectorXd sizes = force_sizes(system_, structure, state, lambda);
+  const double largest = lambda.size() > 0 ? lambda.lpNorm<Eigen::Infinity>() : 0.0;
+  Accelerations out{VectorXd(size()), VectorXd(size()), VectorXd(size()), largest};
   for (Index i = 0; i < size(); ++i) {
     const Row& row = rows_[static_cast<std::size_t>(i)];
-    out[i] = row.n.dot(acceleration) +
-             row.sign * (row.measure->curvature_along(q_.data(), v.data()) - row.limit.acceleration);
+    const double curvature = row.measure->curvature_along(q_.data(), v.data());
+    out.value[i] = row.n.dot(acceleration) + row.sign * (curvature - row.limit.acceleration);
+    out.of_coordinates[i] = row.n.cwiseAbs().dot(acceleration.cwiseAbs());
+    out.terms[i] = row.a.cwiseAbs().dot(sizes) + out.of_coordinates[i] + std::abs(curvature) +
+                   std::abs(row.limit.acceleration);
   }
   return out;
 }

@@ -29,12 +29,20 @@ class PushResponses {
   // nothing else can move, as all rates follow from one.
   double taken(Index i, const VectorXd& w) const;
   void give(const VectorXd& P, VectorXd& w) const;  // w += sum P_i a_i
+  // How much faster than what is asked along measure i a push along it makes some coordinate: 1 of a free
+  // mass, without a bound at a dead centre.
+  double spread(Index i) const;
   // The impulses P, and `lambda` of the constraints, that took rates w to w + dw,
   //     M dw + G^T lambda = sum P_i n_i,
   // of several the least; `unexplained`: the share of dw that none do, in the mass metric.
   VectorXd impulses_of(const VectorXd& dw, VectorXd& lambda, double& unexplained) const;
-  // sign_i s_i'' of a state at that pose, by the system's own forces; empty where they have no solution.
-  VectorXd accelerations(const State& state) const;
+  // sign_i s_i'' of a state at that pose, by the system's own forces; empty where they have no solution. With
+  // the size of what each is the sum of, and of the coordinates' accelerations alone.
+  struct Accelerations {
+    VectorXd value, terms, of_coordinates;
+    double largest_multiplier = 0.0;  // of what holds there [N]
+  };
+  Accelerations accelerations(const Structure& structure, const State& state) const;
 
  private:
   struct Row {

@@ -201,7 +201,7 @@ TEST_CASE("pushes along several gaps answer by the work that each does along the
         slope[i] += weight / (12 * h) * stops.gap_rate(static_cast<std::size_t>(i), system, moving);
       REQUIRE(method->step(moving, h).ok());
     }
-    const VectorXd accelerations = responses.accelerations(c.state);
+    const VectorXd accelerations = responses.accelerations(c.model->structure, c.state).value;
     for (Index i = 0; i < 5; ++i) {
       const auto k = static_cast<std::size_t>(i);
       // The fifth derivative of a rate is some 10^3 of it here: h^4 times that, a fifth.
