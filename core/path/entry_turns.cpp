@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/structure/measure.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -45,11 +47,16 @@ bool alike(const Motor& a, const Motor& b) {
          integrator == b.integrator && regime == b.regime;
 }
 
-// A drive that begins at the value of the start has it from the nodes, to rounding.
-bool same_target(const TimeFunction& a, TimeFunction b) {
-  const double size = std::max(std::abs(a.offset), std::abs(a.offset + a.rise));
-  if (std::abs(a.offset - b.offset) > rounding_share * (1 + size)) return false;
-  if (std::abs(a.rise - b.rise) > rounding_share * (1 + size)) return false;
+// Of an angle, a radian.
+double unit_of(const Measure& measure, double size) {
+  return is_angle(measure) ? 1.0 : size;
+}
+
+// A drive that begins at the value of the start has it from the nodes, to rounding of what they measure.
+bool same_target(const TimeFunction& a, TimeFunction b, double unit) {
+  const double most = unit + std::max(std::abs(a.offset), std::abs(a.offset + a.rise));
+  if (std::abs(a.offset - b.offset) > rounding_share * most) return false;
+  if (std::abs(a.rise - b.rise) > rounding_share * most) return false;
   b.offset = a.offset;
   b.rise = a.rise;
   return alike(a, b);
@@ -111,12 +118,14 @@ bool same_entry(const Measure& a, const Measure& b) {
   });
 }
 
-bool same_entry(const Force& a, const Force& b) {
+bool same_entry(const Force& a, const Force& b, double size_of_all) {
   const auto& [kind, name, nodes, measure, stiffness, damping, rest, one_sided, slack, smoothing,
                axial_stiffness, unstressed, motor, direction, size, expansion, form, kinetic, holding, slip,
                rope, trolley] = a;
   return kind == b.kind && nodes == b.nodes && same_entry(measure, b.measure) && stiffness == b.stiffness &&
-         damping == b.damping && (close_to(rest, b.rest) || std::abs(rest - b.rest) <= rounding_share) &&
+         damping == b.damping &&
+         (close_to(rest, b.rest) ||
+          std::abs(rest - b.rest) <= rounding_share * unit_of(measure, size_of_all)) &&
          one_sided == b.one_sided && slack == b.slack && smoothing == b.smoothing &&
          axial_stiffness == b.axial_stiffness && alike(unstressed, b.unstressed) && alike(motor, b.motor) &&
          close_to(direction, b.direction) && alike(size, b.size) && expansion == b.expansion &&
@@ -124,10 +133,11 @@ bool same_entry(const Force& a, const Force& b) {
          alike(rope, b.rope) && close_to(trolley, b.trolley);
 }
 
-bool same_entry(const Constraint& a, const Constraint& b) {
+bool same_entry(const Constraint& a, const Constraint& b, double size_of_all) {
   const auto& [kind, name, nodes, vectors, value, measure, target, symmetry] = a;
   return kind == b.kind && nodes == b.nodes && close_to(vectors, b.vectors) && close_to(value, b.value) &&
-         same_entry(measure, b.measure) && same_target(target, b.target) && symmetry == b.symmetry;
+         same_entry(measure, b.measure) && same_target(target, b.target, unit_of(measure, size_of_all)) &&
+         symmetry == b.symmetry;
 }
 
 bool same_entry(const Rod& x, const Rod& y) {

@@ -20,10 +20,11 @@ struct NodeTurn {
   Constraint constraint(const Constraint& from) const;
 };
 
-// Equal but for their names; directions to round-off, lengths of them and all other numbers exactly.
+// Equal but for their names; directions to round-off, lengths of them and all other numbers exactly. `size`:
+// of the structure, of which a length that is measured has the rounding [m].
 bool same_entry(const Measure& a, const Measure& b);
-bool same_entry(const Force& a, const Force& b);
-bool same_entry(const Constraint& a, const Constraint& b);
+bool same_entry(const Force& a, const Force& b, double size);
+bool same_entry(const Constraint& a, const Constraint& b, double size);
 bool same_entry(const Rod& a, const Rod& b);  // whichever way round
 bool same_form(const LinearForm& a, const LinearForm& b);
 

@@ -180,7 +180,7 @@ void MarginMotion::run(double sense, std::optional<double> goal, double end_time
     }
     double latest = from < end_time ? end_time : patience * end_time;
     for (const TimeEdge& edge : edges_)
-      if (edge.t > from * (1 + 1e-15) + 1e-15) {
+      if (edge.t > from * (1 + 1e-15) + 1e-15 * end_time) {
         latest = std::min(latest, edge.t);
         break;
       }

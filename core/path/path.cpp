@@ -30,9 +30,15 @@ constexpr double shortest_piece = 1e-6;
 constexpr int tail = 3, plateau = 5, most_halvings = 30;
 constexpr double first_turn = 0.3;  // of the first piece: the way of its fastest node over the mean size
 
-double size_of(const System& system) {
+// Of what no row holds, as a mass along a line, the way between its nodes.
+double size_of(const System& system, const VectorXd& z) {
   const VectorXd& lengths = system.constraint_lengths();
-  return lengths.size() > 0 ? lengths.maxCoeff() : 1.0;
+  if (lengths.size() > 0) return lengths.maxCoeff();
+  VectorXd q(system.coordinates());
+  system.expand(z, q);
+  const auto nodes = q.reshaped(3, q.size() / 3);
+  const double wide = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).maxCoeff();
+  return wide > 0 ? wide : 1.0;
 }
 
 // Largest of the last coefficients, and of those before.
@@ -67,11 +73,11 @@ VectorXd PathPiece::bend(double x) const {
 // Poses of one piece after the other.
 class Path::Tracer {
  public:
-  explicit Tracer(const System& system)
+  Tracer(const System& system, const VectorXd& z)
       : system_(system),
         G_(system.jacobian_pattern()),
         saddle_(system.mass(), G_, 1),
-        size_(size_of(system)),
+        size_(size_of(system, z)),
         q_(system.coordinates()),
         phi_(system.constraints()),
         y_(phi_.size()),
@@ -268,7 +274,7 @@ class Path::Tracer {
 };
 
 Path::Path(std::shared_ptr<const System> system, const VectorXd& z)
-    : system_(std::move(system)), tracer_(std::make_unique<Tracer>(*system_)) {
+    : system_(std::move(system)), tracer_(std::make_unique<Tracer>(*system_, z)) {
   VectorXd pose = z, tangent;
   const VectorXd wanted = tracer_->any_tangent(z);
   if (!(wanted.squaredNorm() > 0) || !tracer_->settle(pose, wanted, tangent))
@@ -278,6 +284,7 @@ Path::Path(std::shared_ptr<const System> system, const VectorXd& z)
   forward_.z = backward_.z = pose;
   forward_.tangent = tangent;
   backward_.tangent = -tangent;
+  unit_ = tracer_->size() / v.lpNorm<Eigen::Infinity>();
   forward_.length = backward_.length = first_turn * tracer_->size() / v.lpNorm<Eigen::Infinity>();
   tracer_->end_below(shortest_piece * forward_.length);
 }

@@ -52,6 +52,9 @@ class Path {
   ~Path();
 
   const System& system() const { return *system_; }
+  // What s is compared with where a number is asked for: it moves the fastest node by the structure's size at
+  // the start [m kg^1/2].
+  double unit() const { return unit_; }
   // Pieces follow each other; number 0 begins at s = 0, negative ones lie before it. They are traced when
   // they are asked for, the same whoever asks and in whatever order; threads may share a path. nullptr: the
   // path cannot be followed so far.
@@ -78,6 +81,7 @@ class Path {
   std::unique_ptr<Tracer> tracer_;
   mutable std::mutex mutex_;
   mutable Side forward_, backward_;
+  double unit_ = 0.0;
 };
 
 }  // namespace unfurl

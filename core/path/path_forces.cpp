@@ -51,6 +51,11 @@ bool is_cable(const Force& force) {
   return force.one_sided && (force.stiffness > 0 || force.damping > 0);
 }
 
+// Of what is not zero: products with it and over it are exact.
+double power_of_two_below(double x) {
+  return x > 0 && std::isfinite(x) ? std::ldexp(1.0, std::ilogb(x)) : 1.0;
+}
+
 }  // namespace
 
 std::string unknown_to_path(const Structure& structure) {
@@ -84,8 +89,9 @@ std::string unknown_to_path(const Structure& structure) {
   return "";
 }
 
-PathForces::PathForces(const Structure& structure, const System& system, bool separately)
-    : structure_(structure), length_(reference_length(structure)) {
+PathForces::PathForces(const Structure& structure, const Path& path, bool separately)
+    : structure_(structure), length_(reference_length(structure)), unit_(path.unit()) {
+  const System& system = path.system();
   Structure one = bare(structure);
   columns_ = separately ? 0 : 2;  // what all have in common: position, damping
   const auto add = [&](const std::string& name, std::string_view kind, const TimeFunction* size, bool cable) {
@@ -218,10 +224,11 @@ void PathForces::evaluate(const VectorXd& q, const VectorXd& dq, VectorXd& angle
     value[term.position] += f.dot(dq);
     scale[term.position] += f.cwiseAbs().dot(dq.cwiseAbs());
     if (!term.block->has_power()) continue;
+    const double speed = power_of_two_below(std::sqrt(f.cwiseAbs().dot(dq.cwiseAbs()) * unit_));
     moving.setZero();
-    term.block->add(at, q.data(), dq.data(), 1.0, moving.data());
-    value[term.damping] += (f - moving).dot(dq);
-    scale[term.damping] += (f.cwiseAbs() + moving.cwiseAbs()).dot(dq.cwiseAbs());
+    term.block->add(at, q.data(), VectorXd(speed * dq).data(), 1.0, moving.data());
+    value[term.damping] += (f - moving).dot(dq) / speed;
+    scale[term.damping] += (f.cwiseAbs() + moving.cwiseAbs()).dot(dq.cwiseAbs()) / speed;
   }
   for (const Tracked& tracked : measures_) {
     const double near = tracked.angle >= 0 ? angles[tracked.angle] : tracked.measure.reference();

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What acts along a path: every force of a structure as
 //
-//     Q = size(t) p(s) - c(s) s',     p = F(q, 0) . dq/ds,   c = -(F(q, dq/ds) - F(q, 0)) . dq/ds
+//     Q = size(t) p(s) - c(s) s',     p = F(q, 0) . dq/ds,   c = -(F(q, u dq/ds) - F(q, 0)) . dq/ds / u
 //
-// which holds for loads, springs, dampers and motors at full voltage, whose forces are linear in the
-// velocities; dry friction by the sense in which it slips; and the measures that stops, cables and drives go
-// by.
+// with u about the speed to which F(q, 0) brings the structure within its own size: whatever the units,
+// rounding of the difference changes no motion. It holds for loads, springs, dampers and motors at full
+// voltage, whose forces are linear in the velocities; dry friction by the sense in which it slips; and the
+// measures that stops, cables and drives go by.
 #pragma once
 
 #include <cmath>
@@ -45,7 +46,7 @@ class PathForces final : public PathFunctions {
   };
   // separately: a column for every source, for their shares; otherwise those that always act the same way
   // have one in common.
-  PathForces(const Structure& structure, const System& system, bool separately);
+  PathForces(const Structure& structure, const Path& path, bool separately);
 
   Index add_measure(const Measure& measure);  // its column; before a table is made
   // Of the deployment: what remains of a measure, or sine and, behind it, cosine of the angle to the deployed
@@ -76,7 +77,7 @@ class PathForces final : public PathFunctions {
   void add_term(const Structure& one, std::string_view kind, const Source& source, const System& system);
 
   const Structure& structure_;
-  double length_;  // what a change of a measure is compared with [m]
+  double length_, unit_;  // what a change of a measure is compared with [m], and of s
   Index columns_ = 0, angle_count_ = 0;
   std::vector<Source> sources_;
   std::vector<Cable> cables_;

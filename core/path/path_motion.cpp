@@ -11,7 +11,7 @@ namespace unfurl {
 
 PathLaw::PathLaw(const Path& path, const Structure& structure, bool separately)
     : path_(path),
-      forces_(structure, path.system(), separately),
+      forces_(structure, path, separately),
       pulling_(forces_.cables().size(), 0),
       slips_(forces_.frictions().size(), 0) {}
 
@@ -134,7 +134,7 @@ void PathMotion::on_drive(double t, double& s, double& v) const {
   const auto refuse = [&](const char* why) {
     throw PathRefused("at t = " + seconds(t) + ": the drive " + why);
   };
-  const double wanted = drive_.target(t);
+  const double wanted = drive_.target(t), unit = law_->unit();
   s = s_;
   const PathTable::Segment* here = law_->table().segment(s);
   if (!here) refuse("leads where the path cannot be followed");
@@ -143,11 +143,11 @@ void PathMotion::on_drive(double t, double& s, double& v) const {
   double turn = std::numeric_limits<double>::quiet_NaN();  // behind where it turns round
   for (int it = 0;; ++it) {
     const double change = (wanted - m.value) / m.slope;
-    if (!std::isfinite(change) || std::abs(m.slope) < least_slope)
+    if (!std::isfinite(change) || std::abs(m.slope) * unit < least_slope * here->scale[drive_.column])
       refuse("does not determine the motion along the path");
     const bool at_round_off =
         std::abs(wanted - m.value) <= rounded * here->scale[drive_.column] + here->noise[drive_.column];
-    if (std::abs(change) <= 4e-16 * (1 + std::abs(s)) || (it > 8 && at_round_off)) break;
+    if (std::abs(change) <= 4e-16 * (unit + std::abs(s)) || (it > 8 && at_round_off)) break;
     if (it == most) refuse("goes beyond what the structure can reach");
     const double longest = part * (here->b - here->a);
     double next = s + std::clamp(change, -longest, longest);

@@ -27,6 +27,7 @@ class PathLaw : public ScalarLaw {
   // The most that friction can hold, along the path.
   double holding(double s) const;
   bool timed() const;  // a load changes with time
+  double unit() const { return path_.unit(); }
   // Trial steps from s see no further than the pieces next to that of s, so that none is traced in vain.
   void look_from(double s);
   // x in [-1, 1] of the first piece, or nearer to its begin where it leads on to a pose that nothing can be

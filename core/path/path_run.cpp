@@ -11,6 +11,7 @@
 #include "core/path/path_scope.hpp"
 #include "core/path/path_time.hpp"
 #include "core/path/path_watch.hpp"
+#include "core/simulate/force_sizes.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/one_sided.hpp"
@@ -23,12 +24,11 @@
 namespace unfurl {
 namespace {
 
-// As the time loop has it (simulate/stepper.cpp): impacts that follow each other within this share of a step
-// have accumulated.
+// As the time loop has it: impacts that follow each other within this share of a step have accumulated.
 constexpr double accumulated = 1e-4;
 constexpr long most_switches = 100;  // at one time
 // Two solutions of one equation, next to a pose where it is nearly singular.
-constexpr double same_equations = 1e-7, one_way = 1 - 1e-6;
+constexpr double same_equations = 1e-7, rounded_sum = 1e-12, one_way = 1 - 1e-6;
 
 class PathRun {
  public:
@@ -149,15 +149,15 @@ class PathRun {
     VectorXd a(state.z.size()), lambda = VectorXd::Zero(base_->system.constraints());
     if (!index1.evaluate(0.0, state.z, state.w, a, lambda))
       throw PathRefused("the equations of motion have no solution at the start");
-    VectorXd z, tangent;
+    VectorXd z, tangent, q(base_->system.coordinates());
     path_->point(s, z, tangent);
     const ScalarLaw::Value law = law_->at(s, v, 0.0);
-    const double along_path = drive_.there() ? a_on_drive(0.0) : law.Q, sum = drive_.there() ? 0 : law.scale;
-    VectorXd q(base_->system.coordinates());
+    const double along_path = drive_.there() ? a_on_drive(0.0) : law.Q;
+    const double sum = law.scale + free_acceleration(followed, structure(), state, lambda);
     path_->system().expand_rate(along_path * tangent + v * v * piece.bend(x), q);
     const VectorXd in_model = base_->system.reduce_rate(q);
-    const auto size = [&](const VectorXd& u) { return std::sqrt(u.dot(base_->system.mass() * u)); };
-    if (!(size(a - in_model) <= same_equations * (size(a) + size(in_model)) + 1e-12 * (1 + sum)))
+    const auto size = [&](const VectorXd& u) { return std::sqrt(u.dot(followed.mass() * u)); };
+    if (!(size(a - in_model) <= same_equations * (size(a) + size(in_model)) + rounded_sum * sum))
       throw PathRefused("the equations of motion hold something that the path does not know");
   }
 
@@ -267,7 +267,7 @@ class PathRun {
     if (!drive_.there()) {
       double t = grid_.end();
       for (const TimeEdge& edge : time_edges(structure(), options_.step))
-        if (edge.t > motion_.t() * (1 + 1e-15) + 1e-15) return std::min(t, edge.t);
+        if (edge.t > motion_.t() * (1 + 1e-15) + 1e-15 * t) return std::min(t, edge.t);
       return t;
     }
     const TimeGrid::Target next = grid_.next(motion_.t());

@@ -7,6 +7,7 @@
 
 #include "core/integrators/index1.hpp"
 #include "core/path/sector_build.hpp"
+#include "core/simulate/force_sizes.hpp"
 #include "core/simulate/stretched.hpp"
 #include "core/structure/structure_error.hpp"
 
@@ -14,7 +15,7 @@ namespace unfurl {
 namespace {
 
 // Two solutions of one equation, next to a pose where it is nearly singular; constraints of the whole.
-constexpr double same_acceleration = 1e-7, same_constraints_share = 1e-10;
+constexpr double same_acceleration = 1e-7, rounded_share = 1e-12, same_constraints_share = 1e-10;
 
 }  // namespace
 
@@ -107,19 +108,21 @@ void Sector::compare(const State& of_sector, const State& of_whole) const {
   whole.at(of_whole).all_constraint_values(of_whole.t, q, phi);
   if (!(phi.cwiseAbs().cwiseQuotient(whole.all_lengths()).maxCoeff() <= same_constraints_share))
     throw SectorRefused("a constraint of the whole does not hold in the sector's motion");
-  const auto acceleration = [](const System& system, const State& state) {
-    const System followed = system.at(state);
+  double sum = 0;  // of what the whole's forces are made of
+  const auto acceleration = [&sum](const Model& model, const State& state) {
+    const System followed = model.system.at(state);
     Index1 index1(followed);
-    VectorXd a(state.z.size()), lambda = VectorXd::Zero(system.constraints());
+    VectorXd a(state.z.size()), lambda = VectorXd::Zero(followed.constraints());
     if (!index1.evaluate(state.t, state.z, state.w, a, lambda))
       a.setConstant(std::numeric_limits<double>::quiet_NaN());
+    sum = free_acceleration(followed, model.structure, state, lambda);
     return a;
   };
   VectorXd own(sector_->system.coordinates());
-  sector_->system.expand_rate(acceleration(sector_->system, of_sector), own);
-  const VectorXd a = acceleration(whole, of_whole), b = whole.reduce_rate(expand(own, false));
+  sector_->system.expand_rate(acceleration(*sector_, of_sector), own);
+  const VectorXd a = acceleration(*whole_, of_whole), b = whole.reduce_rate(expand(own, false));
   const auto size = [&](const VectorXd& u) { return std::sqrt(u.dot(whole.mass() * u)); };
-  if (!(size(a - b) <= same_acceleration * (size(a) + size(b)) + 1e-12))
+  if (!(size(a - b) <= same_acceleration * (size(a) + size(b)) + rounded_share * sum))
     throw SectorRefused("the equations of motion hold something that the symmetry does not know");
 }
 

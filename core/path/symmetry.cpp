@@ -167,6 +167,12 @@ class Trial {
       throw SectorRefused("gravity does not act along the ring's axis");
   }
 
+  static bool same(const Rod& a, const Rod& b, double) { return same_entry(a, b); }
+  template <class Entry>
+  static bool same(const Entry& a, const Entry& b, double size) {
+    return same_entry(a, b, size);
+  }
+
   // For each entry the one that it is turned onto.
   template <class Entry, class Turned, class Key, class Name>
   std::vector<int> onto(const std::vector<Entry>& all, const Turned& turned, const Key& key,
@@ -179,7 +185,7 @@ class Trial {
       const Entry image = turned(all[i]);
       std::vector<int>& there = by_key[key(image)];
       const auto equal =
-          std::find_if(there.begin(), there.end(), [&](int j) { return same_entry(image, all[slot(j)]); });
+          std::find_if(there.begin(), there.end(), [&](int j) { return same(image, all[slot(j)], size_); });
       if (equal == there.end()) continue;
       to[i] = *equal;
       is_image[slot(*equal)] = 1;

@@ -151,15 +151,19 @@ inline void check_columns(const Diagnostics& a, const Diagnostics& b, const Othe
   CHECK((a.force_unique == b.force_unique).all());
 }
 
+using Solved = Simulation(const std::shared_ptr<const Model>& model, const SolverOptions& options);
+inline Simulation solved_in_full(const std::shared_ptr<const Model>& model, const SolverOptions& options) {
+  return simulate(model, options);
+}
+
 // The scene runs alike in other units: to the last bit; with a share, to that of the largest number of a
 // column.
 inline void check_other_units(const Scene& scene, const OtherUnits& units, double share = 0,
-                              const UnitsOfKeys& more = {}) {
+                              const UnitsOfKeys& more = {}, Solved* solve = solved_in_full) {
   INFO("in units of 2^" << units.length << " m, 2^" << units.mass << " kg, 2^" << units.time << " s");
   const Scene same = read_scene_text(in_other_units(scene, {}, more), "s.toml"),
               other = read_scene_text(in_other_units(scene, units, more), "s.toml");
-  const Simulation a = simulate(build_model(same), same.solver),
-                   b = simulate(build_model(other), other.solver);
+  const Simulation a = solve(build_model(same), same.solver), b = solve(build_model(other), other.solver);
   INFO(a.message << " | " << b.message);
   CHECK(a.status == b.status);
   REQUIRE(a.trajectory.size() == b.trajectory.size());

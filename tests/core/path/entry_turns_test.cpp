@@ -146,19 +146,31 @@ Rod rod() {
   return r;
 }
 
+// In a structure of a metre.
+template <class T>
+bool same(const T& a, const T& b) {
+  if constexpr (std::is_same_v<T, Force> || std::is_same_v<T, Constraint>)
+    return same_entry(a, b, 1.0);
+  else
+    return same_entry(a, b);
+}
+bool same(const Measure& a, const Measure& b) {
+  return same_entry(a, b);
+}
+
 // Whether each change of one field is seen; those whose name begins so are free.
 template <class T>
 void every_field_counts(const T& entry, const std::vector<std::string>& free, int at_least) {
   T other = entry;
-  CHECK(same_entry(entry, other));
+  CHECK(same(entry, other));
   int count = 0;
   change(other, "", [&](const std::string& what) {
     ++count;
     const bool may =
         std::any_of(free.begin(), free.end(), [&](const auto& f) { return what.starts_with(f); });
     INFO(what);
-    CHECK(same_entry(entry, other) == may);
-    CHECK(same_entry(other, entry) == may);
+    CHECK(same(entry, other) == may);
+    CHECK(same(other, entry) == may);
   });
   CHECK(count >= at_least);
 }
@@ -178,31 +190,56 @@ TEST_CASE("rounding makes no entries unlike, and what has no direction may be tu
   f.direction *= ulps, f.rest *= ulps, f.trolley *= ulps, f.measure.axis *= ulps;
   f.measure.terms[0].coefficient *= ulps;
   f.measure.reference += 1e-10;  // it only says which turn is meant
-  CHECK(same_entry(force(), f));
+  CHECK(same(force(), f));
   Constraint c = held();
   c.value *= ulps, c.vectors[1] *= ulps, c.target.offset += 1e-14, c.target.rise -= 1e-14;
-  CHECK(same_entry(held(), c));
+  CHECK(same(held(), c));
   Rod r = rod();
   r.mass *= ulps, r.length *= ulps, r.free_length *= ulps;
   std::swap(r.a, r.b);
-  CHECK(same_entry(rod(), r));
+  CHECK(same(rod(), r));
   Force nowhere = force();
   nowhere.trolley.setConstant(std::numeric_limits<double>::quiet_NaN());
-  CHECK(same_entry(nowhere, nowhere));
-  CHECK_FALSE(same_entry(nowhere, force()));
+  CHECK(same(nowhere, nowhere));
+  CHECK_FALSE(same(nowhere, force()));
   for (const MeasureKind kind : {MeasureKind::length, MeasureKind::coordinate}) {
     const Measure one{kind, {4, 6}, Vec3::Zero(), 0.0, {}}, other{kind, {6, 4}, Vec3::Zero(), 0.0, {}},
         third{kind, {6, 5}, Vec3::Zero(), 0.0, {}};
-    CHECK(same_entry(one, other) == (kind == MeasureKind::length));
-    CHECK_FALSE(same_entry(one, third));
-    CHECK_FALSE(same_entry(one, {kind, {5, 4}, Vec3::Zero(), 0.0, {}}));
+    CHECK(same(one, other) == (kind == MeasureKind::length));
+    CHECK_FALSE(same(one, third));
+    CHECK_FALSE(same(one, {kind, {5, 4}, Vec3::Zero(), 0.0, {}}));
   }
   Force latched = force();
   latched.form = {{1}, {Vec3(1, 2, 3)}, 0.0};
-  CHECK_FALSE(same_entry(latched, latched));  // a form is never that of two entries
+  CHECK_FALSE(same(latched, latched));  // a form is never that of two entries
   Constraint later = held();
   later.target.offset += 1e-9;
-  CHECK_FALSE(same_entry(held(), later));
+  CHECK_FALSE(same(held(), later));
+}
+
+TEST_CASE(
+    "what rounding leaves of a length is a share of the structure's size and of an angle one of a radian") {
+  Constraint here = held();
+  here.measure = {MeasureKind::length, {4, 6}, Vec3::Zero(), 0.0, {}};
+  here.target.offset = here.target.rise = 0;
+  Force pull = force();
+  pull.measure = here.measure;
+  pull.rest = 0;
+  Constraint there = here;
+  Force other = pull;
+  // 1e-13 is what counts as rounding: of a structure of 10 m, 1 m and 1e-5 m.
+  there.target.offset = other.rest = 3e-13;
+  CHECK(same_entry(here, there, 10));
+  CHECK_FALSE(same_entry(here, there, 1));
+  CHECK(same_entry(pull, other, 10));
+  CHECK_FALSE(same_entry(pull, other, 1));
+  there.target.offset = 3e-17;
+  CHECK_FALSE(same_entry(here, there, 1e-5));
+  there.target.offset = 0, there.target.rise = 3e-17;
+  CHECK_FALSE(same_entry(here, there, 1e-5));
+  CHECK(same_entry(here, there, 1e-3));
+  for (Constraint* one : {&here, &there}) one->measure.kind = MeasureKind::angle;
+  CHECK(same_entry(here, there, 1e-5));
 }
 
 TEST_CASE("forms are alike where they weigh every node alike, in whatever order") {
@@ -227,17 +264,17 @@ TEST_CASE("a turn takes nodes and directions along, and leaves all else") {
     m.terms[0].measure.nodes = {8, 5};
     return m;
   };
-  CHECK(same_entry(turn.measure(angle()), turned_angle(angle())));
+  CHECK(same(turn.measure(angle()), turned_angle(angle())));
   Force f = force();
   f.nodes = {0, 4};
   f.measure = turned_angle(f.measure);
   f.direction = quarter(f.direction);
-  CHECK(same_entry(turn.force(force()), f));
+  CHECK(same(turn.force(force()), f));
   Constraint c = held();
   c.nodes = {7, 5};
   c.measure = turned_angle(c.measure);
   for (Vec3& v : c.vectors) v = quarter(v);
-  CHECK(same_entry(turn.constraint(held()), c));
+  CHECK(same(turn.constraint(held()), c));
   CHECK(same_form(turn.form({{4, 2}, {Vec3(1, 2, 3), Vec3(-1, 0.5, 2)}, 0.7}),
                   {{8, 7}, {Vec3(-2, 1, 3), Vec3(-0.5, -1, 2)}, 0.7}));
 }
