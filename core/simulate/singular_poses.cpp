@@ -189,6 +189,7 @@ class DipSearch {
         sigma_(trajectory.model(first).system, structural_redundancy(trajectory, first, last)) {}
 
   void run(std::vector<Event>& events, const std::function<bool()>& cancelled) {
+    if (sigma_.all_zeros()) return;
     place_samples();
     double largest = 0;
     for (std::size_t quarter = 1; quarter <= 3; ++quarter)

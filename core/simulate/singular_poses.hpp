@@ -16,6 +16,8 @@ namespace unfurl {
 class SmallestSingularValue {
  public:
   SmallestSingularValue(const System& system, Index redundant);
+  // There is none: rods between fixed nodes alone. Nothing else may be asked then.
+  bool all_zeros() const { return zeros_ >= block_.rows(); }
   double at(const ConstVec& z);  // NaN where the factorisation broke down
   // From one iteration, which the last pose's vectors make good enough to follow sigma by; from as many as it
   // takes where sigma has changed much.

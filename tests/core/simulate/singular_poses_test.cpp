@@ -158,4 +158,37 @@ TEST_CASE("no singular value changes by more than the Jacobian has moved") {
   }
 }
 
+// A rod between two fixed nodes beside a mass on springs: the only row holds nothing that moves.
+TEST_CASE("rods that cannot move have no singular poses to look for") {
+  const Scene scene = read_scene_text(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], fixed = true},
+         {name = "C", position = [0.5, 1, 0], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 1}]
+[[forces]]
+kind = "spring"
+nodes = ["A", "C"]
+stiffness = 100
+free_length = 0.9
+[[forces]]
+kind = "spring"
+nodes = ["B", "C"]
+stiffness = 100
+free_length = 0.9
+[solver]
+step = 0.01
+end_time = 0.5
+)",
+                                      "s", {});
+  Simulation run = simulate(build_model(scene), scene.solver);
+  REQUIRE(run.status == RunStatus::completed);
+  const System& system = run.trajectory.model(0).system;
+  const Index redundant = structural_redundancy(run.trajectory, 0, run.trajectory.size() - 1);
+  CHECK(redundant == system.constraints());
+  CHECK(SmallestSingularValue(system, redundant).all_zeros());
+  CHECK_FALSE(SmallestSingularValue(make_model(hoop_structure())->system, 7).all_zeros());
+  CHECK(singular_events(run).empty());
+}
+
 }  // namespace singular_poses_test
