@@ -106,7 +106,8 @@ void Sector::compare(const State& of_sector, const State& of_whole) const {
   VectorXd q(whole.coordinates()), phi(whole.all_constraints());
   whole.expand(of_whole.z, q);
   whole.at(of_whole).all_constraint_values(of_whole.t, q, phi);
-  if (!(phi.cwiseAbs().cwiseQuotient(whole.all_lengths()).maxCoeff() <= same_constraints_share))
+  if (phi.size() > 0 &&
+      !(phi.cwiseAbs().cwiseQuotient(whole.all_lengths()).maxCoeff() <= same_constraints_share))
     throw SectorRefused("a constraint of the whole does not hold in the sector's motion");
   double sum = 0;  // of what the whole's forces are made of
   const auto acceleration = [&sum](const Model& model, const State& state) {
