@@ -21,6 +21,10 @@ constexpr int poses_for_stops = 400;
 constexpr double level = 1e-9;  // slope of the margin, of what it is the difference of, that is none
 constexpr double next_to = 1e-6, near_start = 1e-2;  // the ends of a part of a step, as shares of it
 
+bool exceeds(const ScalarLaw::Value& pull, double hold) {
+  return std::abs(pull.Q) > hold + rounding_of_pull * (pull.scale + hold);
+}
+
 }  // namespace
 
 MarginMotion::MarginMotion(std::shared_ptr<const Model> model, const SolverOptions& options,
@@ -78,10 +82,10 @@ double MarginMotion::pull_at(double t) const {
   return sense_ * law_.at(s, v, t).Q;
 }
 
-bool MarginMotion::against_stop(double sense) const {
+std::optional<std::size_t> MarginMotion::against_stop(double sense) const {
   for (std::size_t i = 0; i < sides_.stops().size(); ++i)
-    if (std::abs(watch_.gap(i, 0.0)) <= 1 && watch_.gap_slope(i, 0.0) * sense < 0) return true;
-  return false;
+    if (std::abs(watch_.gap(i, 0.0)) <= 1 && watch_.gap_slope(i, 0.0) * sense < 0) return i;
+  return std::nullopt;
 }
 
 std::optional<MarginMotion::Release> MarginMotion::release(double s, double from, double end) const {
@@ -89,7 +93,7 @@ std::optional<MarginMotion::Release> MarginMotion::release(double s, double from
   // What pulls more than is held, with its sign.
   const auto excess = [&](double t) {
     const ScalarLaw::Value pull = law_.at_rest(s, t);
-    if (!(std::abs(pull.Q) > hold + rounding_of_pull * (pull.scale + hold))) return 0.0;
+    if (!exceeds(pull, hold)) return 0.0;
     return s == 0 && against_stop(pull.Q) ? 0.0 : pull.Q;
   };
   if (const double now = excess(from); now != 0) return Release{from, std::copysign(1.0, now)};
@@ -145,6 +149,10 @@ bool MarginMotion::set_out(double end_time, bool first) {
   const auto free = release(motion_.s(), motion_.t(), end_time);
   if (!free || free->sense != sense_) {
     ended_ = free && first ? MarginEnd::other_way : MarginEnd::stalls;
+    const ScalarLaw::Value pull = law_.at_rest(motion_.s(), motion_.t());
+    if (const auto bar = against_stop(sense_);
+        bar && !free && first && exceeds(pull, law_.hold(0.0)) && sense_ * pull.Q > 0)
+      ended_ = MarginEnd::stopped, stop_ = sides_.stops()[*bar].name;
     if (!free && law_.timed()) motion_.rest(std::max(end_time, motion_.t()));
     return false;
   }

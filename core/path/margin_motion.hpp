@@ -69,7 +69,7 @@ class MarginMotion {
   void turn_cable(std::size_t side);
   double speed_at(double t) const;
   double pull_at(double t) const;
-  bool against_stop(double sense) const;
+  std::optional<std::size_t> against_stop(double sense) const;
   void check_energy() const;
 
   std::shared_ptr<const Model> model_;

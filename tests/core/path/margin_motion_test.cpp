@@ -140,6 +140,11 @@ TEST_CASE("an end stop bars the way: the path ends there, and so does the motion
   CHECK(stalls.end == MarginEnd::stalls);
   CHECK(stalls.motion.back().s == Approx(0.2).epsilon(1e-9));  // x = 10 x^2 / 2
   CHECK(stalls.points.back().s == Approx(0.4).epsilon(1e-10));
+  // What lies against it from the start ends there, where it is pushed on; not where it is pushed off it.
+  const Margin lies = margin_in(slider(push + stop + "max = 0\n"));
+  CHECK(lies.end == MarginEnd::stopped);
+  CHECK(lies.stop == "bar");
+  CHECK(lies.motion.back().s == 0);
 }
 
 // x (1.5 - 1) - x^2 / 2 = kinetic x.
