@@ -354,9 +354,11 @@ void OneSided::measure_sticking(double zero, Probe& probe) {
   }
   const MatrixXd shares = resting.empty() ? MatrixXd(0, std::ssize(held)) : MatrixXd(shares_(resting, held));
   for (const FrictionHold& hold : friction_holds(shares, friction_force_(held), tau(held), tau(resting)))
-    for (const Index k : hold.held)
-      probe.margins[static_cast<Index>(first_friction()) + held[static_cast<std::size_t>(k)]] =
-          (hold.capacity - hold.load) / std::max(zero, force_zero * hold.capacity);
+    for (const Index k : hold.held) {
+      const Index i = static_cast<Index>(first_friction()) + held[static_cast<std::size_t>(k)];
+      const double arm = measure(static_cast<std::size_t>(i)).is_angle() ? length_ : 1.0;
+      probe.margins[i] = (hold.capacity - hold.load) / std::max(zero * arm, force_zero * hold.capacity);
+    }
 }
 
 void OneSided::measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,

@@ -83,6 +83,20 @@ TEST_CASE("events come at the same times in other units, to the last bit") {
   }
 }
 
+// Its limit is a torque, and what the structure holds elsewhere are forces.
+TEST_CASE("friction of a hinge lets go at its limit in structures of a nanometre, to the last bit") {
+  const std::string crank = R"(nodes=["D","A","B"],axis=[0,1,0])";
+  const Scene scene = read_scene_file(
+      find_scene("four_bar"),
+      {"forces[0]={kind=\"friction\"," + crank + ",kinetic=8,static=11}",
+       "forces[1]={kind=\"torsion_spring\"," + crank + ",stiffness=20,damping=1,free_angle=-120}",
+       R"(forces[2]={kind="load_over_time",nodes=["C"],force=[40,0,0],times=[0,0.5,0.5,0.9],values=[0,1,-1,0.5]})",
+       "solver.end_time=2"});
+  CHECK(simulate(build_model(scene), scene.solver).events.size() >= 2);
+  for (const OtherUnits& units : {OtherUnits{-30, 0, 0}, OtherUnits{20, 0, 0}})
+    check_other_units(scene, units, 0, {{"kinetic", "N m"}, {"static", "N m"}});
+}
+
 TEST_CASE("the nearest pair of rods is that of other units, to the last bit") {
   const Scene scene = read_scene_file(find_scene("four_bar"), {});
   const auto nearest = [&](const OtherUnits& units) {
