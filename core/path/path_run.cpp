@@ -153,7 +153,7 @@ class PathRun {
     path_->point(s, z, tangent);
     const ScalarLaw::Value law = law_->at(s, v, 0.0);
     const double along_path = drive_.there() ? a_on_drive(0.0) : law.Q;
-    const double sum = law.scale + free_acceleration(followed, structure(), state, lambda);
+    double sum = law.scale + free_acceleration(followed, structure(), state, lambda) + v * v / path_->unit();
     path_->system().expand_rate(along_path * tangent + v * v * piece.bend(x), q);
     const VectorXd in_model = base_->system.reduce_rate(q);
     const auto size = [&](const VectorXd& u) { return std::sqrt(u.dot(followed.mass() * u)); };
