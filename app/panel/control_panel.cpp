@@ -123,7 +123,8 @@ void ControlPanel::take_events() {
   const bool waits = box && box_frames_ <= until_typing && !host_->typing();
   while (!events_.empty()) {
     const InputEvent& next = events_.front();
-    if (waits && (next.kind == Kind::text || (next.kind == Kind::key && next.key != Key::escape))) {
+    const bool pressed = next.kind == Kind::key && next.down && next.key != Key::escape;
+    if (waits && (pressed || next.kind == Kind::text)) {
       keep_drawing(true);
       break;
     }
