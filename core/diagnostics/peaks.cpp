@@ -12,6 +12,7 @@
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/largest.hpp"
+#include "core/simulate/dense_output.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/structure/time_edges.hpp"
 
@@ -24,25 +25,6 @@ constexpr double good_constraint = 1e-4;  // of a rod's length: beyond it there 
 // cheap, and for a step of the method to each time.
 constexpr double good_quintic = 1e-5, good_step = 0.1;
 
-// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule.
-bool is_resolved(const State& a, const State& b) {
-  constexpr double good = 0.02;  // half a radian of a swing
-  const VectorXd mean = (b.z - a.z) / (b.t - a.t);
-  const auto size = [](const VectorXd& w) { return w.lpNorm<Eigen::Infinity>(); };
-  return mean.size() == 0 ||
-         size(mean - 0.5 * (a.w + b.w)) <= good * std::max({size(a.w), size(b.w), size(mean)});
-}
-
-// The last state up to that time, or the first.
-std::size_t state_before(const Trajectory& run, double t) {
-  std::size_t low = 0, high = run.size();
-  while (high - low > 1) {
-    const std::size_t middle = low + (high - low) / 2;
-    (run.time(middle) <= t ? low : high) = middle;
-  }
-  return low;
-}
-
 bool follows(const Trajectory& run, std::size_t a, std::size_t b) {
   return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b);
 }
@@ -51,7 +33,7 @@ bool follows(const Trajectory& run, std::size_t a, std::size_t b) {
 // accelerations, only a long one: of others the states before it tell.
 bool joined(const Trajectory& run, std::size_t a, std::size_t b) {
   return follows(run, a, b) && !run.report(a).singular_event &&
-         !(run.report(b).singular_event && is_resolved(run.state(a), run.state(b)));
+         !(run.report(b).singular_event && is_short_step(run.state(a), run.state(b)));
 }
 
 // The motion around state i: two steps at most, where they are smooth; of each the quintic through positions,
@@ -244,7 +226,7 @@ std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& va
   const Trajectory& t = run.trajectory;
   std::vector<std::size_t> steps;
   for (std::size_t k = 0; k + 1 < t.size() && steps.size() <= most_long; ++k)
-    if (joined(t, k, k + 1) && !is_resolved(t.state(k), t.state(k + 1))) steps.push_back(k);
+    if (joined(t, k, k + 1) && !is_short_step(t.state(k), t.state(k + 1))) steps.push_back(k);
   if (steps.size() > most_long || (t.size() > 2 * most_long && few * steps.size() < t.size())) return {};
   std::vector<std::pair<double, std::size_t>> found;
   for (const std::size_t k : steps) {
@@ -343,7 +325,7 @@ PeakInMotion without_bound(const Simulation& run, const std::vector<double>& at_
   std::vector<std::pair<double, double>> poses;  // value beside it, time
   for (const Event& event : run.events) {
     if (event.kind != "singular_pose") continue;
-    const std::size_t i = state_before(run.trajectory, event.t),
+    const std::size_t i = run.trajectory.state_before(event.t),
                       behind = std::min(i + 1, at_states.size() - 1);
     const double most = larger(at_states[i], at_states[behind]);
     poses.push_back({std::isnan(most) ? -std::numeric_limits<double>::infinity() : most, event.t});
@@ -352,7 +334,7 @@ PeakInMotion without_bound(const Simulation& run, const std::vector<double>& at_
   PeakInMotion found;
   for (std::size_t k = 0; k < std::min(poses.size(), most_poses) && std::isnan(found.value); ++k) {
     const double t = poses[k].second;
-    const std::size_t before = state_before(run.trajectory, t);
+    const std::size_t before = run.trajectory.state_before(t);
     const bool nearer = before + 1 < at_states.size() &&
                         run.trajectory.time(before + 1) - t < t - run.trajectory.time(before);
     const Neighbourhood around(run, before + (nearer ? 1 : 0), Neighbourhood::Of::all_steps);
@@ -380,7 +362,7 @@ bool is_force(const Series& column) {
 void count_on(const Trajectory& run, const Simulation& piece, const std::vector<double>& known, double turn,
               std::vector<double>& values) {
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const std::size_t i = state_before(run, piece.trajectory.time(k));
+    const std::size_t i = run.state_before(piece.trajectory.time(k));
     if (i < known.size()) values[k] += turn * std::round((known[i] - values[k]) / turn);
   }
 }

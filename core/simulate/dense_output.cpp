@@ -16,17 +16,15 @@ constexpr double too_short =
 constexpr int most_pieces = 8;
 constexpr int closest_stages = 8;
 
-// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule: half a radian of a
-// swing.
-bool is_short(const State& a, const State& b) {
+}  // namespace
+
+bool is_short_step(const State& a, const State& b) {
   constexpr double good = 0.02;
   const VectorXd mean = (b.z - a.z) / (b.t - a.t);
   const auto size = [](const VectorXd& w) { return w.lpNorm<Eigen::Infinity>(); };
   return mean.size() == 0 ||
          size(mean - 0.5 * (a.w + b.w)) <= good * std::max({size(a.w), size(b.w), size(mean)});
 }
-
-}  // namespace
 
 SolverOptions closest_steps(SolverOptions options) {
   options.method = "dvm";
@@ -79,7 +77,8 @@ State DenseOutput::between(const std::shared_ptr<const Model>& model, const Stat
     return state;
   }
   // No step of any method need have led so far.
-  if (options_.method == "dvm" && options_.stages == closest_stages && !is_short(a, b)) pieces = most_pieces;
+  if (options_.method == "dvm" && options_.stages == closest_stages && !is_short_step(a, b))
+    pieces = most_pieces;
   Engine engine = borrow(model);
   bool solved = false;
   for (; pieces <= most_pieces && !solved; pieces *= 2) {

@@ -13,6 +13,10 @@ namespace unfurl {
 
 struct Model;
 
+// Whether the velocities at both ends tell how far a step leads, by the trapezoidal rule: half a radian of a
+// swing.
+bool is_short_step(const State& a, const State& b);
+
 // For states that no step of the method led to, at round-off of the motion: steps between them that miss as
 // little of it as any here.
 SolverOptions closest_steps(SolverOptions options);
