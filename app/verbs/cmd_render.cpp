@@ -16,6 +16,7 @@
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/team_work.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/scene/write.hpp"
 #include "render/scene/film_style.hpp"
 #include "render/scene/still.hpp"
 

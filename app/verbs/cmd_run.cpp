@@ -15,6 +15,7 @@
 #include "app/verbs/unfinished_run.hpp"
 #include "core/diagnostics/peaks.hpp"
 #include "core/math/largest.hpp"
+#include "core/scene/write.hpp"
 #include "core/simulate/parts.hpp"
 #include "core/simulate/singular_poses.hpp"
 
