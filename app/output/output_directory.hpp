@@ -24,8 +24,9 @@ class OwnDirectory {
   OwnDirectory(const OwnDirectory&) = delete;
   OwnDirectory& operator=(const OwnDirectory&) = delete;
 
-  // DIR/scene.toml will hold this text. Throws FileError where results of another verb are of another scene
-  // that stands there; with `force` it is kept aside.
+  // DIR/scene.toml will hold this text. Throws FileError where results of another verb need another one
+  // that stands there; with `force` it is kept aside. Nothing fits the text "", of a scene that is not known
+  // yet.
   void require_scene(const std::string& text, bool force);
   // Throws FileError where one of these is a directory: hours of work would end there.
   void require_files(std::initializer_list<const char*> names) const;

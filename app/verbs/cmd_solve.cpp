@@ -91,15 +91,13 @@ std::string result_json(const StudyArguments& study, const Target& target, const
   return json.dump(2) + "\n";
 }
 
-void write_results(OwnDirectory& output, bool force, const std::string& key, const SceneSource& source,
+void write_results(const std::filesystem::path& directory, const std::string& key, const SceneSource& source,
                    const Target& target, const Solved& solved) {
-  const std::filesystem::path& directory = output.path();
   Table table{{key, target.measure.column}, {}};
   for (const Evaluation& e : solved.evaluations)
     table.rows.push_back({exact_number(e.x), exact_number(e.value)});
   Scene found = source.read({key + "=" + exact_number(solved.x)});
   found.solver = study_solver(found, {key}, {target.measure});
-  output.require_scene(scene_text(found), force);
   write_file_atomically(directory / "scene.toml", scene_text(found));
   write_file_atomically(directory / "solve.csv", csv_text(table));
 }
@@ -121,6 +119,7 @@ int cmd_solve(const Arguments& arguments) {
   if (between) source.read({study.find + "=" + exact_number(options.high)});
 
   OwnDirectory output(arguments.output, arguments.force, "solve");
+  output.require_scene("", arguments.force);  // what is found is not known yet: hours of work would end there
 
   const InterruptGuard guard;
   SimulationHooks hooks;
@@ -149,7 +148,7 @@ int cmd_solve(const Arguments& arguments) {
     const Solved solved = solve_for(objective, target.value, options, asking);
     if (const std::string& said = moved[solved.x]; !said.empty())
       std::cerr << "unfurl: warning: " << said << "\n";
-    if (!output.path().empty()) write_results(output, arguments.force, study.find, source, target, solved);
+    if (!output.path().empty()) write_results(output.path(), study.find, source, target, solved);
     std::optional<bool> solved_force;
     if (const auto at = unique.find(solved.x); at != unique.end()) solved_force = at->second;
     if (arguments.json)

@@ -423,9 +423,16 @@ TEST_CASE("solve begins with its directory, and keeps the answer of the last tar
   const std::string value = r.out.substr(23, r.out.size() - 24);  // between "= " and the line's end
   CHECK(file_text(dir / "out/scene.toml").find("fold_angle = " + value + "  # deg\n") != std::string::npos);
   CHECK(file_text(dir / "out/scene.toml") != before);
-  const ProgramResult refused = solve("3", dir.write("file", ""));
-  CHECK(refused.code == 5);
-  CHECK(refused.out == "");
+  // What ends there ends before the work: no answer was found.
+  REQUIRE(
+      run_program({"run", "pendulum", "-o", dir / "run", "--set", "solver.end_time=0.1", "--quiet"}).code ==
+      0);
+  for (const std::string& other : {dir.write("file", ""), dir / "run"}) {
+    const ProgramResult refused = solve("3", other);
+    CHECK(refused.code == 5);
+    CHECK(refused.out == "");
+  }
+  CHECK(run_program({"reproduce", dir / "run/series.csv"}).code == 0);
 }
 
 TEST_CASE("solve finds numbers of forces, and says what is wrong with either end") {
