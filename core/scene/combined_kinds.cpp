@@ -425,7 +425,7 @@ void give_deployment(const Scene& scene, Structure& structure) {
   const double way = d.deployed - d.stowed;
   double factors = measure->kind == MeasureKind::combination ? 0.0 : 1.0;
   for (const MeasureTerm& term : measure->terms) factors += std::abs(term.coefficient);
-  if (!(std::abs(way) > 1e-9 * std::max(1.0, std::abs(d.stowed))))
+  if (!(std::abs(way) > find.same(*measure, d.stowed)))
     find.problem(e, "deployed", "is the value when stowed, too: nothing deploys");
   else if (is_angle(*measure) && std::abs(way) >= 2 * pi * factors)
     find.problem(e, "deployed", "must be less than a turn away from stowed");

@@ -133,6 +133,14 @@ double MemberFinder::initial(const Measure& measure) const {
   return counts_turns(measure) && value < -pi + 1e-9 ? value + 2 * pi : value;
 }
 
+double MemberFinder::same(const Measure& measure, double value) const {
+  constexpr double digits = 1e-9;
+  if (is_angle(measure)) return digits * std::max(1.0, std::abs(value));
+  double size = std::abs(value);
+  for (Eigen::Index i = 3; i < start_.size(); ++i) size = std::max(size, std::abs(start_[i] - start_[i % 3]));
+  return digits * size + 4e-16 * start_.lpNorm<Eigen::Infinity>();  // and what coordinates far away round to
+}
+
 // Two rods that share a node open at it; others are taken from their first node to their second. Of rods that
 // were cut to bend the parts at the shared node count.
 bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure& measure) {

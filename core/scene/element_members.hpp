@@ -46,6 +46,9 @@ class MemberFinder {
   // that gives both; none: those of its members and "axis".
   bool angle_is_defined(const SceneElement& element, const Measure& measure, const std::string& key = "");
   double initial(const Measure& measure) const;  // at the structure's start
+  // Values of the measure that are no further apart are one [m] or [rad]: what is typed or worked out
+  // elsewhere has some nine digits, of a length beside the structure's size.
+  double same(const Measure& measure, double value) const;
   void problem(const SceneElement& element, const std::string& key, std::string message);
   void throw_problems();  // SceneError, where there are any
 

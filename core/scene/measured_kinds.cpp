@@ -115,7 +115,7 @@ void check_begin(const SceneElement& e, ElementAdder& to, const Measure& measure
                  double initial) {
   double apart = begin - initial;
   if (counts_turns(measure)) apart = std::remainder(apart, 2 * pi);  // counted from another turn
-  if (std::abs(apart) <= 1e-9 * std::max(1.0, std::abs(initial))) return;
+  if (std::abs(apart) <= to.find.same(measure, initial)) return;
   std::ostringstream text;
   text.precision(15);
   text << "the table is at " << begin / unit_of(measure) << " when t = 0, the structure at "
@@ -132,7 +132,7 @@ void push_stop(const SceneElement& e, ElementAdder& to, Measure measure) {
   const double unit = unit_of(measure), minimum = unit * e.values.real("min"),
                maximum = unit * e.values.real("max");
   double initial = to.find.initial(measure);
-  const double round_off = 1e-9 * std::max(1.0, std::abs(initial));
+  const double round_off = to.find.same(measure, initial);
   const auto within = [&](double x) { return !(x < minimum - round_off) && !(x > maximum + round_off); };
   if (std::isnan(minimum) && std::isnan(maximum))
     return to.find.problem(e, "min", "is missing, and so is max: a stop needs a limit");

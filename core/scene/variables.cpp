@@ -81,7 +81,7 @@ class Expansion {
     if (!is_variable_name(name))
       return note(tree, key, "must be a letter, then letters, digits or _, and no constant or function");
     if (const auto value = value_of(tree, key))
-      variables_[name] = is_expression(tree) ? without_rounding(*value) : *value;
+      variables_[name] = is_expression(tree) ? without_rounding(*value, Rounds::its_own) : *value;
     else
       wrong_.insert(name);
   }
@@ -138,11 +138,15 @@ class Expansion {
     return words;
   }
 
-  // 2.1 / 0.7 is 3 but for rounding, and means 3 where things are counted and named.
-  static double without_rounding(double value) {
+  // 2.1 / 0.7 is 3 but for rounding, and means 3 where things are counted and named. What is counted from one
+  // is 0 where it is rounding of one; of a quantity nothing is known but itself: 1e-17 m^4 is a tape's second
+  // moment.
+  enum class Rounds { its_own, of_one };
+  static double without_rounding(double value, Rounds rounds) {
     constexpr double share = 8 * std::numeric_limits<double>::epsilon();
     const double whole = std::round(value);
-    return std::abs(value - whole) <= share * std::max(1.0, std::abs(value)) ? whole : value;
+    const double size = rounds == Rounds::of_one ? std::max(1.0, std::abs(value)) : std::abs(value);
+    return std::abs(value - whole) <= share * size ? whole : value;
   }
 
   static void become(TomlTree& tree, double value) {
@@ -166,9 +170,11 @@ class Expansion {
       const std::size_t end = text.find('}', i);
       if (text[i] == '}' || end == text.npos)
         return note(tree, key, "a brace stands alone in " + in_quotes(text) + "; write it twice to mean it");
-      const auto value = evaluated(tree, text.substr(i + 1, end - i - 1), key);
+      const std::string_view inside = text.substr(i + 1, end - i - 1);
+      const auto value = evaluated(tree, inside, key);
       if (!value) return;
-      filled += shortest_number(without_rounding(*value));
+      const bool quantity = is_variable_name(std::string(inside));
+      filled += shortest_number(without_rounding(*value, quantity ? Rounds::its_own : Rounds::of_one));
       keys_.insert(key);
       i = end;
     }
@@ -242,8 +248,8 @@ class Expansion {
     auto from = evaluated(range, std::string_view(range.text).substr(0, colon), key);
     auto end = evaluated(range, std::string_view(range.text).substr(colon + 1), key);
     if (!from || !end) return values;
-    from = without_rounding(*from);
-    end = without_rounding(*end);
+    from = without_rounding(*from, Rounds::of_one);
+    end = without_rounding(*end, Rounds::of_one);
     if (*end < *from)
       note(range, key, "must not end before it begins; got " + in_quotes(range.text));
     else if (*end - *from > static_cast<double>(max_turns))

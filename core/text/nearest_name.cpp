@@ -14,6 +14,23 @@ char lower(char c) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
 }
 
+// Behind a name: in brackets, or a word that begins with a unit, as in "_mm", " kg", "_deg_per_s".
+bool is_unit(std::string_view text) {
+  constexpr std::string_view units =
+      " m mm cm dm km um nm in inch inches ft feet mil deg degrees rad grad turns rev kg g mg t lb lbs oz "
+      "n kn mn nm kgf lbf pa kpa mpa gpa psi bar s ms us ns sec min h hz khz rpm rps k c w kw j kj percent "
+      "metre metres meter meters millimetres millimeters gram grams kilograms tons tonnes radians newton "
+      "newtons "
+      "pascal second seconds minutes hours kelvin watts ";
+  if (text.front() == '(' || text.front() == '[') return true;
+  if (text.front() != '_' && text.front() != ' ') return false;
+  text.remove_prefix(1);
+  if (text.starts_with('(') || text.starts_with('[')) return true;
+  std::string word = " ";
+  for (const char c : text.substr(0, text.find_first_of("_/^*0123456789 ."))) word += lower(c);
+  return word.size() > 1 && units.find(word + " ") != std::string_view::npos;
+}
+
 // Optimal string alignment distance; anything above `limit` may be returned as limit + 1.
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t limit) {
   const std::size_t gap = a.size() > b.size() ? a.size() - b.size() : b.size() - a.size();
@@ -70,7 +87,7 @@ std::string_view name_before_unit(std::string_view given, const std::vector<std:
   std::string_view stem;
   for (const auto name : known)
     if (name.size() > stem.size() && name.size() < given.size() && given.starts_with(name) &&
-        std::string_view("_ ([").find(given[name.size()]) != std::string_view::npos)
+        is_unit(given.substr(name.size())))
       stem = name;
   const std::string_view near = nearest_name(given, known);
   return near.empty() || near == stem || stem.starts_with(near) ? stem : "";

@@ -106,6 +106,30 @@ TEST_CASE("limits that are passed, never met or missing are refused with the val
   CHECK(said("kind='coordinate_stop'\nnodes=['C']\ndirection=[0,1,0]\nmin=1.50000001") != "");
 }
 
+// A billionth of the structure, whatever its size: of 1 um that is 1e-15 m.
+TEST_CASE("what is passed, agrees or is deployed at the start is judged alike at every size") {
+  for (const char* size : {"1.0", "1e-6", "1e-9", "1e6"}) {
+    const auto with_ending = [&](const std::string& ending) {
+      INFO(size);
+      return testing::error_of(std::string("[variables]\nL = ") + size +
+                               "\n[structure]\nkind = 'custom'\n"
+                               "nodes = [{name = 'A', position = [0, 0, 0], fixed = true},\n"
+                               "{name = 'B', position = ['=L', 0, 0], mass = 1}]\nrods = []\n" +
+                               ending);
+    };
+    INFO(size);
+    const std::string stop = "[[constraints]]\nkind='coordinate_stop'\nnodes=['B']\ndirection=[1,0,0]\n";
+    CHECK(with_ending(stop + "min='=L*(1+5e-10)'\n") == "");
+    CHECK(with_ending(stop + "min='=L*(1+1e-8)'\n").find("is passed already") != std::string::npos);
+    const std::string table =
+        "[[constraints]]\nkind='length'\nnodes=['A','B']\nmotion='table'\ntimes=[0,1]\nvalues=";
+    CHECK(with_ending(table + "['=L*(1+1e-8)','=2*L']\n").find("they must agree") != std::string::npos);
+    const std::string deployment = "[deployment]\nmeasure='length A B'\ndeployed=";
+    CHECK(with_ending(deployment + "'=1.01*L'\n") == "");
+    CHECK(with_ending(deployment + "'=L*(1+1e-11)'\n").find("nothing deploys") != std::string::npos);
+  }
+}
+
 TEST_CASE("a table of two rows moves a drive, of one it does not") {
   const std::string drive = "kind='coordinate'\nnodes=['C']\ndirection=[0,1,0]\nmotion='table'\n";
   CHECK(said(drive + "times=[0,2]\nvalues=[1.5,1.75]").empty());

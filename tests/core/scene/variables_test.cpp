@@ -102,6 +102,21 @@ TEST_CASE("a count that is whole but for rounding is whole") {
   }
 }
 
+// A tape of 20 mm x 10 um: b t^3 / 12 = 1.67e-18 m^4, and 0 would mean another section.
+TEST_CASE("a small quantity that is worked out is not rounded to zero") {
+  const Scene scene = read_scene_text(
+      "[variables]\nb = 0.02\nt = 1e-5\nI = '=b*t^3/12'\nk = '=0.1*3-0.3'\n[structure]\nkind = 'custom'\n"
+      "nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', position = [1, 0, 0]}]\n"
+      "rods = [{nodes = ['A', 'B'], mass = '=k', second_moment = '=I'}]\n"
+      "[[constraints]]\nkind = 'combination'\nterms = ['{I} length A B']\n",
+      "s.toml");
+  const double t = 1e-5;
+  CHECK(scene.custom.rods[0].second_moment ==
+        0.02 * (t * t * t) / 12);                     // both within a rounding of one product
+  CHECK(scene.custom.rods[0].mass == 0.1 * 3 - 0.3);  // 5.6e-17: what rounding is, nobody knows
+  CHECK(scene.constraints[0].terms[0].find("1.6666") != std::string::npos);
+}
+
 TEST_CASE("two variables of a repeat: the last one runs fastest") {
   const std::string text = scene_text(read(polygon));
   std::size_t at = 0;
