@@ -85,15 +85,14 @@ std::string study_identity(const std::string& what, const Scene& scene) {
 void require_identity(const fs::path& directory, const std::string& identity, const std::string& cure) {
   const TextFile scene = read_text_file((directory / "scene.toml").string());
   if (!scene.error.empty() || scene.text == identity) return;
-  const auto below_heading = [](const std::string& text) {
-    return text.substr(std::min(text.find('\n'), text.size()));
-  };
-  const bool same_scene = below_heading(scene.text) == below_heading(identity);
-  throw FileError(directory, std::string(same_scene ? "holds results of another version of unfurl, of "
-                                                      "another --vary or --repeats or, of a study, another "
-                                                      "largest step; "
-                                                    : "holds results of another scene or other settings; ") +
-                                 cure);
+  const std::size_t there = std::min(scene.text.find('\n'), scene.text.size());
+  const std::size_t asked = std::min(identity.find('\n'), identity.size());
+  std::string what = "holds results of another scene or other settings; ";
+  if (scene.text.substr(there) == identity.substr(asked) && there > 2 &&
+      asked > 2)  // behind the "# " of headings
+    what = "holds \"" + scene.text.substr(2, there - 2) + "\"; asked for: \"" +
+           identity.substr(2, asked - 2) + "\"; ";
+  throw FileError(directory, what + cure);
 }
 
 StudySession::StudySession(const Arguments& arguments, std::string task, const std::string& identity,

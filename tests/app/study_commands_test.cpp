@@ -46,14 +46,16 @@ TEST_CASE("study writes points, a report and figures, and goes on where it stopp
   CHECK(file_text(dir / "out/study.csv") == points);  // CPU times and all: nothing was measured again
   const ProgramResult repeated = run_program(asked + std::vector<std::string>{"--repeats", "2"});
   CHECK(repeated.code == 5);
-  CHECK(repeated.err.find("holds results of another version of unfurl, of another --vary or --repeats") !=
+  CHECK(repeated.err.find("holds \"A study from steps of 0.05 s with 5 repeats, by unfurl") !=
+        std::string::npos);
+  CHECK(repeated.err.find("asked for: \"A study from steps of 0.05 s with 2 repeats, by unfurl") !=
         std::string::npos);
   // Errors are compared at times that are spaced as the largest step says: none of others come in between.
   auto finer = command;
   finer[5] = "0.02:0.01";
   const ProgramResult spaced = run_program(finer);
   CHECK(spaced.code == 5);
-  CHECK(spaced.err.find("another largest step") != std::string::npos);
+  CHECK(spaced.err.find("asked for: \"A study from steps of 0.02 s with") != std::string::npos);
   CHECK(file_text(dir / "out/study.csv") == points);
   finer[5] = "0.05:0.005";  // the same times, one step more
   CHECK(run_program(finer).code == 0);
