@@ -66,6 +66,7 @@ class ControlPanel {
   const plot::Rect& place(const std::string& key) const { return host_->ui().places.at(key); }
   bool has_place(const std::string& key) const { return host_->ui().places.contains(key); }
   const LiveSession& session() const { return session_; }
+  LiveSession& session() { return session_; }
   double painted() const { return painted_; }  // so far, parts that were painted again again counted [pixels]
   long view_paints() const { return view_.paints(); }
   OrbitCamera framed() const { return view_.framed(); }  // the film's own camera

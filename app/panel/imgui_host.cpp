@@ -70,12 +70,13 @@ ImguiHost::ImguiHost(float scale, Clipboard clipboard)
 
 void ImguiHost::make_fonts() {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-  ui_.regular = add_font(atlas, std::round(ui_.px(15)));
-  ui_.bold = add_font(atlas, std::round(ui_.px(15)), true);
-  ui_.small = add_font(atlas, std::round(ui_.px(12)));
+  ui_.regular = add_font(atlas, std::round(ui_.px(15)), false, Letters::window);
+  ui_.bold = add_font(atlas, std::round(ui_.px(15)), true, Letters::window);
+  ui_.small = add_font(atlas, std::round(ui_.px(12)), false, Letters::window);
   for (const double size : plot::text_sizes) {
     const float pixels = plot::ImguiCanvas::font_pixels(size, figure_pixels_per_point * ui_.scale);
-    figure_fonts_[static_cast<int>(std::lround(64 * pixels))] = add_font(atlas, pixels);
+    figure_fonts_[static_cast<int>(std::lround(64 * pixels))] =
+        add_font(atlas, pixels, false, Letters::window);
   }
   ui_.figure_font = [this](float pixels) {
     const auto it = figure_fonts_.lower_bound(static_cast<int>(std::lround(64 * pixels)));
@@ -110,9 +111,10 @@ void ImguiHost::apply(const InputEvent& event) {
       io.KeyAlt = event.alt;
       break;
     case Kind::text: {
-      // In a number a comma is a point, as on half of the keyboards; a box for numbers would drop it.
+      // In a number a comma is a point, as on half of the keyboards: a box for numbers would drop it, a field
+      // for expressions asks whether it is the comma of a function.
       const ImGuiID active = ImGui::GetActiveID();
-      const bool number = active != 0 && (active == context_->TempInputId || active == ui_.number);
+      const bool number = active != 0 && active == context_->TempInputId && active != ui_.typed.id;
       std::string text = event.text;
       if (number) std::replace(text.begin(), text.end(), ',', '.');
       io.AddInputCharactersUTF8(text.c_str());
@@ -179,9 +181,11 @@ void ImguiHost::frame(int width, int height, double seconds, const std::function
   ImGui::NewFrame();
   std::exception_ptr thrown;
   try {
+    ui_.typed.drawn = false;
     ImGui::PushFont(ui_.regular);
     draw();
     ImGui::PopFont();
+    if (!ui_.typed.drawn) ui_.typed.id = 0;
   } catch (...) {
     thrown = std::current_exception();
   }

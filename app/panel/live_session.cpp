@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -42,16 +43,33 @@ std::filesystem::file_time_type written(const std::string& file) {
   return std::filesystem::last_write_time(file, unknown);
 }
 
-// Why a file that the document names is not there, where it goes into another folder than that of `from`;
-// else empty.
-std::string lacking_file(const SceneDocument& document, const SceneDocument& from) {
-  if (absolute(document.folder) != absolute(from.folder)) try {
-      read_document(document);
-    } catch (const SceneError& error) {
-      for (const SceneProblem& problem : error.problems())
-        if (problem.message.starts_with("cannot read ")) return problem.message;
-    }
+// Why the document would be another scene in another folder than that of `from`: a file that it names is not
+// there, or holds something else. Else empty.
+std::string other_there(const SceneDocument& document, const SceneDocument& from) {
+  if (absolute(document.folder) == absolute(from.folder)) return "";
+  std::string here, title;
+  try {
+    const Scene scene = read_document(from);
+    here = scene_text(scene), title = scene.title;
+  } catch (const SceneError&) {  // what is wrong here may be wrong there
+  }
+  try {
+    Scene there = read_document(document);
+    there.title = title;  // where none is given, the file's name
+    if (here.empty() || there.files.empty() || scene_text(there) == here) return "";
+    return *there.files.begin() + (there.files.size() > 1 ? ", or another that the scene names," : "") +
+           " holds something else there";
+  } catch (const SceneError& error) {
+    for (const SceneProblem& problem : error.problems())
+      if (!here.empty() || problem.message.starts_with("cannot read ")) return problem.message;
+  }
   return "";
+}
+
+// Of those that have one line of the panel.
+std::string in_a_line(const SceneError& error) {
+  const std::size_t more = error.problems().size() - 1;
+  return problem_text(error.problems().front()) + (more > 0 ? "; and " + std::to_string(more) + " more" : "");
 }
 
 }  // namespace
@@ -191,12 +209,15 @@ bool LiveSession::named_files_changed() const {
   });
 }
 
+bool LiveSession::files_changed() {
+  return !options_.replayed &&
+         (named_files_changed() || own_file_.look(state_.history.now(), last_saved()) != state_.own_file);
+}
+
 // What the widgets are of.
 void LiveSession::describe() {
   for (auto& [file, when] : named_files_) when = written(file);  // looked at before they are read
   state_.base = base_scene(state_.history.now());
-  std::erase_if(named_files_, [&](const auto& file) { return !state_.base.files.contains(file.first); });
-  for (const std::string& file : state_.base.files) named_files_.try_emplace(file, written(file));
   state_.described = state_.selected;
   state_.sections = param_sections(state_.base, state_.selected);
   const Scene& base = state_.base;
@@ -208,12 +229,27 @@ void LiveSession::describe() {
                       base.title_pattern.empty() ? title_that_says(base.title) : base.title_pattern};
 }
 
+// The CSV files of the scene as edited; an edit may name another.
+void LiveSession::watch_files() {
+  std::set<std::string> files = state_.base.files;
+  const auto names_file = [](const auto& edit) {
+    return edit.first.ends_with("table") || edit.first.ends_with("_file");
+  };
+  const SceneDocument& now = state_.history.now();
+  if (std::ranges::any_of(now.edits, names_file)) try {
+      files = read_document(now).files;
+    } catch (const SceneError&) {  // told by its run
+    }
+  std::erase_if(named_files_, [&](const auto& file) { return !files.contains(file.first); });
+  for (const std::string& file : files) named_files_.try_emplace(file, written(file));
+}
+
 bool LiveSession::act() {
   const auto intents = std::exchange(state_.intents, {});
   for (const Intent& intent : intents) try {
       intent(*this);
     } catch (const SceneError& error) {
-      state_.message = error.problems().front().message;
+      state_.message = in_a_line(error);
     } catch (const std::exception& error) {
       state_.message = error.what();
     }
@@ -226,7 +262,7 @@ bool LiveSession::follow_document() {
   const bool other = state_.described != state_.selected, reread = submitted_ && named_files_changed();
   if (submitted_ && *submitted_ == now && !other && !reread) return false;
   if (reread) state_.message = "files that the scene names were changed: read again";
-  if (other || reread || !submitted_ || *submitted_->text != *now.text ||
+  if (other || reread || !submitted_ || *submitted_->text != *now.text || submitted_->folder != now.folder ||
       submitted_->overrides != now.overrides || submitted_->added != now.added) {
     try {
       describe();
@@ -236,6 +272,7 @@ bool LiveSession::follow_document() {
       state_.described = state_.selected;
     }
   }
+  watch_files();
   if (submitted_ && *submitted_ == now && !reread) return true;
   const bool same_run = submitted_ && !reread && simulated_part(*submitted_) == simulated_part(now);
   submitted_ = now;
@@ -304,8 +341,8 @@ void LiveSession::save(const std::string& typed) {
 void LiveSession::save_now(const std::string& path) {
   bool anew = false;
   const SceneDocument saved = saved_document(state_.history.now(), path, anew);
-  if (const std::string lacks = lacking_file(saved, state_.history.now()); !lacks.empty()) {
-    state_.message = "not saved: " + lacks + "; the scene names that file: copy it there first";
+  if (const std::string why = other_there(saved, state_.history.now()); !why.empty()) {
+    state_.message = "not saved: " + why + "; the scene names that file: copy it there first";
     return;
   }
   if (!options_.replayed) write_file_atomically(behind_links(path), *saved.text);
@@ -332,7 +369,11 @@ void LiveSession::add_entry(const ElementOffer& offer) {
 
 void LiveSession::open(const SceneDocument& document) {
   read_document(document);  // what is wrong with it is said, and the scene that is open stays
-  state_.history.replace(document);
+  state_.history.open(document);
+  state_.selected = state_.hovered = {};
+  const StudyRequest::Kind kind = state_.study.kind;
+  state_.study = {};  // of another scene
+  state_.study.kind = kind;
   state_.orbit.reset();
   state_.export_path.clear();
   state_.files_open = false;
@@ -381,28 +422,28 @@ void LiveSession::ask_to_close() {
   close_or_ask();
 }
 
+void LiveSession::ask_for_left() {
+  const int back = state_.history.steps_to_left();
+  state_.closed = back == 0;
+  if (state_.closed) return;
+  const auto go_back = [back](LiveSession& s) {
+    for (int i = 0; i < back; ++i) s.state().history.undo();
+  };
+  state_.question = {"A scene that was open before has changes that are in no file.",
+                     {{"Back to it", go_back},
+                      {"Discard", [](LiveSession& s) { s.state().closed = true; }},
+                      {"Cancel", {}}}};
+}
+
 void LiveSession::close_or_ask() {
-  const auto discard = [](LiveSession& s) { s.state().closed = true; };
-  if (!has_unsaved()) {
-    const int back = state_.history.steps_to_left();
-    if (back == 0) {
-      state_.closed = true;
-      return;
-    }
-    const auto go_back = [back](LiveSession& s) {
-      for (int i = 0; i < back; ++i) s.state().history.undo();
-    };
-    state_.question = {"A scene that was open before has changes that are in no file.",
-                       {{"Back to it", go_back}, {"Discard", discard}, {"Cancel", {}}}};
-    return;
-  }
+  if (!has_unsaved()) return ask_for_left();
   const std::string name = std::filesystem::path(state_.history.now().name).filename().string();
   const auto save = [](LiveSession& s) {
     s.save_or_ask();
-    s.state().closed = !s.has_unsaved();
+    if (!s.has_unsaved()) s.ask_for_left();
   };
   state_.question = {name + " has changes that are in no file.",
-                     {{"Save", save}, {"Discard", discard}, {"Cancel", {}}}};
+                     {{"Save", save}, {"Discard", [](LiveSession& s) { s.ask_for_left(); }}, {"Cancel", {}}}};
 }
 
 void LiveSession::screenshot() {

@@ -51,6 +51,8 @@ class LiveSession {
   void note_press();             // of a key or button: what was said long ago is taken away
 
   bool busy() const { return state_.simulation.running || simulator_.busy() || errors_.busy(); }
+  // Whether its own file, or one that it names, was changed since the last frame.
+  bool files_changed();
   bool has_results() const { return simulator_.ready() || errors_.ready(); }  // take_results() has some
   const Simulator& simulator() const { return simulator_; }
   const ErrorMeter& errors() const { return errors_; }
@@ -92,10 +94,12 @@ class LiveSession {
   bool named_files_changed() const;
   bool has_unsaved() const;
   void close_or_ask();  // of changes
+  void ask_for_left();  // of those of scenes that were open before
   void show_hand();
   void begin_build(const std::vector<Vec3>& places);
   void build(const std::string& gesture, SceneDocument document);
   void describe();
+  void watch_files();
   void update_picture();
 
   SessionOptions options_;

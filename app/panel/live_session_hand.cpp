@@ -156,8 +156,13 @@ void LiveSession::connect(const std::string& a, const std::string& b) {
 void LiveSession::remove_selected() {
   if (state_.selected.kind == Selection::Kind::none) return;
   const std::string name = state_.selected.name;
-  build("", without_part(state_.history.now(), state_.selected));
+  SceneDocument without = without_part(state_.history.now(), state_.selected);
   state_.selected = {};
+  if (without == state_.history.now()) {
+    state_.message = "the scene has no " + name;
+    return;
+  }
+  build("", std::move(without));
   state_.message = name + " is taken away";
 }
 

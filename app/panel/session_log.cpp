@@ -264,6 +264,7 @@ SessionStart session_start(const json& line) {
   start.width = line.at("size").at(0);
   start.height = line.at("size").at(1);
   start.scale = line.at("scale");
+  if (!(start.scale >= 0.25f && start.scale <= 16)) throw std::out_of_range("scale: must be in [0.25, 16]");
   start.at = line.at("at");
   start.measure_errors = line.at("measure_errors");
   start.graphics = line.at("graphics");

@@ -257,8 +257,9 @@ class Host {
   void wait(bool more) {
     SDL_Event event;
     while (!more && !interrupted()) {
-      if (sdl().WaitEventTimeout(&event, 500) == 0) {  // Ctrl-C is looked for twice a second, and
-        more = panel_->state().simulation.running;     // what works without a word as well
+      if (sdl().WaitEventTimeout(&event, 500) ==
+          0) {  // Ctrl-C is looked for twice a second, and what comes without a word
+        more = panel_->state().simulation.running || panel_->session().files_changed();
         continue;
       }
       more = true;

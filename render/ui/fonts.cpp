@@ -19,6 +19,14 @@ constexpr ImWchar glyph_ranges[] = {0x0020, 0x017F,  // Latin, Latin-1, Latin Ex
                                     0x2200, 0x22FF,  // mathematics, minus among them
                                     0x25A0, 0x25FF,  // shapes
                                     0};
+// Of what people write into the window's fields, too.
+constexpr ImWchar window_ranges[] = {0x0020, 0x024F,  // Latin, with its Extended-B
+                                     0x02B0, 0x02FF,  // modifier letters
+                                     0x0370, 0x052F,  // Greek, Cyrillic
+                                     0x1E00, 0x1EFF,  // Latin Extended Additional
+                                     0x2010, 0x2027, 0x2030, 0x203A, 0x2070, 0x209F, 0x2190, 0x22FF,
+                                     0x25A0, 0x25FF, 0x2700, 0x27BF,  // dingbats
+                                     0};
 
 // Null: these bytes are no font.
 ImFont* add(ImFontAtlas& atlas, std::string_view bytes, ImFontConfig config, const ImWchar* ranges) {
@@ -35,10 +43,11 @@ float same_letters(const plot::Typeface& face, float pixels) {
 
 }  // namespace
 
-ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold) {
+ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold, Letters letters) {
   ImFontConfig config;
   config.SizePixels = pixels;
-  if (ImFont* font = add(atlas, own_font(bold), config, glyph_ranges)) return font;
+  const ImWchar* ranges = letters == Letters::window ? window_ranges : glyph_ranges;
+  if (ImFont* font = add(atlas, own_font(bold), config, ranges)) return font;
   return atlas.AddFontDefault(&config);
 }
 

@@ -151,6 +151,7 @@ SceneDocument with_positions(const SceneDocument& document, const std::vector<No
 
 SceneDocument without_part(const SceneDocument& document, const Selection& part) {
   CustomSpec spec = built_scene(document).custom;
+  const std::size_t before = spec.nodes.size() + spec.rods.size();
   if (part.kind == Selection::Kind::node) {
     std::erase_if(spec.nodes, [&](const CustomNode& node) { return node.name == part.name; });
     std::erase_if(spec.rods, [&](const CustomRod& rod) {
@@ -159,6 +160,7 @@ SceneDocument without_part(const SceneDocument& document, const Selection& part)
   } else {
     std::erase_if(spec.rods, [&](const CustomRod& rod) { return rod_name(rod) == part.name; });
   }
+  if (spec.nodes.size() + spec.rods.size() == before) return document;  // it has no such part
   return with_lists(document, spec);
 }
 

@@ -4,7 +4,7 @@
 namespace unfurl {
 
 void EditHistory::remember() {
-  past_.push_back(now_);
+  past_.push_back({now_, false});
   if (past_.size() > deepest) past_.erase(past_.begin());
   future_.clear();
 }
@@ -26,6 +26,13 @@ void EditHistory::change(const std::string& gesture, SceneDocument document) {
   now_ = std::move(document);
 }
 
+void EditHistory::take_back(const std::string& key) {
+  if (gesture_ != key || past_.empty()) return;
+  now_ = std::move(past_.back().document);
+  past_.pop_back();
+  end_gesture();
+}
+
 void EditHistory::forget(const std::string& key) {
   end_gesture();
   if (!now_.edits.contains(key)) return;
@@ -40,34 +47,40 @@ void EditHistory::replace(SceneDocument document) {
   now_ = std::move(document);
 }
 
+void EditHistory::open(SceneDocument document) {
+  end_gesture();
+  if (document == now_) return;
+  remember();
+  past_.back().opens = true;
+  now_ = std::move(document);
+}
+
 void EditHistory::saved(SceneDocument document) {
   end_gesture();
-  const std::string before = now_.path;
-  if (before != document.path)
-    for (std::vector<SceneDocument>* steps : {&past_, &future_})
-      for (auto step = steps->rbegin(); step != steps->rend() && step->path == before; ++step) {
-        step->path = document.path;
-        step->name = document.name;
-        step->folder = document.folder;
+  if (now_.path != document.path)
+    for (std::vector<Step>* steps : {&past_, &future_})
+      for (auto step = steps->rbegin(); step != steps->rend() && !step->opens; ++step) {
+        step->document.path = document.path;
+        step->document.name = document.name;
+        step->document.folder = document.folder;
       }
   now_ = std::move(document);
 }
 
 int EditHistory::steps_to_left() const {
-  const SceneDocument* next = &now_;
   int steps = 0;
-  for (auto past = past_.rbegin(); past != past_.rend(); next = &*past, ++past) {
+  for (auto past = past_.rbegin(); past != past_.rend(); ++past) {
     ++steps;
-    if (past->path != next->path && is_edited(*past)) return steps;
+    if (past->opens && is_edited(past->document)) return steps;
   }
   return 0;
 }
 
-bool EditHistory::step(std::vector<SceneDocument>& from, std::vector<SceneDocument>& to) {
+bool EditHistory::step(std::vector<Step>& from, std::vector<Step>& to) {
   end_gesture();
   if (from.empty()) return false;
-  to.push_back(std::move(now_));
-  now_ = std::move(from.back());
+  to.push_back({std::move(now_), from.back().opens});
+  now_ = std::move(from.back().document);
   from.pop_back();
   return true;
 }

@@ -19,8 +19,10 @@ class EditHistory {
   void edit(const std::string& key, ParamValue value);
   // Many keys at once; changes of one gesture join.
   void change(const std::string& gesture, SceneDocument document);
-  void forget(const std::string& key);   // back to the file's value
-  void replace(SceneDocument document);  // another scene, or none of the edits
+  void take_back(const std::string& key);  // what the present gesture has made of it, as if it had not been
+  void forget(const std::string& key);     // back to the file's value
+  void replace(SceneDocument document);    // another form of the scene, or none of the edits
+  void open(SceneDocument document);       // another scene: the present one is left
   // The same scene, now in a file: no step. With a new name what undo and redo lead to has that name, too.
   void saved(SceneDocument document);
   void end_gesture() { gesture_.clear(); }
@@ -34,12 +36,16 @@ class EditHistory {
   bool redo() { return step(future_, past_); }
 
  private:
+  struct Step {
+    SceneDocument document;
+    bool opens = false;  // between it and the one next to it towards the present another scene was opened
+  };
   void remember();
-  bool step(std::vector<SceneDocument>& from, std::vector<SceneDocument>& to);
+  bool step(std::vector<Step>& from, std::vector<Step>& to);
   static constexpr std::size_t deepest = 10000;
 
   SceneDocument now_;
-  std::vector<SceneDocument> past_, future_;
+  std::vector<Step> past_, future_;
   std::string gesture_;  // the key that is being changed
 };
 

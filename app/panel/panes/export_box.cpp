@@ -46,7 +46,7 @@ void export_files(Ui& ui, PanelState& state, const Box& box) {
   if (button(ui, "start export", "Export", "beside this window, by the command line below", ready))
     state.intents.emplace_back([](LiveSession& s) { s.start_export(); });
   std::error_code unknown;  // a name that is too long, a folder that may not be looked into
-  const std::filesystem::path whole = std::filesystem::absolute(state.export_output, unknown);
+  const std::filesystem::path whole = std::filesystem::absolute(at_home(state.export_output), unknown);
   if (!unknown) wrapped(ui.theme.dim, std::string(kind.help) + ", into " + whole.lexically_normal().string());
 }
 
@@ -60,13 +60,14 @@ void draw_export(Ui& ui, PanelState& state) {
   save_as(ui, state, box);
   export_files(ui, state, box);
   box.heading("Command line");
+  const std::string output = at_home(state.export_output);
   const bool in_file = !now.path.empty() && state.own_file == OwnFile::same;
   const std::string line =
-      export_command(now, export_kinds()[state.export_kind], state.export_output, in_file);
+      export_command(now, export_kinds()[state.export_kind], output, in_file);
   wrapped(ui.theme.text, line);
   if (!in_file)
     wrapped(ui.theme.dim, "Export writes the scene that is shown to " +
-                              exported_scene(now, state.export_output, in_file) + " first: no file holds it");
+                              exported_scene(now, output, in_file) + " first: no file holds it");
   if (button(ui, "copy", "Copy", "to the clipboard")) ImGui::SetClipboardText(line.c_str());
   ImGui::SameLine();
   if (button(ui, "open folder", "Open folder", "of what was exported last", !state.exported.empty()))

@@ -36,8 +36,16 @@ void stack(Figure& figure, double width) {
 }  // namespace
 
 Figure with_pinned(Figure present, const Figure& pinned) {
-  for (std::size_t i = 0; i < std::min(present.panels.size(), pinned.panels.size()); ++i) {
-    auto& curves = present.panels[i].curves;
+  // A panel of the same quantities, in the order in which they come: the runs may have others before it.
+  std::vector<bool> taken(pinned.panels.size(), false);
+  for (Panel& panel : present.panels) {
+    std::size_t i = 0;
+    while (i < pinned.panels.size() && (taken[i] || pinned.panels[i].x.label != panel.x.label ||
+                                        pinned.panels[i].y.label != panel.y.label))
+      ++i;
+    if (i == pinned.panels.size()) continue;
+    taken[i] = true;
+    auto& curves = panel.curves;
     std::vector<Curve> all;
     for (Curve curve : pinned.panels[i].curves) {
       curve.label.clear();

@@ -48,10 +48,15 @@ std::vector<PaletteItem> palette_items(const PanelState& state, const std::strin
 void draw_row(Ui& ui, PanelState& state, const ParamRow& row);
 // What is typed into a number's widget: an expression may have the scene's variables.
 struct Typing {
+  Ui::TypedField& field;
   const Variables& variables;
   bool typed = false;        // there is a text field
-  std::string problem = {};  // with what stands in it: the value stays
+  bool back = false;         // what stands in it is the value that it began with, or none
+  std::string problem = {};  // with what stands in it
 };
+// The value that the text of a field means: a number or an expression, as scenes have them; that which the
+// field began with where it is none, or says what it said then. Returns whether it is another than `x` was.
+bool take_typed(ImGuiID id, const char* text, double& x, Typing& typing);
 // The same without: label and widget. Returns whether the value changed.
 bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong, Typing& typing);
 

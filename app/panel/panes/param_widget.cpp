@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 #include "app/panel/panes/panes.hpp"
 #include "core/study/table.hpp"
@@ -15,7 +17,6 @@ namespace unfurl {
 
 namespace {
 
-constexpr std::size_t longest_text = 4096;
 constexpr std::size_t most_numbers = 4;  // that a vector has a field for each of
 
 // Seven digits. ImGui takes them for the smallest number of a logarithmic slider too.
@@ -43,22 +44,10 @@ bool typed_widget(const char* label, const std::string& digits, double& x, Typin
   if (!ImGui::ItemAdd(place, id, &place, ImGuiItemFlags_Inputable)) return false;
   char text[256];
   std::snprintf(text, sizeof text, digits.c_str(), x);
-  const std::string shown = text;
   ImGui::TempInputText(place, id, label, text, sizeof text, ImGuiInputTextFlags_AutoSelectAll);
-  typing.typed = true;
-  if (text == shown) return false;
-  std::string_view meant(text);
-  meant.remove_prefix(std::min(meant.find_first_not_of(" ="), meant.size()));
-  try {
-    const double now = evaluate(meant, typing.variables);
-    if (now == x) return false;
-    x = now;
-    ImGui::MarkItemEdited(id);
-    return true;
-  } catch (const ExpressionError& error) {
-    typing.problem = in_quotes(text) + " is no number: " + error.what();
-    return false;
-  }
+  const bool changed = take_typed(id, text, x, typing);
+  if (changed) ImGui::MarkItemEdited(id);
+  return changed;
 }
 
 bool real_widget(const ParamRow& row, ParamValue& value, Typing& typing) {
@@ -98,6 +87,7 @@ bool integer_widget(const ParamRow& row, ParamValue& value, Typing& typing) {
     if (!typed_widget("##value", "%.16g", number, typing)) return false;
     if (number != std::floor(number) || std::abs(number) > exact) {
       typing.problem = exact_number(number) + " is no whole number";
+      typing.back = true;
       return false;
     }
     value = static_cast<long>(number);
@@ -126,10 +116,9 @@ bool choice_widget(Ui& ui, const ParamRow& row, ParamValue& value) {
 }
 
 bool text_field(std::string& text) {
-  char buffer[longest_text];
-  std::snprintf(buffer, sizeof buffer, "%s", text.c_str());
-  if (!ImGui::InputText("##value", buffer, sizeof buffer)) return false;
-  text = buffer;
+  std::vector<char> buffer = typing_room(text);
+  if (!ImGui::InputText("##value", buffer.data(), buffer.size())) return false;
+  text = buffer.data();
   return true;
 }
 
@@ -154,9 +143,11 @@ bool names_widget(ParamValue& value) {
   return true;
 }
 
-// The same for any number of numbers.
+// The same for any number of numbers, with all their digits: those that nobody touches stay.
 bool numbers_widget(ParamValue& value) {
-  std::string text = value_caption(value, "");
+  std::string text;
+  for (const double x : std::get<std::vector<double>>(value))
+    text += (text.empty() ? "" : ", ") + exact_number(x);
   if (!text_field(text)) return false;
   std::vector<double> numbers;
   for (const std::string& word : words_of(text)) {
@@ -214,6 +205,31 @@ bool widget(Ui& ui, const ParamRow& row, ParamValue& value, Typing& typing) {
 }
 
 }  // namespace
+
+bool take_typed(ImGuiID id, const char* text, double& x, Typing& typing) {
+  if (typing.field.id != id) typing.field = {id, x};
+  typing.field.drawn = typing.typed = true;
+  const auto number = [&](std::string meant) {
+    meant.erase(0, meant.find_first_not_of(" ="));
+    return evaluate(meant, typing.variables);
+  };
+  double now = typing.field.began;
+  const ImGuiInputTextState* state = ImGui::GetInputTextState(id);
+  if (state == nullptr || std::string_view(text) != state->InitialTextA.Data) try {
+      now = number(text);
+    } catch (const ExpressionError& error) {
+      // A comma is a point, as on half of the keyboards, where it does not stand between two arguments.
+      try {
+        std::string pointed = text;
+        std::replace(pointed.begin(), pointed.end(), ',', '.');
+        now = number(pointed);
+      } catch (const ExpressionError&) {
+        typing.problem = in_quotes(text) + " is no number: " + error.what();
+      }
+    }
+  typing.back = now == typing.field.began;
+  return now != std::exchange(x, now);
+}
 
 bool draw_param(Ui& ui, const ParamRow& row, ParamValue& value, bool wrong, Typing& typing) {
   ImGui::PushID(row.key.c_str());

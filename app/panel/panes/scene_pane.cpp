@@ -65,8 +65,12 @@ void draw_row(Ui& ui, PanelState& state, const ParamRow& row) {
     state.reveal.clear();
   }
   const Variables variables(state.base.variables.begin(), state.base.variables.end());
-  Typing typing{variables};
-  if (draw_param(ui, row, value, !wrong.empty(), typing)) state.history.edit(row.key, value);
+  Typing typing{ui.typed, variables};
+  const bool changed = draw_param(ui, row, value, !wrong.empty(), typing);
+  if (typing.back)
+    state.history.take_back(row.key);
+  else if (changed)
+    state.history.edit(row.key, value);
   const std::string about = row.label + ": ";
   if (!typing.problem.empty())
     state.message = about + typing.problem;

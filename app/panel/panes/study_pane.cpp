@@ -2,6 +2,7 @@
 // The right pane's other page: a small study of the scene that is shown, run beside the window.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "app/panel/panes/panes.hpp"
 #include "core/diagnostics/measures.hpp"
@@ -22,10 +23,25 @@ void label_row(const Ui& ui, const char* label) {
   ImGui::SetNextItemWidth(-1);
 }
 
-void number_row(Ui& ui, const char* label, const char* key, double& value, const std::string& help) {
+void number_row(Ui& ui, PanelState& state, const char* label, const char* key, double& value,
+                const std::string& help) {
   label_row(ui, label);
-  ImGui::InputDouble((std::string("##") + key).c_str(), &value, 0, 0, "%.6g");
-  if (ImGui::IsItemActive()) ui.number = ImGui::GetItemID();
+  char text[256];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  const std::string field = std::string("##") + key;
+  const ImGuiID id = ImGui::GetID(field.c_str());
+  const bool active = ImGui::GetActiveID() == id;  // in the frame in which Esc ends that, too
+  ImGui::InputText(field.c_str(), text, sizeof text, ImGuiInputTextFlags_AutoSelectAll);
+  if (active) {
+    const Variables variables(state.base.variables.begin(), state.base.variables.end());
+    Typing typing{ui.typed, variables};
+    take_typed(id, text, value, typing);
+    const std::string about = std::string(label) + ": ";
+    if (!typing.problem.empty())
+      state.message = about + typing.problem;
+    else if (state.message.starts_with(about))
+      state.message.clear();
+  }
   ui.note(key);
   tooltip(ui, help);
 }
@@ -52,10 +68,10 @@ void choose_methods(Ui& ui, StudyRequest& request) {
   }
 }
 
-void choose_precision(Ui& ui, StudyRequest& request) {
+void choose_precision(Ui& ui, PanelState& state, StudyRequest& request) {
   choose_methods(ui, request);
-  number_row(ui, "largest step", "study largest", request.largest_step, "of the ladder [s]");
-  number_row(ui, "smallest step", "study smallest", request.smallest_step, "of the ladder [s]");
+  number_row(ui, state, "largest step", "study largest", request.largest_step, "of the ladder [s]");
+  number_row(ui, state, "smallest step", "study smallest", request.smallest_step, "of the ladder [s]");
 }
 
 bool sweepable(const ParamRow& row) {
@@ -93,8 +109,8 @@ void choose_sweep(Ui& ui, PanelState& state, StudyRequest& request) {
     ImGui::EndCombo();
   }
   ui.note("study key");
-  number_row(ui, "from", "study from", request.from, "the parameter's first value");
-  number_row(ui, "to", "study to", request.to, "the parameter's last value");
+  number_row(ui, state, "from", "study from", request.from, "the parameter's first value");
+  number_row(ui, state, "to", "study to", request.to, "the parameter's last value");
   label_row(ui, "points");
   ImGui::SliderInt("##points", &request.count, 2, 50);
   ui.note("study points");
@@ -116,7 +132,7 @@ void choose_kind(Ui& ui, PanelState& state, StudyRequest& request) {
   if (ImGui::Combo("##study kind", &kind, names, 2))
     request.kind = kind == 1 ? StudyKind::sweep : StudyKind::precision;
   ui.note("study kind");
-  const SolverOptions& solver = state.shown->scene.solver;
+  const SolverOptions& solver = state.base.solver;
   if (!(request.largest_step > 0)) {
     request.largest_step = 4 * solver.step;
     request.smallest_step = solver.step / 4;
@@ -188,7 +204,7 @@ void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards) {
   if (state.study.kind == StudyKind::sweep)
     choose_sweep(ui, state, state.study);
   else
-    choose_precision(ui, state.study);
+    choose_precision(ui, state, state.study);
   draw_start(ui, state);
   if (!state.studied) return;
   const StudyOutcome& outcome = *state.studied;

@@ -49,16 +49,21 @@ void Box::heading(const char* text) const {
   ImGui::PopFont();
 }
 
+std::vector<char> typing_room(const std::string& text) {
+  std::vector<char> buffer(2 * text.size() + 4096);
+  std::copy(text.begin(), text.end(), buffer.begin());
+  return buffer;
+}
+
 bool text_field(Ui& ui, const std::string& key, std::string& value, float width, const char* hint,
                 ImGuiInputTextFlags flags, ImGuiInputTextCallback callback) {
-  char buffer[4096];
-  std::snprintf(buffer, sizeof buffer, "%s", value.c_str());
+  std::vector<char> buffer = typing_room(value);
   ImGui::SetNextItemWidth(width);
   const bool entered =
-      ImGui::InputTextWithHint(("##" + key).c_str(), hint, buffer, sizeof buffer, flags, callback);
+      ImGui::InputTextWithHint(("##" + key).c_str(), hint, buffer.data(), buffer.size(), flags, callback);
   ui.note(key);
-  const bool changed = value != buffer;
-  if (changed) value = buffer;
+  const bool changed = value != buffer.data();
+  if (changed) value = buffer.data();
   return (flags & ImGuiInputTextFlags_EnterReturnsTrue) != 0 ? entered : changed;
 }
 

@@ -25,7 +25,13 @@ struct Ui {
   // Lines at the present time, over the figures. In a list of their own: what moves is small.
   std::vector<plot::Rect> cursors;  // [pixels]
 
-  ImGuiID number = 0;  // the last box for a number, but for sliders, that had the keyboard
+  // The field into which a number is typed, and the value that it began with: what Esc, and what is no
+  // number, lead back to.
+  struct TypedField {
+    ImGuiID id = 0;
+    double began = 0;
+    bool drawn = false;  // in this frame
+  } typed;
 
   float px(float points) const { return points * scale; }
   ImU32 color(const ImVec4& c, float alpha = 1) const {
@@ -66,6 +72,8 @@ class Box : public Pane {
   std::string name_;
 };
 
+// The text with room behind it for as much again to be typed, and its end.
+std::vector<char> typing_room(const std::string& text);
 // A line of text to type; true where it changed.
 bool text_field(Ui& ui, const std::string& key, std::string& value, float width, const char* hint = "",
                 ImGuiInputTextFlags flags = 0, ImGuiInputTextCallback callback = nullptr);

@@ -115,8 +115,8 @@ void point_at(const Ui& ui, PanelState& state, const SceneView& view, const Fram
   if (!ImGui::IsItemHovered()) return;
   const bool dragging = ImGui::IsMouseDragging(0) || ImGui::IsMouseDragging(1) || ImGui::IsMouseDragging(2);
   if (!dragging)
-    state.hovered =
-        pick(*state.shown, state.playback.t, view.pick_view(state), frame.x(), frame.y(), ui.px(9));
+    state.hovered = pick(*state.shown, state.playback.t, view.pick_view(state), frame.x(), frame.y(),
+                         ui.px(9), state.pose ? &*state.pose : nullptr);
   const ImVec2 way = ImGui::GetMouseDragDelta(0, 0);
   if (ImGui::IsMouseReleased(0) && std::hypot(way.x, way.y) < ui.px(4)) state.selected = state.hovered;
 }
@@ -183,7 +183,7 @@ void mark_nodes(const Ui& ui, const PanelState& state, const SceneView& view, co
   const PickView pick = view.pick_view(state);
   for (std::size_t i = 0; i < std::min(nodes.size(), copies.size()); ++i) {
     if (copies[i].name != nodes[i].name) continue;
-    const Vec3 place = pick.upright * whole.segment<3>(3 * static_cast<Index>(i));
+    const Vec3 place = pick.upright * (whole.segment<3>(3 * static_cast<Index>(i)) - pick.origin);
     const Vec3f at = project(pick.camera, pick.width, pick.height, place.cast<float>());
     if (at.z() <= 0) continue;
     const ImVec2 center(frame.low.x + at.x(), frame.low.y + at.y());
@@ -240,6 +240,7 @@ void draw_box(const Ui& ui, const std::string& title, const std::vector<Reading>
 }
 
 void draw_readings(const Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame) {
+  if (state.pose) return;  // they are of the run
   const Selection& selection = state.hovered.kind != Selection::Kind::none ? state.hovered : state.selected;
   const auto rows = readings(selection, *state.shown, state.playback.t);
   if (rows.empty()) return;

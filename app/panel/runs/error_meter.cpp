@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/study/tolerance.hpp"
+
 namespace unfurl {
 
 namespace {
@@ -29,13 +31,15 @@ double memory_of(const LiveRun& run) {
 double timed(const LiveRun& run, double end, const std::function<bool()>& cancelled) {
   SolverOptions options = run.simulation.options;
   options.end_time = std::min(end, options.end_time);
+  options.tolerance = 0;  // its choice is made
+  options.model = solved_as(run.simulation).name;
   SimulationHooks hooks;
   hooks.cancelled = cancelled;
   const std::shared_ptr<const Model> model(std::shared_ptr<void>(), &run.simulation.trajectory.model());
   std::vector<double> times;
   if (run.simulation.cpu_s > longest_timed) return 0;
   do {
-    const Simulation again = simulate(model, options, hooks);
+    const Simulation again = simulate_as_asked(model, options, hooks);
     if (again.status == RunStatus::stopped) break;
     times.push_back(again.cpu_s);
   } while (times.size() < 3 && times.front() < longest_repeated);

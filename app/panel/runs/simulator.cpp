@@ -106,7 +106,7 @@ std::string warning_sentence(const LiveRun& run) {
 std::string state_sentence(const LiveRun& run) {
   const Simulation& simulation = run.simulation;
   if (run.coarse) return "coarse: one sector with longer steps; the whole is being simulated";
-  if (simulation.status == RunStatus::failed) return "the solver failed " + simulation.message;
+  if (simulation.status == RunStatus::failed) return "the solver failed: " + simulation.message;
   char facts[160];
   std::snprintf(facts, sizeof facts, " at %.4g s, %ld steps, %.3g s of CPU time",
                 simulation.trajectory.end_time(), simulation.steps, simulation.cpu_s);

@@ -44,8 +44,9 @@ TradePoint trade_point(const LiveRun& run) {
   const double energy = energy_turned_over(d);
   const double error = largest(d, "energy_balance_J");
   const SolverOptions& options = run.simulation.options;  // with a tolerance: as they were picked
+  const std::string model = solved_as(run.simulation).name;
   return {.method = options.method,
-          .setting = setting_caption(options),
+          .setting = (model == "full" ? "" : model + ": ") + setting_caption(options),
           .cpu_s = run.simulation.cpu_s,
           .whole_cpu_s = run.simulation.cpu_s,
           .error = energy > 0 ? error / energy : error,

@@ -42,6 +42,18 @@ double in_degrees(float radians) {
   return std::round(10 * static_cast<double>(radians) / radians_per_degree) / 10;
 }
 
+// Of a key's time [s]: a power of ten that is 1e-5 of the motion's duration at most; 1e-4 s of motions of seconds.
+double time_unit(const LiveRun& run) {
+  const Trajectory& motion = run.simulation.trajectory;
+  const double duration = motion.end_time() - motion.start_time();
+  return duration > 0 ? std::pow(10.0, std::min(-4.0, std::floor(std::log10(duration)) - 4)) : 1e-4;
+}
+
+double rounded_time(double t, const LiveRun& run) {
+  const double per_second = std::round(1 / time_unit(run));  // a whole number: the quotient is the nearest decimal
+  return std::round(per_second * t) / per_second;
+}
+
 std::string key_text(const CameraKey& key) {
   return "{time = " + toml_value(key.time) + ", azimuth = " + toml_value(key.azimuth) +
          ", elevation = " + toml_value(key.elevation) + ", zoom = " + toml_value(key.zoom) + "}";
@@ -64,7 +76,7 @@ bool moves_camera(const RenderOptions& picture) {
 std::vector<CameraKey> keys_with(std::vector<CameraKey> others, const LiveRun& run,
                                  const RenderOptions& picture, const OrbitCamera& orbit, double t) {
   const double before = others.empty() ? 0 : film_reach(run, picture, others);
-  std::erase_if(others, [&](const CameraKey& key) { return std::abs(key.time - t) < 1e-6; });
+  std::erase_if(others, [&](const CameraKey& key) { return std::abs(key.time - t) < 0.01 * time_unit(run); });
   CameraKey key{t, in_degrees(orbit.azimuth), std::clamp(in_degrees(orbit.elevation), -90.0, 90.0), 1};
   std::vector<CameraKey> keys = others;
   keys.insert(std::upper_bound(keys.begin(), keys.end(), t,
@@ -80,7 +92,7 @@ std::vector<CameraKey> keys_with(std::vector<CameraKey> others, const LiveRun& r
 
 SceneDocument with_camera(SceneDocument document, const LiveRun& run, const RenderOptions& picture,
                           const OrbitCamera& orbit, double t, bool only) {
-  const double at = only ? 0.0 : std::round(1e4 * t) / 1e4;
+  const double at = only ? 0.0 : rounded_time(t, run);
   std::string list;
   for (const CameraKey& key :
        keys_with(only ? std::vector<CameraKey>() : picture.camera_keys, run, picture, orbit, at))

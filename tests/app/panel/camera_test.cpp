@@ -66,6 +66,18 @@ TEST_CASE("zooming keeps what is under the pointer there") {
   CHECK(at.y() == Approx(150).margin(0.05));
 }
 
+TEST_CASE("the wheel comes nearer and goes away at every size of a structure") {
+  for (const float size : {1e-6f, 1.0f, 1e9f}) {
+    INFO(size);
+    OrbitCamera orbit;
+    orbit.distance = 3 * size;
+    const Camera camera = camera_of(orbit, Vec3f::Zero(), size);
+    const Vec3f ahead = (camera.target - camera.eye).normalized();
+    CHECK(zoomed(orbit, 1, ahead).distance == Approx(orbit.distance * std::exp(-0.12f)).epsilon(1e-5));
+    CHECK(zoomed(orbit, -1, ahead).distance == Approx(orbit.distance * std::exp(0.12f)).epsilon(1e-5));
+  }
+}
+
 TEST_CASE("presets see the whole sphere") {
   for (const ViewPreset preset :
        {ViewPreset::front, ViewPreset::side, ViewPreset::top, ViewPreset::three_quarter})

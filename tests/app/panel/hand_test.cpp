@@ -21,7 +21,8 @@ PanelOptions quick() {
 }
 
 // Where a node of the shown run is in the window, by the camera that frames the motion or is led by hand.
-Eigen::Vector2d pixel_of(PanelDriver& driver, const std::string& node) {
+Eigen::Vector2d pixel_of(PanelDriver& driver, const std::string& node,
+                         const std::optional<VectorXd>& pose = std::nullopt) {
   const plot::Rect view = driver.panel().place("view");
   FrameStyle style;
   style.width = static_cast<int>(view.width());
@@ -29,9 +30,15 @@ Eigen::Vector2d pixel_of(PanelDriver& driver, const std::string& node) {
   const FrameBuilder builder(driver.state().shown->simulation.trajectory, style);
   PickView pick{builder.camera(), style.width, style.height, builder.upright()};
   if (const auto& orbit = driver.state().orbit) pick.camera = camera_of(*orbit, Vec3f::Zero(), 100);
-  const PickedPlace at =
+  PickedPlace at =
       place_of({Selection::Kind::node, node}, *driver.state().shown, driver.state().playback.t, pick);
   REQUIRE(at.found);
+  const Structure& structure = driver.state().shown->simulation.trajectory.structure();
+  for (std::size_t i = 0; pose && i < structure.nodes.size(); ++i)
+    if (structure.nodes[i].name == node) {
+      const Vec3 place = pick.upright * (pose->segment<3>(3 * static_cast<Index>(i)) - pick.origin);
+      at.a = project(pick.camera, pick.width, pick.height, place.cast<float>());
+    }
   return {view.x0 + at.a.x(), view.y0 + at.a.y()};
 }
 
@@ -57,7 +64,19 @@ TEST_CASE("a node is pulled with the mouse, rods keep their lengths, and Esc giv
     CHECK((pose.segment<3>(3 * rod.b) - pose.segment<3>(3 * rod.a)).norm() ==
           Approx(rod.length).epsilon(1e-9));
   driver.press(false);
-  CHECK(driver.state().pose);         // it stays where it was led
+  CHECK(driver.state().pose);  // it stays where it was led
+  // And is led on from there: 40 and 25 pixels from where the run has it.
+  const Eigen::Vector2d at = pixel_of(driver, "C");
+  const VectorXd before = *driver.state().pose;
+  driver.move(at.x(), at.y());
+  CHECK(driver.state().hovered.name != "C");
+  const Eigen::Vector2d there = pixel_of(driver, "C", driver.state().pose);
+  driver.move(there.x(), there.y());
+  REQUIRE(driver.state().hovered.name == "C");
+  driver.press(true);
+  for (int i = 1; i <= 4; ++i) driver.move(there.x() - 3 * i, there.y() + 2 * i);
+  driver.press(false);
+  CHECK((*driver.state().pose - before).norm() > 0.01);
   CHECK_FALSE(driver.state().orbit);  // and the view did not turn
   driver.key(Key::escape);
   CHECK_FALSE(driver.state().pose);

@@ -39,6 +39,12 @@ void save(PanelDriver& driver, const std::string& path) {
   driver.settle();
 }
 
+void open(PanelDriver& driver, const std::string& path) {
+  driver.state().intents.emplace_back([path](LiveSession& session) { session.open_file(path); });
+  driver.frame();
+  driver.settle();
+}
+
 // A rod of the length that the file gives, hanging at an angle.
 std::string scene_of_files(const ScratchDirectory& scratch) {
   fs::create_directories(scratch / "a");
@@ -113,13 +119,8 @@ TEST_CASE("leaving asks for a scene that was left with changes for another one")
   const std::string first = scratch.write("first.toml", pendulum),
                     second = scratch.write("second.toml", pendulum);
   PanelDriver driver(quick(), open_document(first, {}));
-  const auto open = [&](const std::string& path) {
-    driver.state().intents.emplace_back([path](LiveSession& session) { session.open_file(path); });
-    driver.frame();
-    driver.settle();
-  };
   edit(driver, 0.25);
-  open(second);
+  open(driver, second);
   driver.key(Key::q, true);
   driver.frame();
   CHECK_FALSE(driver.state().closed);
@@ -129,9 +130,133 @@ TEST_CASE("leaving asks for a scene that was left with changes for another one")
   CHECK(driver.state().history.now().path == first);
   CHECK(is_edited(driver.state().history.now()));
   save(driver, first);
-  open(second);
+  open(driver, second);
   driver.key(Key::q, true);
   CHECK(driver.state().closed);
+}
+
+TEST_CASE("leaving asks for every scene that has changes, one after the other") {
+  const ScratchDirectory scratch;
+  for (const char* answer : {"answer Save", "answer Discard"}) {
+    INFO(answer);
+    const std::string first = scratch.write("first.toml", pendulum),
+                      second = scratch.write("second.toml", pendulum);
+    PanelDriver driver(quick(), open_document(first, {}));
+    edit(driver, 0.25);
+    open(driver, second);
+    edit(driver, 0.125);
+    driver.key(Key::q, true);
+    driver.frame();
+    driver.click(answer);
+    driver.frame();
+    CHECK_FALSE(driver.state().closed);
+    CHECK((file_text(second) == pendulum) == (std::string(answer) == "answer Discard"));
+    REQUIRE(driver.panel().has_place("answer Back to it"));
+    driver.click("answer Discard");
+    driver.frame();
+    CHECK(driver.state().closed);
+    CHECK(file_text(first) == pendulum);
+  }
+}
+
+TEST_CASE("a scene left for another of the same name is asked for") {
+  const ScratchDirectory scratch;
+  const std::string file = scratch.write("own.toml", pendulum);
+  PanelDriver driver(quick(), open_document(file, {}));
+  const auto asks = [](PanelDriver& of) {
+    of.key(Key::q, true);
+    of.frame();
+    return !of.state().closed && of.panel().has_place("answer Back to it");
+  };
+  edit(driver, 0.25);
+  open(driver, file);  // over its own changes
+  CHECK_FALSE(is_edited(driver.state().history.now()));
+  CHECK(asks(driver));
+  PanelDriver untitled(quick());
+  for (int i = 0; i < 2; ++i) {
+    untitled.state().intents.emplace_back([](LiveSession& session) { session.build_from_nothing(); });
+    untitled.frame();
+    untitled.settle();
+    if (i == 0) edit(untitled, 0.25);
+  }
+  CHECK(asks(untitled));
+}
+
+TEST_CASE("behind a save into another folder its files are looked at") {
+  const ScratchDirectory scratch;
+  PanelDriver driver(quick(), open_document(scene_of_files(scratch), {}));
+  const std::string other = scratch / "b/other.toml";
+  scratch.write("b/n.csv", "name,x,y,z,fixed\nA,0,0,0,true\nB,5,0,0,false\n");
+  fs::copy_file(scratch / "a/r.csv", scratch / "b/r.csv");
+  save(driver, other);  // a file of this name is another there
+  CHECK_FALSE(fs::exists(other));
+  CHECK(driver.state().message.find("n.csv") != std::string::npos);
+  CHECK(driver.state().message.find("holds something else there") != std::string::npos);
+  fs::copy_file(scratch / "a/n.csv", scratch / "b/n.csv", fs::copy_options::overwrite_existing);
+  save(driver, other);
+  REQUIRE(fs::exists(other));
+  const auto change = [&](const char* name, double x) {
+    const std::string nodes =
+        scratch.write(name, "name,x,y,z,fixed\nA,0,0,0,true\nB," + std::to_string(x) + ",0,0,false\n");
+    fs::last_write_time(nodes, fs::last_write_time(nodes) + std::chrono::seconds(3));
+    driver.frame();
+    driver.settle();
+    return driver.state().shown->scene.custom.nodes[1].position.x();
+  };
+  CHECK(change("a/n.csv", 7) == 1);  // left behind
+  CHECK(change("b/n.csv", 3) == 3);
+}
+
+TEST_CASE("a table that a change names is looked at, and the one before no more") {
+  const ScratchDirectory scratch;
+  scratch.write("t.csv", "t,value\n0,0\n1,1\n");
+  scratch.write("t2.csv", "t,value\n0,0\n1,2\n");
+  const std::string file =
+      scratch.write("timed.toml", std::string(pendulum) +
+                                      "[[forces]]\nkind = 'load_over_time'\nnodes = ['bob']\n"
+                                      "force = [1, 0, 0]\ntable = 't.csv'\n");
+  PanelDriver driver(quick(), open_document(file, {}));
+  const auto last = [&] { return driver.state().shown->scene.forces[0].values.vector("values").back(); };
+  REQUIRE(last() == 1);
+  SceneDocument changed = driver.state().history.now();
+  changed.edits["forces[0].table"] = std::string("t2.csv");
+  driver.state().history.replace(changed);
+  driver.settle();
+  REQUIRE(last() == 2);
+  const auto rewrite = [&](const char* name) {
+    const std::string table = scratch.write(name, "t,value\n0,0\n1,9\n");
+    fs::last_write_time(table, fs::last_write_time(table) + std::chrono::seconds(3));
+    driver.frame();
+    driver.settle();
+  };
+  rewrite("t.csv");
+  CHECK(driver.state().message.find("read again") == std::string::npos);
+  rewrite("t2.csv");
+  CHECK(last() == 9);
+}
+
+TEST_CASE("a file that is no scene is told with its place") {
+  const ScratchDirectory scratch;
+  const std::string bad = scratch.write("bad.toml", std::string(pendulum) + "step = -1\nstages = 1000\n");
+  PanelDriver driver(quick());
+  open(driver, bad);
+  CHECK(driver.state().message.find("bad.toml:6:8: solver.step: must be") != std::string::npos);
+  CHECK(driver.state().message.ends_with("; and 1 more"));
+}
+
+TEST_CASE("another scene has no part selected, and studies of its own") {
+  const ScratchDirectory scratch;
+  PanelDriver driver(quick(), "hoop6");
+  driver.click("page Studies");
+  driver.frame();
+  REQUIRE(driver.state().study.key.starts_with("structure."));
+  driver.state().study.key = "structure.post_length";
+  driver.state().selected = {Selection::Kind::node, "A0"};
+  open(driver, scratch.write("mine.toml", pendulum));
+  for (int i = 0; i < 3; ++i) driver.frame();
+  CHECK(driver.state().selected.kind == Selection::Kind::none);
+  CHECK(driver.state().study.key == "structure.length");
+  CHECK(driver.state().study.largest_step == 4 * driver.state().base.solver.step);
 }
 
 TEST_CASE("a path below one's home is meant as a shell means it") {

@@ -107,6 +107,23 @@ TEST_CASE("a session that is written by hand names the widgets that it touches")
   CHECK_THROWS_AS(replay_session(*context, scratch.write("wrong.jsonl", joined(lines))), FileError);
 }
 
+TEST_CASE("a session of a scale that no window has is refused in a line") {
+  const ScratchDirectory scratch;
+  record(scratch / "session.jsonl");
+  auto lines = lines_of(file_text(scratch / "session.jsonl"));
+  nlohmann::json first = nlohmann::json::parse(lines[0]);
+  REQUIRE(first.at("scale") == 0.75);
+  for (const double scale : {0.0, -1.0, 1e6}) {
+    INFO(scale);
+    first["scale"] = scale;
+    lines[0] = first.dump();
+    const ProgramResult result =
+        run_program({"view", "--replay", scratch.write("scaled.jsonl", joined(lines))});
+    CHECK(result.code == 5);
+    CHECK(result.err.find("scale") != std::string::npos);
+  }
+}
+
 TEST_CASE("a file that is no session is refused in a line") {
   const ScratchDirectory scratch;
   for (const char* text :

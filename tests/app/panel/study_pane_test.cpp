@@ -165,6 +165,23 @@ TEST_CASE("a study is cancelled at once, and the window does not wait for it") {
   CHECK(driver.panel().has_place("start study"));
 }
 
+TEST_CASE("what is typed into a study's numbers is the whole of it") {
+  PanelDriver driver(PanelDriver::small(), "pendulum");
+  driver.state().study.kind = StudyRequest::Kind::sweep;
+  driver.click("page Studies");
+  const auto typed = [&](const std::string& text) {
+    driver.click("study from");
+    for (const char letter : text) driver.type(std::string(1, letter));
+    driver.frame();
+    driver.key(Key::enter);
+    return driver.state().study.from;
+  };
+  CHECK(typed("1/8") == 0.125);
+  CHECK(typed("1,5") == 1.5);
+  CHECK(typed("150 cm") == 1.5);  // no number: as it was
+  CHECK(driver.state().message.find("'150 cm' is no number") != std::string::npos);
+}
+
 TEST_CASE("the command of a study is what a person would type") {
   SceneDocument document = open_document("hoop6", {});
   document.edits["structure.units"] = 8L;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "app/panel/panes/figure_cards.hpp"
 #include "app/panel/runs/comparison.hpp"
 #include "render/plot/ticks.hpp"
 #include "tests/app/panel/panel_driver.hpp"
@@ -52,6 +53,29 @@ TradePoint point(const char* method, const char* motion, double cpu_s, double po
 const double none = std::nan("");
 
 }  // namespace
+
+TEST_CASE("a pinned run's curves go to panels of their own quantity") {
+  const auto panel_of = [](const std::string& quantity, double value) {
+    Panel panel;
+    panel.x.label = "time (s)";
+    panel.y.label = quantity;
+    Curve curve;
+    curve.x = {0, 1};
+    curve.y = {value, value};
+    panel.curves.push_back(std::move(curve));
+    return panel;
+  };
+  Figure now, pinned;
+  now.panels = {panel_of("force (N)", 1), panel_of("travel (m)", 2), panel_of("travel (m)", 3)};
+  pinned.panels = {panel_of("torque (N m)", -31), panel_of("travel (m)", 20), panel_of("travel (m)", 30)};
+  const Figure both = with_pinned(now, pinned);
+  REQUIRE(both.panels.at(0).curves.size() == 1);  // no torque among forces
+  CHECK(both.panels[0].curves[0].y[0] == 1);
+  for (const int i : {1, 2}) {
+    REQUIRE(both.panels[static_cast<std::size_t>(i)].curves.size() == 2);
+    CHECK(both.panels[static_cast<std::size_t>(i)].curves[0].y[0] == 10 * (i + 1));
+  }
+}
 
 TEST_CASE("the trade's diamond is at the present run's CPU time and true position error") {
   LadderPanel panel;
