@@ -15,6 +15,8 @@ struct Entry {
   std::string name;
   int source;  // index in Structure::constraints
   std::vector<int> nodes;
+  double length;  // of the longest edge from its first node at t = 0 [m]: rounding leaves as much of the row
+                  // as of it
 };
 
 Eigen::Map<const Vec3> at(const double* x, int node) {
@@ -41,18 +43,25 @@ std::vector<int> coordinates_of(const std::vector<int>& nodes) {
 
 class Alignment : public ConstraintBlock {
  public:
-  Alignment(const Structure& structure, std::string_view kind) : length_(reference_length(structure)) {
-    for (std::size_t i = 0; i < structure.constraints.size(); ++i)
-      if (const Constraint& c = structure.constraints[i]; c.kind == kind)
-        entries_.push_back({c.name, static_cast<int>(i), c.nodes});
+  Alignment(const Structure& structure, std::string_view kind) {
+    for (std::size_t i = 0; i < structure.constraints.size(); ++i) {
+      const Constraint& c = structure.constraints[i];
+      if (c.kind != kind) continue;
+      const auto place = [&](int node) { return structure.nodes[static_cast<std::size_t>(node)].position; };
+      double length = 0;
+      for (const int node : c.nodes) length = std::max(length, (place(node) - place(c.nodes[0])).norm());
+      entries_.push_back(
+          {c.name, static_cast<int>(i), c.nodes, length > 0 ? length : reference_length(structure)});
+    }
   }
   bool empty() const { return entries_.empty(); }
   bool linear() const override { return false; }
-  double length(int) const override { return length_; }
+  double length(int row) const override {
+    return entries_[static_cast<std::size_t>(row / (rows() / static_cast<int>(entries_.size())))].length;
+  }
 
  protected:
   std::vector<Entry> entries_;
-  double length_;
 };
 
 // With u = b - a, w = c - a: d(u x w) = du x w + u x dw; by a: -(d/du + d/dw). The cross product has no share
@@ -83,14 +92,14 @@ class Collinear final : public Alignment {
   }
   void value(const double* q, double* phi) const override {
     for (const Entry& e : entries_) {
-      three(phi) = edge(e, 1, q).cross(edge(e, 2, q)) / length_;
+      three(phi) = edge(e, 1, q).cross(edge(e, 2, q)) / e.length;
       phi += 3;
     }
   }
   void jacobian(const double* q, double* g) const override {
     for (const Entry& e : entries_) {
       Eigen::Map<Eigen::Matrix<double, 3, 9, Eigen::RowMajor>> rows(g);
-      const Mat3 P = across(e, q) / length_;
+      const Mat3 P = across(e, q) / e.length;
       rows.middleCols<3>(3) = -P * cross_matrix(edge(e, 2, q));
       rows.middleCols<3>(6) = P * cross_matrix(edge(e, 1, q));
       rows.leftCols<3>() = -rows.middleCols<3>(3) - rows.middleCols<3>(6);
@@ -100,7 +109,7 @@ class Collinear final : public Alignment {
   // lambda . (u x w): gradient w x lambda by u, lambda x u by w.
   void add_force(const double* q, const double* lambda, double scale, double* f) const override {
     for (const Entry& e : entries_) {
-      const Vec3 l = scale / length_ * (across(e, q) * Eigen::Map<const Vec3>(lambda));
+      const Vec3 l = scale / e.length * (across(e, q) * Eigen::Map<const Vec3>(lambda));
       const Vec3 by_u = edge(e, 2, q).cross(l), by_w = l.cross(edge(e, 1, q));
       Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[0])) -= by_u + by_w;
       Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[1])) += by_u;
@@ -110,7 +119,7 @@ class Collinear final : public Alignment {
   }
   void bias(const double* q, const double* v, double* phi_dd) const override {
     for (const Entry& e : entries_) {
-      three(phi_dd) = 2 / length_ * (across(e, q) * edge(e, 1, v).cross(edge(e, 2, v)));
+      three(phi_dd) = 2 / e.length * (across(e, q) * edge(e, 1, v).cross(edge(e, 2, v)));
       phi_dd += 3;
     }
   }
@@ -120,7 +129,7 @@ class Collinear final : public Alignment {
       const Entry& e = entries_[row / 3];
       const auto k = static_cast<Index>(row % 3);
       const double l = across(e, q).row(k).dot(Eigen::Map<const Vec3>(lambda + row - row % 3));
-      const Mat3 B = -l / length_ * cross_matrix(Vec3::Unit(k));
+      const Mat3 B = -l / e.length * cross_matrix(Vec3::Unit(k));
       Eigen::Matrix<double, 9, 9> H;
       H << B + B.transpose(), -B.transpose(), -B, -B, Mat3::Zero(), B, -B.transpose(), B.transpose(),
           Mat3::Zero();
@@ -159,12 +168,12 @@ class Coplanar final : public Alignment {
   void value(const double* q, double* phi) const override {
     for (const Entry& e : entries_) {
       const Mat3 edges = edges_of(e, q);
-      *phi++ = edges.determinant() / (length_ * length_);
+      *phi++ = edges.determinant() / (e.length * e.length);
     }
   }
   void jacobian(const double* q, double* g) const override {
     for (const Entry& e : entries_) {
-      const Vec9 by_edges = gradient(edges_of(e, q));
+      const Vec9 by_edges = gradient(edges_of(e, q), e.length);
       std::copy(by_edges.begin(), by_edges.end(), g + 3);
       Eigen::Map<Vec3> first(g);
       first.setZero();
@@ -174,7 +183,7 @@ class Coplanar final : public Alignment {
   }
   void add_force(const double* q, const double* lambda, double scale, double* f) const override {
     for (const Entry& e : entries_) {
-      const Vec9 g = scale * *lambda++ * gradient(edges_of(e, q));
+      const Vec9 g = scale * *lambda++ * gradient(edges_of(e, q), e.length);
       for (Index k = 0; k < 3; ++k) {
         Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[static_cast<std::size_t>(k + 1)])) +=
             g.segment<3>(3 * k);
@@ -187,7 +196,7 @@ class Coplanar final : public Alignment {
       const Mat3 x = edges_of(e, q), y = edges_of(e, v);
       double sum = 0;
       for (Index k = 0; k < 3; ++k) sum += x.col(k).dot(y.col((k + 1) % 3).cross(y.col((k + 2) % 3)));
-      *phi_dd++ = 2 * sum / (length_ * length_);
+      *phi_dd++ = 2 * sum / (e.length * e.length);
     }
   }
   void curvature(const double* q, const double* lambda, double* hess) const override {
@@ -199,7 +208,7 @@ class Coplanar final : public Alignment {
         H.block<3, 3>(3 * i, 3 * j) = -cross_matrix(x.col(k));
         H.block<3, 3>(3 * j, 3 * i) = cross_matrix(x.col(k));
       }
-      H *= *lambda++ / (length_ * length_);
+      H *= *lambda++ / (e.length * e.length);
       Eigen::Matrix<double, 9, 12> from_nodes = Eigen::Matrix<double, 9, 12>::Zero();
       for (Index k = 0; k < 3; ++k) {
         from_nodes.block<3, 3>(3 * k, 0) = -Mat3::Identity();
@@ -217,10 +226,10 @@ class Coplanar final : public Alignment {
       edges.col(k) = at(x, e.nodes[static_cast<std::size_t>(k + 1)]) - at(x, e.nodes[0]);
     return edges;
   }
-  Vec9 gradient(const Mat3& x) const {
+  static Vec9 gradient(const Mat3& x, double length) {
     Vec9 g;
     g << x.col(1).cross(x.col(2)), x.col(2).cross(x.col(0)), x.col(0).cross(x.col(1));
-    return g / (length_ * length_);
+    return g / (length * length);
   }
 };
 

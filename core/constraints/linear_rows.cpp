@@ -128,9 +128,14 @@ Row held(const Structure& structure, const Constraint& c, const Vec3& direction,
 }  // namespace
 
 double reference_length(const Structure& structure) {
-  double sum = 0;
+  double sum = 0, extent = 0;
   for (const Rod& rod : structure.rods) sum += rod.length;
-  return structure.rods.empty() ? 1.0 : sum / static_cast<double>(structure.rods.size());
+  if (!structure.rods.empty()) return sum / static_cast<double>(structure.rods.size());
+  for (const Node& node : structure.nodes) {
+    if (node.ghost) break;  // they come last, and are nowhere
+    extent = std::max(extent, (node.position - structure.nodes[0].position).norm());
+  }
+  return extent > 0 ? extent : 1.0;
 }
 
 std::unique_ptr<ConstraintBlock> plane_block(const Structure& structure) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/constraints/measure_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/constraints/linear_rows.hpp"
@@ -44,8 +45,12 @@ class MeasureRows final : public ConstraintBlock {
   }
   void add_target(int order, double t, double scale, double* out) const override {
     for (const Measured& row : rows_) {
-      *out += scale * row.scale * row.target.derivative(order, t);
-      if (order == 0 && row.measure.wraps()) *out = std::remainder(*out, 2 * pi * row.scale);
+      double target = row.target.derivative(order, t);
+      // Turns go before the two meet: what is left has the digits of one turn, however many there were.
+      const bool turns = order == 0 && row.measure.wraps();
+      if (turns) target = std::remainder(target, 2 * pi);
+      *out += scale * row.scale * target;
+      if (turns) *out = std::remainder(*out, 2 * pi * row.scale);
       ++out;
     }
   }
@@ -100,7 +105,10 @@ std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure) {
     if (c.kind != "measure") continue;
     MeasureFunction measure(c.measure, structure.deployment);
     const double scale = measure.is_angle() ? length : 1.0;
-    rows.push_back({c.name, static_cast<int>(i), std::move(measure), c.target, scale, length, followed[i]});
+    double terms = 1;  // a row of large coefficients is as large
+    for (const MeasureTerm& term : c.measure.terms) terms = std::max(terms, std::abs(term.coefficient));
+    rows.push_back(
+        {c.name, static_cast<int>(i), std::move(measure), c.target, scale, terms * length, followed[i]});
   }
   if (rows.empty()) return nullptr;
   return std::make_unique<MeasureRows>(std::move(rows));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/twofold.hpp"
 #include "core/structure/course.hpp"
 #include "core/structure/dihedral.hpp"
 
@@ -53,6 +54,23 @@ Matrix atan2_hessian(double s, double c, const Vector& ds, const Vector& dc, con
 double on_branch(double angle, double near) {
   return angle - 2 * pi * std::round((angle - near) / (2 * pi));
 }
+
+// A sum of terms of which angles have gone round many times: the turns, which may cancel each other (of
+// gears, of a drum and its cable), are summed up exactly, so that what is left has the digits of one turn.
+class TermSum {
+ public:
+  // c times the value, or times the angle a whole number of turns away that is within half a turn of `near`.
+  void add(double c, double value, double near, bool counts) {
+    within_ += c * value;
+    const double turns = counts ? std::round((near - value) / (2 * pi)) : 0.0;
+    if (turns != 0) turned_ = turned_ + Twofold(2 * pi) * Twofold(turns) * Twofold(c);
+  }
+  double value() const { return within_ + static_cast<double>(turned_); }
+
+ private:
+  double within_ = 0;
+  Twofold turned_;
+};
 
 }  // namespace
 
@@ -149,23 +167,25 @@ void MeasureFunction::each_term(const Each& each) const {
 
 double MeasureFunction::value(const double* q, const Moment& at, int followed) const {
   if (terms_.empty()) return value(q, at.near(followed, reference_));
-  double sum = 0;
+  TermSum sum;
   each_term([&](const MeasureFunction& term, double c, std::size_t, int turn) {
-    sum += c * term.value(q, at, followed < 0 || !term.turns_ ? -1 : followed + turn);
+    const double near = term.near(at, followed < 0 ? -1 : followed + turn);
+    sum.add(c, term.value(q, 0.0), near, term.turns_);
   });
-  return sum;
+  return sum.value();
 }
 
 double MeasureFunction::value_and_gradient(const double* q, double* gradient, const Moment& at,
                                            int followed) const {
   if (terms_.empty()) return value_and_gradient(q, gradient, at.near(followed, reference_));
-  double sum = 0;
+  TermSum sum;
   each_term([&](const MeasureFunction& term, double c, std::size_t first, int turn) {
     double* const g = gradient + first;
-    sum += c * term.value_and_gradient(q, g, at, followed < 0 || !term.turns_ ? -1 : followed + turn);
+    const double near = term.near(at, followed < 0 ? -1 : followed + turn);
+    sum.add(c, term.value_and_gradient(q, g, 0.0), near, term.turns_);
     for (std::size_t i = 0; i < term.stencil_.size(); ++i) g[i] *= c;
   });
-  return sum;
+  return sum.value();
 }
 
 void MeasureFunction::add_hessian(const double* q, double scale,

@@ -57,6 +57,7 @@ class MeasureFunction {
   double reference() const { return reference_; }
 
  private:
+  double near(const Moment& at, int followed) const { return at.near(followed, reference_); }
   struct Angle;
   Angle angle_terms(const double* q) const;
   void angle_hessian(const double* q, double* hess) const;

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a row of the constraints counts as round-off is that of its own nodes and of one turn, however large
+// or small the rest of the structure is and however often it has gone round.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/simulate/simulation.hpp"
+
+using namespace unfurl;
+
+namespace row_sizes_test {
+
+namespace {
+
+Simulation run_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  const Scene scene = read_scene_text(text, "rows.toml", overrides);
+  return simulate(build_model(scene), scene.solver);
+}
+
+long iterations_until(const std::string& text, double end) {
+  const Simulation run = run_of(text, {"solver.end_time=" + std::to_string(end)});
+  CHECK(run.status == RunStatus::completed);
+  return run.newton_iterations;
+}
+
+const std::string crank =
+    "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true},\n"
+    "{name = 'Z', position = [1, 0, 0], fixed = true}, {name = 'B', position = [1, 0, 0], mass = 1}]\n"
+    "rods = [{nodes = ['A', 'B'], mass = 1}]\n[[constraints]]\nkind = 'plane'\nnodes = ['B']\n"
+    "normal = [0, 0, 1]\n[[constraints]]\nkind = 'angle'\nnodes = ['Z', 'A', 'B']\naxis = [0, 0, 1]\n"
+    "motion = 'rate'\nrate = 360\n[solver]\nstep = 0.02\n";
+
+}  // namespace
+
+// theta = 2 pi t: after whole seconds the crank is where it began.
+TEST_CASE("a driven crank goes round as often as it is asked to, at the price of its first turns") {
+  for (const char* method : {"dvm", "rk4_projected", "generalized_alpha"}) {
+    INFO(method);
+    const std::string text = crank + "method = '" + method + "'\nend_time = 120\n";
+    const Simulation run = run_of(text);
+    REQUIRE(run.status == RunStatus::completed);
+    const Trajectory& motion = run.trajectory;
+    double most = 0;
+    for (std::size_t i = 0; i < motion.size(); ++i) {
+      const double angle = 2 * pi * std::remainder(motion.time(i), 1.0);
+      const VectorXd q = motion.node_positions(i);
+      most = std::max(most, std::hypot(q[6] - std::cos(angle), q[7] - std::sin(angle)));
+    }
+    // Times are known to half an ulp of 120 s, 7e-15 s, at 2 pi m/s.
+    CHECK(most < 1e-12);
+  }
+  CHECK(iterations_until(crank, 80) < 11 * iterations_until(crank, 8));  // as many a step, and a tenth
+}
+
+// Free of forces both turn evenly: the first at 2 pi rad/s, the second 0.4 times as fast, the other way.
+TEST_CASE("gears turn on after hundreds of turns as in the first") {
+  const std::string gears =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'H', position = [0, 0, 0], fixed = true},\n"
+      "{name = 'A', position = [1, 0, 0], fixed = true},\n"
+      "{name = 'B', position = [0.6, 0.8, 0], velocity = [-5.02654824574367, 3.76991118430775, 0]},\n"
+      "{name = 'K', position = [3, 0, 0], fixed = true}, {name = 'C', position = [4, 0, 0], fixed = true},\n"
+      "{name = 'D', position = [3, 1, 0]}]\n"
+      "rods = [{nodes = ['H', 'B'], mass = 1}, {nodes = ['K', 'D'], mass = 1}]\n"
+      "[[constraints]]\nkind = 'plane'\nnodes = ['B', 'D']\nnormal = [0, 0, 1]\n"
+      "[[constraints]]\nkind = 'gear'\nnodes = ['A', 'H', 'B', 'C', 'K', 'D']\nradii = [0.2, 0.5]\n"
+      "axis = [0, 0, 1]\n[solver]\nend_time = 200\nstep = 0.05\n";
+  const Simulation run = run_of(gears);
+  REQUIRE(run.status == RunStatus::completed);
+  const Trajectory& motion = run.trajectory;
+  const VectorXd q = motion.node_positions(motion.size() - 1);
+  const double first = std::atan2(q[7], q[6]) - std::atan2(0.8, 0.6),
+               second = std::atan2(q[16], q[15] - 3) - pi / 2;
+  // Teeth that mesh: r_1 theta_1 + r_2 theta_2 = 0, of angles known up to turns, 0.2 * 2 pi of the sum.
+  const double slip = std::remainder(0.2 * first + 0.5 * second, 0.1 * 2 * pi);
+  CHECK(std::abs(slip) < 1e-12);
+  CHECK(iterations_until(gears, 180) < 11 * iterations_until(gears, 18));
+}
+
+// A plate of 10 m, and hundreds of rods of a millimetre that have nothing to do with it.
+TEST_CASE("four nodes stay in a plane at the same price whatever lies beside them") {
+  const auto plate = [](int count) {
+    const std::string n = std::to_string(count);
+    return "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'A'\nposition = [3.3, 1.7, 0.9]\nfixed "
+           "= true\n"
+           "[[structure.nodes]]\nname = 'B'\nposition = [10, 0, 0]\nvelocity = [0, 1, 0]\nmass = 1\n"
+           "[[structure.nodes]]\nname = 'C'\nposition = [9.1, 11.3, 2.4]\nvelocity = [0, 0, 3]\nmass = 1\n"
+           "[[structure.nodes]]\nname = 'D'\nposition = [2.825, 11.785, 3.015]\nvelocity = [0, 0, 1]\nmass = "
+           "1\n"
+           "[[structure.nodes]]\nrepeat = {i = '0:" +
+           n +
+           "'}\nname = 'P{i}'\nposition = ['=20+i*0.002', 0, 0]\nmass = 1\n"
+           "[[structure.nodes]]\nrepeat = {i = '0:" +
+           n +
+           "'}\nname = 'Q{i}'\nposition = ['=20+i*0.002', 0.001, 0]\nvelocity = [0.001, 0, 0]\nmass = 1\n"
+           "[[structure.rods]]\nnodes = ['A', 'B']\nmass = 1\n[[structure.rods]]\nnodes = ['B', 'C']\nmass = "
+           "1\n"
+           "[[structure.rods]]\nnodes = ['C', 'D']\nmass = 1\n[[structure.rods]]\nnodes = ['D', 'A']\nmass = "
+           "1\n"
+           "[[structure.rods]]\nrepeat = {i = '0:" +
+           n +
+           "'}\nnodes = ['P{i}', 'Q{i}']\nmass = 1\n"
+           "[[constraints]]\nkind = 'coplanar'\nnodes = ['A', 'B', 'C', 'D']\n[solver]\nend_time = 0.2\nstep "
+           "= 0.02\n";
+  };
+  const Simulation alone = run_of(plate(1)), beside = run_of(plate(200));
+  CHECK(alone.status == RunStatus::completed);
+  REQUIRE(beside.status == RunStatus::completed);
+  CHECK(beside.newton_iterations <= alone.newton_iterations + 10);  // one a step more
+}
+
+// The same linkage, scaled: of a method that drifts, by the same share.
+TEST_CASE("a structure without rods has the size of its nodes' distances") {
+  double first = 0;
+  for (const char* size : {"1.0", "1e-6", "1e5"}) {
+    INFO(size);
+    const Simulation run = run_of(
+        std::string("[variables]\nL = ") + size +
+        "\n[structure]\nkind = 'custom'\nrods = []\nnodes = [{name = 'A', position = [0, 0, 0], fixed = "
+        "true},\n"
+        "{name = 'B', position = ['=0.6*L', '=-0.8*L', 0], mass = 1},\n"
+        "{name = 'C', position = ['=1.6*L', '=-0.8*L', 0], mass = 1}]\n"
+        "[[constraints]]\nkind = 'length'\nnodes = ['A', 'B']\n"
+        "[[constraints]]\nkind = 'length'\nnodes = ['B', 'C']\n[gravity]\nacceleration = [0, '=-9.81*L', 0]\n"
+        "[solver]\nmethod = 'rk4'\nend_time = 2\nstep = 0.1\n");
+    const Diagnostics d = diagnose(run);
+    const double most = *std::ranges::max_element(d.at("constraint_relative_max").values);
+    CHECK(most > 1e-3);
+    if (first == 0) first = most;
+    CHECK(most == Approx(first).epsilon(1e-6));  // of rounding that the drift has grown
+  }
+}
+
+}  // namespace row_sizes_test
