@@ -250,7 +250,9 @@ std::optional<Sweep> compute(const SweepPlan& plan, const StudySession& session,
         [&](Journal& all, const StudyHooks& own) { return run_sweep(plan, all, own); },
         [](const Sweep& sweep) { return sweep.missing.empty(); });
   } catch (const JournalMismatch& error) {
-    throw FileError(session.directory(), std::string(error.what()) + "; other --vary or --measure than now?");
+    throw FileError(session.directory(), std::string(error.what()) +
+                                             "; use another directory, or --force to begin anew; other "
+                                             "--vary or --measure than now?");
   }
 }
 

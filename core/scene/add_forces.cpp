@@ -37,13 +37,13 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
       forces.push_back(one);
       break;
     case Members::each_node:
-      for (const int node : find.nodes(e, true)) {
+      for (const int node : find.nodes_outside_rods(e)) {
         forces.push_back(one);
         forces.back().nodes = {node};
       }
       break;
     case Members::node_list:
-      one.nodes = find.nodes(e, true);
+      one.nodes = find.nodes_outside_rods(e);
       if (!one.nodes.empty()) forces.push_back(one);
       break;
     case Members::three_nodes:

@@ -165,6 +165,7 @@ void add_load(Structure& structure, int node, const Vec3& force) {
 void add_loads(const Scene& scene, Structure& structure) {
   NameIndex names;
   for (const auto& node : structure.nodes) names.add(node.name);
+  const std::vector<bool> within = nodes_within_rods(structure);
   std::vector<SceneProblem> problems;
   for (std::size_t i = 0; i < scene.loads.size(); ++i) {
     const auto& load = scene.loads[i];
@@ -172,7 +173,8 @@ void add_loads(const Scene& scene, Structure& structure) {
     const std::string key = "loads[" + std::to_string(i) + "].nodes";
     std::set<int> loaded;
     for (const auto& pattern : load.nodes) {
-      const auto found = names.matching(pattern);
+      std::vector<int> found = names.matching(pattern);
+      leave_nodes_within_rods(pattern, within, found);
       for (const int node : found) {
         if (loaded.insert(node).second)
           add_load(structure, node, load.force);

@@ -11,9 +11,27 @@
 
 namespace unfurl {
 
+std::vector<bool> nodes_within_rods(const Structure& structure) {
+  std::vector<bool> within(structure.nodes.size(), false);
+  for (std::size_t r = 1; r < structure.rods.size(); ++r)
+    if (const Rod& rod = structure.rods[r], &before = structure.rods[r - 1];
+        !rod.whole.empty() && rod.whole == before.whole && rod.a == before.b)
+      within[static_cast<std::size_t>(rod.a)] = true;
+  return within;
+}
+
+void leave_nodes_within_rods(const std::string& pattern, const std::vector<bool>& within,
+                             std::vector<int>& found) {
+  if (pattern.find('.') == std::string::npos)
+    std::erase_if(found, [&](int node) { return within[static_cast<std::size_t>(node)]; });
+}
+
 MemberFinder::MemberFinder(const Structure& structure)
     : structure_(structure), start_(node_positions(structure)) {
-  for (const Node& node : structure.nodes) node_names_.add(node.name);
+  for (const Node& node : structure.nodes) {
+    if (node.ghost) break;  // they come last, and no scene names them
+    node_names_.add(node.name);
+  }
   for (const Rod& rod : structure.rods) rod_names_.add(rod.name);
   for (std::size_t r = 0; r < structure.rods.size(); ++r)
     if (const Rod& rod = structure.rods[r]; !rod.whole.empty()) {
@@ -51,6 +69,17 @@ void MemberFinder::problem(const SceneElement& element, const std::string& key, 
 
 void MemberFinder::throw_problems() {
   if (!problems_.empty()) throw SceneError(std::move(problems_));
+}
+
+std::vector<int> MemberFinder::nodes_outside_rods(const SceneElement& element) {
+  const std::vector<bool> within = nodes_within_rods(structure_);
+  std::vector<int> all = nodes(element, true), found;
+  for (const std::string& pattern : element.nodes) {
+    std::vector<int> matches = node_names_.matching(pattern);
+    leave_nodes_within_rods(pattern, within, matches);
+    found.insert(found.end(), matches.begin(), matches.end());
+  }
+  return all.empty() ? all : found;
 }
 
 std::vector<int> MemberFinder::nodes(const SceneElement& element, bool globs) {

@@ -10,6 +10,12 @@
 
 namespace unfurl {
 
+// Nodes within rods that were cut to bend, "ROD.1" and so on.
+std::vector<bool> nodes_within_rods(const Structure& structure);
+// Takes out of what a pattern matches those nodes, unless it has a point itself.
+void leave_nodes_within_rods(const std::string& pattern, const std::vector<bool>& within,
+                             std::vector<int>& found);
+
 // A vector parameter of three numbers.
 inline Vec3 vec3(const ParamSet& values, std::string_view name) {
   const auto& v = values.vector(name);
@@ -24,6 +30,9 @@ class MemberFinder {
 
   // Each collects what is wrong instead of throwing; an empty result says that something was.
   std::vector<int> nodes(const SceneElement& element, bool globs);  // in the entry's order, none twice
+  // Without those within rods that were cut to bend, which only a pattern with a point means: what acts on
+  // each node that is named acts on nodes of the scene.
+  std::vector<int> nodes_outside_rods(const SceneElement& element);
   // The same with nodes that come again: those of a path, or of several angles.
   std::vector<int> path(const SceneElement& element);
   int node(const SceneElement& element, const std::string& key, const std::string& name);  // -1: a problem

@@ -94,12 +94,13 @@ class Parser {
 
   double sum() {
     if (++depth_ > max_depth) fail("nested too deep");
+    const std::size_t begin = here();
     double value = product();
     while (true) {
       if (take('+'))
-        value += product();
+        value = finite(value + product(), begin);
       else if (take('-'))
-        value -= product();
+        value = finite(value - product(), begin);
       else
         break;
     }

@@ -42,8 +42,7 @@ void Journal::take_in(const std::filesystem::path& path) {
   if (records.front() != columns_)
     throw JournalMismatch(
         path.string() +
-        ": holds results with other columns, of another version or another question; use another "
-        "directory, or --force to begin anew");
+        ": holds results with other columns, of another version or another question");
   Damage damage;
   decltype(rows_) found;  // of a key that is there twice the later row, as append() would have it
   for (std::size_t i = 1; i < records.size(); ++i) {

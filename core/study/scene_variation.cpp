@@ -26,8 +26,6 @@ Scene SceneSource::read(const std::vector<std::string>& changes) const {
 
 SceneSource scene_source(const std::string& path, const std::vector<std::string>& overrides) {
   SceneSource source{path, overrides};
-  std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) return source;
   TextFile file = read_text_file(path, TextSource::pipe_too);
   if (!file.error.empty()) throw UnreadableScene("cannot read scene " + path + ": " + file.error);
   source.text = std::make_shared<const std::string>(std::move(file.text));

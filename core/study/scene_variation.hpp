@@ -25,7 +25,7 @@ struct SceneSource {
   Scene read(const std::vector<std::string>& changes = {}) const;
 };
 
-// Of a path as a person gave it. What can be read once only (a pipe, /dev/stdin) is read now. Throws
+// Of a path as a person gave it, read now: a file that is edited while its study runs is another scene. Throws
 // UnreadableScene.
 SceneSource scene_source(const std::string& path, const std::vector<std::string>& overrides);
 

@@ -55,6 +55,7 @@ VectorXd without_drives(const Structure& structure, const VectorXd& angles) {
 double size_of_structure(const Structure& structure) {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const Node& node : structure.nodes) {
+    if (node.ghost) break;  // they come last, and are nowhere
     low = low.cwiseMin(node.position);
     high = high.cwiseMax(node.position);
   }

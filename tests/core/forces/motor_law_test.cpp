@@ -7,6 +7,9 @@
 #include <random>
 
 #include "core/forces/motor.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/simulate/simulation.hpp"
 #include "core/system/mass_matrix.hpp"
 #include "tests/support/table_structure.hpp"
 
@@ -128,6 +131,39 @@ TEST_CASE("the part of a motor's law that holds is the one that has room, and no
 
 // The ghost that sums up the error, m (f' - s') on it, is part of the motor's derivatives, not of its power:
 // it has no energy.
+// A rotor, a drum and a controller's integral are numbers of their own: no name of the scene, and no "*".
+TEST_CASE("names of nodes never mean what a motor or a winch has besides") {
+  const std::string linkage =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true},\n"
+      "{name = 'G', position = [0, -1, 0], fixed = true}, {name = 'B', position = [0, 1, 0], mass = 1},\n"
+      "{name = 'C', position = [0, 1.5, 0.5], mass = 1}]\n"
+      "rods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], mass = 1}]\n";
+  const std::vector<std::string> drives = {
+      "[[forces]]\nkind = 'motor'\nnodes = ['G', 'A', 'B']\naxis = [1, 0, 0]\nstall_torque = 1\n"
+      "no_load_speed = 1000\ninertia = 0.1\n",
+      "[[forces]]\nkind = 'motor'\nnodes = ['G', 'A', 'B']\naxis = [1, 0, 0]\nstall_torque = 1\n"
+      "no_load_speed = 1000\ncontrol = 'position'\ncommand = 20\nproportional = 5\nintegral = 10\n"};
+  for (const std::string& drive : drives)
+    for (const char* held : {"kind = 'plane'\nnormal = [1, 0, 0]", "kind = 'equal'\ndirection = [1, 0, 0]"}) {
+      INFO(drive << held);
+      std::vector<VectorXd> ends;
+      for (const char* names : {"'*'", "'?'", "'A', 'G', 'B', 'C'"}) {
+        const Scene scene = read_scene_text(linkage + drive + "[[constraints]]\n" + held + "\nnodes = [" +
+                                                names + "]\n[solver]\nend_time = 0.5\nstep = 0.05\n",
+                                            "names.toml");
+        const Simulation run = simulate(build_model(scene), scene.solver);
+        ends.push_back(run.trajectory.node_positions(run.trajectory.size() - 1));
+        CHECK(std::abs(ends.back()[8]) > 1e-4);  // B goes up: driven
+        CHECK(ends.back() == ends.front());
+      }
+    }
+  CHECK_THROWS_WITH(build_model(read_scene_text(linkage + drives[0] +
+                                                    "[[constraints]]\nkind = 'plane'\nnormal = [1, 0, 0]\n"
+                                                    "nodes = ['rotor of motor 1']\n",
+                                                "rotor.toml")),
+                    Catch::Contains("there is no node"));
+}
+
 TEST_CASE("a motor and the ghost of its controller: power and derivatives agree with the force") {
   Structure structure = testing::table_structure();
   structure.forces = {motor_with(Motor::Control::position)};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/build.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -118,6 +119,31 @@ TEST_CASE("what only the equations of motion can tell is located as well") {
     CHECK(error.problems()[0].where.line == 17);  // the entry [[structure.nodes]] of the tip
     CHECK(error.problems()[0].message.find("tip") != std::string::npos);
   }
+}
+
+// What acts on each node that a pattern names does so on nodes of the scene, however finely its rods are cut.
+TEST_CASE("patterns pass over nodes within rods that are cut to bend") {
+  const std::string text =
+      "[structure]\nkind = 'custom'\nyoungs_modulus = 7e10\n"
+      "nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'M1', position = [1, 0, 0], mass = "
+      "1},\n"
+      "{name = 'B', position = [2, 0, 0], mass = 1}]\n"
+      "rods = [{nodes = ['A', 'M1'], mass = 1, area = 1e-4}, {nodes = ['M1', 'B'], mass = 1, area = 1e-4}]\n"
+      "[[forces]]\nkind = 'drag'\nnodes = ['*']\ndamping = 0.5\n[[loads]]\nforce = [0, 0, -1]\nnodes = ";
+  const auto counts = [&](const std::string& names, const std::string& segments) {
+    const Structure s =
+        build_structure(read_scene_text(text + names, "cut.toml", {"structure.segments=" + segments}));
+    const auto drags = std::ranges::count_if(s.forces, [](const Force& f) { return f.kind == "drag"; });
+    return std::pair{std::ranges::count_if(s.loads, [](const auto& load) { return load.force.norm() > 0; }),
+                     drags};
+  };
+  for (const char* segments : {"1", "4"}) {
+    INFO(segments);
+    CHECK(counts("['M*']", segments) == std::pair<std::ptrdiff_t, std::ptrdiff_t>{1, 3});
+    CHECK(counts("['*']", segments).first == 3);
+  }
+  CHECK(counts("['M1-B.*']", "4").first == 3);  // with a point they are meant
+  CHECK(counts("['M1-B.2']", "4").first == 1);
 }
 
 }  // namespace build_test

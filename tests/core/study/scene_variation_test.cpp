@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/study/scene_variation.hpp"
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
 
 #include "core/diagnostics/measures.hpp"
+#include "core/scene/reader.hpp"
 
 using namespace unfurl;
 
@@ -34,6 +39,23 @@ TEST_CASE("a scene is read again with changes behind those of the command line")
   CHECK(changed.read({"structure.units=11"}).solver.step == 0.5);
   CHECK(changed.overrides.size() == 2);
   CHECK_THROWS_WITH(plain.read({"structure.unit=11"}), Catch::Contains("did you mean 'units'"));
+}
+
+TEST_CASE("a file that is edited while its study runs changes none of its points") {
+  namespace fs = std::filesystem;
+  const fs::path file =
+      fs::temp_directory_path() / ("unfurl_scene_variation_" + std::to_string(::getpid()) + ".toml");
+  const auto write = [&](const std::string& mass) {
+    std::ofstream(file) << "[structure]\nkind = 'pendulum'\nbob_mass = " << mass << "\n";
+  };
+  write("2.0");
+  const SceneSource source = scene_source(file.string(), {"structure.length=1.5"});
+  write("20.0");
+  CHECK(scene_number(source.read({"structure.angle=80"}), "structure.bob_mass") == 2.0);
+  CHECK(scene_number(source.read(), "structure.length") == 1.5);
+  fs::remove(file);
+  CHECK(scene_number(source.read(), "structure.bob_mass") == 2.0);
+  CHECK_THROWS_AS(scene_source(file.string(), {}), UnreadableScene);
 }
 
 TEST_CASE("numbers of a scene are found where they stand or by default, and are whole or not") {

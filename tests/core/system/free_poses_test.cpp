@@ -107,6 +107,7 @@ TEST_CASE(
           inertia + "\n");
       // Two rods in a row have seven degrees of freedom; six are those of a body.
       CHECK(FreePoses(structure).motions(node_positions(structure)).cols() == 1);
+      CHECK(FreePoses(structure).size() == Approx(std::hypot(1.3, 1.0)));  // of the box of A, B, C, wherever
     }
 }
 
