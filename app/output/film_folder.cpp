@@ -72,6 +72,13 @@ bool FilmFolder::holds_another() const {
   return !holds_this() && holds_frames(directory_);
 }
 
+void FilmFolder::refuse_to_encode_another(bool encode_only) const {
+  if (encode_only && holds_another())
+    throw FileError(
+        directory_,
+        "holds frames of another film, and --encode-only draws none; leave that out, or use another -o");
+}
+
 void FilmFolder::clear(WrittenFiles& written) {
   written.remove_all();
   if (holds_frames(written.directory())) written.keep_aside("frames");

@@ -24,6 +24,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Without a slash at its end: the parent of "a/b/" is "a/b".
+fs::path plain(const fs::path& directory) {
+  return directory.has_filename() ? directory : directory.parent_path();
+}
+
 bool holds_our_results(const fs::path& directory) {
   if (WrittenFiles::begun_here(directory)) return true;
   const TextFile summary = read_text_file((directory / "summary.json").string());
@@ -67,7 +72,9 @@ OwnDirectory::OwnDirectory(const std::string& path, bool force, const std::strin
   std::error_code error;
   if (fs::exists(path_, error) && !fs::is_directory(path_, error))
     throw FileError(path_, "is a file; -o names a directory");
-  made_ = fs::create_directories(path_, error);
+  for (fs::path part = plain(path_); !part.empty() && !fs::exists(part, error); part = part.parent_path())
+    made_ = part;
+  fs::create_directories(path_, error);
   if (error) throw FileError(path_, error.value());
   const bool empty = holds_nothing(path_);
   // Another worker may have begun a moment ago.
@@ -125,11 +132,11 @@ OwnDirectory::~OwnDirectory() {
   if (!written_) return;
   const auto kept = written_->kept();
   // What was refused before anything was written leaves nothing.
-  if (made_ && lock_->alone() && written_->is_empty()) {
+  if (!made_.empty() && lock_->alone() && written_->is_empty()) {
     std::error_code error;
     written_.reset();
     fs::remove(path_ / WrittenFiles::list_name, error);
-    fs::remove(path_, error);
+    for (fs::path part = plain(path_); fs::remove(part, error) && part != made_;) part = part.parent_path();
   }
   if (kept.empty()) return;
   const std::string_view first = kept.front();

@@ -39,7 +39,8 @@ class OwnDirectory {
   std::filesystem::path path_;
   std::optional<DirectoryLock> lock_;
   std::optional<WrittenFiles> written_;
-  bool made_ = false;  // by this one
+  std::filesystem::path
+      made_;  // by this one: the first directory of the path that was not there; empty: none
 };
 
 // Throws FileError, naming the file, where it could not be written now: no such directory, no permission,

@@ -232,9 +232,11 @@ std::vector<std::string_view> list_names() {
 int cmd_list(const Arguments& arguments) {
   const std::string& name = arguments.names.front();
   const bool keys = name == "keys" || is_key_table(name);
-  if (!keys && arguments.names.size() > 1)
+  if (name != "keys" && arguments.names.size() > 1)
     throw UsageError("unexpected argument " + in_quotes(arguments.names[1]) + "; only keys has tables");
   if (!keys && arguments.markdown) throw UsageError("--markdown is for list keys");
+  if (arguments.json && arguments.markdown)
+    throw UsageError("--json and --markdown are two forms; choose one");
   if (name == "keys") return list_keys(arguments.names.size() > 1 ? arguments.names[1] : "", arguments);
   if (keys) return list_keys(name, arguments);
   for (const List& list : lists)

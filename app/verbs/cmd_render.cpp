@@ -42,6 +42,7 @@ int cmd_render(const Arguments& arguments) {
   const std::filesystem::path& directory = output.path();
   DirectoryLock& lock = output.lock();
   FilmFolder folder(directory, scene, arguments.gpu);
+  folder.refuse_to_encode_another(arguments.encode_only);
   if (folder.holds_another() && !arguments.force)
     throw FileError(directory,
                     "holds frames of another film (the scene, its settings or the program changed); "

@@ -161,6 +161,7 @@ int render_mode(const Arguments& arguments) {
   output.require_scene(scene_text(scene), arguments.force);
   const std::string which = "mode " + std::to_string(arguments.mode) + " at " + exact_number(vibration.t);
   FilmFolder folder(output.path(), shown, arguments.gpu, which);
+  folder.refuse_to_encode_another(arguments.encode_only);
   if (!folder.holds_this() && !folder.fresh() && !arguments.force)
     throw FileError(output.path(),
                     "holds frames of another film or other results; use --force to start "

@@ -95,6 +95,11 @@ TEST_CASE(
   CHECK(files_in(dir / "out/frames").size() == 1);
   REQUIRE(run_program(with(film, {"--frames", "1:3"})).code == 0);
   fs::remove(dir / "out/animation.webp");
+  // Another film's frames do not go for one of which nothing is drawn.
+  const ProgramResult other =
+      run_program(with(film, {"--encode-only", "--force", "--set", "solver.end_time=0.05"}));
+  CHECK(other.code == 5);
+  CHECK(other.err.find("--encode-only draws none") != std::string::npos);
   const ProgramResult joined = run_program(with(film, {"--encode-only"}));
   CHECK(joined.code == 0);
   CHECK(fs::exists(dir / "out/animation.webp"));

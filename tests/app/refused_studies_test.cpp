@@ -143,11 +143,17 @@ TEST_CASE("a directory where a table should be is told of before anything is don
 
 TEST_CASE("a run that is refused leaves no directory") {
   const ScratchDirectory dir;
-  const ProgramResult refused =
-      run_program({"run", "bricard", "-o", dir / "o", "--set", "solver.model=path"});
-  INFO(refused.err);
-  CHECK(refused.code == 3);
-  CHECK_FALSE(std::filesystem::exists(dir / "o"));
+  std::filesystem::create_directories(dir / "mine");
+  for (const char* path : {"o", "p/deeper/o", "p/o/", "mine/o"}) {
+    INFO(path);
+    const ProgramResult refused =
+        run_program({"run", "bricard", "-o", dir / path, "--set", "solver.model=path"});
+    INFO(refused.err);
+    CHECK(refused.code == 3);
+    CHECK_FALSE(std::filesystem::exists(dir / path));
+    CHECK_FALSE(std::filesystem::exists(dir / "p"));
+  }
+  CHECK(std::filesystem::exists(dir / "mine"));  // it was there before
 }
 
 TEST_CASE("keys that are varied or solved for and do nothing are told of") {
