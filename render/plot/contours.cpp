@@ -45,8 +45,11 @@ Segments contour(const Field& field, double level) {
 }
 
 double interpolate(const Field& field, std::size_t i, std::size_t j, double u, double v) {
-  return (1 - u) * ((1 - v) * field.value(i, j) + v * field.value(i, j + 1)) +
-         u * ((1 - v) * field.value(i + 1, j) + v * field.value(i + 1, j + 1));
+  const auto part = [&](double weight, std::size_t a, std::size_t b) {
+    return weight == 0 ? 0.0 : weight * field.value(a, b);
+  };
+  return part((1 - u) * (1 - v), i, j) + part((1 - u) * v, i, j + 1) + part(u * (1 - v), i + 1, j) +
+         part(u * v, i + 1, j + 1);
 }
 
 }  // namespace unfurl::plot

@@ -19,7 +19,8 @@ struct Segments {
 // Where the field takes this value: marching squares with linear interpolation. Squares with a NaN have none.
 Segments contour(const Field& field, double level);
 
-// Bilinear value at (u, v) in square (i, j), u and v from 0 to 1.
+// Bilinear value at (u, v) in square (i, j), u and v from 0 to 1; corners without weight, as they are on an
+// edge, may have none.
 double interpolate(const Field& field, std::size_t i, std::size_t j, double u, double v);
 
 }  // namespace unfurl::plot

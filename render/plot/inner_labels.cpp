@@ -86,22 +86,26 @@ void add_line_label(const ReferenceLine& line, const std::vector<double>& others
 // On a map the lines of a level are broken for its value, once, away from the edges and from other values.
 void add_contour_labels(const Panel& panel, PanelLayout& out) {
   if (panel.cells.empty()) return;
-  constexpr double enough = 60;  // distance of values [points]
-  const Rect inside = out.frame.grown(-9);
-  std::vector<Point> taken;
+  constexpr double enough = 40, least = 2;  // between values, and to the edges [points]
+  std::vector<Rect> taken;
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     if (panel.curves[i].label.empty()) continue;
+    const double wide = 0.5 * text_width(panel.curves[i].label, small_size), tall = 0.5 * small_size;
+    const auto box = [&](const Point& p) { return Rect{p.x - wide, p.y - tall, p.x + wide, p.y + tall}; };
     Point best{};
-    double most = 12;  // nearer ones would touch
+    double most = least;
     for (const Polyline& piece : out.curves[i])
       for (const Point& p : piece) {
-        double free =
-            std::min({enough, p.x - inside.x0, inside.x1 - p.x, p.y - inside.y0 + 6, inside.y1 - p.y + 6});
-        for (const Point& other : taken) free = std::min(free, std::hypot(p.x - other.x, p.y - other.y));
+        const Rect here = box(p);
+        double free = std::min({enough, here.x0 - out.frame.x0, out.frame.x1 - here.x1,
+                                here.y0 - out.frame.y0, out.frame.y1 - here.y1});
+        for (const Rect& other : taken)
+          free = std::min(free, std::max({here.x0 - other.x1, other.x0 - here.x1, here.y0 - other.y1,
+                                          other.y0 - here.y1}));
         if (free > most) most = free, best = p;
       }
-    if (most <= 12) continue;
-    taken.push_back(best);
+    if (most <= least) continue;
+    taken.push_back(box(best));
     out.labels.push_back({{best.x, best.y + cap_height * small_size / 2},
                           panel.curves[i].label,
                           {small_size, ink, Anchor::middle},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/scene/camera_path.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -70,6 +71,28 @@ Camera mixed(const Camera& a, const Camera& b, float u) {
   c.far_plane += u * (b.far_plane - a.far_plane);
   c.parallel_height += u * (b.parallel_height - a.parallel_height);
   return c;
+}
+
+// Points that have between them where every node is in the states [first, end): those of all states, or of
+// many the corners of each node's box in each of four parts.
+std::vector<Vec3> reach_of(const std::vector<std::vector<Vec3>>& poses, std::size_t first, std::size_t end) {
+  constexpr std::size_t parts = 4, corners = 8;
+  std::vector<Vec3> points;
+  if (end - first <= parts * corners) {
+    for (std::size_t i = first; i < end; ++i) points.insert(points.end(), poses[i].begin(), poses[i].end());
+    return points;
+  }
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::size_t begin = first + part * (end - first) / parts,
+                      stop = first + (part + 1) * (end - first) / parts;
+    for (std::size_t node = 0; node < poses[begin].size(); ++node) {
+      Eigen::AlignedBox3d box;
+      for (std::size_t i = begin; i < stop; ++i) box.extend(poses[i][node]);
+      for (int corner = 0; corner < static_cast<int>(corners); ++corner)
+        points.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
+    }
+  }
+  return points;
 }
 
 }  // namespace
@@ -259,12 +282,10 @@ void CameraPath::prepare_turning_follow() {
       return start + span * std::clamp(i, 0, follow_samples - 1) / (follow_samples - 1);
     };
     const std::size_t first = first_before(time(k - follow_window)),
-                      end = std::min(poses_.size(), first_before(time(k + follow_window)) + 2),
-                      stride = std::max<std::size_t>(1, (end - first) / 8);
+                      end = std::min(poses_.size(), first_before(time(k + follow_window)) + 2);
+    const std::vector<Vec3> points = reach_of(poses_, first, end);
     const PointSource window = [&](const std::function<void(const Vec3&)>& visit) {
-      for (std::size_t i = first; i < end; i += stride)
-        for (const Vec3& p : poses_[i]) visit(p);
-      for (const Vec3& p : poses_[end - 1]) visit(p);
+      for (const Vec3& p : points) visit(p);
     };
     Place place{motion_bounds(window).center, 0};
     for (const double elevation : elevations(time(k - follow_window), time(k + follow_window)))

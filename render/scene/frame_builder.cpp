@@ -403,7 +403,7 @@ void thin_crowded(std::vector<Arrow>& arrows) {
 void FrameBuilder::add_loads(const VectorXd& whole, DrawList& list) const {
   const Color color = look_->load_color(field_ && field_->diverging);
   for (const LoadCopy& load : trajectory_.structure().load_copies) {
-    if (load.force.isZero()) continue;
+    if (load.force == Vec3::Zero()) continue;
     const Vec3 tail = node(whole, load.node);
     const Vec3 head = tail + upright_ * load.force * (looks_.arrow_length / looks_.largest_force);
     list.arrows.push_back(

@@ -177,7 +177,7 @@ void FrameOverlay::add_dimensions(const VectorXd& whole, DrawList& list) const {
   const Vec3 near(back.x() > 0 ? high.x() : low.x(), back.y() > 0 ? high.y() : low.y(), low.z());
   // Outward along the floor, or down where that is straight towards the viewer.
   const auto outward = [&](const Vec3& away) {
-    const bool seen = (away - back * back.dot(away)).norm() > 0.35 * gap;
+    const bool seen = (away - back * back.dot(away)).norm() > 0.5 * gap;
     return seen ? away : Vec3(0, 0, -gap);
   };
   const Vec3 outward_x = outward({back.x() > 0 ? gap : -gap, 0, 0}),

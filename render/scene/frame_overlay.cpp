@@ -50,7 +50,7 @@ std::string scale_text(const Appearance& looks) {
   constexpr double visible = 0.05;
   const auto factor = [](double x) {
     char text[32];
-    std::snprintf(text, sizeof text, x < 9.95 ? "%.1f" : "%.0f", x);
+    std::snprintf(text, sizeof text, x < 0.095 ? "%.1g" : x < 9.95 ? "%.1f" : "%.0f", x);
     return std::string(text) + " \u00D7";
   };
   const double least = looks.least_scale, largest = looks.largest_scale;

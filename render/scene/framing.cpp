@@ -160,9 +160,12 @@ Camera frame_points(const PointSource& points, const Vec3& middle, const MotionB
   }
   const double fitted = std::min(sight.x.farthest(), sight.y.farthest());
   const double depth = center - (center - fitted) / f.zoom;
-  Camera camera = looking(
-      sight.x.middle(fitted) * sight.right + sight.y.middle(fitted) * sight.up + depth * sight.forward,
-      middle, whole, view, f, 0);
+  // As far aside of the middle as the margins ask for, where it is nearer as little as that is: it stays in
+  // its place.
+  const auto aside = [&](double eye, double at) { return at + (eye - at) / f.zoom; };
+  const double x = aside(sight.x.middle(fitted), sight.right.dot(middle)),
+               y = aside(sight.y.middle(fitted), sight.up.dot(middle));
+  Camera camera = looking(x * sight.right + y * sight.up + depth * sight.forward, middle, whole, view, f, 0);
   // What is long along the view and slim begins close to the eye.
   const double nearest = std::max(0.9 * (sight.nearest - depth), 0.002 * (center - depth));
   camera.near_plane = std::min(camera.near_plane, static_cast<float>(nearest));

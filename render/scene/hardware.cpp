@@ -3,7 +3,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <iterator>
+#include <string>
+#include <string_view>
 
 #include "core/structure/seams.hpp"
 #include "core/text/name_index.hpp"
@@ -20,14 +24,23 @@ Vec3f f(const Vec3& v) {
   return v.cast<float>();
 }
 
-bool contains(const std::string& text, const char* part) {
-  return text.find(part) != std::string::npos;
-}
-
-// Rods that stand for what pulls only are drawn as what they stand for.
+// Rods that stand for what pulls only are drawn as what they stand for: a word of the group's name says so.
 bool is_cable(const std::string& group) {
-  return contains(group, "cable") || contains(group, "tie") || contains(group, "cord") ||
-         contains(group, "net");
+  constexpr std::string_view words[] = {"cable", "tie", "cord", "net"};
+  std::string word;
+  const auto is_one = [&] {
+    if (word.ends_with('s')) word.pop_back();
+    return std::ranges::find(words, word) != std::end(words);
+  };
+  for (const char c : group) {
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      continue;
+    }
+    if (is_one()) return true;
+    word.clear();
+  }
+  return is_one();
 }
 
 struct Material {
@@ -321,8 +334,7 @@ void Hardware::add_payload(std::size_t n, const Vec3& at, DrawList& list) const 
 // What pulls only is thin and straight; springs are wound.
 void Hardware::add_forces(const std::vector<Vec3>& at, DrawList& list) const {
   if (!solved_whole_) return;
-  double thick = 0;
-  for (const double r : looks_.rod_radius) thick = std::max(thick, r);
+  const double thick = thickest();
   for (const Force& force : structure_.forces) {
     if (force.kind != "spring" || force.measure.kind != MeasureKind::length ||
         force.measure.nodes.size() != 2)

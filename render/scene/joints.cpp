@@ -134,11 +134,9 @@ void Joints::find_axes(const Structure& structure, const Vec3& plane_normal) {
   for (std::size_t n = 0; n < ends_.size(); ++n) {
     const std::vector<RodEnd>& ends = ends_[n];
     if (ends.empty()) continue;
-    if (ends.size() == 1) {
-      const bool pivot = fixed[static_cast<std::size_t>(structure.node_copies[n].source)];
-      if (pivot && !plane_normal.isZero()) axes_[index(ends[0])].assign(times_.size(), plane_normal);
-    }
     for (const RodEnd& end : ends) axes_[index(end)] = axis_of(end, ends);
+    const bool pivot = ends.size() == 1 && fixed[static_cast<std::size_t>(structure.node_copies[n].source)];
+    if (pivot && !plane_normal.isZero()) axes_[index(ends[0])].assign(times_.size(), plane_normal);
     JointKind& kind = kinds_[n] = JointKind::hinge;
     const DirectionTrack& first = axes_[index(ends[0])];
     for (const RodEnd& end : ends) {

@@ -39,7 +39,7 @@ class StatePainter {
     view_ = pose_view(space.size(), structure_.gravity);
     for (int i = 0; i < nodes; ++i) page.add(at(i));
     size_ = page.size().cwiseMax(1e-3 * std::max(page.size().maxCoeff(), 1e-9));
-    low_ = page.lo;
+    low_ = page.lo, nearest_ = page.hi.z();
   }
 
   Vec3 size() const { return size_; }
@@ -64,20 +64,21 @@ class StatePainter {
     for (std::size_t i = 0; i < structure_.node_copies.size(); ++i) {
       if (held.count(structure_.node_copies[i].source) == 0) continue;
       const Vec3 x = at(static_cast<int>(i));
-      p.dots.push_back({x.x(), x.y(), 1e9, other, 1.3f});
+      p.dots.push_back({x.x(), x.y(), nearest_, other, 1.3f});
     }
     return p;
   }
 
  private:
   Vec3 at(int node) const { return view_.project(pose_node(whole_, node)); }
+  double behind() const { return 1e3 * size_.norm(); }  // far, of all that is drawn [m]
 
   void add_rods(const std::vector<double>& force, Panel& p) const {
     for (const RodCopy& rod : structure_.rod_copies) {
       const double f = force[static_cast<std::size_t>(rod.source)];
       const Vec3 a = at(rod.a), b = at(rod.b);
       // What carries nothing lies behind.
-      const double depth = (a.z() + b.z()) / 2 - (f == 0.0 ? 1e6 : 0.0);
+      const double depth = (a.z() + b.z()) / 2 - (f == 0.0 ? behind() : 0.0);
       const auto width = static_cast<float>(f == 0.0 ? 0.4 : 0.6 + 1.8 * std::abs(f));
       p.segments.push_back({a.x(), a.y(), b.x(), b.y(), depth,
                             f > 0   ? tension
@@ -87,7 +88,7 @@ class StatePainter {
     }
     for (const ShownLine& line : lines_with_springs(structure_)) {
       const Vec3 a = at(line.a), b = at(line.b);
-      p.segments.push_back({a.x(), a.y(), b.x(), b.y(), (a.z() + b.z()) / 2 - 2e6, idle, 0.4f});
+      p.segments.push_back({a.x(), a.y(), b.x(), b.y(), (a.z() + b.z()) / 2 - 2 * behind(), idle, 0.4f});
     }
   }
 
@@ -96,6 +97,7 @@ class StatePainter {
   SparseRows jacobian_;
   PoseView view_;
   Vec3 size_, low_;
+  double nearest_ = 0;  // depth of what is nearest [m]
 };
 
 void name_colors(Panel& p) {

@@ -170,26 +170,45 @@ ValueRange range_of(const plot::Field& field) {
   return range;
 }
 
-// Every square of the grid in so many parts that the map looks smooth.
-void add_cells(const plot::Field& field, const ValueRange& range, Panel& p) {
-  const auto parts = [](std::size_t n) {
-    return std::max<std::size_t>(1, 64 / std::max<std::size_t>(1, n - 1));
+// Every square of the grid in parts, of equal width on the axis as it is drawn: in between, values are
+// bilinear there, and both the colours and the contour lines are those of the parts.
+plot::Field in_parts(const plot::Field& field, bool log_x, bool log_y) {
+  const auto parts_of = [](const std::vector<double>& axis) {
+    return std::max<std::size_t>(1, 64 / std::max<std::size_t>(1, axis.size() - 1));
   };
-  const std::size_t px = parts(field.x.size()), py = parts(field.y.size());
+  const auto knots = [&](const std::vector<double>& axis, bool log) {
+    std::vector<double> all;
+    const std::size_t parts = parts_of(axis);
+    for (std::size_t i = 0; i + 1 < axis.size(); ++i)
+      for (std::size_t k = 0; k < parts; ++k) {
+        const double u = static_cast<double>(k) / static_cast<double>(parts);
+        all.push_back(k == 0 ? axis[i]
+                      : log  ? axis[i] * std::pow(axis[i + 1] / axis[i], u)
+                             : axis[i] + u * (axis[i + 1] - axis[i]));
+      }
+    all.push_back(axis.back());
+    return all;
+  };
+  plot::Field fine{knots(field.x, log_x), knots(field.y, log_y), {}};
+  const std::size_t px = parts_of(field.x), py = parts_of(field.y);
+  for (std::size_t i = 0; i < fine.x.size(); ++i)
+    for (std::size_t j = 0; j < fine.y.size(); ++j) {
+      const std::size_t a = std::min(i / px, field.x.size() - 2), b = std::min(j / py, field.y.size() - 2);
+      fine.values.push_back(plot::interpolate(field, a, b,
+                                              static_cast<double>(i - a * px) / static_cast<double>(px),
+                                              static_cast<double>(j - b * py) / static_cast<double>(py)));
+    }
+  return fine;
+}
+
+void add_cells(const plot::Field& field, const ValueRange& range, Panel& p) {
   for (std::size_t i = 0; i + 1 < field.x.size(); ++i)
-    for (std::size_t j = 0; j + 1 < field.y.size(); ++j)
-      for (std::size_t a = 0; a < px; ++a)
-        for (std::size_t b = 0; b < py; ++b) {
-          const auto u = [&](double k) { return k / static_cast<double>(px); };
-          const auto v = [&](double k) { return k / static_cast<double>(py); };
-          const auto da = static_cast<double>(a), db = static_cast<double>(b);
-          const double value = plot::interpolate(field, i, j, u(da + 0.5), v(db + 0.5));
-          if (std::isnan(value)) continue;
-          const double wx = field.x[i + 1] - field.x[i], wy = field.y[j + 1] - field.y[j];
-          p.cells.push_back({field.x[i] + wx * u(da), field.y[j] + wy * v(db), field.x[i] + wx * u(da + 1),
-                             field.y[j] + wy * v(db + 1), map_color(range.share(value)),
-                             exact_number(value)});
-        }
+    for (std::size_t j = 0; j + 1 < field.y.size(); ++j) {
+      const double value = plot::interpolate(field, i, j, 0.5, 0.5);
+      if (!std::isnan(value))
+        p.cells.push_back({field.x[i], field.y[j], field.x[i + 1], field.y[j + 1],
+                           map_color(range.share(value)), exact_number(value)});
+    }
 }
 
 Panel color_bar(const ValueRange& range, const std::vector<double>& levels, std::string label) {
@@ -272,12 +291,14 @@ Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
   map.x.whole = plan.axes[0].whole && !map.x.log;
   map.y.whole = plan.axes[1].whole && !map.y.log;
   std::vector<double> levels;
+  plot::Field fine;
   if (varies(range)) {
-    add_cells(field, range, map);
+    fine = in_parts(field, map.x.log, map.y.log);
+    add_cells(fine, range, map);
     levels = plot::linear_ticks(range.lo, range.hi, 9).major;
   }
   for (const double level : levels) {
-    plot::Segments lines = plot::contour(field, level);
+    plot::Segments lines = plot::contour(fine, level);
     Curve c;
     c.x = std::move(lines.x);
     c.y = std::move(lines.y);

@@ -286,6 +286,15 @@ TEST_CASE("states of self-stress are drawn one by one, and are not offered where
                                        [](const Segment& s) { return s.color < 2; });
     CHECK(members >= 2);
     CHECK(members <= 16);  // posts belong to no state
+    // What pulls at held nodes is drawn over the rods, and no further: depth is shown by colour.
+    double nearest = -1e300, farthest = 1e300;
+    for (const Segment& s : f.panels[k].segments)
+      if (s.color < 2) nearest = std::max(nearest, s.depth), farthest = std::min(farthest, s.depth);
+    for (const Dot& dot : f.panels[k].dots) {
+      CHECK(dot.depth >= nearest);
+      CHECK(dot.depth - nearest <= 20);  // of a ring of 12 m
+    }
+    CHECK(nearest - farthest < 20);
   }
   CHECK(f.caption.find("5 states") != std::string::npos);
 }

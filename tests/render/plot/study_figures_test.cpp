@@ -204,6 +204,41 @@ TEST_CASE("a sweep's figure says how many runs ended before the deployed pose", 
   CHECK(figures[0].caption.find("ended before") == std::string::npos);
 }
 
+// f = u v of each square, bilinear on axes as they are drawn: the hyperbola of a level is far from the chord
+// between the square's edges, up to a fifth of the whole range.
+TEST_CASE("contour lines lie on the colours of their level", "[figures]") {
+  for (const bool log : {false, true}) {
+    INFO(log);
+    SweepPlan plan{{find_scene("hoop6_sector"), {}}, {}, {}, {}};
+    const std::string x = log ? "structure.hinge_force=1:10000:5:log" : "structure.hinge_force=100:500:5";
+    plan.axes = {parse_axis(x), parse_axis("structure.fold_angle=40:80:5")};
+    plan.measures = {find_measure("deploy_time")};
+    check_plan(plan);
+    Sweep sweep{{plan.columns(), {}}};
+    const auto value_at = [](std::size_t i, std::size_t j) { return i == 2 && j == 2 ? 1.0 : 0.0; };
+    for (std::size_t i = 0; i < 5; ++i)
+      for (std::size_t j = 0; j < 5; ++j)
+        sweep.table.rows.push_back(
+            {plan.axes[0].values[i], plan.axes[1].values[j], "deployed", value_at(i, j) > 0 ? "1" : "0"});
+    const auto hat = [](double share) { return std::max(0.0, 1 - std::abs(share - 2)); };  // in squares
+    const auto squares = [&](double value) { return log ? std::log10(value) : (value - 100) / 100; };
+    const Figure map = sweep_figures(plan, sweep, "Ring").front();
+    std::size_t points = 0;
+    for (const Curve& c : map.panels.at(0).curves) {
+      if (c.label.empty()) continue;
+      const double level = std::stod(c.label);
+      for (std::size_t k = 0; k + 1 < c.x.size(); k += 3, ++points) {
+        const double u = 0.5 * (squares(c.x[k]) + squares(c.x[k + 1])),
+                     v = (0.5 * (c.y[k] + c.y[k + 1]) - 40) / 10;
+        // A chord of a sixteenth of a square is off by up to 1/4 of the product's 1/16^2; its ends, which lie
+        // linearly between two values of a log axis, by up to ln 10 / 8 of 1/16^2, with a slope of 1.
+        CHECK(std::abs(hat(u) * hat(v) - level) < (log ? 2.3e-3 : 1.1e-3));
+      }
+    }
+    CHECK(points > 100);
+  }
+}
+
 TEST_CASE("the table of a map has a row for every cell", "[figures]") {
   SweepPlan plan{{find_scene("hoop6_sector"), {"solver.step=0.05"}}, {}, {}, {}};
   for (const char* axis : {"structure.fold_angle=40:80:5", "structure.hinge_force=100:400:5"})

@@ -271,6 +271,24 @@ TEST_CASE("a camera that follows while it turns has every pose in the picture, l
   for (const double share : {0.3, 0.7, 0.9, 1.0}) size_at(frames, share * run.trajectory.end_time());
 }
 
+// A rod that turns once a second: a ninth of the camera's window is a whole number of its turns.
+TEST_CASE("a camera that follows while it turns has what turns fast in the picture") {
+  const Scene scene = read_scene_text(
+      "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'A'\nposition = [0, 0, 0]\nfixed = true\n"
+      "[[structure.nodes]]\nname = 'B'\nposition = [1, 0, 0]\nvelocity = [0, 0, 6.283185307179586]\n"
+      "[[structure.rods]]\nnodes = ['A', 'B']\nmass = 1\n[solver]\nend_time = 42\nstep = 0.02\n",
+      "spin.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  RenderOptions options;
+  options.orbit = 20;
+  options.follow = true;
+  const FrameBuilder frames = builder(run, options);
+  for (double t = 0; t <= 42; t += 0.37) {
+    CAPTURE(t);
+    CHECK(margin(frames.build(t)) > 0.02 * height);
+  }
+}
+
 TEST_CASE("whatever heights camera keys pass, all is in the picture") {
   // A mast is small from above and tall from beside it; a rod that leans by 45 degrees is longest from there.
   const std::string

@@ -216,6 +216,7 @@ TEST_CASE("rods drawn thicker than they are say by how much, and rod_scale = 1 d
   CHECK(radius == Approx(own));
   CHECK(drawn(3.0, radius) == "rods drawn 3.0 \u00D7 as thick");
   CHECK(radius == Approx(3 * own));
+  CHECK(drawn(0.02, radius) == "rods drawn 0.02 \u00D7 as thick");
   const std::string note = drawn(0.0, radius);
   REQUIRE(radius > 1.5 * own);  // a ring of 12 m, seen whole
   char factor[32];

@@ -255,4 +255,49 @@ TEST_CASE("masses and supports are there where no rod ends, too") {
   CHECK(stone.sleeves.size() + stone.balls.size() > 0);
 }
 
+TEST_CASE("a spring between masses without a rod is wound, and a load is seen however small it is") {
+  const Scene scene = read_scene_text(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true},\n"
+      "{name = 'B', position = [0, 0, -1], mass = 5}]\nrods = []\n[[loads]]\nnodes = ['B']\n"
+      "force = [1e-13, 0, 0]\n[[forces]]\nkind = 'spring'\nnodes = ['A', 'B']\nstiffness = 200\n"
+      "[solver]\nend_time = 0.1\nstep = 0.005\n",
+      "spring.toml");
+  const Simulation simulation = simulate(build_model(scene), scene.solver);
+  const DrawList list = FrameBuilder(simulation.trajectory, {}).build(0);
+  REQUIRE(list.tubes.size() > 100);  // ten to a turn, of twelve
+  float widest = 0;                  // of its turns, from the line between its ends
+  for (const Tube& tube : list.tubes) {
+    CHECK(tube.radius > 5e-4f);
+    widest = std::max(widest, std::hypot(tube.a.x(), tube.a.y()));
+  }
+  CHECK(widest > 4 * list.tubes[0].radius);
+  CHECK(list.arrows.size() == 1);
+}
+
+TEST_CASE("groups with a word for what only pulls are thin, and no other is") {
+  const auto radius_of = [](const std::string& group) {
+    const Scene scene = read_scene_text(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true},\n"
+        "{name = 'B', position = [0, 0, -1]}]\n"
+        "rods = [{nodes = ['A', 'B'], mass = 1, area = 1e-4, group = '" +
+            group + "'}]\n[render]\nrod_scale = 1\n[solver]\nend_time = 0.1\nstep = 0.05\n",
+        "group.toml");
+    const Simulation simulation = simulate(build_model(scene), scene.solver);
+    FrameStyle style;
+    style.options = scene.render;
+    return FrameBuilder(simulation.trajectory, style).build(0).tubes.at(0).radius;
+  };
+  const float own = std::sqrt(1e-4f / static_cast<float>(pi));
+  for (const char* group : {"bar", "accordion", "magnet boom", "properties", "kinetic"})
+    CHECK(radius_of(group) == Approx(own));
+  for (const char* group : {"cable", "front ties", "Net 2", "net_back"}) CHECK(radius_of(group) < 0.5f * own);
+}
+
+TEST_CASE("a rod that turns about a held node in a plane has a lug there, its pin across the plane") {
+  const Run r = run("pendulum", {"solver.end_time=0.5"});
+  const DrawList list = builder(r).build(0.2);
+  REQUIRE_FALSE(list.plates.empty());
+  for (const Plate& plate : list.plates) CHECK(std::abs(plate.side.y()) == Approx(1).epsilon(1e-5));
+}
+
 }  // namespace hardware_test

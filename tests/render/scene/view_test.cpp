@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "render/scene/framing.hpp"
+
 using namespace unfurl;
 
 namespace view_test {
@@ -47,6 +49,32 @@ TEST_CASE("the light sees its whole sphere and nothing outside") {
     CHECK(at(center + 5 * axis.normalized()).norm() == Approx(1).margin(1e-5));
   }
   CHECK(at(center + 2 * direction.normalized()).z() == Approx(-0.4).margin(1e-5));  // nearer to the light
+}
+
+// With room for an inset on the left the middle lies right of the picture's: nearer by, it does so by as
+// much.
+TEST_CASE("what is in the middle of a motion stays in its place whatever the zoom") {
+  const std::vector<Vec3> corners = {{-1, -0.3, -0.5}, {1, -0.3, -0.5}, {-1, 0.3, 0.5}, {1, 0.3, 0.5}};
+  const PointSource points = [&](const std::function<void(const Vec3&)>& visit) {
+    for (const Vec3& p : corners) visit(p);
+  };
+  const MotionBounds bounds = motion_bounds(points);
+  for (const bool parallel : {false, true}) {
+    Framing framing;
+    framing.parallel = parallel;
+    framing.margins = {0.35, 0.05, 0.2, 0.1};
+    Vec3f first;
+    for (const double zoom : {1.0, 3.0, 5.0}) {
+      framing.zoom = zoom;
+      const Camera camera = frame_points(points, bounds.center, bounds, {-1.2, 0.3}, framing);
+      const Vec3f at = project(camera, 1600, 900, bounds.center.cast<float>());
+      if (zoom == 1) first = at;
+      CAPTURE(parallel, zoom);
+      CHECK(at.x() > 850);
+      CHECK(at.x() == Approx(first.x()).margin(0.1));  // pixels, in single precision
+      CHECK(at.y() == Approx(first.y()).margin(0.1));
+    }
+  }
 }
 
 }  // namespace view_test
