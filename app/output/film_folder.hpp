@@ -27,7 +27,7 @@ class FilmFolder {
   bool holds_this() const;  // this film was begun here
   // Throws FileError where another one is, whose frames would go for a film of which nothing is drawn.
   void refuse_to_encode_another(bool encode_only) const;
-  bool fresh() const;       // no results of any kind
+  bool fresh() const;  // no results of any kind
   // Remove what a run or a film left; frames that unfurl did not draw, or that were changed since, are put
   // aside with their folder, so that no frame of another film stays among ours.
   static void clear(WrittenFiles& written);

@@ -62,12 +62,11 @@ void draw_export(Ui& ui, PanelState& state) {
   box.heading("Command line");
   const std::string output = at_home(state.export_output);
   const bool in_file = !now.path.empty() && state.own_file == OwnFile::same;
-  const std::string line =
-      export_command(now, export_kinds()[state.export_kind], output, in_file);
+  const std::string line = export_command(now, export_kinds()[state.export_kind], output, in_file);
   wrapped(ui.theme.text, line);
   if (!in_file)
-    wrapped(ui.theme.dim, "Export writes the scene that is shown to " +
-                              exported_scene(now, output, in_file) + " first: no file holds it");
+    wrapped(ui.theme.dim, "Export writes the scene that is shown to " + exported_scene(now, output, in_file) +
+                              " first: no file holds it");
   if (button(ui, "copy", "Copy", "to the clipboard")) ImGui::SetClipboardText(line.c_str());
   ImGui::SameLine();
   if (button(ui, "open folder", "Open folder", "of what was exported last", !state.exported.empty()))
