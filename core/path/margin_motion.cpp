@@ -6,6 +6,7 @@
 
 #include "core/math/quadrature.hpp"
 #include "core/path/path_scope.hpp"
+#include "core/path/path_time.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/run_words.hpp"
 
@@ -98,20 +99,9 @@ std::optional<MarginMotion::Release> MarginMotion::release(double s, double from
   };
   if (const double now = excess(from); now != 0) return Release{from, std::copysign(1.0, now)};
   if (!law_.timed()) return std::nullopt;
-  const double h = std::min(options_.step, (end - from) / 8);
-  auto edge = edges_.begin();
-  for (double a = from; a < end;) {
-    // A load is largest where its line bends.
-    while (edge != edges_.end() && edge->t <= a) ++edge;
-    const double b = std::min({a + h, end, edge != edges_.end() ? edge->t : end});
-    if (excess(b) != 0) {
-      double low = a, high = b;
-      for (int it = 0; it < 60; ++it) (excess(0.5 * (low + high)) != 0 ? high : low) = 0.5 * (low + high);
-      return Release{high, std::copysign(1.0, excess(high))};
-    }
-    if (!(b > a)) break;
-    a = b;
-  }
+  const double t = first_time_above([&](double at) { return std::abs(excess(at)); }, from, end,
+                                    std::min(options_.step, (end - from) / 8), edges_);
+  if (const double then = excess(t); then != 0) return Release{t, std::copysign(1.0, then)};
   return std::nullopt;
 }
 
@@ -243,9 +233,10 @@ bool MarginMotion::follow(double from, double to) {
   return false;
 }
 
-// When the speed is least between two times, where it falls first and rises then; else the first of them.
+// When the speed is least between two times, where it falls first and rises then; else the first of them. A
+// load may jump away at the last of them.
 double MarginMotion::turn_between(double a, double b) const {
-  if (!(pull_at(a) < 0 && pull_at(b) > 0)) return a;
+  if (!(pull_at(a) < 0 && std::max(pull_at(before_jump(b)), pull_at(b)) > 0)) return a;
   double low = a, high = b;
   for (int it = 0; it < 60; ++it) (pull_at(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
   return high;

@@ -202,15 +202,20 @@ std::optional<double> deployed_pose(const Path& path, const Deployment& deployme
 
 double first_time_above(const std::function<double(double t)>& f, double from, double until, double h,
                         const std::vector<TimeEdge>& edges) {
-  auto edge = edges.begin();
+  auto edge = edge_after(edges, from);
   for (double a = from; a < until;) {
     while (edge != edges.end() && edge->t <= a) ++edge;
-    const double b = std::min({a + h, until, edge != edges.end() ? edge->t : until});
-    if (f(b) > 0) {
+    double b = std::min({a + h, until, edge != edges.end() ? edge->t : until});
+    // On an edge that jumps f is already that behind it.
+    const double before = std::max(a, before_jump(b));
+    const bool above_before = edge != edges.end() && edge->jump && b == edge->t && f(before) > 0;
+    if (above_before) b = before;
+    if (above_before || f(b) > 0) {
       double low = a, high = b;
       for (int it = 0; it < 60; ++it) (f(0.5 * (low + high)) > 0 ? high : low) = 0.5 * (low + high);
       return high;
     }
+    if (!(b > a)) break;
     a = b;
   }
   return until;

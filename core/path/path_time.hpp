@@ -27,7 +27,7 @@ std::optional<double> deployed_pose(const Path& path, const Deployment& deployme
                                     long most_pieces);
 
 // The first time behind `from` at which a function of time is above zero, looked for in steps of h that end
-// at edges, where a load is largest; `until` where there is none.
+// at edges, where a load is largest: before the jump where one jumps. `until` where there is none.
 double first_time_above(const std::function<double(double t)>& f, double from, double until, double h,
                         const std::vector<TimeEdge>& edges);
 

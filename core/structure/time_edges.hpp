@@ -2,6 +2,7 @@
 // Times at which what a structure prescribes over time is not smooth.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -44,5 +45,11 @@ inline bool same_instant(double before, double after) {
 //                    points would shatter the grid for it. Of these only those at which it jumps much more
 //                    than at most others (a spike, a corner), lest a step pass over them.
 std::vector<TimeEdge> time_edges(const Structure& structure, double step);
+
+// The first of them behind a time.
+inline std::vector<TimeEdge>::const_iterator edge_after(const std::vector<TimeEdge>& edges, double t) {
+  return std::upper_bound(edges.begin(), edges.end(), t,
+                          [](double time, const TimeEdge& edge) { return time < edge.t; });
+}
 
 }  // namespace unfurl

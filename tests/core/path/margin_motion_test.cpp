@@ -179,6 +179,28 @@ TEST_CASE("a motion sees pulses of a load however short they are") {
   CHECK(at + v * rest + 0.01 * rest * rest == Approx(1).epsilon(1e-9));
 }
 
+// Gone at 1 s: what holds 9.2 N has given way at 0.92 s, whichever steps end on the jump. Against 1 N it then
+// goes on by v^2 / 2.
+TEST_CASE("a load that jumps away at its peak sets a motion free before, and turns it round") {
+  for (const char* step : {"0.01", "0.1", "0.125", "0.25", "3"}) {
+    INFO(step);
+    const Margin free = margin_in(
+        slider(over_time("ramp", 1, "[0, 1, 1, 2]", "[0, 10, 0, 0]") + dry + "kinetic = 1\nstatic = 9.2\n",
+               0.5, std::string("end_time = 2\nstep = ") + step));
+    CHECK(free.end == MarginEnd::stalls);
+    const double t = 0.92, v = 5 * (1 - t * t) - (1 - t),
+                 x = 5 * ((1 - t * t * t) / 3 - t * t * (1 - t)) - 0.5 * (1 - t) * (1 - t);
+    CHECK(free.motion.back().s == Approx(x + 0.5 * v * v).epsilon(1e-9));
+  }
+  // v0 - 0.95 t + t^2 / 2 is zero shortly before it is least at 0.95 s, and would rise again until the jump.
+  const double before = std::sqrt(2e-4), at = 0.95 - before, v0 = 0.5 * 0.95 * 0.95 - 1e-4;
+  std::string turned = slider(over_time("turn", 1, "[0, 1, 1, 9]", "[-0.95, 0.05, -0.01, 1]"));
+  turned.insert(turned.find("mass = 1"), "velocity = [" + exact_number(v0) + ", 0, 0], ");
+  const Margin turns = margin_in(turned);
+  CHECK(turns.end == MarginEnd::stalls);
+  CHECK(turns.motion.back().s == Approx(v0 * at - 0.475 * at * at + at * at * at / 6).epsilon(1e-9));
+}
+
 // A tether of 2.9999 m to a point 3 m away from the farthest pose is stretched for a short time only, by 0.1
 // mm at most; the motion has 2 mJ.
 TEST_CASE("a motion sees cables that are stretched for a short time") {

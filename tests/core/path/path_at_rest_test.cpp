@@ -170,4 +170,57 @@ times = [0, 0.1, 0.1, 1]
   }
 }
 
+// A load of 10 N/s from 0 on, gone at 1 s, whichever steps end there: what holds 9.2 N gives way at 0.92 s.
+TEST_CASE("a load frees what rests at its peak, also where it jumps away at once") {
+  constexpr double t0 = 0.92;
+  const auto run_with = [](double step, const std::string& more) {
+    return run_on_path(R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [-1, 0, 0], fixed = true}, {name = "P", position = [0, 0, 0], mass = 1}]
+constraints = [{kind = "line", nodes = ["P"], direction = [1, 0, 0]}]
+[[forces]]
+kind = "load_over_time"
+nodes = ["P"]
+force = [1, 0, 0]
+times = [0, 1, 1, 2]
+values = [0, 10, 0, 0]
+)" + more + "[solver]\nstep = " +
+                       number(step) + "\nend_time = " + (more.starts_with("[[forces]]") ? "2\n" : "1.05\n"));
+  };
+  for (const double step : {0.01, 0.1, 0.125, 0.25, 0.3, 3.0}) {
+    CAPTURE(step);
+    const Simulation slips = run_with(step, R"([[forces]]
+kind = "friction"
+nodes = ["P"]
+direction = [1, 0, 0]
+kinetic = 0
+static = 9.2
+)");
+    REQUIRE(slips.events.size() == 1);
+    CHECK(slips.events[0].kind == "slip");
+    CHECK(slips.events[0].t == Approx(t0).epsilon(1e-12));  // bisected to rounding
+    // x'' = 10 t until 1 s, nothing then.
+    const double v = 5 * (1 - t0 * t0), x = 5 * ((1 - t0 * t0 * t0) / 3 - t0 * t0 * (1 - t0));
+    CHECK(testing::end_positions(slips)[3] == Approx(x + v).epsilon(1e-11));
+    // Held by a stop instead: x'' = 10 (t - t0), and -9.2 behind the jump.
+    const Simulation leaves = run_with(step, R"([[loads]]
+nodes = ["P"]
+force = [-9.2, 0, 0]
+[[constraints]]
+kind = "coordinate_stop"
+nodes = ["P"]
+direction = [1, 0, 0]
+min = 0
+restitution = 0
+)");
+    REQUIRE(leaves.events.size() == 3);
+    CHECK(leaves.events[1].kind == "free");
+    CHECK(leaves.events[1].t == Approx(t0).epsilon(1e-12));
+    const double d = 1 - t0, u = 5 * d * d, y = 5 * d * d * d / 3;
+    const double back = 1 + (u + std::sqrt(u * u + 2 * 9.2 * y)) / 9.2;
+    CHECK(leaves.events[2].kind == "contact");
+    CHECK(leaves.events[2].t == Approx(back).epsilon(1e-11));
+  }
+}
+
 }  // namespace path_at_rest_test
