@@ -41,6 +41,15 @@ double PathLaw::known_place(const PathPiece& piece, double x) const {
   return x;
 }
 
+void PathLaw::pull_where_taut(double s, double v) {
+  for (std::size_t k = 0; k < pulling_.size(); ++k) {
+    const PathForces::Cable& cable = forces_.cables()[k];
+    const ValueAndSlope length = table_->at(cable.measure, s);
+    const double e = length.value - cable.rest;
+    pulling_[k] = e > 0 && cable.stiffness * e + cable.damping * length.slope * v > 0;
+  }
+}
+
 ScalarLaw::Value PathLaw::at(double s, double v, double t) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const PathTable::Segment* here = in_reach(s);

@@ -15,7 +15,6 @@
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/one_sided.hpp"
-#include "core/simulate/push_responses.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/simulate/stretched.hpp"
@@ -28,7 +27,7 @@ namespace {
 constexpr double accumulated = 1e-4;
 constexpr long most_switches = 100;  // at one time
 // Two solutions of one equation, next to a pose where it is nearly singular.
-constexpr double same_equations = 1e-7, rounded_sum = 1e-12, one_way = 1 - 1e-6;
+constexpr double same_equations = 1e-7, rounded_sum = 1e-12;
 
 class PathRun {
  public:
@@ -142,7 +141,7 @@ class PathRun {
   void compare_equations(const PathPiece& piece, double x, double v) {
     const double s = 0.5 * (piece.a + piece.b) + 0.5 * x * (piece.b - piece.a);
     law_->look_from(s);
-    pull_where_taut(s, v);
+    law_->pull_where_taut(s, v);
     const State state = state_at(0.0, s, v);
     const System followed = base_->system.at(last());
     Index1 index1(followed);
@@ -159,16 +158,6 @@ class PathRun {
     const auto size = [&](const VectorXd& u) { return std::sqrt(u.dot(followed.mass() * u)); };
     if (!(size(a - in_model) <= same_equations * (size(a) + size(in_model)) + rounded_sum * sum))
       throw PathRefused("the equations of motion hold something that the path does not know");
-  }
-
-  // Cables as the equations have them that know both of their modes.
-  void pull_where_taut(double s, double v) {
-    for (std::size_t k = 0; k < law_->forces().cables().size(); ++k) {
-      const PathForces::Cable& cable = law_->forces().cables()[k];
-      const ValueAndSlope length = law_->table().at(cable.measure, s);
-      const double e = length.value - cable.rest;
-      law_->set_pulling(k, e > 0 && cable.stiffness * e + cable.damping * length.slope * v > 0);
-    }
   }
 
   // s'' that a drive asks for: f'' = m'' s'^2 + m' s''.
@@ -297,6 +286,9 @@ class PathRun {
   void add_events(std::size_t i, double t, double taken) {
     for (Event& event : sides_.events(i, t)) add_event(std::move(event), std::exchange(taken, 0.0));
   }
+  void add_events(const std::vector<std::size_t>& laws) {
+    for (const std::size_t k : laws) add_events(k, motion_.t(), 0.0);
+  }
   Event impact(const StopSide& stop) const {
     return {.name = "stop " + stop.name, .t = motion_.t(), .kind = "contact", .element = stop.name};
   }
@@ -324,42 +316,47 @@ class PathRun {
     const double approach = -slope * motion_.v(), flight = motion_.t() - last_touch_[i];
     last_touch_[i] = motion_.t();
     if (approach < 0) return;
-    if (motion_.v() != 0) refuse_branches(i);
+    if (motion_.v() != 0)
+      refuse_other_ways(sides_, i, model().system, state_at(motion_.t(), motion_.s(), motion_.v()));
     const bool series = stop.restitution < 1 && flight > 0 && flight <= accumulated * options_.step;
-    if (series || stop.restitution * approach <= stop.rest_speed) {
-      const double Q = law_->at(motion_.s(), 0.0, motion_.t()).Q;
-      if (slope * Q > 0) {  // it is stopped and goes back at once
-        const double taken = 0.5 * motion_.v() * motion_.v();
-        add_event(impact(stop), taken);
-        motion_.set_speed(0);
-        append(state_at(motion_.t(), motion_.s(), 0));
-        return;
-      }
-      sides_.set_active(i, true);
-      held_ = i;
-      held_slope_ = slope;
-      const bool from_start = run_.trajectory.size() == 1 && motion_.v() == 0;
-      motion_.set_speed(0);
-      resting_ = true;
-      const double taken = change_model(sides_.model(*base_), from_start);
-      Event rests = sides_.events(i, motion_.t()).front();
-      rests.kind = "contact";
-      add_event(std::move(rests), taken);
-      return;
-    }
+    if (series || stop.restitution * approach <= stop.rest_speed) return stop_at(i, slope);
     const double e = stop.restitution, taken = 0.5 * (1 - e * e) * motion_.v() * motion_.v();
     add_event(impact(stop), taken);
     motion_.set_speed(-e * motion_.v());
     append(state_at(motion_.t(), motion_.s(), motion_.v()));
   }
 
-  // An impulse of stop i takes the whole motion, or the pose has other ways to move, which it sets going.
-  void refuse_branches(std::size_t i) const {
-    const State here = state_at(motion_.t(), motion_.s(), motion_.v());
-    PushResponses responses(model().system, here);
-    responses.add(sides_.measure(i), sides_.sign(i), sides_.near(i, here), sides_.limit_motion(i, here.t));
-    if (!(responses.taken(0, here.w) > one_way))
-      throw PathRefused("at t = " + seconds(here.t) + ": a stop is met in a pose with other ways to move");
+  // It comes to rest on stop i, or is stopped there and goes back at once.
+  void stop_at(std::size_t i, double slope) {
+    const double lost = 0.5 * motion_.v() * motion_.v();
+    const bool from_start = run_.trajectory.size() == 1 && motion_.v() == 0;
+    const std::vector<std::size_t> laws = stand_still();
+    if (slope * law_->at(motion_.s(), 0.0, motion_.t()).Q > 0) {
+      add_event(impact(sides_.stops()[i]), lost);
+      append(state_at(motion_.t(), motion_.s(), 0));
+      if (!laws.empty()) change_model(sides_.model(*base_), true);
+      return add_events(laws);
+    }
+    sides_.set_active(i, true);
+    held_ = i;
+    held_slope_ = slope;
+    resting_ = true;
+    const double taken = change_model(sides_.model(*base_), from_start);
+    Event rests = sides_.events(i, motion_.t()).front();
+    rests.kind = "contact";
+    add_event(std::move(rests), taken);
+    add_events(laws);
+  }
+
+  // Which cables are stretched and pull may jump with the rates: those that did.
+  std::vector<std::size_t> stand_still() {
+    const System& system = model().system;
+    const State here = state_at(motion_.t(), motion_.s(), 0);
+    const std::vector<std::size_t> laws = sides_.laws_left(system, here);
+    for (const std::size_t k : laws) sides_.turn_law(k, system, here);
+    motion_.set_speed(0);
+    tell_law();
+    return laws;
   }
 
   // Held by a stop, until what pushes against it pulls; by friction, until that gives way; or locked, until
@@ -453,6 +450,7 @@ class PathRun {
     if (gives && singular_at_end(run_.trajectory))
       throw PathRefused("a latch that gives, in a deployed pose in which the constraints lose rank");
     base_ = latched_model(*base_, options_.eliminate_linear);
+    add_events(gives ? std::vector<std::size_t>() : stand_still());
     const double speed = std::abs(motion_.v());
     const double impulse = change_model(sides_.any_active() ? sides_.model(*base_) : base_);
     run_.events.push_back(
@@ -461,7 +459,6 @@ class PathRun {
     const VectorXd& w = last().w;
     if (std::sqrt(w.dot(model().system.mass() * w)) > 1e-6 * speed)
       throw PathRefused("what is latched in the deployed pose can still move");
-    motion_.set_speed(0);
     resting_ = true;
   }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "core/path/path_forces.hpp"
+#include "core/simulate/push_responses.hpp"
+#include "core/simulate/run_words.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/system/mobility.hpp"
 
@@ -61,6 +63,15 @@ std::shared_ptr<const Path> trace_path(const std::shared_ptr<const Model>& model
   auto system = path_system(model);
   const VectorXd z = system->reduce(node_positions(model->structure));
   return std::make_shared<const Path>(std::move(system), z);
+}
+
+void refuse_other_ways(const OneSided& sides, std::size_t stop, const System& system, const State& here) {
+  constexpr double one_way = 1 - 1e-6;
+  PushResponses responses(system, here);
+  responses.add(sides.measure(stop), sides.sign(stop), sides.near(stop, here),
+                sides.limit_motion(stop, here.t));
+  if (!(responses.taken(0, here.w) > one_way))
+    throw PathRefused("at t = " + seconds(here.t) + ": a stop is met in a pose with other ways to move");
 }
 
 }  // namespace unfurl

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/path/path.hpp"
+#include "core/simulate/one_sided.hpp"
 
 namespace unfurl {
 
@@ -14,5 +15,9 @@ const Constraint* driven_row(const Structure& structure);
 // know (path_forces.hpp), motions prescribed in a way that it cannot take.
 std::shared_ptr<const System> path_system(const std::shared_ptr<const Model>& model);
 std::shared_ptr<const Path> trace_path(const std::shared_ptr<const Model>& model);
+
+// Throws PathRefused unless an impulse of that stop takes the whole motion of the state: else the pose has
+// other ways to move, which it sets going.
+void refuse_other_ways(const OneSided& sides, std::size_t stop, const System& system, const State& here);
 
 }  // namespace unfurl
