@@ -17,7 +17,8 @@ struct Probe {
   State state = {};
   StepReport report = {};
   VectorXd margins = {};
-  VectorXd rates = {};  // of the margins [1/s]; NaN: not known
+  VectorXd rates = {};   // of the margins [1/s]; NaN: not known
+  VectorXd forces = {};  // the sizes of those that are a force's; 0: they are none, or were not asked for
 };
 
 // Solves the step of this length from the same start; false where it cannot be solved.
@@ -27,6 +28,7 @@ struct Crossing {
   Probe probe;                     // solved as a step of its own, up to the crossing
   std::vector<std::size_t> which;  // margins that are zero there and negative behind
   double later = 0.0;              // by less than that, where no step behind the probe can be solved [s]
+  VectorXd left = {};              // of the forces, what the location may have left of zero
 };
 
 // `from`: the step's start; `to`: its end; `between`: margins at equal parts of the step, from some

@@ -26,8 +26,9 @@ constexpr double located = 1e-9;
 
 class Change {
  public:
-  Change(OneSided& sides, const Model& base, const State& state, const std::vector<std::size_t>& which)
-      : sides_(sides), base_(base), system_(base.system.at(state)), which_(which) {
+  Change(OneSided& sides, const Model& base, const State& state, const std::vector<std::size_t>& which,
+         const VectorXd& left)
+      : sides_(sides), base_(base), system_(base.system.at(state)), which_(which), left_(left) {
     out_.state = state;
   }
 
@@ -268,11 +269,13 @@ class Change {
     return rounds_[r] + sum_rounding * D_.row(r).cwiseAbs().dot(solution_.x.transpose().cwiseAbs());
   }
 
-  // What a force gives that was located as zero.
+  // What a force gives that was located as zero: of those beside it, and of what it was itself.
   double located_acceleration(Index r) const {
+    const double own = left_.size() > 0 ? D_(r, r) * left_[static_cast<Index>(side(r))] : 0.0;
     const double arm = sides_.stops().touching() / sides_.touching(side(r));  // of what turns
-    return zero_acceleration(r) + located * (D_(r, r) * arm * multiplier_ +
-                                             D_.row(r).cwiseAbs().dot(solution_.x.transpose().cwiseAbs()));
+    return zero_acceleration(r) + own +
+           located *
+               (D_(r, r) * arm * multiplier_ + D_.row(r).cwiseAbs().dot(solution_.x.transpose().cwiseAbs()));
   }
 
   // Frictions that hold together let go together: all whose force is at its limit, and they alone.
@@ -434,6 +437,7 @@ class Change {
   const Model& base_;
   const System system_;
   const std::vector<std::size_t>& which_;
+  const VectorXd& left_;  // of the sides' forces, or empty
   ModeChange out_;
   std::vector<std::size_t> rows_;  // sides that may push: stops that are touched, then friction
   std::vector<bool> struck_, passes_, rests_, movable_;
@@ -448,8 +452,9 @@ class Change {
 
 ModeChange change_modes(OneSided& sides, const Model& base, const State& state,
                         const std::vector<std::size_t>& which,
-                        const std::function<bool(std::size_t stop, double approach)>& rests) {
-  return Change(sides, base, state, which).run(rests);
+                        const std::function<bool(std::size_t stop, double approach)>& rests,
+                        const VectorXd& left) {
+  return Change(sides, base, state, which, left).run(rests);
 }
 
 }  // namespace unfurl

@@ -330,8 +330,11 @@ void OneSided::measure_held(const Model& model, const State& state, Probe& probe
       std::max(force_zero * with_forces.lambda.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
   weigh(model, state);
   const std::set<std::size_t> held = this->held();
-  for (const std::size_t i : held)
-    probe.margins[static_cast<Index>(i)] = stops_.push(i, model, held, with_forces) / zero;
+  for (const std::size_t i : held) {
+    const auto row = static_cast<Index>(i);
+    const double push = stops_.push(i, model, held, with_forces);
+    probe.margins[row] = push / zero, probe.forces[row] = std::abs(push);
+  }
   // What sticks lies before the stops that are held, in its order.
   auto constraint = static_cast<int>(std::ssize(model.structure.constraints) - std::ssize(held));
   for (std::size_t i = first_motor(); i-- > first_friction();)
@@ -375,6 +378,7 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
   const System& system = model.system;
   const auto count = static_cast<Index>(active_.size()), stops = static_cast<Index>(stops_.size());
   probe.margins = probe.rates = VectorXd::Constant(count, unknown);
+  probe.forces.setZero(count);
   const auto frictions = active_.begin() + static_cast<std::ptrdiff_t>(first_friction());
   const bool sticks =
       std::find(frictions, frictions + std::ssize(frictions_), true) - frictions < std::ssize(frictions_);

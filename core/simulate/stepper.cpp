@@ -110,7 +110,10 @@ std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
     return probe.report.ok();
   };
   auto crossing = first_crossing(begin_, to, between(to, to.at < h), solve);
-  if (crossing && crossing->probe.at >= unsolved - 1e-6 * h) crossing->later = to.at - crossing->probe.at;
+  if (!crossing) return crossing;
+  if (crossing->probe.at >= unsolved - 1e-6 * h) crossing->later = to.at - crossing->probe.at;
+  const double of_time = jump_width * now().t / to.at;
+  crossing->left = (stepping::located + of_time) * begin_.forces.cwiseMax(to.forces);
   return crossing;
 }
 
@@ -128,7 +131,7 @@ bool Stepper::Loop::go_to(Crossing crossing) {
     integrator_->restart();
   }
   have_begin_ = false;
-  return act(crossing.which);
+  return act(crossing.which, crossing.left);
 }
 
 // Margins inside a step, as hints: on the cubic through the coordinates and rates of both ends, as long as

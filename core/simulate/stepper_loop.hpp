@@ -56,6 +56,9 @@ inline constexpr int fine_parts = 16;
 // By so much of a way the cubic of a step's ends may be off the step's own polynomial.
 inline constexpr double cubic_share = 0.01;
 
+// Where a force falls to zero is located to this share of what it was in the step.
+inline constexpr double located = 1e-9;
+
 inline constexpr const char* too_near =
     "so near the deployed pose, where the constraints lose rank, the motion cannot be told from rounding";
 
@@ -285,8 +288,8 @@ class Stepper::Loop {
 
   bool go_to(Crossing crossing);
 
-  // What comes of it that these have crossed, now. False where the run ends.
-  bool act(const std::vector<std::size_t>& which) {
+  // What comes of it that these have crossed, now; `left`: Crossing's. False where the run ends.
+  bool act(const std::vector<std::size_t>& which, const VectorXd& left = {}) {
     if (now().t - crowd_time_ > stepping::one_time * run_.options.step) crowd_time_ = now().t, crowd_ = 0;
     const long most = stepping::most_switches + 2 * static_cast<long>(sides_.size());
     // Rebounds that lose nothing come to an end, if late.
@@ -298,7 +301,7 @@ class Stepper::Loop {
     const bool crowded = ++crowd_ == most || (in_step_ >= room && in_step_ - counts < room);
     if (crowded) return hold_what_touches();
     if (crowd_ > 2 * most || in_step_ > room + lossless_share * most) return stop_watching();
-    return apply(modes_after(in_base(now()), which));
+    return apply(modes_after(in_base(now()), which, left));
   }
 
   // Stops that are touched from the start, none of which is approached then.
@@ -335,15 +338,17 @@ class Stepper::Loop {
 
   State in_base(const State& state) const { return in_coordinates(system(), state, base_->system); }
 
-  ModeChange modes_after(const State& state, const std::vector<std::size_t>& which = {}) {
+  ModeChange modes_after(const State& state, const std::vector<std::size_t>& which = {},
+                         const VectorXd& left = {}) {
     sides_.weigh(model(), now());
-    return change_modes(sides_, *base_, state, which, [&](std::size_t i, double approach) {
+    const auto rests = [&](std::size_t i, double approach) {
       const StopSide& stop = sides_.stops()[i];
       const double flight = state.t - std::exchange(last_touch_[i], state.t);
       const bool series =
           stop.restitution < 1 && flight > 0 && flight <= stepping::accumulated * run_.options.step;
       return series || stop.restitution * approach <= stop.rest_speed;
-    });
+    };
+    return change_modes(sides_, *base_, state, which, rests, left);
   }
 
   // Goes on in the modes that were found. False where there are none.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/path/path_run.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -12,7 +13,7 @@ namespace stop_test {
 
 namespace {
 
-using testing::end_positions, testing::run_scene;
+using testing::end_positions, testing::number, testing::run_scene;
 
 // A ball of 2 kg that falls 5 m at 10 m/s^2: one second to the floor.
 const std::string ball = R"(
@@ -220,6 +221,83 @@ values = [0, 1]
   // 40 N (t - 1.2) = 20 N; then z'' = 20 (t - 1.7) m/s^2 until 2.2 s.
   CHECK(run.events[1].t == Approx(1.7).epsilon(1e-10));
   CHECK(run.trajectory.positions_at(2.2)[2] == Approx(20.0 / 6 * 0.125).epsilon(1e-9));
+}
+
+// 1 kg on a stop, with nothing but one load that falls from 3 N through zero: where that is located it is
+// rounding, of which no share says what is zero. x'' = -k (t - t0).
+TEST_CASE("a stop whose whole load passes through zero is left there") {
+  const std::string slider = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "P", position = [0, 0, 0], mass = 1}]
+constraints = [{kind = "line", nodes = ["P"], direction = [1, 0, 0]}]
+[[constraints]]
+kind = "coordinate_stop"
+name = "end"
+nodes = ["P"]
+direction = [1, 0, 0]
+max = 0
+)";
+  for (const char* step : {"0.1", "0.01"})
+    for (int i = 0; i < 30; ++i) {
+      const double last = -4 - 0.0137 * i, T = 1.7, k = (3 - last) / T, t0 = 3 / k;
+      CAPTURE(step, last);
+      const Simulation run = run_scene(slider + R"([[forces]]
+kind = "load_over_time"
+nodes = ["P"]
+force = [1, 0, 0]
+times = [0, 1.7]
+values = [3, )" + number(last) +
+                                       "]\n[solver]\nend_time = 1.7\nstep = " + step + "\n");
+      CHECK(run.warnings.empty());
+      REQUIRE(run.events.size() == 2);
+      CHECK(run.events[1].name == "leaves stop end");
+      CHECK(run.events[1].t == Approx(t0).epsilon(1e-12));
+      CHECK(end_positions(run)[0] == Approx(-k / 6 * std::pow(T - t0, 3)).epsilon(1e-10));
+    }
+}
+
+// The same of a spring whose other end is drawn past the balance at u: x = u tau - u / w sin w tau.
+TEST_CASE("a stop is left where the only spring that presses on it slackens") {
+  for (const char* step : {"0.1", "0.01"})
+    for (int i = 0; i < 30; ++i) {
+      const double u = 0.3 + 0.0137 * i, w = std::sqrt(7.0);
+      CAPTURE(step, u);
+      const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "P", position = [0, 0, 0], mass = 1},
+  {name = "R", position = [-0.8, 0, 0], mass = 2, velocity = [)" +
+                                       number(-u) +
+                                       R"(, 0, 0]}, {name = "Q", position = [-5, 0, 0], fixed = true}]
+constraints = [{kind = "line", nodes = ["P"], direction = [1, 0, 0]}, {kind = "line", nodes = ["R"], direction = [1, 0, 0]}]
+[[constraints]]
+kind = "length"
+nodes = ["Q", "R"]
+motion = "rate"
+rate = )" + number(-u) + R"(
+[[constraints]]
+kind = "coordinate_stop"
+name = "end"
+nodes = ["P"]
+direction = [1, 0, 0]
+max = 0
+[[forces]]
+kind = "spring"
+nodes = ["P", "R"]
+stiffness = 7
+free_length = 1
+[solver]
+stages = 6
+end_time = 1.5
+step = )" + std::string(step) + "\n");
+      CHECK(run.warnings.empty());
+      REQUIRE(run.events.size() == 2);
+      CHECK(run.events[1].name == "leaves stop end");
+      const double t0 = 0.2 / u, tau = 1.5 - t0;
+      CHECK(run.events[1].t == Approx(t0).epsilon(1e-11));
+      CHECK(end_positions(run)[0] == Approx(-u * tau + u / w * std::sin(w * tau)).epsilon(1e-9));
+    }
 }
 
 }  // namespace stop_test
