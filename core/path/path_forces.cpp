@@ -51,10 +51,8 @@ bool is_cable(const Force& force) {
   return force.one_sided && (force.stiffness > 0 || force.damping > 0);
 }
 
-// Of what is not zero: products with it and over it are exact.
-double power_of_two_below(double x) {
-  return x > 0 && std::isfinite(x) ? std::ldexp(1.0, std::ilogb(x)) : 1.0;
-}
+// So fast that forces at rest are below the rounding of what dampers give; products with it are exact.
+constexpr double no_rest = 0x1p100;  // [m kg^1/2 / s]
 
 }  // namespace
 
@@ -90,7 +88,7 @@ std::string unknown_to_path(const Structure& structure) {
 }
 
 PathForces::PathForces(const Structure& structure, const Path& path, bool separately)
-    : structure_(structure), length_(reference_length(structure)), unit_(path.unit()) {
+    : structure_(structure), length_(reference_length(structure)) {
   const System& system = path.system();
   Structure one = bare(structure);
   columns_ = separately ? 0 : 2;  // what all have in common: position, damping
@@ -224,11 +222,10 @@ void PathForces::evaluate(const VectorXd& q, const VectorXd& dq, VectorXd& angle
     value[term.position] += f.dot(dq);
     scale[term.position] += f.cwiseAbs().dot(dq.cwiseAbs());
     if (!term.block->has_power()) continue;
-    const double speed = power_of_two_below(std::sqrt(f.cwiseAbs().dot(dq.cwiseAbs()) * unit_));
     moving.setZero();
-    term.block->add(at, q.data(), VectorXd(speed * dq).data(), 1.0, moving.data());
-    value[term.damping] += (f - moving).dot(dq) / speed;
-    scale[term.damping] += (f.cwiseAbs() + moving.cwiseAbs()).dot(dq.cwiseAbs()) / speed;
+    term.block->add(at, q.data(), VectorXd(no_rest * dq).data(), 1.0, moving.data());
+    value[term.damping] += (f - moving).dot(dq) / no_rest;
+    scale[term.damping] += (f.cwiseAbs() + moving.cwiseAbs()).dot(dq.cwiseAbs()) / no_rest;
   }
   for (const Tracked& tracked : measures_) {
     const double near = tracked.angle >= 0 ? angles[tracked.angle] : tracked.measure.reference();

@@ -3,10 +3,10 @@
 //
 //     Q = size(t) p(s) - c(s) s',     p = F(q, 0) . dq/ds,   c = -(F(q, u dq/ds) - F(q, 0)) . dq/ds / u
 //
-// with u about the speed to which F(q, 0) brings the structure within its own size: whatever the units,
-// rounding of the difference changes no motion. It holds for loads, springs, dampers and motors at full
-// voltage, whose forces are linear in the velocities; dry friction by the sense in which it slips; and the
-// measures that stops, cables and drives go by.
+// with u so large, in any units, that of F(q, 0), which may be the rounding of large forces that balance,
+// nothing is left in the difference. It holds for loads, springs, dampers and motors at full voltage, whose
+// forces are linear in the velocities; dry friction by the sense in which it slips; and the measures that
+// stops, cables and drives go by.
 #pragma once
 
 #include <cmath>
@@ -77,7 +77,7 @@ class PathForces final : public PathFunctions {
   void add_term(const Structure& one, std::string_view kind, const Source& source, const System& system);
 
   const Structure& structure_;
-  double length_, unit_;  // what a change of a measure is compared with [m], and of s
+  double length_;  // what a change of a measure is compared with [m]
   Index columns_ = 0, angle_count_ = 0;
   std::vector<Source> sources_;
   std::vector<Cable> cables_;

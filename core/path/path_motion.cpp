@@ -177,15 +177,17 @@ void PathMotion::on_drive(double t, double& s, double& v) const {
 std::vector<double> PathMotion::unseen_between(const PathLaw& law, double from, double to) const {
   double seen = 1e-5;  // of the largest rate; where that is not so, it is well seen to:
   constexpr double well = 1e-6;
-  constexpr double rounding = 1e-10;  // of the coordinate
+  constexpr double rounding = 1e-10;     // of the coordinate
+  constexpr double rounded_sum = 1e-15;  // of what acts
   constexpr std::size_t most = 100;
   struct Point {
-    double t, s, v, a;
+    double t, s, v, a, a_rounds;
   };
   const auto point = [&](double t) {
-    Point p{t, 0, 0, 0};
+    Point p{t, 0, 0, 0, 0};
     at(t, p.s, p.v);
-    p.a = law.at(p.s, p.v, t).Q;
+    const ScalarLaw::Value pull = law.at(p.s, p.v, t);
+    p.a = pull.Q, p.a_rounds = rounded_sum * pull.scale + pull.noise;
     return p;
   };
   std::vector<double> times;
@@ -195,7 +197,7 @@ std::vector<double> PathMotion::unseen_between(const PathLaw& law, double from, 
     const Point b = ends.back(), middle = point(0.5 * (a.t + b.t));
     const double h = b.t - a.t, tell = 1.875 / h * (b.s - a.s) - 0.4375 * (a.v + b.v) + h / 32 * (b.a - a.a);
     const double size = std::max({std::abs(a.v), std::abs(b.v), std::abs(middle.v)});
-    const double nothing = rounding / h * std::max(std::abs(a.s), std::abs(b.s));
+    const double nothing = rounding / h * std::max(std::abs(a.s), std::abs(b.s)) + h * b.a_rounds;
     if (std::abs(tell - middle.v) > seen * size + nothing && times.size() + ends.size() < most) {
       ends.push_back(middle);
       seen = well;
