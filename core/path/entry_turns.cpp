@@ -38,15 +38,6 @@ bool alike(const TimeFunction& a, const TimeFunction& b) {
          bends == b.bends;
 }
 
-bool alike(const Motor& a, const Motor& b) {
-  const auto& [stall, no_load_speed, gear_ratio, limit, control, proportional, integral, derivative, command,
-               integrator, regime] = a;
-  return stall == b.stall && no_load_speed == b.no_load_speed && gear_ratio == b.gear_ratio &&
-         limit == b.limit && control == b.control && proportional == b.proportional &&
-         integral == b.integral && derivative == b.derivative && alike(command, b.command) &&
-         integrator == b.integrator && regime == b.regime;
-}
-
 // Of an angle, a radian.
 double unit_of(const Measure& measure, double size) {
   return is_angle(measure) ? 1.0 : size;
@@ -60,6 +51,15 @@ bool same_target(const TimeFunction& a, TimeFunction b, double unit) {
   b.offset = a.offset;
   b.rise = a.rise;
   return alike(a, b);
+}
+
+bool alike(const Motor& a, const Motor& b, double unit) {
+  const auto& [stall, no_load_speed, gear_ratio, limit, control, proportional, integral, derivative, command,
+               integrator, regime] = a;
+  return stall == b.stall && no_load_speed == b.no_load_speed && gear_ratio == b.gear_ratio &&
+         limit == b.limit && control == b.control && proportional == b.proportional &&
+         integral == b.integral && derivative == b.derivative && same_target(command, b.command, unit) &&
+         integrator == b.integrator && regime == b.regime;
 }
 
 bool same_angle(double a, double b) {
@@ -127,10 +127,11 @@ bool same_entry(const Force& a, const Force& b, double size_of_all) {
          (close_to(rest, b.rest) ||
           std::abs(rest - b.rest) <= rounding_share * unit_of(measure, size_of_all)) &&
          one_sided == b.one_sided && slack == b.slack && smoothing == b.smoothing &&
-         axial_stiffness == b.axial_stiffness && alike(unstressed, b.unstressed) && alike(motor, b.motor) &&
-         close_to(direction, b.direction) && alike(size, b.size) && expansion == b.expansion &&
-         form.empty() && b.form.empty() && kinetic == b.kinetic && holding == b.holding && slip == b.slip &&
-         alike(rope, b.rope) && close_to(trolley, b.trolley);
+         axial_stiffness == b.axial_stiffness && alike(unstressed, b.unstressed) &&
+         alike(motor, b.motor, unit_of(measure, size_of_all)) && close_to(direction, b.direction) &&
+         alike(size, b.size) && expansion == b.expansion && form.empty() && b.form.empty() &&
+         kinetic == b.kinetic && holding == b.holding && slip == b.slip && alike(rope, b.rope) &&
+         close_to(trolley, b.trolley);
 }
 
 bool same_entry(const Constraint& a, const Constraint& b, double size_of_all) {

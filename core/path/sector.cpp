@@ -127,13 +127,36 @@ void Sector::compare(const State& of_sector, const State& of_whole) const {
     throw SectorRefused("the equations of motion hold something that the symmetry does not know");
 }
 
+// What becomes of a force becomes of all its images at once.
+std::vector<Event> Sector::whole_events(const std::vector<Event>& events) const {
+  const std::vector<Force>& forces = whole_->structure.forces;
+  std::vector<Event> out;
+  for (const Event& event : events) {
+    out.push_back(event);
+    if (event.element.empty()) continue;
+    std::size_t source = 0;
+    while (source < forces.size() &&
+           (forces[source].name != event.element || symmetry_.forces[source].turns != 0))
+      ++source;
+    for (std::size_t i = source + 1; i < forces.size(); ++i) {
+      if (symmetry_.forces[i].source != static_cast<int>(source)) continue;
+      Event image = event;
+      image.element = forces[i].name;
+      image.name.replace(image.name.find(event.element), event.element.size(), image.element);
+      image.energy_lost = 0;  // the event's is the whole ring's
+      out.push_back(std::move(image));
+    }
+  }
+  return out;
+}
+
 Simulation Sector::whole(Simulation run) const {
   const Trajectory& from = run.trajectory;
   Simulation out{.trajectory = Trajectory(whole_, from.options()),
                  .status = run.status,
                  .message = std::move(run.message),
                  .warnings = std::move(run.warnings),
-                 .events = std::move(run.events),
+                 .events = whole_events(run.events),
                  .options = run.options,
                  .solved_as = {},
                  .position_estimate = run.position_estimate,

@@ -34,6 +34,7 @@ class Sector {
   VectorXd expand(const VectorXd& q, bool positions) const;  // of all nodes of the whole
   State whole_state(const State& state, bool multipliers) const;
   void lift_multipliers(const VectorXd& lambda, VectorXd& out) const;
+  std::vector<Event> whole_events(const std::vector<Event>& events) const;
   void compare(const State& of_sector, const State& of_whole) const;
 
   std::shared_ptr<const Model> whole_, sector_;

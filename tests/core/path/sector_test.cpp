@@ -143,6 +143,47 @@ TEST_CASE("a ring whose sectors are alike is solved as one of them, and is where
   }
 }
 
+// A cable between neighbours pulls and slackens, and a motor in every hinge comes to its current limit: each
+// of the ring's, as in the full model.
+TEST_CASE("what is told of one sector's cables and motors is told of all of the ring's") {
+  const auto with = [](const std::string& more) {
+    auto all = for_units(6, "forces",
+                         R"({name="cab #",kind="spring",nodes=["B#","B@"],stiffness=4000,damping=20,)"
+                         R"(free_length=2.5,tension_only=true})");
+    const auto motors =
+        for_units(6, "forces",
+                  R"({name="mot #",kind="motor",nodes=["B#","Mb#","B@"],stall_torque=60,no_load_speed=300,)"
+                  R"(current_limit=10,torque_constant=4)" +
+                      more + "}");
+    for (std::size_t k = 0; k < motors.size(); ++k)
+      all.push_back("forces[" + std::to_string(6 + k) + "]" + motors[k].substr(motors[k].find('=')));
+    all.insert(all.end(),
+               {R"(forces[12]={kind="torsion_spring",fold_angle=true,stiffness=50,damping=30,free_angle=20})",
+                R"(loads[0]={nodes=["Mb*"],force=[0,0,-200]})", R"(loads[1]={nodes=["Mt*"],force=[0,0,200]})",
+                "structure.model=joints", "structure.units=6", "structure.fold_angle=80",
+                "structure.hinge_force=0", "structure.chord_rod_length=3.0", "structure.post_length=1.2",
+                "solver.stages=4", "solver.step=0.01"});
+    return Ring{"hoop6", all};
+  };
+  for (const char* more :
+       {"", R"(,control="rate",motion="rate",rate=25,ramp=0.5,proportional=50)",
+        R"(,control="position",motion="rate",rate=25,ramp=0.5,proportional=90,derivative=20)"}) {
+    INFO(more);
+    const Ring ring = with(more);
+    const Simulation full = solved(ring, "full", 1.6), one = solved(ring, "sector", 1.6);
+    CHECK(full.events.size() >= 6);
+    CHECK(full.events.size() % 6 == 0);
+    REQUIRE(one.events.size() == full.events.size());
+    for (std::size_t e = 0; e < one.events.size(); ++e) {
+      CHECK(one.events[e].name == full.events[e].name);
+      CHECK(one.events[e].element == full.events[e].element);
+      CHECK(one.events[e].kind == full.events[e].kind);
+      // Two searches of one time, of a margin that is rounding of 1e-15 of 7 m where they end.
+      CHECK(std::abs(one.events[e].t - full.events[e].t) <= 1e-10);
+    }
+  }
+}
+
 // Waves of 0.9 ms shake every rod: with steps of 10 ms nobody knows forces at single states.
 TEST_CASE("forces of waves that steps do not follow are no better known where a sector is solved") {
   const Ring ring{"hoop6",
