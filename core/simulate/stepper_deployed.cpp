@@ -165,6 +165,8 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
 // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
 // on a stop is locked there.
 bool Stepper::Loop::latch() {
+  std::vector<bool> pulled;
+  for (std::size_t i = 0; i < sides_.stops().size(); ++i) pulled.push_back(sides_.active(i));
   if (sides_.any_held() || sides_.any_reeled()) lock_held();
   const bool gives = latch_gives(base_->structure);
   if (gives && singular_at_end(run_.trajectory))
@@ -176,6 +178,9 @@ bool Stepper::Loop::latch() {
   if (!sides_.empty()) change = modes_after(change.state);
   if (!change.failure.empty()) return fail(change.failure);
   record(change);
+  for (std::size_t i = 0; i < pulled.size(); ++i)  // winches have stopped
+    if (sides_.stops()[i].reeled && sides_.active(i) != pulled[i] && !change.strikes(i))
+      std::ranges::copy(sides_.events(i, change.state.t), std::back_inserter(run_.events));
   for (const std::size_t i : change.turned)
     if (sides_.is_cable(i) || sides_.is_motor(i))
       std::ranges::copy(sides_.events(i, change.state.t), std::back_inserter(run_.events));

@@ -146,4 +146,58 @@ end_time = 0.4
   CHECK(std::ranges::count(run.events, "slack", &Event::kind) == 1);
 }
 
+// What hangs on a winch, and a free mass that latches it: 1 kg that 0.5 N pulls outwards is drawn in at 0.2
+// m/s until 0.7 s. It goes on when the winch stops, comes back and is caught after 2 v / a.
+TEST_CASE("a winch that a latch stops lets its cable go slack and that is told") {
+  const std::string scene = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true},
+  {name = "S", position = [2, 0, 0], mass = 1, velocity = [RATE, 0, 0]},
+  {name = "R", position = [0, 1, 0], mass = 1, velocity = [1, 0, 0]}]
+constraints = [{kind = "line", nodes = ["S", "R"], direction = [1, 0, 0]}]
+[[constraints]]
+kind = "cable"
+name = "reel"
+nodes = ["O", "S"]
+motion = "rate"
+rate = RATE
+[[loads]]
+nodes = ["S"]
+force = [0.5, 0, 0]
+[deployment]
+measure = "coordinate R along 1 0 0"
+deployed = 0.7
+[solver]
+step = 0.01
+end_time = 2
+at_deployed = "latch"
+)";
+  const auto at_rate = [&](const std::string& rate) {
+    std::string text = scene;
+    for (std::size_t at; (at = text.find("RATE")) != std::string::npos;) text.replace(at, 4, rate);
+    return run_scene(text);
+  };
+  const auto check = [](const Simulation& run, const std::vector<std::pair<std::string, double>>& events) {
+    REQUIRE(run.status == RunStatus::completed);
+    REQUIRE(run.events.size() == events.size());
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      CHECK(run.events[i].name == events[i].first);
+      CHECK(run.events[i].t == Approx(events[i].second).epsilon(1e-10));  // located to rounding
+    }
+  };
+  check(at_rate("-0.2"), {{"reel pulls", 0.0},
+                          {"deployed", 0.7},
+                          {"reel is slack", 0.7},
+                          {"latched", 0.7},
+                          {"reel pulls", 0.7 + 0.8}});
+  // One that stands still goes on pulling, and nothing of it is told.
+  check(at_rate("0"), {{"reel pulls", 0.0}, {"deployed", 0.7}, {"latched", 0.7}});
+  // Paid out it is caught there, with its 0.02 J.
+  const Simulation caught = at_rate("0.2");
+  check(caught, {{"reel pulls", 0.0}, {"deployed", 0.7}, {"reel pulls", 0.7}, {"latched", 0.7}});
+  CHECK(caught.events[2].kind == "contact");
+  CHECK(caught.events[2].energy_lost == Approx(0.02).epsilon(1e-9));
+}
+
 }  // namespace law_jumps_test
