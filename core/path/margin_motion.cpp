@@ -177,11 +177,8 @@ void MarginMotion::run(double sense, std::optional<double> goal, double end_time
       return check_energy();
     }
     double latest = from < end_time ? end_time : patience * end_time;
-    for (const TimeEdge& edge : edges_)
-      if (edge.t > from * (1 + 1e-15) + 1e-15 * end_time) {
-        latest = std::min(latest, edge.t);
-        break;
-      }
+    if (const auto edge = edge_after(edges_, from * (1 + 1e-15) + 1e-15 * end_time); edge != edges_.end())
+      latest = std::min(latest, edge->t);
     motion_.advance(law_, latest);
     const auto [t, side] = watch_.first_event(motion_, from, motion_.t());
     if (follow(from, t)) {

@@ -40,7 +40,8 @@ class PathRun {
         path_(trace_path(base_)),
         sides_(base_->structure, options),
         watch_(base_->structure, sides_, options.step),
-        grid_(0.0, options, time_edges(base_->structure, options.step)),
+        edges_(time_edges(base_->structure, options.step)),
+        grid_(0.0, options, edges_),
         run_{.trajectory = Trajectory(base_, closest_steps(options)), .options = options},
         last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {
     refuse_friction();
@@ -254,10 +255,9 @@ class PathRun {
 
   double latest() const {
     if (!drive_.there()) {
-      double t = grid_.end();
-      for (const TimeEdge& edge : time_edges(structure(), options_.step))
-        if (edge.t > motion_.t() * (1 + 1e-15) + 1e-15 * t) return std::min(t, edge.t);
-      return t;
+      const double end = grid_.end();
+      const auto edge = edge_after(edges_, motion_.t() * (1 + 1e-15) + 1e-15 * end);
+      return edge != edges_.end() ? std::min(end, edge->t) : end;
     }
     const TimeGrid::Target next = grid_.next(motion_.t());
     return next.jumps ? next.jump : next.t;
@@ -368,8 +368,7 @@ class PathRun {
       const auto pull = [&](double t) {
         return stuck_ ? excess(t) : held_slope_ * law_->at(motion_.s(), 0.0, t).Q;
       };
-      until = first_time_above(pull, now, until, std::min(options_.step, (until - now) / 8),
-                               time_edges(structure(), options_.step));
+      until = first_time_above(pull, now, until, std::min(options_.step, (until - now) / 8), edges_);
     }
     append_grid(until < grid_.end() ? before(until) : until);
     motion_.rest(until);
@@ -450,8 +449,8 @@ class PathRun {
     if (gives && singular_at_end(run_.trajectory))
       throw PathRefused("a latch that gives, in a deployed pose in which the constraints lose rank");
     base_ = latched_model(*base_, options_.eliminate_linear);
-    add_events(gives ? std::vector<std::size_t>() : stand_still());
     const double speed = std::abs(motion_.v());
+    add_events(gives ? std::vector<std::size_t>() : stand_still());
     const double impulse = change_model(sides_.any_active() ? sides_.model(*base_) : base_);
     run_.events.push_back(
         {.name = "latched", .t = motion_.t(), .energy_lost = gives ? 0.0 : impulse, .kind = "latch"});
@@ -469,6 +468,7 @@ class PathRun {
   std::shared_ptr<const Path> path_;
   OneSided sides_;
   PathWatch watch_;
+  const std::vector<TimeEdge> edges_;
   TimeGrid grid_;
   Simulation run_;
   std::unique_ptr<PathLaw> law_;
