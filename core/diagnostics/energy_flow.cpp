@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "core/diagnostics/quintic.hpp"
@@ -19,6 +20,10 @@ bool motors_or_warmed(const Structure& s) {
   return std::ranges::any_of(s.forces,
                              [](const Force& f) { return f.motor.stall > 0 || f.unstressed.moves(); }) ||
          std::ranges::any_of(s.rods, [](const Rod& r) { return r.gives && r.expansion != 0; });
+}
+
+namespace {
+constexpr double stiff_at = 2;  // times 1 / h, from which c / m is
 }
 
 EnergyMeter::EnergyMeter(const System& system)
@@ -116,17 +121,89 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
   return bend > 0 ? line + std::min(bend, line) : line / (1 - bend / std::max(line, 1e-300));
 }
 
+namespace {
+
+// Of each coordinate one that stands for all that share its accelerations: by their masses, by rows.
+std::vector<Index> parts_of(const System& system) {
+  std::vector<Index> to(static_cast<std::size_t>(system.solved_coordinates()));
+  std::iota(to.begin(), to.end(), Index{0});
+  const auto part = [&](Index i) {
+    while (to[static_cast<std::size_t>(i)] != i) i = to[static_cast<std::size_t>(i)];
+    return i;
+  };
+  const auto join = [&](const SparseRows& A) {
+    for (int row = 0; row < A.outerSize(); ++row) {
+      SparseRows::InnerIterator it(A, row);
+      for (const Index first = it ? part(it.col()) : 0; it; ++it)
+        to[static_cast<std::size_t>(part(it.col()))] = first;
+    }
+  };
+  join(system.mass());
+  join(system.jacobian_pattern());
+  for (Index& i : to) i = part(i);
+  return to;
+}
+
+// The rates of a part: squares of what they are at either end and in the mean, and of what the mean is off
+// that of the ends.
+struct PartRates {
+  bool stiff = false;
+  double at_a = 0, at_b = 0, mean = 0, off = 0;
+  // They are others behind the start, or before the end, than there: of the time between the mean alone
+  // tells. A rate that falls as exp(-c t / m) has less than a sixth of the step for it.
+  bool gone() const { return 9 * off > std::max({at_a, at_b, mean}); }
+};
+
+}  // namespace
+
+// Where a stiff damper moves coordinates, accelerations are what rounding and the method leave of rates times
+// c / m, there and in what hangs together with them. The rest tells their motion to order 4: the quintic is
+// the cubic then.
+EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
+  Ends ends{{.t = a.t, .z = a.z, .w = a.w, .lambda = {}},
+            {.t = b.t, .z = b.z, .w = b.w, .lambda = {}},
+            before_.acceleration,
+            after_.acceleration};
+  const double h = b.t - a.t;
+  if (parts_.empty()) parts_ = parts_of(system_);
+  std::vector<PartRates> rates(parts_.size());
+  const SparseRows& by_w = derivatives_.by_w.sum();
+  const auto of = [&](Index i) -> PartRates& {
+    return rates[static_cast<std::size_t>(parts_[static_cast<std::size_t>(i)])];
+  };
+  const auto square = [](double x) { return x * x; };
+  const VectorXd bounds = rate_bounds(by_w, system_.mass()), mean = (b.z - a.z) / h;
+  for (Index i = 0; i < mean.size(); ++i) {
+    PartRates& part = of(i);
+    part.stiff |= h * bounds[i] > stiff_at;
+    part.at_a += square(a.w[i]), part.at_b += square(b.w[i]), part.mean += square(mean[i]);
+    part.off += square(mean[i] - 0.5 * (a.w[i] + b.w[i]));
+  }
+  for (Index i = 0; i < mean.size(); ++i) {
+    const PartRates& part = of(i);
+    if (!part.stiff) continue;
+    if (part.gone()) ends.a.w[i] = ends.b.w[i] = mean[i];
+    const double at_a = ends.a.w[i], at_b = ends.b.w[i];
+    ends.by_a[i] = (6 * mean[i] - 4 * at_a - 2 * at_b) / h;
+    ends.by_b[i] = (2 * at_a + 4 * at_b - 6 * mean[i]) / h;
+  }
+  return ends;
+}
+
 void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   if (idle()) return;
   before_ = fresh_ && last_ == a.t ? std::move(after_) : at_state(a);
   after_ = at_b.known ? std::move(at_b) : at_state(b);
   fresh_ = true;
   last_ = b.t;
-  const Quintic ends{a, b, before_.acceleration, after_.acceleration, b.t - a.t};
+  const double h = b.t - a.t;
   dissipated += taken(b) - taken(a);
   system_.follow(a);
   const double fastest = dampers_ ? damping_bound(a) : 0.0;
-  const bool stiff = ends.h * fastest > 2;
+  const bool stiff = h * fastest > stiff_at;
+  const Ends trusted = stiff ? trusted_ends(a, b) : Ends{};
+  const Quintic motion = stiff ? Quintic{trusted.a, trusted.b, trusted.by_a, trusted.by_b, h}
+                               : Quintic{a, b, before_.acceleration, after_.acceleration, h};
   static const Quadrature gauss = gauss_legendre(3), lobatto = gauss_lobatto(4);
   const Index points = b.stage_tension.cols();
   if (points > 0 && points != own_.nodes.size()) own_ = gauss_legendre(static_cast<int>(points));
@@ -139,10 +216,9 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   const VectorXd pull = by_line ? rod_forces(a) : VectorXd(), change = by_line ? rod_forces(b) - pull : pull;
   VectorXd tension, line;
   for (Index i = 0; i < rule.nodes.size(); ++i) {
-    const double u = rule.nodes[i], t = a.t + u * ends.h, weight = ends.h * rule.weights[i];
+    const double u = rule.nodes[i], t = a.t + u * h, weight = h * rule.weights[i];
     const bool at_end = by_ends && (i == 0 || i + 1 == rule.nodes.size());
-    const VectorXd z = stiff ? VectorXd(a.z + u * (b.z - a.z)) : ends.value(u),
-                   w = stiff ? VectorXd((b.z - a.z) / ends.h) : ends.rate(u);
+    const VectorXd z = motion.value(u), w = motion.rate(u);
     system_.expand(z, q_);
     system_.expand_rate(w, v_);
     if (points > 0) tension = b.stage_tension.col(i);

@@ -32,7 +32,9 @@ bool motors_or_warmed(const Structure& structure);
 // puts in energy. Where rods give and a step does not resolve their waves, lengths between states do not tell
 // forces: the Gauss points are then the step's own, with the axial forces that it has found there. Where
 // dampers are stiff (c / m beyond 2 / h), what they take comes from the difference of two motions that are
-// nearly one, which no interpolant tells. Their power is then that of the states and its rates there.
+// nearly one, which no interpolant tells. Their power is then that of the states and its rates there, and the
+// motion between the states, of what hangs together with theirs, the cubic through coordinates and rates:
+// order 4.
 class EnergyMeter {
  public:
   explicit EnergyMeter(const System& system);
@@ -53,6 +55,11 @@ class EnergyMeter {
   VectorXd rod_forces(const State& state);  // of those that give [N]
   double taken(const State& state);
   double energy(const State& state);
+  struct Ends {  // of a step: states, accelerations
+    State a = {}, b = {};
+    VectorXd by_a = {}, by_b = {};
+  };
+  Ends trusted_ends(const State& a, const State& b);
   double taken_by_stiff(const State& a, const State& b, double fastest, double others);
 
   System system_;  // follows the states
@@ -62,8 +69,9 @@ class EnergyMeter {
   bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since
   VectorXd q_, v_, unused_, lambda_, target_rate_;
   ForceDerivatives derivatives_;
-  double last_ = 0;  // time of the state that after_ is of
-  Quadrature own_;   // Gauss points of steps that tell the forces of rods there
+  std::vector<Index> parts_;  // of each coordinate
+  double last_ = 0;           // time of the state that after_ is of
+  Quadrature own_;            // Gauss points of steps that tell the forces of rods there
 };
 
 // The same along the states of a run, each in its turn; zeros unless it is `booked`.

@@ -38,15 +38,19 @@ void RowNoise::add_products(const SparseRows& A, const ConstVec& x, double scale
     for (SparseRows::InnerIterator it(A, i); it; ++it) size_[i] += std::abs(scale * it.value() * x[it.col()]);
 }
 
-double rate_bound(const SparseRows& A, const SparseRows& M) {
+VectorXd rate_bounds(const SparseRows& A, const SparseRows& M) {
   const VectorXd m = M.diagonal();
-  double most = 0;
-  for (int i = 0; i < A.outerSize(); ++i) {
-    double sum = 0;
+  VectorXd sums = VectorXd::Zero(A.rows());
+  for (int i = 0; i < A.outerSize(); ++i)
     for (SparseRows::InnerIterator it(A, i); it; ++it)
-      sum += std::abs(it.value()) / std::sqrt(m[i] * m[it.col()]);
-    most = std::max(most, sum);
-  }
+      sums[i] += std::abs(it.value()) / std::sqrt(m[i] * m[it.col()]);
+  return sums;
+}
+
+double rate_bound(const SparseRows& A, const SparseRows& M) {
+  const VectorXd sums = rate_bounds(A, M);
+  double most = 0;
+  for (const double sum : sums) most = std::max(most, sum);
   return most;
 }
 

@@ -45,8 +45,9 @@ class RowNoise {
   VectorXd far_;                     // of each row: its reach in its own length, at least 1
 };
 
-// The largest sum over a row of |A_ij| / sqrt(M_ii M_jj): A = dF/dz' gives a bound of c / m [1/s], dF/dz of
+// Of each row the sum of |A_ij| / sqrt(M_ii M_jj): A = dF/dz' gives a bound of c / m [1/s], dF/dz of
 // k / m [1/s^2].
-double rate_bound(const SparseRows& A, const SparseRows& M);
+VectorXd rate_bounds(const SparseRows& A, const SparseRows& M);
+double rate_bound(const SparseRows& A, const SparseRows& M);  // the largest
 
 }  // namespace unfurl
