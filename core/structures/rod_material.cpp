@@ -18,7 +18,7 @@ namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-std::string thickness_text(double x) {
+std::string metres_text(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g m", x);
   return text;
@@ -92,7 +92,7 @@ SectionShape section_shape(const RodMaterial& material, double area) {
   if (!(t <= r))
     throw StructureError(
         "wall_thickness",
-        "a tube needs the thickness of its wall, at most sqrt(area / pi) = " + thickness_text(r));
+        "a tube needs the thickness of its wall, at most sqrt(area / pi) = " + metres_text(r));
   const double outer = area / (pi * t) + t, inner = outer - 2 * t;
   return {pi / 64 * (std::pow(outer, 4) - std::pow(inner, 4)), outer / 2};
 }
@@ -142,10 +142,15 @@ void add_length_errors(Structure& structure, const RodMaterial& material) {
   std::vector<std::string> exact;
   for (std::size_t r = 0; r < structure.rods.size(); ++r) {
     Rod& rod = structure.rods[r];
-    if (rod.mass > 0 || rod.area > 0)
-      rod.length += material.length_error * normal(static_cast<std::uint64_t>(material.error_seed), r);
-    else if (shown[r])
-      exact.push_back(rod.name);
+    if (!(rod.mass > 0 || rod.area > 0)) {
+      if (shown[r]) exact.push_back(rod.name);
+      continue;
+    }
+    double& made = rod.free_length > 0 ? rod.free_length : rod.length;
+    made += material.length_error * normal(static_cast<std::uint64_t>(material.error_seed), r);
+    if (!(made > 0))
+      throw StructureError("length_error", "rod " + rod.name + " would be made " + metres_text(made) +
+                                               " long; take a smaller length_error");
   }
   if (!exact.empty())
     structure.notes.push_back("length_error leaves out rods with neither mass nor area: " + exact.front() +

@@ -182,6 +182,33 @@ TEST_CASE("assembly: errors of length are those of rods without mass, too") {
   CHECK(bare->structure.notes[0] == "length_error leaves out rods with neither mass nor area: A-B");
 }
 
+// One seed, one error, whatever the rod: a rigid one is 1 + e long, one that is to start stretched 0.9 + e,
+// which is what it pulls with from the start (to rounding of lengths, times E A = 7e6 N).
+TEST_CASE("assembly: errors of length are those of rods with a free length, too") {
+  const auto rod = [](const std::string& more, const char* error) {
+    return std::string("[structure]\nkind = 'custom'\nyoungs_modulus = 7e10\nlength_error = ") + error +
+           "\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', position = [1, 0, 0], "
+           "mass = 1}]\nrods = [{nodes = ['A', 'B'], mass = 1, area = 1e-4" +
+           more + "}]\n";
+  };
+  const std::string stretched = ", elastic = true, free_length = 0.9";
+  const double e = model_of(rod("", "1e-3"))->structure.rods[0].length - 1;
+  CHECK(std::abs(e) > 1e-5);
+  const auto model = model_of(rod(stretched, "1e-3"));
+  CHECK(model->structure.rods[0].free_length == Approx(0.9 + e).margin(1e-14));
+  VectorXd force(1);
+  const VectorXd q = node_positions(model->structure);
+  model->system.giving_rod_forces(0, q, VectorXd::Zero(q.size()), force);
+  CHECK(force[0] == Approx(7e6 * (1 / (0.9 + e) - 1)).margin(1e-6));
+  int seed = 1;  // of one that would be made less than nothing
+  const auto seeded = [&] {
+    return std::vector<std::string>{"structure.error_seed=" + std::to_string(seed)};
+  };
+  while (seed < 20 && model_of(rod("", "1e-3"), seeded())->structure.rods[0].length > 1 - 5e-4) ++seed;
+  CHECK_THAT(error_of(rod(stretched, "5"), seeded()),
+             Catch::Contains("structure.length_error: rod A-B would be made -"));
+}
+
 // A mast is statically determinate: errors of its lengths stress nothing, and the pose is that of rigid rods,
 // whatever the modulus. Both are fitted to round-off of coordinates of some metres.
 TEST_CASE("assembly: a mast whose rods are off starts where it would with rigid rods") {
