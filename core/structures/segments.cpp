@@ -2,6 +2,7 @@
 #include "core/structures/segments.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "core/structure/structure_error.hpp"
 
@@ -27,6 +28,8 @@ class Cutter {
   explicit Cutter(Structure& structure) : s_(structure), rods_(std::move(structure.rods)) {
     s_.rods.clear();
     first_.reserve(rods_.size());
+    for (const Node& node : s_.nodes) node_names_.insert(node.name);
+    for (const Rod& rod : rods_) rod_names_.insert(rod.name);
   }
 
   void cut(const std::vector<long>& segments) {
@@ -41,6 +44,14 @@ class Cutter {
   }
 
  private:
+  static std::string name_of_part(const Rod& rod, long k, const char* what, std::set<std::string>& taken) {
+    std::string name = rod.name + "." + std::to_string(k);
+    if (!taken.insert(name).second)
+      refuse("rod " + rod.name + " is cut into parts " + rod.name + ".1, " + rod.name + ".2, ..., but " +
+             name + " is the name of a " + what + " already");
+    return name;
+  }
+
   void cut(const Rod& rod, long count) {
     if (!rod.elastic() || !(rod.second_moment > 0))
       refuse("rod " + rod.name + " needs area and youngs_modulus to bend");
@@ -48,14 +59,15 @@ class Cutter {
     const Node a = s_.nodes[static_cast<std::size_t>(rod.a)], b = s_.nodes[static_cast<std::size_t>(rod.b)];
     for (long k = 1; k < count; ++k) {
       const double share = static_cast<double>(k) / static_cast<double>(count);
+      const std::string name = name_of_part(rod, k, "node", node_names_);
       nodes.push_back(static_cast<int>(s_.nodes.size()));
-      s_.nodes.push_back({rod.name + "." + std::to_string(k), (1 - share) * a.position + share * b.position,
+      s_.nodes.push_back({name, (1 - share) * a.position + share * b.position,
                           (1 - share) * a.velocity + share * b.velocity, 0.0});
     }
     nodes.push_back(rod.b);
     for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
       Rod part = rod;
-      part.name = rod.name + "." + std::to_string(k + 1);
+      part.name = name_of_part(rod, static_cast<long>(k) + 1, "rod", rod_names_);
       part.whole = rod.name, part.parts = static_cast<int>(count);
       part.a = nodes[k], part.b = nodes[k + 1];
       part.mass /= static_cast<double>(count);
@@ -92,6 +104,7 @@ class Cutter {
   Structure& s_;
   std::vector<Rod> rods_;   // as they were
   std::vector<int> first_;  // part of each, among the new ones
+  std::set<std::string> node_names_, rod_names_;
 };
 
 }  // namespace

@@ -228,3 +228,24 @@ TEST_CASE("the name of a rod that was cut names all of its parts") {
 }
 
 }  // namespace segments_test
+
+// Readers of tables take columns by name.
+TEST_CASE("parts of a rod whose names the scene has already are refused") {
+  const auto scene = [](const char* node, const char* rod) {
+    return std::string(R"([structure]
+kind = "custom"
+youngs_modulus = 7e10
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], mass = 1},
+         {name = ")") +
+           node + R"(", position = [3, 0, 0], mass = 5}]
+rods = [{nodes = ["A", "B"], mass = 1, area = 1e-4, segments = 2}, {nodes = ["B", ")" +
+           node + R"("], mass = 1, area = 1e-4, name = ")" + rod + R"("}]
+)";
+  };
+  CHECK(testing::error_of(scene("C", "C-B")).empty());
+  CHECK(testing::error_of(scene("A-B.2", "A-B.3")).empty());  // its nodes are A-B.1, its rods A-B.1, A-B.2
+  CHECK_THAT(testing::error_of(scene("A-B.1", "C-B")),
+             Catch::Contains("structure.segments: rod A-B is cut into parts") &&
+                 Catch::Contains("A-B.1 is the name of a node already"));
+  CHECK_THAT(testing::error_of(scene("C", "A-B.2")), Catch::Contains("A-B.2 is the name of a rod already"));
+}
