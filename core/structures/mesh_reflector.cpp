@@ -21,6 +21,7 @@ struct Nets {
   int n = 0, rings = 0;
   double radius = 0, height = 0, focal = 0;     // of the deployed corners: radius, half height [m]
   double density = 0, stiffness = 0, mass = 0;  // q [N/m], E A [N], [kg/m]
+  double smoothing = 0;                         // w [m]
   std::vector<NetMember> members;               // of the front net
   std::vector<Vec3> form;                       // of its nodes when deployed
   std::vector<double> tie;                      // force of each node's tie [N]; 0: it is a corner
@@ -29,7 +30,14 @@ struct Nets {
   int node(int ring, int i) const { return ring == 0 ? 0 : first(ring) + i % (n * ring); }
   int count() const { return first(rings + 1); }
   int corner(int k) const { return node(rings, k * rings); }
-  double unstressed(double length, double q) const { return length / (1 + q * length / stiffness); }
+  // Of a member that is to pull with F over that length: with E A e / L_0, or in the smoothed part of the
+  // law, e < w, with E A (e + w)^2 / (4 w L_0), e = length - L_0 (`smoothing` in docs/scene.md).
+  double unstressed(double length, double F) const {
+    const double plain = length / (1 + F / stiffness);
+    if (length - plain >= smoothing) return plain;
+    const double a = length + smoothing, b = 2 * smoothing * F / stiffness;
+    return a + b - std::sqrt(b * (2 * a + b));
+  }
 };
 
 void add_triangles(Nets& net, double edge_ratio) {
@@ -109,7 +117,7 @@ struct NoRoom {
 class NetBuilder {
  public:
   NetBuilder(const ParamSet& params, const Nets& net, Structure& out)
-      : params_(params), net_(net), out_(out), smoothing_(params.real("smoothing")) {}
+      : params_(params), net_(net), out_(out), smoothing_(net.smoothing) {}
 
   void build() {
     first_member_ = out_.forces.size();
@@ -119,13 +127,12 @@ class NetBuilder {
         if (along_longeron(m)) continue;
         const double length =
             (net_.form[static_cast<std::size_t>(m.b)] - net_.form[static_cast<std::size_t>(m.a)]).norm();
-        add_member(node(front, m.a), node(front, m.b), net_.unstressed(length, m.density));
+        add_member(node(front, m.a), node(front, m.b), net_.unstressed(length, m.density * length));
       }
     for (int i = 0; i < net_.count(); ++i) {
       const auto u = static_cast<std::size_t>(i);
       const double gap = 2 * net_.form[u][2];
-      if (net_.tie[u] > 0)
-        add_member(node(true, i), node(false, i), gap / (1 + net_.tie[u] / net_.stiffness));
+      if (net_.tie[u] > 0) add_member(node(true, i), node(false, i), net_.unstressed(gap, net_.tie[u]));
     }
     slacken();
     ReportedSurface surface{"surface_rms_m", "surface error", {}, net_.focal};
@@ -296,6 +303,7 @@ Nets nets_of(const ParamSet& params) {
   net.density = params.real("force_density");
   net.stiffness = params.real("net_stiffness");
   net.mass = params.real("net_mass");
+  net.smoothing = params.real("smoothing");
   add_triangles(net, params.real("edge_density"));
   find_net_form(net);
   return net;
