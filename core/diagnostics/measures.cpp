@@ -202,6 +202,12 @@ std::string with_unit(std::string_view label, std::string_view unit) {
   return std::string(label) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
 }
 
+// In N, N m or Pa, or a share of what a rod bears: of those that peaks.hpp looks for beside singular poses.
+bool force_column(std::string_view column) {
+  return column.ends_with("_N") || column.ends_with("_N_m") || column.ends_with("_Pa") ||
+         column.ends_with("_ratio_max");
+}
+
 // "kinetic_energy_J": "kinetic energy (J)"; what stands before a dot is somebody's name.
 std::string column_label(std::string_view column) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 12> units{{{"_N_m", "N m"},
@@ -254,7 +260,10 @@ std::string uniqueness_of(std::string_view measure) {
 }
 
 bool may_have_no_bound(std::string_view measure) {
-  return !uniqueness_of(measure).empty() || measure.find(":axial_") != std::string_view::npos;
+  if (!uniqueness_of(measure).empty()) return true;
+  const std::size_t colon = measure.find(':');
+  return colon != std::string_view::npos && !measure.starts_with("final:") &&
+         force_column(measure.substr(colon + 1));
 }
 
 std::vector<std::string> columns_of(const std::shared_ptr<const Model>& model) {
