@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <optional>
 
 #include "core/constraints/linear_rows.hpp"
 
@@ -15,8 +16,34 @@ struct Entry {
   std::string name;
   int source;  // index in Structure::constraints
   std::vector<int> nodes;
-  double length;  // of the longest edge from its first node at t = 0 [m]: rounding leaves as much of the row
-                  // as of it
+  double length;  // l
+};
+
+// What the edges of an entry are at most: between its first node and the others at t = 0, or, where these are
+// folded up then, the longest rod at one of its nodes. Phi in edges of l is known to what rounding the nodes
+// leaves, whatever the size of the rest of the structure.
+class OwnLengths {
+ public:
+  explicit OwnLengths(const Structure& structure) : s_(structure), longest_(structure.nodes.size(), 0.0) {
+    for (const Rod& rod : s_.rods)
+      for (const int end : {rod.a, rod.b}) {
+        double& longest = longest_[static_cast<std::size_t>(end)];
+        longest = std::max(longest, rod.length);
+      }
+  }
+  double of(const std::vector<int>& nodes) const {
+    const Vec3& first = s_.nodes[static_cast<std::size_t>(nodes[0])].position;
+    double most = 0;
+    for (const int node : nodes) {
+      const auto i = static_cast<std::size_t>(node);
+      most = std::max({most, longest_[i], (s_.nodes[i].position - first).norm()});
+    }
+    return most > 0 ? most : reference_length(s_);
+  }
+
+ private:
+  const Structure& s_;
+  std::vector<double> longest_;  // rod at each node; 0: none
 };
 
 Eigen::Map<const Vec3> at(const double* x, int node) {
@@ -44,21 +71,15 @@ std::vector<int> coordinates_of(const std::vector<int>& nodes) {
 class Alignment : public ConstraintBlock {
  public:
   Alignment(const Structure& structure, std::string_view kind) {
-    for (std::size_t i = 0; i < structure.constraints.size(); ++i) {
-      const Constraint& c = structure.constraints[i];
-      if (c.kind != kind) continue;
-      const auto place = [&](int node) { return structure.nodes[static_cast<std::size_t>(node)].position; };
-      double length = 0;
-      for (const int node : c.nodes) length = std::max(length, (place(node) - place(c.nodes[0])).norm());
-      entries_.push_back(
-          {c.name, static_cast<int>(i), c.nodes, length > 0 ? length : reference_length(structure)});
-    }
+    std::optional<OwnLengths> lengths;
+    for (std::size_t i = 0; i < structure.constraints.size(); ++i)
+      if (const Constraint& c = structure.constraints[i]; c.kind == kind) {
+        if (!lengths) lengths.emplace(structure);
+        entries_.push_back({c.name, static_cast<int>(i), c.nodes, lengths->of(c.nodes)});
+      }
   }
   bool empty() const { return entries_.empty(); }
   bool linear() const override { return false; }
-  double length(int row) const override {
-    return entries_[static_cast<std::size_t>(row / (rows() / static_cast<int>(entries_.size())))].length;
-  }
 
  protected:
   std::vector<Entry> entries_;
@@ -77,6 +98,7 @@ class Collinear final : public Alignment {
     return entries_[static_cast<std::size_t>(row / 3)].name + " " + "xyz"[row % 3];
   }
   int source(int row) const override { return entries_[static_cast<std::size_t>(row / 3)].source; }
+  double length(int row) const override { return entries_[static_cast<std::size_t>(row / 3)].length; }
   std::vector<int> stencil(int row) const override {
     return coordinates_of(entries_[static_cast<std::size_t>(row / 3)].nodes);
   }
@@ -162,6 +184,7 @@ class Coplanar final : public Alignment {
   int rows() const override { return static_cast<int>(entries_.size()); }
   std::string name(int row) const override { return entries_[static_cast<std::size_t>(row)].name; }
   int source(int row) const override { return entries_[static_cast<std::size_t>(row)].source; }
+  double length(int row) const override { return entries_[static_cast<std::size_t>(row)].length; }
   std::vector<int> stencil(int row) const override {
     return coordinates_of(entries_[static_cast<std::size_t>(row)].nodes);
   }
@@ -173,7 +196,7 @@ class Coplanar final : public Alignment {
   }
   void jacobian(const double* q, double* g) const override {
     for (const Entry& e : entries_) {
-      const Vec9 by_edges = gradient(edges_of(e, q), e.length);
+      const Vec9 by_edges = gradient(e, q);
       std::copy(by_edges.begin(), by_edges.end(), g + 3);
       Eigen::Map<Vec3> first(g);
       first.setZero();
@@ -183,7 +206,7 @@ class Coplanar final : public Alignment {
   }
   void add_force(const double* q, const double* lambda, double scale, double* f) const override {
     for (const Entry& e : entries_) {
-      const Vec9 g = scale * *lambda++ * gradient(edges_of(e, q), e.length);
+      const Vec9 g = scale * *lambda++ * gradient(e, q);
       for (Index k = 0; k < 3; ++k) {
         Eigen::Map<Vec3>(f + 3 * static_cast<Index>(e.nodes[static_cast<std::size_t>(k + 1)])) +=
             g.segment<3>(3 * k);
@@ -226,10 +249,11 @@ class Coplanar final : public Alignment {
       edges.col(k) = at(x, e.nodes[static_cast<std::size_t>(k + 1)]) - at(x, e.nodes[0]);
     return edges;
   }
-  static Vec9 gradient(const Mat3& x, double length) {
+  static Vec9 gradient(const Entry& e, const double* q) {
+    const Mat3 x = edges_of(e, q);
     Vec9 g;
     g << x.col(1).cross(x.col(2)), x.col(2).cross(x.col(0)), x.col(0).cross(x.col(1));
-    return g / (length * length);
+    return g / (e.length * e.length);
   }
 };
 

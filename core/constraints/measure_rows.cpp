@@ -3,11 +3,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/constraints/linear_rows.hpp"
 #include "core/structure/measure.hpp"
 
 namespace unfurl {
+
+double row_arm(const Structure& structure, const Measure& measure) {
+  constexpr double none = 1e-9;  // of that
+  const double whole = reference_length(structure);
+  double shortest = std::numeric_limits<double>::infinity();
+  const auto edge = [&](std::size_t a, std::size_t b) {
+    const auto at = [&](std::size_t k) -> const Vec3& {
+      return structure.nodes[static_cast<std::size_t>(measure.nodes[k])].position;
+    };
+    if (const double length = (at(b) - at(a)).norm(); length > none * whole)
+      shortest = std::min(shortest, length);
+  };
+  if (measure.kind == MeasureKind::angle || measure.kind == MeasureKind::dihedral) edge(0, 1), edge(2, 3);
+  for (const MeasureTerm& term : measure.terms)
+    shortest = std::min(shortest, row_arm(structure, term.measure));
+  return std::isfinite(shortest) ? shortest : whole;
+}
+
 namespace {
 
 struct Measured {
@@ -104,11 +123,12 @@ std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure) {
     const Constraint& c = structure.constraints[i];
     if (c.kind != "measure") continue;
     MeasureFunction measure(c.measure, structure.deployment);
-    const double scale = measure.is_angle() ? length : 1.0;
+    const bool angle = measure.is_angle();
+    const double own = angle ? row_arm(structure, c.measure) : length, scale = angle ? own : 1.0;
     double terms = 1;  // a row of large coefficients is as large
     for (const MeasureTerm& term : c.measure.terms) terms = std::max(terms, std::abs(term.coefficient));
     rows.push_back(
-        {c.name, static_cast<int>(i), std::move(measure), c.target, scale, terms * length, followed[i]});
+        {c.name, static_cast<int>(i), std::move(measure), c.target, scale, terms * own, followed[i]});
   }
   if (rows.empty()) return nullptr;
   return std::make_unique<MeasureRows>(std::move(rows));

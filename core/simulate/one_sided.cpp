@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/constraints/linear_rows.hpp"
+#include "core/constraints/measure_rows.hpp"
 #include "core/forces/spring.hpp"
 #include "core/simulate/friction_hold.hpp"
 
@@ -48,10 +48,7 @@ const char* in_words(const Motor& motor) {
 }  // namespace
 
 OneSided::OneSided(const Structure& structure, const SolverOptions& options)
-    : stops_(structure),
-      step_(options.step),
-      length_(reference_length(structure)),
-      eliminate_linear_(options.eliminate_linear) {
+    : stops_(structure), step_(options.step), eliminate_linear_(options.eliminate_linear) {
   const std::vector<int> followed = followed_angles(structure).of_force;
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
     const Force& f = structure.forces[i];
@@ -62,9 +59,11 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
     if (f.kind != "friction" || !(f.holding > 0 || PinLoads::arm(f) > 0)) continue;
     auto one = std::find_if(frictions_.begin(), frictions_.end(),
                             [&](const Friction& other) { return same(other.measure, f.measure); });
-    if (one == frictions_.end())
+    if (one == frictions_.end()) {
       one = frictions_.insert(one,
                               {{}, f.measure, MeasureFunction(f.measure, structure.deployment), followed[i]});
+      if (is_angle(f.measure)) one->row = row_arm(structure, f.measure);
+    }
     one->pads.push_back({i, f.name, PinLoads::arm(f)});
     one->kinetic += f.kinetic;
     one->holding += f.holding;
@@ -340,8 +339,7 @@ void OneSided::measure_held(const Model& model, const State& state, Probe& probe
   for (std::size_t i = first_motor(); i-- > first_friction();)
     if (active_[i])
       friction_force_[static_cast<Index>(i - first_friction())] =
-          with_forces.lambda[model.system.constraint_row(--constraint)] *
-          (measure(i).is_angle() ? length_ : 1.0);
+          with_forces.lambda[model.system.constraint_row(--constraint)] * friction(i).row;
   measure_sticking(zero, probe);
 }
 
@@ -359,7 +357,7 @@ void OneSided::measure_sticking(double zero, Probe& probe) {
   for (const FrictionHold& hold : friction_holds(shares, friction_force_(held), tau(held), tau(resting)))
     for (const Index k : hold.held) {
       const Index i = static_cast<Index>(first_friction()) + held[static_cast<std::size_t>(k)];
-      const double arm = measure(static_cast<std::size_t>(i)).is_angle() ? length_ : 1.0;
+      const double arm = friction(static_cast<std::size_t>(i)).row;
       probe.margins[i] = (hold.capacity - hold.load) / std::max(zero * arm, force_zero * hold.capacity);
     }
 }

@@ -143,7 +143,8 @@ class OneSided {
     std::vector<Pad> pads;
     Measure measure;
     MeasureFunction function;
-    int followed;                     // index in State::angles; -1: it counts no turns
+    int followed;    // index in State::angles; -1: it counts no turns
+    double row = 1;  // of its row while it sticks: a multiplier times that is its force or torque
     double kinetic = 0, holding = 0;  // sums of the pads
     double by_load = 0;  // arms times the forces of their pins, of the state that was weighed [N m]
     int slip = 0;
@@ -184,7 +185,7 @@ class OneSided {
   VectorXd shift_;        // of the stops' gaps [m] or [rad]
   MatrixXd shares_;
   VectorXd friction_force_;  // of those that stick, at the state that is measured
-  double step_, length_;
+  double step_;
   bool eliminate_linear_;
   VectorXd gradient_, acceleration_, lambda_;
   std::optional<System> followed_;       // the present model's, near a state's angles

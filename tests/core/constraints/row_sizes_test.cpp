@@ -80,38 +80,6 @@ TEST_CASE("gears turn on after hundreds of turns as in the first") {
   CHECK(iterations_until(gears, 180) < 11 * iterations_until(gears, 18));
 }
 
-// A plate of 10 m, and hundreds of rods of a millimetre that have nothing to do with it.
-TEST_CASE("four nodes stay in a plane at the same price whatever lies beside them") {
-  const auto plate = [](int count) {
-    const std::string n = std::to_string(count);
-    return "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'A'\nposition = [3.3, 1.7, 0.9]\nfixed "
-           "= true\n"
-           "[[structure.nodes]]\nname = 'B'\nposition = [10, 0, 0]\nvelocity = [0, 1, 0]\nmass = 1\n"
-           "[[structure.nodes]]\nname = 'C'\nposition = [9.1, 11.3, 2.4]\nvelocity = [0, 0, 3]\nmass = 1\n"
-           "[[structure.nodes]]\nname = 'D'\nposition = [2.825, 11.785, 3.015]\nvelocity = [0, 0, 1]\nmass = "
-           "1\n"
-           "[[structure.nodes]]\nrepeat = {i = '0:" +
-           n +
-           "'}\nname = 'P{i}'\nposition = ['=20+i*0.002', 0, 0]\nmass = 1\n"
-           "[[structure.nodes]]\nrepeat = {i = '0:" +
-           n +
-           "'}\nname = 'Q{i}'\nposition = ['=20+i*0.002', 0.001, 0]\nvelocity = [0.001, 0, 0]\nmass = 1\n"
-           "[[structure.rods]]\nnodes = ['A', 'B']\nmass = 1\n[[structure.rods]]\nnodes = ['B', 'C']\nmass = "
-           "1\n"
-           "[[structure.rods]]\nnodes = ['C', 'D']\nmass = 1\n[[structure.rods]]\nnodes = ['D', 'A']\nmass = "
-           "1\n"
-           "[[structure.rods]]\nrepeat = {i = '0:" +
-           n +
-           "'}\nnodes = ['P{i}', 'Q{i}']\nmass = 1\n"
-           "[[constraints]]\nkind = 'coplanar'\nnodes = ['A', 'B', 'C', 'D']\n[solver]\nend_time = 0.2\nstep "
-           "= 0.02\n";
-  };
-  const Simulation alone = run_of(plate(1)), beside = run_of(plate(200));
-  CHECK(alone.status == RunStatus::completed);
-  REQUIRE(beside.status == RunStatus::completed);
-  CHECK(beside.newton_iterations <= alone.newton_iterations + 10);  // one a step more
-}
-
 // The same linkage, scaled: of a method that drifts, by the same share.
 TEST_CASE("a structure without rods has the size of its nodes' distances") {
   double first = 0;
