@@ -23,7 +23,9 @@ constexpr OwnOption rows[] = {
     {"--tolerance", "METRES", "pick stages and step for this error of node positions (solver.tolerance)",
      ShortKey{"solver.tolerance"}},
     {"--steps", "LARGEST:SMALLEST",
-     "the ladder of steps [s]: halved again and again, between the larger ones two thirds, too",
+     "the ladder of steps [s], rounded to fit the motion: halved again and again, between the larger ones "
+     "two "
+     "thirds, too",
      at<&Arguments::study, &StudyArguments::ladder>},
     {"--repeats", "N", "timed runs per point, at most (5)", at<&Arguments::study, &StudyArguments::repeats>,
      1, 1000},

@@ -78,8 +78,12 @@ StepLadder make_ladder(double end, double scene_step, double largest, double sma
   if (!given) smallest = scene_step / 16;
   if (!(smallest > 0) || !(largest > smallest))
     throw StudyError("a ladder of steps falls from a larger to a smaller step, both > 0 s");
-  if (given && largest > end / 2)
-    throw StudyError("the largest step must fit twice into the motion of " + std::to_string(end) + " s");
+  if (!(2 * smallest <= largest))
+    throw StudyError("a ladder of steps is halved at least once: the smallest step must be at most " +
+                     short_number(largest / 2) + " s");
+  if (given && largest > end / 4)
+    throw StudyError("the largest step must fit four times into the motion of " + short_number(end, 6) +
+                     " s: it is at most " + short_number(end / 4) + " s");
   const double levels = std::log2(largest / smallest);
   if (levels > max_levels)
     throw StudyError("a ladder spans at most a factor of " + std::to_string(1L << max_levels) +

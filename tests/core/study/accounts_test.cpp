@@ -176,7 +176,8 @@ TEST_CASE("a run is measured by its own steps, work and errors") {
 
 TEST_CASE("a ladder reaches from the largest to the smallest step that are asked for, and no further") {
   for (const double end : {2.9, 11.3})
-    for (const auto& [largest, smallest] : {std::pair{0.31, 0.011}, {0.17, 0.0043}, {0.09, 0.05}}) {
+    for (const auto& [largest, smallest] :
+         {std::pair{0.31, 0.011}, {0.17, 0.0043}, {0.09, 0.045}, {0.7, 0.35}}) {
       INFO(end << " s, " << largest << " to " << smallest);
       const StepLadder ladder = make_ladder(end, 0.01, largest, smallest);
       for (std::size_t i = 0; i < ladder.steps.size(); ++i) {
@@ -198,7 +199,7 @@ TEST_CASE("a ladder reaches from the largest to the smallest step that are asked
   CHECK(own.steps.back() >= 7168);  // 0.7 of 10240
   CHECK(own.steps.back() <= 14336);
   // Limits themselves are allowed.
-  CHECK_NOTHROW(make_ladder(8, 0.01, 4, 0.1));
+  CHECK_NOTHROW(make_ladder(8, 0.01, 2, 0.1));
   CHECK_NOTHROW(make_ladder(8, 0.01, 1.0, 1.0 / (1L << 14)));
   CHECK_THROWS_AS(make_ladder(8, 0.01, 1.0, 0.9 / (1L << 14)), StudyError);
   CHECK_THROWS_AS(make_ladder(8, 0.01, 1.0, 1.0), StudyError);

@@ -189,7 +189,9 @@ TEST_CASE("a ladder falls by halves and two thirds, and all its runs meet") {
   for (const long steps : ladder.steps) CHECK(steps % ladder.grid == 0);
   CHECK_THROWS_WITH(make_ladder(8, 0.01, 0.01, 0.02),
                     Catch::Contains("falls from a larger to a smaller step"));
-  CHECK_THROWS_WITH(make_ladder(8, 0.01, 5, 0.02), Catch::Contains("must fit twice"));
+  CHECK_THROWS_WITH(make_ladder(8, 0.01, 5, 0.02), Catch::Contains("must fit four times"));
+  CHECK_THROWS_WITH(make_ladder(8, 0.01, 2.001, 0.02), Catch::Contains("it is at most 2 s"));
+  CHECK_THROWS_WITH(make_ladder(0.5, 0.01, 0.1, 0.07), Catch::Contains("halved at least once"));
   CHECK_THROWS_WITH(make_ladder(8, 0.01, 1, 1e-9), Catch::Contains("at most a factor"));
 }
 
