@@ -28,7 +28,7 @@ constexpr std::uintmax_t largest_film = std::uintmax_t{32} << 20U;  // that a pa
 Table outcome_of(const Simulation& run, const Diagnostics& diagnostics) {
   Table table{{"of the run", ""}, {}};
   const auto row = [&](const std::string& name, const std::string& value) {
-    table.rows.push_back({name, value});
+    table.rows.push_back({name, as_plain(value)});
   };
   const auto number = [](double x, const char* unit) { return short_number(x, 9) + unit; };
   row("ended", std::string(to_string(run.status)) + " at " + number(run.trajectory.end_time(), " s"));
@@ -70,20 +70,20 @@ void add_figures(const fs::path& directory, Report& report) {
 void write_run_report(const fs::path& directory, const Scene& scene, const Simulation& run,
                       const Diagnostics& diagnostics, const Arguments& arguments) {
   Report report{scene.title};
-  report.paragraph(
-      "Made by unfurl " + version() + " with `" +
-      as_typed(command_of_result(arguments.words, place_of_first_name(arguments.words), scene.name)) +
-      "` of the scene as it stands at the end of this page.");
+  report.paragraph("Made by unfurl " + version() + " with " +
+                   as_code(as_typed(command_of_result(arguments.words, place_of_first_name(arguments.words),
+                                                      scene.name))) +
+                   " of the scene as it stands at the end of this page.");
   std::error_code error;
   const std::uintmax_t film = fs::file_size(directory / "animation.webp", error);
   if (!error && film <= largest_film) report.picture("animation.webp", "The motion.");
   report.heading("How it ended");
   report.add(outcome_of(run, diagnostics));
-  if (const std::string note = ending_note(run, diagnostics); !note.empty()) report.paragraph(note);
+  if (const std::string note = ending_note(run, diagnostics); !note.empty()) report.paragraph(as_plain(note));
   const auto warnings = lasting_warnings(run, diagnostics, warnings_about_text(scene));
   report.heading("Warnings");
   if (warnings.empty()) report.paragraph("None.");
-  for (const std::string& warning : warnings) report.paragraph(warning);
+  for (const std::string& warning : warnings) report.paragraph(as_plain(warning));
   report.heading("Measures");
   report.add(measures_of(run, diagnostics));
   report.heading("Figures");

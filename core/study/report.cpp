@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/study/report.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <span>
@@ -23,19 +25,64 @@ pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; 
 code { background: #f2f2f2; padding: .1em .3em; border-radius: 3px }
 )";
 
-// Pairs of a mark become an element.
-std::string replace_pairs(std::string text, std::string_view mark, const std::string& element) {
-  for (std::size_t begin = 0; (begin = text.find(mark, begin)) != std::string::npos;) {
-    const std::size_t end = text.find(mark, begin + mark.size());
-    if (end == std::string::npos) break;
-    text.replace(end, mark.size(), "</" + element + ">");
-    text.replace(begin, mark.size(), "<" + element + ">");
+constexpr std::string_view marks = "\\`*_";
+
+std::size_t run_of(std::string_view text, std::size_t at) {  // of equal characters
+  const std::size_t end = text.find_first_not_of(text[at], at);
+  return (end == std::string_view::npos ? text.size() : end) - at;
+}
+
+// The end of code that begins with so many backquotes: as many again.
+std::size_t code_end(std::string_view text, std::size_t from, std::size_t quotes) {
+  for (std::size_t i = text.find('`', from); i != std::string_view::npos; i = text.find('`', i)) {
+    const std::size_t run = run_of(text, i);
+    if (run == quotes) return i;
+    i += run;
   }
-  return text;
+  return std::string_view::npos;
+}
+
+// Where the mark is again, beyond code and what a backslash takes as it is; npos: nowhere.
+std::size_t mark_again(std::string_view text, std::size_t from, std::string_view mark) {
+  for (std::size_t i = text.find_first_of("\\`*", from); i != std::string_view::npos;
+       i = text.find_first_of("\\`*", i)) {
+    const std::size_t run = text[i] == '\\' ? 2 : run_of(text, i);
+    if (text[i] == '*' && text.substr(i, run) == mark) return i;
+    const std::size_t end = text[i] == '`' ? code_end(text, i + run, run) : std::string_view::npos;
+    i = (end == std::string_view::npos ? i : end) + run;
+  }
+  return std::string_view::npos;
 }
 
 std::string html_text(std::string_view text) {
-  return replace_pairs(replace_pairs(replace_pairs(xml_text(text), "**", "strong"), "*", "em"), "`", "code");
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t next = std::min(text.find_first_of("\\`*", i), text.size());
+    out += xml_text(text.substr(i, next - i));
+    if (next == text.size()) break;
+    const char mark = text[next];
+    const std::size_t run = mark == '\\' ? 1 : run_of(text, next), inside = next + run;
+    if (mark == '\\' && inside < text.size() && marks.find(text[inside]) != std::string_view::npos) {
+      out += text[inside];
+      i = inside + 1;
+      continue;
+    }
+    const std::size_t end = mark == '`'               ? code_end(text, inside, run)
+                            : mark == '*' && run <= 2 ? mark_again(text, inside, text.substr(next, run))
+                                                      : std::string_view::npos;
+    if (end == std::string_view::npos) {
+      out += text.substr(next, run);
+      i = inside;
+      continue;
+    }
+    std::string_view within = text.substr(inside, end - inside);
+    if (mark == '`' && within.size() > 2 && within.front() == ' ' && within.back() == ' ')
+      within = within.substr(1, within.size() - 2);
+    const std::string element = mark == '`' ? "code" : run == 2 ? "strong" : "em";
+    out += "<" + element + ">" + (mark == '`' ? xml_text(within) : html_text(within)) + "</" + element + ">";
+    i = end + run;
+  }
+  return out;
 }
 
 std::string html_table(const Table& table) {
@@ -65,6 +112,35 @@ std::string html_picture(const ReportBlock& block, const std::filesystem::path& 
 
 }  // namespace
 
+std::string as_plain(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto within_word = [&](std::size_t k) {
+      return k < text.size() && std::isalnum(static_cast<unsigned char>(text[k])) != 0;
+    };
+    // Within a word "_" marks nothing, nor does a backslash before anything but a mark.
+    const bool mark = text[i] == '_' ? !(i > 0 && within_word(i - 1) && within_word(i + 1))
+                      : text[i] == '\\'
+                          ? i + 1 == text.size() || std::ispunct(static_cast<unsigned char>(text[i + 1])) != 0
+                          : marks.find(text[i]) != std::string_view::npos;
+    if (mark) out += '\\';
+    out += text[i];
+  }
+  return out;
+}
+
+// In more backquotes than any in it.
+std::string as_code(std::string_view text) {
+  std::size_t most = 0;
+  for (std::size_t i = text.find('`'); i != std::string_view::npos; i = text.find('`', i)) {
+    const std::size_t run = run_of(text, i);
+    most = std::max(most, run);
+    i += run;
+  }
+  const std::string fence(most + 1, '`'), gap = most > 0 ? " " : "";
+  return fence + gap + std::string(text) + gap + fence;
+}
+
 void Report::heading(std::string text) {
   blocks.push_back({ReportBlock::Kind::heading, std::move(text)});
 }
@@ -87,7 +163,7 @@ std::string markdown_link(const std::string& file) {
 }
 
 std::string report_markdown(const Report& report) {
-  std::string text = "# " + markdown_line(report.title) + "\n";
+  std::string text = "# " + markdown_line(as_plain(report.title)) + "\n";
   for (const ReportBlock& block : report.blocks) {
     text += "\n";
     if (block.kind == ReportBlock::Kind::heading) text += "## " + markdown_line(block.text) + "\n";
@@ -106,7 +182,7 @@ std::string report_html(const Report& report, const std::filesystem::path& folde
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\"><title>" +
       xml_text(report.title) + "</title><style>" + style + "</style></head><body>\n<h1>" +
-      html_text(report.title) + "</h1>\n";
+      xml_text(report.title) + "</h1>\n";
   for (const ReportBlock& block : report.blocks) {
     if (block.kind == ReportBlock::Kind::heading) text += "<h2>" + html_text(block.text) + "</h2>\n";
     if (block.kind == ReportBlock::Kind::paragraph) text += "<p>" + html_text(block.text) + "</p>\n";

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/study/table.hpp"
@@ -18,9 +19,10 @@ struct ReportBlock {
   std::string file = {};  // of a picture, relative to the report: "figures/poses.png"
 };
 
-// Text may hold `code`, *emphasis* and **strong emphasis**; everything else is plain.
+// Text may hold `code`, *emphasis* and **strong emphasis**; everything else is plain. A backslash before a
+// mark takes it as it is.
 struct Report {
-  std::string title;
+  std::string title;  // plain
   std::vector<ReportBlock> blocks = {};
 
   void heading(std::string text);
@@ -29,6 +31,10 @@ struct Report {
   void picture(std::string file, std::string caption);
   void listing(std::string text);  // of a file, line by line as it is
 };
+
+// What is not the program's own: names, messages; a command or an expression.
+std::string as_plain(std::string_view text);
+std::string as_code(std::string_view text);
 
 std::string report_markdown(const Report& report);
 // Self-contained: pictures (PNG, SVG or WebP in `folder`) are embedded. Throws FileError where one cannot be

@@ -27,6 +27,19 @@ TEST_CASE("a report is Markdown and a page that stands alone") {
        {"<h1>T &lt; U</h1>", "<strong>bold</strong> and <code>code</code>", "<td class=\"n\">1.5</td>",
         "src=\"data:image/png;base64,TWFu\"", "alt=\"a &quot;picture&quot;\""})
     CHECK(html.find(part) != std::string::npos);
+  // Names, titles, messages and commands are taken as they are.
+  Report foreign{"panel 3*4*5 `x` **b _y_ m_z"};
+  foreign.paragraph(as_plain("k*l*m `n` \\*o") + " with " + as_code("--set 'a=\"*`b\\*\"'") +
+                    " and *p `*` q* \u2713");
+  CHECK(report_markdown(foreign) ==
+        "# panel 3\\*4\\*5 \\`x\\` \\*\\*b \\_y\\_ m_z\n\nk\\*l\\*m \\`n\\` \\\\\\*o with "
+        "`` --set 'a=\"*`b\\*\"' `` and *p `*` q* \u2713\n");
+  const std::string page = report_html(foreign, folder);
+  for (const char* part :
+       {"<title>panel 3*4*5 `x` **b _y_ m_z</title>", "<h1>panel 3*4*5 `x` **b _y_ m_z</h1>",
+        "<p>k*l*m `n` \\*o with <code>--set 'a=&quot;*`b\\*&quot;'</code> and <em>p "
+        "<code>*</code> q</em> \u2713</p>"})
+    CHECK(page.find(part) != std::string::npos);
   report.picture("none.png", "");
   CHECK_THROWS_AS(report_html(report, folder), FileError);
   fs::remove_all(folder);
