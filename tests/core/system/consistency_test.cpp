@@ -46,20 +46,25 @@ std::string table(const std::vector<double>& off) {
 TEST_CASE("what is violated at the start is listed with the worst, up to six by name") {
   const std::string head = "s.toml:1:1: structure: the structure cannot be assembled as given: ";
   CHECK(testing::error_of(table({0, 0, 0})) == "");
-  // A row is the offset times the half metre of the line, over the metre that a structure without rods has
-  // for its length.
-  CHECK(testing::error_of(table({0, 3e-3, 0})) == head + "p1 y is violated at t = 0, by up to 0.0015 m");
+  // A row is the offset times the half metre of the line, over the longest edge of its own: 1.6 m to N1, 3.6
+  // m to N3, and what the offset makes of that.
+  CHECK(testing::error_of(table({0, 3e-3, 0})) == head + "p1 y is violated at t = 0, by up to 0.000937498 m");
   CHECK(testing::error_of(table({0, 3e-3, 0, -0.02})) ==
-        head + "p1 y, p3 y are violated at t = 0, by up to 0.01 m");
+        head + "p1 y, p3 y are violated at t = 0, by up to 0.00277773 m");
   CHECK(testing::error_of(table({1e-3, 3e-3, 2e-3, -0.02, 1e-3, 1e-3})) ==
-        head + "p0 y, p1 y, p2 y, p3 y, p4 y, p5 y are violated at t = 0, by up to 0.01 m");
+        head + "p0 y, p1 y, p2 y, p3 y, p4 y, p5 y are violated at t = 0, by up to 0.00277773 m");
   CHECK(testing::error_of(table({1e-3, 3e-3, 2e-3, -0.02, 1e-3, 1e-3, 4e-3, 1e-3})) ==
-        head + "p0 y, p1 y, p2 y, p3 y, p4 y, p5 y and 2 more are violated at t = 0, by up to 0.01 m");
-  // A ten-millionth of the longest side, here 7 - 0.4 = 6.6 m, for half of the offset.
-  CHECK(testing::error_of(table({0, 0, 13.1e-7, 0, 0, 0, 0})) == "");
-  CHECK(testing::error_of(table({0, 0, -13.1e-7, 0, 0, 0, 0})) == "");
-  CHECK(testing::error_of(table({0, 0, 13.3e-7, 0, 0, 0, 0})) != "");
-  CHECK(testing::error_of(table({0, 0, -13.3e-7, 0, 0, 0, 0})) != "");
+        head + "p0 y, p1 y, p2 y, p3 y, p4 y, p5 y and 2 more are violated at t = 0, by up to 0.00277773 m");
+  // A ten-millionth of the longest side, here 7 - 0.4 = 6.6 m, of the offset times 0.5 m over N2's edge
+  // of 2.6 m.
+  CHECK(testing::error_of(table({0, 0, 34.2e-7, 0, 0, 0, 0})) == "");
+  CHECK(testing::error_of(table({0, 0, -34.2e-7, 0, 0, 0, 0})) == "");
+  CHECK(testing::error_of(table({0, 0, 34.4e-7, 0, 0, 0, 0})) != "");
+  CHECK(testing::error_of(table({0, 0, -34.4e-7, 0, 0, 0, 0})) != "");
+})) == "");
+CHECK(testing::error_of(table({0, 0, -13.1e-7, 0, 0, 0, 0})) == "");
+CHECK(testing::error_of(table({0, 0, 13.3e-7, 0, 0, 0, 0})) != "");
+CHECK(testing::error_of(table({0, 0, -13.3e-7, 0, 0, 0, 0})) != "");
 }
 
 // Three equations keep a node on a line, of which two count, in the list as in what the check says of it.
