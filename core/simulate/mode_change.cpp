@@ -251,6 +251,7 @@ class Change {
     }
     const std::vector<bool> still = rests_;
     if (!solve()) return false;
+    forget_left(leaving);
     if (!leaving.empty()) let_go(leaving);
     for (const Index r : leaving) leave(r);
     if (!leaving.empty() && !solve()) return false;
@@ -269,13 +270,24 @@ class Change {
     return rounds_[r] + sum_rounding * D_.row(r).cwiseAbs().dot(solution_.x.transpose().cwiseAbs());
   }
 
-  // What a force gives that was located as zero: of those beside it, and of what it was itself.
+  // What a force gives that was located as zero.
   double located_acceleration(Index r) const {
-    const double own = left_.size() > 0 ? D_(r, r) * left_[static_cast<Index>(side(r))] : 0.0;
     const double arm = sides_.stops().touching() / sides_.touching(side(r));  // of what turns
-    return zero_acceleration(r) + own +
-           located *
-               (D_(r, r) * arm * multiplier_ + D_.row(r).cwiseAbs().dot(solution_.x.transpose().cwiseAbs()));
+    return zero_acceleration(r) + located * (D_(r, r) * arm * multiplier_ +
+                                             D_.row(r).cwiseAbs().dot(solution_.x.transpose().cwiseAbs()));
+  }
+
+  // A push that was located as zero is zero: what the location left of it is taken off all accelerations, and
+  // what rounding leaves of what it was.
+  void forget_left(const std::vector<Index>& leaving) {
+    for (const Index r : leaving) {
+      const double push = solution_.x[r], left = left_.size() > 0 ? left_[static_cast<Index>(side(r))] : 0.0;
+      if (!(std::abs(push) <= left)) continue;
+      for (Index k = 0; k < count(); ++k) {
+        b_[k] += D_(k, r) * push;
+        if (std::abs(b_[k]) <= rounds_[k] + sum_rounding / located * left * std::abs(D_(k, r))) b_[k] = 0;
+      }
+    }
   }
 
   // Frictions that hold together let go together: all whose force is at its limit, and they alone.

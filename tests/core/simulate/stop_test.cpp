@@ -257,6 +257,43 @@ values = [3, )" + number(last) +
     }
 }
 
+// A second mass lies against the first: neither does anything to the other then, nor do two stops switch in
+// turn by what is left of the load.
+TEST_CASE("what touches a stop beside one that is left is not pressed on by rounding") {
+  for (int i = 0; i < 40; ++i) {
+    const double last = -1.7 - 0.0137 * i, first = 0.438893, t0 = 0.125 + 0.375 * first / (first - last);
+    CAPTURE(last);
+    const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "P", position = [1, 0, 0], mass = 1.7033}, {name = "Q", position = [1.8, 0, 0], mass = 1.09753}]
+constraints = [{kind = "line", nodes = ["P", "Q"], direction = [1, 0, 0]}]
+[[constraints]]
+kind = "coordinate_stop"
+name = "end"
+nodes = ["P"]
+direction = [1, 0, 0]
+max = 1
+[[constraints]]
+kind = "length_stop"
+name = "between"
+nodes = ["P", "Q"]
+min = 0.8
+[[forces]]
+kind = "load_over_time"
+nodes = ["P"]
+force = [1, 0, 0]
+times = [0.125, 0.5]
+values = [0.438893, )" + number(last) +
+                                     "]\n[solver]\nend_time = 0.5\n");
+    CHECK(run.warnings.empty());
+    REQUIRE(run.events.size() == 2);
+    CHECK(run.events[1].name == "leaves stop end");
+    CHECK(run.events[1].t == Approx(t0).epsilon(1e-12));
+    CHECK(end_positions(run)[3] == 1.8);
+  }
+}
+
 // The same of a spring whose other end is drawn past the balance at u: x = u tau - u / w sin w tau.
 TEST_CASE("a stop is left where the only spring that presses on it slackens") {
   for (const char* step : {"0.1", "0.01"})
