@@ -174,7 +174,8 @@ class Change {
     // is known as well as its rates are.
     VectorXd of_rates(count());
     for (Index r = 0; r < count(); ++r) of_rates[r] = rate_rounding * sides_.fastest(side(r), out_.state);
-    const auto impulses = solve_box(D_, b, low, high, of_rates);
+    auto impulses = solve_box(D_, b, low, high, of_rates);
+    if (!impulses) impulses = solve_box(D_, u, low, high, of_rates);  // they throw it at each other
     if (!impulses) return fail_at(std::find(struck_.begin(), struck_.end(), true) - struck_.begin());
     responses.give(impulses->x, out_.state.w);
     const VectorXd after = responses.rates(out_.state.w);

@@ -294,6 +294,29 @@ values = [0.438893, )" + number(last) +
   }
 }
 
+// A blow into a stop that would throw it against another, which it touches as well.
+TEST_CASE("what two stops leave no room comes to rest, whatever their restitution") {
+  for (const double e : {0.0, 0.5, 1.0}) {
+    const std::string ends = "\nrestitution = " + number(e) + "\nmin = ";
+    const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "P", position = [1, 0, 0], mass = 1.4, velocity = [0.41, 0, 0]}]
+constraints = [{kind = "line", nodes = ["P"], direction = [1, 0, 0]}]
+[[constraints]]
+kind = "coordinate_stop"
+nodes = ["P"]
+direction = [1, 0, 0])" + ends + "1\n[[constraints]]\nkind = \"length_stop\"\nnodes = [\"O\", \"P\"]" +
+                                     ends + "0.5\nmax = 1\n[solver]\nend_time = 0.1\n");
+    INFO(run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    double lost = 0;
+    for (const Event& event : run.events) lost += event.energy_lost;
+    CHECK(lost == Approx(0.7 * 0.41 * 0.41).epsilon(1e-12));
+    CHECK(std::abs(end_positions(run)[3] - 1) <= 1e-14);
+  }
+}
+
 // The same of a spring whose other end is drawn past the balance at u: x = u tau - u / w sin w tau.
 TEST_CASE("a stop is left where the only spring that presses on it slackens") {
   for (const char* step : {"0.1", "0.01"})
