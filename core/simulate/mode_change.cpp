@@ -27,8 +27,13 @@ constexpr double located = 1e-9;
 class Change {
  public:
   Change(OneSided& sides, const Model& base, const State& state, const std::vector<std::size_t>& which,
-         const VectorXd& left)
-      : sides_(sides), base_(base), system_(base.system.at(state)), which_(which), left_(left) {
+         const VectorXd& left, double later)
+      : sides_(sides),
+        base_(base),
+        system_(base.system.at(state)),
+        which_(which),
+        left_(left),
+        later_(later) {
     out_.state = state;
   }
 
@@ -67,7 +72,8 @@ class Change {
       for (const std::size_t i : c.rows_)
         if (responses.ok())
           responses.add(c.sides_.measure(i), c.sides_.sign(i), c.sides_.near(i, c.out_.state),
-                        c.sides_.limit_motion(i, c.out_.state.t));
+                        {c.sides_.limit_motion(i, c.out_.state.t).rate,
+                         c.sides_.limit_motion(i, c.out_.state.t + c.later_).acceleration});
     }
     const Model model;
     const System system;
@@ -160,7 +166,7 @@ class Change {
       if (!sides_.is_stop(i)) continue;
       high[r] = movable(r) ? infinity : 0.0;
       const bool new_here = crossed(r) && !sides_.active(i);
-      if (!(u[r] < (new_here ? 0.0 : -sides_.zero_rate(i)))) continue;
+      if (!(u[r] < (new_here ? -sides_.rounded_rate(i) : -sides_.zero_rate(i)))) continue;
       if (!movable(r)) {
         // No impulse moves it. What others hold needs no hold of its own.
         if (-u[r] <= std::max(sides_.stops()[i].rest_speed, 1e-9 * sides_.fastest(i, out_.state))) continue;
@@ -207,7 +213,9 @@ class Change {
 
   bool choose(const PushResponses& responses) {
     const VectorXd rate = responses.rates(out_.state.w);
-    PushResponses::Accelerations by_themselves = responses.accelerations(base_.structure, out_.state);
+    State soon = out_.state;
+    soon.t += later_;
+    PushResponses::Accelerations by_themselves = responses.accelerations(base_.structure, soon);
     b_ = std::move(by_themselves.value);
     if (b_.size() != count()) {
       out_.failure = "the constraint matrix cannot be factorised where modes change";
@@ -451,6 +459,7 @@ class Change {
   const System system_;
   const std::vector<std::size_t>& which_;
   const VectorXd& left_;  // of the sides' forces, or empty
+  const double later_;    // accelerations are those of then
   ModeChange out_;
   std::vector<std::size_t> rows_;  // sides that may push: stops that are touched, then friction
   std::vector<bool> struck_, passes_, rests_, movable_;
@@ -466,8 +475,8 @@ class Change {
 ModeChange change_modes(OneSided& sides, const Model& base, const State& state,
                         const std::vector<std::size_t>& which,
                         const std::function<bool(std::size_t stop, double approach)>& rests,
-                        const VectorXd& left) {
-  return Change(sides, base, state, which, left).run(rests);
+                        const VectorXd& left, double later) {
+  return Change(sides, base, state, which, left, later).run(rests);
 }
 
 }  // namespace unfurl

@@ -40,10 +40,10 @@ struct ModeChange {
 // What comes of it that `which` have crossed in a state of `base`'s coordinates; `base`: the model without
 // what is one-sided. Changes the modes of `sides`. `rests`: does an impact on a stop with this approach speed
 // end in rest? `left`: what locating the crossing left of zero of the forces of those that were held
-// (Crossing).
+// (Crossing). `later`: forces and limits are taken so much later, as of what begins with nothing.
 ModeChange change_modes(OneSided& sides, const Model& base, const State& state,
                         const std::vector<std::size_t>& which,
                         const std::function<bool(std::size_t stop, double approach)>& rests,
-                        const VectorXd& left = {});
+                        const VectorXd& left = {}, double later = 0.0);
 
 }  // namespace unfurl

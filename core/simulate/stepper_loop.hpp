@@ -58,6 +58,8 @@ inline constexpr double cubic_share = 0.01;
 
 // Where a force falls to zero is located to this share of what it was in the step.
 inline constexpr double located = 1e-9;
+// So much of a step later what begins with nothing has a size, and has moved nothing yet.
+inline constexpr double moment = 1e-6;
 
 inline constexpr const char* too_near =
     "so near the deployed pose, where the constraints lose rank, the motion cannot be told from rounding";
@@ -301,7 +303,11 @@ class Stepper::Loop {
     const bool crowded = ++crowd_ == most || (in_step_ >= room && in_step_ - counts < room);
     if (crowded) return hold_what_touches();
     if (crowd_ > 2 * most || in_step_ > room + lossless_share * most) return stop_watching();
-    return apply(modes_after(in_base(now()), which, left));
+    ModeChange change = modes_after(in_base(now()), which, left);
+    // What drives or pushes may begin with nothing: a moment later it is seen what must give way to it.
+    if (change.failure.empty() && !change.changed && change.impacts.empty())
+      change = modes_after(in_base(now()), which, left, stepping::moment * run_.options.step);
+    return apply(std::move(change));
   }
 
   // Stops that are touched from the start, none of which is approached then.
@@ -339,7 +345,7 @@ class Stepper::Loop {
   State in_base(const State& state) const { return in_coordinates(system(), state, base_->system); }
 
   ModeChange modes_after(const State& state, const std::vector<std::size_t>& which = {},
-                         const VectorXd& left = {}) {
+                         const VectorXd& left = {}, double later = 0.0) {
     sides_.weigh(model(), now());
     const auto rests = [&](std::size_t i, double approach) {
       const StopSide& stop = sides_.stops()[i];
@@ -348,7 +354,7 @@ class Stepper::Loop {
           stop.restitution < 1 && flight > 0 && flight <= stepping::accumulated * run_.options.step;
       return series || stop.restitution * approach <= stop.rest_speed;
     };
-    return change_modes(sides_, *base_, state, which, rests, left);
+    return change_modes(sides_, *base_, state, which, rests, left, later);
   }
 
   // Goes on in the modes that were found. False where there are none.

@@ -184,4 +184,49 @@ TEST_CASE("contacts that push one another off come to rest together") {
   CHECK((end_positions(run) - end_positions(by_rk4)).lpNorm<Eigen::Infinity>() <= 1e-6);
 }
 
+// A pendulum of two rods hangs on its reel and touches the stop below; its elbow, which weighs on friction
+// with (1/2 0.83 + 0.19) 0.40 1.22 = 0.30 of 1.57 N m, sticks. At 0.1 s the reel begins to be paid out, its
+// rate and acceleration with nothing: the stop takes over at once, the reel is slack and nothing moves.
+TEST_CASE("what begins with nothing lets another hold take over when it begins") {
+  const std::string scene = "[structure]\nkind = \"custom\"\n" + node("O", 0, 0, "fixed = true") +
+                            node("F", -1, 0, "fixed = true") + node("K", 1.69946, 1.79442, "fixed = true") +
+                            node("B", 0.7363882632608356, 0.3038763331179779, "mass = 0.130303") +
+                            node("C", 1.1392284532468415, 0.8982832759090208, "mass = 0.191997") +
+                            rod("O", "B", 1.16686) + rod("B", "C", 0.831559) +
+                            hinge("O", "B", "C", 1.13968, 1.5715) + R"([gravity]
+acceleration = [0, 0, -1.2229]
+[[constraints]]
+kind = "angle_stop"
+name = "end"
+nodes = ["F", "O", "B"]
+axis = [0, 1, 0]
+max = 157.57612822905512
+restitution = 0
+[[constraints]]
+kind = "cable"
+name = "reel"
+nodes = ["K", "C"]
+motion = "smooth"
+to = 1.2
+start = 0.1
+duration = 0.5
+[solver]
+stages = 4
+end_time = 0.7
+)";
+  for (const char* step : {"0.004", "0.002", "0.001", "0.0003"}) {
+    INFO(step);
+    const Simulation run = run_scene(scene, {std::string("solver.step=") + step});
+    CHECK(run.warnings.empty());
+    REQUIRE(run.events.size() == 3);
+    CHECK(run.events[0].name == "reel pulls");
+    CHECK(run.events[1].name == "rests on stop end");
+    CHECK(run.events[2].name == "reel is slack");
+    CHECK(run.events[1].t == Approx(0.1).epsilon(1e-12));
+    CHECK(run.events[2].t == Approx(0.1).epsilon(1e-12));
+    // Positions to rounding, and twice what counts as touching.
+    CHECK((end_positions(run) - run.trajectory.node_positions(0)).lpNorm<Eigen::Infinity>() <= 4e-11);
+  }
+}
+
 }  // namespace held_friction_test
