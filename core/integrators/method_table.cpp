@@ -76,21 +76,29 @@ class Following final : public Integrator {
   std::unique_ptr<Integrator> plain_;
 };
 
-// Without a coordinate to solve for, time goes by and forces change with it: no method does more.
+// Without a coordinate to solve for, time goes by and forces change with it: no method does more. What rows
+// ask to move does not.
 class Still final : public Integrator {
  public:
   explicit Still(const System& system) : system_(system), index1_(system), none_(0) {}
   StepReport step(State& state, double h) override {
     StepReport report;
     VectorXd lambda(system_.constraints()), phi(system_.constraints()), q(system_.coordinates());
+    VectorXd before = phi;
+    system_.expand(none_, q);
+    system_.constraint(state.t, q, before);
+    system_.constraint(state.t + h, q, phi);
+    constexpr double rounding = 1e-15;
+    if (((phi - before).array().abs() > rounding * system_.constraint_lengths().array()).any()) {
+      report.status = StepStatus::stalled;
+      return report;
+    }
     if (!index1_.evaluate(state.t + h, none_, none_, none_, lambda)) {
       report.status = StepStatus::not_finite;
       return report;
     }
     state.t += h;
     state.lambda = lambda;
-    system_.expand(none_, q);
-    system_.constraint(state.t, q, phi);
     if (phi.size() > 0) report.constraint_norm = phi.lpNorm<Eigen::Infinity>();
     return report;
   }

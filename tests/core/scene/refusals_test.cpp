@@ -233,6 +233,24 @@ end_time = 0.4
 )");
   CHECK(warm.status == RunStatus::failed);
   CHECK(warm.message.find("no motion follows what is driven there (rod arm)") != std::string::npos);
+  // Nor where there is nothing that could move at all.
+  const Simulation held = run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "P", position = [0, 0, 0], fixed = true}, {name = "Q", position = [1, 0, 0], fixed = true}]
+rods = [{name = "arm", nodes = ["P", "Q"], mass = 1}]
+[[forces]]
+kind = "temperature"
+rods = ["arm"]
+expansion = 1e-5
+times = [0, 0.2, 0.4]
+values = [0, 0, 100]
+[solver]
+step = 0.01
+end_time = 0.4
+)");
+  CHECK(held.status == RunStatus::failed);
+  CHECK(held.message.find("no motion follows what is driven there (rod arm)") != std::string::npos);
 }
 
 TEST_CASE("drives that leave what their measure can be are refused with the time") {
