@@ -134,15 +134,27 @@ std::vector<MarginMotion::Met> MarginMotion::met(double sense, double end) const
   return out;
 }
 
+// At the start, when what pulls this way first exceeds what holds there but for stops.
+std::optional<double> MarginMotion::pushed_on(double end) const {
+  const double from = motion_.t(), hold = law_.hold(0.0);
+  const auto push = [&](double t) {
+    const ScalarLaw::Value pull = law_.at_rest(0.0, t);
+    return exceeds(pull, hold) ? sense_ * pull.Q : 0.0;
+  };
+  double t = from;
+  if (!(push(t) > 0) && law_.timed())
+    t = first_time_above(push, from, end, std::min(options_.step, (end - from) / 8), edges_);
+  return push(t) > 0 ? std::optional(t) : std::nullopt;
+}
+
 // Waits until it sets out; false: it does not, or not this way.
 bool MarginMotion::set_out(double end_time, bool first) {
   const auto free = release(motion_.s(), motion_.t(), end_time);
   if (!free || free->sense != sense_) {
     ended_ = free && first ? MarginEnd::other_way : MarginEnd::stalls;
-    const ScalarLaw::Value pull = law_.at_rest(motion_.s(), motion_.t());
-    if (const auto bar = against_stop(sense_);
-        bar && !free && first && exceeds(pull, law_.hold(0.0)) && sense_ * pull.Q > 0)
-      ended_ = MarginEnd::stopped, stop_ = sides_.stops()[*bar].name;
+    if (const auto bar = against_stop(sense_); bar && !free && first)
+      if (const auto push = pushed_on(end_time))
+        ended_ = MarginEnd::stopped, stop_ = sides_.stops()[*bar].name, released_ = *push;
     if (!free && law_.timed()) motion_.rest(std::max(end_time, motion_.t()));
     return false;
   }

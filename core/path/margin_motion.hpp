@@ -54,6 +54,7 @@ class MarginMotion {
 
  private:
   void begin();
+  std::optional<double> pushed_on(double end) const;
   bool set_out(double end_time, bool first);
   bool follow(double from, double to);
   double turn_between(double a, double b) const;

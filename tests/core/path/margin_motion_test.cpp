@@ -145,6 +145,16 @@ TEST_CASE("an end stop bars the way: the path ends there, and so does the motion
   CHECK(lies.end == MarginEnd::stopped);
   CHECK(lies.stop == "bar");
   CHECK(lies.motion.back().s == 0);
+  // Later, too, and where that jumps away at once: nothing but the stop has kept it there.
+  for (const char* values : {"[0, 0, 3, 0]", "[-0.5, -0.5, 0.01, -1]"}) {
+    const Margin later =
+        margin_in(slider(over_time("push", 1, "[0, 0.5, 1, 1]", values) + stop + "max = 0\nmin = 0\n"));
+    CHECK(later.end == MarginEnd::stopped);
+    CHECK(later.stop == "bar");
+    CHECK(later.dynamic_min == std::numeric_limits<double>::infinity());
+  }
+  CHECK(margin_in(slider(over_time("pull", 1, "[0, 1]", "[0, -1]") + stop + "max = 0\nmin = 0\n")).end ==
+        MarginEnd::stalls);
 }
 
 // x (1.5 - 1) - x^2 / 2 = kinetic x.
