@@ -125,8 +125,10 @@ std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure) {
     MeasureFunction measure(c.measure, structure.deployment);
     const bool angle = measure.is_angle();
     const double own = angle ? row_arm(structure, c.measure) : length, scale = angle ? own : 1.0;
-    double terms = 1;  // a row of large coefficients is as large
-    for (const MeasureTerm& term : c.measure.terms) terms = std::max(terms, std::abs(term.coefficient));
+    double terms = 1;  // a row of large coefficients is as large, where these have no unit
+    const auto turns = [](const MeasureTerm& term) { return unfurl::is_angle(term.measure); };
+    if (angle || std::ranges::none_of(c.measure.terms, turns))
+      for (const MeasureTerm& term : c.measure.terms) terms = std::max(terms, std::abs(term.coefficient));
     rows.push_back(
         {c.name, static_cast<int>(i), std::move(measure), c.target, scale, terms * own, followed[i]});
   }

@@ -122,6 +122,8 @@ void RodCouples::add_rows(const Structure& bare, const Rows& rows, int rod) {
       if (told.ends.empty()) continue;
       Structure alone = bare;
       alone.constraints = {own};
+      for (const int node : told.nodes)  // a row of angles is as long as the edges that these begin with
+        alone.nodes.push_back(bare.nodes[static_cast<std::size_t>(node)]);
       for (const ConstraintKind& kind : constraint_kinds())
         if (kind.kind == own.kind) rows_.push_back({std::move(told), kind.make(alone), row});
     }

@@ -49,7 +49,7 @@ TEST_CASE("after every verb that writes stands what was written, where and how l
       Words{"render", scene, "--size", "48x32", "--fps", "10", "--set", "render.mp4=false", "--dpi", "60"},
       Words{"render", scene, "--size", "48x32", "--frames", "0:1", "--dpi", "60"},
       Words{"figure", scene, "all"},
-      Words{"study", scene, "--steps", "0.05:0.02", "--methods", "rk4", "--repeats", "1", "--dpi", "60"},
+      Words{"study", scene, "--steps", "0.025:0.0125", "--methods", "rk4", "--repeats", "1", "--dpi", "60"},
       Words{"sweep", scene, "--vary", "solver.step=0.05,0.1", "--measure", "energy", "--dpi", "60"},
       Words{"solve", scene, "--find", "gravity.acceleration[2]", "--target", "max:kinetic_energy_J=1",
             "--between", "-20:-1"},

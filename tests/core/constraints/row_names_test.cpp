@@ -70,10 +70,10 @@ kind = "length"
 name = "side"
 nodes = ["B", "D"]
 )";
-  // Of the rods there is one, of 2.7 m: the arc is 2.7 m times the angle by which B has gone round A, 0.001 /
-  // 1.7 rad; B goes towards D.
+  // Of the edges A-B, of 1.7 m, is the shorter one: the arc is 1.7 m times the angle by which B has gone
+  // round A, 0.001 / 1.7 rad; B goes towards D.
   const auto rows = rows_off(scene, 3 * 1 + 1, 0.001);
-  CHECK(std::abs(rows.at("corner")) == Approx(2.7 * 0.001 / 1.7).epsilon(1e-5));
+  CHECK(std::abs(rows.at("corner")) == Approx(1.7 * 0.001 / 1.7).epsilon(1e-5));
   CHECK(rows.at("side") == Approx(std::hypot(1.7, 2.699) - std::hypot(1.7, 2.7)).epsilon(1e-9));
 }
 
