@@ -19,18 +19,20 @@ namespace unfurl {
 ///     min  1/2 sum_members c_i (y_0 + d)_i^2 + p/2 sum_guides |g_i|^2 (d - d_before)_i^2,     G^T d = 0
 ///
 /// a saddle-point system with a positive diagonal that is factorised once. A step leaves the share p / (p +
-/// s) of a direction in which the members have the compliance s; without redundant guides one is enough.
+/// s) of a direction in which the members have the compliance s; without redundant guides one is enough. So
+/// that s is not far below p, p goes by the stiffest member, however soft others are.
 class LeastEnergy {
  public:
   /// G: its pattern. compliance: one for every row, not all zero.
   LeastEnergy(const SparseRows& G, VectorXd compliance);
-  /// y: the given forces; overwritten. False, and y as it was, where the factorisation broke down.
+  /// y: the given forces; overwritten. False, and y as it was, where the factorisation broke down or the
+  /// steps come to no end.
   bool share(const SparseRows& G, MutVec y);
 
  private:
   VectorXd compliance_;  // relative to the mean of those that are not zero
   SaddleSolver solver_;
-  VectorXd norm_, force_, change_, before_, displacement_;
+  VectorXd norm_, force_, change_, step_, displacement_;
 };
 
 }  // namespace unfurl

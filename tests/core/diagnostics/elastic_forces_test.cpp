@@ -46,6 +46,29 @@ double off_share(const Diagnostics& d, Index rod, double share, const Diagnostic
 
 }  // namespace
 
+TEST_CASE("a length that is held beside a rod takes its whole force, whatever hangs elsewhere") {
+  // Two pendulums that have nothing in common: A-P, held twice, and D-E on a rod as soft as it may be.
+  const std::string scene =
+      "[structure]\nkind = 'custom'\n"
+      "[[structure.nodes]]\nname = 'A'\nposition = [0, 0, 0]\nfixed = true\n"
+      "[[structure.nodes]]\nname = 'P'\nposition = [1, 0.3, 0]\nmass = 1\n"
+      "[[structure.nodes]]\nname = 'D'\nposition = [5, 0, 0]\nfixed = true\n"
+      "[[structure.nodes]]\nname = 'E'\nposition = [6, 0, 0]\nmass = 1\n"
+      "[[structure.rods]]\nnodes = ['A', 'P']\nmass = 1\narea = 1e-2\nyoungs_modulus = 2e11\n"
+      "[[constraints]]\nkind = 'length'\nname = 'hold'\nnodes = ['A', 'P']\n"
+      "[[loads]]\nnodes = ['P']\nforce = [1000, 300, 0]\n"
+      "[gravity]\nacceleration = [0, -9.81, 0]\n[solver]\nend_time = 0.03\nstep = 0.01\n"
+      "[[structure.rods]]\nnodes = ['D', 'E']\nmass = 0.1\narea = 1e-7\nyoungs_modulus = ";
+  for (const char* modulus : {"1e16", "1e12", "1e10", "1e9", "1e8", "1e6", "1e4"}) {
+    const Diagnostics d = diagnose(run_scene(scene + modulus + "\n"));
+    CAPTURE(modulus);
+    CHECK(d.rod_unique[0] != 0);
+    // A guide costs no energy. Forces of 1 kN to round-off, 1e-16 of a compliance over another one.
+    CHECK(d.axial_force.col(0).lpNorm<Eigen::Infinity>() < 1e-5);
+    CHECK(d.axial_force.col(1).lpNorm<Eigen::Infinity>() > 0.1);  // it is as it would be alone
+  }
+}
+
 TEST_CASE("rods side by side share by their stiffness, at every state of a motion") {
   const std::string area = "area = 2e-4\n";
   const Diagnostics alone = diagnose(run_scene(pendulum(area, "")));
