@@ -49,6 +49,13 @@ MatrixXd over_run(const Trajectory& run, Value value) {
   return out;
 }
 
+// Of rods that are not shown, which help to hold a shape, nothing is known: no colour, no range.
+void leave_hidden_out(const Structure& structure, MatrixXd& values) {
+  const std::vector<char> shown = shown_rods(structure);
+  for (std::size_t r = 0; r < shown.size(); ++r)
+    if (!shown[r]) values.col(static_cast<Index>(r)).setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
 double middle_speed(const VectorXd&, const VectorXd& v, const Rod& rod, double) {
   return 0.5 * (v.segment<3>(3 * rod.a) + v.segment<3>(3 * rod.b)).norm();
 }
@@ -132,6 +139,7 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
   } else {
     throw std::invalid_argument("rod_field: no quantity '" + by + "'");
   }
+  leave_hidden_out(run.trajectory.structure(), field.values);
   field.known = (field.values.array().isFinite()).any();
   choose_range(field);
   if (range[0] < range[1] && (!field.log || range[0] > 0)) field.low = range[0], field.high = range[1];

@@ -13,6 +13,14 @@
 namespace unfurl {
 namespace {
 
+// Without rods that are not shown, which no table has either.
+MatrixXd of_shown(const Structure& structure, MatrixXd values) {
+  const std::vector<char> shown = shown_rods(structure);
+  for (std::size_t r = 0; r < shown.size(); ++r)
+    if (!shown[r]) values.col(static_cast<Index>(r)).setConstant(std::nan(""));
+  return values;
+}
+
 std::vector<double> column(const MatrixXd& values, int rod) {
   const VectorXd c = values.col(rod);
   return {c.begin(), c.end()};
@@ -97,8 +105,11 @@ void add_part(const Diagnostics& d, const MatrixXd& values, const RodGroup& g, c
   p.bands.push_back(std::move(band));
 }
 
-void add_each(const std::vector<Rod>& rods, const Diagnostics& d, const MatrixXd& values, Panel& p) {
+void add_each(const Structure& structure, const Diagnostics& d, const MatrixXd& values, Panel& p) {
+  const std::vector<Rod>& rods = structure.rods;
+  const std::vector<char> shown = shown_rods(structure);
   const bool all = std::count(d.rod_unique.begin(), d.rod_unique.end(), 0) == 0;
+    if (!shown[r]) continue;
   for (std::size_t r = 0; r < rods.size(); ++r) {
     const auto i = static_cast<int>(r);
     const bool unique = d.rod_unique[r] != 0;
@@ -153,8 +164,9 @@ double largest_finite(const MatrixXd& values) {
   return largest;
 }
 
-void add_rod_curves(const Structure& structure, const Diagnostics& d, const MatrixXd& values, Panel& p) {
-  if (each_rod_alone(structure)) return add_each(structure.rods, d, values, p);
+void add_rod_curves(const Structure& structure, const Diagnostics& d, const MatrixXd& all, Panel& p) {
+  const MatrixXd values = of_shown(structure, all);
+  if (each_rod_alone(structure)) return add_each(structure, d, values, p);
   for (const RodGroup& g : known_groups(structure, values))
     for (const Part& part : parts_of(g, structure, d))
       if (part.shown > 0) add_part(d, values, g, part, 3e-3 * largest_finite(values), p);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/scene/rod_field.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "render/scene/color_map.hpp"
 #include "render/scene/frame_builder.hpp"
@@ -223,6 +225,24 @@ TEST_CASE("what is not known has a colour that no value has, and reaches no furt
       CHECK(std::hypot(c.r - unknown.r, c.g - unknown.g, c.b - unknown.b) > 0.3f);
     }
   }
+}
+
+TEST_CASE("helpers that are not shown have no part in the colours' range") {
+  const Scene scene = read_scene_file(find_scene("bricard"), {"solver.end_time=1"});
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics d = diagnose(run);
+  const std::vector<char> shown = shown_rods(run.trajectory.structure());
+  double most = 0, most_hidden = 0;
+  for (Index r = 0; r < d.axial_force.cols(); ++r) {
+    double& of = shown[static_cast<std::size_t>(r)] ? most : most_hidden;
+    of = std::max(of, d.axial_force.col(r).lpNorm<Eigen::Infinity>());
+  }
+  REQUIRE(most_hidden > 1.01 * most);
+  const RodField field = rod_field("axial_force", {-1.001 * most, 1.001 * most}, run, d);
+  CHECK(field.known);
+  CHECK_FALSE(field.below);
+  CHECK_FALSE(field.above);
+  CHECK(rod_field("axial_force", {0, 0}, run, d).high <= 5 * most);  // the next of 1, 2, 5, 10
 }
 
 TEST_CASE("the picture says that something is not known, while it is not") {
