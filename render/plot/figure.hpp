@@ -38,6 +38,8 @@ struct ReferenceLine {
   bool horizontal = true;
   std::string label;
   int color = 7;
+  bool pale =
+      false;  // one of many: thin and light, and none where the one before is too near to be told apart
 };
 
 struct Axis {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "render/plot/pose_painter.hpp"
 #include "render/plot/style.hpp"
@@ -26,6 +27,7 @@ class PanelPainter {
     canvas_.begin_clip(frame_.grown(panel_.bare ? 4 : marked ? 3 : 1.2));
     cells();
     bands();
+    pale_references();
     curves();
     references();
     paint_pose(panel_, layout_, canvas_);
@@ -64,13 +66,27 @@ class PanelPainter {
     }
   }
 
+  void reference(const ReferenceLine& line, const Pen& pen) {
+    if (line.horizontal)
+      horizontal(layout_.y.scale(line.value), pen);
+    else
+      vertical(layout_.x.scale(line.value), pen);
+  }
+
   void references() {
+    for (const ReferenceLine& line : panel_.lines)
+      if (!line.pale) reference(line, {palette(line.color), reference_width, Dash::dashed});
+  }
+
+  // Below the curves.
+  void pale_references() {
+    constexpr double least_apart = 3;  // [points]
+    double last = -std::numeric_limits<double>::infinity();
     for (const ReferenceLine& line : panel_.lines) {
-      const Pen pen{palette(line.color), reference_width, Dash::dashed};
-      if (line.horizontal)
-        horizontal(layout_.y.scale(line.value), pen);
-      else
-        vertical(layout_.x.scale(line.value), pen);
+      const double at = line.horizontal ? layout_.y.scale(line.value) : layout_.x.scale(line.value);
+      if (!line.pale || std::abs(at - last) < least_apart) continue;
+      last = at;
+      reference(line, {lighter(palette(line.color), 0.6f), grid_width, Dash::dashed});
     }
   }
 

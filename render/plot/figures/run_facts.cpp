@@ -59,8 +59,8 @@ Panel time_panel(const Simulation& run, std::string y_label) {
   p.y.label = std::move(y_label);
   for (const EventGroup& group : event_groups(run))
     for (const double t : group.times) {
-      const bool named = group.times.size() <= most_named || t == group.times.front();
-      p.lines.push_back({t, false, named ? group_label(group) : "", 7});
+      const bool many = group.times.size() > most_named, named = !many || t == group.times.front();
+      p.lines.push_back({t, false, named ? group_label(group) : "", 7, many});
     }
   return p;
 }
