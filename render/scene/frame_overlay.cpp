@@ -253,7 +253,8 @@ void FrameOverlay::add_heading(double t, const Parts& wanted, const std::functio
     const SolverOptions& solver = style_.run->options;
     std::string text = solver.method;
     if (solver.method == "dvm") text += ", s = " + std::to_string(solver.stages);
-    add(Part::method, line, text + ", h = " + number_text(solver.step) + " s");
+    text += (solver.adaptive ? ", h \u2264 " : ", h = ") + number_text(solver.step) + " s";
+    add(Part::method, line, solved_as(*style_.run).name == "path" ? "solved along its path" : text);
   }
   if (wanted.contains(Part::errors)) {
     const Diagnostics& d = *style_.diagnostics;

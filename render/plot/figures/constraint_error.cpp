@@ -13,7 +13,7 @@ Figure constraint_error_figure(const Simulation& run, const Diagnostics& diagnos
   const std::vector<double>& position = diagnostics.at("constraint_relative_max").values;
   const std::vector<double>& velocity = diagnostics.at("constraint_velocity_max_m_s").values;
 
-  const double aim = constraint_tolerance(run);
+  const double aim = solved_as(run).name == "path" ? 0.0 : constraint_tolerance(run);
   const std::string end =
       aim > 0 ? " Newton iterations end where the constraints are met to " + plot::format_number(aim, 2) + "."
               : "";

@@ -118,11 +118,16 @@ std::vector<double> magnitudes(const std::vector<double>& values) {
 
 std::string method_sentence(const Simulation& run) {
   const SolverOptions& o = run.options;
-  std::string text = "Method " + o.method;
-  if (o.method == "dvm")
-    text +=
-        " with " + std::to_string(o.stages) + " " + o.nodes + " stages, constraints at " + o.constraints_at;
-  text += ", step " + format_number(o.step, 4) + " s.";
+  std::string text;
+  if (solved_as(run).name == "path") {  // by neither the method nor its steps
+    text = "Solved along its path, states " + format_number(o.step, 4) + " s apart at most.";
+  } else {
+    text = "Method " + o.method;
+    if (o.method == "dvm")
+      text +=
+          " with " + std::to_string(o.stages) + " " + o.nodes + " stages, constraints at " + o.constraints_at;
+    text += (o.adaptive ? ", adaptive steps, at most " : ", step ") + format_number(o.step, 4) + " s.";
+  }
   if (run.status == RunStatus::failed) text += " The solver failed " + run.message + ".";
   if (run.status == RunStatus::stopped) text += " The run was " + run.message + ".";
   return text;

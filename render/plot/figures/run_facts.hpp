@@ -22,7 +22,8 @@ void share_time_axis(Panel& upper, Panel& lower);
 double largest_magnitude(const std::vector<double>& values);  // NaN aside
 std::vector<double> magnitudes(const std::vector<double>& values);
 
-// "Method dvm with 3 lobatto stages, step 0.01 s." and why the run ended early where it did.
+// "Method dvm with 3 lobatto stages, step 0.01 s.", or that it was solved along its path, and why the run
+// ended early where it did.
 std::string method_sentence(const Simulation& run);
 // "The 12 exact zeros are drawn at the bottom edge." or nothing; a leading blank.
 std::string zeros_sentence(const std::vector<double>& values);

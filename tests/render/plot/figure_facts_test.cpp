@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What figures say of a run in words and lines: its events.
+// What figures say of a run in words and lines: how it was solved, its events.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "core/scene/library.hpp"
+#include "core/study/tolerance.hpp"
 #include "render/plot/figures.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -11,12 +13,36 @@ namespace unfurl::figure_facts_test {
 
 namespace {
 
+using Catch::Contains;
+
+Figure of_library(const std::string& figure, const char* name, const std::vector<std::string>& changes) {
+  const Scene scene = read_scene_file(find_scene(name), changes);
+  const Simulation run = simulate_as_asked(build_model(scene), scene.solver);
+  return find_figure(figure)->make(run, diagnose(run));
+}
+
 Figure of_text(const std::string& figure, const std::string& scene) {
   const Simulation run = testing::run_scene(scene);
   return find_figure(figure)->make(run, diagnose(run));
 }
 
 }  // namespace
+
+TEST_CASE("captions of a run along its path name neither a method nor its steps", "[figures]") {
+  for (const char* method : {"dvm", "rk4"}) {
+    const Figure f =
+        of_library("constraint_error", "four_bar",
+                   {"solver.model=path", std::string("solver.method=") + method, "solver.end_time=0.5"});
+    CHECK_THAT(f.caption, Contains("Solved along its path, states 0.01 s apart at most."));
+    CHECK_THAT(f.caption, !Contains("Method") && !Contains("Newton"));
+    for (const ReferenceLine& line : f.panels[0].lines) CHECK_THAT(line.label, !Contains("Newton"));
+  }
+}
+
+TEST_CASE("captions of adaptive runs name the step as what none is longer than", "[figures]") {
+  const Figure f = of_library("steps", "pendulum", {"solver.adaptive=true", "solver.end_time=0.5"});
+  CHECK_THAT(f.caption, Contains(", adaptive steps, at most 0.01 s."));
+}
 
 // A ball that falls 0.9 m and keeps 0.9 of its speed: impacts come ever faster.
 TEST_CASE("many events of one name are pale lines, a few are as dark as curves", "[figures]") {

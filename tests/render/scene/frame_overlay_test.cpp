@@ -8,6 +8,7 @@
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
 #include "core/simulate/simulation.hpp"
+#include "core/study/tolerance.hpp"
 #include "render/plot/text_metrics.hpp"
 #include "render/scene/color_map.hpp"
 #include "render/scene/film_style.hpp"
@@ -328,6 +329,23 @@ TEST_CASE("a bar of colours has no numbers where nothing is known") {
   const DrawList list = small_picture(chain(2) + "[render]\ncolour_by = 'stress'\n", 640, 360);
   CHECK(label(list, "not known, no rod has a youngs_modulus"));
   for (const TextLabel& l : list.labels) CHECK(l.text.find("e-") == std::string::npos);
+}
+
+TEST_CASE("a heading names how the run was solved, a path as one, adaptive steps as bounded") {
+  const std::string hoop = "structure.kind = 'hoop'\nstructure.fold_angle = 85.0\nsolver.end_time = 2.0\n";
+  const auto heading = [&](const std::string& solver) {
+    const Scene scene = read_scene_text(hoop + solver + "[render]\nmethod = true\n", "ring.toml");
+    const Simulation run = simulate_as_asked(build_model(scene), scene.solver);
+    const Diagnostics diagnostics = diagnose(run);
+    FrameStyle style = film_style(scene, run, diagnostics);
+    style.width = 1280, style.height = 720;
+    return FrameBuilder(run.trajectory, style).build(1.0);
+  };
+  CHECK(label(heading(""), "dvm, s = 3, h = 0.01 s"));
+  CHECK(label(heading("solver.adaptive = true\n"), "dvm, s = 3, h \u2264 0.01 s"));
+  const DrawList path = heading("solver.model = 'path'\n");
+  CHECK(label(path, "solved along its path"));
+  CHECK_FALSE(label(path, "h = 0.01 s"));
 }
 
 TEST_CASE("the first eighteen groups have colours of their own in every look") {
