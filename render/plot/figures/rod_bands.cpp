@@ -73,10 +73,9 @@ std::string rods_text(const RodGroup& g, const Part& part) {
   return g.name + (part.shown == 1 ? " (1 rod)" : " (" + std::to_string(part.shown) + " rods)");
 }
 
-// Unique forces are solid or dash-dotted, others dashed or dotted: neighbours differ without their colours.
+// Unique forces are solid or dash-dotted, others dashed or dotted, as captions say: neighbours differ without
+// their colours.
 Dash dash_of(bool unique, int color) {
-  if (color % (2 * palette_size) >= palette_size)  // whose colours are shades of the first
-    return unique ? Dash::long_dashed : Dash::dash_dot_dot;
   if (unique) return color % 2 == 0 ? Dash::solid : Dash::dash_dot;
   return color % 2 == 0 ? Dash::dashed : Dash::dotted;
 }
@@ -109,8 +108,8 @@ void add_each(const Structure& structure, const Diagnostics& d, const MatrixXd& 
   const std::vector<Rod>& rods = structure.rods;
   const std::vector<char> shown = shown_rods(structure);
   const bool all = std::count(d.rod_unique.begin(), d.rod_unique.end(), 0) == 0;
-    if (!shown[r]) continue;
   for (std::size_t r = 0; r < rods.size(); ++r) {
+    if (!shown[r]) continue;
     const auto i = static_cast<int>(r);
     const bool unique = d.rod_unique[r] != 0;
     p.curves.push_back(over_time(d, column(values, i), rods[r].name + (unique ? "" : open_force), i));

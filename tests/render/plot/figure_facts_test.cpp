@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What figures say of a run in words and lines: how it was solved, its events.
+// What figures say of a run in words and lines: how it was solved, its events, whose force is unique.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
@@ -64,6 +64,34 @@ TEST_CASE("many events of one name are pale lines, a few are as dark as curves",
     CHECK(std::ranges::all_of(
         all, [&](const ReferenceLine& line) { return !upright(line) || line.pale == (count > 5); }));
   }
+}
+
+TEST_CASE("however many groups there are, only forces that are not unique are dashed or dotted",
+          "[figures]") {
+  constexpr int links = 20;
+  std::string nodes = "{name = 'N0', position = [0, 0, 0], fixed = true}", rods;
+  for (int k = 1; k <= links; ++k) {
+    const std::string i = std::to_string(k);
+    nodes += ", {name = 'N" + i + "', position = [" + i + ", 0, " + (k % 2 ? "0.2" : "0") + "], mass = 1}";
+    rods +=
+        "{nodes = ['N" + std::to_string(k - 1) + "', 'N" + i + "'], mass = 1, group = 'link " + i + "'}, ";
+  }
+  for (const char* pair : {"'N0', 'N1'", "'N10', 'N11'"})  // beside the first and the eleventh
+    rods += "{name = 'again " + std::string(1, pair[2]) + pair[8] + "', nodes = [" + pair +
+            "], mass = 1, group = 'again " + pair[2] + pair[8] + "'}, ";
+  const Figure f = of_text("rod_forces", "[structure]\nkind = 'custom'\nnodes = [" + nodes + "]\nrods = [" +
+                                             rods + "]\n[gravity]\nacceleration = [0, 0, -9.81]\n" +
+                                             "[solver]\nend_time = 0.05\n");
+  int open = 0, unique = 0;
+  for (const Curve& c : f.panels.at(0).curves) {
+    const bool told = c.label.find("not unique") != std::string::npos;
+    CAPTURE(c.label);
+    CHECK((c.dash == Dash::dashed || c.dash == Dash::dotted) == told);
+    if (!told) CHECK((c.dash == Dash::solid || c.dash == Dash::dash_dot));
+    ++(told ? open : unique);
+  }
+  CHECK(open == 4);  // two rods side by side share what nothing divides, twice
+  CHECK(unique == links - 2);
 }
 
 }  // namespace unfurl::figure_facts_test
