@@ -143,9 +143,10 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
   field.known = (field.values.array().isFinite()).any();
   choose_range(field);
   if (range[0] < range[1] && (!field.log || range[0] > 0)) field.low = range[0], field.high = range[1];
+  const double hair = 1e-9 * (field.high - field.low), low_hair = field.log ? 1e-9 * field.low : hair;
   for (Index i = 0; i < field.values.size(); ++i) {
-    const double value = field.values.data()[i], hair = 1e-9 * (field.high - field.low);
-    field.below = field.below || (!field.log && value < field.low - hair);
+    const double value = field.values.data()[i];
+    field.below = field.below || value < field.low - low_hair;
     field.above = field.above || value > field.high + hair;
   }
   return field;

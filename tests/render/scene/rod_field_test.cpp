@@ -245,6 +245,15 @@ TEST_CASE("helpers that are not shown have no part in the colours' range") {
   CHECK(rod_field("axial_force", {0, 0}, run, d).high <= 5 * most);  // the next of 1, 2, 5, 10
 }
 
+TEST_CASE("a bar of errors says so where values lie below its end") {
+  const Run r;
+  for (const double low : {1e-12, 1e-19}) {
+    const RodField field = rod_field("constraint_error", {low, 1e-3}, r.run, r.diagnostics);
+    CHECK(field.below);  // errors of 2 m are some 1e-16 m, at the start none
+    CHECK_FALSE(field.above);
+  }
+}
+
 TEST_CASE("the picture says that something is not known, while it is not") {
   Run r;
   r.diagnostics.axial_force(r.diagnostics.axial_force.rows() - 1, 0) = std::nan("");
