@@ -94,7 +94,7 @@ FrameOverlay::Parts FrameOverlay::wanted() const {
   want(options.time, Part::status);
   want(!style_.title.empty() && options.title, Part::title);
   want(parts.contains(Part::title), Part::second_line);
-  want(options.legend && field_, Part::color_bar);
+  want(options.legend && field_ && !trajectory_.structure().rod_copies.empty(), Part::color_bar);
   want(options.legend, Part::legend);
   want(inset_ != nullptr, Part::inset);
   want(options.legend, Part::thickness);
@@ -122,7 +122,7 @@ double FrameOverlay::heading_bottom() const {
 
 void FrameOverlay::add_key(double t, DrawList& list) const {
   Parts wanted{Part::thickness, Part::legend};
-  if (field_) wanted.insert(Part::color_bar);
+  if (field_ && !trajectory_.structure().rod_copies.empty()) wanted.insert(Part::color_bar);
   write(t, {}, wanted, list);
 }
 

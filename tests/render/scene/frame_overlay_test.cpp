@@ -331,6 +331,14 @@ TEST_CASE("a bar of colours has no numbers where nothing is known") {
   for (const TextLabel& l : list.labels) CHECK(l.text.find("e-") == std::string::npos);
 }
 
+TEST_CASE("a picture without rods has no words of a bar") {
+  const std::string scene =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 1], mass = 1}]\n"
+      "[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nend_time = 2\n";
+  CHECK_FALSE(label(picture(scene, "colour_by = 'speed'\n"), "speed (m/s)"));
+  CHECK(label(ring("colour_by = 'speed'\n"), "speed (m/s)"));
+}
+
 TEST_CASE("a heading names how the run was solved, a path as one, adaptive steps as bounded") {
   const std::string hoop = "structure.kind = 'hoop'\nstructure.fold_angle = 85.0\nsolver.end_time = 2.0\n";
   const auto heading = [&](const std::string& solver) {
