@@ -99,7 +99,7 @@ void write_mp4(FrameSource& frames, const std::string& file) {
   Mp4Pipe mp4(file, o.width, o.height, o.fps);
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const Frame frame = frames.frame(k);
-    mp4.add(has_alpha(o) ? on_white(*frame) : *frame);
+    mp4.add(has_alpha(o) ? without_alpha(*frame, o) : *frame);
   }
   if (const std::string problem = mp4.finish(); !problem.empty()) throw FileError(file, problem);
 }

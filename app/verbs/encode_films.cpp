@@ -132,16 +132,18 @@ class Mp4Film final : public FilmEncoder {
  public:
   Mp4Film(const std::filesystem::path& directory, const RenderOptions& o)
       : FilmEncoder(directory, "animation.mp4"),
+        options_(o),
         alpha_(has_alpha(o)),
         mp4_(target(), o.width, o.height, o.fps) {}
 
  private:
   void add_frame(const std::shared_ptr<const Image>& frame) override {
-    mp4_.add(alpha_ ? on_white(*frame) : *frame);
+    mp4_.add(alpha_ ? without_alpha(*frame, options_) : *frame);
   }
   void finish_film() override {
     if (const std::string problem = mp4_.finish(); !problem.empty()) throw std::runtime_error(problem);
   }
+  RenderOptions options_;
   bool alpha_;
   Mp4Pipe mp4_;
 };

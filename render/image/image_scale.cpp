@@ -64,12 +64,13 @@ Image scaled_down(const Image& image, int width, int height) {
   return out;
 }
 
-Image on_white(Image image) {
+Image before_wall(Image image, const std::array<std::uint8_t, 3>& wall) {
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     const int a = image.rgba[i + 3];
     if (a == 255) continue;
-    for (std::size_t c = i; c < i + 3; ++c)
-      image.rgba[c] = static_cast<std::uint8_t>((a * image.rgba[c] + (255 - a) * 255 + 127) / 255);
+    for (std::size_t c = 0; c < 3; ++c)
+      image.rgba[i + c] =
+          static_cast<std::uint8_t>((a * image.rgba[i + c] + (255 - a) * wall[c] + 127) / 255);
     image.rgba[i + 3] = 255;
   }
   return image;

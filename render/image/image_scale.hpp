@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "render/image/image.hpp"
 
 namespace unfurl {
@@ -9,8 +12,8 @@ namespace unfurl {
 // weighted by alpha.
 Image scaled_down(const Image& image, int width, int height);
 
-// The picture before a white wall, without transparency.
-Image on_white(Image image);
+// The picture before a wall, without transparency.
+Image before_wall(Image image, const std::array<std::uint8_t, 3>& wall);
 
 // Pictures of one height, from left to right.
 Image side_by_side(const std::vector<Image>& images);

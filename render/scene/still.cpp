@@ -37,6 +37,14 @@ bool has_alpha(const RenderOptions& options) {
   return options.transparent || (look != nullptr && look->transparent);
 }
 
+Image without_alpha(const Image& image, const RenderOptions& options) {
+  const Look* look = find_look(options.look);
+  const Color wall = look != nullptr && look->ink.g > look->background_bottom.g ? look->background_bottom
+                                                                                : Color{1, 1, 1, 1};
+  const auto byte = [](float x) { return static_cast<std::uint8_t>(std::lround(255 * x)); };
+  return before_wall(image, {byte(wall.r), byte(wall.g), byte(wall.b)});
+}
+
 Image still(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics, double t,
             GlContext& context) {
   const Scene shown = fitted(scene, run);

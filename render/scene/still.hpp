@@ -15,6 +15,9 @@ Scene fitted(const Scene& scene, const Simulation& run);
 
 // Do the pictures have transparent pixels: because the scene says so, or its look?
 bool has_alpha(const RenderOptions& options);
+// For films that have none: before a white wall, or before the look's own ground where that is dark and its
+// texts are pale.
+Image without_alpha(const Image& image, const RenderOptions& options);
 
 // As a film shows this time [s] of the run, of the size that the scene says.
 Image still(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics, double t,

@@ -22,9 +22,12 @@ TEST_CASE("what is transparent lends a smaller picture no colour") {
   CHECK(scaled_down(image, 1, 1).rgba == std::vector<std::uint8_t>{200, 100, 50, 128});
 }
 
-TEST_CASE("before a white wall half a colour is half white") {
-  const Image image = on_white({2, 1, {200, 100, 0, 255, 0, 0, 0, 51}});
-  CHECK(image.rgba == std::vector<std::uint8_t>{200, 100, 0, 255, 204, 204, 204, 255});
+TEST_CASE("before a wall half a colour is half the wall's") {
+  const Image picture{2, 1, {200, 100, 0, 255, 0, 0, 0, 51}};
+  CHECK(before_wall(picture, {255, 255, 255}).rgba ==
+        std::vector<std::uint8_t>{200, 100, 0, 255, 204, 204, 204, 255});
+  CHECK(before_wall(picture, {0, 100, 255}).rgba ==
+        std::vector<std::uint8_t>{200, 100, 0, 255, 0, 80, 204, 255});
 }
 
 TEST_CASE("pictures side by side keep their rows") {

@@ -8,6 +8,7 @@
 
 #include "core/scene/render_options.hpp"
 #include "render/scene/renderer.hpp"
+#include "render/scene/still.hpp"
 #include "render/scene/view.hpp"
 
 using namespace unfurl;
@@ -175,6 +176,18 @@ TEST_CASE("a ghost lets through what its colour says") {
   CHECK(at(image, -3, 0.1f).r == Approx(0.7 * 255).margin(90));
   CHECK(at(image, -3, 0.1f).r > 80);
   CHECK(at(image, -3, 2).r == 255);
+}
+
+TEST_CASE("transparent pictures without their transparency stand before what their texts can be read on") {
+  for (const Look& look : looks()) {
+    RenderOptions options;
+    options.look = look.name;
+    const Image wall = without_alpha({1, 1, {0, 0, 0, 0}}, options);
+    CHECK(wall.rgba[3] == 255);
+    CAPTURE(look.name);
+    // Half of all there is from black to white, at least.
+    CHECK(std::abs(static_cast<double>(look.ink.g) - wall.rgba[1] / 255.0) > 0.5);
+  }
 }
 
 }  // namespace look_test
