@@ -101,7 +101,7 @@ TEST_CASE("a directory whose scene other results need takes no other scene") {
     words.insert(words.end(), more.begin(), more.end());
     return run_program(words);
   };
-  const std::vector<std::string> study = {"study", "pendulum", "--methods", "rk4", "--steps", "0.05:0.02"};
+  const std::vector<std::string> study = {"study", "pendulum", "--methods", "rk4", "--steps", "0.025:0.0125"};
   const std::vector<std::string> sweep = {"sweep",     "pendulum", "--vary", "structure.bob_mass=1,2",
                                           "--measure", "energy"};
   REQUIRE(run_program(run).code == 0);

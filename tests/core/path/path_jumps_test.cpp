@@ -88,7 +88,8 @@ void check_events(const Simulation& run, const std::vector<std::pair<std::string
 
 // What the support O bears of the cable, in all states behind the impact and before an end.
 void check_pull(const Simulation& run, double from, double to, double size) {
-  const std::vector<double>& x = diagnose(run).at("O.reaction_x_N").values;
+  const Diagnostics diagnostics = diagnose(run);
+  const std::vector<double>& x = diagnostics.at("O.reaction_x_N").values;
   int seen = 0;
   for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
     if (!(run.trajectory.time(i) > from && run.trajectory.time(i) < to)) continue;
