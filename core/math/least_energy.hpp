@@ -30,6 +30,9 @@ class LeastEnergy {
   bool share(const SparseRows& G, MutVec y);
 
  private:
+  bool by_whole_steps(const MutVec& y, double size);
+  bool by_small_steps(const SparseRows& across, const MutVec& y, double size);
+
   VectorXd compliance_;  // relative to the mean of those that are not zero
   SaddleSolver solver_;
   VectorXd norm_, force_, change_, step_, displacement_;
