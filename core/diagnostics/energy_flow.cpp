@@ -96,7 +96,12 @@ double EnergyMeter::damping_power(const State& state, const VectorXd& accelerati
 // A rate that is gone long before the step's end, with most of the power, or that has come about right behind
 // its start, is not to be had from the ends: what it lost is what the energies lost beyond the work of
 // others, `others`, as in an impact.
-double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastest, double others) {
+//
+// Where the motion between the states has the same power, `between`, that is taken: what its interpolant is
+// off where two motions are nearly one has a power of its own, and dampers that are not stiff are of its
+// order.
+double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastest, double others,
+                                   double between) {
   const double h = b.t - a.t, e = 1e-3 / fastest;
   // Of time itself into the step: at its ends something may begin.
   const auto rate = [&](const State& s, const VectorXd& acceleration, double inward) {
@@ -106,7 +111,7 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
   constexpr double most = 10;  // times the power at the other end
   const double at_start = damping_power(a, before_.acceleration, 0),
                at_end = damping_power(b, after_.acceleration, 0);
-  if (at_start > most * at_end || at_end > most * at_start) return energy(a) - energy(b) + others;
+  if (gone_ && (at_start > most * at_end || at_end > most * at_start)) return energy(a) - energy(b) + others;
   const double line = 0.5 * h * (at_start + at_end);
   double bend = h * h / 12 * (rate(a, before_.acceleration, e) - rate(b, after_.acceleration, -e));
   if (constexpr double too_large = 1e5; h * fastest > too_large) {
@@ -118,7 +123,10 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
         2 * h / 3 * (damping_power(middle, after_.acceleration, 0) - 0.5 * (at_start + at_end));
     bend = bend * by_middle > 0 ? std::copysign(std::min(std::abs(bend), std::abs(by_middle)), bend) : 0.0;
   }
-  return bend > 0 ? line + std::min(bend, line) : line / (1 - bend / std::max(line, 1e-300));
+  const double by_states =
+      bend > 0 ? line + std::min(bend, line) : line / (1 - bend / std::max(line, 1e-300));
+  constexpr double least_share = 0.5, most_share = 1.01;
+  return between >= least_share * by_states && between <= most_share * by_states ? between : by_states;
 }
 
 namespace {
@@ -167,6 +175,7 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   const double h = b.t - a.t;
   if (parts_.empty()) parts_ = parts_of(system_);
   std::vector<PartRates> rates(parts_.size());
+  gone_ = false;
   const SparseRows& by_w = derivatives_.by_w.sum();
   const auto of = [&](Index i) -> PartRates& {
     return rates[static_cast<std::size_t>(parts_[static_cast<std::size_t>(i)])];
@@ -182,7 +191,10 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   for (Index i = 0; i < mean.size(); ++i) {
     const PartRates& part = of(i);
     if (!part.stiff) continue;
-    if (part.gone()) ends.a.w[i] = ends.b.w[i] = mean[i];
+    if (part.gone()) {
+      gone_ = true;
+      ends.a.w[i] = ends.b.w[i] = mean[i];
+    }
     const double at_a = ends.a.w[i], at_b = ends.b.w[i];
     ends.by_a[i] = (6 * mean[i] - 4 * at_a - 2 * at_b) / h;
     ends.by_b[i] = (2 * at_a + 4 * at_b - 6 * mean[i]) / h;
@@ -215,6 +227,7 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   const bool by_line = stiff && loads_ && points == 0 && system_.elastic_rods();
   const VectorXd pull = by_line ? rod_forces(a) : VectorXd(), change = by_line ? rod_forces(b) - pull : pull;
   VectorXd tension, line;
+  double taken_between = 0;
   for (Index i = 0; i < rule.nodes.size(); ++i) {
     const double u = rule.nodes[i], t = a.t + u * h, weight = h * rule.weights[i];
     const bool at_end = by_ends && (i == 0 || i + 1 == rule.nodes.size());
@@ -225,7 +238,7 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
     const double* const pulls = points > 0 ? tension.data() : nullptr;
     if (by_line) line = pull + u * change;
     if (loads_) load_work += weight * system_.power(false, t, q_, v_, by_line ? line.data() : pulls);
-    if (dampers_ && !stiff) dissipated -= weight * system_.power(true, t, q_, v_, pulls);
+    if (dampers_) taken_between -= weight * system_.power(true, t, q_, v_, pulls);
     if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
     const bool known = drives_ && (at_end || index1_->evaluate(t, z, w, unused_, lambda_, tension));
     if (at_point && (known || !drives_)) at_point(weight, t, q_, v_, lambda_);
@@ -233,7 +246,8 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
     system_.target_rate(t, target_rate_);
     drive_work -= weight * lambda_.dot(target_rate_);
   }
-  if (stiff) dissipated += taken_by_stiff(a, b, fastest, load_work + drive_work - others);
+  dissipated +=
+      stiff ? taken_by_stiff(a, b, fastest, load_work + drive_work - others, taken_between) : taken_between;
 }
 
 namespace {

@@ -60,7 +60,8 @@ class EnergyMeter {
     VectorXd by_a = {}, by_b = {};
   };
   Ends trusted_ends(const State& a, const State& b);
-  double taken_by_stiff(const State& a, const State& b, double fastest, double others);
+  bool gone_ = false;  // in the last step of these, the rates of something
+  double taken_by_stiff(const State& a, const State& b, double fastest, double others, double between);
 
   System system_;  // follows the states
   bool loads_, dampers_, drives_;
