@@ -168,21 +168,63 @@ void note_idle_material(Structure& structure, const RodMaterial& material) {
   idle("segments", material.segments > 1);
 }
 
+namespace {
+
+// Told the ends of what a constraint holds a node between, and that node: the middle of two nodes, or a point
+// on the line through them, however it is written.
+template <class Visit>
+void for_each_pin_between(const Structure& structure, const Visit& visit) {
+  const auto at = [&](int node) -> const Vec3& {
+    return structure.nodes[static_cast<std::size_t>(node)].position;
+  };
+  for (const Constraint& c : structure.constraints) {
+    const auto& n = c.nodes;
+    const auto alike = [&](std::size_t a, std::size_t b) { return c.vectors[a].dot(c.vectors[b]) > 0; };
+    if (c.kind == "relation" && n.size() == 4)  // where two cross
+      for (std::size_t other = 1; other < 4; ++other) {
+        const std::size_t third = other == 1 ? 2 : 1, fourth = 6 - other - third;
+        if (!alike(0, other) || !alike(third, fourth) || alike(0, third)) continue;
+        visit(n[0], n[other], n[third]), visit(n[third], n[fourth], n[0]);
+      }
+    if (n.size() != 3 || (c.kind != "relation" && c.kind != "collinear")) continue;
+    for (std::size_t pin = 0; pin < 3; ++pin) {
+      const std::size_t a = (pin + 1) % 3, b = (pin + 2) % 3;
+      const bool between = c.kind == "relation" ? alike(a, b) && !alike(a, pin)
+                                                : (at(n[a]) - at(n[pin])).dot(at(n[b]) - at(n[pin])) < 0;
+      if (between) visit(n[a], n[b], n[pin]);
+    }
+  }
+}
+
+// The ends of rods that are cut.
+std::set<std::pair<int, int>> ends_of_cut_rods(const Structure& structure) {
+  std::map<std::string, std::pair<int, int>> ends;
+  for (const Rod& part : structure.rods) {
+    if (part.whole.empty()) continue;
+    const auto [whole, first] = ends.try_emplace(part.whole, part.a, part.b);
+    if (!first) whole->second.second = part.b;
+  }
+  std::set<std::pair<int, int>> out;
+  for (const auto& [name, pair] : ends) out.insert(std::minmax(pair.first, pair.second));
+  return out;
+}
+
+}  // namespace
+
 void note_pins_between(Structure& structure) {
   std::map<std::pair<int, int>, const Rod*> elastic;
   for (const Rod& rod : structure.rods)
     if (rod.elastic()) elastic[std::minmax(rod.a, rod.b)] = &rod;
+  if (elastic.empty()) return;
+  const std::set<std::pair<int, int>> cut = ends_of_cut_rods(structure);
   std::set<const Rod*> pinned;
-  const auto look = [&](int a, int b) {
+  for_each_pin_between(structure, [&](int a, int b, int pin) {
+    if (cut.count(std::minmax(a, b)) > 0)
+      throw StructureError("segments", "rods that carry a pin between their ends (" +
+                                           structure.nodes[static_cast<std::size_t>(pin)].name +
+                                           ") cannot be cut");
     if (const auto it = elastic.find(std::minmax(a, b)); it != elastic.end()) pinned.insert(it->second);
-  };
-  for (const Constraint& c : structure.constraints) {  // a node as a point of a rod, or of two
-    if (c.kind != "relation" || elastic.empty()) continue;
-    const auto& n = c.nodes;
-    const auto between = [&](std::size_t a, std::size_t b) { return c.vectors[a].dot(c.vectors[b]) > 0; };
-    if (n.size() == 3 && between(1, 2)) look(n[1], n[2]);
-    if (n.size() == 4 && between(0, 1) && between(2, 3)) look(n[0], n[1]), look(n[2], n[3]);
-  }
+  });
   if (pinned.empty()) return;
   structure.notes.push_back(
       "stress, buckling and strength of " + std::to_string(pinned.size()) +

@@ -249,3 +249,46 @@ rods = [{nodes = ["A", "B"], mass = 1, area = 1e-4, segments = 2}, {nodes = ["B"
                  Catch::Contains("A-B.1 is the name of a node already"));
   CHECK_THAT(testing::error_of(scene("C", "A-B.2")), Catch::Contains("A-B.2 is the name of a rod already"));
 }
+
+// Held at the middle of a beam by a relation or on its line, a node stays on the straight line that the bent
+// rod leaves: whatever else the node has, and in whatever order it is written.
+TEST_CASE("a rod that carries a pin between its ends is not cut") {
+  const auto beam = [](const std::string& held, const char* segments) {
+    return std::string(R"([structure]
+kind = "custom"
+youngs_modulus = 7e10
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [2, 0, 0], mass = 1},
+         {name = "P", position = [1, 0, 0], mass = 5}, {name = "Q", position = [1, 0, -1], mass = 1}]
+rods = [{nodes = ["A", "B"], density = 2700, area = 1e-4, segments = )") +
+           segments + R"(}, {nodes = ["P", "Q"], density = 2700, area = 1e-4}]
+[[constraints]]
+)" + held;
+  };
+  const char* holds[] = {
+      "kind = 'relation'\nnodes = ['A', 'B', 'P']\ncoefficients = [0, 0, 0.5, 0, 0, 0.5, 0, 0, -1]\n",
+      "kind = 'relation'\nnodes = ['P', 'A', 'B']\ncoefficients = [0, 0, -1, 0, 0, 0.3, 0, 0, 0.7]\n",
+      "kind = 'collinear'\nnodes = ['A', 'B', 'P']\n", "kind = 'collinear'\nnodes = ['P', 'A', 'B']\n"};
+  for (const char* held : holds) {
+    INFO(held);
+    CHECK_THAT(testing::error_of(beam(held, "4")),
+               Catch::Contains("rods that carry a pin between their ends (P) cannot be cut"));
+    const auto model = testing::model_of(beam(held, "1"));
+    bool said = false;
+    for (const std::string& note : model->structure.notes)
+      said = said || note.find("1 rod with pins between the ends") != std::string::npos;
+    CHECK(said);
+  }
+  // Beyond the end of a rod, in line with it, nothing is held between.
+  CHECK(testing::error_of(beam("kind = 'collinear'\nnodes = ['A', 'P', 'B']\n", "1")).empty());
+  CHECK(testing::error_of(R"([structure]
+kind = "custom"
+youngs_modulus = 7e10
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "P", position = [1, 0, 0], mass = 1},
+         {name = "B", position = [2, 0, 0], mass = 1}]
+rods = [{nodes = ["A", "P"], mass = 1, area = 1e-4, segments = 2}, {nodes = ["P", "B"], mass = 1, area = 1e-4}]
+[[constraints]]
+kind = "collinear"
+nodes = ["A", "P", "B"]
+)")
+            .empty());
+}
