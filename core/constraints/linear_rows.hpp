@@ -16,8 +16,8 @@ namespace unfurl {
 //   x_{nodes[i]} = value          one row: mirror, equality, any affine relation; divided by
 //             its longest vector, so that errors are metres of a node whatever the size of the coefficients
 
-// The length that an error is compared with where a row has none of its own: the mean rod length, a metre
-// where there are no rods.
+// The length that an error is compared with where a row has none of its own: the mean rod length, without
+// rods how far a node is from the first at most, and a metre where all are at one place.
 double reference_length(const Structure& structure);
 
 std::unique_ptr<ConstraintBlock> plane_block(const Structure& structure);
