@@ -16,12 +16,8 @@ Diagnostics diagnose_books(const Simulation& run);
 // energies only.
 Diagnostics diagnose_energies(const Simulation& run);
 
-// What a pose next to a singular one does not tell better is not called unique; of the largest multiplier.
-constexpr double pose_tells = 1e-4;
-
 // All but what is unique and what goes in or out, of which energies are the sums: those columns mean nothing.
-// Forces that such a pose does not tell to `told` are NaN.
-Diagnostics diagnose_states(const Simulation& run, double told = pose_tells);
+Diagnostics diagnose_states(const Simulation& run);
 
 // diagnose() of one window of a long run (simulate/parts.hpp). `known`: what the window before it found,
 // whose last states are of the model that this one begins with; then what this one found. goes_on: it is not

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -310,22 +311,22 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
 }
 
 enum class Look { energies, books, states, all };
+// What a pose next to a singular one does not tell better is not called unique; of the largest multiplier.
+constexpr double told = 1e-4;
 
 // The columns of a run, filled state by state.
 class StateTable {
  public:
-  // `known`: what is unique, where it is; null: it is asked for only at the end.
-  StateTable(const Simulation& run, Look look, const ForceUniqueness* known, const KnownAhead& ahead,
-             double told)
+  // `uniqueness`: where it is known already; null: it is asked for only at the end.
+  StateTable(const Simulation& run, Look look, const ForceUniqueness* uniqueness, const KnownAhead& ahead)
       : run_(run),
-        told_(told),
         look_(look),
         books_(look == Look::books || look == Look::energies),
-        uniqueness_(known),
+        uniqueness_(uniqueness),
         used_(columns(run, books_, out_)),
         flow_(run.trajectory, look == Look::books || look == Look::all),
         known_flow_(ahead.flow),
-        forces_(run.trajectory, ahead.forces, look == Look::states),
+        forces_(run.trajectory, ahead.forces),
         fold_(run.trajectory.structure().deployment) {
     if (!books_) drives_.emplace(run.trajectory.model(), out_.columns);
     if (!books_) reactions_.emplace(run.trajectory.model(), out_.columns);
@@ -419,7 +420,7 @@ class StateTable {
   VectorXd find_forces(std::size_t i, const VectorXd& q, const VectorXd& v) {
     const State& state = run_.trajectory.state(i);
     VectorXd lambda = forces_.multipliers(i, acceleration_);
-    const double most = told_ * lambda.lpNorm<Eigen::Infinity>();
+    const double most = told * lambda.lpNorm<Eigen::Infinity>();
     const VectorXd& doubt = forces_.doubt();
     sharing_->share(state.t, q, run_.trajectory.report(i).singular_event, lambda);
     if (doubt.size() > 0 && doubt.maxCoeff() > most) {
@@ -432,7 +433,6 @@ class StateTable {
   }
 
   const Simulation& run_;
-  double told_;
   Look look_;
   bool books_;
   const ForceUniqueness* uniqueness_;
@@ -454,10 +454,10 @@ class StateTable {
   double first_energy_ = 0;
 };
 
-Diagnostics diagnosed(const Simulation& run, Look look, const ForceUniqueness* known, double told) {
-  StateTable table(run, look, known, {}, told);
+Diagnostics diagnosed(const Simulation& run, Look look, const ForceUniqueness* uniqueness) {
+  StateTable table(run, look, uniqueness, {});
   table.fill({});
-  return table.finish(known);
+  return table.finish(uniqueness);
 }
 
 }  // namespace
@@ -471,7 +471,7 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
     uniqueness.emplace(run);
   };
   if (any_elastic(run.trajectory.structure())) find_uniqueness();
-  StateTable table(run, Look::all, uniqueness ? &*uniqueness : nullptr, ahead, pose_tells);
+  StateTable table(run, Look::all, uniqueness ? &*uniqueness : nullptr, ahead);
   table.fill(cancelled);
   if (!uniqueness) find_uniqueness();
   return table.finish(uniqueness ? &*uniqueness : nullptr);
@@ -480,21 +480,21 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
 Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniqueness& known) {
   const ForceUniqueness uniqueness(window, known, goes_on);
   known = uniqueness.known();
-  return diagnosed(window, Look::all, &uniqueness, pose_tells);
+  return diagnosed(window, Look::all, &uniqueness);
 }
 
 Diagnostics diagnose_books(const Simulation& run) {
-  return diagnosed(run, Look::books, nullptr, pose_tells);
+  return diagnosed(run, Look::books, nullptr);
 }
 
 Diagnostics diagnose_energies(const Simulation& run) {
-  return diagnosed(run, Look::energies, nullptr, pose_tells);
+  return diagnosed(run, Look::energies, nullptr);
 }
 
-Diagnostics diagnose_states(const Simulation& run, double told) {
+Diagnostics diagnose_states(const Simulation& run) {
   std::optional<ForceUniqueness> uniqueness;
   if (any_elastic(run.trajectory.structure())) uniqueness.emplace(run);
-  return diagnosed(run, Look::states, uniqueness ? &*uniqueness : nullptr, told);
+  return diagnosed(run, Look::states, uniqueness ? &*uniqueness : nullptr);
 }
 
 }  // namespace unfurl

@@ -24,9 +24,6 @@ constexpr double good_constraint = 1e-4;  // of a rod's length: beyond it there 
 // Of the largest velocity, what accelerations within a step may miss of its change: for the quintic, which is
 // cheap, and for a step of the method to each time.
 constexpr double good_quintic = 1e-5, good_step = 0.1;
-// Next to a singular pose what is between states has more of an error than round-off: where that could change
-// forces by more than this, the states tell. Not where forces rise without bound.
-constexpr double within_tells = 1e-6;
 
 bool follows(const Trajectory& run, std::size_t a, std::size_t b) {
   return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b);
@@ -379,21 +376,17 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
     for (double& x : out) x *= sign;
     return out;
   };
-  const auto values = [&](double told) -> StateValues {
-    return [&, told](const Simulation& piece) {
-      std::vector<double> out = signed_values(
-          (column->unit == "J" ? diagnose_energies(piece) : diagnose_states(piece, told)).at(name));
-      if (name == "fold_angle_rad") count_on(run.trajectory, piece, signed_values(*column), 2 * pi, out);
-      if (name == "fold_angle_deg") count_on(run.trajectory, piece, signed_values(*column), 360, out);
-      return out;
-    };
+  const StateValues values = [&](const Simulation& piece) {
+    std::vector<double> out =
+        signed_values((column->unit == "J" ? diagnose_energies(piece) : diagnose_states(piece)).at(name));
+    if (name == "fold_angle_rad") count_on(run.trajectory, piece, signed_values(*column), 2 * pi, out);
+    if (name == "fold_angle_deg") count_on(run.trajectory, piece, signed_values(*column), 360, out);
+    return out;
   };
   const std::vector<double> at_states = signed_values(*column);
-  PeakInMotion top =
-      top_of_motion(run, at_states, of_the_state(*column) ? values(within_tells) : StateValues());
+  PeakInMotion top = top_of_motion(run, at_states, of_the_state(*column) ? values : StateValues());
   if (is_force(*column) && at_states.size() == run.trajectory.size())
-    if (const PeakInMotion rise = without_bound(run, at_states, values(pose_tells));
-        !std::isnan(rise.value)) {
+    if (const PeakInMotion rise = without_bound(run, at_states, values); !std::isnan(rise.value)) {
       if (!(rise.value <= top.value)) top = rise;
       top.bounded = false;
     }
@@ -426,24 +419,17 @@ double largest_in_motion(const Simulation& run, const std::vector<double>& at_st
   return top_of_motion(run, at_states, values).value;
 }
 
-VectorXd rod_forces_within_step(const Simulation& run, const PeakInMotion& peak) {
-  const double t = peak.t;
+VectorXd rod_forces_within_step(const Simulation& run, double t) {
   const Trajectory& states = run.trajectory;
   VectorXd forces;
   for (std::size_t i = 0; i + 1 < states.size() && states.time(i) < t; ++i)
     if (t < states.time(i + 1)) {
       const Neighbourhood around(run, i);
-      if (!(t < around.end())) continue;
-      // With others beside it, as peaks are found: by itself nothing says that forces are smooth there.
-      std::vector<double> times;
-      for (const int k : {-2, -1, 0, 1, 2})
-        times.push_back(
-            std::clamp(t + k * (around.end() - around.begin()) / 64, around.begin(), around.end()));
-      around.sample(times, [&](const Simulation& piece) {
-        forces =
-            diagnose_states(piece, peak.bounded ? within_tells : pose_tells).axial_force.row(2).transpose();
-        return std::vector<double>(piece.trajectory.size());
-      });
+      if (t < around.end())
+        around.sample({t}, [&](const Simulation& piece) {
+          forces = diagnose_states(piece).axial_force.row(0).transpose();
+          return std::vector<double>(piece.trajectory.size());
+        });
     }
   return forces;
 }

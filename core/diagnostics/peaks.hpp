@@ -44,9 +44,9 @@ PeakInMotion extreme_of_column(const Simulation& run, const Diagnostics& diagnos
 // The larger magnitude of both.
 double peak_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
 
-// Axial forces of the rods of the solved structure at the time of a peak within a step [N], as peaks see the
-// motion there; none where no step is around it.
-VectorXd rod_forces_within_step(const Simulation& run, const PeakInMotion& peak);
+// Axial forces of the rods of the solved structure at a time within a step [N], as peaks see the motion
+// there; none where no step is around it.
+VectorXd rod_forces_within_step(const Simulation& run, double t);
 
 // While one of these lives, largest and smallest values that this thread has found are not looked for again:
 // several measures of a run, which stays as it is meanwhile, begin with the same ones. One within another

@@ -9,28 +9,24 @@ namespace unfurl {
 
 namespace {
 
-// The shown rod that bears most at a peak within a step; -1: there is none, or that is no time within one.
+// The shown rod that bears most at a time within a step; -1: there is none, or that is no time within one.
 struct Bearer {
   Index rod = -1;
   double force_N = 0.0;
   bool unique = false;
-  bool unknown = false;  // it is a time within one, but the forces there are not known
 };
 
-Bearer bearer(const Simulation& run, const Diagnostics& d, const PeakInMotion& peak,
+Bearer bearer(const Simulation& run, const Diagnostics& d, double t,
               const std::function<double(Index rod, double force)>& size) {
   Bearer found;
   if (d.t.size() != run.trajectory.size()) return found;
-  const VectorXd forces = rod_forces_within_step(run, peak);
+  const VectorXd forces = rod_forces_within_step(run, t);
   for (Index r = 0; r < forces.size(); ++r)
     if (d.shows(r) && !std::isnan(size(r, forces[r])) &&
         (found.rod < 0 || size(r, forces[r]) > size(found.rod, found.force_N)))
       found = {r, forces[r], false};
-  if (found.rod < 0) {
-    found.unknown = forces.size() > 0;
-    return found;
-  }
-  const Index after = std::upper_bound(d.t.begin(), d.t.end(), peak.t) - d.t.begin();
+  if (found.rod < 0) return found;
+  const Index after = std::upper_bound(d.t.begin(), d.t.end(), t) - d.t.begin();
   found.unique = d.force_unique(after - 1, found.rod) && d.force_unique(after, found.rod);
   return found;
 }
@@ -48,11 +44,11 @@ PeakForce peak_rod_force(const Simulation& run, const Diagnostics& d, Pull pull)
   if (pull != Pull::compression) top = extreme_of_column(run, d, "axial_force_max_N", true);
   if (pull != Pull::tension)
     top = larger_magnitude(top, extreme_of_column(run, d, "axial_force_min_N", false));
-  const Bearer there = bearer(run, d, top, [pull](Index, double force) {
+  const Bearer there = bearer(run, d, top.t, [pull](Index, double force) {
     return pull == Pull::either ? std::abs(force) : pull == Pull::tension ? force : -force;
   });
   if (there.rod >= 0) peak = {there.force_N, there.rod, top.t, peak.unique && there.unique};
-  peak.unique = peak.unique && top.bounded && !there.unknown;
+  peak.unique = peak.unique && top.bounded;
   return peak;
 }
 
@@ -70,10 +66,10 @@ WorstRod worst_rod(const Simulation& run, const Diagnostics& d,
   const auto of = [&](Index r, double force) {
     return quantity(structure.rods[static_cast<std::size_t>(r)], force);
   };
-  const Bearer there = bearer(run, d, top, [&](Index r, double force) { return std::abs(of(r, force)); });
+  const Bearer there = bearer(run, d, top.t, [&](Index r, double force) { return std::abs(of(r, force)); });
   if (there.rod >= 0)
     worst = {of(there.rod, there.force_N), there.rod, top.t, there.unique && !d.axial_force.hasNaN()};
-  worst.unique = worst.unique && top.bounded && !there.unknown;
+  worst.unique = worst.unique && top.bounded;
   return worst;
 }
 

@@ -61,7 +61,7 @@ VectorXd StateForces::multipliers(std::size_t i, VectorXd& node_acceleration) {
   if (here.known && here.weakness > weak && !smooth(i)) {
     Close closer = look_closely(i, trajectory_.state(i));
     if (closer.doubt.size() > 0) {
-      if (!single_ && closer.doubt.maxCoeff() > harmless * closer.point.lambda.lpNorm<Eigen::Infinity>())
+      if (closer.doubt.maxCoeff() > harmless * closer.point.lambda.lpNorm<Eigen::Infinity>())
         interpolate(i, closer);
       here = std::move(closer.point);
       doubt_ = std::move(closer.doubt);

@@ -22,11 +22,9 @@ struct SolvedPoint {
 // follow are solved along.
 class StateForces {
  public:
-  // `ahead`: what another one found at the first states already; null: nothing. single: the states are none
-  // of a run but between those of one, with more of an error than round-off, and nothing is interpolated.
-  explicit StateForces(const Trajectory& trajectory, const std::vector<SolvedPoint>* ahead = nullptr,
-                       bool single = false)
-      : trajectory_(trajectory), ahead_(ahead), single_(single) {}
+  // `ahead`: what another one found at the first states already; null: nothing.
+  explicit StateForces(const Trajectory& trajectory, const std::vector<SolvedPoint>* ahead = nullptr)
+      : trajectory_(trajectory), ahead_(ahead) {}
 
   // Multipliers of state i, least-norm where rows are redundant; NaN where the equations have no solution. At
   // an event in a singular pose they are the extrapolated ones that the state holds. Accelerations are those
@@ -62,7 +60,6 @@ class StateForces {
   };
   const Trajectory& trajectory_;
   const std::vector<SolvedPoint>* ahead_;
-  bool single_;
   const Model* model_ = nullptr;
   std::optional<Index1Lanes> lanes_;  // of that model
   std::array<Kept, kept> kept_;       // state i at i % kept
