@@ -25,8 +25,8 @@ struct SceneSource {
   Scene read(const std::vector<std::string>& changes = {}) const;
 };
 
-// Of a path as a person gave it, read now: a file that is edited while its study runs is another scene. Throws
-// UnreadableScene.
+// Of a path as a person gave it, read now: a file that is edited while its study runs is another scene.
+// Throws UnreadableScene.
 SceneSource scene_source(const std::string& path, const std::vector<std::string>& overrides);
 
 // What a scene says before its variables are worked out, without comments and layout, and the overrides: as

@@ -24,8 +24,8 @@ constexpr ImWchar window_ranges[] = {0x0020, 0x024F,  // Latin, with its Extende
                                      0x02B0, 0x02FF,  // modifier letters
                                      0x0370, 0x052F,  // Greek, Cyrillic
                                      0x1E00, 0x1EFF,  // Latin Extended Additional
-                                     0x2010, 0x2027, 0x2030, 0x203A, 0x2070, 0x209F, 0x2190, 0x22FF,
-                                     0x25A0, 0x25FF, 0x2700, 0x27BF,  // dingbats
+                                     0x2010, 0x2027, 0x2030, 0x203A, 0x2070, 0x209F,
+                                     0x2190, 0x22FF, 0x25A0, 0x25FF, 0x2700, 0x27BF,  // dingbats
                                      0};
 
 // Null: these bytes are no font.

@@ -9,8 +9,8 @@ namespace unfurl {
 
 // Add the program's typeface at a size to an atlas: DejaVu Sans with Latin, Greek, minus, superscripts and
 // arrows, or ImGui's built-in font (plain Latin) where that is not installed. `pixels` is the height of a
-// line; draw at the size that was asked for, as scaling an atlas blurs it. A window, which has one atlas for all that
-// people write into it, has Cyrillic and more of Latin besides.
+// line; draw at the size that was asked for, as scaling an atlas blurs it. A window, which has one atlas for
+// all that people write into it, has Cyrillic and more of Latin besides.
 enum class Letters { pictures, window };
 ImFont* add_font(ImFontAtlas& atlas, float pixels, bool bold = false, Letters letters = Letters::pictures);
 // The same size of plot::typeface(), with what that has not in DejaVu Sans; both must be installed.

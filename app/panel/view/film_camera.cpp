@@ -42,7 +42,8 @@ double in_degrees(float radians) {
   return std::round(10 * static_cast<double>(radians) / radians_per_degree) / 10;
 }
 
-// Of a key's time [s]: a power of ten that is 1e-5 of the motion's duration at most; 1e-4 s of motions of seconds.
+// Of a key's time [s]: a power of ten that is 1e-5 of the motion's duration at most; 1e-4 s of motions of
+// seconds.
 double time_unit(const LiveRun& run) {
   const Trajectory& motion = run.simulation.trajectory;
   const double duration = motion.end_time() - motion.start_time();
@@ -50,7 +51,8 @@ double time_unit(const LiveRun& run) {
 }
 
 double rounded_time(double t, const LiveRun& run) {
-  const double per_second = std::round(1 / time_unit(run));  // a whole number: the quotient is the nearest decimal
+  const double per_second =
+      std::round(1 / time_unit(run));  // a whole number: the quotient is the nearest decimal
   return std::round(per_second * t) / per_second;
 }
 

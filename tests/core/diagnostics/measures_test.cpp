@@ -245,8 +245,8 @@ TEST_CASE("a fold angle counts on within steps as it does at states") {
   }
 }
 
-// Sweeps and solve ask it of every measure: what peaks.hpp looks for beside singular poses must be among these,
-// else a value depends on what else is measured.
+// Sweeps and solve ask it of every measure: what peaks.hpp looks for beside singular poses must be among
+// these, else a value depends on what else is measured.
 TEST_CASE("extremes of forces of every kind may have no bound beside singular poses") {
   for (const char* name :
        {"max:A.reaction_N", "min:A.reaction_x_N", "max:hub.torque_N_m", "min:winch.force_N", "peak_tension",

@@ -142,7 +142,8 @@ TEST_CASE("names of nodes never mean what a motor or a winch has besides") {
       "[[forces]]\nkind = 'motor'\nnodes = ['G', 'A', 'B']\naxis = [1, 0, 0]\nstall_torque = 1\n"
       "no_load_speed = 1000\ninertia = 0.1\n",
       "[[forces]]\nkind = 'motor'\nnodes = ['G', 'A', 'B']\naxis = [1, 0, 0]\nstall_torque = 1\n"
-      "no_load_speed = 1000\ncontrol = 'position'\nmotion = 'rate'\nrate = 20\nproportional = 5\nintegral = 10\n"};
+      "no_load_speed = 1000\ncontrol = 'position'\nmotion = 'rate'\nrate = 20\nproportional = 5\nintegral = "
+      "10\n"};
   for (const std::string& drive : drives)
     for (const char* held : {"kind = 'plane'\nnormal = [1, 0, 0]", "kind = 'equal'\ndirection = [1, 0, 0]"}) {
       INFO(drive << held);
