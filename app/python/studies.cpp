@@ -104,8 +104,7 @@ Sweep swept(const SweepPlan& plan, const fs::path& folder, const StudyHooks& hoo
     journal.require_asked(plan.asked(), folder, "ask for them, too, or use another folder");
     sweep = run_sweep(plan, journal, hooks);
   } catch (const JournalMismatch& error) {
-    throw FileError(folder,
-                    std::string(error.what()) + "; use another folder; other keys or measures than now?");
+    throw FileError(folder, std::string(error.what()) + "; other keys or measures than now?");
   }
   if (!path.empty() && sweep.missing.empty()) write_file_atomically(path, csv_text(sweep.table));
   return sweep;

@@ -251,7 +251,7 @@ std::optional<Sweep> compute(const SweepPlan& plan, const StudySession& session,
         [](const Sweep& sweep) { return sweep.missing.empty(); });
   } catch (const JournalMismatch& error) {
     throw FileError(session.directory(), std::string(error.what()) +
-                                             "; use another directory, or --force to begin anew; other "
+                                             ", or --force to begin anew; other "
                                              "--vary or --measure than now?");
   }
 }

@@ -40,8 +40,9 @@ void Journal::take_in(const std::filesystem::path& path) {
   auto records = csv_records(std::string_view(file.text).substr(0, whole + 1));
   if (records.empty()) return;
   if (records.front() != columns_)
-    throw JournalMismatch(path.string() +
-                          ": holds results with other columns, of another version or another question");
+    throw JournalMismatch(
+        path.string() +
+        ": holds results with other columns, of another version or another question; use another directory");
   Damage damage;
   decltype(rows_) found;  // of a key that is there twice the later row, as append() would have it
   for (std::size_t i = 1; i < records.size(); ++i) {
