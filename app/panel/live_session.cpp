@@ -12,7 +12,9 @@
 #include "app/panel/document/scene_entries.hpp"
 #include "app/panel/view/film_camera.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/scene/scene_error.hpp"
 #include "core/scene/title.hpp"
+#include "core/scene/write.hpp"
 #include "render/image/png.hpp"
 
 namespace unfurl {

@@ -3,6 +3,7 @@
 // same.
 #include <filesystem>
 
+#include "app/panel/document/file_list.hpp"
 #include "app/panel/panes/panes.hpp"
 
 namespace unfurl {
