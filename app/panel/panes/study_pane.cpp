@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The right pane's other page: a small study of the scene that is shown, run beside the window.
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
