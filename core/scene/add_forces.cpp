@@ -37,7 +37,9 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
       forces.push_back(one);
       break;
     case Members::each_node:
-      for (const int node : find.nodes_outside_rods(e)) {
+      // What carries each node's own weight is meant for those within rods, too, which have their share of
+      // it.
+      for (const int node : e.kind == "offload" ? find.nodes(e, true) : find.nodes_outside_rods(e)) {
         forces.push_back(one);
         forces.back().nodes = {node};
       }

@@ -144,6 +144,13 @@ TEST_CASE("patterns pass over nodes within rods that are cut to bend") {
   }
   CHECK(counts("['M1-B.*']", "4").first == 3);  // with a point they are meant
   CHECK(counts("['M1-B.2']", "4").first == 1);
+  // An offload carries each node's weight: all of a rod's, however it is cut.
+  const Structure hung =
+      build_structure(read_scene_text(text + "['B']\n[[forces]]\nkind = 'offload'\nnodes = ['*']\n[gravity]\n"
+                                             "acceleration = [0, 0, -9.81]\n",
+                                      "hung.toml", {"structure.segments=4"}));
+  const auto ropes = std::ranges::count_if(hung.forces, [](const Force& f) { return f.kind == "offload"; });
+  CHECK(ropes == std::ssize(hung.nodes));
 }
 
 }  // namespace build_test
