@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "core/diagnostics/quintic.hpp"
@@ -35,6 +36,7 @@ EnergyMeter::EnergyMeter(const System& system)
   index1_ = std::make_unique<Index1>(system_);
   q_.resize(system.coordinates());
   v_.resize(system.coordinates());
+  stiff_rate_.resize(system.coordinates());
   unused_.resize(system.solved_coordinates());
   lambda_.resize(system.constraints());
   target_rate_.resize(system.constraints());
@@ -82,7 +84,7 @@ double EnergyMeter::energy(const State& state) {
 double EnergyMeter::damping_power(const State& state, const VectorXd& acceleration, double after,
                                   double later) {
   system_.expand(state.z + after * state.w, q_);
-  system_.expand_rate(state.w + after * acceleration, v_);
+  system_.expand_rate(stiff_.cwiseProduct(state.w + after * acceleration), v_);
   return -system_.power(true, state.t + later, q_, v_,
                         state.tension.size() > 0 ? state.tension.data() : nullptr);
 }
@@ -94,14 +96,14 @@ double EnergyMeter::damping_power(const State& state, const VectorXd& accelerati
 // rounding of coordinates over h); the smaller one is taken, and none where they disagree in sign.
 //
 // A rate that is gone long before the step's end, with most of the power, or that has come about right behind
-// its start, is not to be had from the ends: what it lost is what the energies lost beyond the work of
-// others, `others`, as in an impact.
+// its start, is not to be had from the ends: no value; what it lost is what the energies lost beyond the work
+// of others, as in an impact.
 //
 // Where the motion between the states has the same power, `between`, that is taken: what its interpolant is
-// off where two motions are nearly one has a power of its own, and dampers that are not stiff are of its
-// order.
-double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastest, double others,
-                                   double between) {
+// off where two motions are nearly one has a power of its own. All powers are those of what stiff dampers
+// move.
+std::optional<double> EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastest,
+                                                  double between) {
   const double h = b.t - a.t, e = 1e-3 / fastest;
   // Of time itself into the step: at its ends something may begin.
   const auto rate = [&](const State& s, const VectorXd& acceleration, double inward) {
@@ -111,7 +113,7 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
   constexpr double most = 10;  // times the power at the other end
   const double at_start = damping_power(a, before_.acceleration, 0),
                at_end = damping_power(b, after_.acceleration, 0);
-  if (gone_ && (at_start > most * at_end || at_end > most * at_start)) return energy(a) - energy(b) + others;
+  if (gone_ && (at_start > most * at_end || at_end > most * at_start)) return std::nullopt;
   const double line = 0.5 * h * (at_start + at_end);
   double bend = h * h / 12 * (rate(a, before_.acceleration, e) - rate(b, after_.acceleration, -e));
   if (constexpr double too_large = 1e5; h * fastest > too_large) {
@@ -131,8 +133,9 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
 
 namespace {
 
-// Of each coordinate one that stands for all that share its accelerations: by their masses, by rows.
-std::vector<Index> parts_of(const System& system) {
+// Of each coordinate one that stands for all that share its accelerations: by their masses, by rows; and by
+// these dampers.
+std::vector<Index> parts_of(const System& system, const SparseRows* dampers = nullptr) {
   std::vector<Index> to(static_cast<std::size_t>(system.solved_coordinates()));
   std::iota(to.begin(), to.end(), Index{0});
   const auto part = [&](Index i) {
@@ -148,18 +151,19 @@ std::vector<Index> parts_of(const System& system) {
   };
   join(system.mass());
   join(system.jacobian_pattern());
+  if (dampers) join(*dampers);
   for (Index& i : to) i = part(i);
   return to;
 }
 
-// The rates of a part: squares of what they are at either end and in the mean, and of what the mean is off
-// that of the ends.
+// The rates of a part, as powers that its dampers would take of them: at either end, of their mean, and of
+// what that is off the mean of the ends. What the part does as a whole has none.
 struct PartRates {
   bool stiff = false;
   double at_a = 0, at_b = 0, mean = 0, off = 0;
   // They are others behind the start, or before the end, than there: of the time between the mean alone
-  // tells. A rate that falls as exp(-c t / m) has less than a sixth of the step for it.
-  bool gone() const { return 9 * off > std::max({at_a, at_b, mean}); }
+  // tells. A rate that falls as exp(-c t / m) has less than a sixth of the step for it. Not of rounding.
+  bool gone(double rounding) const { return 9 * off > std::max({at_a, at_b, mean}) && off > rounding; }
 };
 
 }  // namespace
@@ -173,25 +177,30 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
             before_.acceleration,
             after_.acceleration};
   const double h = b.t - a.t;
-  if (parts_.empty()) parts_ = parts_of(system_);
+  const SparseRows& by_w = derivatives_.by_w.sum();
+  if (parts_.empty()) parts_ = parts_of(system_), damped_ = parts_of(system_, &by_w);
   std::vector<PartRates> rates(parts_.size());
   gone_ = false;
-  const SparseRows& by_w = derivatives_.by_w.sum();
+  stiff_.setZero(a.w.size());
   const auto of = [&](Index i) -> PartRates& {
     return rates[static_cast<std::size_t>(parts_[static_cast<std::size_t>(i)])];
   };
-  const auto square = [](double x) { return x * x; };
+  const auto power = [&](const VectorXd& w) { return VectorXd(-w.cwiseProduct(by_w * w)); };
   const VectorXd bounds = rate_bounds(by_w, system_.mass()), mean = (b.z - a.z) / h;
+  const VectorXd of_a = power(a.w), of_b = power(b.w), of_mean = power(mean),
+                 of_off = power(mean - 0.5 * (a.w + b.w));
+  constexpr double of_energy = 1e-9;
+  const double rounding = of_energy / h * std::max(system_.kinetic_energy(a.w), system_.kinetic_energy(b.w));
   for (Index i = 0; i < mean.size(); ++i) {
     PartRates& part = of(i);
     part.stiff |= h * bounds[i] > stiff_at;
-    part.at_a += square(a.w[i]), part.at_b += square(b.w[i]), part.mean += square(mean[i]);
-    part.off += square(mean[i] - 0.5 * (a.w[i] + b.w[i]));
+    if (h * bounds[i] > stiff_at) stiff_[damped_[static_cast<std::size_t>(i)]] = 1;
+    part.at_a += of_a[i], part.at_b += of_b[i], part.mean += of_mean[i], part.off += of_off[i];
   }
   for (Index i = 0; i < mean.size(); ++i) {
     const PartRates& part = of(i);
     if (!part.stiff) continue;
-    if (part.gone()) {
+    if (part.gone(rounding)) {
       gone_ = true;
       ends.a.w[i] = ends.b.w[i] = mean[i];
     }
@@ -199,6 +208,7 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
     ends.by_a[i] = (6 * mean[i] - 4 * at_a - 2 * at_b) / h;
     ends.by_b[i] = (2 * at_a + 4 * at_b - 6 * mean[i]) / h;
   }
+  for (Index i = 0; i < mean.size(); ++i) stiff_[i] = stiff_[damped_[static_cast<std::size_t>(i)]];
   return ends;
 }
 
@@ -227,7 +237,7 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   const bool by_line = stiff && loads_ && points == 0 && system_.elastic_rods();
   const VectorXd pull = by_line ? rod_forces(a) : VectorXd(), change = by_line ? rod_forces(b) - pull : pull;
   VectorXd tension, line;
-  double taken_between = 0;
+  double taken_between = 0, by_stiff = 0;
   for (Index i = 0; i < rule.nodes.size(); ++i) {
     const double u = rule.nodes[i], t = a.t + u * h, weight = h * rule.weights[i];
     const bool at_end = by_ends && (i == 0 || i + 1 == rule.nodes.size());
@@ -239,6 +249,10 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
     if (by_line) line = pull + u * change;
     if (loads_) load_work += weight * system_.power(false, t, q_, v_, by_line ? line.data() : pulls);
     if (dampers_) taken_between -= weight * system_.power(true, t, q_, v_, pulls);
+    if (stiff) {
+      system_.expand_rate(stiff_.cwiseProduct(w), stiff_rate_);
+      by_stiff -= weight * system_.power(true, t, q_, stiff_rate_, pulls);
+    }
     if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
     const bool known = drives_ && (at_end || index1_->evaluate(t, z, w, unused_, lambda_, tension));
     if (at_point && (known || !drives_)) at_point(weight, t, q_, v_, lambda_);
@@ -246,8 +260,13 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
     system_.target_rate(t, target_rate_);
     drive_work -= weight * lambda_.dot(target_rate_);
   }
-  dissipated +=
-      stiff ? taken_by_stiff(a, b, fastest, load_work + drive_work - others, taken_between) : taken_between;
+  if (stiff) {
+    const std::optional<double> taken = taken_by_stiff(a, b, fastest, by_stiff);
+    dissipated +=
+        taken ? taken_between - by_stiff + *taken : energy(a) - energy(b) + load_work + drive_work - others;
+  } else {
+    dissipated += taken_between;
+  }
 }
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/diagnostics/drives.hpp"
@@ -32,9 +33,9 @@ bool motors_or_warmed(const Structure& structure);
 // puts in energy. Where rods give and a step does not resolve their waves, lengths between states do not tell
 // forces: the Gauss points are then the step's own, with the axial forces that it has found there. Where
 // dampers are stiff (c / m beyond 2 / h), what they take comes from the difference of two motions that are
-// nearly one, which no interpolant tells. Their power is then that of the states and its rates there, and the
-// motion between the states, of what hangs together with theirs, the cubic through coordinates and rates:
-// order 4.
+// nearly one, which no interpolant tells. What they and dampers beside them take is then that of the states
+// and its rates there, and the motion between the states, of what hangs together with theirs, the cubic
+// through coordinates and rates: order 4.
 class EnergyMeter {
  public:
   explicit EnergyMeter(const System& system);
@@ -61,18 +62,19 @@ class EnergyMeter {
   };
   Ends trusted_ends(const State& a, const State& b);
   bool gone_ = false;  // in the last step of these, the rates of something
-  double taken_by_stiff(const State& a, const State& b, double fastest, double others, double between);
+  std::optional<double> taken_by_stiff(const State& a, const State& b, double fastest, double between);
 
   System system_;  // follows the states
   bool loads_, dampers_, drives_;
   std::unique_ptr<Index1> index1_;
   SolvedPoint before_, after_;
   bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since
-  VectorXd q_, v_, unused_, lambda_, target_rate_;
+  VectorXd q_, v_, unused_, lambda_, target_rate_, stiff_rate_;
   ForceDerivatives derivatives_;
-  std::vector<Index> parts_;  // of each coordinate
-  double last_ = 0;           // time of the state that after_ is of
-  Quadrature own_;            // Gauss points of steps that tell the forces of rods there
+  std::vector<Index> parts_, damped_;  // of each coordinate; by dampers, too
+  VectorXd stiff_;   // 1: a coordinate that a stiff damper moves, or what hangs together with it
+  double last_ = 0;  // time of the state that after_ is of
+  Quadrature own_;   // Gauss points of steps that tell the forces of rods there
 };
 
 // The same along the states of a run, each in its turn; zeros unless it is `booked`.
