@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/diagnostics/books.hpp"
+#include "core/diagnostics/peak_by_states.hpp"
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/largest.hpp"
@@ -409,7 +410,10 @@ PeakInMotion top_of_motion(const Simulation& run, const std::vector<double>& at_
     if (std::ranges::find(around_these, i) == around_these.end()) around_these.push_back(i);
   for (const std::size_t i : around_these) {
     const Neighbourhood around(run, i);
-    if (!around.empty()) best = closer(around, values, best);
+    if (around.empty()) continue;
+    PeakInMotion found = closer(around, values, best);
+    if (found.value > best.value) found = by_states(run, at_states, found);
+    if (found.value > best.value) best = found;
   }
   return best;
 }

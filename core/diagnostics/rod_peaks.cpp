@@ -35,6 +35,14 @@ PeakInMotion larger_magnitude(const PeakInMotion& a, const PeakInMotion& b) {
   return std::isnan(a.value) || std::abs(b.value) > std::abs(a.value) ? b : a;
 }
 
+// Whether a time within a step is next to the time of a state, which holds the largest value of them all:
+// where the forces within the step are not known, next to a singular pose, its rod is the one.
+bool is_beside(const Trajectory& run, double t, double of_state) {
+  const std::size_t i = run.state_before(t);
+  return i + 1 < run.size() && run.time(i) < t && run.time(i > 0 ? i - 1 : 0) <= of_state &&
+         of_state <= run.time(std::min(i + 2, run.size() - 1));
+}
+
 }  // namespace
 
 PeakForce peak_rod_force(const Simulation& run, const Diagnostics& d, Pull pull) {
@@ -47,7 +55,10 @@ PeakForce peak_rod_force(const Simulation& run, const Diagnostics& d, Pull pull)
   const Bearer there = bearer(run, d, top.t, [pull](Index, double force) {
     return pull == Pull::either ? std::abs(force) : pull == Pull::tension ? force : -force;
   });
-  if (there.rod >= 0) peak = {there.force_N, there.rod, top.t, peak.unique && there.unique};
+  if (there.rod >= 0)
+    peak = {there.force_N, there.rod, top.t, peak.unique && there.unique};
+  else if (is_beside(run.trajectory, top.t, peak.t))
+    peak.force_N = top.value, peak.t = top.t;
   peak.unique = peak.unique && top.bounded;
   return peak;
 }
@@ -69,6 +80,8 @@ WorstRod worst_rod(const Simulation& run, const Diagnostics& d,
   const Bearer there = bearer(run, d, top.t, [&](Index r, double force) { return std::abs(of(r, force)); });
   if (there.rod >= 0)
     worst = {of(there.rod, there.force_N), there.rod, top.t, there.unique && !d.axial_force.hasNaN()};
+  else if (is_beside(run.trajectory, top.t, worst.t))
+    worst.value = top.value, worst.t = top.t;
   worst.unique = worst.unique && top.bounded;
   return worst;
 }

@@ -35,6 +35,11 @@ const SolvedPoint& StateForces::at(std::size_t i) {
   return kept_[i % kept].point;
 }
 
+bool StateForces::near_singular(std::size_t i) {
+  const SolvedPoint& here = at(i);
+  return here.known ? here.weakness > weak : trajectory_.report(i).singular_event;
+}
+
 void StateForces::solve_from(std::size_t i) {
   if (model_ != &trajectory_.model(i)) {
     model_ = &trajectory_.model(i);

@@ -37,6 +37,9 @@ class StateForces {
   const VectorXd& doubt() const { return doubt_; }
   // The same as the equations give it: not known at an event in a singular pose.
   const SolvedPoint& at(std::size_t i);
+  // Whether the pose of state i is so near to a singular one that errors of it count many times in its
+  // forces.
+  bool near_singular(std::size_t i);
 
  private:
   void solve_from(std::size_t i);

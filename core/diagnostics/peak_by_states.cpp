@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/diagnostics/peak_by_states.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "core/diagnostics/state_forces.hpp"
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr std::size_t each_side = 3, all_points = 2 * each_side;
+
+// Lagrange's polynomial through points.
+struct Points {
+  std::array<double, all_points> t, x;
+
+  double through(std::size_t begin, std::size_t end, double at) const {
+    double sum = 0;
+    for (std::size_t a = begin; a < end; ++a) {
+      double term = x[a];
+      for (std::size_t b = begin; b < end; ++b)
+        if (b != a) term *= (at - t[b]) / (t[a] - t[b]);
+      sum += term;
+    }
+    return sum;
+  }
+  double operator()(double at) const { return through(0, all_points, at); }
+};
+
+// False where there are not as many known states of one model on either side of a time.
+bool take_states(const Trajectory& states, const std::vector<double>& x, double t, Points& out) {
+  const std::size_t before = states.state_before(t);
+  const auto take = [&](std::size_t k, int way) {
+    const std::size_t first = way < 0 ? each_side : each_side - 1;
+    for (std::size_t taken = 1; taken <= each_side; k = way < 0 ? k - 1 : k + 1) {
+      if (k >= x.size() || &states.model(k) != &states.model(before)) return false;
+      const std::size_t to = way < 0 ? first - taken : first + taken;
+      const bool same = taken > 1 && states.time(k) == out.t[way < 0 ? to + 1 : to - 1];
+      if (std::isnan(x[k]) || same) continue;
+      out.t[to] = states.time(k), out.x[to] = x[k];
+      ++taken;
+    }
+    return true;
+  };
+  return take(before, -1) && take(before + 1, +1) && out.t[each_side - 1] < out.t[each_side];
+}
+
+}  // namespace
+
+PeakInMotion by_states(const Simulation& run, const std::vector<double>& x, const PeakInMotion& found) {
+  constexpr double many = 10, round_off = 1e-12;  // times what the outer two states change; of the value
+  constexpr int looks = 32;
+  Points known;
+  if (!take_states(run.trajectory, x, found.t, known)) return found;
+  const double here = known(found.t),
+               doubt = many * std::abs(here - known.through(1, all_points - 1, found.t));
+  if (found.value - here <= doubt + round_off * std::abs(here)) return found;
+  StateForces forces(run.trajectory);
+  const std::size_t before = run.trajectory.state_before(found.t);
+  if (!forces.near_singular(before) && !forces.near_singular(before + 1)) return found;
+  double begin = known.t[1], end = known.t[all_points - 2];
+  PeakInMotion top;
+  for (int round = 0; round < 3; ++round) {
+    const double apart = (end - begin) / looks;
+    for (int k = 0; k <= looks; ++k) {
+      const double t = begin + k * apart, value = known(t);
+      if (!(value <= top.value)) top = {value, t};
+    }
+    begin = std::max(begin, top.t - apart), end = std::min(end, top.t + apart);
+  }
+  return top;
+}
+
+}  // namespace unfurl
