@@ -8,11 +8,13 @@
 namespace unfurl {
 
 double force_round_off(const Simulation& run) {
-  constexpr double noise = 64 * std::numeric_limits<double>::epsilon(), of_forces = 1e-12;
+  // Of what the structure is; of how far off it stands, which only its coordinates have, and velocities not.
+  constexpr double noise = 64 * std::numeric_limits<double>::epsilon(), of_place = noise / 8,
+                   of_forces = 1e-12;
   const Trajectory& trajectory = run.trajectory;
   const Structure& structure = trajectory.structure();
   const auto grow = [](double& most, double x) { most = x > most ? x : most; };
-  double acting = 0, reach = 0, speed = 0, mass = 0, stiffness = 0;
+  double acting = 0, reach = 0, size = 0, speed = 0, mass = 0, stiffness = 0;
   double shortest = std::numeric_limits<double>::infinity();
   for (const Load& load : structure.loads) grow(acting, load.force.lpNorm<Eigen::Infinity>());
   for (const Rod& rod : structure.rods) {
@@ -33,14 +35,17 @@ double force_round_off(const Simulation& run) {
     grow(acting, force.lpNorm<Eigen::Infinity>());
     grow(acting, masses.lpNorm<Eigen::Infinity>() * structure.gravity.lpNorm<Eigen::Infinity>());
     grow(reach, q.lpNorm<Eigen::Infinity>());
+    const auto places = q.reshaped(3, q.size() / 3);
+    grow(size, (places.rowwise().maxCoeff() - places.rowwise().minCoeff()).maxCoeff());
     grow(speed, v.lpNorm<Eigen::Infinity>());
     grow(mass, masses.sum() / 3);
   }
   const double elapsed = trajectory.end_time() - trajectory.start_time();
   const double step =
       elapsed > 0 && run.steps > 0 ? elapsed / static_cast<double>(run.steps) : run.options.step;
-  const double turning = noise * (speed + reach / step);
-  return of_forces * acting + mass * turning * turning / shortest + stiffness * noise * reach;
+  const double off = noise * std::min(size, reach) + of_place * reach;  // [m]
+  const double turning = noise * speed + off / step;
+  return of_forces * acting + mass * turning * turning / shortest + stiffness * off;
 }
 
 MatrixXd without_round_off(const Simulation& run, const Diagnostics& d, MatrixXd values) {

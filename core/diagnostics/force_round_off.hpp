@@ -8,8 +8,9 @@ namespace unfurl {
 
 // What the rod forces of a run may be off by rounding alone [N]: 1e-12 of the largest force on a node, where
 // gravity and each load count by themselves; what the rounding of coordinates and velocities makes of their
-// differences, d = 64 ulp of the largest coordinate x and of the largest speed v: the masses' way around each
-// other, sum(m) (d v + d x / h)^2 / l, l the shortest rod; and the stretch of rods that give, E A / l d x.
+// differences, d x = 64 ulp of the structure's size and 8 of its largest coordinate, d v = 64 ulp of the
+// largest speed: the masses' way around each other, sum(m) (d v + d x / h)^2 / l, l the shortest rod; and the
+// stretch of rods that give, E A / l d x.
 double force_round_off(const Simulation& run);
 
 // Values that follow from rod forces and are zero where these are [states x rods of the solved model]: with

@@ -95,6 +95,42 @@ TEST_CASE("small forces are no rounding", "[diagnostics]") {
   }
 }
 
+// In map coordinates, 5000 km from the origin, a node's place is known to 1 nm: an elastic tie of 2e9 N/m
+// that rests under 100 N, and one of 0.1 m that 1 N accelerates.
+TEST_CASE("forces of structures in map coordinates are no rounding", "[diagnostics]") {
+  const std::string tie = R"(
+nodes = [{name = "A", position = [5e5, 5e6, 0], fixed = true}, {name = "B", position = [500001, 5e6, 0], mass = 10}]
+rods = [{nodes = ["A", "B"], area = 0.01, density = 1000, free_length = 0.99999995}]
+rod_model = "elastic"
+youngs_modulus = 2e11
+damping_ratio = 0.1
+[[loads]]
+nodes = ["B"]
+force = [100, 0, 0]
+[solver]
+end_time = 0.1
+step = 0.001
+)",
+                    rigid = R"(
+nodes = [{name = "A", position = [5e5, 5e6, 0], fixed = true},
+  {name = "B", position = [500000.125, 5e6, 0], mass = 100}]
+rods = [{nodes = ["A", "B"], mass = 1}]
+[[loads]]
+nodes = ["B"]
+force = [1, 0, 0]
+[solver]
+end_time = 1e-4
+step = 1e-6
+)";
+  for (const auto& [scene, force] : {std::pair(tie, 100.0), std::pair(rigid, 1.0)}) {
+    const Simulation run = testing::run_scene("[structure]\nkind = 'custom'" + scene);
+    const Diagnostics d = diagnose(run);
+    CAPTURE(force, force_round_off(run));
+    // What 1 nm of 2e9 N/m is, at most, and of 1 N its rounding.
+    CHECK(without_round_off(run, d, d.axial_force).minCoeff() == Approx(force).epsilon(0.02));
+  }
+}
+
 // Beside one that hangs from its end, with half of its weight, one that nothing pulls keeps a zero.
 TEST_CASE("what is rounding is judged by the run and taken away one by one", "[diagnostics]") {
   const Simulation run = testing::run_scene(
