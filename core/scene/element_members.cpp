@@ -26,6 +26,22 @@ void leave_nodes_within_rods(const std::string& pattern, const std::vector<bool>
     std::erase_if(found, [&](int node) { return within[static_cast<std::size_t>(node)]; });
 }
 
+std::vector<int> matching_copies(const Structure& structure, const NameIndex& names,
+                                 const std::string& pattern) {
+  std::vector<int> found = names.matching(pattern);
+  if (pattern.find('.') != std::string::npos) return found;
+  const std::vector<bool> within = nodes_within_rods(structure);
+  std::erase_if(found, [&](int copy) {
+    return within[static_cast<std::size_t>(structure.node_copies[static_cast<std::size_t>(copy)].source)];
+  });
+  return found;
+}
+
+std::string only_within_rods(const std::string& pattern) {
+  return in_quotes(pattern) +
+         " matches nodes within cut rods only: give their names with the point, as ROD.1";
+}
+
 MemberFinder::MemberFinder(const Structure& structure)
     : structure_(structure), start_(node_positions(structure)) {
   for (const Node& node : structure.nodes) {
@@ -76,7 +92,9 @@ std::vector<int> MemberFinder::nodes_outside_rods(const SceneElement& element) {
   std::vector<int> all = nodes(element, true), found;
   for (const std::string& pattern : element.nodes) {
     std::vector<int> matches = node_names_.matching(pattern);
+    const bool known = !matches.empty();
     leave_nodes_within_rods(pattern, within, matches);
+    if (known && matches.empty()) problem(element, "nodes", only_within_rods(pattern));
     found.insert(found.end(), matches.begin(), matches.end());
   }
   return all.empty() ? all : found;
@@ -165,9 +183,11 @@ double MemberFinder::initial(const Measure& measure) const {
 double MemberFinder::same(const Measure& measure, double value) const {
   constexpr double digits = 1e-9;
   if (is_angle(measure)) return digits * std::max(1.0, std::abs(value));
+  // Of the scene's nodes; rotors and drums behind them are at the origin, wherever it stands.
+  const auto own = start_.head(3 * static_cast<Eigen::Index>(node_names_.names().size()));
   double size = std::abs(value);
-  for (Eigen::Index i = 3; i < start_.size(); ++i) size = std::max(size, std::abs(start_[i] - start_[i % 3]));
-  return digits * size + 4e-16 * start_.lpNorm<Eigen::Infinity>();  // and what coordinates far away round to
+  for (Eigen::Index i = 3; i < own.size(); ++i) size = std::max(size, std::abs(own[i] - own[i % 3]));
+  return digits * size + 4e-16 * own.lpNorm<Eigen::Infinity>();  // and what coordinates far away round to
 }
 
 // Two rods that share a node open at it; others are taken from their first node to their second. Of rods that

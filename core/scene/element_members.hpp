@@ -15,6 +15,11 @@ std::vector<bool> nodes_within_rods(const Structure& structure);
 // Takes out of what a pattern matches those nodes, unless it has a point itself.
 void leave_nodes_within_rods(const std::string& pattern, const std::vector<bool>& within,
                              std::vector<int>& found);
+// The same of copies, whose names these are.
+std::vector<int> matching_copies(const Structure& structure, const NameIndex& names,
+                                 const std::string& pattern);
+// What to say of a pattern for which nothing is left then.
+std::string only_within_rods(const std::string& pattern);
 
 // A vector parameter of three numbers.
 inline Vec3 vec3(const ParamSet& values, std::string_view name) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/scene/element_members.hpp"
 #include "core/text/name_index.hpp"
 #include "core/text/nearest_name.hpp"
 
@@ -76,8 +77,10 @@ std::vector<int> surface_nodes(const SceneSurface& surface, const std::string& k
   std::vector<int> nodes;
   std::vector<SceneProblem> problems;
   for (const std::string& pattern : surface.nodes) {
-    const std::vector<int> found = names.matching(pattern);
-    if (found.empty())
+    const std::vector<int> found = matching_copies(structure, names, pattern);
+    if (found.empty() && !names.matching(pattern).empty())
+      problems.push_back({surface.where, key, only_within_rods(pattern)});
+    else if (found.empty())
       problems.push_back({surface.where, key,
                           "no node matches " + in_quotes(pattern) + did_you_mean(pattern, names.names())});
     for (const int node : found)

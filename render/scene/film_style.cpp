@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/scene/element_members.hpp"
 #include "core/scene/scene_error.hpp"
 #include "core/text/name_index.hpp"
 #include "core/text/nearest_name.hpp"
@@ -32,10 +33,12 @@ std::vector<int> trail_nodes(const Scene& scene, const Structure& structure) {
   if (pattern.empty()) return {};
   NameIndex nodes;
   for (const NodeCopy& copy : structure.node_copies) nodes.add(copy.name);
-  std::vector<int> found = nodes.matching(pattern);
+  std::vector<int> found = matching_copies(structure, nodes, pattern);
   if (found.empty())
     throw SceneError({{place_of_key(scene, "render.trails"), "render.trails",
-                       "no node matches " + in_quotes(pattern) + did_you_mean(pattern, nodes.names())}});
+                       nodes.matching(pattern).empty()
+                           ? "no node matches " + in_quotes(pattern) + did_you_mean(pattern, nodes.names())
+                           : only_within_rods(pattern)}});
   return found;
 }
 

@@ -194,6 +194,31 @@ TEST_CASE("surfaces are carried by their nodes, read back as written, and wrong 
   CHECK_THROWS_WITH(build_model(read_scene_text(wrong, "x.toml")), Catch::Contains("three nodes"));
 }
 
+TEST_CASE("a surface and trails named by a pattern are of the scene's nodes, however rods are cut") {
+  const auto nodes = [](const std::string& segments, const std::string& pattern) {
+    const Scene scene = read_scene_text("structure.segments = " + segments + R"(
+structure.kind = "custom"
+structure.youngs_modulus = 7e10
+structure.rod_model = "elastic"
+structure.nodes = [{name = "N1", position = [0, 0, 0], fixed = true}, {name = "N2", position = [1, 0, 0], fixed = true},
+  {name = "N3", position = [1, 0, 1]}, {name = "N4", position = [0, 0, 1]}]
+structure.rods = [{nodes = ["N1", "N4"], mass = 1, area = 1e-4}, {nodes = ["N2", "N3"], mass = 1, area = 1e-4},
+  {nodes = ["N3", "N4"], mass = 1, area = 1e-4}]
+[render]
+trails = "N*"
+[[surfaces]]
+kind = "membrane"
+nodes = [)" + pattern + "]\n",
+                                        "sail.toml");
+    const auto model = build_model(scene);
+    check_film_names(scene, model->structure);
+    return shown_surfaces(scene, model->structure).front().nodes;
+  };
+  for (const char* segments : {"1", "4"}) CHECK(nodes(segments, "'N*'") == std::vector<int>{0, 1, 2, 3});
+  CHECK(nodes("4", "'N1', 'N2', 'N*.2'").size() == 5);
+  CHECK_THROWS_WITH(nodes("4", "'N1', 'N2', 'N*4?1'"), Catch::Contains("matches nodes within cut rods only"));
+}
+
 TEST_CASE("a mesh lets light through and shades the floor, a panel does not") {
   const auto context = make_offscreen_context();
   constexpr int width = 320, height = 180;
