@@ -55,7 +55,7 @@ BricardShape bricard_shape(const ParamSet& p) {
   const double twist = p.real("twist_angle"), opening = p.real("opening_angle");
   if (!(opening > least_opening(twist)))
     refuse("opening_angle",
-           "with twist_angle = %.6g degrees the loop closes for an opening_angle above %.6g degrees", twist,
+           "with twist_angle = %.12g degrees the loop closes for an opening_angle above %.12g degrees", twist,
            least_opening(twist));
   s.S1 = std::sin(0.5 * opening * radians_per_degree);
   s.C1 = std::cos(0.5 * opening * radians_per_degree);
@@ -92,7 +92,7 @@ void set_deployment(Structure& out, const BricardShape& s, double deployed_degre
   const double start = d.initial_fold_angle / radians_per_degree;
   if (!unfolds(start, deployed_degrees))
     refuse("deployed_angle",
-           "deployed_angle = %.6g degrees must be smaller than the fold angle at the start, %.6g degrees",
+           "deployed_angle = %.12g degrees must be smaller than the fold angle at the start, %.12g degrees",
            deployed_degrees, start);
 }
 

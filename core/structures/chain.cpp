@@ -13,7 +13,7 @@ namespace {
 
 std::string metres(double length) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.6g m", length);
+  std::snprintf(text, sizeof text, "%.12g m", length);
   return text;
 }
 

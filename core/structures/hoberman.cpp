@@ -33,7 +33,7 @@ HobermanShape hoberman_shape(const ParamSet& p) {
   if (!(fold < closed)) {
     char text[160];
     std::snprintf(text, sizeof text,
-                  "with %d units the inner nodes meet at the centre at a fold angle of %.6g degrees: "
+                  "with %d units the inner nodes meet at the centre at a fold angle of %.12g degrees: "
                   "fold_angle must be "
                   "smaller",
                   s.n, closed);

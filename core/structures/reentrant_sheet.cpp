@@ -41,7 +41,7 @@ SheetShape sheet_shape(const ParamSet& p) {
     char text[200];
     std::snprintf(text, sizeof text,
                   "chords would cross inside the units: post_length must be more than 2 chord_rod_length "
-                  "sin(fold_angle) = %.6g m",
+                  "sin(fold_angle) = %.12g m",
                   2.0 * s.l * s.sine);
     throw StructureError("post_length", text);
   }

@@ -20,7 +20,7 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 std::string metres_text(double x) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", x);
+  std::snprintf(text, sizeof text, "%.12g m", x);
   return text;
 }
 
@@ -171,7 +171,8 @@ void note_idle_material(Structure& structure, const RodMaterial& material) {
 namespace {
 
 // Told the ends of what a constraint holds a node between, and that node: the middle of two nodes, or a point
-// on the line through them, however it is written.
+// on the line through them, however it is written. It stands there: one of a single coordinate may tie what
+// is far.
 template <class Visit>
 void for_each_pin_between(const Structure& structure, const Visit& visit) {
   const auto at = [&](int node) -> const Vec3& {
@@ -180,18 +181,29 @@ void for_each_pin_between(const Structure& structure, const Visit& visit) {
   for (const Constraint& c : structure.constraints) {
     const auto& n = c.nodes;
     const auto alike = [&](std::size_t a, std::size_t b) { return c.vectors[a].dot(c.vectors[b]) > 0; };
+    // Nodes of a sector stand for others.
+    const auto on = [&](std::size_t a, std::size_t b, const Vec3& there) {
+      const Vec3 along = at(n[b]) - at(n[a]), from = there - at(n[a]);
+      const double u = std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0);
+      return structure.sectors > 1 || (from - u * along).norm() <= 1e-6 * along.norm();
+    };
+    const auto crossing = [&](std::size_t a, std::size_t b) {
+      const double of_a = c.vectors[a].norm(), of_b = c.vectors[b].norm();
+      return Vec3((of_a * at(n[a]) + of_b * at(n[b])) / (of_a + of_b));
+    };
     if (c.kind == "relation" && n.size() == 4)  // where two cross
       for (std::size_t other = 1; other < 4; ++other) {
         const std::size_t third = other == 1 ? 2 : 1, fourth = 6 - other - third;
         if (!alike(0, other) || !alike(third, fourth) || alike(0, third)) continue;
+        if (!on(0, other, crossing(third, fourth))) continue;
         visit(n[0], n[other], n[third]), visit(n[third], n[fourth], n[0]);
       }
     if (n.size() != 3 || (c.kind != "relation" && c.kind != "collinear")) continue;
     for (std::size_t pin = 0; pin < 3; ++pin) {
       const std::size_t a = (pin + 1) % 3, b = (pin + 2) % 3;
-      const bool between = c.kind == "relation" ? alike(a, b) && !alike(a, pin)
-                                                : (at(n[a]) - at(n[pin])).dot(at(n[b]) - at(n[pin])) < 0;
-      if (between) visit(n[a], n[b], n[pin]);
+      const bool lies = c.kind == "relation" ? alike(a, b) && !alike(a, pin) && on(a, b, at(n[pin]))
+                                             : (at(n[a]) - at(n[pin])).dot(at(n[b]) - at(n[pin])) < 0;
+      if (lies) visit(n[a], n[b], n[pin]);
     }
   }
 }

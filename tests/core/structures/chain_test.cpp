@@ -88,6 +88,9 @@ TEST_CASE("a chain that cannot hang is refused by the parameter at fault") {
         "apart");
   CHECK(refusal("chain", {{"links", 9L}, {"link_length", 0.2}, {"span", 0.2}})
             .starts_with("span: a span of 0.2 m is too small"));
+  // The number that is refused is not the one that is given as the limit.
+  CHECK(refusal("chain", {{"links", 10L}, {"link_length", 0.1}, {"span", 1.0000001}})
+            .starts_with("span: a span of 1.0000001 m is out of reach"));
   CHECK(refusal("chain", {{"links", 1L}, {"held", std::string("both")}}).starts_with("held: a single link"));
 }
 

@@ -278,6 +278,12 @@ rods = [{nodes = ["A", "B"], density = 2700, area = 1e-4, segments = )") +
       said = said || note.find("1 rod with pins between the ends") != std::string::npos;
     CHECK(said);
   }
+  // A relation of one coordinate may tie what stands beside the rod.
+  const std::string aside =
+      "kind = 'relation'\nnodes = ['A', 'B', 'Q']\ncoefficients = [0.5, 0, 0, 0.5, 0, 0, -1, 0, 0]\n";
+  CHECK(testing::error_of(beam(aside, "4")).empty());
+  for (const std::string& note : testing::model_of(beam(aside, "1"))->structure.notes)
+    CHECK(note.find("pins between the ends") == std::string::npos);
   // Beyond the end of a rod, in line with it, nothing is held between.
   CHECK(testing::error_of(beam("kind = 'collinear'\nnodes = ['A', 'P', 'B']\n", "1")).empty());
   CHECK(testing::error_of(R"([structure]
