@@ -139,4 +139,27 @@ std::optional<BoxSolution> solve_box(const MatrixXd& D, const VectorXd& b, const
   return out;
 }
 
+std::vector<std::vector<Index>> joined_rows(const MatrixXd& D) {
+  constexpr double rounding = 1e-9;
+  std::vector<std::vector<Index>> sets;
+  std::vector<bool> taken(static_cast<std::size_t>(D.rows()), false);
+  const auto take = [&](Index r) {
+    taken[static_cast<std::size_t>(r)] = true;
+    sets.back().push_back(r);
+  };
+  for (Index first = 0; first < D.rows(); ++first) {
+    if (taken[static_cast<std::size_t>(first)]) continue;
+    sets.emplace_back();
+    take(first);
+    for (std::size_t k = 0; k < sets.back().size(); ++k) {
+      const Index of = sets.back()[k];
+      for (Index r = 0; r < D.rows(); ++r)
+        if (!taken[static_cast<std::size_t>(r)] &&
+            std::abs(D(r, of)) > rounding * std::sqrt(D(r, r) * D(of, of)))
+          take(r);
+    }
+  }
+  return sets;
+}
+
 }  // namespace unfurl

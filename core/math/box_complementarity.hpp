@@ -34,4 +34,8 @@ VectorXd past_held(const MatrixXd& D, const std::vector<bool>& held, Index i);
 // Is row i of D independent of those held? Of unit diagonal, what they leave of it is above round-off.
 bool independent(const MatrixXd& D, const std::vector<bool>& held, Index i);
 
+// Sets of rows that D does not join, neither directly nor by others: each has an answer of its own. D:
+// symmetric, its diagonal not negative; entries below 1e-9 of what they could be are rounding.
+std::vector<std::vector<Index>> joined_rows(const MatrixXd& D);
+
 }  // namespace unfurl

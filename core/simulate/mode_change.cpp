@@ -181,7 +181,11 @@ class Change {
     VectorXd of_rates(count());
     for (Index r = 0; r < count(); ++r) of_rates[r] = rate_rounding * sides_.fastest(side(r), out_.state);
     auto impulses = solve_box(D_, b, low, high, of_rates);
-    if (!impulses) impulses = solve_box(D_, u, low, high, of_rates);  // they throw it at each other
+    if (!impulses) {  // they throw it at each other
+      for (const std::vector<Index>& rows : joined_rows(D_))
+        if (!solve_box(D_(rows, rows), b(rows), low(rows), high(rows), of_rates(rows))) b(rows) = u(rows);
+      impulses = solve_box(D_, b, low, high, of_rates);
+    }
     if (!impulses) return fail_at(std::find(struck_.begin(), struck_.end(), true) - struck_.begin());
     responses.give(impulses->x, out_.state.w);
     const VectorXd after = responses.rates(out_.state.w);

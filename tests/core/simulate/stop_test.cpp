@@ -360,4 +360,49 @@ step = )" + std::string(step) + "\n");
     }
 }
 
+// P cannot move between a and b, which it is thrown at; R is joined to nothing and meets its own stop at that
+// time, with restitution 1: back it goes as fast.
+TEST_CASE("a blow between two stops without room is none of another stop's that is met then") {
+  for (const char* speed : {"0", "0.41"}) {
+    CAPTURE(speed);
+    const Simulation run = testing::run_scene(R"([structure]
+kind = "custom"
+rods = []
+nodes = [{name = "O", position = [0, 0, 0], fixed = true},
+  {name = "P", position = [1, 0, 0], mass = 1.4, velocity = [)" +
+                                              std::string(speed) + R"(, 0, 0]},
+  {name = "R", position = [5, 0, 0], mass = 1, velocity = [-1, 0, 0]}]
+constraints = [{kind = "line", nodes = ["P", "R"], direction = [1, 0, 0]}]
+[[constraints]]
+kind = "coordinate_stop"
+name = "a"
+nodes = ["P"]
+direction = [1, 0, 0]
+restitution = 1
+min = 1
+[[constraints]]
+kind = "length_stop"
+name = "b"
+nodes = ["O", "P"]
+restitution = 1
+min = 0.5
+max = 1
+[[constraints]]
+kind = "coordinate_stop"
+name = "r"
+nodes = ["R"]
+direction = [1, 0, 0]
+restitution = 1
+min = 5
+[solver]
+end_time = 0.1
+step = 0.01
+)");
+    REQUIRE(run.status == RunStatus::completed);
+    const VectorXd x = testing::end_positions(run);
+    CHECK(x[3] == Approx(1).margin(1e-12));
+    CHECK(x[6] == Approx(5.1).margin(1e-12));
+  }
+}
+
 }  // namespace stop_test
