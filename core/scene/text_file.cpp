@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace unfurl {
@@ -72,10 +73,33 @@ TextFile read_result_file(const std::string& path) {
   return read_text_file(path, TextSource::regular_file, std::string().max_size());
 }
 
+namespace {
+
+thread_local FilesBeside* files_in_use = nullptr;
+
+}  // namespace
+
+FilesBeside::InUse::InUse(FilesBeside* files) : before_(files_in_use) {
+  files_in_use = files;
+}
+FilesBeside::InUse::~InUse() {
+  files_in_use = before_;
+}
+
 TextFile read_file_beside(const std::string& folder, const std::string& name) {
+  const std::string path = (fs::path(folder) / name).string();
+  std::unique_lock<std::mutex> lock;
+  if (files_in_use) {
+    lock = std::unique_lock(files_in_use->mutex_);
+    if (const auto known = files_in_use->read_.find(path); known != files_in_use->read_.end())
+      return known->second;
+  }
   if (std::string error = outside_error(folder, name); !error.empty()) return {name, "", std::move(error)};
-  TextFile file = read_text_file((fs::path(folder) / name).string());
-  if (!file.error.empty()) file.error = "cannot read " + file.path + ": " + file.error;
+  TextFile file = read_text_file(path);
+  if (!file.error.empty())
+    file.error = "cannot read " + file.path + ": " + file.error;
+  else if (files_in_use)
+    files_in_use->read_[path] = file;
   return file;
 }
 

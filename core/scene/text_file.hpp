@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <mutex>
 #include <string>
 
 namespace unfurl {
@@ -27,5 +29,26 @@ TextFile read_result_file(const std::string& path);
 
 // A file whose name is relative to the folder and that lies inside it, links followed.
 TextFile read_file_beside(const std::string& folder, const std::string& name);
+
+// Files beside a scene that is read again and again, as they were when each was read first: while one of
+// these is in use by a thread, read_file_beside() answers out of it.
+class FilesBeside {
+ public:
+  class InUse {
+   public:
+    explicit InUse(FilesBeside* files);  // null: files are read
+    ~InUse();
+    InUse(const InUse&) = delete;
+    InUse& operator=(const InUse&) = delete;
+
+   private:
+    FilesBeside* before_;
+  };
+
+ private:
+  friend TextFile read_file_beside(const std::string& folder, const std::string& name);
+  std::mutex mutex_;
+  std::map<std::string, TextFile> read_;  // by path
+};
 
 }  // namespace unfurl

@@ -21,6 +21,7 @@ constexpr std::string_view of_variables = "variables.";
 Scene SceneSource::read(const std::vector<std::string>& changes) const {
   std::vector<std::string> all = overrides;
   all.insert(all.end(), changes.begin(), changes.end());
+  const FilesBeside::InUse as_they_were(files.get());
   return text ? read_scene_text(*text, path, all, folder) : read_scene_file(path, all);
 }
 
@@ -31,6 +32,7 @@ SceneSource scene_source(const std::string& path, const std::vector<std::string>
   source.text = std::make_shared<const std::string>(std::move(file.text));
   source.folder = std::filesystem::path(path).parent_path().string();
   if (source.folder.empty()) source.folder = ".";
+  source.files = std::make_shared<FilesBeside>();
   return source;
 }
 

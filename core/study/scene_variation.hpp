@@ -9,6 +9,7 @@
 
 #include "core/diagnostics/measures.hpp"
 #include "core/scene/scene.hpp"
+#include "core/scene/text_file.hpp"
 #include "core/simulate/trajectory.hpp"
 
 namespace unfurl {
@@ -20,13 +21,14 @@ struct SceneSource {
   std::vector<std::string> overrides = {};
   std::shared_ptr<const std::string> text = nullptr;  // null: read the file
   std::string folder = "";                            // of a text: where files lie that it names
+  std::shared_ptr<FilesBeside> files = nullptr;       // those, as they were when they were read first
 
   // With these "key=value" behind the overrides. Throws SceneError, UnreadableScene.
   Scene read(const std::vector<std::string>& changes = {}) const;
 };
 
-// Of a path as a person gave it, read now: a file that is edited while its study runs is another scene.
-// Throws UnreadableScene.
+// Of a path as a person gave it, read now: a file that is edited while its study runs is another scene. So
+// are files that it names, which are read with its first point. Throws UnreadableScene.
 SceneSource scene_source(const std::string& path, const std::vector<std::string>& overrides);
 
 // What a scene says before its variables are worked out, without comments and layout, and the overrides: as

@@ -58,6 +58,37 @@ TEST_CASE("a file that is edited while its study runs changes none of its points
   CHECK_THROWS_AS(scene_source(file.string(), {}), UnreadableScene);
 }
 
+TEST_CASE("a file that a scene names is that of the first point in all of them") {
+  namespace fs = std::filesystem;
+  const fs::path folder =
+      fs::temp_directory_path() / ("unfurl_scene_variation_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const auto write = [&](const char* name, const std::string& z) {
+    std::ofstream(folder / name) << "name,x_m,y_m,z_m,fixed,mass_kg\nO,0,0,0,1,0\nA,1,0," << z << ",0,2\n";
+  };
+  write("n.csv", "-0.5");
+  write("m.csv", "-0.75");
+  std::ofstream(folder / "s.toml") << "structure.kind = 'custom'\nstructure.nodes_file = 'n.csv'\n"
+                                      "structure.rods = [{nodes = ['O', 'A'], mass = 1}]\n";
+  const SceneSource source = scene_source((folder / "s.toml").string(), {});
+  const auto height = [](const Scene& scene) { return scene.custom.nodes.back().position.z(); };
+  CHECK(height(source.read()) == -0.5);
+  write("n.csv", "-9");
+  CHECK(height(source.read({"solver.step=0.02"})) == -0.5);
+  CHECK(height(SceneSource(source).read()) == -0.5);
+  CHECK(height(source.read({"structure.nodes_file=m.csv"})) ==
+        -0.75);  // another one is read when it is asked for
+  write("m.csv", "-8");
+  fs::remove(folder / "n.csv");
+  CHECK(height(source.read({"structure.nodes_file=m.csv"})) == -0.75);
+  CHECK(height(source.read()) == -0.5);
+  CHECK_THROWS_WITH(source.read({"structure.nodes_file=k.csv"}), Catch::Contains("k.csv"));
+  CHECK_THROWS(read_scene_file((folder / "s.toml").string()));  // what is read by itself is read
+  write("n.csv", "-7");
+  CHECK(height(read_scene_file((folder / "s.toml").string())) == -7);
+  fs::remove_all(folder);
+}
+
 TEST_CASE("numbers of a scene are found where they stand or by default, and are whole or not") {
   const Scene scene = source().read();
   CHECK(scene_number(scene, "structure.post_length") == 1.3);
