@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[forces]] of a scene into a structure: the kinds are those of the force table (forces/force.hpp).
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -81,6 +82,14 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
   return forces;
 }
 
+// The least change of a warmed rod's length, of its length; at the points of a table.
+double shortest_share(const Force& warming) {
+  const std::vector<double>& at = warming.size.values;
+  double least = warming.expansion * (at.empty() ? warming.size.offset : at.front());
+  for (const double kelvin : at) least = std::min(least, warming.expansion * kelvin);
+  return least;
+}
+
 // What an entry says of rods becomes theirs.
 void warm_rods(const SceneElement& e, const ForceKind& kind, ElementAdder& to) {
   Force warming;
@@ -90,6 +99,12 @@ void warm_rods(const SceneElement& e, const ForceKind& kind, ElementAdder& to) {
     if (rod.expansion != 0)
       return to.find.problem(e, "rods",
                              "names " + in_quotes(rod.name) + ", which another entry warms already");
+    if (!(1 + shortest_share(warming) > 0)) {
+      const char* key = e.values.vector("times").empty() ? "change" : e.table.empty() ? "values" : "table";
+      return to.find.problem(
+          e, key,
+          "shrinks " + in_quotes(rod.name) + " to nothing: expansion times the change must stay above -1");
+    }
     rod.expansion = warming.expansion;
     rod.warming = warming.size;
   }

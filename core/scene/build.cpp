@@ -174,6 +174,7 @@ void add_loads(const Scene& scene, Structure& structure) {
     std::set<int> loaded;
     for (const auto& pattern : load.nodes) {
       std::vector<int> found = names.matching(pattern);
+      const bool known = !found.empty();
       leave_nodes_within_rods(pattern, within, found);
       for (const int node : found) {
         if (loaded.insert(node).second)
@@ -183,7 +184,8 @@ void add_loads(const Scene& scene, Structure& structure) {
                               "names " + in_quotes(structure.nodes[static_cast<std::size_t>(node)].name) +
                                   " more than once"});
       }
-      if (found.empty())
+      if (found.empty() && known) problems.push_back({load.where, key, only_within_rods(pattern)});
+      if (!known)
         problems.push_back({load.where, key,
                             "no node matches " + in_quotes(pattern) + did_you_mean(pattern, names.names())});
     }
@@ -397,6 +399,9 @@ void find_jumps(const Scene& scene, Structure& structure) {
   }
   find.throw_problems();
   for (Force& f : structure.forces) make_jumps(f.size, near);
+  // Ramps of drives as short are none.
+  for (Constraint& c : structure.constraints) make_jumps(c.target, near);
+  for (Stop& stop : structure.stops) make_jumps(stop.reel, near);
 }
 
 // A group that no rod is of, most likely misspelt.

@@ -75,6 +75,10 @@ double TimeFunction::derivative(int order, double t) const {
 }
 
 bool make_jumps(TimeFunction& f, double near) {
+  if (f.kind == TimeFunction::Kind::rate && f.ramp < near) {
+    f.start += 0.5 * f.ramp;
+    f.ramp = 0;
+  }
   if (f.kind != TimeFunction::Kind::linear) return true;
   constexpr double short_of = 1e3;  // times a flank: what loses a part of itself where the flank moves
   const std::vector<double> t = f.times, &x = f.values;

@@ -98,6 +98,40 @@ end_time = 0.4
   CHECK(run.warnings.empty());
 }
 
+// 2 kg on a line, a rod of 1.5 kg on it and on a slider beside: from rest to 0.3 m/s, whatever a ramp does
+// that no step tells from none. Imposed: round-off of some metres.
+TEST_CASE("ramps down to round-off of time lead to the rate without one") {
+  const std::string slider = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [1, 0, 0], mass = 2}, {name = "B", position = [1.3, 0.4, 0]}]
+rods = [{nodes = ["A", "B"], mass = 1.5}]
+constraints = [{kind = "line", nodes = ["A"], direction = [1, 0, 0]}, {kind = "line", nodes = ["B"], direction = [1, 0, 0]}]
+[[constraints]]
+name = "drive"
+kind = "coordinate"
+nodes = ["A"]
+direction = [1, 0, 0]
+motion = "rate"
+rate = 0.3
+[solver]
+step = 0.05
+end_time = 1
+)";
+  for (const double start : {0.0, 0.5, 0.4871})
+    for (const char* ramp :
+         {"0", "1e-30", "1e-16", "1e-13", "1e-11", "1e-9", "4e-9", "6e-9", "1e-8", "1e-7", "1e-6"}) {
+      CAPTURE(start, ramp);
+      const Simulation run = run_scene(slider, {"constraints[drive].start=" + std::to_string(start),
+                                                "constraints[drive].ramp=" + std::string(ramp)});
+      CHECK(run.status == RunStatus::completed);
+      CHECK((run.warnings.empty() || start + std::stod(ramp) == 0));  // a jump at the start is told
+      CHECK(end_positions(run)[0] == Approx(1 + 0.3 * (1 - start - 0.5 * std::stod(ramp))).margin(1e-13));
+      const Diagnostics d = diagnose(run);
+      CHECK(d.at("kinetic_energy_J").values.back() == Approx(0.5 * 3.5 * 0.3 * 0.3).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("a crank at a constant rate goes round and round") {
   const Simulation run =
       run_scene(crank, {"structure.constraints.motor.motion=rate", "structure.constraints.motor.rate=720",
