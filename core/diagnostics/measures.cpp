@@ -50,7 +50,7 @@ double peak_force(const Simulation& run, const Diagnostics& d) {
 
 template <Pull pull>
 double peak_unique(const Simulation& run, const Diagnostics& d) {
-  if (!d.whole()) return no_value;
+  if (!d.whole() || run.trajectory.structure().rods.empty()) return no_value;
   return peak_rod_force(run, d, pull).unique ? 1.0 : 0.0;
 }
 
@@ -62,7 +62,8 @@ double peak_stress(const Simulation& run, const Diagnostics& d) {
 template <double (*quantity)(const Rod&, double)>
 double worst_unique(const Simulation& run, const Diagnostics& d) {
   if (!d.whole()) return no_value;
-  return worst_rod(run, d, quantity).unique ? 1.0 : 0.0;
+  const WorstRod worst = worst_rod(run, d, quantity);
+  return worst.rod < 0 ? no_value : worst.unique ? 1.0 : 0.0;
 }
 
 double last_frequency(const Simulation& run, const Diagnostics&) {

@@ -125,7 +125,7 @@ Json strength_json(const Simulation& run, const Diagnostics& diagnostics) {
                                     [&](const RodCopy& copy) { return copy.source == worst.rod; });
     entry["rod"] = shown == structure.rod_copies.end() ? Json() : Json(shown->name);
     entry["t_s"] = worst.t;
-    entry["unique"] = diagnostics.whole() ? Json(worst.unique) : Json();
+    entry["unique"] = diagnostics.whole() && worst.rod >= 0 ? Json(worst.unique) : Json();
   };
   add("axial_stress", axial_stress, find_measure("peak_stress").value(run, diagnostics),
       [](Json& entry, double value) { entry["peak_Pa"] = value; });

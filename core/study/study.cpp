@@ -236,7 +236,11 @@ Cheapest cheapest(const Study& study, double error) {
 
 std::string cheapest_sentence(const Study& study) {
   std::string found, missed;
-  for (const double error : {1e-3, 1e-6, 1e-9}) {
+  // Of a structure of some metres; a share of what is far from that.
+  const bool usual = study.size > 0.03 && study.size < 300;
+  const double unit = usual || !(study.size > 0) ? 1.0 : std::pow(10.0, std::round(std::log10(study.size)));
+  for (const double share : {1e-3, 1e-6, 1e-9}) {
+    const double error = share * unit;
     const Cheapest best = cheapest(study, error);
     if (best.run)
       found += (found.empty() ? "The cheapest setting for " : ", for ") + short_number(error, 1) + " m" +

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iomanip>
 #include <limits>
@@ -34,6 +36,12 @@ std::vector<std::string> split(const std::string& text, char mark) {
   return parts;
 }
 
+double to_digits(double x, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*e", digits - 1, x);
+  return std::strtod(text, nullptr);
+}
+
 void fill_range(const std::string& text, const std::vector<std::string>& parts, SweepAxis& axis) {
   const double from = number_of(parts[0]), to = number_of(parts[1]), count = number_of(parts[2]);
   if (!std::isfinite(from) || !std::isfinite(to))
@@ -51,6 +59,8 @@ void fill_range(const std::string& text, const std::vector<std::string>& parts, 
     const double size = axis.log ? std::abs(x) : std::max(std::abs(from), std::abs(to));
     if (i > 0 && std::abs(x - std::round(x)) <= 4 * std::numeric_limits<double>::epsilon() * size)
       x = std::round(x);
+    // Powers are a digit off: 0.01 and not 0.009999999999999998.
+    if (axis.log && i > 0) x = to_digits(x, 15);
     if (i + 1 == static_cast<long>(count) && i > 0) x = to;
     axis.numbers.push_back(x);
     axis.values.push_back(exact_number(x));

@@ -21,11 +21,13 @@ bool is_unit(std::string_view text) {
       "n kn mn nm kgf lbf pa kpa mpa gpa psi bar s ms us ns sec min h hz khz rpm rps k c w kw j kj percent "
       "metre metres meter meters millimetres millimeters gram grams kilograms tons tonnes radians newton "
       "newtons "
+      "ns nms nsm kgm gcm \u00B5m \u00B0c "
       "pascal second seconds minutes hours kelvin watts ";
   if (text.front() == '(' || text.front() == '[') return true;
   if (text.front() != '_' && text.front() != ' ') return false;
   text.remove_prefix(1);
   if (text.starts_with('(') || text.starts_with('[')) return true;
+  if (text == "A" || text == "V") return true;  // small, they are names
   std::string word = " ";
   for (const char c : text.substr(0, text.find_first_of("_/^*0123456789 ."))) word += lower(c);
   return word.size() > 1 && units.find(word + " ") != std::string_view::npos;

@@ -92,6 +92,18 @@ TEST_CASE("measures of a run are those of the motion, between its steps, too") {
   CHECK(measure("newton_iterations") == newton);
 }
 
+TEST_CASE("what has no value is not said to be unique") {
+  const Simulation run = testing::run_scene(R"(
+structure.kind = 'pendulum'
+solver.end_time = 0.1
+solver.step = 0.01
+)");
+  const Diagnostics d = diagnose(run);
+  for (const char* name : {"peak_stress_unique", "stress_margin_unique", "buckling_margin_unique"})
+    CHECK(std::isnan(find_measure(name).value(run, d)));
+  CHECK(find_measure("peak_rod_force_unique").value(run, d) == 1.0);
+}
+
 TEST_CASE("a summary names the rod that bears most and when, of force, stress and buckling") {
   const Simulation run = testing::run_scene(pendulums);
   const Diagnostics d = diagnose(run);

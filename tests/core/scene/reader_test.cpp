@@ -64,6 +64,10 @@ TEST_CASE("an error names file, line, column, key, range and the nearest name") 
   // A rename alone would take 1200 mm for 1200 m.
   CHECK(error_of(hoop + "post_length_mm = 1200") ==
         "s.toml:3:1: structure.post_length_mm: unknown key; give 'post_length', converted to m");
+  for (const char* unit : {"_nm", "_\u00B5m", " km", "_A", "_kgm3"})
+    CHECK(error_of(hoop + "\"post_length" + unit + "\" = 750") ==
+          std::string("s.toml:3:1: structure.post_length") + unit +
+              ": unknown key; give 'post_length', converted to m");
   CHECK(error_of(hoop + "post_length_error = 0.1").find("converted") == std::string::npos);  // no unit
   CHECK(error_of(hoop + "density = 'x'") ==
         "s.toml:3:11: structure.density: must be a number > 0 kg/m^3; got the text 'x'");

@@ -178,6 +178,12 @@ TEST_CASE("the cheapest of the runs that are accurate enough is named") {
   CHECK(cheapest_sentence(study) ==
         "The cheapest setting for 0.001 m is fast with a step of 0.5 s (1000 ms), for 1e-6 m slow with a "
         "step of 0.5 s (4000 ms); no setting was found that keeps 1e-9 m.");
+  // Of a structure of some micrometres or kilometres as large a share.
+  study.size = 3e-6;
+  CHECK(cheapest_sentence(study) == "No setting was found that keeps 1e-9 m, 1e-12 m, 1e-15 m.");
+  study.size = 2e3;
+  CHECK(cheapest_sentence(study).starts_with("The cheapest setting for 1 m is fast with"));
+  study.size = 12;
   study.curves.clear();
   CHECK(cheapest_sentence(study) == "No setting was found that keeps 0.001 m, 1e-6 m, 1e-9 m.");
 }

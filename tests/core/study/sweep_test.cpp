@@ -31,7 +31,10 @@ TEST_CASE("a range meets the whole numbers between its ends") {
   CHECK(parse_axis("x=-7:993:1001").numbers[777] == 770);
   CHECK(parse_axis("x=0.5:2.5:21").values[3] == "0.8");
   CHECK(parse_axis("x=1:1000:4:log").values[2] == "100");
-  CHECK(parse_axis("x=1e-3:1e15:19:log").numbers[1] == Approx(0.01).epsilon(1e-12));
+  CHECK(parse_axis("x=1e-3:1e15:19:log").numbers[1] == 0.01);
+  CHECK(parse_axis("x=0.001:1000:7:log").numbers == std::vector<double>{0.001, 0.01, 0.1, 1, 10, 100, 1000});
+  CHECK(parse_axis("x=0.3:3e-9:9:log").values[4] == "3e-05");
+  CHECK(parse_axis("x=0.12345678901234567:1:3:log").numbers[0] == 0.12345678901234567);  // ends as they are
   CHECK(parse_axis("x=0.001:1e15:3").numbers[0] == 0.001);
 }
 
