@@ -2,6 +2,7 @@
 // A plot as data: painted to pixels through OpenGL or to SVG.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,8 @@ struct Segment {
   double depth = 0;  // larger is nearer
   int color = 0;
   float width = 2.0f;  // [points]
+  // What colour and width show, for the table of the figure's numbers; NaN: nothing.
+  double value = std::numeric_limits<double>::quiet_NaN();
 };
 
 // A joint of a pose.

@@ -48,7 +48,7 @@ class PanelTable {
       row("line", l.label,
           {l.horizontal ? "" : number(l.value), l.horizontal ? number(l.value) : "", "", ""});
     for (const Segment& s : panel_.segments)
-      row("rod", "", {number(s.x0), number(s.y0), number(s.x1), number(s.y1)});
+      row("rod", number(s.value), {number(s.x0), number(s.y0), number(s.x1), number(s.y1)});
     for (const Dot& d : panel_.dots) row("node", "", {number(d.x), number(d.y), "", ""});
   }
 

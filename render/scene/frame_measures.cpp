@@ -7,6 +7,7 @@
 
 #include "core/text/wrapped.hpp"
 #include "render/plot/text_metrics.hpp"
+#include "render/plot/ticks.hpp"
 #include "render/scene/frame_overlay.hpp"
 #include "render/scene/view.hpp"
 
@@ -20,8 +21,9 @@ double round_length(double x) {
 
 namespace {
 
-// To three digits, or to a tenth of a metre.
+// To three digits, or to a tenth of a metre; of what is very large or small a power of ten.
 std::string length_text(double metres) {
+  if (metres < 1e-3 || metres >= 1e5) return plot::format_number(metres, 3) + " m";
   char text[32];
   std::snprintf(text, sizeof text, metres < 10 ? "%#.3g m" : "%.1f m", metres);
   return text;
@@ -55,10 +57,11 @@ void FrameOverlay::add_scale_bar(Boxes& taken, DrawList& list) const {
   if (!(pixels > 0 && std::isfinite(pixels))) return;
   const double metres = round_length(0.16 * static_cast<double>(width_) / pixels);
   const auto length = static_cast<float>(pixels * metres);
-  char text[32];
-  std::snprintf(text, sizeof text, list.camera.parallel_height > 0 ? "%g m" : "%g m in the middle", metres);
+  const std::string text =
+      plot::format_number(metres, 1) + (list.camera.parallel_height > 0 ? " m" : " m in the middle");
   const float x = 0.5f * (width_ - length), tick = 5 * unit_, thick = 2 * unit_;
-  const auto words = static_cast<float>(plot::text_width(text, static_cast<double>(small_)));
+  const auto words =
+      static_cast<float>(plot::text_width(text, static_cast<double>(small_) / plot::line_height));
   const float half = 0.5f * std::max(length, words);
   Box box{0.5f * width_ - half, height_ - edge_ - 1.35f * small_, 0.5f * width_ + half,
           height_ - edge_ + tick};
@@ -142,7 +145,8 @@ void FrameOverlay::add_dimension(const Vec3& a, const Vec3& b, const Vec3& away,
   const std::string text = length_text(metres);
   // The line leaves its number free.
   const Eigen::Vector2f along = (q - p).head<2>() / length;
-  const float wide = 0.32f * line * static_cast<float>(text.size()) + 0.25f * line, tall = 0.75f * line;
+  const float wide = 0.32f * line * static_cast<float>(characters_in(text)) + 0.25f * line,
+              tall = 0.75f * line;
   const float part = number_place(p.head<2>(), q.head<2>(), {wide, 0.5f * line}, list);
   const Eigen::Vector2f middle = p.head<2>() + part * (q - p).head<2>();
   const float free =
@@ -193,7 +197,7 @@ void FrameOverlay::add_dimensions(const VectorXd& whole, DrawList& list) const {
   add_dimension(left, {left.x(), left.y(), high.z()}, -gap * right, list);
 }
 
-void FrameOverlay::add_names(const VectorXd& whole, DrawList& list) const {
+void FrameOverlay::add_names(const VectorXd& whole, const std::vector<Piece>& written, DrawList& list) const {
   const Structure& s = trajectory_.structure();
   const auto node = [&](int i) { return Vec3(upright_ * whole.segment<3>(3 * i)); };
   std::vector<std::pair<const std::string*, Vec3>> names;
@@ -220,8 +224,13 @@ void FrameOverlay::add_names(const VectorXd& whole, DrawList& list) const {
   const Vec3 back = (list.camera.eye - list.camera.target).cast<double>();
   std::stable_sort(names.begin(), names.end(),
                    [&](const auto& a, const auto& b) { return back.dot(a.second) > back.dot(b.second); });
-  std::vector<Box> taken{{0, 0, width_, edge_ + 1.3f * large_ + 1.2f * small_},
-                         {0, height_ - edge_ - 1.5f * small_, width_, height_}};
+  // Of the line of the time, which changes its width, all.
+  std::vector<Box> taken{{0, height_ - edge_ - 1.5f * small_, width_, height_}};
+  const float gap = 4 * unit_;
+  for (const Piece& piece : written) {
+    const Box& b = piece.box;
+    taken.push_back({b.x0 - gap, b.y0 - gap, b.x1 + gap, b.y1 + gap});
+  }
   for (const auto& [name, at] : names) add_name(*name, at, taken, list);
 }
 

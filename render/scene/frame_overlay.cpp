@@ -107,8 +107,7 @@ FrameOverlay::Parts FrameOverlay::wanted() const {
 
 void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
   if (look_.dimensions || style_.options.dimensions) add_dimensions(whole, list);
-  add_names(whole, list);
-  write(t, whole, wanted(), list);
+  add_names(whole, write(t, whole, wanted(), list), list);
 }
 
 double FrameOverlay::heading_bottom() const {
@@ -126,11 +125,13 @@ void FrameOverlay::add_key(double t, DrawList& list) const {
   write(t, {}, wanted, list);
 }
 
-void FrameOverlay::write(double t, const VectorXd& whole, Parts wanted, DrawList& list) const {
+std::vector<FrameOverlay::Piece> FrameOverlay::write(double t, const VectorXd& whole, Parts wanted,
+                                                     DrawList& list) const {
   const std::size_t areas = list.areas.size(), lines = list.lines.size(), labels = list.labels.size();
   for (;;) {
-    const std::optional<Part> left_out = in_the_way(write_all(t, whole, wanted, list));
-    if (!left_out) return;
+    std::vector<Piece> pieces = write_all(t, whole, wanted, list);
+    const std::optional<Part> left_out = in_the_way(pieces);
+    if (!left_out) return pieces;
     wanted.erase(*left_out);
     list.areas.resize(areas), list.lines.resize(lines), list.labels.resize(labels);
     list.inset = {};
@@ -287,7 +288,7 @@ void FrameOverlay::add_status(double t, const VectorXd& whole, Boxes& taken, Dra
   // In one line where there is room, each in its own where there is not, smaller where one has none.
   const float room = width_ - 2 * edge_;
   const auto width = [&](const std::string& text) {
-    return static_cast<float>(plot::text_width(text, static_cast<double>(small_)));
+    return static_cast<float>(plot::text_width(text, static_cast<double>(small_) / plot::line_height));
   };
   if (lines.size() == 2)
     if (const std::string both = lines[0] + "    " + lines[1]; width(both) <= room) lines = {both};
@@ -315,9 +316,10 @@ void FrameOverlay::add_swatch(DrawList& list, float x, float y, const Color& col
 std::vector<FrameOverlay::LegendEntry> FrameOverlay::legend_entries(double t, const DrawList& list) const {
   std::vector<LegendEntry> legend;
   const auto add = [&](bool arrow, const std::string& name, const Color& color) {
-    const std::string text = plot::shorten_text(name, static_cast<double>(small_),
-                                                static_cast<double>(width_ - 2 * edge_ - 2 * small_));
-    const auto wide = static_cast<float>(plot::text_width(text, static_cast<double>(small_)));
+    const double em = static_cast<double>(small_) / plot::line_height;
+    const std::string text =
+        plot::shorten_text(name, em, static_cast<double>(width_ - 2 * edge_ - 2 * small_));
+    const auto wide = static_cast<float>(plot::text_width(text, em));
     legend.push_back({arrow, text, color, wide + 0.95f * small_});
   };
   if (!field_ && looks_.groups.size() > 1)
@@ -368,7 +370,8 @@ void FrameOverlay::add_legend(double t, Boxes& taken, DrawList& list) const {
         {false,
          rest,
          {0, 0, 0, 0},
-         static_cast<float>(plot::text_width(rest, static_cast<double>(small_))) + 0.95f * small_});
+         static_cast<float>(plot::text_width(rest, static_cast<double>(small_) / plot::line_height)) +
+             0.95f * small_});
     rows = legend_rows(std::move(some), y, taken);
   }
   const float sign_width = 0.95f * small_, room = 0.25f * small_;

@@ -75,7 +75,7 @@ class FrameOverlay {
                            DrawList& list) const;
   Parts wanted() const;
   // Everything that is wanted and has room.
-  void write(double t, const VectorXd& whole, Parts wanted, DrawList& list) const;
+  std::vector<Piece> write(double t, const VectorXd& whole, Parts wanted, DrawList& list) const;
   std::vector<Piece> write_all(double t, const VectorXd& whole, const Parts& wanted, DrawList& list) const;
   // The least important part that is in the way of another, or has no room in the picture.
   std::optional<Part> in_the_way(const std::vector<Piece>& pieces) const;
@@ -97,7 +97,7 @@ class FrameOverlay {
   float number_place(const Eigen::Vector2f& p, const Eigen::Vector2f& q, const Eigen::Vector2f& half,
                      const DrawList& list) const;
   void add_dimension(const Vec3& a, const Vec3& b, const Vec3& away, DrawList& list) const;
-  void add_names(const VectorXd& whole, DrawList& list) const;
+  void add_names(const VectorXd& whole, const std::vector<Piece>& written, DrawList& list) const;
   void add_name(const std::string& name, const Vec3& at, std::vector<Box>& taken, DrawList& list) const;
   void add_inset(double t, DrawList& list) const;
 

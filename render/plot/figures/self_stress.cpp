@@ -84,7 +84,7 @@ class StatePainter {
                             f > 0   ? tension
                             : f < 0 ? compression
                                     : idle,
-                            width});
+                            width, f});
     }
     for (const ShownLine& line : lines_with_springs(structure_)) {
       const Vec3 a = at(line.a), b = at(line.b);

@@ -3,9 +3,11 @@
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
+#include "render/plot/figure_data.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <charconv>
 #include <map>
 #include <set>
 
@@ -297,6 +299,16 @@ TEST_CASE("states of self-stress are drawn one by one, and are not offered where
     CHECK(nearest - farthest < 20);
   }
   CHECK(f.caption.find("5 states") != std::string::npos);
+  // The table has what colours and widths show: of each rod its force, which balances at free nodes.
+  const std::string table = figure_csv(f);
+  for (const Segment& s : f.panels[0].segments) {
+    CHECK((s.value > 0) == (s.color == 1));
+    CHECK((s.value < 0) == (s.color == 0));
+    if (s.value == 0) continue;
+    char text[40];
+    *std::to_chars(text, text + sizeof text, s.value).ptr = 0;
+    CHECK(table.find(",rod," + std::string(text) + ",") != std::string::npos);
+  }
 }
 
 TEST_CASE("what rods bear is drawn where they have a modulus, then forces are unique", "[figures]") {
